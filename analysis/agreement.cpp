@@ -7,7 +7,8 @@
 namespace graze::analysis {
 namespace {
 
-// What the pairs of the choice show. clearly: fresh pairs will hardly show another rate than max_rate or less.
+// Whether the lanes agree on the pairs of the choice. clearly: on fresh pairs the rate will almost surely be at most
+// max_rate too.
 enum class Agrees { clearly, perhaps, no };
 
 Agrees agrees(const Agreement& agreement, double max_rate) {

@@ -25,7 +25,7 @@ struct Agreed {
   Agreement zero;  // on the pairs of the choice
   std::vector<CurveOf<Agreement>> curves;
   std::vector<Agreement> picks;  // the best of each curve, on the other pairs
-  // Where no other tolerance makes the lanes agree: the best of the blunt ones that do, on the pairs of the choice.
+  // If only blunt tolerances make the lanes agree: the best of them, on the pairs of the choice.
   std::optional<Agreement> blunt;
   std::string chosen;  // policy; empty: compare with zero exactly
   TuneResult result = TuneResult::not_satisfiable;
@@ -34,8 +34,8 @@ struct Agreed {
   std::optional<Agreement> rounded;  // of the lanes whose operations all round as written, on the other pairs
 };
 
-// Whether a tolerance does not deserve its agreement: a lane has more wrong verdicts under it than without one, and at
-// least as many as one answer for all pairs would have.
+// Whether the tolerance is blunt: under it a lane has more wrong verdicts than without one, and at least as many as if
+// it gave the same answer for all pairs.
 bool is_blunt(const Agreement& under, const Agreement& zero);
 
 // satisfied: differing verdicts are rarer than max_rate; not_confirmed or not_satisfiable: they are more frequent; each

@@ -25,7 +25,7 @@ AgreeSpec spec_of(const Lane& first, const Lane& second, std::uint64_t pairs, co
   return spec;
 }
 
-// Every count against a recount by decide_one, under no policy, on ladders and by twins.
+// Compares every count with a recount by decide_one: without a policy, on ladders, and for twins.
 TEST(AgreementSweep, CountsWhatARecountCounts) {
   const auto sources = drawn(3, 3001, {"near_vertex_face", "shared_edge", "extreme_scale"});
   const std::vector<std::string> policies = {"", "abs:1e-9", "abs:1e-6", "rel:1", "rel:100", "plane_distance=rel:8"};
@@ -97,7 +97,7 @@ TEST(Agree, WithoutContractionNoPolicyIsNeeded) {
   EXPECT_GT(contracted, 100u);
 }
 
-// The choice is what agree() promises, by the curves, and pairs of another seed confirm its bounds.
+// Checks the choice against the curves, as agree() promises it, and its bounds on pairs of another seed.
 void expect_true(const AgreeSpec& spec, const Agreed& agreed, const std::vector<std::string>& globs) {
   const Agreement chosen = spec.sweep(std::vector<std::string>{agreed.chosen}, spec.sources).front();
   const auto clearly = [&](const Agreement& a) {
@@ -156,7 +156,7 @@ TEST(Agree, NoToleranceSuffices) {
   expect_true(spec, agreed, {});
 }
 
-// A tolerance so large that both lanes always answer the same is no agreement.
+// A tolerance under which both lanes always give the same answer must not count as agreement.
 TEST(Agree, ABluntToleranceIsNotChosen) {
   Agreement zero, under;
   zero.pairs = under.pairs = 100;
@@ -171,7 +171,7 @@ TEST(Agree, ABluntToleranceIsNotChosen) {
   EXPECT_FALSE(is_blunt(under, zero));
 }
 
-// Where only a blunt tolerance makes the lanes agree, it is named, and the best other one is chosen.
+// If only a blunt tolerance makes the lanes agree, it is reported, and the best of the other tolerances is chosen.
 TEST(Agree, NamesABluntToleranceThatAloneWouldDo) {
   AgreeSpec spec;
   spec.sources = drawn(5, 1000, {"uniform"});

@@ -103,8 +103,8 @@ Corrected corrected(const Wrong& wrong, const std::vector<std::size_t>& comparis
   return {path_of(run), run.verdict};
 }
 
-// Tries every smaller set, and every earlier set of the same size. For two of the four pairs one comparison is enough,
-// where correcting values named two. For one pair, correcting values named a later comparison than the first.
+// Tries every smaller set, and every earlier set of the same size. The four pairs were reported: correcting values
+// named two comparisons where one is enough, or a later one than the first.
 TEST(Deciding, IsTheSmallestSetAndOfEqualOnesTheFirst) {
   std::vector<Wrong> some;
   for (std::size_t i = 0; i < all_wrong().size(); i += 7) some.push_back(all_wrong()[i]);
@@ -197,7 +197,7 @@ TEST(Audit, AFalseCauseDoesNotPass) {
   EXPECT_GE(tried.size(), 12u);
 }
 
-// For a rounding, another comparison of the same run than the deciding one does not pass.
+// If the cause is rounding, the audit fails for every comparison of the run other than the deciding one.
 TEST(Audit, AnotherComparisonDoesNotPass) {
   int tried = 0, passed = 0;
   for (const Wrong& wrong : all_wrong()) {

@@ -33,7 +33,7 @@ struct Decider {
 // The size of the largest sets that the search tries.
 inline constexpr int kMostDeciding = 4;
 
-// Returns the trace along a path without the cause of the failure; it has one entry for each thing seen.
+// Returns the trace of a run along this path without the cause: one entry for each value or comparison.
 using WithoutCause = std::function<Trace<double>(const Path&)>;
 
 // Returns the smallest set; among equally small sets, the first in order of execution. Empty if no set of up to
@@ -44,7 +44,7 @@ std::vector<Decider> deciding_comparisons(const Lane& lane, const Pair& pair, Ve
                                           const WithoutCause& without_cause);
 
 // Whether the comparison's outcome is right without the cause, or one of its operands is not finite. A non-finite
-// operand is blamed on the cause, whatever rounding would give instead.
+// operand counts as an effect of the cause, even if rounding alone would be wrong too.
 bool is_by_cause(const Decider& decider, const WithoutCause& without_cause);
 
 }  // namespace graze::analysis

@@ -35,7 +35,7 @@ struct CountingSink {
 
 template <class Algorithm, class Real>
 void compare_block(std::span<const Pair> pairs, const Records& first, const Records& second,
-                   const std::uint8_t* degrees, DiscrepancyCounts& to) {
+                   const std::uint8_t* degrees, Axis axis, DiscrepancyCounts& to) {
   CountingSink sink{to};
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (!is_finite(pairs[i])) continue;
@@ -43,7 +43,7 @@ void compare_block(std::span<const Pair> pairs, const Records& first, const Reco
       return Run<Real>{{static_cast<const Real*>(of.values) + i, of.stride}, of.paths[i]};
     };
     decide_widened<Real>(pairs[i], [&](const auto& a, const auto& b) {
-      compare_runs<Algorithm>(a, b, run(first), run(second), degrees, sink);
+      compare_runs<Algorithm>(a, b, run(first), run(second), degrees, axis, sink);
       return Verdict::declined;
     });
   }
@@ -86,14 +86,14 @@ struct Beside {
   const Run<Real>& second;
   std::vector<ValueBeside>& values;
 
-  void add(int question, int which, int site, const Certified& exact) {
-    ValueBeside value{question, which, first.value(question, which), {}, false, exact};
+  void add(int question, int which, int site, const Unrounded& unrounded) {
+    ValueBeside value{question, which, first.value(question, which), {}, false, unrounded};
     if (second.path.asked >> question & 1) value.second = second.value(question, which);
     value.compared = have_both(first.path, second.path, question, site);
     values.push_back(value);
   }
-  void one(int question, int site, const Certified& exact) { add(question, 0, site, exact); }
-  void two(int question, int site, const Certified& left, const Certified& right, bool) {
+  void one(int question, int site, const Unrounded& value) { add(question, 0, site, value); }
+  void two(int question, int site, const Unrounded& left, const Unrounded& right, bool) {
     add(question, 0, site, left);
     add(question, 1, site, right);
   }
@@ -194,13 +194,13 @@ LanesCompared::LanesCompared(const Lane& l, const Lane& r) : first(&l), second(&
   if (const std::string why = why_not_compared(l, r); !why.empty()) throw UsageError(why);
 }
 
-void count_discrepancies(const LanesCompared& lanes, std::span<const Pair> pairs, DiscrepancyCounts& to) {
+void count_discrepancies(const LanesCompared& lanes, std::span<const Pair> pairs, Axis axis, DiscrepancyCounts& to) {
   static constexpr auto kCompare = compare_blocks(static_cast<const Algorithms*>(nullptr));
   const Lane& lane = *lanes.first;
   const Kept first(lane, pairs), second(*lanes.second, pairs);
   const std::vector<std::uint8_t> degrees = degrees_of(lane.algorithm);
   kCompare[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)](
-      pairs, first.records, second.records, degrees.data(), to);
+      pairs, first.records, second.records, degrees.data(), axis, to);
   to.unlike[0] += unlike(*lanes.first, pairs, first);
   to.unlike[1] += unlike(*lanes.second, pairs, second);
 }
@@ -209,7 +209,7 @@ namespace {
 
 bool is_rounded(const Lane& lane) { return info_of(lane.variant).arithmetic == Arithmetic::rounded; }
 
-// Compares on a device.   Returns: false if it cannot, or if the host's values are others than the device's.
+// Compares on a device.   Returns: false if it cannot, or if the host's values differ from the device's.
 bool compare_on_device(const LanesCompared& lanes, const strata::PairSource& source, DiscrepancyCounts& to) {
   const Lane &first = *lanes.first, &second = *lanes.second;
   if (!cuda::records_on_device(first) || !cuda::records_on_device(second)) return false;
@@ -249,7 +249,7 @@ Discrepancies discrepancies(const DiscrepancySpec& spec) {
     for (std::uint64_t i = 0; i < block.count; ++i) pairs.push_back(spec.sources[source].pair(block.first + i));
     Discrepancies& result = results.local();
     for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
-      if (!done[l][source]) count_discrepancies(spec.lanes[l], pairs, result[l][source]);
+      if (!done[l][source]) count_discrepancies(spec.lanes[l], pairs, spec.sources[source].axis, result[l][source]);
     }
   });
   for (const Discrepancies& some : results) {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/discrepancy/certified.h"
+#include "core/discrepancy/led.h"
 #include "core/discrepancy/questions.h"
 #include "core/lanes/records.h"
 #include "strata/pair_source.h"
@@ -20,7 +20,7 @@ namespace graze::analysis {
 struct DiscrepancyCounts {
   std::vector<std::uint64_t> counts;
   std::vector<std::uint64_t> maxima;  // band_maxima::kFields for each question, bits of doubles
-  // Pairs on which a lane's verdict is not that of its recorded run: the compiler built them differently.
+  // Pairs on which each lane's verdict differs from that of its recorded run, which was compiled differently.
   std::uint64_t unlike[2] = {0, 0};
 
   explicit DiscrepancyCounts(int algorithm = 0);
@@ -43,13 +43,13 @@ struct LanesCompared {
   LanesCompared(const Lane& l, const Lane& r);
 };
 
-// A value that a comparison of at least one of two lanes sees, in the order of the first lane's run; those that only
-// the second lane saw come last.
+// A value that at least one of two lanes compares. Values are in the order of the first lane's run; those of the second
+// lane alone come last.
 struct ValueBeside {
   int question, which;                  // which: of Question::of
   std::optional<double> first, second;  // nothing if the lane was not asked
   bool compared = false;                // both were asked about the same quantity
-  std::optional<Certified> exact;       // along the first lane's path; nothing for values of the second lane alone
+  std::optional<Unrounded> unrounded;   // along the first lane's path; nothing for values of the second lane alone
 };
 
 // The runs of two lanes on one pair. Their choices are in the layout of RecordedPath.
@@ -65,7 +65,7 @@ RunsBeside runs_beside(const LanesCompared& lanes, const Pair& pair);
 std::string error_bucket_of(Scalar scalar, double value, const Certified& exact);
 std::string error_bucket_name(int bucket);
 
-// How many ulps of the scalar two finite values are apart.
+// The distance of two finite values in ulps of the scalar.
 std::uint64_t ulps_apart(Scalar scalar, double first, double second);
 
 struct DiscrepancySpec {
@@ -75,13 +75,13 @@ struct DiscrepancySpec {
   bool on_device = false;  // comparisons whose lanes a device can record run there
 };
 
-// counts[comparison][source]. The same counts on host and device, for any number of threads. A host lane's values on a
-// device are those of cuda-nofma. If that is what it is compared with, the host records its own values too, and
-// where they differ in any bit, the comparison runs on the host.
+// counts[comparison][source]. The same counts on host and device, for any number of threads. On a device, the kernels
+// of cuda-nofma compute a host lane's values. If the host lane is compared with cuda-nofma itself, the host records its
+// own values too; if any bit differs, the comparison runs on the host.
 using Discrepancies = std::vector<std::vector<DiscrepancyCounts>>;
 Discrepancies discrepancies(const DiscrepancySpec& spec);
 
-// Counts one block of pairs, for tests and for engines.
-void count_discrepancies(const LanesCompared& lanes, std::span<const Pair> pairs, DiscrepancyCounts& to);
+// Counts one block of pairs, for tests and for engines. axis: that of their stratum.
+void count_discrepancies(const LanesCompared& lanes, std::span<const Pair> pairs, Axis axis, DiscrepancyCounts& to);
 
 }  // namespace graze::analysis

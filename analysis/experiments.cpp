@@ -59,7 +59,7 @@ class Trial {
     if (late_ < kMostLate) return found;
     found.settled = false;
     found.slow = true;
-    found.evidence += "; on others it gave no answer in time, and not all were asked";
+    found.evidence += "; on other pairs it gave no answer in time, so not all experiments were made";
     return found;
   }
 
@@ -91,12 +91,12 @@ class Trial {
   // Code that is wrong in exact arithmetic may be right on this pair by luck. Float64 or another scale reveals that.
   Experiment by_build(const Lane& rounded, Cause cause, std::string evidence) const {
     const Lane* f64 = in_float64(rounded);
-    if (f64 && !asked(*f64, {pair_})[0]) return {cause, false, evidence + ", but in float64 so built wrong"};
+    if (f64 && !asked(*f64, {pair_})[0]) return {cause, false, evidence + ", but that build is wrong in float64"};
     if (size_.high == -1000 || has_few_bits())
       return {cause, false, evidence + ", though only roots and quotients round here"};
     const Scales scales = scales_in_range(size_, lane_.scalar, kUsualFactors);
     for (const auto& [k, right] : tried(rounded, scales, 16)) {
-      if (!right) return {cause, false, evidence + fmt::format(", but so built wrong when scaled by 2^{}", k)};
+      if (!right) return {cause, false, evidence + fmt::format(", but that build is wrong when scaled by 2^{}", k)};
     }
     return {cause, true, std::move(evidence)};
   }
@@ -158,7 +158,7 @@ class Trial {
   }
 
   // Whether the lane is right at all scales above the turn and wrong at all below. Code that adds numbers of different
-  // units, lengths and areas, turns back where these grow apart. An epsilon does not, once it is small.
+  // units, such as lengths and areas, becomes wrong again at other scales. Code with a small epsilon does not.
   bool turns_once(Turn turn) const {
     if (turn.right < turn.wrong) return false;
     auto near = tried(lane_, common(strictly_, {turn.wrong - 12, turn.right + 12}), 26);
@@ -216,7 +216,7 @@ class Trial {
                  : text + doubles};
   }
 
-  // There is no scale at which every product stays within the exponents.
+  // For pairs that have no scale at which every product stays within the exponents.
   std::optional<Experiment> by_any_scale() const {
     const Scales all = exact_scales(size_);
     const auto up = tried(lane_, {1, all.last}, 24), down = tried(lane_, {all.first, -1}, 24);
@@ -360,9 +360,9 @@ Experiment experiment(const Lane& lane, Verdict verdict, const Pair& pair, Verdi
     case Verdict::crashed:
       return {Cause::crash, true, "its process ended"};
     case Verdict::timed_out:
-      return {Cause::no_answer, true, "it took longer than it may"};
+      return {Cause::no_answer, true, "it exceeded its time limit"};
     case Verdict::unstable:
-      return {Cause::unstable, true, "asked about the same pair again it says something else"};
+      return {Cause::unstable, true, "it gives another answer when it is asked about the same pair again"};
     default:
       return Trial(lane, pair, truth).run();
   }

@@ -50,7 +50,7 @@ int bits_needed(int algorithm, const oracle::Exactly& exactly, const Pair& pair,
   return !exactly.certain && bits > oracle::kMostBits / 2 ? 0 : bits;
 }
 
-// The pair's neighbours. For nudged pairs, whether their truth is the pair's must be computed.
+// The pair's neighbours. Nudged pairs may have another truth than the pair, so it is computed for each.
 struct Neighbours {
   std::vector<Pair> orders, mirrored, scalings;
   std::array<std::vector<Pair>, kCoordinates> nudged;
@@ -88,8 +88,8 @@ Cause first_cause(const Lane& lane, const Pair& pair, Verdict truth, const oracl
   return limited(true, true).first == oracle::RangeEvent::overflow ? Cause::overflow : Cause::underflow;
 }
 
-// Some pairs need both more bits and wider exponents. The comparison that went wrong tells which failed first. If a
-// value is no longer a number, or is lost because it is below the least normal number, rounding is not the cause.
+// Some pairs need both more bits and wider exponents. The comparison that went wrong shows which limit was hit first.
+// If a value is no longer a number, or is lost because it is below the least normal number, rounding is not the cause.
 Cause refined(const LaneExplanation& lane, const Pair& pair) {
   const Step* told = lane.told();
   if (lane.cause != Cause::rounding || !told) return lane.cause;
@@ -114,7 +114,7 @@ Step step_of(const Seen<double>& seen, const oracle::ExactStep& exact) {
           exact.held};
 }
 
-// Returns the comparisons on a path without the cause; empty for rounding, where exact arithmetic says it.
+// Returns a function that runs a path without the cause. Empty for rounding, because exact arithmetic shows that case.
 WithoutCause without(Cause cause, const Lane& lane, const Pair& pair, Contraction rule) {
   if (cause == Cause::contraction)
     return [&lane, &pair](const Path& path) { return run_led(lane, pair, Contraction::none, path); };

@@ -32,7 +32,7 @@ namespace graze::analysis {
 // Experiments find the cause for foreign code (experiments.h). The causes from absolute_epsilon on apply only to
 // foreign code, except policy:
 //   policy       the lane uses a policy, and the same lane without the policy is right, or the policy declined. If
-//                that lane is wrong too, its cause is reported, not settled.
+//                that lane is wrong too, its cause is reported as not settled.
 enum class Cause {
   rounding,
   contraction,
@@ -90,7 +90,7 @@ struct LaneExplanation {
   Blame contractions;             // only for a cuda-fma lane whose verdict contraction changes
   Settled settled;
   int bits_needed;  // the shortest mantissa, at least the lane's own, that gives the right verdict, as does every
-                    // longer one up to kMostBits; 0 if there is none, or if it would be luck (see explain.cpp)
+                    // longer one up to kMostBits; 0 if there is none, or if it would be chance (see explain.cpp)
   std::array<bool, kCoordinates> matters;  // false: no nudge of the coordinate changes the truth or the lane's verdict
   WrongOf orders, mirrored, scalings;      // see neighbours.h
   std::string experiment;  // for lanes without steps (foreign, or under a policy): the evidence for the cause

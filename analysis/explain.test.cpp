@@ -27,8 +27,8 @@ const LaneExplanation& lane_of(const Explanation& explanation, std::string_view 
   throw std::runtime_error(std::string(id) + " is not wrong");
 }
 
-// The values of a replay belong to the lane. Without contraction they must, and for CUDA their hash shows it. For
-// contraction on the host, only the verdict can be compared.
+// The values of a replay belong to the lane. Without contraction this holds by construction, and for CUDA the hash of
+// the values shows it. For contraction on the host, only the verdict can be compared.
 TEST(Replay, IsTheLanesOwnRun) {
   for (const Lane* lane : lanes_here()) {
     int pairs = 0, known = 0;

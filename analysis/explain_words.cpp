@@ -27,7 +27,7 @@ std::string phrase(const oracle::Truth& truth) {
 }
 
 std::string words(const cuda::ContractionSite& site) {
-  // A person's own files by their names alone.
+  // For the user's own files, only the file name.
   const auto text = [](const cuda::SourceLine& line) {
     const std::string_view file = line.file;
     return fmt::format("{}:{}", file.starts_with('/') ? file.substr(file.rfind('/') + 1) : file, line.line);
@@ -37,7 +37,7 @@ std::string words(const cuda::ContractionSite& site) {
   return inlined ? fmt::format("{} (inlined at {})", text(site.at), text(site.from)) : text(site.at);
 }
 
-// Names the compared value: the last value passed to the policy that equals it, or else what the policy was asked.
+// Names the compared value by its own site, or else by that of the last value passed to the policy that equals it.
 std::string_view what(const LaneExplanation& lane, const Step& told) {
   const auto in_words = [](std::string_view site) -> std::string_view {
     return site == "plane_distance" ? "a signed distance"
@@ -182,7 +182,7 @@ std::string variant_of(const Lane& lane) {
   return std::string(name(lane.variant)) + (lane.policy.empty() ? "" : "/" + lane.policy);
 }
 
-// What the experiments say, and which.
+// The result of the experiments, and which experiments these were.
 std::string reason_by_experiment(const LaneExplanation& lane) {
   const auto words = [&]() -> std::string {
     switch (lane.cause) {

@@ -23,15 +23,16 @@ namespace {
 
 constexpr std::uint64_t kBlock = 32;  // pairs; with their images some 2,300
 
-// Why no rounding breaks them: a sign or a power of two that is taken out of every operation of a formula leaves its
-// rounding as it is, and so does what gives the same operands to each operation in another order.
-//   scale      sums and comparisons are of quantities of the same degree in the coordinates. Not of the thesis's two:
-//              their projection onto a plane adds a distance and one that is multiplied by the normal's length.
-//   mirror     each quantity that is compared keeps its value, or turns its sign with what it is compared with. Not of
-//              guigue_devillers_2003, which chooses its determinants by the triangles' orientation.
-//   translate  coordinates are used in differences alone, and these are the same.
-//   swap       both triangles' axes are tried, those of two edges with their sign turned.
-// No formula survives another order of its vertices or axes: sums of three round by their order.
+// Why rounding cannot break them: changing signs, scaling by a power of two, and exchanging the operands of an
+// operation all leave its rounding as it is.
+//   scale      all sums and comparisons have terms of one degree in the coordinates. The thesis's two algorithms do
+//              not: they add a distance to one that is multiplied by the normal's length.
+//   mirror     both sides of a comparison keep their values, or both change sign. Not so in guigue_devillers_2003,
+//              which chooses its determinants by the triangles' orientation.
+//   translate  coordinates are used only in differences, which do not change.
+//   swap       the axes of both triangles are tried; those of two edges change sign.
+// No algorithm keeps its verdicts when its vertices or axes are reordered, because a sum of three terms rounds by their
+// order.
 struct Claims {
   std::string_view algorithm;
   std::vector<Invariant> invariants;
@@ -52,7 +53,7 @@ std::vector<Pair> scaled_images(const Pair& pair) {
   return result;
 }
 
-// Which of kScales scaled_images has used, in its order.
+// The indices in kScales of the images that scaled_images returns, in the same order.
 std::vector<std::size_t> used_scales(const Pair& pair) {
   std::vector<std::size_t> places;
   for (std::size_t s = 0; s < kScales.size(); ++s) {
@@ -61,13 +62,13 @@ std::vector<std::size_t> used_scales(const Pair& pair) {
   return places;
 }
 
-// The images of one pair by one invariant, as a range of the block's pairs.
+// The images of one pair under one invariant, as a range of the block's pairs.
 struct Group {
   Invariant invariant;
   std::size_t pair, first, last;
 };
 
-// Pairs of one source, and behind them all of their images.
+// Some pairs of one source, followed by all their images.
 struct Asked {
   std::vector<Pair> all;
   std::size_t pairs = 0;
@@ -92,7 +93,7 @@ bool is_outside(const Lane& lane, const Pair& pair) {
 
 InvariantBroken broken(std::string_view who, Invariant invariant, const strata::PairSource& source, std::uint64_t index,
                        Verdict pair, Verdict image) {
-  return InvariantBroken(fmt::format("{} breaks the invariant \"{}\" on pair {} of {}: it says {}, and of {} {}", who,
+  return InvariantBroken(fmt::format("{} breaks the invariant \"{}\" on pair {} of {}: it says {}, but on {} {}", who,
                                      kInvariants[static_cast<std::size_t>(invariant)].id, index, source.id, name(pair),
                                      invariant == Invariant::part ? "a part" : "an image", name(image)));
 }
@@ -100,7 +101,7 @@ InvariantBroken broken(std::string_view who, Invariant invariant, const strata::
 struct Run {
   const InvariantSpec& spec;
 
-  // The exact decision on every image; the oracle on those of some pairs.
+  // Runs the exact decision on every image, and the oracle on the images of some pairs.
   void expect_truth(const Asked& asked, const strata::PairSource& source, std::uint64_t first,
                     Invariants& counts) const {
     const std::vector<Verdict> exactly = verdicts_of(spec.exact, asked.all);
@@ -131,7 +132,7 @@ struct Run {
     counts.images += asked.all.size() - asked.pairs;
   }
 
-  // By host lanes, whose operations are those of the twins.
+  // Uses the host lane, which performs the same operations as the twin.
   static bool leaves(const Lane& lane, const Pair& pair, const Pair& image) {
     const Lane& host = *counterpart(lane, Variant::cpu);
     return leaves_exponents(host, pair) || leaves_exponents(host, image);
@@ -261,7 +262,7 @@ Invariants invariants(const InvariantSpec& spec) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   tbb::enumerable_thread_specific<Invariants> results([&] { return nothing_yet(spec); });
   const Run run{spec};
-  // A broken invariant is told of the first block that has one, whichever is met first.
+  // Reports a broken invariant in the first block that has one, whichever thread finds one first.
   std::mutex mutex;
   std::size_t first_broken = blocks.size();
   std::string what;

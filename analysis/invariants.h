@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Invariants: how often a lane's verdict changes although the question is the same, and which invariants an algorithm
-// claims.
+// Counts how often a lane's verdict changes although the question is the same, and lists the invariants that each
+// algorithm claims.
 #pragma once
 
 #include <array>
@@ -24,8 +24,8 @@ struct InvariantInfo {
   std::string_view what;  // the images of a pair, in words
 };
 
-// In the order of the enumeration. The images of `part` alone have another truth: what intersects a part of a triangle
-// intersects the triangle.
+// In the order of the enumeration. Only the images of `part` may have another truth: a triangle that intersects a part
+// of another intersects the whole.
 inline constexpr InvariantInfo kInvariants[] = {
     {Invariant::swap, "swap", "the two triangles swapped"},
     {Invariant::order, "order", "the other 35 orders of the vertices within both triangles"},
@@ -41,24 +41,24 @@ inline constexpr std::size_t kInvariantCount = std::size(kInvariants);
 // The powers of two of the images of `scale`.
 inline constexpr std::array kScales = {1, -1, 4, -4, 16, -16, 64, -64};
 
-// The pair's images, without the pair itself; none where all of them would lose bits.
+// The pair's images, without the pair itself. Images that would lose bits are left out.
 std::vector<Pair> images(Invariant invariant, const Pair& pair);
 
 // Whether these verdicts on a pair and its image break the invariant.
 bool breaks(Invariant invariant, Verdict of_pair, Verdict of_image);
 
-// Whether the lane's algorithm claims the invariant: no rounding can break it, by how the code is written. A claim is
-// one of arithmetic that rounds each operation as written, without a policy, and of pairs on which neither the lane's
-// computation of the pair nor that of the image over- or underflows. invariants.test.cpp holds lanes to it.
+// Whether the lane's algorithm claims the invariant: the code is written so that rounding cannot break it. Claims are
+// for lanes without a policy that round each operation as written, and for pairs on which nothing over- or underflows,
+// neither on the pair nor on its image. invariants.test.cpp checks them.
 bool claims(const Lane& lane, Invariant invariant);
 
-// Whether InvariantCount::in_range is known of the lane.
+// Whether InvariantCount::in_range can be computed for the lane.
 bool knows_range(const Lane& lane);
 
-// Of all published algorithms, by name: the reason stands beside each claim in invariants.cpp.
+// The invariants that a published algorithm claims; invariants.cpp gives the reason for each.
 std::vector<Invariant> claimed_invariants(std::string_view algorithm);
 
-// An invariant that the exact decision or the oracle breaks, or an algorithm that claims it.
+// The exact decision, the oracle or an algorithm that claims the invariant broke it.
 struct InvariantBroken : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -66,8 +66,8 @@ struct InvariantBroken : std::runtime_error {
 struct InvariantCount {
   std::uint64_t pairs = 0;    // that have an image, and that the lane's convention does not leave open
   std::uint64_t changed = 0;  // on which the verdict on some image breaks the invariant
-  // Of these, those on which one does although nothing over- or underflows, neither of the pair nor of that image,
-  // where the lane's source runs without contraction. Of published lanes without a policy; else 0, for it is not known.
+  // Of these, pairs on which nothing over- or underflows if the lane's source runs without contraction, neither on the
+  // pair nor on the image that breaks the invariant. Known for published lanes without a policy; 0 for others.
   std::uint64_t in_range = 0;
   InvariantCount& operator+=(const InvariantCount& other);
 };
@@ -81,13 +81,13 @@ struct InvariantCase {
 struct InvariantsOfLane {
   std::array<std::vector<InvariantCount>, kInvariantCount> counts;  // by invariant, then by source
   std::array<std::optional<InvariantCase>, kInvariantCount> simplest;
-  // Over all sources, by each of kScales alone: the pairs that have this image, and on which it breaks the invariant.
+  // Over all sources, for each of kScales alone: the pairs with this image, and those whose verdict it changes.
   std::array<InvariantCount, kScales.size()> by_scale;
 
   InvariantCount total(Invariant invariant) const;
 };
 
-// CGAL's verdict, which GMP's must be.   Throws: InvariantBroken.
+// CGAL's verdict, which must equal GMP's.   Throws: InvariantBroken.
 bool oracle_intersects(const Pair& pair);
 
 struct InvariantSpec {
@@ -95,7 +95,7 @@ struct InvariantSpec {
   std::vector<DecideBlock> on_host;  // of each: the host lane or its twin
   std::vector<strata::PairSource> sources;
   int threads = 0;  // 0: one on each core
-  // Whether l is simpler than r, for the case that is kept; equal ones are kept by their place.
+  // Whether l is simpler than r. The simplest case is kept; of equally simple ones, the first.
   std::function<bool(const Pair& l, const Pair& r)> simpler;
   DecideBlock exact = find_lane("exact/f32/cpu")->decide;           // asked of every image
   std::function<bool(const Pair&)> intersects = oracle_intersects;  // asked of every image of some pairs:
@@ -108,8 +108,8 @@ struct Invariants {
   std::uint64_t by_oracle = 0, its_images = 0;  // and these by CGAL and GMP
 };
 
-// Asks every lane of every pair and of all its images. The same whatever the threads.
-// Throws: InvariantBroken, of the first pair that shows it.
+// Runs every lane on every pair and all its images. The result does not depend on the number of threads.
+// Throws: InvariantBroken for the first pair that shows it.
 Invariants invariants(const InvariantSpec& spec);
 
 }  // namespace graze::analysis

@@ -78,9 +78,9 @@ TEST(Invariants, ImagesAskTheSameQuestion) {
 
 TEST(Invariants, NoImageThatWouldLoseBits) {
   Pair pair{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {1, 0, 1}, {0, 1, 0x1p-149f}}};
-  // Not down; up only as far as 2^-149 leads.
+  // Scaling down would lose 2^-149, so only the four factors above 1 remain.
   EXPECT_EQ(images(Invariant::scale, pair).size(), 4u);
-  // Only what leaves z as it is: 2^-149 less or more than 1 is no float32.
+  // Only translations that keep z remain, because float32 cannot represent 1 ± 2^-149.
   EXPECT_EQ(images(Invariant::translate, pair).size(), 3u);
   EXPECT_EQ(images(Invariant::part, pair).size(), 4u);
   EXPECT_EQ(images(Invariant::part, images(Invariant::swap, pair).front()).size(), 4u);
@@ -92,7 +92,7 @@ TEST(Invariants, NoImageThatWouldLoseBits) {
   EXPECT_EQ(images(Invariant::scale, pair).size(), 4u);
 }
 
-// Pairs as text, in their order.
+// The pairs as text, in the same order.
 std::vector<std::string> texts(const std::vector<Pair>& pairs) {
   std::vector<std::string> all;
   for (const Pair& pair : pairs) {
@@ -108,7 +108,7 @@ Pair changed(const Pair& pair, float scale, float step) {
   return image;
 }
 
-// Each way once, the pair itself first.
+// Each image occurs once, and the pair itself comes first.
 TEST(Invariants, NoWayIsMissingAndNoneIsThereTwice) {
   const Pair pair{{{1, 2, 3}, {2, 0, 1}, {5, 1, 1}}, {{-1, 4, 2}, {0, 1, 6}, {3, 3, -2}}};
   const std::vector<std::pair<std::vector<Pair>, std::size_t>> ways = {{orders(pair), 72},    {mirrored(pair), 8},
@@ -173,7 +173,7 @@ TEST(Invariants, EachAlgorithmSaysWhatItClaims) {
   EXPECT_FALSE(claims(*find_lane("exact/f32/cpu"), Invariant::scale));
 }
 
-// Every claim on every stratum, and no claim too few: what is not claimed, some pair breaks.
+// Every claim holds on every stratum, and every invariant that is not claimed is broken by some pair.
 TEST(Invariants, ClaimsHoldAndNothingElseDoes) {
   std::vector<std::string> ids;
   for (const Lane& lane : published_lanes()) {
@@ -193,7 +193,7 @@ TEST(Invariants, ClaimsHoldAndNothingElseDoes) {
   }
 }
 
-// Counted a second time, one pair and one image after the other.
+// A plain loop over pairs and images gives the same counts.
 TEST(Invariants, CountsAreThoseOfAPlainLoop) {
   const InvariantSpec spec =
       spec_of({"moller_1997/f32/cpu", "guigue_devillers_2003/f32/cuda-fma"}, 300, {"near_edge_edge", "lattice"});
@@ -244,7 +244,7 @@ TEST(Invariants, CountsAreThoseOfAPlainLoop) {
   EXPECT_LT(found.its_images, all);
 }
 
-// And so is what each power of two changes alone: all of them together change more than the most that one does.
+// Each power of two is also counted alone: all together change more pairs than any single one.
 TEST(Invariants, EachScaleIsCountedAlone) {
   const InvariantSpec spec =
       spec_of({"projected_sat/f32/cpu", "moller_1997/f32/cpu"}, 1000, {"near_edge_edge", "extreme_scale"});
@@ -275,7 +275,7 @@ TEST(Invariants, EachScaleIsCountedAlone) {
   EXPECT_GT(found.lanes[0].total(Invariant::scale).in_range, most);
 }
 
-// A lane whose convention leaves touching pairs open is not asked about them, nor about such parts of others.
+// If a lane's convention leaves touching pairs open, neither such pairs nor images that touch are counted.
 TEST(Invariants, WhatAConventionLeavesOpenIsNotAsked) {
   InvariantSpec spec = spec_of({"moller_1997/f32/cpu"}, 40, {"shared_vertex", "near_edge_edge"});
   const Invariants all = invariants(spec);
@@ -290,7 +290,7 @@ TEST(Invariants, WhatAConventionLeavesOpenIsNotAsked) {
     EXPECT_EQ(with[0].changed, without[0].changed) << invariant.id;
     EXPECT_EQ(with[1].pairs, 0u) << invariant.id;
   }
-  // The second triangle pierces the first and touches one of its parts, on which alone this lane says that they meet.
+  // The second triangle pierces the first and touches one of its parts. This lane says "intersects" on that part only.
   spec.sources = {{"one", 1, [](std::uint64_t) {
                      return Pair{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{2, 1, -1}, {2, 1, 1}, {6, 1, 0}}};
                    }}};
@@ -307,8 +307,8 @@ TEST(Invariants, WhatAConventionLeavesOpenIsNotAsked) {
   EXPECT_EQ(invariants(spec).lanes[0].total(Invariant::part).changed, 1u);
   lane.outside = kOutsideTouching;
   EXPECT_EQ(invariants(spec).lanes[0].total(Invariant::part).changed, 0u);
-  // A common area is no touch, though an ulp can part the two: it is asked about, as such a touch is not; and so are
-  // those apart.
+  // Pairs that share an area are counted although an ulp can separate them, and so are disjoint pairs. Touching pairs
+  // are not.
   for (const auto& [x, asked_about] : {std::pair{1.0f, 1u}, {4.0f, 0u}, {9.0f, 1u}}) {
     spec.sources = {{"one", 1, [x](std::uint64_t) {
                        return Pair{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{x, 0, 0}, {x + 4, 0, 0}, {x, 4, 0}}};
@@ -318,7 +318,7 @@ TEST(Invariants, WhatAConventionLeavesOpenIsNotAsked) {
   }
 }
 
-// The steps of foreign code are not known, and those under a tolerance are others.
+// The steps of foreign code are not known, and a tolerance changes the steps.
 TEST(Invariants, RangeIsKnownOfPublishedLanesAlone) {
   Lane lane = *find_lane("moller_1997/f32/cpu");
   EXPECT_TRUE(knows_range(lane));
@@ -351,7 +351,7 @@ TEST(Invariants, AreTheSameWhateverTheThreads) {
   }
 }
 
-// One verdict of an exact decision that depends on the order stops the run, and so does one of the oracle.
+// The run stops if a verdict of the exact decision or of the oracle depends on the order.
 TEST(Invariants, StopWhereTheTruthBreaksOne) {
   InvariantSpec spec = spec_of({"moller_1997/f32/cpu"}, 40, {"shared_vertex"});
   const Pair swapped = images(Invariant::swap, spec.sources[0].pair(3)).front();
@@ -367,7 +367,7 @@ TEST(Invariants, StopWhereTheTruthBreaksOne) {
       });
   EXPECT_EQ(
       refusal(spec),
-      "exact breaks the invariant \"swap\" on pair 3 of shared_vertex: it says intersects, and of an image disjoint");
+      "exact breaks the invariant \"swap\" on pair 3 of shared_vertex: it says intersects, but on an image disjoint");
   spec.exact = find_lane("exact/f32/cpu")->decide;
   EXPECT_EQ(refusal(spec), "nothing broken");
   spec.oracle_every = 1;
@@ -376,14 +376,14 @@ TEST(Invariants, StopWhereTheTruthBreaksOne) {
            std::equal(coordinates(pair), coordinates(pair) + kCoordinates, coordinates(swapped));
   };
   EXPECT_EQ(refusal(spec),
-            "the oracle breaks the invariant \"swap\" on pair 3 of shared_vertex: it says intersects, and of an image "
+            "the oracle breaks the invariant \"swap\" on pair 3 of shared_vertex: it says intersects, but on an image "
             "disjoint");
-  // Wrong on the pair itself: seen before its images are.
+  // A wrong verdict on the pair itself is found before its images are tested.
   spec.intersects = [&](const Pair& pair) { return oracle_intersects(pair) && simpler(pair, pair); };
   EXPECT_EQ(refusal(spec), "exact and the oracle differ on pair 0 of shared_vertex: intersects and disjoint");
 }
 
-// A lane that claims an invariant and breaks it stops the run; so does one that is said to be exact.
+// The run stops if a lane breaks an invariant that it claims, or if an exact lane breaks one.
 TEST(Invariants, StopWhereAClaimIsBroken) {
   InvariantSpec spec = spec_of({"separating_axes/f64/cpu"}, 2000, {"near_*"});
   EXPECT_EQ(refusal(spec), "nothing broken");

@@ -30,7 +30,7 @@ Trace<double> run_in(int algorithm, const Pair& pair, Contraction rule, const Pa
   return run_traced<Real>(algorithm, pair, lead);
 }
 
-// How sure it is that the run of a contracting lane is the lane's own.
+// The evidence that this run of a contracted lane is the lane's own.
 Evidence evidence(const Lane& lane, const Pair& pair, const Trace<double>& run) {
   if (run.verdict != decide_lane(lane, pair)) return Evidence::none;
   const cuda::TraceBlock twin = cuda::twin_trace(lane);

@@ -16,7 +16,7 @@ Pair moved(const Pair& pair, Extreme extreme, int k) {
   float size = 0;
   for (int c = 0; c < kCoordinates; ++c)
     size = std::max(size, std::fabs(coordinates(pair)[c] - coordinates(pair)[c % 3]));
-  // A multiple of the size's power of two, so that what is lost is lost by rounding the sum alone.
+  // A power of two, so only the addition below rounds.
   const float offset = size > 0 && std::isfinite(size) ? std::ldexp(1.0f, std::ilogb(size) + k) : 0;
   for (int c = 0; c < kCoordinates; ++c) {
     float& x = coordinates(result)[c];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Errors against what they cost: lanes on the same pairs, the front that none of them beats, and how far from ordinary
-// pairs each stays right.
+// Compares lanes' errors with their costs on the same pairs, and finds the Pareto front. Also measures how extreme
+// pairs may be before a lane fails.
 #pragma once
 
 #include <span>
@@ -17,7 +17,7 @@ struct Cost {
   double low = 0, middle = 0, high = 0;
 };
 
-// The lane's time for the pairs, once.   Requires: pairs.
+// Nanoseconds per pair of one run of the lane over the pairs.   Requires: pairs.
 double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<Pair>& pairs);
 
 // Requires: some.
@@ -26,10 +26,10 @@ Cost quartiles(std::vector<double> nanoseconds);
 // Requires: pairs.
 std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const std::vector<Pair>& pairs, int passes);
 
-// The sources' first pairs, so many in all, in turn.
+// The first pairs of the sources, which take turns; `count` in all.
 std::vector<Pair> first_pairs(std::span<const strata::PairSource> sources, std::size_t count);
 
-// A lane among others: what it gets wrong, and what it takes.
+// A lane's errors and costs, to compare with other lanes.
 struct Offer {
   std::string lane;
   PolicyErrors errors;
@@ -39,10 +39,10 @@ struct Offer {
   std::optional<Pair> failure = std::nullopt;             // small, on which the lane is wrong
 };
 
-// Marks the dominated ones, by their costs nearby. What a lane declines counts as an error: it gives no verdict.
+// Marks the dominated lanes, by their costs in `near`. A declined pair counts as an error, because it has no verdict.
 void mark_dominated(std::vector<Offer>& offers);
 
-// What makes pairs extreme. Each takes the sources' own pairs; truth is that of the pairs as they then are.
+// The ways of making a source's pairs extreme. The truth is that of the changed pairs.
 enum class Extreme {
   scale,     // times 2^k, exactly
   offset,    // 2^k times their size away from the origin, along (1, 1, 1)
@@ -64,12 +64,12 @@ struct ExtremeCurve {
   Extreme extreme;
   std::vector<std::pair<int, PolicyErrors>> points;
 
-  // The last exponent before the share of errors exceeds twice that at exponent 0 and a thousandth, going up or down;
-  // nothing where it never does.
+  // The last exponent, going up or down, before the share of errors exceeds both twice the share at exponent 0 and
+  // 0.001. Nothing if it never does.
   std::optional<int> right_to(int direction) const;
 };
 
-// Lanes of one machine, and never of two.
+// The results of one machine; those of two are never mixed.
 struct Pareto {
   std::string machine;
   bool on_device = false;

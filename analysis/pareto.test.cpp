@@ -72,7 +72,7 @@ TEST(Extremes, RightToIsTheLastOrdinaryShare) {
   EXPECT_EQ(curve.right_to(1), std::nullopt);
 }
 
-// Moller's epsilon is of its own scale; without it the algorithm knows none but the exponents' ends.
+// Moller's epsilon fits one scale only. Without it, only over- and underflow limit the algorithm's scale.
 TEST(Extremes, FindTheScaleOfAnAbsoluteEpsilon) {
   const auto sources = strata::stratum_sources(4, 400, {"uniform"});
   const Lane& zero = *find_lane("moller_1997/f32/cpu");

@@ -82,7 +82,7 @@ inline Pair scaled(const Pair& pair, int k) {
   return result;
 }
 
-// The same; nothing if a coordinate would lose bits or overflow.
+// Scales the pair by 2^k; returns nothing if a coordinate would lose bits or overflow.
 inline std::optional<Pair> exactly_scaled(const Pair& pair, int k) {
   const Pair result = scaled(pair, k), back = scaled(result, -k);
   if (!std::equal(coordinates(pair), coordinates(pair) + kCoordinates, coordinates(back))) return std::nullopt;

@@ -150,7 +150,7 @@ std::vector<PolicyErrors> errors_of(const std::vector<Together>& parts, Policies
                 PolicyErrors& errors) { add(block, truth, rows[0], p + 1, errors); });
 }
 
-// Whether the second may follow the first on a ladder.
+// Whether the second policy may follow the first on a ladder: no tolerance is smaller.
 bool rises(const Epsilons& first, const Epsilons& second) {
   for (int s = 0; s < kSiteCount; ++s) {
     if (!(first.absolute[s] <= second.absolute[s] && first.relative[s] <= second.relative[s])) return false;
@@ -158,7 +158,8 @@ bool rises(const Epsilons& first, const Epsilons& second) {
   return first.any_relative() == second.any_relative();
 }
 
-// As few ladders as the policies' order allows: a sweep names a curve's tolerances one after the other.
+// Divides the policies into as few ladders as their order allows. A sweep names the tolerances of a curve one after the
+// other.
 std::vector<Together> parts_of(const Lane& lane, Policies policies) {
   std::vector<Together> parts;
   for (std::size_t p = 0; p < policies.size(); ++p) {

@@ -15,7 +15,7 @@
 
 namespace graze::analysis {
 
-// A pair of a source, by its place.
+// A pair, given by its source and its index in the source.
 struct PairPlace {
   int source = -1;
   std::uint64_t index = 0;
@@ -52,7 +52,7 @@ struct Agreement {
 using Sources = std::span<const strata::PairSource>;
 using Policies = std::span<const std::string>;  // the empty one is zero
 
-// Pairs [first, first + count) of a source.
+// The pairs [first, first + count) of a source.
 struct SourceBlock {
   int source;
   std::uint64_t first, count;
@@ -64,26 +64,26 @@ std::vector<SourceBlock> blocks_of(Sources sources, std::uint64_t most);
 // The errors under each policy, on all pairs of the sources.
 using Sweep = std::function<std::vector<PolicyErrors>(Policies policies, Sources sources)>;
 
-// What decides under a policy.
+// Returns the block function of a lane under a policy.
 using DecideUnder = std::function<DecideBlock(const std::string& policy)>;
 
-// On the host: pairs are drawn and judged once, then decided under each policy. The same whatever the threads (0: one
-// on each core).
+// A sweep on the host: pairs are drawn and judged once, then decided under each policy. The result does not depend on
+// the number of threads (0: one on each core).
 Sweep host_sweep(DecideUnder decide, int threads = 0);
 
-// That of a published lane, on the host, or by its twin: under many tolerances at once where core/lanes/ladder.h can.
-// Throws (the sweep): UsageError for a policy that the lane cannot have.
+// A sweep of a published lane on the host; CUDA lanes run as twins. Uses core/lanes/ladder.h if it can.
+// The returned sweep throws UsageError for a policy that the lane cannot have.
 Sweep host_sweep(const Lane& lane, int threads = 0);
 
 // How two published lanes compare under each policy, on all pairs of the sources.
 using AgreementSweep = std::function<std::vector<Agreement>(Policies policies, Sources sources)>;
 
-// On the host, CUDA lanes by their twins. The same for any number of threads.
+// Runs on the host; CUDA lanes run as twins. The result does not depend on the number of threads.
 // Requires: lanes that outlive the sweep, with a host lane or a twin under each policy.
 AgreementSweep agreement_sweep(const Lane& first, const Lane& second, int threads = 0);
 
-// On the first CUDA device. lane_of: the lane under a policy, a CUDA lane.
-// Throws (the sweep): std::runtime_error without a device.
+// A sweep on the first CUDA device. lane_of: returns the CUDA lane under a policy.
+// The returned sweep throws std::runtime_error without a device.
 Sweep device_sweep(std::function<Lane(const std::string& policy)> lane_of);
 
 }  // namespace graze::analysis

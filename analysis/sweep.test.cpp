@@ -63,8 +63,8 @@ TEST(Sweep, CountsWhatEachPolicyGetsWrong) {
   }
 }
 
-// Many tolerances at once give what each gives alone: over all strata, both scalars, absolute and relative ones, at all
-// sites and at one.
+// A sweep of many tolerances at once counts the same as one sweep for each: absolute and relative, at all sites and at
+// one.
 TEST(Sweep, ManyTolerancesAtOnceAreEachAlone) {
   const auto sources = drawn(8, 19 * 300, {});
   std::vector<std::string> policies;

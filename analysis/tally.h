@@ -34,18 +34,18 @@ struct LaneCounts : Counts {
   friend bool operator==(const LaneCounts&, const LaneCounts&) = default;
 };
 
-// Counts by margin bucket, of pairs and of each lane's errors. Tallies add; order never matters.
+// Counts of pairs and of each lane's errors, by margin bucket. Tallies can be added in any order.
 // Another small integer of a pair (core/margin/axis.h) can stand in the bucket's place.
 class Tally {
  public:
-  // cpu_twin[l]: which of the lanes is lane l's cpu lane of the same algorithm and scalar; -1 for none.
+  // cpu_twin[l]: the index of the cpu lane with the algorithm and scalar of lane l; -1 for none.
   explicit Tally(std::vector<int> cpu_twin);
 
   void add(const JudgedBlock& block);
   void add(const Tally& other);
   void add(Bucket b, std::uint64_t pairs, std::uint64_t intersects);
   void add(Bucket b, int lane, const LaneCounts& counts);
-  // Counts by convention what was counted as that verdict: the lane's convention leaves it open.
+  // Moves one pair from the count of that verdict to those by convention, because the lane's convention excludes it.
   void excuse(Bucket b, int lane, Verdict verdict);
 
   int lane_count() const { return static_cast<int>(cpu_twin_.size()); }
@@ -61,10 +61,10 @@ class Tally {
   std::vector<LaneCounts> lanes_;
 };
 
-// The pairs on which some lane does not give the true verdict: it is wrong, or declines.
+// The pairs on which some lane is wrong or declines.
 Bits not_right(const JudgedBlock& block);
 
-// For each of these lanes, the place among them of its cpu lane; see Tally.
+// For each lane, the index of its cpu lane in the list; see Tally.
 std::vector<int> cpu_twins(std::span<const Lane* const> lanes);
 
 }  // namespace graze::analysis

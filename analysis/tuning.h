@@ -16,20 +16,20 @@ namespace graze::analysis {
 // The pairs times 2^k; pairs that cannot be scaled exactly stay as they are.
 std::vector<strata::PairSource> scaled(Sources sources, int k);
 
-// Upper 95 % confidence bound of the rate, given `count` of `of` cases: at this rate, so few cases have a 5 % chance.
+// Upper 95 % confidence bound of the rate of `count` in `of` cases: at this rate, so few cases have a chance of 5 %.
 // Rounded outward. Reference: Clopper and Pearson 1934, one-sided.
 double upper_bound(std::uint64_t count, std::uint64_t of);
 
-// The lower bound likewise: at this rate, so many cases have a 5 % chance. Rounded outward.
+// The lower bound: at this rate, so many cases have a chance of 5 %. Rounded outward.
 double lower_bound(std::uint64_t count, std::uint64_t of);
 
 // The kind of error whose rate is limited.
 enum class Forbid { false_negative, false_positive, any };
 std::uint64_t forbidden(const PolicyErrors& errors, Forbid forbid);
 
-// The rank of a policy; the better one compares less. First, the rate of forbidden errors must be low enough; then the
-// number of other errors decides, then the number of forbidden ones. If the rate is too high, forbidden errors come
-// before the others.
+// The rank of a policy; a better policy compares less than a worse one. First, the rate of forbidden errors must be low
+// enough; then the number of other errors decides, then the number of forbidden ones. If the rate is too high,
+// forbidden errors come before the others.
 struct PolicyRank {
   bool too_many;
   std::uint64_t first, second;

@@ -29,7 +29,7 @@ TEST(UpperBound, IsClopperAndPearsons) {
   EXPECT_EQ(upper_bound(5, 5), 1);
 }
 
-// At the bound, so few cases have a chance of 5 % or less, however the double is rounded: counted with 50 digits.
+// At the bound, at most `count` cases have a chance of at most 5 %. The reference value has 50 digits.
 TEST(UpperBound, IsRoundedOutward) {
   using Precise = boost::multiprecision::cpp_bin_float_50;
   std::mt19937_64 random(11);
@@ -44,7 +44,7 @@ TEST(UpperBound, IsRoundedOutward) {
   }
 }
 
-// At the lower bound, so many cases have a chance of 5 % or less; it mirrors the upper one.
+// At the lower bound, at least `count` cases have a chance of at most 5 %. It mirrors the upper bound.
 TEST(LowerBound, IsRoundedOutward) {
   using Precise = boost::multiprecision::cpp_bin_float_50;
   EXPECT_EQ(lower_bound(0, 100), 0);

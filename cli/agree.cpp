@@ -29,7 +29,7 @@ const Lane& rounded(const Lane& lane) { return *counterpart(lane, rounded_varian
 int agree(const TuneOptions& options) {
   const Lane &first = published_lane(options.lanes[0]), &second = published_lane(options.lanes[1]);
   if (first.algorithm != second.algorithm || first.scalar != second.scalar)
-    throw UsageError("--agree needs two lanes of the same algorithm and scalar, and got " + first.id + " and " +
+    throw UsageError("--agree needs two lanes of the same algorithm and scalar, but got " + first.id + " and " +
                      second.id);
   reports::AgreeQuestion question{{first.id, second.id}, {}, "", "", options.max_rate};
   for (const Lane* lane : {&first, &second}) {

@@ -82,7 +82,7 @@ std::string table_of(const Bench& bench, std::size_t group) {
   return table.text(output_screen());
 }
 
-// Describes the device's limits and what the exact lane achieved.
+// Describes the device's limits and the speed of the exact lane.
 std::string shares(const Bench& bench) {
   std::string text;
   for (const char* data : {"resident", "host"}) {
@@ -177,7 +177,7 @@ void add_bench(CLI::App& app, int& status) {
       ->option_text("N,…");
   command
       ->add_option("--mesh", options->mesh,
-                   "Mesh whose triangles are tested too, against the one halfway through the file")
+                   "Mesh to test as well: all its triangles against the middle one of the file")
       ->check(not_empty())
       ->option_text("FILE");
   command

@@ -53,7 +53,7 @@ Array thesis_array(std::uint64_t count) {
   return array;
 }
 
-// One hit among the first hundred triangles, and no other.
+// An array with one hit, among its first hundred triangles.
 Array any_array(std::uint64_t count) {
   Array array{"thesis", kThesis, std::vector<Triangle>(count, Triangle{9, 9, 9, 9, 8, 9, 9, 9, 8})};
   array.triangles[std::min<std::uint64_t>(99, count - 1)] = kThesis;
@@ -152,7 +152,7 @@ class Measuring {
     row.seconds = 1e9;
     for (int k = 0; k <= kTimes; ++k) {
       graze_query asked = query;
-      // The first run warms up and writes the verdicts; the others only count.
+      // The first run warms up and writes the verdicts; the later runs only count hits.
       if (k == 0 && bytes && query.mode == GRAZE_ALL) asked.bytes = exact ? found.data() : bytes->data();
       const Answer answer = context_.run(asked);
       if (answer.status == GRAZE_BAD_ARGUMENT) throw UsageError(std::string(answer.what()));

@@ -45,8 +45,8 @@ struct BenchMachine {
 struct Bench {
   BenchMachine machine;
   std::vector<BenchRow> rows;
-  // The smallest measured array such that one GPU, copies included, is faster than all cores at it and all larger ones;
-  // 0: none.
+  // The smallest measured array from which one GPU, copies included, is always faster than all cores; 0 if there is
+  // none.
   std::uint64_t crossover = 0;
 };
 

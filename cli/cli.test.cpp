@@ -115,7 +115,7 @@ TEST_F(Cli, DatabasesOfOthersAreRefused) {
                {"b", "database", "--out"});
 }
 
-// After a change of one byte of a batch, or of the end of the file: one line, and --discard-damaged keeps the rest.
+// If one byte of a batch or the end of the file changes, the error is one line, and --discard-damaged keeps the rest.
 TEST_F(Cli, DamageIsOneLineAndWhatChecksIsKept) {
   const std::string fuzz = "graze fuzz --pairs 20000 --strata 'near_*,degenerate' --lanes '*/f32/cpu' ";
   ASSERT_EQ(shell(fuzz + "--out whole && cp -r whole c").status, 0);
@@ -165,7 +165,7 @@ TEST_F(Cli, OutGoesIntoWhatStandsThere) {
     expect_error("graze " + std::string(verb), 2, {"''"});
 }
 
-// The error is never a library's message.
+// The error must be a message of Graze, never one of a library.
 TEST_F(Cli, WhatIsNoSummaryAndNoReportIsNamed) {
   expect_error("mkdir a; echo '{\"signatures\":[{}],\"spec\":{\"lanes\":5}}' > a/summary.json; graze minimize a", 1,
                {"a/summary.json"});

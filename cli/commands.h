@@ -32,6 +32,9 @@ struct LaneOptions {
 enum class Executors { chosen, twins };
 void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors = Executors::chosen);
 
+// Those of them about subjects alone.
+void add_subject_options(CLI::App& command, LaneOptions& options);
+
 // Opens the subjects.   Throws: as subjects::open.
 void open_subjects(const LaneOptions& options);
 
@@ -46,10 +49,10 @@ void open_subjects_of(const std::filesystem::path& name);
 fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesystem::path& about = {},
                                    bool require_device = false);
 
-// Throws: UsageError for a name that no published lane without a policy has.
+// Throws: UsageError unless the name is that of a published lane without a policy.
 const Lane& published_lane(const std::string& id);
 
-// The pairs of a campaign, drawn or read again.
+// The pairs of a campaign: strata are drawn again, meshes read again.
 struct CampaignPairs {
   std::uint64_t seed = 1;
   std::vector<strata::PairSource> sources;
@@ -104,7 +107,7 @@ CLI::Option* add_threads_option(CLI::App& command, int& threads);
 // Accepts a number within these bounds; rejects NaN.
 CLI::Validator number(double least, double most);
 
-// Throws: UsageError for a file name that is not UTF-8, because results, which are UTF-8, could not record it.
+// Throws: UsageError for a file name that is not UTF-8, because results are UTF-8 and could not record it.
 void expect_utf8(const std::string& what, const std::string& file);
 
 // Rejects empty text, which names no file.

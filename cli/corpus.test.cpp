@@ -56,7 +56,7 @@ TEST_F(CorpusVerb, TakesTheSimplestCaseOfEachKind) {
   EXPECT_EQ(ran.status, 0) << ran.out << ran.err << added.out;
 }
 
-// Failures of another campaign with the same kinds are counted but add no cases, whatever their signatures are.
+// Failures of another campaign with the same kinds are counted, but add no cases, even with other signatures.
 TEST_F(CorpusVerb, CountsAnotherCampaignByKind) {
   campaign("c", "--pairs 5000 --strata lattice");
   campaign("d", "--pairs 4000 --strata lattice --seed 2");

@@ -9,19 +9,24 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "cuda/lanes/device.h"
+#include "fuzz/campaign/campaign.h"
 #include "fuzz/minimise/simplicity.h"
 #include "fuzz/sealed.h"
 #include "reports/discrepancy.h"
+#include "reports/discrepancy_answer.h"
 #include "reports/discrepancy_page.h"
+#include "reports/possible_counts.h"
+#include "reports/verdicts_apart.h"
 
 namespace graze::cli {
 namespace {
 
 constexpr int kDevice = 1, kTwin = 2;   // of --executor
-constexpr std::size_t kMostTables = 2;  // of more comparisons only the sentences are printed
+constexpr std::size_t kMostTables = 2;  // of more comparisons only their shares are printed
 
 struct DiscrepancyOptions {
   std::vector<std::string> lanes;  // first and second in turn
+  LaneOptions subjects;
   std::vector<std::string> compare;
   std::vector<std::string> strata;
   std::uint64_t pairs = 20'000, seed = 1;
@@ -29,26 +34,51 @@ struct DiscrepancyOptions {
   std::string scene, campaign, out;
 };
 
+// What to compare: value by value, and of users' code the verdicts alone.
+struct Comparisons {
+  std::vector<analysis::LanesCompared> values;
+  std::vector<analysis::TwoDeciders> verdicts;
+};
+
+// A lane of a user's code with what runs it.   Throws: UsageError if nothing does here.
+DecideBlock on_host(const Lane& lane) {
+  const fuzz::SelectedLanes selected = fuzz::select_lanes({lane.id});
+  fuzz::expect_each_runs(selected);
+  return selected.on_host.at(0);
+}
+
 // Those that the user named; without any, `cpu` against both CUDA builds of each algorithm and scalar.
-std::vector<analysis::LanesCompared> lanes_of(const DiscrepancyOptions& options) {
-  std::vector<analysis::LanesCompared> lanes;
+Comparisons comparisons_of(const DiscrepancyOptions& options) {
+  Comparisons comparisons;
+  std::vector<analysis::LanesCompared>& lanes = comparisons.values;
   if (options.lanes.size() % 2 != 0) throw UsageError("lanes are compared two by two: name an even number of them");
-  for (std::size_t i = 0; i < options.lanes.size(); i += 2)
-    lanes.emplace_back(published_lane(options.lanes[i]), published_lane(options.lanes[i + 1]));
-  if (!lanes.empty()) return lanes;
+  for (std::size_t i = 0; i < options.lanes.size(); i += 2) {
+    const Lane *first = find_lane(options.lanes[i]), *second = find_lane(options.lanes[i + 1]);
+    if (first && second && (first->foreign || second->foreign)) {
+      if (first->scalar != second->scalar)
+        throw UsageError(
+            fmt::format("{} and {} cannot be compared: they do not have one scalar", first->id, second->id));
+      comparisons.verdicts.push_back({{first, second}, {on_host(*first), on_host(*second)}});
+    } else {
+      lanes.emplace_back(published_lane(options.lanes[i]), published_lane(options.lanes[i + 1]));
+    }
+  }
+  if (!options.lanes.empty()) return comparisons;
   for (const Variant second : {Variant::cuda_fma, Variant::cuda_nofma}) {
     for (const Lane& lane : published_lanes()) {
       if (lane.variant == Variant::cpu) lanes.emplace_back(lane, *counterpart(lane, second));
     }
   }
-  return lanes;
+  return comparisons;
 }
+
+bool is_simpler(const Pair& l, const Pair& r) { return fuzz::simplicity(l) < fuzz::simplicity(r); }
 
 constexpr std::uint64_t kOriginPairs = 40'000;  // shared by the sources
 
-// Where the values start to differ, of each comparison of a contracted CUDA lane with one that rounds every operation.
+// Finds where the values start to differ, for each comparison of a contracted CUDA lane with a lane that rounds every
+// operation.
 std::vector<std::optional<analysis::Origins>> origins_of(const analysis::DiscrepancySpec& spec) {
-  const auto simpler = [](const Pair& l, const Pair& r) { return fuzz::simplicity(l) < fuzz::simplicity(r); };
   const auto is_rounded = [](const Lane& lane) { return info_of(lane.variant).arithmetic == Arithmetic::rounded; };
   std::vector<std::optional<analysis::Origins>> origins;
   for (const auto& [first, second] : spec.lanes) {
@@ -56,12 +86,12 @@ std::vector<std::optional<analysis::Origins>> origins_of(const analysis::Discrep
     origins.emplace_back();
     if (fused && analysis::has_origins(*fused))
       origins.back() =
-          analysis::origins(*fused, spec.sources, kOriginPairs / spec.sources.size(), spec.threads, simpler);
+          analysis::origins(*fused, spec.sources, kOriginPairs / spec.sources.size(), spec.threads, is_simpler);
   }
   return origins;
 }
 
-// A file of this verb, or the folder that it is in.
+// Reads a result of this verb. name: the file, or its folder.
 fuzz::Json results_of(const std::string& name) {
   const std::filesystem::path file = std::filesystem::is_directory(name)
                                          ? std::filesystem::path(name) / "discrepancy.json"
@@ -74,8 +104,8 @@ fuzz::Json results_of(const std::string& name) {
 
 int compare(const std::vector<std::string>& names) {
   const fuzz::Json before = results_of(names[0]), after = results_of(names[1]);
-  for (const char* spec : {"pairs", "seed"}) {
-    if (before.at(spec) != after.at(spec))
+  for (const char* spec : {"pairs", "seed", "scene"}) {
+    if (before.value(spec, fuzz::Json()) != after.value(spec, fuzz::Json()))
       throw UsageError(fmt::format("{} and {} are of other pairs: their {} differ", names[0], names[1], spec));
   }
   fmt::print("{}", reports::discrepancy_changes(before, after, output_screen()));
@@ -84,18 +114,31 @@ int compare(const std::vector<std::string>& names) {
 
 int discrepancy(const DiscrepancyOptions& options) {
   if (!options.compare.empty()) return compare(options.compare);
+  LaneOptions subjects = options.subjects;
+  subjects.executor = options.executor == kTwin ? fuzz::Executor::twin : fuzz::Executor::automatic;
+  open_subjects(subjects);
+  if (!options.campaign.empty()) open_subjects_of(options.campaign);
+  const Comparisons comparisons = comparisons_of(options);
   analysis::DiscrepancySpec spec;
-  spec.lanes = lanes_of(options);
+  spec.lanes = comparisons.values;
   std::uint64_t seed = options.seed;
+  std::string scene;  // its name in results
   std::string left_out;
   if (options.campaign.empty()) {
-    strata::SceneSources all = drawn(options.scene, seed, options.pairs, options.strata);
-    spec.sources = std::move(all.sources);
-    left_out = left_out_text(all.left_out);
+    if (options.scene.empty()) {
+      spec.sources = strata::stratum_sources(seed, options.pairs, options.strata);
+    } else {
+      fuzz::Json recorded;
+      strata::SceneSources all = drawn_from_scene(options.scene, seed, options.pairs, options.strata, recorded);
+      spec.sources = std::move(all.sources);
+      left_out = left_out_text(all.left_out);
+      scene = recorded.at("name");
+    }
   } else {
     CampaignPairs of_campaign = pairs_of_campaign(options.campaign, options.pairs, "compare lanes on");
     spec.sources = std::move(of_campaign.sources);
     seed = of_campaign.seed;
+    scene = of_campaign.scene;
   }
   spec.threads = options.threads;
   std::string why_not;
@@ -108,20 +151,32 @@ int discrepancy(const DiscrepancyOptions& options) {
   const ResultFolder folder(out, "discrepancy.json");
   const reports::DiscrepancyResults found{spec, analysis::discrepancies(spec), origins_of(spec)};
 
+  fuzz::Json verdicts = fuzz::Json::array();
+  for (const analysis::TwoDeciders& deciders : comparisons.verdicts)
+    verdicts.push_back(reports::verdicts_json(
+        deciders, spec.sources, analysis::verdicts_apart(deciders, spec.sources, options.threads, is_simpler)));
+
   const reports::Screen screen = output_screen();
   if (spec.lanes.size() <= kMostTables) fmt::print("{}", reports::discrepancy_tables(found, screen));
-  for (const std::string& sentence : reports::discrepancy_sentences(found))
-    fmt::print("{}", reports::wrapped(sentence, screen.columns));
+  if (spec.lanes.size() > 1) fmt::print("{}", reports::comparisons_table(found, screen));
   fmt::print("{}", left_out);
   std::uint64_t pairs = 0;
   for (const strata::PairSource& source : spec.sources) pairs += source.pairs;
-  nlohmann::ordered_json json = {{"pairs", pairs}, {"seed", seed}};
-  if (!options.scene.empty()) json["scene"] = options.scene;
+  fuzz::Json json = {{"pairs", pairs}, {"seed", seed}};
+  const fuzz::Json build = fuzz::build_info({});
+  for (const char* key : {"version", "commit", "compiler", "cuda"}) json["build"][key] = build.at(key);
+  if (!scene.empty()) json["scene"] = scene;
   json.update(reports::discrepancy_json(found));
+  std::string csv = reports::discrepancy_csv(found);
+  for (const fuzz::Json& of : verdicts) {
+    fmt::print("{}", reports::verdicts_table(of, screen));
+    csv += reports::verdicts_csv(of);
+  }
+  if (!verdicts.empty()) json["verdicts"] = verdicts;
   for (const std::string& sentence : reports::discrepancy_answer(json))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
   write_results(folder.path, {{"discrepancy.json", fuzz::sealed(json).dump(1) + "\n"},
-                              {"discrepancy.csv", reports::discrepancy_csv(found)},
+                              {"discrepancy.csv", csv},
                               {"discrepancy.html", reports::discrepancy_page(json)}});
   fmt::print("Wrote {0}/discrepancy.html, {0}/discrepancy.json, {0}/discrepancy.csv\n", folder.path.string());
   if (!options.campaign.empty()) fmt::print("Next: graze report {}\n", path_word(options.campaign));
@@ -137,7 +192,8 @@ void add_discrepancy(CLI::App& app, int& status) {
   const auto options = std::make_shared<DiscrepancyOptions>();
   command
       ->add_option("lanes", options->lanes,
-                   "Lanes to compare, two by two (default: cpu with cuda-fma and with cuda-nofma, of all algorithms)")
+                   "Lanes to compare, two by two; of your own code, only verdicts (default: cpu with cuda-fma and with "
+                   "cuda-nofma, of all algorithms)")
       ->option_text("LANE LANE");
   command
       ->add_option("--compare", options->compare,
@@ -145,6 +201,7 @@ void add_discrepancy(CLI::App& app, int& status) {
       ->expected(2)
       ->excludes("lanes")
       ->option_text("DIR DIR");
+  add_subject_options(*command, options->subjects);
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
   command
@@ -171,7 +228,7 @@ void add_discrepancy(CLI::App& app, int& status) {
       ->check(not_empty())
       ->option_text("DIR");
   for (const char* silenced :
-       {"--strata", "--scene", "--campaign", "--pairs", "--seed", "--threads", "--executor", "--out"})
+       {"--strata", "--scene", "--campaign", "--pairs", "--seed", "--threads", "--executor", "--out", "--subject"})
     command->get_option("--compare")->excludes(silenced);
   command->get_option("--campaign")->excludes("--seed");
   command->callback([options, &status] { status = discrepancy(*options); });

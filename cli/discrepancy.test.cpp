@@ -75,6 +75,90 @@ TEST_F(DiscrepancyCommand, ACampaignsColumnIsTheSumOfItsVerdicts) {
   EXPECT_EQ(shell("graze report c").status, 1);
 }
 
+// The scene of a campaign is that of its comparison.
+TEST_F(DiscrepancyCommand, ACampaignsPairsAreThoseOfItsScene) {
+  std::ofstream(shell.folder / "hall.toml") << "extent = [[100, 108], [0, 4], [0, 4]]\nedges = [0.5, 1, 2]\n";
+  const std::string lanes = "moller_1997/f32/cpu,moller_1997/f32/cuda-fma", scene = " --scene hall.toml --pairs 600 ";
+  expect_done("graze fuzz --lanes " + lanes + " --executor twin" + scene + "--out c");
+  const std::string compare = "graze discrepancy moller_1997/f32/cpu moller_1997/f32/cuda-fma --executor twin ";
+  expect_done(compare + "--campaign c");
+  expect_done(compare + scene + "--out d");
+  expect_done("cmp c/discrepancy.json d/discrepancy.json");
+  const auto found = nlohmann::json::parse(contents(shell.folder / "c/discrepancy.json"));
+  EXPECT_TRUE(found["scene"].get<std::string>().starts_with("hall.toml#")) << found["scene"];
+  EXPECT_EQ(found["pairs"], 600);
+  EXPECT_NE(contents(shell.folder / "c/discrepancy.html").find("scene hall.toml"), std::string::npos);
+  expect_done(compare + "--pairs 600 --out e");
+  expect_error("graze discrepancy --compare c e", 2, {"scene"});
+}
+
+// Of a user's code the verdicts are compared, and the output says why no value is.
+TEST_F(DiscrepancyCommand, ComparesTheVerdictsOfYourOwnCode) {
+  std::ofstream(shell.folder / "mine.cpp") << R"(
+static float side(const float* t, const float* p) {
+  const float u[] = {t[3] - t[0], t[4] - t[1], t[5] - t[2]}, v[] = {t[6] - t[0], t[7] - t[1], t[8] - t[2]};
+  const float n[] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  return n[0] * (p[0] - t[0]) + n[1] * (p[1] - t[1]) + n[2] * (p[2] - t[2]);
+}
+static bool crosses(const float* t, const float* p) {
+  const float x = side(t, p), y = side(t, p + 3), z = side(t, p + 6);
+  return !(x > 0 && y > 0 && z > 0) && !(x < 0 && y < 0 && z < 0);
+}
+bool meet(const float a[9], const float b[9]) { return crosses(a, b) && crosses(b, a); }
+)";
+  const std::string first = "mine/f32/cpu", second = "mine/f32/cpu-fma";
+  const Ran ran = shell("graze discrepancy " + first + " " + second +
+                        " --subject mine=./mine.cpp:meet --executor twin --strata shared_vertex --pairs 1000 --out m");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.out.find("no values"), std::string::npos) << ran.out;
+  const auto found = nlohmann::json::parse(contents(shell.folder / "m/discrepancy.json"));
+  EXPECT_EQ(found["lanes"].size(), 0u);
+  const auto& of = found["verdicts"][0]["strata"]["shared_vertex"];
+  expect_done("graze fuzz --subject mine=./mine.cpp:meet --lanes " + first + "," + second +
+              " --executor twin --strata shared_vertex --pairs 1000 --out c");
+  const auto counted = nlohmann::json::parse(contents(shell.folder / "c/summary.json"))["strata"]["shared_vertex"];
+  EXPECT_EQ(of["pairs"], counted["pairs"]);
+  EXPECT_EQ(of["differs"], counted["lanes"][second]["differs_from_cpu"]);
+  EXPECT_GT(of["differs"], 50);
+  for (const char* error : {"false_positive", "false_negative"}) {
+    EXPECT_EQ(of["of_first"][error], counted["lanes"][first].value(error, 0)) << error;
+    EXPECT_EQ(of["of_second"][error], counted["lanes"][second].value(error, 0)) << error;
+  }
+  const Ran same = shell("graze discrepancy --compare m m");
+  EXPECT_NE(same.out.find("0 counts differ, "), std::string::npos) << same.out << same.err;
+  EXPECT_EQ(same.out.find(", 0 are the same"), std::string::npos) << same.out;
+  // Its simplest pair shows the difference, and a campaign's report the sentence.
+  const Ran pair = shell("graze repro " + of["simplest"]["place"].get<std::string>() +
+                         " --subject mine=./mine.cpp:meet --lanes 'mine/f32/cpu,mine/f32/cpu-fma' | grep '^  mine'");
+  EXPECT_NE(pair.out.find('!'), std::string::npos) << pair.out << pair.err;
+  expect_done("graze discrepancy " + first + " " + second + " --campaign c --pairs 1000");
+  expect_done("graze report c");
+  EXPECT_NE(contents(shell.folder / "c/report.html").find("no values"), std::string::npos);
+  auto forged = nlohmann::json::parse(contents(shell.folder / "c/discrepancy.json"));
+  forged["verdicts"][0]["strata"]["shared_vertex"]["differs"] = 1001;
+  std::ofstream(shell.folder / "c/discrepancy.json") << forged.dump();
+  EXPECT_EQ(shell("graze report c").status, 1);
+}
+
+TEST_F(DiscrepancyCommand, PublishesEveryPart) {
+  const Ran ran = shell(GRAZE_SOURCE_DIR
+                        "/scripts/publish_discrepancy --pairs 400 --executor twin --out pub --graze "
+                        "$(command -v graze)");
+  ASSERT_EQ(ran.status, 0) << ran.out << ran.err;
+  for (const char* part : {"thesis", "strata", "strata_nofma"}) {
+    const std::string name = std::string("pub/") + part;
+    const auto found = nlohmann::json::parse(shell("gzip -dc " + name + ".json.gz").out);
+    EXPECT_EQ(found["lanes"].size(), 10u) << part;
+    EXPECT_EQ(found["pairs"], 400) << part;
+    std::uint64_t differs = 0;
+    for (const auto& lanes : found["lanes"]) differs += lanes["total"]["differs"].get<std::uint64_t>();
+    EXPECT_EQ(differs == 0, std::string(part) == "strata_nofma") << part << ": " << differs;
+    EXPECT_GT(shell("gzip -dc " + name + ".csv.gz").out.size(), 1000u) << part;
+    EXPECT_NE(contents(shell.folder / (name + ".html")).find("400 pairs"), std::string::npos) << part;
+  }
+  EXPECT_EQ(shell(GRAZE_SOURCE_DIR "/scripts/publish_discrepancy --graze nosuch").status, 2);
+}
+
 TEST_F(DiscrepancyCommand, ExplainShowsTwoLanesSideBySide) {
   const Ran ran = shell("graze explain thesis:2012:1 --lanes interval_overlap/f32/cpu,interval_overlap/f32/cuda-fma");
   ASSERT_EQ(ran.status, 0) << ran.err;

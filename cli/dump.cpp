@@ -108,13 +108,13 @@ analysis::LanesCompared compared_lanes(const std::vector<std::string>& ids) {
   return {published_lane(ids[0]), published_lane(ids[1])};
 }
 
-// A row for each pair, with both verdicts and choices, and one for each value that a comparison of both lanes or of one
-// sees, as hexadecimal numbers. Rows of pairs have no question.
+// Writes a row for each pair, with both verdicts and choices and no question, and a row for each value that at least
+// one lane compares. Numbers are hexadecimal.
 void dump_values(const DumpOptions& options) {
   const analysis::LanesCompared lanes = compared_lanes(options.values);
   const std::vector<Question>& questions = questions_of(lanes.first->algorithm);
   const CampaignPairs dumped = drawn_for(options);
-  std::cout << "stratum,seed,index,question,value,first,second,compared,exact_high,exact_low,bound,size\n";
+  std::cout << "stratum,seed,index,question,value,first,second,compared,exact_high,exact_low,bound,rounding\n";
   const auto number = [](const std::optional<double>& x) { return x ? fmt::format("{:a}", *x) : ""; };
   for (const strata::PairSource& source : dumped.sources) {
     for (std::uint64_t index = 0; index < source.pairs && std::cout; ++index) {
@@ -130,9 +130,9 @@ void dump_values(const DumpOptions& options) {
         std::cout << fmt::format("{},\"{}\",\"{}\",{},{},{},", place, question.name,
                                  question.of[static_cast<std::size_t>(value.which)], number(value.first),
                                  number(value.second), value.compared ? 1 : 0);
-        if (value.exact) {
-          std::cout << fmt::format("{:a},{:a},{:a},{:a}\n", value.exact->hi, value.exact->lo, value.exact->bound,
-                                   value.exact->size);
+        if (value.unrounded) {
+          const auto& [exact, rounding] = *value.unrounded;
+          std::cout << fmt::format("{:a},{:a},{:a},{:a}\n", exact.hi, exact.lo, exact.bound, rounding);
         } else {
           std::cout << ",,,\n";
         }

@@ -98,7 +98,7 @@ for row in rows:
   expect_done("graze dump 'near_*' --pairs 60 --lanes exact/f32/cpu > t.csv && python3 read.py");
 }
 
-// A hundred times as many pairs need no more memory.
+// A dump of a hundred times as many pairs needs no more memory, because rows are written as they are made.
 TEST_F(Dump, IsWrittenAsItIsMade) {
   if (shell("command -v python3").status != 0) GTEST_SKIP() << "no python3";
   std::ofstream(shell.folder / "peak.py") << R"(import resource, subprocess, sys

@@ -15,7 +15,7 @@
 namespace graze::cli {
 namespace {
 
-// The case's origin: its numbers, the numbers of its original, its name, or its line.
+// The case's origin: STRATUM:SEED:INDEX, the case that it was minimised from, its name, or its line.
 std::string origin(const std::string& name, const corpus::Entry& entry) {
   if (const std::optional<std::string> numbers = corpus::numbers_of(entry)) return printable(*numbers);
   const std::string *kind = corpus::field(entry, "kind"), *from = corpus::field(entry, "from"),

@@ -65,7 +65,7 @@ class Emit : public testing::TestWithParam<EmitCase> {
 #endif
   }
 
-  // Whether this build contracts: it takes an optimising compiler and a processor that can.
+  // Whether this build contracts, which needs optimisation and a processor with fused multiply-adds.
   bool contracts() const {
 #ifdef NDEBUG
     return shell("graze lanes | grep -q '/cpu-fma *available'").status == 0;
@@ -157,7 +157,7 @@ TEST(EmitFlags, AreThoseOfTheLane) {
   EXPECT_EQ(first_line("cuda --lanes '*/f32/cuda-fma'").find("fmad"), std::string::npos);
 }
 
-// Without a device. Under the contraction rules that were verified on one, a snippet's kernel has as many fused
+// Needs no device: the contraction rules, which were verified on one, must give a snippet's kernel as many fused
 // operations as its lane's.
 TEST(EmitCuda, ContractsAsItsLaneDoes) {
 #ifndef GRAZE_NVCC_DIR

@@ -55,7 +55,7 @@ void print_step(const analysis::Step& step, bool told, Scalar scalar, int places
 void print_steps(const analysis::LaneExplanation& lane, const reports::Screen& screen) {
   constexpr int kMost = 12;
   if (lane.evidence == analysis::Evidence::none) {
-    fmt::print("    values: unknown, no rule of contraction replays this lane here\n");
+    fmt::print("    values: unknown, because no contraction rule replays this lane here\n");
     return;
   }
   const analysis::Step* told = lane.told();
@@ -140,7 +140,7 @@ void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExpla
   print_surroundings(lane, line);
 }
 
-// The runs of two lanes beside each other, where the user asked for two that record their values.
+// Prints the runs of two lanes side by side, if the user named exactly two and both record their values.
 void print_side_by_side(const std::vector<const Lane*>& lanes, const Pair& pair, const reports::Screen& screen) {
   if (lanes.size() != 2 || !is_finite(pair) || !analysis::why_not_compared(*lanes[0], *lanes[1]).empty()) return;
   fmt::print("\n{}", reports::side_by_side({*lanes[0], *lanes[1]}, pair, screen));

@@ -25,7 +25,7 @@ class ForeignCode : public CommandTest {
   }
 };
 
-// Sent after the campaign has begun; the campaign must stop normally within two minutes.
+// SIGTERM is sent after the campaign has begun, and the campaign must stop normally within two minutes.
 TEST_F(ForeignCode, SigtermEndsACampaignInOrderWhileASubjectHangs) {
   ASSERT_EQ(shell("echo 'int intersects(const float a[9], const float b[9]) { for (;;) ; }' > h.c && cc -shared -fPIC "
                   "h.c -o h.so")
@@ -55,7 +55,7 @@ TEST_F(ForeignCode, NothingOutlivesACampaignOrItsKill) {
   expect_none_sleeps();
 }
 
-// The compiler waits for ever for input from the pipe. Even a verb that catches no signals stops normally.
+// The compiler waits for input from the pipe for ever. A verb that catches no signals itself must stop normally too.
 TEST_F(ForeignCode, ACompilerEndsWithGraze) {
   ASSERT_EQ(shell("mkfifo pipe.h && echo '#include \"pipe.h\"' > waits.cpp").status, 0);
   const std::string verbs[] = {"fuzz --lanes 'w/*' --strata uniform --pairs 10 --out o", "check pair.txt"};
@@ -96,7 +96,7 @@ TEST_F(ForeignCode, ACampaignWhoseProgramChangesFailsAndGoesOnWithTheOldOne) {
   EXPECT_EQ(shell("cmp whole/summary.json straight/summary.json").status, 0);
 }
 
-// What minimize writes is published as the campaign's.
+// The results of minimize count as the campaign's, so they must come from the code that the campaign ran.
 TEST_F(ForeignCode, MinimizeRefusesCodeThatTheCampaignDidNotRun) {
   const std::string always = "echo 'int meet(const float a[9], const float b[9]) { return 1; }' > a.c";
   expect_done(always +

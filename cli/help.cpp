@@ -18,7 +18,7 @@ constexpr int kNarrow = 64;            // columns; below this, a description sta
 
 int columns_of_help() { return isatty(STDOUT_FILENO) ? output_screen().columns : kWithoutTerminal; }
 
-// Formats a name with its meaning beside it, or below it if there is no room.
+// Formats a name with its description to the right, or below if there is no room.
 std::string row(const std::string& name, const std::string& meaning, int columns) {
   const int aside = columns < kNarrow ? 6 : 26;
   const std::string text = reports::wrapped(meaning, columns, aside, aside);

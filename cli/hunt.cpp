@@ -51,13 +51,13 @@ std::vector<std::string> details(const fuzz::HuntProgress& progress) {
 void print_mutations(const std::filesystem::path& directory) {
   const Json told = Json::parse(fuzz::read_whole(directory / "hunt.json"));
   reports::TextTable table(
-      {{"mutation", reports::Align::left}, {"pairs"}, {"some lane is wrong"}, {"kept to go on from"}, {"new kinds"}});
+      {{"mutation", reports::Align::left}, {"pairs"}, {"some lane is wrong"}, {"kept to continue"}, {"new kinds"}});
   for (const Json& row : told.at("mutations")) {
     const auto count = [&](const char* what) { return reports::grouped(row.at(what).get<std::uint64_t>()); };
     table.add({row.at("mutation").get<std::string>(), count("pairs"), count("disagreements"), count("units"),
                count("kinds")});
   }
-  fmt::print("\n{}\nGuided search kept {} pairs to go on from, and met {} kinds of failure or more.\n",
+  fmt::print("\n{}\nThe guided search kept {} pairs to continue from, and met at least {} kinds of failure.\n",
              table.text(output_screen()), reports::grouped(told.at("units").get<std::uint64_t>()),
              reports::grouped(told.at("kinds").size()));
 }

@@ -86,7 +86,7 @@ std::vector<reports::LeagueSubject> read_subjects(const fs::path& file, fuzz::Mo
   return subjects;
 }
 
-// Facts that the code reports take precedence over those in the file.
+// The code's own description takes precedence over the facts in the file.
 void open(reports::LeagueSubject& subject, double timeout) {
   subjects::Wanted wanted = subjects::parse_subject(subject.name + '=' + subject.what);
   wanted.timeout = wanted.what.starts_with("cmd:") ? std::max(timeout, kStartOfAProgram) : timeout;

@@ -24,7 +24,7 @@ int merge(const MergeOptions& options) {
   }
   const fuzz::Outcome outcome = fuzz::merge(wanted);
   const std::filesystem::path out = options.out;
-  // "b/../c" is invalid if b does not exist.
+  // The system rejects "b/../c" if b does not exist.
   print_campaign(std::filesystem::exists(out) ? options.out : out.lexically_normal().string(), outcome, options.json);
   if (!outcome.complete) {
     std::fflush(stdout);

@@ -75,7 +75,7 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
                         reports::grouped(found.result.single_moves))
       : fuzz::can_shrink(found.failure) ? fmt::format("perhaps not 1-minimal: stopped after {} moves",
                                                       reports::grouped(fuzz::most_moved(found.failure)))
-                                        : "not shrunk: a lane takes all of its time, or changes its verdict";
+                                        : "not shrunk: a lane times out, or its verdict changes";
   std::cout << fmt::format(
       "  signature: {}\n  magnitudes other than 0 and 1: {}, before {}\n"
       "  cause: {}, as before\n"
@@ -189,7 +189,7 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
     counts +=
         fmt::format("{}{}: {}", n == 0 ? "" : ", ", n,
                     reports::grouped(static_cast<std::uint64_t>(std::count(magnitudes.begin(), magnitudes.end(), n))));
-  fmt::print("magnitudes other than 0 and 1, and how many signatures have so many (median {}):\n{}",
+  fmt::print("number of magnitudes other than 0 and 1: signatures with that number (median {}):\n{}",
              magnitudes[magnitudes.size() / 2], reports::wrapped(counts, output_screen().columns, 2, 2));
   fmt::print(
       "Wrote {}/cases/: the minimised pair first, then the worst one met, then the originals\n"
@@ -210,7 +210,7 @@ int minimize_directory(MinimizeOptions options) {
   if (!subjects::open_recorded(summary["spec"]).empty())
     throw UsageError(
         cannot("minimise", options.name,
-               "its results go into the campaign, and this is not the code that it ran; leave out --subject"));
+               "the campaign ran other code than this, and its results must come from that code; leave out --subject"));
   const auto ran = summary["spec"]["lanes"].get<std::set<std::string>>();
   leave_out(under_test, [&](const Lane& lane) { return ran.contains(lane.id) ? "" : "the campaign did not run it"; });
   const fuzz::FolderLock held(directory,
@@ -262,7 +262,7 @@ int minimize_directory(MinimizeOptions options) {
     return kInterrupted;
   }
   if (!whole) {
-    fmt::print("shard {}: {} of {} signatures looked at\nNext, when all shards are done: graze minimize {}\n",
+    fmt::print("shard {}: {} of {} signatures done\nNext, when all shards are done: graze minimize {}\n",
                options.shard.name(), reports::grouped(rows.size()), reports::grouped(summary["signatures"].size()),
                path_word(options.name));
     return 0;
@@ -319,7 +319,7 @@ void add_minimize(CLI::App& app, int& status) {
   command->callback([options, &status] {
     if (!fs::is_directory(options->name)) {
       if (!options->shard.whole())
-        throw UsageError("--shard is for campaign directories alone, and " + options->name + " is none");
+        throw UsageError("--shard is for campaign directories alone, and " + options->name + " is not one");
       if (options->again)
         throw UsageError("--again is for campaign directories alone; " + options->name + " is minimised each time");
       status = minimize_case(*options);

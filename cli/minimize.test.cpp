@@ -34,7 +34,7 @@ TEST_F(Minimize, ACaseIsPrintedAndWrittenWithItsOriginal) {
   std::size_t as_recorded = 0;
   for (std::size_t at = 0; (at = repro.out.find("(as recorded)", at)) != std::string::npos; ++at) ++as_recorded;
   EXPECT_EQ(as_recorded, 2u) << repro.out;
-  // The result as input: its cases are minimised again from the start, not further.
+  // If the result is the input, its cases are minimised again from the start, and come out the same.
   expect_done("graze minimize small.pairs --lanes 'guigue_*/f32/cpu' --out again.pairs && cmp small.pairs again.pairs");
 }
 

@@ -137,8 +137,7 @@ CLI::Validator not_empty() {
                         "");
 }
 
-void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors) {
-  add_globs(command, "--lanes", options.globs, "Patterns of the lanes to run");
+void add_subject_options(CLI::App& command, LaneOptions& options) {
   CLI::Option* subject =
       command
           .add_option(
@@ -158,6 +157,11 @@ void add_lane_options(CLI::App& command, LaneOptions& options, Executors executo
       ->check(number(0.001, 86400.0))
       ->capture_default_str()
       ->option_text("SECONDS");
+}
+
+void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors) {
+  add_globs(command, "--lanes", options.globs, "Patterns of the lanes to run");
+  add_subject_options(command, options);
   if (executors == Executors::twins) {
     options.executor = fuzz::Executor::twin;
     return;
@@ -204,6 +208,14 @@ fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesy
   if (!about.empty()) open_subjects_of(about);
   fuzz::SelectedLanes under_test = fuzz::select_lanes(options.globs, options.executor, require_device);
   fuzz::expect_each_runs(under_test);
+  for (const std::string& text : options.subjects) {
+    const std::string subject = subjects::parse_subject(text).name + '/';
+    const auto is_of = [&](const std::string& lane) { return lane.starts_with(subject); };
+    if (std::none_of(under_test.lanes.begin(), under_test.lanes.end(), [&](auto* lane) { return is_of(lane->id); }) &&
+        std::none_of(under_test.left_out.begin(), under_test.left_out.end(), [&](auto& row) { return is_of(row.id); }))
+      throw UsageError(fmt::format("--subject {0}: --lanes has no lane of it; add '{0}/*' there",
+                                   subject.substr(0, subject.size() - 1)));
+  }
   say_left_out(under_test.left_out);
   return under_test;
 }

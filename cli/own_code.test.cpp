@@ -243,7 +243,7 @@ TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
   EXPECT_NE(repro.out.find("own/f32"), std::string::npos) << repro.out << repro.err;
   EXPECT_NE(repro.out.find("!"), std::string::npos) << repro.out;
   expect_done(fuzz + "400");  // moller is wrong too, but was not requested
-  // The smallest case is the smallest of all minimised ones, not that of the smallest kept pair; it is in the file.
+  // The file has the smallest of all minimised cases, which need not come from the smallest kept pair.
   const auto pairs_of = [&](const std::string& command) {
     shell(command + " > some.pairs");
     std::vector<fuzz::Simplicity> found;
@@ -264,6 +264,9 @@ TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
   const std::string ours = "graze fuzz --pairs 400 --out d --fail-above ";
   expect_error(ours + "0 --lanes 'moller*/f32/cpu'", 1, {"moller_1997", "0", "--fail-above"});
   expect_done("graze fuzz --pairs 400 --out e --lanes 'exact/f32/cpu' --fail-above 0");
+  // A subject that is not asked is no success.
+  expect_error("export XDG_CACHE_HOME=$PWD/cache; graze fuzz --subject own=./own.c --lanes 'exact/f32/cpu' --out f", 2,
+               {"own", "--lanes"});
 }
 
 // Runs all verbs on a campaign of code that is wrong, crashes, hangs or is unstable.

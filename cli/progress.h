@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Progress of a long run. On a terminal, one line that is rewritten five times a second. Otherwise a new line for every
-// tenth of the run, at least ten seconds apart, and after half a minute without one.
+// Progress of a long run. On a terminal, one line that is rewritten five times a second. Otherwise a new line after
+// every tenth of the run, but at most one in ten seconds and at least one in half a minute.
 #pragma once
 
 #include <cstddef>

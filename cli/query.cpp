@@ -196,14 +196,14 @@ std::vector<Run> runs_of(const QueryOptions& options, const std::vector<query::T
 void query_mesh(const QueryOptions& options, int& status) {
   if (options.files.size() != 2)
     throw UsageError(
-        fmt::format("graze query needs two files, a reference and a mesh, and got {}", options.files.size()));
+        fmt::format("graze query needs two files, a reference and a mesh, but got {}", options.files.size()));
   if (options.any && (!options.obj.empty() || !options.pairs.empty()))
-    throw UsageError("--any does not go with --obj or --pairs, which hold all hits");
+    throw UsageError("--any does not work with --obj or --pairs, which write all hits");
   const std::string* outputs[] = {&options.obj, &options.pairs, &options.mismatches};
   std::set<std::filesystem::path> files;
   for (const std::string* file : outputs) {
     if (!file->empty() && !files.insert(std::filesystem::weakly_canonical(std::filesystem::absolute(*file))).second)
-      throw UsageError("--obj, --pairs and --mismatches need a file each; two are " + shown_path(*file));
+      throw UsageError("--obj, --pairs and --mismatches need different files; two of them are " + shown_path(*file));
   }
   const std::vector<query::Triangle> references = read_references(options.files[0]),
                                      triangles = read_mesh(options.files[1]);

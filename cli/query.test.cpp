@@ -88,7 +88,7 @@ TEST_F(QueryCommand, WritesHits) {
   EXPECT_EQ(checked.out, "2\n");
 }
 
-// Triangles that share a vertex but that one algorithm calls disjoint: the README's example.
+// The README's example: the triangles share a vertex, but one algorithm says disjoint.
 TEST_F(QueryCommand, SeveralLanesAreComparedAndMismatchesAreCases) {
   std::ofstream(shell.folder / "mesh.obj") << "v .1 .2 .3\nv .5 .5 .9\nv -.3 .8 .4\nv 9 9 9\nf 1 2 3\nf 4 2 3\n";
   std::ofstream(shell.folder / "ref.txt") << "0.1 0.2 0.3  0.4 0.9 0.2  0.7 0.1 0.6\n";
@@ -129,9 +129,8 @@ TEST_F(QueryCommand, SelfTellsPiercingFromNeighbours) {
             3);
 }
 
-// Neighbours whose contact is more than their common vertex, yet no tiny translation is needed to separate them: an
-// edge along an edge, in the same plane and out of it, and an edge that lies inside a triangle. Then a pair that
-// pierces.
+// Neighbours that share more than their common vertex, but do not pierce each other: an edge along an edge, in one
+// plane and in two, and an edge inside a triangle. Then a pair that pierces.
 TEST_F(QueryCommand, NeighboursThatOnlyTouchDoNotPierce) {
   const std::string corner = "printf 'v 0 0 0\nv 4 0 0\nv 0 4 0\n";
   const auto self = [&](const std::string& others) {

@@ -70,7 +70,7 @@ std::string page_of(const std::string& file) {
 void report(const ReportOptions& options) {
   const int named = !options.directory.empty() + !options.from.empty() + !options.compare.empty();
   if (named != 1)
-    throw UsageError(fmt::format("graze report needs exactly one of DIR, --compare and --from, and got {}", named));
+    throw UsageError(fmt::format("graze report needs exactly one of DIR, --compare and --from, but got {}", named));
   if (options.from.empty() != options.out.empty())
     throw UsageError("--from and --out need each other; add the other one");
   if (!options.from.empty()) {

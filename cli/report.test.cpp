@@ -57,10 +57,10 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   more["kinds"] = nlohmann::ordered_json::array();
   write("c/failures.json", more);
   refused("no kind of moller_1997/f32/cpu");
-  for (const auto& [field, value, found] :
-       {std::tuple<const char*, nlohmann::ordered_json, const char*>("lanes", {"x"}, "the lane \"x\", which is none"),
-        {"strata", {{"lattice", 99}}, "other strata"},
-        {"margins", {{"banana", kinds["kinds"][0]["pairs"]}}, "other margins"}}) {
+  for (const auto& [field, value, found] : {std::tuple<const char*, nlohmann::ordered_json, const char*>(
+                                                "lanes", {"x"}, "the lane \"x\", which is not an examined"),
+                                            {"strata", {{"lattice", 99}}, "whose strata"},
+                                            {"margins", {{"banana", kinds["kinds"][0]["pairs"]}}, "whose margins"}}) {
     more = kinds;
     more["kinds"][0][field] = value;
     write("c/failures.json", more);
@@ -70,7 +70,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   refused("damaged");
   write("c/failures.json", kinds);
   expect_done("graze failures c > /dev/null");
-  // What is no count: the checksum tells.
+  // Changes of texts, which are not counts, are found by the checksum.
   for (const std::string file : {"failures.json", "timings.json", "costs.json", "report.json"}) {
     const std::string reader =
         file == "failures.json" || file == "timings.json" ? "report c" : "report --from c/report.json --out r.html";
@@ -91,7 +91,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   timings["runs"][0]["pairs"] = -1;
   write("c/timings.json", timings);
   expect_error("graze report c", 1, {"c/timings.json", "-1"});
-  // Damaged: nothing is removed or written over without a word.
+  // A damaged file is reported, and is neither removed nor overwritten.
   std::ofstream(shell.folder / "c/timings.json") << timed.substr(0, timed.size() - 30);
   for (const char* verb : {"report c", "minimize c", "merge c --out m"})
     expect_error(std::string("graze ") + verb, 1, {"c/timings.json", "damaged", "remove it"});
@@ -119,7 +119,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   write("r.json", report);
   expect_error("graze report --from r.json --out r.html", 1, {"r.json", "3000"});
 
-  // Deeply nested: no stack overflows, with the database or without it.
+  // Deeply nested JSON must not overflow the stack, with the database or without it.
   const std::string text = contents(shell.folder / "c/summary.json");
   const auto expect_too_deep = [&] {
     std::ofstream(shell.folder / "c/summary.json")
@@ -158,7 +158,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   }
 }
 
-// No verb waits for a pipe at the name of a record, and none takes a file of another for its own.
+// If a record's name belongs to a pipe, no verb waits for it. No verb replaces a file of another program.
 TEST_F(Report, PipesAndForeignFilesAmongTheRecordsAreRefused) {
   const std::string fuzz = "graze fuzz --pairs 300 --lanes moller_1997/f32/cpu --strata near_vertex_face --out c";
   expect_done(fuzz + " > /dev/null && graze minimize c > /dev/null && graze report c");
@@ -183,7 +183,7 @@ TEST_F(Report, PipesAndForeignFilesAmongTheRecordsAreRefused) {
   }
   EXPECT_GT(refused, 15u);
 
-  // Files of another below cases/.
+  // Files of another program below cases/ stay.
   const std::string pairs = "c/cases/" + hash + ".pairs", maps = "c/cases/" + hash + ".maps.json";
   expect_done("cp " + pairs + " kept && echo mine > " + pairs);
   expect_error(fuzz, 2, {pairs, "--force"});
@@ -192,11 +192,11 @@ TEST_F(Report, PipesAndForeignFilesAmongTheRecordsAreRefused) {
   expect_error("graze minimize c --again", 2, {maps, "--force"});
   EXPECT_EQ(contents(shell.folder / maps), "{\"a\": 1}\n");
   expect_done("rm " + maps + " && graze minimize c");
-  // A result of Graze's that was cut off is known, and replaced.
+  // A truncated result of Graze is recognised and replaced.
   expect_done("truncate -s -30 c/costs.json && graze report c && graze report --from c/report.json --out r.html");
 }
 
-// SQLite would write into what bears these names, or delete it.
+// SQLite would write into files of these names, or delete them.
 TEST_F(Report, ForeignFilesBesideTheDatabaseStay) {
   const std::string fuzz = "graze fuzz --pairs 300 --lanes moller_1997/f32/cpu --strata uniform --out c";
   expect_done(fuzz);
@@ -215,7 +215,7 @@ TEST_F(Report, ForeignFilesBesideTheDatabaseStay) {
   expect_done(fuzz);
 }
 
-// A trigger could drop what is stored, and the run would say that it is done.
+// A trigger could drop rows while the run reports that it is done.
 TEST_F(Report, OtherTablesAndTriggersAreRefused) {
   const std::string fuzz = "graze fuzz --pairs 300 --lanes moller_1997/f32/cpu --strata uniform --out c";
   for (const char* edit : {"delete from batch; create trigger t after insert on batch begin delete from batch; end",
@@ -229,7 +229,7 @@ TEST_F(Report, OtherTablesAndTriggersAreRefused) {
   }
 }
 
-// By its name in a campaign's folder the status is Graze's: a damaged one is replaced, and ends no campaign.
+// In a campaign's folder, status.json is Graze's own file: a damaged one is replaced and stops no campaign.
 TEST_F(Report, ADamagedStatusIsReplaced) {
   const std::string fuzz = "graze fuzz --pairs 300 --lanes moller_1997/f32/cpu --strata uniform --out c";
   expect_done(fuzz);
@@ -266,7 +266,7 @@ TEST_F(Report, SameBytesWhateverTheThreads) {
       EXPECT_EQ(shell(command["text"].get<std::string>() + " > said").status, 0) << command["text"];
     }
   }
-  // The page is made again from its data.
+  // The page made from the stored data has the same bytes.
   expect_done("graze report --from one/report.json --out page.html && cmp page.html one/report.html");
 }
 

@@ -59,7 +59,7 @@ bool compare_signatures(const corpus::Entry& entry, const oracle::Truth& t, std:
   if (!text) return false;
   if (compared == Compared::changed) std::cout << "  CHANGED, recorded: " << printable(*text) << '\n';
   if (compared == Compared::nothing)
-    std::cout << "  not compared, its lanes were not run: " << printable(*text) << '\n';
+    std::cout << "  not compared, because its lanes were not run: " << printable(*text) << '\n';
   return compared == Compared::changed;
 }
 

@@ -28,7 +28,7 @@ struct Result {
   std::string name, text;
 };
 
-// Writes all of them into the folder, or none where one may not be replaced.   Throws: as write_result.
+// Writes all results into the folder, or none if one of the files may not be replaced.   Throws: as write_result.
 void write_results(const std::filesystem::path& folder, const std::vector<Result>& results);
 
 // Removes the file of an earlier run; leaves it if it is not of the same kind as this text.

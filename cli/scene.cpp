@@ -45,9 +45,9 @@ void scene(const SceneVerb& options) {
   const bool pairs = fs::path(options.files[0]).extension() == ".pairs";
   if (pairs && options.files.size() > 1)
     throw UsageError(
-        fmt::format("graze scene measures one file of pairs at a time, and got {} files", options.files.size()));
+        fmt::format("graze scene measures one file of pairs at a time, but got {} files", options.files.size()));
   if (!options.poses.empty() && (pairs || options.files.size() > 1))
-    throw UsageError("--poses is for one mesh, and got " +
+    throw UsageError("--poses is for one mesh, but got " +
                      (pairs ? "pairs" : fmt::format("{} files", options.files.size())));
   analysis::SceneSample sample;
   strata::SceneMeshes meshes;

@@ -192,7 +192,8 @@ TEST_F(ScreenTest, LanesSayOnceWhatTheirTwinsAreTrustedFor) {
   EXPECT_NE(out.find("CUDA lanes run by their twins, on the CPU"), std::string::npos) << out;
 }
 
-// The build's message without nvcc is true: it calls exactly those variants unavailable whose lanes have no twin.
+// The build's message without nvcc must be true: it names as unavailable exactly those variants whose lanes have no
+// twin.
 TEST_F(ScreenTest, TheBuildSaysWhatRunsWithoutNvcc) {
   const std::string text = contents(std::filesystem::path(GRAZE_SOURCE_DIR) / "cmake/cuda.cmake");
   const std::size_t at = text.find("CUDA lanes: run by their twins, on the CPU (built without nvcc); ");

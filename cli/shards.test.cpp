@@ -56,7 +56,7 @@ TEST_F(Shards, WhatIsMissingIsRunByTheCommandThatIsPrinted) {
   expect_same("whole", "all");
   expect_error("graze merge p-1 p-3 shard-2 --out all", 2, {"empty", "--out"});
 
-  // A damaged shard too: rows with the right checksum are kept.
+  // A damaged shard can be merged as well; its rows with a right checksum are kept.
   expect_done(
       "sqlite3 p-3/campaign.sqlite 'UPDATE batch SET pairs = pairs + 1 WHERE id = 2' 2> /dev/null || python3 -c "
       "\"import sqlite3; c = sqlite3.connect('p-3/campaign.sqlite'); c.execute('UPDATE batch SET pairs = pairs + 1 "
@@ -196,7 +196,7 @@ TEST_F(Shards, StatusTellsWhatRunsAndWhatNeedsHelp) {
   const std::string prometheus = contents(shell.folder / "p.prom");
   EXPECT_NE(prometheus.find("graze_done{directory=\"done\",shard=\"1/3\",state=\"done\"} 300\n"), std::string::npos)
       << prometheus;
-  // A run on another machine that has been silent for long.
+  // A run on another machine that has not reported for a long time counts as stalled.
   Json old = Json::parse(contents(shell.folder / "killed/status.json"));
   old["host"] = "elsewhere";
   old["updated"] = old["updated"].get<std::int64_t>() - 1000;
@@ -247,7 +247,7 @@ TEST_F(Shards, StatusRefusesADamagedStatus) {
   expect_done("graze status c | grep ' done '");
 }
 
-// A shard's folder is no larger than planned; nor is the merged campaign's, without its cases.
+// A shard's folder and the merged campaign's folder, without its cases, are at most as large as planned.
 TEST_F(Shards, ThePlannedDiskIsEnough) {
   for (const char* of : {" --pairs 20000 --strata 'near_*' --lanes '*/f32/cpu' ",
                          " --pairs 20000 --strata extreme_scale,far_from_origin --lanes '*/cpu*' "}) {
@@ -275,8 +275,8 @@ TEST_F(Shards, RanksLeaveTheBytesOfOneProcessAlsoWhenOneIsKilled) {
   const std::string mpirun =
       "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1; mpirun ";
   ASSERT_EQ(shell(fuzz + "--out whole").status, 0);
-  // Rank 2 stops itself at its 20th write, as it stores its first blocks: within a call of MPI it might hold a lock.
-  // The others do all the rest; then it is killed.
+  // Rank 2 stops itself at its 20th write, while it stores its first blocks and holds no lock of MPI. The other ranks
+  // do all the remaining work, and then it is killed.
   const std::string rank = fuzz + "--out ranks ";
   const Ran killed =
       shell(mpirun + "-n 2 " + rank + ": -n 1 env " + signal_at_write(SIGSTOP, 20) + rank + ": -n 1 " + rank +

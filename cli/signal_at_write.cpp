@@ -20,7 +20,7 @@ void count() {
   if (signal && at && ++calls == std::atoi(at)) kill(getpid(), std::atoi(signal));
 }
 
-// Only regular files count: how often a program writes to sockets and pipes may depend on time.
+// Counts only writes to regular files, because the number of writes to sockets and pipes may depend on time.
 void count_on(int file) {
   struct stat status {};
   if (file > STDERR_FILENO && fstat(file, &status) == 0 && S_ISREG(status.st_mode)) count();

@@ -33,8 +33,8 @@ struct StatusOptions {
   bool json = false;
 };
 
-// The state of a run. A run that did not record its end was killed if its process is gone from this machine. It has
-// stalled if it has been silent for long.
+// The state of a run. A run without a recorded end was killed if its process no longer exists on this machine. It has
+// stalled if it has not reported for a long time.
 std::string state_of(const Json& status, std::int64_t silent, std::uint64_t stalled) {
   const std::string state = status.at("state");
   if (state != "running") return state;
@@ -46,7 +46,7 @@ std::string state_of(const Json& status, std::int64_t silent, std::uint64_t stal
   return silent > static_cast<std::int64_t>(stalled) ? "stalled" : "running";
 }
 
-// known: signatures without margins of the rows above; those of this row are added.
+// known: the signatures, without margins, of the rows so far. Adds those of this row.
 Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::string>& known) {
   Json row = {{"directory", directory.string()},
               {"shard", nullptr},
@@ -154,10 +154,10 @@ std::string prometheus(const Json& all) {
   std::string text;
   for (const auto& [name, help] : {std::pair{"pairs", "Pairs that the shard has."},
                                    {"done", "Pairs that are judged."},
-                                   {"rate", "Pairs judged in a second; 0 where it does not run."},
+                                   {"rate", "Pairs judged per second; 0 if the shard does not run."},
                                    {"disagreements", "Pairs on which some lane is wrong."},
                                    {"signatures", "Signatures seen."},
-                                   {"new", "Of its signatures, margins aside, those of no shard before it."}}) {
+                                   {"new", "Signatures, ignoring margins, that no earlier shard in the list has."}}) {
     text += fmt::format("# HELP graze_{0} {1}\n# TYPE graze_{0} gauge\n", name, help);
     for (const Json& row : all["shards"]) {
       text += fmt::format("graze_{}{{directory=\"{}\",shard=\"{}\",state=\"{}\"}} {}\n", name, label(row["directory"]),

@@ -183,11 +183,11 @@ void add_tune(CLI::App& app, int& status) {
       ->option_text("DIR");
   command->callback([options, forbid, &status] {
     if (options->agree != (options->lanes.size() == 2) || options->lanes.size() > 2)
-      throw UsageError(fmt::format("--agree and two lanes need each other, and got {} lane{} {} --agree",
+      throw UsageError(fmt::format("--agree and two lanes need each other, but got {} lane{} {} --agree",
                                    options->lanes.size(), options->lanes.size() == 1 ? "" : "s",
                                    options->agree ? "with" : "without"));
     if (options->agree && forbid->count() > 0)
-      throw UsageError("--forbid does not go with --agree, which forbids differing verdicts alone; leave it out");
+      throw UsageError("--forbid does not work with --agree, which only forbids differing verdicts; leave it out");
     status = options->agree ? agree(*options) : tune(*options);
   });
 }

@@ -30,30 +30,29 @@ struct TuneOptions {
 // `graze tune LANE LANE --agree`.   Requires: two lanes.
 int agree(const TuneOptions& options);
 
-// The pairs to choose on, a tenth, and those that verify the choice, of the next seed.
+// The pairs to choose on, a tenth of all, and the pairs that verify the choice, from the next seed.
 struct TunePairs {
   std::vector<strata::PairSource> sources, others;
   std::string left_out;  // left_out_text of the scene
 };
 
-// Throws: as drawn; UsageError where no pairs are left to choose on.
+// Throws: as drawn; UsageError if no pairs are left to choose on.
 TunePairs tune_pairs(const TuneOptions& options);
 
 Pair pair_at(const std::vector<strata::PairSource>& sources, const analysis::PairPlace& place);
 
-// A file with the minimised pair; both lanes keep their verdicts. Without twins, the pair is not minimised.
+// The file for a minimised pair on which both lanes keep their verdicts. Without twins, the pair is not minimised.
 // Requires: a lane is wrong on the pair.
 std::string smallest(const Lane& first, const Lane& second, const Pair& pair);
 
-// Writes the results and lists them. Removes those of these files of pairs that an earlier run wrote and this one did
-// not.
+// Writes the results and lists them. Removes files of pairs of an earlier run that this run did not write again.
 void write_listed(const std::filesystem::path& out, const std::vector<Result>& results,
                   std::initializer_list<const char*> cases);
 
-// The line that names the next command: a check of the last result, if that is a file of pairs.
+// The line with the next command, which checks the last result if that is a file of pairs.
 std::string next_command(const std::filesystem::path& out, const Result& last, const std::string& lanes);
 
-// What a pair costs by each lane, host lanes on one core, CUDA lanes on the device. A twin's time is not the time of
+// The cost of a pair for each lane: host lanes on one core, CUDA lanes on the device. A twin's time is not the time of
 // the code, so without a device a sentence says that it was not measured.
 std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
                                         const std::vector<strata::PairSource>& sources);

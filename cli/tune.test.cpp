@@ -82,7 +82,7 @@ TEST_F(TuneCommand, AFreshCampaignConfirmsWhatItRecommends) {
   }
 }
 
-// Where one file of the folder is another's, none is written.
+// If one file in the folder belongs to another program, no file is written.
 TEST_F(TuneCommand, AForeignFileStopsItBeforeAnythingIsWritten) {
   const std::string tune = "graze tune moller_1997/f32/cpu --strata near_vertex_face --pairs 1k --out t";
   expect_done(tune + " > /dev/null && echo mine > t/policy.h && cp -r t before");
@@ -93,7 +93,7 @@ TEST_F(TuneCommand, AForeignFileStopsItBeforeAnythingIsWritten) {
 }
 
 TEST_F(TuneCommand, NextIsACommandThatRuns) {
-  // First something is fixed and broken; then, in the same folder, nothing is.
+  // The first run fixes and breaks pairs, and the second run in the same folder does not.
   for (const char* lane : {"moller_1997/f32/cpu --strata near_vertex_face --forbid false-negative --max-rate 1e-2",
                            "guigue_devillers_2003/f64/cpu --strata uniform --max-rate 1e-2"}) {
     const Ran ran = shell(std::string("graze tune --pairs 3k --out t ") + lane);
@@ -152,7 +152,7 @@ TEST_F(TuneCommand, HelpHasExamplesThatRun) {
   EXPECT_EQ(examples, 2);
 }
 
-// Verdicts that differ, recounted from `graze dump`, which knows nothing of agree.json. `policy`: "" or "/POLICY".
+// Counts the differing verdicts again from `graze dump`, independently of agree.json. `policy`: "" or "/POLICY".
 std::size_t recounted(const Shell& shell, const std::string& strata, std::uint64_t seed, int pairs,
                       const std::string& first, const std::string& second, const std::string& policy) {
   const Ran ran = shell("graze dump " + strata + ":" + std::to_string(seed) + " --pairs " + std::to_string(pairs) +
@@ -162,7 +162,7 @@ std::size_t recounted(const Shell& shell, const std::string& strata, std::uint64
   return std::stoul(ran.out);
 }
 
-// The counts are those of a recount, a fresh seed confirms the bounds, and no number of threads changes a byte.
+// A recount gives the same numbers, a fresh seed confirms the bounds, and the number of threads changes no byte.
 TEST_F(AgreeCommand, FreshPairsConfirmItForTwoAlgorithms) {
   for (const auto& [subject, stratum, result] : {std::tuple{"guigue_devillers_2003/f64", "shared_vertex", "satisfied"},
                                                  {"interval_overlap/f32", "shared_vertex", "not satisfiable"}}) {

@@ -6,7 +6,7 @@ if(CMAKE_BUILD_TYPE STREQUAL Release)
   set(is_release TRUE)
 endif()
 
-# A campaign's build takes mostly compile time. It turns warnings off; other builds show them.
+# To compile faster, a campaign's build turns warnings off; other builds show them.
 if(GRAZE_CAMPAIGN)
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-w>)
 endif()

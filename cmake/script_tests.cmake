@@ -11,8 +11,8 @@ set_tests_properties(scripts.Format PROPERTIES SKIP_RETURN_CODE 77)
 add_test(NAME scripts.test.format COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/format.test.py ${CMAKE_BINARY_DIR})
 set_tests_properties(scripts.test.format PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped")
 add_test(NAME scripts.AuditExplanations COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/audit_explanations.test.py $<TARGET_FILE:graze>)
-# A minute on an idle machine; by hand for an hour: scripts/torture --minutes 60. Each commit has another seed, so ten
-# commits kill campaigns and minimisations a hundred times, at different moments.
+# A minute on an idle machine; by hand for an hour: scripts/torture --minutes 60. The seed changes with each commit, so
+# ten commits kill campaigns and minimisations a hundred times, at different moments.
 add_test(NAME scripts.Torture COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/torture --rounds 2 --kills 10 --seed commits --graze $<TARGET_FILE:graze>)
 set_tests_properties(scripts.Torture PROPERTIES TIMEOUT 1500)
 # Defects planted in our own sources. Each is compiled with Ninja's commands of this build.

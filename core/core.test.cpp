@@ -250,7 +250,7 @@ void expect_policy_decides(std::initializer_list<Site> sites) {
     EXPECT_GT(counts[static_cast<int>(site)], 0) << Algorithm::kInfo.id << ", site " << static_cast<int>(site);
 }
 
-// All pairs of a word at once, whatever its bits: the counts of bits are those that the verdicts, one by one, have.
+// Counting a word of pairs at once gives the same as counting the verdicts one by one, for every combination of bits.
 TEST(JudgedBits, AreTheCountsOfVerdicts) {
   for (const bool foreign : {false, true}) {
     std::uint32_t bits[4] = {};  // pair i has bit b of i in word b: intersects, declined, truth, judged

@@ -23,7 +23,7 @@ struct Counts {
   constexpr std::uint64_t not_right() const { return wrong() + declined; }  // wrong or declined
   constexpr bool any_foreign() const { return failed() != 0 || by_convention != 0; }
 
-  // The count that a verdict belongs to, if it is not the truth.
+  // The count for a verdict that differs from the truth.
   constexpr std::uint64_t& of(Verdict verdict) {
     switch (verdict) {
       case Verdict::intersects:

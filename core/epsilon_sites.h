@@ -22,8 +22,8 @@ constexpr std::string_view name(Site site) {
   return kNames[static_cast<int>(site)];
 }
 
-// What a policy is asked: the site, and the number of the question among those of the algorithm. The same place of the
-// source asks it of the same quantities, see AlgorithmInfo and core/algorithms/questions.h.
+// A question to a policy: the site, and the question's number in the algorithm. A question always comes from the same
+// source line and asks about the same quantities; see core/discrepancy/questions.h.
 struct At {
   Site site;
   int question;
@@ -50,7 +50,7 @@ GRAZE_HD Choice chosen(const Policy& policy, int which, Choice value) {
   }
 }
 
-// The same of a choice that depends on recorded values alone.
+// Like `chosen`, for a choice that only depends on recorded values.
 template <class Policy>
 GRAZE_HD void choose([[maybe_unused]] const Policy& policy, [[maybe_unused]] int which, [[maybe_unused]] int value) {
   if constexpr (requires { policy.chosen(which, 0); }) policy.chosen(which, value);

@@ -32,7 +32,7 @@ inline void must_hold(bool holds, const char* what) {
   std::abort();
 }
 
-// Marks the input as worth keeping for a result that no branch shows, or that lies in code without instrumentation.
+// Tells libFuzzer to keep the input, for a feature that no branch shows or that lies in code without instrumentation.
 // libFuzzer finds these counters by the section's name.
 __attribute__((used, section("__libfuzzer_extra_counters"))) inline std::uint8_t fuzz_counters[4096];
 inline void reached(std::size_t feature) { fuzz_counters[feature % sizeof fuzz_counters] = 1; }

@@ -19,7 +19,7 @@ struct JudgedBits {
 };
 
 // intersects, declined: the lane's words, as DecideBlock writes them. truth: the pairs that intersect. judged: the
-// pairs to count. foreign: both bits of a pair say that the lane's code failed on it.
+// pairs to count. foreign: if both bits of a pair are set, the lane's code failed on it.
 template <class Word>
 GRAZE_HD constexpr JudgedBits<Word> judge(Word intersects, Word declined, Word truth, Word judged,
                                           bool foreign = false) {

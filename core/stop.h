@@ -15,8 +15,8 @@ struct Stopped {};
 
 extern "C" inline void request_stop(int) { stop_requested = true; }
 
-// While it lives, Ctrl-C and SIGTERM only set the flag and do not end the process. For a wait in a verb that does not
-// catch them itself. A signal that is ignored stays ignored.
+// While it lives, Ctrl-C and SIGTERM only set the flag and do not end the process. For verbs that wait and do not
+// handle the signals themselves. A signal that is ignored stays ignored.
 class StopSignals {
  public:
   StopSignals() {

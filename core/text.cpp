@@ -53,7 +53,7 @@ std::optional<float> parse_float32(std::string_view text) {
                                             hex ? std::chars_format::hex : std::chars_format::general);
   if (end != text.data() + text.size() || error == std::errc::invalid_argument) return std::nullopt;
   if (error == std::errc::result_out_of_range) {
-    // from_chars does not say which way. strtof rounds on underflow and returns infinity on overflow.
+    // from_chars does not tell underflow from overflow, but strtof does: it rounds, or returns infinity.
     magnitude = std::strtof(magnitude_text.c_str(), nullptr);
     if (std::isinf(magnitude)) return std::nullopt;
   }

@@ -18,8 +18,8 @@ std::optional<float> parse_float32(std::string_view text);
 std::optional<std::uint64_t> parse_whole(std::string_view text);
 
 // rounded_up returns the least decimal of `digits` significant digits that is not below the value; rounded_down the
-// greatest that is not above it. They write as %g does: 0.02032 is "0.021" and "0.02". For upper and lower bounds,
-// which rounding to the nearest would make false.   Requires: a finite value, 1 to 15 digits.
+// greatest that is not above it. They write as %g does: 0.02032 is "0.021" and "0.02". Use them to print upper and
+// lower bounds, which rounding to nearest could make false.   Requires: a finite value, 1 to 15 digits.
 std::string rounded_up(double value, int digits);
 std::string rounded_down(double value, int digits);
 
@@ -29,7 +29,7 @@ std::string printable(std::string_view text);
 // Returns: the text in quotes; a backslash before quotes and backslashes, other bytes as in printable().
 std::string in_quotes(std::string_view text);
 
-// in_quotes, shortened for a message. A path is shortened only where it is too long for a person to read.
+// in_quotes, shortened for a message. A path is shortened only if it is too long to read.
 std::string shown(std::string_view text);
 std::string shown_path(std::string_view path);
 

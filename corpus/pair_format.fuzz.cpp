@@ -17,7 +17,7 @@ void written_and_read_again(const Entry& entry) {
   std::istringstream in(out.str());
   PairReader reader(in, "again");
   const std::optional<Entry> again = reader.next();
-  must_hold(again.has_value(), "what was written is read");
+  must_hold(again.has_value(), "the written pair can be read");
   must_hold(!is_finite(entry.pair) || std::memcmp(&again->pair, &entry.pair, sizeof entry.pair) == 0,
             "the bits are the same");
   must_hold(again->fields == entry.fields, "the fields are the same");

@@ -23,27 +23,27 @@ std::unique_ptr<Device> open_device(std::string& why_not) {
 std::vector<std::unique_ptr<DeviceEngine>> open_engines(std::span<const Lane* const>) { return {}; }
 
 std::vector<ErrorCounts> count_errors(const Lane&, std::span<const Lane>, const strata::PairSource&) {
-  throw std::runtime_error("a sweep on a device needs one: built without CUDA");
+  throw std::runtime_error("cannot sweep on a device: built without CUDA");
 }
 
 bool records_on_device(const Lane&) { return false; }
 
 void count_discrepancies(const Lane&, const Lane&, const strata::PairSource&, const DiscrepancySums&) {
-  throw std::runtime_error("a comparison on a device needs one: built without CUDA");
+  throw std::runtime_error("cannot compare values on a device: built without CUDA");
 }
 
 std::uint64_t count_different_runs(const Lane&, const Lane&, const strata::PairSource&) {
-  throw std::runtime_error("a comparison on a device needs one: built without CUDA");
+  throw std::runtime_error("cannot compare values on a device: built without CUDA");
 }
 
 DeviceCosts measure_on_device(std::span<const Lane* const>, const std::vector<Pair>&, int) {
-  throw std::runtime_error("costs on a device need one: built without CUDA");
+  throw std::runtime_error("cannot measure costs on a device: built without CUDA");
 }
 
 ProofRecord prove_twin(const ProofOptions&) { throw std::runtime_error("a proof needs a device: built without CUDA"); }
 
 std::unique_ptr<SubjectOnDevice> open_on_device(const CudaBuild&) {
-  throw std::runtime_error("a user's CUDA code needs a device: built without CUDA");
+  throw std::runtime_error("cannot run your CUDA code on a device: built without CUDA");
 }
 
 ProofRecord prove_subjects(std::span<const NamedBuild>, const ProofOptions&) {
@@ -56,15 +56,15 @@ int count_query_devices(std::string& why_not) {
 }
 
 std::unique_ptr<QueryDevice> open_query_device(int) {
-  throw DeviceFailure("a query on a device needs one: built without CUDA", false);
+  throw DeviceFailure("cannot query on a device: built without CUDA", false);
 }
 
 std::unique_ptr<DeviceMemory> device_memory(int, std::size_t) {
-  throw DeviceFailure("memory of a device needs one: built without CUDA", false);
+  throw DeviceFailure("cannot allocate memory on a device: built without CUDA", false);
 }
 
 DeviceSpeeds measure_speeds(int, std::size_t) {
-  throw DeviceFailure("speeds of a device need one: built without CUDA", false);
+  throw DeviceFailure("cannot measure the speeds of a device: built without CUDA", false);
 }
 
 }  // namespace graze::cuda

@@ -54,7 +54,7 @@ bool write_all(int handle, const std::string& text) {
   return true;
 }
 
-// As write_all, for all that is left to read.
+// Copies all remaining bytes.
 bool copy_all(int from, int to) {
   std::string bytes;
   while (true) {
@@ -95,8 +95,8 @@ void write_into(const fs::path& file, bool pipe, bool standard_output, const std
   if (own.number < 0 || !write_all(own.number, text)) fail("write", file, errno);
 }
 
-// Makes a new file for this writer alone: other writers wait until this one has moved it to its place. A file that a
-// killed writer left is removed and never written to, because it may be a hard link to somebody else's file.
+// Makes a new file for this writer alone. Other writers wait until this one has renamed it. A file that a killed writer
+// left is removed and never written to, because it may be a hard link to somebody else's file.
 // Returns: its descriptor; negative on failure, with the reason in errno.
 int made_alone(const std::string& file) {
   while (true) {
@@ -119,7 +119,7 @@ int made_alone(const std::string& file) {
   }
 }
 
-// Lets `fill` write the new file, and moves that to its place.   fill: int -> bool; if false, errno says why.
+// Lets `fill` write the new file, and renames it.   fill: int -> bool; if false, errno says why.
 template <class Fill>
 void replace(const fs::path& file, const fs::path& asked, const Fill& fill) {
   const std::string beside = file.string() + kPart;
@@ -127,9 +127,9 @@ void replace(const fs::path& file, const fs::path& asked, const Fill& fill) {
   int error = errno;
   struct stat state {};
   if (lstat(beside.c_str(), &state) == 0 && !S_ISREG(state.st_mode))
-    throw std::runtime_error(cannot("write", asked, beside + " is in the way and is no file; remove it"));
+    throw std::runtime_error(cannot("write", asked, beside + " is in the way and is not a file; remove it"));
   if (part.number < 0) fail("write", asked, error);
-  // A full disk may show only on close. The file itself stays open, and so locked, until it is in its place.
+  // A full disk may show only on close. The file stays open, and so locked, until it is renamed.
   const bool done = fill(part.number) && close(dup(part.number)) == 0;
   if (done && std::rename(beside.c_str(), file.c_str()) == 0) return;
   error = errno;

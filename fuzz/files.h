@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads and writes whole files, and locks folders. A file is written beside its place and then moved there, so a reader
-// never sees a partial file.
+// Reads and writes whole files, and locks folders. A file is written under a temporary name and then renamed, so a
+// reader never sees a partial file.
 #pragma once
 
 #include <filesystem>
@@ -11,17 +11,17 @@ namespace graze::fuzz {
 // Who chose a file's name. A user may name a pipe or a device; Graze's own names stand for files alone.
 enum class NamedBy { graze, user };
 
-// A file is prepared beside its place under its name with this suffix. So is the folder of a merge.
+// The suffix of the temporary name, in the same folder. The folder of a merge has a temporary name too.
 inline constexpr const char* kPart = ".graze.part";
 
 // Throws: std::runtime_error for a pipe, a device or a folder of this name, seen through symbolic links.
 void expect_file(const std::filesystem::path& file);
 
-// The file's bytes; empty where there is none.   Throws: std::runtime_error for one that cannot be read.
+// The file's bytes; empty if there is no file.   Throws: std::runtime_error for one that cannot be read.
 std::string read_whole(const std::filesystem::path& file, NamedBy named_by = NamedBy::graze);
 
-// Writes the file, through symbolic links; a device or a pipe that a user named stays what it is. Nothing is left
-// beside it when this fails. Two may write the same file at once: each writes a whole one, and the last one stays.
+// Writes the file, through symbolic links, or into a device or a pipe that the user named. Leaves no partial file if it
+// fails. If two processes write the same file at once, each writes a whole one, and the last one stays.
 // Throws: std::runtime_error for a folder, and when there is no room.
 void write_whole(const std::filesystem::path& file, const std::string& text, NamedBy named_by = NamedBy::graze);
 

@@ -85,7 +85,7 @@ TEST_F(Files, PipesStayPipes) {
   EXPECT_EQ(count(), 1u);
 }
 
-// A name that Graze chose stands for a file: nobody waits for a pipe there.
+// A pipe with a name that Graze chose is refused, and nobody waits for it.
 TEST_F(Files, RecordsThatAreNoFilesAreRefused) {
   const fs::path pipe = folder_ / "summary.json";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
@@ -108,7 +108,7 @@ TEST_F(Files, APartThatIsAHardLinkIsReplaced) {
   EXPECT_EQ(fs::hard_link_count(folder_ / "theirs"), 1u);
   EXPECT_EQ(read_whole(folder_ / "a"), "new");
   EXPECT_EQ(count(), 2u);
-  // A long file that a killed writer left is no obstacle.
+  // Nothing of a longer file that a killed writer left may remain.
   write_whole(folder_ / "a.graze.part", std::string(100'000, 'x'));
   write_whole(folder_ / "a", "newer");
   EXPECT_EQ(read_whole(folder_ / "a"), "newer");

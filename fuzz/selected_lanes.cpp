@@ -16,13 +16,13 @@ namespace {
 
 using backends::Backend, backends::backend_of;
 
-// Empty where something runs the lane.
+// Why the lane does not run here; empty if it does.
 std::string why_unavailable(const Lane& lane, const cuda::Device* device, const std::string& why_no_device) {
   const Backend& backend = backend_of(lane);
   return device && backend.has_device ? "" : backend.why_not_on_host(lane, why_no_device);
 }
 
-// Lanes under a policy stand at the table's end; here they stand beside the others of their subject.
+// The table has lanes under a policy at its end; this moves them to the other lanes of their subject.
 void sort_by_subject(SelectedLanes& under_test) {
   std::map<const AlgorithmInfo*, std::size_t> places;
   for (const Lane* lane : under_test.lanes) places.emplace(lane->info, places.size());

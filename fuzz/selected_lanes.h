@@ -15,10 +15,10 @@
 
 namespace graze::fuzz {
 
-// What runs the CUDA lanes. automatic: the device where there is one, else the twins.
+// What runs the CUDA lanes. automatic: the device if there is one, else the twins.
 enum class Executor { automatic, device, twin, both };
 
-// A lane that was asked for and does not run here, and why: "no fma instructions".
+// A requested lane that does not run here, and the reason, such as "no fma instructions".
 struct LaneLeftOut {
   std::string id, why;
 };
@@ -30,14 +30,14 @@ struct SelectedLanes {
   std::vector<std::string> asked;        // the patterns; none: all lanes that run here, and all of the user's own code
   std::vector<LaneLeftOut> left_out;     // of those asked for
 
-  // Foreign code does not count, even if it uses a device: it runs in a process of its own.
+  // False for foreign code, even if it uses a device, because it runs in a process of its own.
   bool on_device(std::size_t l) const { return device && backends::backend_of(*lanes[l]).has_device; }
-  // Those that the device runs, in order.
+  // The lanes that run on the device, in order.
   std::vector<const Lane*> device_lanes() const;
-  // Whether the lane runs on the device and by its twin, to be compared; the device's verdicts then count.
+  // Whether the lane runs on the device and as its twin, for comparison. The device's verdicts count.
   bool on_both(std::size_t l) const { return on_device(l) && on_host[l]; }
-  // How the lane's verdicts come about: "device", "twin, verified on …", "twin", "device and twin, …". Empty for code
-  // that this processor runs itself.
+  // Where the lane's verdicts come from: "device", "twin, verified on …", "twin", "device and twin, …". Empty for
+  // code that this processor runs itself.
   std::string evidence(std::size_t l) const;
 };
 
@@ -46,24 +46,24 @@ struct SelectedLanes {
 SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor executor = Executor::automatic,
                            bool require_device = false);
 
-// Throws: UsageError, with the reasons, when of a pattern no lane runs here; without patterns, of a user's own code.
+// Throws: UsageError, with the reasons, if no lane of a pattern runs here, or, without patterns, none of a subject.
 void expect_each_runs(const SelectedLanes& under_test);
 
-// Takes those out for which `why` has a reason.   Returns: these.   Throws: as expect_each_runs.
+// Removes the lanes for which `why` returns a reason.   Returns: these.   Throws: as expect_each_runs.
 std::vector<LaneLeftOut> leave_out(SelectedLanes& under_test, const std::function<std::string(const Lane&)>& why);
 
-// Those left out in words, a line for each reason: "left out (no device, and no twin): moller_1997/f32/cuda-fast".
+// A line for each reason, with its lanes: "left out (no device, and no twin): moller_1997/f32/cuda-fast".
 std::vector<std::string> left_out_in_words(const std::vector<LaneLeftOut>& left_out);
 
-// {"patterns": those asked for, "why": {lane: reason}}, as a campaign's spec records it; null where none is left out.
+// {"patterns": the requested ones, "why": {lane: reason}}, as a campaign's spec records it. Null for none.
 nlohmann::ordered_json left_out_json(const SelectedLanes& under_test);
-// The same as the object's "lanes_left_out", where some are.
+// Adds the same to the object as "lanes_left_out", if there is any.
 void add_left_out(nlohmann::ordered_json& object, const SelectedLanes& under_test);
 
 // The inverse.   Throws: nlohmann::json::exception.
 std::vector<LaneLeftOut> left_out_of(const nlohmann::ordered_json& recorded);
 
-// What runs the lane here, or why nothing does: "available (device)", "unavailable (no fma instructions)".
+// Whether and how the lane runs here: "available (device)", "unavailable (no fma instructions)".
 std::string status(const Lane& lane, const cuda::Device* device, const std::string& why_no_device);
 
 // Decides blocks of pairs by all lanes: by host lanes and twins here; a device has decided its lanes before.
@@ -85,7 +85,7 @@ class BlockVerdicts {
 };
 
 // Each lane's verdict on one pair.
-// Returns in apart, for lanes on both: those whose device and twin differ.
+// apart: receives the lanes that run on both and whose device and twin differ.
 std::vector<Verdict> decide(const SelectedLanes& under_test, const Pair& pair, std::vector<const Lane*>& apart);
 
 }  // namespace graze::fuzz

@@ -27,8 +27,8 @@ const RegisterFuzzTarget kMargin("margin", [](std::string_view bytes) {
   const Truth truth = oracle::truth(pair);
   const MarginBounds bounds = margin_bounds(pair, truth.verdict);
   const double margin = std::fabs(truth.margin);
-  must_hold(bounds.lo <= margin && margin <= bounds.hi, "the bounds hold the margin");
-  must_hold((truth.verdict == Verdict::disjoint) == (truth.margin > 0), "the margin's sign says the verdict");
+  must_hold(bounds.lo <= margin && margin <= bounds.hi, "the margin lies within the bounds");
+  must_hold((truth.verdict == Verdict::disjoint) == (truth.margin > 0), "the margin's sign agrees with the verdict");
 });
 
 }  // namespace

@@ -114,7 +114,7 @@ Contact noncoplanar(Workspace<Number>& work, const int (&sa)[3]) {
   return contact_of(std::popcount(found));
 }
 
-// A segment whose line meets the plane of triangle b in one point. That point is in b, or there is no contact.
+// A segment whose line meets the plane of triangle b in one point. Either that point is in b, or there is no contact.
 // Requires: the segment's ends are not both in the plane, nor strictly on one side of it.
 template <class Number>
 Contact pierced(Workspace<Number>& work, const Simplex<Number>& segment, const Simplex<Number>& b) {

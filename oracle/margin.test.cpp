@@ -31,7 +31,7 @@ SquaredMargin exact_margin(const Pair& pair, Verdict verdict) {
                                       : exact_depth(large, grid.exponent, kAllAxes);
 }
 
-// Whether the bounds allow one bucket only. If so, it must be the expected one.
+// Returns whether the bounds allow one bucket only, and checks that it is the expected one.
 template <class Real>
 bool expect_bounds(const Pair& pair, Verdict verdict, double exact, Bucket expected) {
   const MarginBounds bounds = margin_bounds<Real>(pair, verdict);

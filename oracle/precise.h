@@ -54,7 +54,7 @@ Exactly decide_exactly(int algorithm, const Pair& pair);
 // Requires: bits as found by decide_exactly.
 Verdict decide_exactly_but(int algorithm, Scalar scalar, const Pair& pair, int bits, Limits limits);
 
-// A number of a lane and the number that it should be.
+// A lane's number and its exact value.
 struct Beside {
   double lane;
   double exact;         // rounded; may be 0 or infinite even if `decimal` is neither
@@ -73,7 +73,7 @@ struct ExactStep {
 // Requires: run is of that algorithm in that scalar.
 std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const Pair& pair, const Trace<double>& run);
 
-// Only the outcomes of the comparisons on the path.
+// Like exact_steps, but returns only the outcomes of the comparisons on the path.
 Path exact_outcomes(int algorithm, const Pair& pair, const Path& path);
 
 }  // namespace graze::oracle

@@ -20,7 +20,7 @@ Verdict decide(const Lane& lane, const Pair& pair) {
   return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
 }
 
-// Error bounds add up. Neither may be lost if the other is exact.
+// Error bounds add up. If one of two numbers is exact, the error of the other must not be lost.
 TEST(Ball, ARadiusHoldsBothErrors) {
   constexpr long kExact = Ball::kExact, kUnknown = Ball::kUnknown;
   EXPECT_EQ(Ball::either(kExact, kExact), kExact);

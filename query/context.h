@@ -10,7 +10,7 @@
 #include "cuda/query/device_query.h"
 #include "query/include/graze/query_c.h"
 
-// The name is that of the C header.
+// The type that query_c.h only declares.
 struct graze_context {
  public:
   // Fills in the answer in any case; its status tells whether something is wrong.

@@ -246,7 +246,7 @@ TEST(Query, WrongArgumentsAreNamed) {
   wrong([&](auto& q) { q.list = reinterpret_cast<std::uint64_t*>(reinterpret_cast<char*>(list) + 4), q.list_room = 1; },
         "list: expected a pointer that is a multiple of 8");
   wrong([&](auto& q) { q.bytes = bytes, q.outputs_on_device = 1; },
-        "outputs_on_device: expected one part in a device's memory, and no list");
+        "outputs_on_device: expected a single part in a device's memory, and no list of hits");
   wrong([&](auto& q) { part.device = 0, q.executor = GRAZE_ONE_CORE; },
         "executor: expected GPUs for triangles in a device's memory, found cores");
 
@@ -302,7 +302,8 @@ TEST(Query, StridesThatNoArrayHasAreRefusedInEveryLayout) {
            {std::size_t{1}, size - 1, size + 1, SIZE_MAX, SIZE_MAX - 35, SIZE_MAX - 3, SIZE_MAX / 2 + 1}) {
         for (const std::uint64_t count : {1, 2, 10}) EXPECT_EQ(status(count, stride), GRAZE_BAD_ARGUMENT) << stride;
       }
-      // The product overflows to 0, to little, or to almost all; or the array ends beyond the address space.
+      // The size in bytes overflows to zero, to a small or to a large number, or the array ends beyond the address
+      // space.
       for (const std::size_t stride :
            {std::size_t{1} << 62, std::size_t{1} << 60, (SIZE_MAX / 9 + 1) / 4 * 4, SIZE_MAX / 2 / 9 / 4 * 4 + 4})
         EXPECT_EQ(status(10, stride), GRAZE_BAD_ARGUMENT) << stride;
@@ -344,7 +345,7 @@ TEST(Query, BitsOfPartsThatShareAWordAreRefused) {
   EXPECT_TRUE(Context().run(query));
   std::uint8_t bits[25];
   query.bits = bits;
-  expect_refused(query, "bits: expected parts of a multiple of 64 triangles, but for the last one");
+  expect_refused(query, "bits: expected a multiple of 64 triangles in every part except the last");
 }
 
 TEST(Query, CountsWhoseProductsOverflowAreRefused) {
@@ -415,7 +416,8 @@ TEST(Query, ThreadsShareAContext) {
   EXPECT_EQ(right, 8);
 }
 
-// Each allocation fails in turn, with all later ones: the result is an error status, or the right answer if not needed.
+// From each allocation on, all allocations fail in turn. The result must be an error status, or the right answer if
+// memory was not needed.
 TEST(Query, LackOfMemoryIsAValueWhereverItBegins) {
   std::vector<Triangle> triangles = thesis_triangles(100'000);
   const graze_triangles part = part_of(triangles);

@@ -20,8 +20,8 @@ std::vector<std::uint8_t> bytes_of(graze_query query, std::size_t count) {
   return bytes;
 }
 
-// The first triangles of pairs as many references, against their second triangles and the neighbours'. The slabs must
-// not lose a hit, whichever side of whichever triangle it is on.
+// The first triangles of eight pairs are the references, and their second triangles the array. The slabs must not
+// lose a hit, on any side of any triangle.
 TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
   constexpr std::size_t kTogether = 8;
   std::size_t looked_past = 0, filtered = 0, hits = 0;
@@ -108,7 +108,8 @@ TEST(QueryVerdicts, AreThoseOfTheLane) {
   }
 }
 
-// Where a slab must not overclaim: magnitudes at both ends of the floats, and triangles just beyond the reference.
+// A slab must not reject a hit: tests magnitudes at both ends of the float range, and triangles just beyond the
+// reference.
 TEST(QueryVerdicts, HoldAtTheEndsOfTheFloats) {
   for (const float unit : {0x1p-149f, 0x1p-126f, 0x1p-60f, 1.0f, 0x1p60f, 0x1p126f}) {
     const Triangle reference = {0, 0, 0, unit, 0, 0, 0, unit, 0};
@@ -142,8 +143,8 @@ TEST(QueryVerdicts, HoldAtTheEndsOfTheFloats) {
   EXPECT_EQ(bytes[2], 2);
 }
 
-// The slabs are the thinnest ones: perpendicular to the normal and to the longest edge, whichever edge that is. A worse
-// slab loses no hits, but time.
+// The slabs are the thinnest ones: perpendicular to the normal and to the longest edge, which may be any of the three.
+// A thicker slab would lose time, but no hits.
 TEST(PreparedTriangle, SlabsAreSquareToTheNormalAndTheLongestEdge) {
   const Vec3<double> corners[3] = {{1, 2, 3}, {9, -6, 5}, {4, 1, 2.5}};
   const Vec3<double> longest = corners[1] - corners[0];

@@ -19,8 +19,8 @@ namespace {
 constexpr std::uint64_t kMostTriangles = GRAZE_MOST_TRIANGLES, kMostReferences = 1 << 16, kMostParts = 1 << 16,
                         kMostPairs = std::uint64_t{1} << 62;
 
-// Nanoseconds, for GRAZE_AUTO only: for a triangle and a reference on one core and for a triangle's transfer to a
-// device, measured on an H200 and its host (docs/measurements.md), and until CUDA has started (assumed, not measured).
+// Nanoseconds, for GRAZE_AUTO only: one verdict on one core, and the transfer of one triangle to a device, measured on
+// an H200 and its host (docs/measurements.md). The time to start CUDA is assumed, not measured.
 constexpr double kOnCore = 11, kToDevice = 0.7, kStart = 3e8;
 constexpr std::uint64_t kWorthThreads = 1 << 14;
 
@@ -118,11 +118,11 @@ void check_outputs(const graze_query& query, const Question& question) {
   if (query.bits) expect_fits(query.bits, query.reference_count * ((question.triangles + 7) / 8), 1, 1, "bits");
   if (query.bits) {
     for (std::size_t p = 0; p + 1 < question.counts.size(); ++p)
-      expect(question.counts[p] % 64 == 0, "bits: expected parts of a multiple of 64 triangles, but for the last one");
+      expect(question.counts[p] % 64 == 0, "bits: expected a multiple of 64 triangles in every part except the last");
   }
   if (!query.outputs_on_device) return;
   expect(question.places.size() == 1 && question.places[0] >= 0 && !query.list,
-         "outputs_on_device: expected one part in a device's memory, and no list");
+         "outputs_on_device: expected a single part in a device's memory, and no list of hits");
 }
 
 int device_count(const std::string& wanted) {

@@ -33,7 +33,7 @@ std::string differing(const Agreement& a, const std::string& pairs) {
 
 const std::string kSamePairs = "the same pairs";
 
-// Whether the chosen tolerance is the smallest of the sweep, which changes no comparison by itself.
+// Whether the chosen tolerance is the smallest of the sweep; that one is too small to change a comparison.
 bool is_smallest(const Agreed& a) {
   return std::any_of(a.curves.begin(), a.curves.end(),
                      [&](const auto& curve) { return curve.points.front().policy == a.chosen; });
@@ -55,11 +55,11 @@ std::string answer(const AgreeQuestion& q, const Agreed& a) {
           "Not settled: {}; {}, and {} was asked for. {}", found, high, q.max_rate,
           a.confirmed.differing > 0
               ? "More pairs (--pairs) may settle it."
-              : fmt::format("Without a difference it takes {} pairs to say so (--pairs).",
+              : fmt::format("To show such a rate, use at least {} pairs (--pairs), none of which may differ.",
                             grouped(static_cast<std::uint64_t>(std::ceil(std::log(0.05) / std::log1p(-q.max_rate))))));
     case TuneResult::not_confirmed:
       return fmt::format(
-          "Not settled: {}; {}. On the pairs of the choice the rate is at most {}, and here it is not. More pairs to "
+          "Not settled: {}; {}. The rate was at most {} on the pairs of the choice, but not on these. More pairs to "
           "choose on (--pairs) or a stricter --max-rate may find a tolerance that keeps it.",
           found, low, q.max_rate);
     case TuneResult::not_satisfiable:
@@ -109,13 +109,13 @@ std::vector<std::string> agreement_sentences(const AgreeQuestion& q, const Agree
     const Counts &before = a.zero_confirmed.of[l], &now = a.confirmed.of[l];
     result.push_back(
         a.chosen.empty()
-            ? fmt::format("Against the exact truth {} has {} on these pairs.", q.lanes[l], errors(before))
+            ? fmt::format("Compared with the exact truth, {} has {} on these pairs.", q.lanes[l], errors(before))
             : fmt::format("Price for {}: {}, and {} without a policy.", q.lanes[l], errors(now), errors(before)));
   }
   if (a.blunt)
     result.push_back(fmt::format(
-        "Blunt: under {} they agree on the {} pairs of the choice, but are wrong on {} and {} of them: no better than "
-        "one answer for all pairs.",
+        "Blunt: under {} they agree on the {} pairs of the choice, but are wrong on {} and {} of them. One answer for "
+        "all pairs would be as good.",
         a.blunt->policy, grouped(a.blunt->pairs), grouped(a.blunt->of[0].wrong()), grouped(a.blunt->of[1].wrong())));
   if (!q.without_relative.empty())
     result.push_back(fmt::format("Relative tolerances are left out: {} has no twin under them.", q.without_relative));

@@ -20,8 +20,8 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-// The option for the lanes that ran. If some requested lanes were left out, their patterns instead. Empty for all lanes
-// of this build.
+// The option that selects the lanes that ran: by the requested patterns if some lanes were left out, else by name.
+// Empty if all lanes of this build ran.
 std::string lane_option(const Json& spec, const std::vector<std::string>& ids) {
   if (spec.contains("lanes_left_out"))
     return fmt::format(" --lanes '{}'",

@@ -34,7 +34,7 @@ std::vector<std::pair<Name, Json>> wrong_by_name(const Json& report) {
   return rates;
 }
 
-// The strata of a report by what they draw; a mesh or a hunt of the same name may draw other pairs.
+// The strata of a report, with the descriptions of their pairs; a mesh or a hunt of the same name may have other pairs.
 std::map<std::string, Json> strata_of(const Json& report) {
   std::map<std::string, Json> rows;
   for (const Json& row : report.at("strata")) rows[row.at("id")] = row;
@@ -47,7 +47,7 @@ double pairs_of(const Json& report) {
   return pairs;
 }
 
-// Whether the stratum is in both reports, and draws the same there.
+// Whether the stratum is in both reports with the same description.
 bool is_common(const std::string& id, const std::map<std::string, Json>& l, const std::map<std::string, Json>& r) {
   return l.contains(id) && r.contains(id) && l.at(id).at("describes") == r.at(id).at("describes");
 }
@@ -93,8 +93,8 @@ bool apart(const Json& l, const Json& r) {
   return 2 * std::min(most, least) < kLeastChance;
 }
 
-// Kinds that are missing in `others` although enough of their signatures were to be expected there. Signatures have all
-// wrong lanes of a subject, so only kinds of subjects with the same lanes in both reports count.
+// Kinds that are missing in `others` although enough of their signatures were expected there. A signature names all
+// wrong lanes of its subject, so only subjects with the same lanes in both reports count.
 Json only_in(const Json& kinds, const Json& others, const Json& report, const Json& other_report) {
   const double pairs = pairs_of(report), pairs_of_others = pairs_of(other_report);
   std::set<std::string> known;
@@ -135,14 +135,13 @@ Json differences_of(const Json& after, const Json& before) {
     return run.contains("scene") && !run["scene"].is_null() ? run["scene"].get<std::string>() : "none";
   };
   if (scene(now) != scene(then))
-    rows.push_back(fmt::format("They differ in scene, in which a stratum draws other pairs: {} before, {} after.",
+    rows.push_back(fmt::format("They differ in scene, so the same stratum draws other pairs: {} before, {} after.",
                                scene(then), scene(now)));
   for (const char* what : {"strata", "lanes"}) {
     const std::set<std::string> l = ids_of(before.at(what)), r = ids_of(after.at(what));
     if (l != r)
-      rows.push_back(
-          fmt::format("They differ in {}, and only what both have is compared. Only before: {}; only after: {}.", what,
-                      list(l, r), list(r, l)));
+      rows.push_back(fmt::format("They differ in {}; only those in both are compared. Only before: {}; only after: {}.",
+                                 what, list(l, r), list(r, l)));
   }
   const auto now_drawn = strata_of(after), then_drawn = strata_of(before);
   for (const auto& [id, row] : now_drawn) {
@@ -183,7 +182,7 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
   const Json lost = kinds_compared ? only_in(kinds_before, kinds, before, report) : Json::array();
   std::string headline;
   if (rows.empty()) {
-    headline = "Nothing to compare: no lane and stratum are in both.";
+    headline = "Nothing to compare: the campaigns have no lane or no stratum in common.";
   } else if (changed == 0 && gained.empty() && lost.empty()) {
     headline = fmt::format("Nothing changed: none of {} rates, and {}.", grouped(rows.size()),
                            kinds_compared ? "no kind of failure came or went" : "kinds of failure are not compared");
@@ -197,8 +196,7 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
         "All strata together and kinds of failure are not compared: the campaigns have other strata, or in other "
         "shares.");
   if (!kinds_known)
-    differences.push_back(
-        "Kinds of failure are not compared: `graze minimize` has to go through both campaigns first.");
+    differences.push_back("Kinds of failure are not compared: run `graze minimize` on both campaigns first.");
   report["compare"] = {
       {"other", before.at("run")}, {"headline", headline}, {"differences", differences},      {"rates", rows},
       {"gained", gained},          {"lost", lost},         {"kinds_compared", kinds_compared}};

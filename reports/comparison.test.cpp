@@ -64,7 +64,7 @@ TEST(Comparison, AKindThatWasToBeExpectedHasGone) {
   EXPECT_EQ(after["compare"]["lost"][0]["key"], "b");
   add_comparison(after, before, many, some);
   EXPECT_EQ(after["compare"]["gained"].size(), 1u);
-  // In a tenth of the pairs, ten of its signatures were to be expected: too few to call it lost.
+  // A tenth of the pairs should show about ten of its signatures, which is too few to call the kind lost.
   Json smaller = report_of(2, 5'000);
   add_comparison(smaller, before, some, many);
   EXPECT_TRUE(smaller["compare"]["lost"].empty());
@@ -126,9 +126,8 @@ TEST(Comparison, HowTheyDifferIsSaid) {
   ASSERT_EQ(said.size(), 4u);
   EXPECT_EQ(said[0], "They differ in seed: 1 before, 2 after.");
   EXPECT_EQ(said[1], "They differ in pairs: 950,000 before, 95,000 after.");
-  EXPECT_EQ(
-      said[2],
-      "They differ in lanes, and only what both have is compared. Only before: lane/8, lane/9; only after: none.");
+  EXPECT_EQ(said[2],
+            "They differ in lanes; only those in both are compared. Only before: lane/8, lane/9; only after: none.");
   EXPECT_NE(said[3].get<std::string>().find("not compared"), std::string::npos);
   EXPECT_FALSE(after["compare"]["kinds_compared"]);
   Json in_scene = report_of(1, 50'000, 10);
@@ -136,7 +135,7 @@ TEST(Comparison, HowTheyDifferIsSaid) {
   add_comparison(in_scene, before, Json::array(), Json::array());
   EXPECT_EQ(
       in_scene["compare"]["differences"],
-      Json::array({"They differ in scene, in which a stratum draws other pairs: none before, arm.toml#1 after."}));
+      Json::array({"They differ in scene, so the same stratum draws other pairs: none before, arm.toml#1 after."}));
   Json same = before;
   add_comparison(same, before, Json::array(), Json::array());
   EXPECT_TRUE(same["compare"]["differences"].empty());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lane costs from a campaign's timings.json (fuzz/campaign/lane_costs.h). They are kept apart from the report's data,
-// which does not depend on who ran the campaign.
+// Lane costs from a campaign's timings.json (fuzz/campaign/lane_costs.h). They are not part of the report, because the
+// report does not depend on the machine.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +22,7 @@ struct Costs {
   int passes = 0;
   std::vector<std::vector<std::optional<Cost>>> of_stratum;  // [lane][stratum]
 
-  // The cost of a lane on some strata, weighted by their pairs; nothing unless the lane was timed on all of them.
+  // The cost of a lane on some strata, weighted by their pairs. Nothing unless the lane was timed on all these strata.
   std::optional<Cost> of(std::size_t lane, const std::vector<std::size_t>& strata) const;
 };
 

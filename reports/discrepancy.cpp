@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <span>
 
 #include "core/discrepancy/count.h"
+#include "reports/discrepancy_reading.h"
 #include "reports/findings.h"
 #include "reports/plain_figures.h"
 #include "reports/terminal.h"
@@ -22,7 +22,7 @@ using analysis::DiscrepancySpec;
 using analysis::LanesCompared;
 using Json = nlohmann::ordered_json;
 
-// A count's name and place. `bucket`: of a histogram; empty for a single count.
+// A count's name and place. bucket: the bucket's name if the count belongs to a histogram, else empty.
 struct Field {
   std::string name;
   int at;
@@ -68,7 +68,7 @@ const std::vector<Field> kPairFields = {{"pairs", pair_counts::pairs, ""},   {"d
 const std::vector<Field> kSiteFields = {
     {"asked", site_counts::asked, ""}, {"differs", site_counts::differs, ""}, {"sign", site_counts::sign, ""}};
 
-// Counts as an object; histograms as objects of the buckets that are not zero.
+// Returns the counts as a JSON object, in which a histogram is an object with its nonzero buckets.
 Json object_of(const std::vector<Field>& fields, const DiscrepancyCounts& of, int at) {
   Json object = Json::object();
   for (const Field& field : fields) {
@@ -87,10 +87,25 @@ double largest(const DiscrepancyCounts& of, std::size_t question, int which) {
   return std::bit_cast<double>(of.maxima[question * band_maxima::kFields + static_cast<std::size_t>(which)]);
 }
 
-Json counts_json(const DiscrepancyCounts& of, const std::vector<Question>& questions) {
+// The counts of pairs by log2 of their place on the axis.
+Json extremes_json(const DiscrepancyCounts& of, Axis axis) {
+  Json places = Json::object();
+  for (int place = -kBucketMost; place <= kBucketMost; ++place) {
+    const Json counts = object_of(kPairFields, of, place_at(place));
+    if (counts.at("pairs") > 0) places[std::to_string(exponent_of(axis, static_cast<std::int8_t>(place)))] = counts;
+  }
+  return places;
+}
+
+// axis: of a stratum; nothing for the sum of strata, which vary different quantities.
+Json counts_json(const DiscrepancyCounts& of, const std::vector<Question>& questions, std::optional<Axis> axis) {
   static const std::vector<Field> kQuestion = question_fields(), kValue = value_fields();
   Json json = object_of(kPairFields, of, 0);
   json["unlike"] = {of.unlike[0], of.unlike[1]};
+  if (axis) {
+    json["extremes"] = Json::object();
+    if (*axis != Axis::none) json["extremes"][std::string(name(*axis))] = extremes_json(of, *axis);
+  }
   for (int site = 0; site <= kSiteCount; ++site)
     json["sites"][std::string(site_name(site))] = object_of(kSiteFields, of, site_at(site));
   for (std::size_t q = 0; q < questions.size(); ++q) {
@@ -115,35 +130,26 @@ DiscrepancyCounts total(const LanesCompared& lanes, const std::vector<Discrepanc
   return sum;
 }
 
-std::string share_words(std::uint64_t part, std::uint64_t whole) {
-  return rate_words(whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole));
-}
+std::string share_words(std::uint64_t part, std::uint64_t whole) { return rate_words(part_of(part, whole)); }
 
-// The sum of both values' counts of different values in each octave.
-std::vector<std::uint64_t> octaves_of(const DiscrepancyCounts& of, int question, std::size_t values) {
+// Both values' counts of different values by the octave of their difference in ulps.
+Octaves octaves_of(const DiscrepancyCounts& of, int question, std::size_t values) {
   using namespace value_counts;
-  std::vector<std::uint64_t> octaves(kOctaves);
+  Octaves octaves;
   for (std::size_t v = 0; v < values; ++v) {
     const int at = value_at(question, static_cast<int>(v));
     for (int k = 0; k < kOctaves; ++k) {
-      for (const int side : {below, above})
-        octaves[static_cast<std::size_t>(k)] += of.counts[static_cast<std::size_t>(at + side + k)];
+      for (const int side : {below, above}) octaves[k] += of.counts[static_cast<std::size_t>(at + side + k)];
     }
   }
   return octaves;
 }
 
 // The most ulps of the smallest share of differing values, "1", "≤ 63"; "-" if none differs.
-std::string quantile(std::span<const std::uint64_t> octaves, double share) {
-  std::uint64_t all = 0, so_far = 0;
-  for (const std::uint64_t count : octaves) all += count;
-  if (all == 0) return "-";
-  for (std::size_t k = 0; k < octaves.size(); ++k) {
-    so_far += octaves[k];
-    if (static_cast<double>(so_far) >= share * static_cast<double>(all))
-      return k == 0 ? "1" : k < 20 ? fmt::format("≤ {}", (std::uint64_t{2} << k) - 1) : fmt::format("< 2^{}", k + 1);
-  }
-  return "-";
+std::string ulps_of(const Octaves& octaves, double share) {
+  const std::optional<int> k = quantile(octaves, share);
+  if (!k) return "-";
+  return *k == 0 ? "1" : *k < 20 ? fmt::format("≤ {}", (std::uint64_t{2} << *k) - 1) : fmt::format("< 2^{}", *k + 1);
 }
 
 std::uint64_t sum_of(const DiscrepancyCounts& of, int question, std::size_t values, int field) {
@@ -157,7 +163,7 @@ std::string line_of(const cuda::SourceLine& line) {
   return *line.file == '\0' ? "" : fmt::format("{}:{}", line.file, line.line);
 }
 
-// The lines in the order of what they decide: verdicts, then values.
+// The lines sorted by the number of verdicts that they change, then by that of values.
 std::vector<const analysis::FusedLine*> by_weight(const analysis::Origins& origins) {
   std::vector<const analysis::FusedLine*> lines;
   for (const analysis::FusedLine& line : origins.lines) lines.push_back(&line);
@@ -181,8 +187,8 @@ std::string origins_table(const analysis::Origins& origins, const Screen& screen
   }
   return wrapped(
              fmt::format("Contraction changes the verdict on {} of {} pairs that were examined. Source lines whose "
-                         "products are fused, by what each does (values, verdicts alone: that change if it alone is "
-                         "fused; verdicts fixed: changed ones that return if it alone is not fused):",
+                         "products are fused, by their effect (values, verdicts alone: those that change if only this "
+                         "line is fused; verdicts fixed: changed verdicts that return if only this line is not fused):",
                          grouped(origins.verdicts), grouped(origins.pairs)),
              screen.columns) +
          table.text(screen);
@@ -244,11 +250,11 @@ std::string discrepancy_tables(const DiscrepancyResults& results, const Screen& 
       if (of(differs) == 0) continue;
       any = true;
       const std::size_t values = questions[q].of.size();
-      const std::vector<std::uint64_t> octaves = octaves_of(sum, question, values);
+      const Octaves octaves = octaves_of(sum, question, values);
       const std::uint64_t second = sum_of(sum, question, values, value_counts::nearer_second),
                           first = sum_of(sum, question, values, value_counts::nearer_first);
-      table.add({questions[q].name, grouped(of(asked)), share_words(of(differs), of(asked)), quantile(octaves, 0.5),
-                 quantile(octaves, 0.99), quantile(octaves, 1),
+      table.add({questions[q].name, grouped(of(asked)), share_words(of(differs), of(asked)), ulps_of(octaves, 0.5),
+                 ulps_of(octaves, 0.99), ulps_of(octaves, 1),
                  first + second == 0 ? "-" : bare_percent(second, first + second) + " %",
                  Cell(share_words(of(sign), of(asked)), of(sign) > 0),
                  Cell(share_words(of(outcome), of(asked)), of(outcome) > 0),
@@ -264,37 +270,27 @@ std::string discrepancy_tables(const DiscrepancyResults& results, const Screen& 
   return text;
 }
 
-std::vector<std::string> discrepancy_sentences(const DiscrepancyResults& results) {
+std::string comparisons_table(const DiscrepancyResults& results, const Screen& screen) {
   const auto& [spec, found, origins] = results;
-  std::vector<std::string> sentences;
+  TextTable table({{"first", Align::left},
+                   {"second", Align::left},
+                   {"pairs"},
+                   {"a value differs"},
+                   {"a sign"},
+                   {"a comparison"},
+                   {"the verdict"}});
   for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
     const LanesCompared& lanes = spec.lanes[l];
     const DiscrepancyCounts sum = total(lanes, found[l]);
-    const auto of = [&](int field) { return sum.counts[static_cast<std::size_t>(field)]; };
-    const std::uint64_t pairs = of(pair_counts::pairs);
-    const int distances = site_at(static_cast<int>(Site::plane_distance));
-    std::string text = fmt::format("{} against {}, {} pairs: ", lanes.first->id, lanes.second->id, grouped(pairs));
-    if (of(pair_counts::differs) == 0) {
-      text += fmt::format("all values that a comparison sees have the same bits, and {} verdicts differ.",
-                          grouped(of(pair_counts::verdict)));
-    } else {
-      text += fmt::format(
-          "some value differs on {} of the pairs, some sign on {}, some comparison on {}, the verdict on {}.",
-          share_words(of(pair_counts::differs), pairs), share_words(of(pair_counts::sign), pairs),
-          share_words(of(pair_counts::outcome), pairs), share_words(of(pair_counts::verdict), pairs));
-      if (of(distances + site_counts::differs))
-        text += fmt::format(" A signed distance differs on {}, its sign on {}.",
-                            share_words(of(distances + site_counts::differs), pairs),
-                            share_words(of(distances + site_counts::sign), pairs));
+    const std::uint64_t pairs = sum.counts[pair_counts::pairs];
+    std::vector<Cell> row = {lanes.first->id, lanes.second->id, grouped(pairs)};
+    for (const int field : {pair_counts::differs, pair_counts::sign, pair_counts::outcome, pair_counts::verdict}) {
+      const std::uint64_t count = sum.counts[static_cast<std::size_t>(field)];
+      row.emplace_back(share_words(count, pairs), count > 0);
     }
-    for (int lane = 0; lane < 2; ++lane) {
-      if (sum.unlike[lane])
-        text += fmt::format(" On {} pairs the recorded run of {} has another verdict than the lane.",
-                            grouped(sum.unlike[lane]), (lane ? lanes.second : lanes.first)->id);
-    }
-    sentences.push_back(text);
+    table.add(std::move(row));
   }
-  return sentences;
+  return table.text(screen);
 }
 
 Json discrepancy_json(const DiscrepancyResults& results) {
@@ -311,58 +307,15 @@ Json discrepancy_json(const DiscrepancyResults& results) {
                       {"values", question.of}});
     }
     for (std::size_t s = 0; s < spec.sources.size(); ++s)
-      strata[spec.sources[s].id] = counts_json(found[l][s], questions);
+      strata[spec.sources[s].id] = counts_json(found[l][s], questions, spec.sources[s].axis);
     all.push_back({{"first", lanes.first->id},
                    {"second", lanes.second->id},
                    {"questions", list},
-                   {"total", counts_json(total(lanes, found[l]), questions)},
+                   {"total", counts_json(total(lanes, found[l]), questions, {})},
                    {"strata", strata},
                    {"origins", origins[l] ? origins_json(*origins[l], questions) : Json()}});
   }
   return {{"lanes", all}};
-}
-
-std::string discrepancy_changes(const Json& before, const Json& after, const Screen& screen) {
-  const auto lanes_of = [](const Json& of) {
-    return of.at("first").get<std::string>() + " against " + of.at("second").get<std::string>();
-  };
-  std::string text;
-  std::size_t same = 0;
-  TextTable table({{"lanes", Align::left}, {"question", Align::left}, {"count", Align::left}, {"before"}, {"after"}});
-  const auto missing = [&](const Json& from, const Json& in, const char* which) {
-    for (const Json& of : from.at("lanes")) {
-      const bool there = std::any_of(in.at("lanes").begin(), in.at("lanes").end(),
-                                     [&](const Json& other) { return lanes_of(other) == lanes_of(of); });
-      if (!there) text += wrapped(fmt::format("Only {} has {}.", which, lanes_of(of)), screen.columns);
-    }
-  };
-  missing(before, after, "the first");
-  missing(after, before, "the second");
-  for (const Json& of : before.at("lanes")) {
-    for (const Json& now : after.at("lanes")) {
-      if (lanes_of(now) != lanes_of(of)) continue;
-      const auto compare = [&](const std::string& question, const Json& old_counts, const Json& new_counts) {
-        for (const auto& [name, count] : old_counts.items()) {
-          if (!count.is_number_unsigned() || !new_counts.contains(name)) continue;
-          if (count == new_counts.at(name)) {
-            ++same;
-          } else {
-            table.add({lanes_of(of), question, name, grouped(count.get<std::uint64_t>()),
-                       grouped(new_counts.at(name).get<std::uint64_t>())});
-          }
-        }
-      };
-      compare("", of.at("total"), now.at("total"));
-      for (const Json& question : of.at("total").at("questions")) {
-        for (const Json& other : now.at("total").at("questions")) {
-          if (question.at("question") == other.at("question")) compare(question.at("question"), question, other);
-        }
-      }
-    }
-  }
-  if (table.rows() > 0) text += table.text(screen);
-  return text + wrapped(fmt::format("{} counts differ, {} are the same.", grouped(table.rows()), grouped(same)),
-                        screen.columns);
 }
 
 std::string discrepancy_csv(const DiscrepancyResults& results) {
@@ -380,6 +333,11 @@ std::string discrepancy_csv(const DiscrepancyResults& results) {
         }
       };
       rows(kPairFields, 0, "", "");
+      if (const Axis axis = spec.sources[s].axis; axis != Axis::none) {
+        for (int place = -kBucketMost; place <= kBucketMost; ++place)
+          rows(kPairFields, place_at(place), std::string(name(axis)),
+               octave(exponent_of(axis, static_cast<std::int8_t>(place))));
+      }
       for (int site = 0; site <= kSiteCount; ++site) rows(kSiteFields, site_at(site), std::string(site_name(site)), "");
       for (std::size_t q = 0; q < questions.size(); ++q) {
         rows(question_fields(), question_at(static_cast<int>(q)), questions[q].name, "");

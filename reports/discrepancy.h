@@ -11,7 +11,7 @@
 
 namespace graze::reports {
 
-// What `graze discrepancy` found: counts, and for each comparison where the differences start, if that is known.
+// The findings of `graze discrepancy`: counts, and, if known, where the differences of each comparison start.
 struct DiscrepancyResults {
   const analysis::DiscrepancySpec& spec;
   analysis::Discrepancies counts;
@@ -21,14 +21,14 @@ struct DiscrepancyResults {
 // For each comparison, a table of its questions over all sources, and one of the source lines that differ most.
 std::string discrepancy_tables(const DiscrepancyResults& results, const Screen& screen);
 
-// For each comparison: which share of values, signs and verdicts differs, which lane is nearer to the exact values, and
-// how near to zero a sign differs.
-std::vector<std::string> discrepancy_sentences(const DiscrepancyResults& results);
+// A row for each comparison: on which share of the pairs a value, a sign, a comparison and the verdict differ.
+std::string comparisons_table(const DiscrepancyResults& results, const Screen& screen);
 
-// {"lanes": [{"first", "second", "strata": {stratum: counts}}]}; docs/formats.md says what the counts are.
+// {"lanes": [{"first", "second", "strata": {stratum: counts}}]}; docs/formats.md describes the counts.
 nlohmann::ordered_json discrepancy_json(const DiscrepancyResults& results);
 
-// Which counts of two discrepancy.json on the same pairs differ, with both numbers: for another driver, toolkit or GPU.
+// Lists the counts that differ between two discrepancy.json of the same pairs, for example of two drivers, toolkits or
+// GPUs.
 // Names lanes and strata that only one of them has.
 std::string discrepancy_changes(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after,
                                 const Screen& screen);

@@ -6,7 +6,9 @@
 #include <regex>
 
 #include "analysis/tuning.h"
+#include "reports/discrepancy_answer.h"
 #include "reports/discrepancy_page.h"
+#include "reports/possible_counts.h"
 #include "strata/strata.h"
 
 namespace graze::reports {

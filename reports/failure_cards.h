@@ -26,7 +26,7 @@ double rounded_share(std::uint64_t count, std::uint64_t of);
 nlohmann::ordered_json signature_rows(const CampaignCounts& counts, const nlohmann::ordered_json& summary);
 
 // Adds the signatures' rows, the most frequent first, and a card for each kind of failure (fuzz/minimise/kinds.h). Uses
-// the case files and the minimiser's results beside them; `missing` says what they lack.   Throws: FormatError.
+// the case files and the minimiser's results beside them; `missing` lists the missing parts.   Throws: FormatError.
 void add_signatures(nlohmann::ordered_json& report, const std::filesystem::path& directory,
                     const nlohmann::ordered_json& summary, const CampaignCounts& counts);
 

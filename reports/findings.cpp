@@ -166,7 +166,7 @@ std::string rate_words(double rate, Bound bound) {
     const bool up = (bound == Bound::upper) == in_percent;
     const auto outward = [&](double value) { return up ? rounded_up(value, 3) : rounded_down(value, 3); };
     text = outward(shown);
-    // The product and the inverse above are rounded too.
+    // The product and the quotient above round as well, so the text is read back and checked.
     const double read = in_percent ? std::stod(text) / 100 : 1 / std::stod(text);
     if (bound == Bound::upper ? read < rate : read > rate)
       text = outward(std::nextafter(std::stod(text), up ? HUGE_VAL : 0.0));

@@ -11,8 +11,8 @@ namespace graze::reports {
 
 // Summarises a campaign, the most useful sentence first. It names the lane to use, the lane to avoid, the least wrong
 // published lane, dangerous strata, the effect of contraction, and how often CPU and GPU differ on the thesis's
-// triangles. What the campaign cannot tell comes last. What its data does not settle is called "not settled". One
-// sentence if no pair is decided yet. costs: null if none were measured.
+// triangles. Open questions come last. A comparison that the data does not settle is called "not settled". One sentence
+// if no pair is decided yet. costs: null if none were measured.
 std::vector<std::string> answer(const CampaignCounts& counts, const Costs* costs);
 
 enum class Bound { none, lower, upper };

@@ -16,7 +16,7 @@ TEST(Answer, OfOneLaneComparesNothing) {
             "The only published lane, moller_1997/f32/cpu, is wrong on 5 (0.5 %, 95 % interval 0.213 % to 1.17 %) of "
             "1,000 pairs.");
   EXPECT_EQ(said[1], "The only stratum is uniform (0.5 % of all verdicts wrong).");
-  // What the campaign cannot tell comes last.
+  // Open questions come last.
   EXPECT_EQ(said[2], "No exact lane ran, so there is none to recommend for every pair.");
   EXPECT_EQ(said[3],
             "Of the published lanes only those of moller_1997/f32 ran, so the campaign does not say which to avoid.");
@@ -24,7 +24,7 @@ TEST(Answer, OfOneLaneComparesNothing) {
   EXPECT_TRUE(contains(said[5], "were not drawn"));
 }
 
-// An exact lane is never wrong: it is not among the verdicts whose share is named.
+// The share of wrong verdicts leaves out exact lanes, because they are never wrong.
 TEST(Answer, NamesTheLanesOfAStratumsShare) {
   Json summary = summary_of({"moller_1997/f32/cpu", "exact/f32/cpu"}, {"uniform"}, {});
   summary["strata"]["uniform"]["lanes"]["moller_1997/f32/cpu"]["false_positive"] = 5;

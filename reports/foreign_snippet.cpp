@@ -108,8 +108,8 @@ std::string by_graze(const Lane& lane, const Pair& pair, const subjects::Opened&
     command += " --flags=" + shell_word(fmt::format("{}", fmt::join(opened.wanted.flags, " ")));
   return fmt::format(R"(#include <string>
 
-// Graze builds the source as it is now, and runs it on a CUDA device, or where there is none in its replay on the CPU;
-// which of the two, and how far the replay is verified, stands in its answer as "cuda".
+// Graze builds the source as it is now, and runs it on a CUDA device, or replays it on the CPU if there is none. The
+// field "cuda" of its answer says which of the two, and how well the replay is verified.
 static int decide(const {0}*, const {0}*) {{
   FILE* graze = popen({1},
                       "r");

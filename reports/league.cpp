@@ -360,9 +360,10 @@ std::string league_table(const Json& league, const Screen& screen) {
   std::string pairs;
   for (const auto& [group, count] : league.at("groups").items())
     pairs += fmt::format("{}{} {}", pairs.empty() ? "" : ", ", group, count_text(count));
-  return wrapped(fmt::format("False negatives / false positives within each one's contract, on the same {} pairs ({}).",
-                             count_text(league.at("pairs")), pairs),
-                 screen.columns) +
+  return wrapped(
+             fmt::format("False negatives / false positives within each lane's contract, on the same {} pairs ({}).",
+                         count_text(league.at("pairs")), pairs),
+             screen.columns) +
          table.text(screen) +
          wrapped(fmt::format("{} smallest failures, each repeated by a fresh process; {} were not.",
                              league.at("failures").size(), count_text(league.at("failures_not_repeated"))),
@@ -375,18 +376,18 @@ std::string league_page(const Json& league, const std::string& command) {
 
 Made by `{command}`; do not edit. The same {pairs} pairs went to all lanes: strata with seed {seed}, in equal shares. Lanes with the fewest clearly wrong verdicts stand first.
 
-CGAL's exact decision and that of `core/exact` are the truth of every pair, and GMP's as well where a lane is wrong. Touching counts, and a degenerate triangle is a segment or a point. Where a library's documentation states nothing, every difference counts. Columns:
+CGAL's exact decision and `core/exact` give the truth of every pair; GMP confirms it where a lane is wrong. Touching counts, and a degenerate triangle is a segment or a point. Where a library's documentation states nothing, every difference counts. Columns:
 
-- **general** to **extreme**: false negatives / false positives in each group of strata. "near" has near pairs and exact contacts; "extreme" has needles, extreme coordinates and pairs far from the origin. "of" precedes the number of pairs where a lane did not count on all: slow lanes took the first pairs of each stratum, and pairs outside a lane's contract do not count.
-- **clear**: wrong verdicts, outside "extreme", on proper triangles that are not coplanar and whose margin is at least 2^{exponent} ulps of the largest coordinate. Neither a convention nor rounding of the input excuses them.
+- **general** to **extreme**: false negatives / false positives in each group of strata. "near" has near pairs and exact contacts; "extreme" has needles, extreme coordinates and pairs far from the origin. "of" precedes the number of counted pairs if a lane did not count on all: slow lanes got only the first pairs of each stratum, and pairs outside a lane's contract do not count.
+- **clear**: wrong verdicts, outside "extreme", on proper triangles that are not coplanar and whose margin is at least 2^{exponent} ulps of the largest coordinate. Neither a convention nor rounded input excuses them.
 - **declined**: pairs on which the lane gave no answer. They are not wrong.
 - **crashed**, **timed out**, **unstable**: pairs on which the lane failed, or did not always give the same verdict. They are wrong.
-- **not repeated**: verdicts other than the truth that a fresh process did not repeat. They count as no error.
-- **by convention**: verdicts that differ from the truth on pairs that the library's documentation leaves out of its contract. They are no errors.
+- **not repeated**: wrong verdicts that a fresh process did not repeat. They do not count as errors.
+- **by convention**: verdicts that differ from the truth on pairs that the library's documentation leaves out of its contract. They do not count as errors.
 - **order**: pairs of a sample on which the verdict changes with the order of triangles and vertices (72 orders, the same truth).
-- **invariants**: pairs of the same sample on which it changes with a mirror image, the order of the axes, a power of two or a translation that rounds nothing, or on which a part of a triangle intersects and the whole does not.
-- **flips**: pairs on which the build with contraction gives another verdict, where there is source.
-- **ns a pair**: median of {repetitions} repetitions in turn on {timed} pairs of `uniform`, processor time in the subject's own process; {machine}, {date}.
+- **invariants**: pairs of the same sample on which the verdict changes under an exact mirror image, permutation of the axes, scaling or translation, or on which a part of a triangle intersects but the whole does not.
+- **flips**: pairs on which the build with contraction gives another verdict, if there is source to build.
+- **ns a pair**: median of {repetitions} repetitions, in which all lanes take turns, on {timed} pairs of `uniform`, processor time in the subject's own process; {machine}, {date}.
 - "-": not measured.
 
 {counts}
@@ -397,7 +398,7 @@ Wrong within the contract (false negatives, false positives, crashed, timed out 
 ## Subjects
 {subjects}
 ## Smallest failures
-The simplest pair found of each subject, shape ("clear": as above) and wrong verdict; from the folder in which `scripts/league` ran. `graze repro --emit` makes a program of a pair. Confirmed by CGAL and GMP, and shown by a fresh process; {not_repeated} were not repeated and are not here. Orange is the second triangle, red where the two meet, dashed the line in both planes.
+For each subject, shape ("clear" as above) and wrong verdict, the simplest pair that was found. The commands run in the folder in which `scripts/league` ran. `graze repro --emit` turns a pair into a program. CGAL and GMP confirmed each failure, and a fresh process repeated it; {not_repeated} others were not repeated and are left out. The second triangle is orange, the contact red, and the line in both planes dashed.
 {failures})",
       fmt::arg("command", command), fmt::arg("pairs", count_text(league.at("pairs"))),
       fmt::arg("seed", league.at("seed").get<std::uint64_t>()), fmt::arg("counts", page_counts(league)),

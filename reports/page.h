@@ -15,7 +15,7 @@ bool has_interactive_page();
 std::string page(const nlohmann::ordered_json& report, const nlohmann::ordered_json& costs,
                  const nlohmann::ordered_json& choices);
 
-// Tables and drawings without scripts; says what the page lacks.
+// Tables and drawings without scripts, and a note about the missing parts.
 std::string plain_page(const nlohmann::ordered_json& report, const nlohmann::ordered_json& costs,
                        const nlohmann::ordered_json& choices);
 

@@ -109,7 +109,8 @@ TEST_F(PageTest, PlainPageIsWellFormedAndShowsEverything) {
 
 TEST(Page, OfManySignaturesIsUnderTenMebibytes) {
   if (!has_interactive_page()) GTEST_SKIP() << "this build has no interactive page: it takes Node and npm's packages";
-  // As many pairs in each bucket, and as many of them wrong for each lane of one subject if they intersect.
+  // Every bucket has kPairs pairs. In the buckets of intersecting pairs each lane of one subject is wrong on kWrong of
+  // them.
   constexpr std::uint64_t kPairs = 19'999'999'999, kWrong = 2'345'676'000, kExponents = 70;
   constexpr std::uint64_t kSignatures = 12'000, kOfSignature = 19 * (kBucketMost + 1) * (kWrong / kSignatures);
   static_assert(kWrong % kSignatures == 0);

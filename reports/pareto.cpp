@@ -122,11 +122,12 @@ std::vector<std::string> extreme_sentences(const std::vector<ExtremeCurve>& curv
                                                                  : "Made needles by 2^k";
     result.push_back(
         lanes.empty()
-            ? fmt::format("{}: no lane's share of errors more than doubles and exceeds 0.1 %, as far as was measured.",
-                          what)
+            ? fmt::format(
+                  "{}: in the measured range, no lane's share of errors exceeds both 0.1 % and twice that at 2^0.",
+                  what)
             : fmt::format(
-                  "{}, before the share of errors more than doubles and exceeds 0.1 %: {}; the others as far as was "
-                  "measured.",
+                  "{}, before the share of errors exceeds both 0.1 % and twice that at 2^0: {}; the others over the "
+                  "whole measured range.",
                   what, fmt::join(lanes, "; ")));
   }
   return result;

@@ -31,7 +31,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Throws: std::runtime_error that says what was expected of the part.
+// Throws: std::runtime_error with the expectation and the part of the file.
 void expect(bool possible, const std::string& what, const Json& part) {
   if (!possible) throw std::runtime_error(fmt::format("expected {}, found {}", what, shown(part.dump())));
 }
@@ -97,14 +97,15 @@ void expect_possible_rates(const Json& report) {
     (row.at("stratum").is_null() ? together : sum) += counts;
   }
   for (const auto& [lane, counts] : of_lanes)
-    expect(counts.first == counts.second, "rates of all strata together that are the sum of theirs", lane);
+    expect(counts.first == counts.second, "rates of all strata together that are the sums of the strata's rates", lane);
   for (const Json& row : report.at("group_rates"))
-    expect(row.at("wrong").at("of") == drawn_of(report, nullptr, row.at("group")).pairs, "the pairs of its group", row);
+    expect(row.at("wrong").at("of") == drawn_of(report, nullptr, row.at("group")).pairs,
+           "as many pairs as its group has", row);
   for (const Json& rows : report.at("side_by_side")) {
     for (const Json& row : rows.at("strata")) {
       for (const char* field : {"left_wrong", "right_wrong", "differs"}) {
         expect(row.at(field).is_null() || row[field].at("of") == drawn_of(report, row.at("stratum")).pairs,
-               "the pairs of its stratum", row);
+               "as many pairs as its stratum has", row);
       }
     }
   }
@@ -229,7 +230,7 @@ void expect_relocation(const Json& row, const Json& without) {
   expect(
       errors.pairs == zero.pairs && errors.fixed <= zero.not_right() && errors.broken <= errors.not_right() &&
           zero.not_right() - errors.fixed == errors.not_right() - errors.broken,
-      fmt::format("errors that differ by what is fixed and broken from {} of {} pairs", zero.not_right(), zero.pairs),
+      fmt::format("errors that differ from {} of {} pairs by the fixed and broken ones", zero.not_right(), zero.pairs),
       row);
 }
 
@@ -285,12 +286,12 @@ void expect_choice(const Json& tuned) {
     }
   }
   std::erase_if(sites, [&](const std::string& site) { return live.contains(site); });
-  expect(tuned.at("dead") == Json(sites), "as dead those sites at which nothing changes", tuned["dead"]);
-  expect(chosen_on.has_value(), "a point of the curves as the choice", tuned["chosen"]);
+  expect(tuned.at("dead") == Json(sites), "dead sites that are those at which nothing changes", tuned["dead"]);
+  expect(chosen_on.has_value(), "a choice that is a point of the curves", tuned["chosen"]);
   const analysis::PolicyRank rank = analysis::rank(*chosen_on, forbid, max_rate);
   expect(std::none_of(others.begin(), others.end(),
                       [&](const auto& other) { return analysis::rank(other, forbid, max_rate) < rank; }),
-         "the best of the curves' policies as the choice", tuned["chosen"]);
+         "a choice that is the best policy of the curves", tuned["chosen"]);
   expect_upper_bound(tuned.at("bound"), forbidden(confirmed, forbid), confirmed.pairs);
   const auto result = among<analysis::TuneResult>(kTuneResults, tuned.at("result"));
   const auto expected = result_of(*chosen_on, confirmed, tuned["bound"], forbid, max_rate);
@@ -300,9 +301,9 @@ void expect_choice(const Json& tuned) {
 // Checks that all rows have costs of the host, or all have costs of a device, which have other fields.
 void expect_costs_of_kind(const Json& row, bool on_device) {
   for (const char* field : {"resident", "with_copies", "registers", "local_bytes", "active_threads"})
-    expect(row.contains(field) == on_device, fmt::format("{} of all lanes or of none", field), row);
+    expect(row.contains(field) == on_device, fmt::format("{} for either all lanes or none", field), row);
   for (const char* field : {"in_cache", "from_memory"})
-    expect(row.contains(field) != on_device, fmt::format("{} of all lanes or of none", field), row);
+    expect(row.contains(field) != on_device, fmt::format("{} for either all lanes or none", field), row);
 }
 
 // Rounding of costs keeps their order but may make them equal.
@@ -340,7 +341,7 @@ void expect_possible_costs(const Json& costs, const Json& report) {
   expect_shape(costs, "costs");
   expect_possible_errors(costs);
   expect_lanes(costs, report.at("lanes").size());
-  // Those of an unfinished campaign may be of pairs that it has not judged.
+  // The costs of an unfinished campaign may include pairs that are not judged yet.
   const std::uint64_t all = report.at("run").at("pairs");
   const bool complete = report["run"].at("complete");
   const auto most_of = [&](const Json& stratum) {
@@ -401,7 +402,7 @@ void expect_possible_pareto(const Json& pareto) {
     for (const Json& point : row.at("points"))
       expect(exponents.insert(point.at("log2").get<int>()).second && point.at("pairs") <= pairs &&
                  point["pairs"] == row["points"][0]["pairs"],
-             fmt::format("a point of each exponent, of as many pairs as the first and at most {}", pairs), point);
+             fmt::format("one point for each exponent, each with the same number of pairs, at most {}", pairs), point);
   }
 }
 

@@ -7,11 +7,12 @@
 
 namespace graze::reports {
 
-// Throw: std::runtime_error that says what was expected; nlohmann's exceptions for a missing field.
+// Throw: std::runtime_error with the expectation; nlohmann's exceptions for a missing field.
 void expect_possible_report(const nlohmann::ordered_json& report);
 void expect_possible_costs(const nlohmann::ordered_json& costs,
                            const nlohmann::ordered_json& report);  // costs of that report
 void expect_possible_tuned(const nlohmann::ordered_json& tuned);
 void expect_possible_pareto(const nlohmann::ordered_json& pareto);
+void expect_possible_discrepancy(const nlohmann::ordered_json& discrepancy);
 
 }  // namespace graze::reports

@@ -155,8 +155,8 @@ Sentence lane_to_use(const CampaignCounts& counts, const Costs* costs) {
     const std::uint64_t not_right = counts.total.lanes[l].not_right();
     if (not_right == 0) continue;
     return {
-        fmt::format("{} is not right on {} of {} pairs, which must not be: trust no exact lane before that is "
-                    "explained.",
+        fmt::format("{} is wrong or declines on {} of {} pairs, which must never happen: trust no exact lane before "
+                    "this is explained.",
                     counts.lanes[l].id, grouped(not_right), grouped(counts.total.pairs))};
   }
   return {fmt::format("Use {}: right on all {} pairs{}", ids(counts, exact), grouped(counts.total.pairs),
@@ -193,8 +193,8 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
       *std::min_element(lanes.begin(), lanes.end(), [&](auto l, auto r) { return wrong(l) < wrong(r); });
   const std::optional<Cost> better = cost_of(costs, least, ground.strata);
   if (own && better && better->below(*own)) {
-    text += fmt::format(". Nothing is won by it: {} is less often wrong and cheaper, {} ns {} against {}",
-                        counts.lanes[least].id, nanoseconds(better->middle), ground.pair, nanoseconds(own->middle));
+    text += fmt::format(". {} is both less often wrong and cheaper, {} ns {} against {}", counts.lanes[least].id,
+                        nanoseconds(better->middle), ground.pair, nanoseconds(own->middle));
   }
   return {text + "."};
 }

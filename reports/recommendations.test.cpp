@@ -28,7 +28,7 @@ CampaignCounts counts_with(const std::vector<MadeLane>& lanes) {
   return counts_of(summary);
 }
 
-// For each lane, nanoseconds on uniform and on degenerate, give or take one; 0 for no timing.
+// Costs of each lane in nanoseconds on uniform and on degenerate, with a spread of one; 0 means that it has no timing.
 Costs costs_with(const std::vector<std::pair<double, double>>& of_lanes) {
   Costs costs{"a machine", 9, {}};
   for (const auto& [uniform, degenerate] : of_lanes) {
@@ -76,8 +76,8 @@ TEST(Recommendations, CostsThatAreNotMeasuredAreNotSettled) {
 TEST(Recommendations, AnExactLaneThatErrsIsNotRecommended) {
   const CampaignCounts counts = counts_with({{"exact/f32/cpu", 1}, {"moller_1997/f32/cpu", 900}});
   EXPECT_EQ(lane_to_use(counts, nullptr).text,
-            "exact/f32/cpu is not right on 2 of 20,000 pairs, which must not be: trust no exact lane before that is "
-            "explained.");
+            "exact/f32/cpu is wrong or declines on 2 of 20,000 pairs, which must never happen: trust no exact lane "
+            "before this is explained.");
   const CampaignCounts none = counts_with({{"moller_1997/f32/cpu", 900}});
   EXPECT_FALSE(lane_to_use(none, nullptr).known);
 }
@@ -92,7 +92,7 @@ TEST(Recommendations, TheWorstLaneIsAvoidedWhereIntervalsAreApart) {
   const Costs dear = costs_with({{38, 300}, {90, 62}, {80, 82}});
   EXPECT_EQ(lane_to_avoid(counts, &dear).text,
             avoid +
-                ". Nothing is won by it: separating_axes/f64/cpu is less often wrong and cheaper, 80 ns a general "
+                ". separating_axes/f64/cpu is both less often wrong and cheaper, 80 ns a general "
                 "pair against 90.");
   const Costs near = costs_with({{38, 300}, {81, 62}, {80, 82}});
   EXPECT_EQ(lane_to_avoid(counts, &near).text, avoid + ".");
@@ -136,7 +136,7 @@ TEST(Costs, AreThoseOfTheLastTimedRunAndCountPairs) {
   EXPECT_EQ(costs->of(0, {0, 1})->middle, 70);  // (100 · 40 + 300 · 80) / 400
   EXPECT_EQ(costs->of(0, {0})->high, 41);
   EXPECT_FALSE(costs->of(1, {0}));
-  // A stratum has no costs of more pairs than it has.
+  // Costs of more pairs than the stratum has are refused.
   CampaignCounts fewer = counts;
   fewer.strata[0].pairs = 100;
   EXPECT_TRUE(costs_of(runs, fewer));

@@ -15,7 +15,7 @@
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/sealed.h"
 #include "reports/costs.h"
-#include "reports/discrepancy_page.h"
+#include "reports/discrepancy_answer.h"
 #include "reports/failure_cards.h"
 #include "reports/findings.h"
 #include "reports/possible_counts.h"
@@ -52,7 +52,7 @@ Json run_of(const std::filesystem::path& directory, const Json& summary, const C
           {"machine", machines(directory)}};
 }
 
-// What a stratum draws. Two meshes, and two hunts from other strata, are told apart.
+// Describes the pairs of a stratum. The text differs for two meshes, and for two hunts from different strata.
 std::string description_of(const std::string& stratum, const Json& spec) {
   for (const strata::StratumInfo& row : strata::kStrata) {
     if (row.id == stratum) return std::string(row.what);
@@ -97,16 +97,15 @@ Json missing_of(const CampaignCounts& counts, const Json& summary, const std::fi
   Json missing = Json::array();
   if (!fuzz::has_database(directory))
     missing.push_back(
-        "The counts are those of summary.json, checked only against each other: the campaign's database is not beside "
-        "it.");
+        "The counts come from summary.json and are checked only against each other, because the campaign's database is "
+        "missing.");
   if (const Json& spec = summary.at("spec"); spec.contains("lanes_left_out")) {
     for (const std::string& line : fuzz::left_out_in_words(fuzz::left_out_of(spec["lanes_left_out"])))
       missing.push_back(fmt::format("Lanes that were asked for did not run: {}.", line));
   }
   if (!counts.complete) {
     missing.push_back(
-        fmt::format("The campaign is not finished, {} of {} pairs are in it: the command that began it goes "
-                    "on with it.",
+        fmt::format("The campaign is not finished: {} of {} pairs are done. The command that began it resumes it.",
                     grouped(counts.total.pairs), grouped(counts.pairs)));
   }
   if (counts.total.extremes.empty()) {

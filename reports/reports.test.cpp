@@ -77,7 +77,7 @@ TEST(Terminal, PairMarksWrongLanes) {
   EXPECT_NE(out.str().find("\n  projected_sat/f32  disjoint  intersects !\n"), std::string::npos) << out.str();
 }
 
-// Each hex float is below its decimal if a row of both is too long.
+// If a row of decimals and hex floats would be too long, each hex float is printed below its decimal.
 TEST(Terminal, PairFitsItsScreen) {
   const Pair pair{{{0.1f, -1.23456e-30f, 3}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
   const auto first_lines = [&](int columns) {

@@ -27,23 +27,24 @@ std::string apart_text(const ValueBeside& value, Scalar scalar) {
 }
 
 std::string exact_text(const ValueBeside& value) {
-  if (!value.exact || !value.exact->settled()) return "-";
-  return value.exact->is_exactly_zero() ? "0" : fmt::format("{:.9g}", value.exact->hi);
+  if (!value.unrounded || !value.unrounded->exact.settled()) return "-";
+  return value.unrounded->exact.is_exactly_zero() ? "0" : fmt::format("{:.9g}", value.unrounded->exact.hi);
 }
 
 std::string error_text(const std::optional<double>& value, const ValueBeside& of, Scalar scalar) {
-  if (!value || !of.exact || !of.compared) return "-";
-  const std::string bucket = analysis::error_bucket_of(scalar, *value, *of.exact);
+  if (!value || !of.unrounded || !of.compared) return "-";
+  const std::string bucket = analysis::error_bucket_of(scalar, *value, of.unrounded->exact);
   return bucket == "0" || bucket == "unknown" || bucket == "not finite" ? bucket : "≤ " + bucket;
 }
 
-// Whether the comparison that sees this value goes the other way. `left`: the value before, of a question about two.
+// Whether the comparison of this value has another outcome in the other lane. left: the left value of a question about
+// two, else null.
 bool goes_otherwise(const Question& question, const ValueBeside* left, const ValueBeside& value) {
   if (!value.compared || !value.first || !value.second) return false;
   if (question.of.size() == 1) return sign_of_value(*value.first) != sign_of_value(*value.second);
   if (value.which == 0 || !left) return false;
-  return question.at_most ? (*left->first <= *value.first) != (*left->second <= *value.second)
-                          : (*left->first < *value.first) != (*left->second < *value.second);
+  return answers_otherwise(order_of(*left->first, *value.first), order_of(*left->second, *value.second),
+                           question.at_most);
 }
 
 }  // namespace

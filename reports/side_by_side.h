@@ -9,8 +9,8 @@
 
 namespace graze::reports {
 
-// A row for each value that a comparison sees: both lanes' values, how many ulps they are apart, the exact value, both
-// errors, and where a comparison goes the other way.   Requires: a finite pair.
+// A row for each value that a comparison sees: both lanes' values, their distance in ulps, the exact value, both
+// errors, and a mark if the comparison has another outcome.   Requires: a finite pair.
 std::string side_by_side(const analysis::LanesCompared& lanes, const Pair& pair, const Screen& screen);
 
 }  // namespace graze::reports

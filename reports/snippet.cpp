@@ -238,7 +238,7 @@ std::string snippet(SnippetKind kind, const SnippetCase& found) {
                                  {"function", std::move(call.function)},
                                  {"seconds", std::to_string(call.seconds)},
                                  {"code", found.truth == Verdict::intersects ? "1" : "0"},
-                                 // Graze itself also asks several times.
+                                 // An unstable verdict may need many calls to show, as in Graze itself.
                                  {"rounds", found.verdict == Verdict::unstable &&
                                                     backends::language_of(*found.lane) == backends::Language::cpp
                                                 ? "1000"

@@ -38,8 +38,8 @@ std::string snippet(SnippetKind kind, const SnippetCase& found);
 // `with_policy`, also the code that decides under a policy.
 std::string amalgamated_source(std::string_view algorithm_id, bool with_policy = false);
 
-// The text of a line of an algorithm's source, by its place "core/vec3.h:52", without its indentation; empty if it is
-// not part of it.
+// The text of the source line at a place such as "core/vec3.h:52", without its indentation. Empty if no algorithm's
+// source contains that line.
 std::string source_line(const std::string& place);
 
 // Returns a header for C++ and CUDA with one function, triangles_intersect, that decides like the lane.

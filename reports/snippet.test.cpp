@@ -69,7 +69,8 @@ TEST(Snippet, ObjDecimalsReadAsTheSameBits) {
   }
 }
 
-// Every finite pair of the corpus: all contacts of triangles, segments and points, coplanar, collinear, and neither.
+// Every finite pair of the corpus: all contacts of triangles, segments and points, in space, in one plane and on one
+// line.
 TEST(Snippet, PythonDecidesTheWholeCorpus) {
   if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "graze-python-snippets";

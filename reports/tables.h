@@ -25,7 +25,7 @@ std::optional<std::uint64_t> differs(const CampaignCounts& counts, const Stratum
 
 nlohmann::ordered_json margins(const CampaignCounts& counts);
 
-// The least power of two of ulps from which a lane was never wrong, on one side of zero.
+// The smallest margin, a power of two in ulps, from which a lane was never wrong on one side of zero.
 struct Threshold {
   bool found = false;       // false: wrong at the largest margins seen, or no margins were seen
   int exponent = 0;         // one more than that of the last error; without errors, that of the smallest margins seen

@@ -40,7 +40,7 @@ TEST(Bounds, AreRoundedOutwardWhereverTheyAreWritten) {
   }
 }
 
-// For 23 of 1,610 the upper bound is about 0.0202: above the requested 0.02, and not printed as 0.02.
+// For 23 of 1,610 the upper bound is about 0.0202. It is above the requested 0.02, so it must not be printed as 0.02.
 TEST(Bounds, ATunedPolicysBoundIsNotRoundedToWhatWasAsked) {
   const TuneQuestion question{"moller_1997/f32/cpu", analysis::Forbid::any, 0.02};
   analysis::Tuned tuned;
@@ -55,7 +55,7 @@ TEST(Bounds, ATunedPolicysBoundIsNotRoundedToWhatWasAsked) {
   EXPECT_NE(said.find("are under 0.021, and 0.02 was asked for"), said.npos) << said;
 }
 
-// The same for the rate at which two lanes differ, from both sides.
+// The lower and the upper bound of the rate at which two lanes differ are also rounded outward.
 TEST(Bounds, ThoseOfAnAgreementAreRoundedOutward) {
   AgreeQuestion question{{"moller_1997/f32/cpu", "moller_1997/f32/cuda-fma"}, {}, "", "", 0.02};
   analysis::Agreed agreed;
@@ -99,7 +99,7 @@ TEST(Wilson, BoundOfNoneIsTheRuleOfThree) {
   EXPECT_NEAR(bound_of_none(1'000'000'000), 2.9957e-9, 1e-12);
 }
 
-// What was not compared is null in a summary and in a report, and without pairs there is no share.
+// A count that was not compared is null in the summary and in the report. Without pairs there is no share.
 TEST(Tables, OfNothingThereIsNoShare) {
   Json summary = summary_of({"moller_1997/f32/cuda-fma"}, {"uniform"}, {0, 3, 0, 0});
   summary["strata"]["uniform"]["intersects"] = 1000;  // so that none can be a false positive

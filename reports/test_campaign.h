@@ -53,12 +53,15 @@ class CampaignTest : public testing::Test {
   }
   static void TearDownTestSuite() { fs::remove_all(root_); }
 
-  static fuzz::SelectedLanes lanes() {
-    return fuzz::select_lanes({"moller_1997/*", "interval_overlap/*", "exact/f32/cpu"}, fuzz::Executor::twin);
+  static inline const std::vector<std::string> kLanes = {"moller_1997/*", "interval_overlap/*", "exact/f32/cpu"};
+
+  static fuzz::SelectedLanes lanes(const std::vector<std::string>& patterns = kLanes) {
+    return fuzz::select_lanes(patterns, fuzz::Executor::twin);
   }
 
-  static void run(const std::string& name, int threads, std::uint64_t seed = 3) {
-    const fuzz::SelectedLanes under_test = lanes();
+  static void run(const std::string& name, int threads, std::uint64_t seed = 3,
+                  const std::vector<std::string>& patterns = kLanes) {
+    const fuzz::SelectedLanes under_test = lanes(patterns);
     fuzz::Campaign c;
     c.seed = seed;
     c.sources = strata::stratum_sources(c.seed, 15'000, {"near_edge_edge", "extreme_scale", "thesis"});
@@ -72,9 +75,10 @@ class CampaignTest : public testing::Test {
 
   static Json summary(const std::string& name) { return Json::parse(fuzz::read_whole(root_ / name / "summary.json")); }
 
-  // Stores kinds like `graze minimize`, but for the pairs as they were found.
-  static void store_kinds(const std::string& name) {
-    fuzz::write_kinds(root_ / name, lanes(), fuzz::find_kinds(lanes(), root_ / name, summary(name)));
+  // Stores kinds like `graze minimize`, but for pairs that are not minimised.
+  static void store_kinds(const std::string& name, const std::vector<std::string>& patterns = kLanes) {
+    const fuzz::SelectedLanes under_test = lanes(patterns);
+    fuzz::write_kinds(root_ / name, under_test, fuzz::find_kinds(under_test, root_ / name, summary(name)));
   }
 
   static inline fs::path root_;

@@ -87,7 +87,7 @@ class Printer {
     return widest;
   }
 
-  // A step's text ends where its column ends, so it needs room in the columns before it.
+  // The text of a step is right-aligned with its column, so it needs room above the columns to its left.
   int width_of_first(const std::vector<std::size_t>& some, Headers headers) const {
     int first = width(some[0], headers), before = 0;
     for (std::size_t i = 1; i < some.size(); ++i) {

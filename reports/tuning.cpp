@@ -51,19 +51,21 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
       return fmt::format("Use {}; {}.", of, trust);
     case TuneResult::too_few_pairs:
       return fmt::format(
-          "Not settled: {}; {}, and {} was asked for. Without an error it takes {} pairs to say so (--pairs).", of,
-          trust, q.max_rate, grouped(static_cast<std::uint64_t>(std::ceil(std::log(0.05) / std::log1p(-q.max_rate)))));
+          "Not settled: {}; {}, and {} was asked for. To show such a rate, use at least {} pairs (--pairs), none with "
+          "an error.",
+          of, trust, q.max_rate,
+          grouped(static_cast<std::uint64_t>(std::ceil(std::log(0.05) / std::log1p(-q.max_rate)))));
     case TuneResult::not_confirmed:
       return fmt::format(
-          "Not settled: {}. On the pairs of the choice it keeps {} at or under {}, and here it does not. "
+          "Not settled: {}. It keeps {} at or under {} on the pairs of the choice, but not on these. "
           "More pairs to choose on (--pairs) or a stricter --max-rate may find one that does.",
           of, words(q.forbid), q.max_rate);
     case TuneResult::not_satisfiable:
       break;
   }
   return fmt::format(
-      "No policy of {} keeps {} at or under {} here. None had fewer on the pairs of the choice than {}; the exact "
-      "lane has none of either.",
+      "No policy of {} keeps {} at or under {} here. On the pairs of the choice none had fewer than {}. The exact lane "
+      "has no errors.",
       q.lane, words(q.forbid), q.max_rate, of);
 }
 

@@ -83,7 +83,7 @@ TEST(UlpMapPicture, SheetsHoldAllPanelsAtTwiceTheSize) {
   EXPECT_EQ(sheet_png(map), sheet_png(striped(8)));
 }
 
-// Without failing foreign code, the pictures have the old palette and legend.
+// The palette and the legend list failures of foreign code only if there are some.
 TEST(UlpMapPicture, FailuresOfForeignCodeHaveColoursAndALegendOnlyWhereTheyAre) {
   analysis::UlpMap map = striped(1);
   for (analysis::Cell& cell : map.panels[1].cells) {

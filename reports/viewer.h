@@ -30,9 +30,9 @@ inline constexpr std::size_t kMostViewedPairs = 5000, kMostViewedTriangles = 500
 // Whether this build has the viewer of reports/web, which is built with Node and a compiler for WebAssembly.
 bool has_viewer();
 
-// The viewer's checks: the evidence of the twins, and stored verdicts by which it checks itself when it opens. Those
-// are for a few hundred pairs: some of every stratum, and the canaries (cuda/twin/canaries.pairs). Null if the build
-// has no viewer.
+// Data for the viewer: the evidence of the twins, and stored verdicts against which it checks itself when it opens. The
+// verdicts are on a few hundred pairs: some of every stratum, and the canaries (cuda/twin/canaries.pairs). Null if the
+// build has no viewer.
 nlohmann::ordered_json viewer_checks();
 
 // The page.   Requires: has_viewer(); at most kMostViewedPairs pairs and kMostViewedTriangles triangles.

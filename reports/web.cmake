@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Builds the page of SOURCE (reports/web) in BUILD, and writes it to OUT as a C++ string. If npm cannot fetch its
-# packages, for example offline, the string is empty, and reports are plain pages. Likewise writes the viewer, which
-# includes the module WASM, to VIEWER; empty without a module.
+# packages, for example offline, the string is empty, and reports are plain pages. Also writes the viewer, which
+# includes the module WASM, to VIEWER. Without a module that string is empty.
 file(MAKE_DIRECTORY ${BUILD})
 file(REMOVE_RECURSE ${BUILD}/src)
 foreach(part index.html view.html package.json package-lock.json tsconfig.json vite.config.js src)

@@ -83,7 +83,7 @@ Median of {context['repetitions']} repetitions, CPU time, on the same pairs of e
 What is exact agreed with the oracle on every pair that was timed. CGAL's `do_intersect` (on triangles made before) takes only pairs without degenerate triangles: its times, and EPICK / exact, are over those alone, and the last column is their share.
 
 {table(["stratum", *BESIDE.values(), "exact / gd f64", "EPICK / exact", "not degenerate"], rows)}
-### Every host lane, and what stands beside them
+### Every host lane, with CGAL and GMP for comparison
 `proper`: over the pairs that CGAL takes.
 
 {lanes_by_strata(results, nanoseconds)}"""

@@ -47,7 +47,7 @@ MeshPairs read_mesh_pairs(const std::filesystem::path& file,
 // Requires: at least one file; exactly one if there are poses.
 MeshPairs read_bodies(const std::vector<std::filesystem::path>& files, const std::filesystem::path& poses = {});
 
-// The triangles of a mesh without pairs; and with its candidate pairs against itself, of which there may be none.
+// Reads the triangles of a mesh, without pairs or with its candidate pairs against itself, which may be none.
 MeshPairs read_triangles(const std::filesystem::path& file);
 MeshPairs read_self_pairs(const std::filesystem::path& file);
 

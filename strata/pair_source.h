@@ -19,7 +19,7 @@ struct PairSource {
   std::string id;
   std::uint64_t pairs = 0;  // the campaign takes the indices [0, pairs)
   std::function<Pair(std::uint64_t index)> pair;
-  // What a device needs to draw the same pairs: a stratum's index in kStrata; -1 if only `pair` can draw them.
+  // For drawing the same pairs on a device: the stratum's index in kStrata; -1 if only `pair` can draw them.
   int stratum = -1;
   Axis axis = Axis::none;  // the stratum's
   std::uint64_t seed = 0;

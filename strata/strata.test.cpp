@@ -21,7 +21,7 @@ TEST(Strata, RowsAreInTheOrderOfTheEnumeration) {
   for (int s = 0; s < kStrataCount; ++s) EXPECT_EQ(static_cast<int>(kStrata[s].stratum), s) << kStrata[s].id;
 }
 
-// What the group's description says: its triangles are of usual shape, but some pairs are coplanar or degenerate.
+// Checks the group's description: its triangles have a usual shape, but some pairs are coplanar or degenerate.
 TEST(Groups, GeneralHasSomeCoplanarAndSomeDegeneratePairs) {
   constexpr std::uint64_t kPairs = 3000;  // in each stratum
   std::uint64_t pairs = 0, coplanar = 0, degenerate = 0;

@@ -11,7 +11,7 @@ namespace graze::subjects {
 
 inline constexpr std::size_t kMostAsked = 1024;  // pairs in a block
 
-// The answer for a pair. A worker may not give the ones after kIntersects.
+// The answer for a pair. A worker may only send kDeclined to kIntersects; the supervisor gives the others.
 enum Answer : signed char {
   kDeclined = -1,
   kDisjoint = 0,

@@ -15,6 +15,7 @@
 #include <stdexcept>
 
 #include "core/fnv1a.h"
+#include "core/stop.h"
 #include "core/text.h"
 
 namespace graze::subjects {
@@ -72,7 +73,7 @@ fs::path on_path(const std::string& program) {
   return {};
 }
 
-// The parts of the text between these characters.
+// Splits the text at these characters.
 std::set<std::string> parts_of(const std::string& text, std::string_view ends) {
   std::set<std::string> parts;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -102,18 +103,24 @@ FileState state_of(const fs::path& file) {
 }
 
 std::string code_in(const fs::path& file) {
+  constexpr std::size_t kMost = std::size_t{1} << 30, kPart = std::size_t{1} << 20;
+  const StopSignals stops;
   std::error_code why;
-  const bool regular = fs::is_regular_file(file, why);
-  std::ifstream in;
-  if (regular) in.open(file, std::ios::binary);  // opening a pipe without a writer would block
-  std::ostringstream text;
-  if (!regular || !(text << in.rdbuf())) {
-    throw std::runtime_error(fmt::format("--subject: cannot read the code in {}: {}", shown_path(file.string()),
-                                         why       ? why.message()
-                                         : regular ? std::strerror(errno)
-                                                   : "not a file"));
+  std::string text, reason = "not a file";
+  if (fs::is_regular_file(file, why)) {  // opening a pipe without a writer would block
+    std::ifstream in(file, std::ios::binary);
+    const bool fits = fs::file_size(file, why) <= kMost;
+    while (fits && in && text.size() <= kMost) {
+      if (stop_requested) throw Stopped();
+      const std::size_t before = text.size();
+      text.resize(before + kPart);
+      text.resize(before + static_cast<std::size_t>(in.read(text.data() + before, kPart).gcount()));
+    }
+    if (in.eof() && text.size() <= kMost) return text;
+    reason = in ? "it is larger than 1 GiB" : std::strerror(errno);
   }
-  return text.str();
+  throw std::runtime_error(fmt::format("--subject: cannot read the code in {}: {}", shown_path(file.string()),
+                                       why ? why.message() : reason));
 }
 
 std::uint64_t hash_of_file(const fs::path& file) { return fnv1a(code_in(file)); }
@@ -124,14 +131,16 @@ void expect_unchanged(const std::vector<HashedFile>& files) {
         !now.empty() && fs::absolute(now) != file.file) {
       throw std::runtime_error(fmt::format(
           "--subject: the PATH now finds {} where it found {} when the command that names it started, so its verdicts "
-          "may be of either code and are not recorded; restore the PATH's folders to go on, or start anew with another "
+          "may be of either code and are not recorded; restore the PATH's folders to resume, or start again with "
+          "another "
           "--out",
           shown_path(now.string()), shown_path(file.file.string())));
     }
     if (state_of(file.file) == file.state || (is_file(file.file) && hash_of_file(file.file) == file.hash)) continue;
     throw std::runtime_error(fmt::format(
         "--subject: {} changed while the command that names it ran, so its verdicts may be of either code and are not "
-        "recorded; restore the file to go on, or start anew with another --out; a file that the program itself writes "
+        "recorded; restore the file to resume, or start again with another --out; a file that the program itself "
+        "writes "
         "belongs after '>' or in a variable",
         shown_path(file.file.string())));
   }
@@ -139,15 +148,14 @@ void expect_unchanged(const std::vector<HashedFile>& files) {
 
 namespace {
 
-// What a command's hash does not cover. The code that it runs is known where it is a program alone, or one with a file
-// as its first argument, and no shell changes folders, names or programs.
+// Describes what a command's hash does not cover. The code is known if the command is a program, alone or with a file
+// as its first argument, and the shell changes no folder, name or program.
 std::string not_covered_of(const std::string& command, std::vector<std::string> words, const fs::path& program) {
   if (program.empty() || command.find_first_of(";|&<>()$`*?[~{}!#\n") != command.npos ||
       command.find("PATH=") != command.npos)
-    return "the code that it runs, because only the shell knows its files, or of what they load";
+    return "the code that it runs or of what that loads, because only the shell knows its files";
   if (words.size() == 1 || is_file(words[1])) return "what its files load";
-  return fmt::format("the code that it runs, unless that is '{}' itself, or of what its files load",
-                     printable(words[0]));
+  return fmt::format("the code that it runs (except '{}' itself) or of what its files load", printable(words[0]));
 }
 
 }  // namespace
@@ -189,7 +197,8 @@ bool starts_with_any(std::string_view text, std::initializer_list<std::string_vi
                      [&](std::string_view beginning) { return text.starts_with(beginning); });
 }
 
-// A relocatable object or an archive, which name no other file; not a linker's script, nor a list of files.
+// Whether the file is a relocatable object or an archive, which name no other file, unlike a linker script or a list of
+// files.
 bool is_object(const fs::path& file) {
   if (!is_file(file)) return false;
   std::ifstream in(file, std::ios::binary);
@@ -201,7 +210,7 @@ bool is_object(const fs::path& file) {
                                             bytes[16] + bytes[17] == 1);  // ET_REL
 }
 
-// Whether the flag changes how the source is compiled, and brings in no file that the preprocessor does not show.
+// Whether the hash covers everything that the flag does: it brings in no file that the preprocessor does not show.
 bool is_covered(const std::string& flag) {
   const std::size_t equals = flag.find('=');
   const std::string value = equals == flag.npos ? "" : flag.substr(equals + 1);
@@ -226,7 +235,7 @@ CodeHash hash_of_flags(const std::vector<std::string>& flags, std::uint64_t hash
   bool takes_next = false;  // as a folder or a file for the preprocessor
   for (const std::string& flag : flags) {
     code.hash = fnv1a(flag + '\n', code.hash);
-    // Also within words: -Wl,FILE and -Wl,--script=FILE, @FILE.
+    // File names may also be parts of words: -Wl,FILE, -Wl,--script=FILE, @FILE.
     std::set<std::string> files = parts_of(flag, ",=@");
     files.insert(flag);
     for (const std::string& file : files) {

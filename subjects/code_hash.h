@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hash of a subject's code: of what is compiled or run, not of a file's name.
+// A hash of a subject's code. It covers the bytes that are compiled or run, not file names.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace graze::subjects {
 
-// Where and when a file was last written, as the system says; zeros where there is no file.
+// Device, inode, size and times of a file, which show whether it was written or replaced. Zeros if there is no file.
 using FileState = std::array<std::int64_t, 7>;
 FileState state_of(const std::filesystem::path& file);
 
@@ -32,20 +32,20 @@ struct CodeHash {
   std::vector<HashedFile> files = {};  // of a command
 };
 
-// Throws: std::runtime_error, naming the file, where one has other content than when it was read, or the PATH finds
-// another. A file that was changed and changed back meanwhile is as it was.
+// Throws: std::runtime_error that names the file if its content has changed since it was read, or if the PATH finds
+// another file. A file that was changed and changed back counts as unchanged.
 void expect_unchanged(const std::vector<HashedFile>& files);
 
-// Returns: the file's bytes.   Throws: std::runtime_error where there is no such file.
+// Returns: the file's bytes.   Throws: std::runtime_error if there is no such file or it is larger than 1 GiB; Stopped.
 std::string code_in(const std::filesystem::path& file);
 std::uint64_t hash_of_file(const std::filesystem::path& file);
 
-// Of the command's text, the program that it starts, and the files that it names as they stand there, but those that
-// the shell writes to (> FILE): what a shell would put in for variables and patterns is not known.
+// Hash of the command's text, the program that it starts, and the files that it names literally. Files that the shell
+// writes to (> FILE) are left out. Variables and patterns are not expanded.
 CodeHash hash_of_command(const std::string& command);
 
-// Of a compiler's flags, and of the files that they name. `not_covered` says what else the flags bring in, where they
-// may bring in anything.
+// Hash of a compiler's flags and the files that they name. `not_covered` describes other files that the flags may bring
+// in.
 CodeHash hash_of_flags(const std::vector<std::string>& flags, std::uint64_t hash);
 
 // The build of a C or C++ source in a variant.

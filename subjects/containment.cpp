@@ -33,6 +33,7 @@
 #include <iterator>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace graze::subjects {
@@ -124,7 +125,7 @@ bool hide_control_groups() {
   return true;
 }
 
-// In the new namespace, where that can be. In a chroot it cannot: what is mounted there would be seen outside.
+// In the new namespace: makes the folder read-only. Not in a chroot, where the mount would be visible outside.
 void make_read_only(const std::string& given) {
   std::error_code none;
   const std::string folder = fs::canonical(given, none), here = fs::current_path(none);
@@ -162,7 +163,7 @@ bool limit_shared_memory(std::uint64_t bytes) {
 constexpr int kMostTasks = 1024;
 
 // Since Linux 6.14 a process namespace has its own pid_max; before, it applied to the whole machine. Root has no other
-// limit. A user has a limit for all tasks in a user namespace.
+// limit of tasks. A user has a limit for all tasks in a user namespace.
 void limit_tasks() {
   utsname system{};
   int major = 0, minor = 0;
@@ -214,19 +215,25 @@ std::vector<pid_t> children_of(pid_t process) {
   return found;
 }
 
-std::uint64_t field_kib(const fs::path& file, const std::string& name) {
+// The sum of fields that the file gives in KiB.
+std::uint64_t bytes_in(const fs::path& file, std::initializer_list<std::string_view> names) {
   std::ifstream in(file);
+  std::uint64_t kib = 0;
   for (std::string line; std::getline(in, line);) {
-    if (line.starts_with(name)) return std::strtoull(line.c_str() + name.size(), nullptr, 10);
+    for (const std::string_view name : names) {
+      if (line.starts_with(name)) kib += std::strtoull(line.c_str() + name.size(), nullptr, 10);
+    }
   }
-  return 0;
+  return kib << 10;
 }
 
-// Memory of a process. Counts whole pages first, which is fast; if that exceeds `most`, counts shares of shared pages.
+// Memory of a process, its page tables included. Counts whole pages first, which is fast; if that exceeds `most`,
+// counts shares of shared pages.
 std::uint64_t bytes_of(pid_t process, std::uint64_t most) {
   const fs::path folder = "/proc/" + std::to_string(process);
-  const std::uint64_t resident = field_kib(folder / "status", "VmRSS:") << 10;
-  return resident <= most ? resident : field_kib(folder / "smaps_rollup", "Pss:") << 10;
+  const std::uint64_t whole = bytes_in(folder / "status", {"VmRSS:", "VmSwap:", "VmPTE:"});
+  if (whole <= most) return whole;
+  return bytes_in(folder / "smaps_rollup", {"Pss:", "SwapPss:"}) + bytes_in(folder / "status", {"VmPTE:"});
 }
 
 }  // namespace
@@ -311,10 +318,13 @@ bool end_children(pid_t except) {
 
 namespace {
 
-// Of one table of system calls. A filter reads numbers and arguments, so calls that hide theirs in memory are missing.
+// The numbers of these calls in one table of system calls. A filter only sees numbers and arguments, so calls with
+// their arguments in memory are not listed.
 struct Calls {
   std::uint32_t prlimit, clone, clone3;
-  std::array<std::uint32_t, 3> forbidden;  // memfd_create, unshare, setns
+  // memfd_create, memfd_secret, io_uring_setup: memory that no limit counts. bpf, perf_event_open: these reach other
+  // processes. unshare, setns: new namespaces.
+  std::array<std::uint32_t, 7> forbidden;
 };
 
 void append_rules(std::vector<sock_filter>& steps, const Calls& calls) {
@@ -339,20 +349,27 @@ void append_rules(std::vector<sock_filter>& steps, const Calls& calls) {
 
 // In a user namespace of its own, code could mount file systems: memory that is not counted, and control groups.
 void forbid_calls() {
+  constexpr std::uint32_t kMemfdSecret = 447;  // older headers lack it
   std::vector<sock_filter> i386, steps{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, arch))};
-  append_rules(i386, {340, 120, 435, {356, 310, 346}});
+  append_rules(i386, {340, 120, 435, {356, 447, 425, 357, 336, 310, 346}});
   steps.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, AUDIT_ARCH_I386, 0, static_cast<std::uint8_t>(i386.size())));
   steps.insert(steps.end(), i386.begin(), i386.end());
-  append_rules(steps, {SYS_prlimit64, SYS_clone, SYS_clone3, {SYS_memfd_create, SYS_unshare, SYS_setns}});
+  append_rules(steps, {SYS_prlimit64,
+                       SYS_clone,
+                       SYS_clone3,
+                       {SYS_memfd_create, kMemfdSecret, SYS_io_uring_setup, SYS_bpf, SYS_perf_event_open, SYS_unshare,
+                        SYS_setns}});
   const sock_fprog program{static_cast<unsigned short>(steps.size()), steps.data()};
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program);
 }
 
 void drop_rights() {
-  for (const int right : {CAP_SYS_PTRACE, CAP_SYS_ADMIN, CAP_SYS_RESOURCE, CAP_SYS_BOOT, CAP_SYS_MODULE, CAP_SYS_RAWIO,
-                          CAP_NET_ADMIN, CAP_SYS_NICE, CAP_DAC_READ_SEARCH, CAP_MKNOD})
-    prctl(PR_CAPBSET_DROP, right, 0, 0, 0);
+  constexpr int kKept[] = {CAP_CHOWN,  CAP_DAC_OVERRIDE, CAP_FOWNER,          CAP_FSETID,
+                           CAP_SETGID, CAP_SETUID,       CAP_NET_BIND_SERVICE};
+  for (int right = 0; prctl(PR_CAPBSET_READ, right, 0, 0, 0) >= 0; ++right) {
+    if (std::find(std::begin(kKept), std::end(kKept), right) == std::end(kKept)) prctl(PR_CAPBSET_DROP, right, 0, 0, 0);
+  }
 }
 
 }  // namespace graze::subjects

@@ -10,13 +10,13 @@
 
 namespace graze::subjects {
 
-// The calling process becomes the supervisor's guardian: it waits until the supervisor ends, and ends as well. Where
-// the supervisor does not end within 6 s after graze closed its end of `control`, the guardian kills it. Returns
-// in the supervisor: process 1 of a namespace of its own, in which foreign code sees and signals only its own
-// processes, has only shared memory of its own and no control groups, and which the system ends with it. Where no
-// namespace can be had, returns in the calling process, as a subreaper. namespaces: whether to try. shared_bytes: of
-// memory that is shared by name. read_only: a folder that cannot be written to or moved in the namespace; empty for
-// none. Requires: one thread.
+// The calling process becomes the supervisor's guardian: it waits until the supervisor ends, and ends as well. If the
+// supervisor does not end within 6 s after graze closed its end of `control`, the guardian kills it. Returns in the
+// supervisor, which is process 1 of a new namespace. There, foreign code sees and signals only its own processes, and
+// has its own shared memory and no control groups. The system ends the namespace with the supervisor. If no namespace
+// is possible, returns in the calling process, as a subreaper. namespaces: whether to try. shared_bytes: of memory that
+// is shared by name. read_only: a folder that cannot be written to or moved in the namespace; empty for none. Requires:
+// one thread.
 void enter_containment(bool namespaces, std::uint64_t shared_bytes, int control, const std::string& read_only = "");
 
 // A descriptor that becomes readable when the process ends; -1 when there is no such process.
@@ -26,7 +26,8 @@ int open_process(pid_t process);
 bool is_descendant(pid_t process);
 
 struct Usage {
-  std::uint64_t processes, bytes;  // bytes of memory; each process counts its share of shared pages
+  std::uint64_t processes,
+      bytes;  // bytes of memory; each process counts its page tables, and its share of shared pages
 };
 // Current usage of all descendants. Stops counting a little beyond `most_bytes` or `most_processes`.
 Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processes);
@@ -35,11 +36,12 @@ Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processe
 bool end_children(pid_t except);
 
 // From now on this process and its descendants cannot change the limits of other processes. (The supervisor runs as
-// the same user.) They also cannot allocate memory that no limit counts (memfd_create).
+// the same user.) They also cannot allocate memory that no limit counts (memfd_create and the like), make namespaces,
+// or run programs in the kernel.
 void forbid_calls();
 
-// Gives up the rights of root that would reach beyond the limits: tracing, mounting, lifting limits, rebooting,
-// delaying the supervisor, and reaching files by handles and disks.
+// Gives up all rights of root but those about files, users and low ports. The others reach beyond the limits: tracing,
+// mounting, lifting limits, rebooting, setting the clock, delaying the supervisor, reaching files by handles and disks.
 void drop_rights();
 
 }  // namespace graze::subjects

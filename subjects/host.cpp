@@ -98,11 +98,11 @@ std::string exported(void* library) {
   return names.empty() ? "none that it exports" : "only " + names + (count > 8 ? ", …" : "");
 }
 
-// What is loaded: the sealed copy of the code that graze verified.
+// The file to load: the sealed copy of the code that graze verified.
 const std::string kCode = "/proc/self/fd/" + std::to_string(kCodeFd);
 
-// A copy stands in no folder, so the folders that its $ORIGIN means are named to the system, which reads them when a
-// program starts: this one starts again.
+// The sealed copy is in no folder, so its $ORIGIN is passed as a library path. The system reads that path only at
+// program start, so this program starts again.
 void name_origin(const std::string& file, char** argv) {
   struct stat code {};
   if (fstat(kCodeFd, &code) != 0 || code.st_size == 0) return;
@@ -178,7 +178,7 @@ graze_subject subject_of_library(const std::string& file, const std::string& nam
   return subject;
 }
 
-// Whether this process is a copy of the worker that foreign code forked, and in which the call returned too.
+// Whether foreign code forked this process from the worker, so that its call has returned here a second time.
 bool is_copy = false;
 
 signed char answer_of(int said) {
@@ -381,7 +381,8 @@ int load_and_fork(char** argv, const std::string& kind, const std::string& what,
     }
     if (worker < 0) return 1;
     int status = 0;
-    // A worker that made this process its tracer (PTRACE_TRACEME) stops at each signal, which it then gets untraced.
+    // A worker may make this process its tracer (PTRACE_TRACEME) and then stops at each signal. It is detached and gets
+    // the signal.
     while (waitpid(worker, &status, 0) < 0 ? errno == EINTR : WIFSTOPPED(status))
       ptrace(PTRACE_DETACH, worker, nullptr, WSTOPSIG(status));
     if (WIFEXITED(status) && WEXITSTATUS(status) == kNotReady) return 1;

@@ -273,4 +273,33 @@ static void raise_task_limit(void) {
   abort();
 }
 ATTACK(raises_task_limit, raise_task_limit())
+// Memory that no limit counts, and programs that run in the kernel for every process.
+static void call_the_kernel(void) {
+  const long calls[] = {321 /* bpf */, 298 /* perf_event_open */, 425 /* io_uring_setup */, 447 /* memfd_secret */};
+  char nothing[128] = {0};
+  for (int i = 0; i < 4; ++i) {
+    if (syscall(calls[i], i == 3 ? 0 : 4, nothing, sizeof nothing, -1, 0) >= 0 || errno != EPERM)
+      return;  // then the pair has an answer, and the test fails
+  }
+  abort();
+}
+ATTACK(calls_the_kernel, call_the_kernel())
+// Shared memory that stays when nobody has it mapped.
+static void keep_mapping(void) {
+  char name[100];
+  char* p = mmap(0, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  snprintf(name, sizeof name, "/proc/self/map_files/%lx-%lx", (unsigned long)p, (unsigned long)p + 4096);
+  if (open(name, O_RDWR) >= 0) return;
+  abort();
+}
+ATTACK(keeps_mapping, keep_mapping())
+// Read pages are the system's zero page, but each needs a page table.
+static void eat_page_tables(void) {
+  const size_t bytes = (size_t)320 << 30, step = 2 << 20;
+  volatile char* p = mmap(0, bytes, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (p == MAP_FAILED) abort();
+  madvise((void*)p, bytes, MADV_NOHUGEPAGE);
+  for (size_t i = 0; i < bytes; i += step) (void)p[i];
+}
+ATTACK(eats_page_tables, eat_page_tables(); pause())
 ATTACK(kills_all, if (alone()) kill(-1, SIGKILL); abort())

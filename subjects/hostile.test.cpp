@@ -2,10 +2,13 @@
 // Foreign code that attacks the processes around it. Each attack is a verdict on its own pair only.
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -129,7 +132,7 @@ bool has_namespaces() {
   return inside;
 }
 
-// In a chroot it is none, and the cache cannot be protected (subjects/README.md).
+// In a chroot "/" is not a mount point, and the cache cannot be protected (subjects/README.md).
 bool root_is_a_mount_point() {
   std::ifstream in("/proc/self/mountinfo");
   for (std::string line; std::getline(in, line);) {
@@ -222,12 +225,39 @@ constexpr Attack kAttacks[] = {{"writes_zeros"},
                                {"stretches_waits"},
                                {"makes_namespaces"},
                                {"raises_task_limit", false},
+                               {"calls_the_kernel"},
+                               {"keeps_mapping"},
+                               {"eats_page_tables"},
                                {"kills_all", false}};
 INSTANTIATE_TEST_SUITE_P(Subjects, EveryAttack, testing::Combine(testing::ValuesIn(kAttacks), testing::Bool()),
                          [](const auto& of) {
                            return std::string(std::get<0>(of.param).name) +
                                   (std::get<1>(of.param) ? "" : "_without_namespaces");
                          });
+
+TEST_F(Hostile, PageTablesAreMemory) {
+  constexpr std::size_t kPages = 10'000, kStep = 2 << 20;
+  int ready[2];
+  ASSERT_EQ(pipe2(ready, O_CLOEXEC), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    void* at = mmap(nullptr, kPages * kStep, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (at == MAP_FAILED) _exit(1);
+    madvise(at, kPages * kStep, MADV_NOHUGEPAGE);
+    for (std::size_t i = 0; i < kPages; ++i) (void)static_cast<volatile char*>(at)[i * kStep];
+    if (write(ready[1], "y", 1) == 1) pause();
+    _exit(1);
+  }
+  close(ready[1]);
+  char said = 0;
+  EXPECT_EQ(read(ready[0], &said, 1), 1);
+  close(ready[0]);
+  for (const std::uint64_t most : {std::uint64_t{1} << 40, std::uint64_t{1} << 20})  // both ways to count
+    EXPECT_GE(usage_of_descendants(most, 64).bytes, std::min<std::uint64_t>(kPages * 4096, most));
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+}
 
 TEST_F(Hostile, ChildrenThatAreLeftInSilenceEndWithTheSubject) {
   for (const bool namespaces : {true, false}) {
@@ -300,7 +330,7 @@ TEST_F(Hostile, CodeThatIsGoneAfterItWasReadIsLoadedAgain) {
   EXPECT_FALSE(fs::exists(file));
 }
 
-// A process that starts later runs the code that was read, and not what lies there then.
+// Processes that start later also run the code that was read, not the file's new content.
 TEST_F(Hostile, CodeThatIsReplacedOrWrittenIntoIsTheCodeThatWasRead) {
   const auto text = [](const char* compare) {
     return std::string(
@@ -327,7 +357,7 @@ TEST_F(Hostile, CodeThatIsReplacedOrWrittenIntoIsTheCodeThatWasRead) {
   }
 }
 
-// Where the code's own folder is $ORIGIN.
+// The code finds libraries in its own folder through $ORIGIN.
 TEST_F(Hostile, LibrariesBesideTheCodeAreFound) {
   fs::create_directories(folder / "beside");
   std::ofstream(folder / "less.c") << "int less(float a, float b) { return a < b; }";
@@ -468,7 +498,7 @@ TEST_F(Hostile, AFrozenSupervisorIsAVerdictAndIsLeft) {
   }
   pairs = all;
   EXPECT_FALSE(left_over().empty());
-  // Repeats this in case a thawed process freezes all of them again.
+  // Repeats this because a thawed process may freeze all of them again.
   for (int times = 0; times < 1000 && rmdir(group.c_str()) != 0; ++times) {
     const bool second = fs::exists(group / "cgroup.freeze");
     std::ofstream(group / (second ? "cgroup.freeze" : "freezer.state")) << (second ? "0" : "THAWED") << std::flush;
@@ -512,7 +542,7 @@ TEST_F(Hostile, ASupervisorThatCannotEndIsEndedWithGraze) {
   }
 }
 
-// A compiler waits for ever for a header that is a pipe, and as for data that is one.
+// If a header is a pipe, the compiler waits for ever, and so does the assembler if its data is a pipe.
 TEST_F(Hostile, WhatBuildsASubjectEndsWithARequestToStopAndWithGraze) {
   for (const char* name : {"pipe.h", "pipe.bin"}) ASSERT_EQ(mkfifo((folder / name).c_str(), 0600), 0);
   std::ofstream(folder / "header.c") << "#include \"pipe.h\"\nint intersects(const float*, const float*);";
@@ -620,7 +650,7 @@ TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
   }
 }
 
-// Forking leaves one process for each pair, and no second worker.
+// Each call forks, so each pair leaves one more process, but there must be no second worker.
 TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
   const fs::path file = built_from("forks_twice",
                                    "#include <signal.h>\n#include <unistd.h>\n"
@@ -634,14 +664,14 @@ TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
   expect_nothing_left();
 }
 
-// The processes between it and graze are in other groups, also the guardian outside of its namespace.
+// Supervisor, guardian and graze are in other process groups than the code.
 TEST_F(Hostile, CodeThatStopsItsProcessGroupStopsOnlyItself) {
   const auto bad = std::find_if(pairs.begin(), pairs.end(), is_bad);
   ASSERT_NE(bad, pairs.end());
   for (const bool namespaces : {true, false}) {
     Code code{"library", (folder / "libhostile.so").string(), "stops_group", "f32", 0.1, 256};
     code.namespaces = namespaces;
-    // Would be crashed if its supervisor or guardian stopped.
+    // The verdict would be `crashed` if the supervisor or the guardian stopped.
     EXPECT_EQ(ForeignProcesses(code, Scalar::f32).failure(*bad), Verdict::timed_out);
     expect_nothing_left();
 

@@ -91,7 +91,7 @@ std::vector<std::string> arguments_of(const Code& code, bool describe) {
           cache_folder()};
 }
 
-// The code with the content of its file.   Throws: std::runtime_error where it cannot be read.
+// The code with the content of its file.   Throws: std::runtime_error if it cannot be read.
 Code loadable(Code code) {
   if (code.kind != "command" && !code.content)
     code.content =
@@ -157,7 +157,8 @@ class HostProcess {
 
 namespace {
 
-// Returns: what the code says of itself. A program that cannot be loaded with the question is loaded without it.
+// Returns: the description that the code gives of itself. A program that cannot be loaded with the question is loaded
+// without it.
 Loaded loaded_of(const Code& code) {
   if (code.kind == "command") {
     try {
@@ -202,7 +203,7 @@ std::unique_ptr<HostProcess> ForeignProcesses::idle_or_new() {
 
 void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects,
                               std::uint64_t* declined) {
-  // Processes on one device wait for each other, so one of them is as fast.
+  // Several processes on one device would only wait for each other, so one at a time is just as fast.
   std::unique_lock alone(alone_, std::defer_lock);
   if (code_.kind == "device") alone.lock();
   const bool in_double = scalar_ == Scalar::f64 && code_.kind != "device";
@@ -245,7 +246,8 @@ void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_
       failures_[std::string(reinterpret_cast<const char*>(&pairs[at]), sizeof(Pair))] = verdict;
     }
   }
-  // Its processes started after the files were read, and answered before now: they ran what was read.
+  // The processes started after the files were read and have answered, so if the files are unchanged now, they ran that
+  // code.
   expect_unchanged(code_.files);
   const std::lock_guard lock(mutex_);
   nanoseconds_ = nanoseconds;

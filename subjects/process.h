@@ -49,8 +49,8 @@ class ForeignProcesses : public ForeignCode {
  public:
   ForeignProcesses(Code code, Scalar scalar);
   ~ForeignProcesses() override;
-  // Throws: Stopped, within 0.1 s of the request, whatever the code does; std::runtime_error if a command's files have
-  // changed.
+  // Throws: Stopped, always within 0.1 s of the request to stop; std::runtime_error if a file of a command has changed
+  // since it was read.
   void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) override;
   Verdict failure(const Pair& pair) override;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The subject's side of the protocol: forged, early, late and destroyed answers in shared memory, arbitrary messages,
-// and arbitrary lines of a program. In every case the questions end, and an answer that has counted stays.
+// and arbitrary lines of a program. In every case the questions must end, and an accepted answer must stay.
 #include "subjects/questions.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 // Whether the supervisor's state after a step is allowed after its earlier state.
 void must_follow(std::span<const signed char> before, std::span<const signed char> now) {
   for (std::size_t i = 0; i < now.size(); ++i) {
-    must_hold(now[i] >= kDeclined && now[i] <= kUnstable, "an answer is one that there is");
+    must_hold(now[i] >= kDeclined && now[i] <= kUnstable, "an answer is one of enum Answer");
     must_hold(before[i] <= kIntersects || now[i] == before[i] || now[i] == kCrashed, "a failure stays one");
   }
 }
@@ -83,12 +83,12 @@ void ask_hostile(std::string_view bytes) {
         questions.failed(how & 1 ? kCrashed : kTimedOut);
         asked = false;
         if (program) before = before_question;  // no answer to the question counts
-        must_hold(++failures <= (program ? 1 + 12 * count : 1 + 4 * count), "failures come to an end");
+        must_hold(++failures <= (program ? 1 + 12 * count : 1 + 4 * count), "the number of failures is limited");
     }
     must_follow({before.data(), count}, questions.answers());
   }
   questions.give_up(kCrashed);
-  must_hold(questions.done(), "it can be given up");
+  must_hold(questions.done(), "the questions can be given up");
   must_follow({questions.answers().data(), count}, questions.answers());
   reached(failures + 100 * count);
 }
@@ -116,7 +116,7 @@ void read_lines(std::string_view bytes) {
       ++taken;
       try {
         const signed char answer = answer_of_line(line);
-        must_hold(answer >= kDeclined && answer <= kIntersects && line.size() == 1, "an answer is one letter");
+        must_hold(answer >= kDeclined && answer <= kIntersects && line.size() == 1, "an answer is a single letter");
       } catch (const std::runtime_error& error) {
         must_be_one_line(error.what());
       }

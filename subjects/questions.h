@@ -54,7 +54,7 @@ class Questions {
   std::size_t at_ = 0;  // forward: the first pair without an answer; backward: the one after it
   std::array<signed char, kMostAsked> answers_{};
   std::uint64_t nonce_ = 0;
-  // The same, before the last question.
+  // The answers before the last question.
   bool second_before_ = false;
   std::size_t at_before_ = 0;
   std::array<signed char, kMostAsked> answers_before_{};

@@ -61,12 +61,9 @@ GRAZE_SUBJECT(graze_subject) = {.abi = GRAZE_SUBJECT_ABI, .f32 = graze_f32 ? gra
 )";
 
 std::string text_of(const fs::path& file) {
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (!in || (!(text << in.rdbuf()) && errno != 0)) throw std::runtime_error(cannot("read", file, errno));
-  if (!text) throw std::runtime_error("there is no code in " + file.string());
-  return text.str();
+  std::string text = code_in(file);
+  if (text.empty()) throw std::runtime_error("there is no code in " + file.string());
+  return text;
 }
 
 void write(const fs::path& file, std::string_view text) {
@@ -104,7 +101,7 @@ std::vector<std::string> further_flags(const std::string& compiler) {
   return flags;
 }
 
-// Whether the preprocessed source may contain assembler code that includes files, judging by its text.
+// Whether the text of the preprocessed source suggests assembler code that includes files.
 bool may_include_by_assembler(std::string preprocessed) {
   for (char& c : preprocessed) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return preprocessed.find("incbin") != preprocessed.npos || preprocessed.find(".include") != preprocessed.npos;
@@ -146,7 +143,7 @@ std::string listed_files(const fs::path& list, const fs::path& own) {
   return files;
 }
 
-// Where and when these files were last written, as the system says.
+// Device, inode, size and times of these files, as text.
 std::string states_of_listed(const std::string& files) {
   std::istringstream lines(files);
   std::string states;
@@ -165,7 +162,7 @@ std::uint64_t hash_of_listed(const std::string& files, std::uint64_t hash) {
 
 constexpr int kMostBuilds = 4;  // of code that changes meanwhile
 
-// All that an object is made of, as it was at one time.
+// The state of all inputs of a build at one time.
 struct Reading {
   std::uint64_t hash = 0;
   std::string states;       // of the files, taken after they were read: shows a change that was undone between readings
@@ -217,7 +214,7 @@ Built build_source(const fs::path& source, const std::string& function, const Va
                status == 127  // as a shell reports it
                    ? fmt::format("there is no compiler '{}'; install one, or name it in {}", compiler, c ? "CC" : "CXX")
                    : fmt::format("'{} --version' ended with exit status {}", compiler, status)));
-  // One version of a compiler may find other parts on another machine's PATH, and may itself be a script.
+  // The same compiler version may use other parts from another machine's PATH, and the compiler may be a script.
   identity += output_of(
       fmt::format("for part in as ld {1}; do file=$(command -v \"$({0} -print-prog-name=$part 2>/dev/null)\") && "
                   "cksum < \"$file\"; done; cksum < \"$(command -v {2})\"",
@@ -241,7 +238,7 @@ Built build_source(const fs::path& source, const std::string& function, const Va
                  list = scratch.path() / "assembled.d";
   write(whole, defines + wrapped);
   command += fmt::format(" -I{} {}", shell_word((folder / "include").string()), shell_word(whole.string()));
-  // Without a date of its own, code with __TIME__ would be other code at each reading.
+  // With the real time, code that uses __TIME__ would have another hash at each reading.
   command = "SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-0} " + command;
   std::vector<std::string> all_flags = further_flags(compiler);
   all_flags.insert(all_flags.end(), flags.begin(), flags.end());
@@ -261,12 +258,13 @@ Built build_source(const fs::path& source, const std::string& function, const Va
     reading.states = states_of_listed((fs::exists(included) ? listed_files(included, folder) : "") + assembled);
     return reading;
   };
-  // The compiler reads the files once more. It has read what was hashed if a reading before and one after it agree.
+  // The compiler reads the files once more. If readings before and after it agree, it has read the code that was
+  // hashed.
   for (int builds = 0; builds < kMostBuilds; ++builds) {
     const Reading before = read();
     Built built{folder / fmt::format("{:016x}.so", before.hash), before.not_covered, nullptr};
-    // An object has this name only if the assembler read no files for it. Where the assembler would find such files now
-    // is not known before it runs.
+    // Objects for which the assembler read files are not cached under this name, because the files that it would read
+    // now are not known before it runs.
     if (before.is_whole && before.not_covered.empty() && assembled.empty()) {
       if (const auto kept = kept_content(built.file)) {
         built.content = std::make_shared<SealedCopy>(built.file.filename().string(), *kept);

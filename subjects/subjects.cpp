@@ -85,7 +85,7 @@ Opened parsed(const Wanted& wanted) {
   return result;
 }
 
-// What the subject's convention says of a kind of pairs.
+// The text for a kind of pairs: `otherwise`, or that the subject's convention excludes it.
 std::string says(const Description& description, unsigned outside, std::string_view otherwise) {
   if (!(description.outside & outside)) return std::string(otherwise);
   return "not in its contract" + (description.convention.empty() ? "" : ": " + description.convention);
@@ -144,8 +144,8 @@ LaneName lane_name(const std::string& subject, const cuda::CudaBuild& build) {
   return {subject, std::string(name(build.scalar)), std::string(name(build.variant)), ""};
 }
 
-// The evidence for this build in the proof record beside the source. Without such a record, what the build itself
-// shows.
+// The evidence for this build in the proof record beside the source. Without such a record, the evidence of the build
+// itself.
 std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
   std::ifstream in(proof_file(source));
   const Json record = Json::parse(in, nullptr, false);
@@ -180,7 +180,7 @@ std::shared_ptr<const SealedCopy> kept_copy(const fs::path& file) {
   return std::make_shared<SealedCopy>(file.filename().string(), *bytes);
 }
 
-// The device's build where there is a device, else its twin. A build with neither is a lane that says why.
+// The build for a device if there is one, else its twin. A build with neither is a lane that says why.
 void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   const Opened& o = entry.opened;
   const fs::path cache = cache_folder();
@@ -307,8 +307,9 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
         add_lane(entry, made, of_variant, Scalar::f64, variant, description.outside);
     }
     if (made.empty())
-      throw std::runtime_error(fmt::format("--subject {}: {} says that it has no function, of floats or of doubles",
-                                           wanted.name, shown(wanted.what)));
+      throw std::runtime_error(
+          fmt::format("--subject {}: the description of {} has neither a function of floats nor one of doubles",
+                      wanted.name, shown(wanted.what)));
     if (wish.kind == "source") entry.opened.code = hash_of_builds(built_files);
     if (wish.kind == "command") {
       entry.opened.code.hash = fnv1a(fmt::format("{}\n{}\n{}\n{}", description.version, description.source,

@@ -36,8 +36,8 @@ Wanted parse_subject(const std::string& text);
 void open(const Wanted& wanted, bool on_device = false);
 
 // What a campaign records of the subjects of these lanes, so that it can open them again: [{"name", "what", "flags",
-// "timeout", "memory", "hash", "not_covered"}, …]. "not_covered" says what the hash leaves out, and is absent if that
-// is nothing. Null when no lane has a subject.
+// "timeout", "memory", "hash", "not_covered"}, …]. "not_covered" describes the parts that the hash leaves out, and is
+// absent if there are none. Null when no lane has a subject.
 nlohmann::ordered_json record(const std::vector<std::string>& lanes);
 
 // Opens the subjects that a campaign recorded and that are not open yet.

@@ -17,6 +17,7 @@
 #include "core/lanes/lanes.h"
 #include "core/lanes/verdicts.h"
 #include "core/message_testing.h"
+#include "core/stop.h"
 #include "cuda/twin/twin.h"
 #include "strata/strata.h"
 #include "subjects/process.h"
@@ -447,6 +448,12 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
     ASSERT_EQ(mkfifo((folder / name).c_str(), 0600), 0);
     expect_error("x=" + (folder / name).string() + ":f", "cannot read the code in .*: not a file");
   }
+  std::ofstream(folder / "large.so").close();
+  fs::resize_file(folder / "large.so", (std::uintmax_t{1} << 30) + 1);
+  expect_error("x=" + (folder / "large.so").string(), "cannot read the code in .*: it is larger than 1 GiB");
+  stop_requested = true;
+  EXPECT_THROW(open_one("x=" + so + ":good"), Stopped);
+  stop_requested = false;
   EXPECT_FALSE(opened("x"));
   for (const Lane& lane : lanes()) EXPECT_NE(lane.info->id, "x");
 }
@@ -499,7 +506,7 @@ TEST_F(Subjects, CodeIsKnownByWhatIsCompiledOrRun) {
   }
 }
 
-// Whether the cached build may be used. It must never be one of other files.
+// Whether the cached build may be used. A build from other files must never be used.
 TEST_F(Subjects, WhatIsBuiltInBesideTheSourceIsKnownOrBuiltAnew) {
   const fs::path object = folder / "helper.o", data = folder / "some $data.bin";
   const auto build = [&](bool less) {
@@ -575,7 +582,7 @@ int intersects(const float a[9], const float b[9]) { return data[0] == 'l' ? a[0
   }
 }
 
-// The compiler stands for an editor as well: it runs the script `edits` when it compiles.
+// This compiler also plays an editor: it runs the script `edits` when it compiles.
 TEST_F(Subjects, CodeThatChangesWhileItIsBuiltIsBuiltAgain) {
   const fs::path source = write("edited.c",
                                 "#include \"edited.h\"\nint intersects(const float a[9], const float b[9]) "
@@ -598,7 +605,7 @@ TEST_F(Subjects, CodeThatChangesWhileItIsBuiltIsBuiltAgain) {
   EXPECT_FALSE(is_less(edited));
   EXPECT_EQ(build().file, edited.file);
   EXPECT_FALSE(is_less(build()));
-  // The object of the new code was not kept as that of the old code.
+  // The object built from the new code must not have been cached as that of the old code.
   write("edited.h", "#define LESS <\n");
   write("edits",
         "rm edits; mv edited.h old.h; echo '#define LESS >=' > edited.h; cc \"$@\"; status=$?; "
@@ -612,7 +619,7 @@ TEST_F(Subjects, CodeThatChangesWhileItIsBuiltIsBuiltAgain) {
   const std::string error = error_of(build);
   EXPECT_TRUE(names(error, {"cannot compile", "edited.c", "changed during each of 4 builds"})) << error;
   fs::remove(edits);
-  // The time is no change.
+  // The time of the build does not count as a change of the code.
   write("edited.h", "#define LESS < 0 * sizeof __TIME__ __DATE__ +\n");
   write("edits", "sleep 1.1");
   EXPECT_TRUE(is_less(build()));
@@ -650,7 +657,7 @@ int intersects(const float a[9], const float b[9]) { return blob[0] == 'l' ? a[0
   EXPECT_TRUE(is_less(build()));
 }
 
-// A compiler of one version may find another assembler or linker on the PATH, and may be a script.
+// The same compiler version may use another assembler or linker of the PATH, and the compiler may be a script.
 TEST_F(Subjects, TheCompilersPartsAndScriptsAreInTheHash) {
   const fs::path source =
       write("by_parts.c", "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }");
@@ -696,7 +703,7 @@ TEST_F(Subjects, FlagsThatMayBringInAnythingAreNotCovered) {
               0);
     EXPECT_EQ(not_covered({archive}).empty(), covered) << how;
   }
-  // Flags in the compiler's name, and the variables that say where its parts are.
+  // The hash covers flags in the compiler's name, and environment variables that name the compiler's parts.
   const fs::path source =
       write("by_flags.c", "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }");
   const auto build = [&] { return build_source(source, "intersects", kVariants[0], {}); };
@@ -746,7 +753,7 @@ TEST_F(Subjects, AKeptObjectThatIsNotAsItWasBuiltIsBuiltAgain) {
   EXPECT_TRUE(fs::exists(kept / "inner"));
 }
 
-// Only of a program and the file that is its first argument is it known that they are what runs.
+// Only for a program, or a program with a file as its first argument, does Graze know which code runs.
 TEST_F(Subjects, ACommandWhoseCodeIsNotPlainIsNotCovered) {
   const fs::path plain = write("plain.py", "pass"), program = write("plain", "pass");
   const std::string own = program.string();
@@ -754,16 +761,15 @@ TEST_F(Subjects, ACommandWhoseCodeIsNotPlainIsNotCovered) {
        {"python3 $PWD/s.py", "python3 s.p?", "python3 *.py", "python3 ~+/s.py", "python3 $(cat list)",
         "python3 `cat list`", "python3 [s].py", "python3 {s,}.py", "cd sub && python3 m.py", "cd sub; exec ./m.py",
         "cat | python3 m.py", "PATH=sub mtool", "eval python3 m.py", "no-such-program m.py", "(python3 m.py)", ""})
-    EXPECT_TRUE(hash_of_command(command).not_covered.starts_with("the code that it runs, because only the shell"))
-        << command;
+    EXPECT_TRUE(hash_of_command(command).not_covered.ends_with("because only the shell knows its files")) << command;
   for (const std::string& command :
        std::vector<std::string>{"env -C sub python3 m.py", "python3 -m m", "python3 -um.py", "python3 m.py",
                                 "python3 " + folder.string(), "X=1 python3 -m m", own + " --fast"}) {
-    const std::string expected = "the code that it runs, unless that is '" +
+    const std::string expected = "the code that it runs (except '" +
                                  std::string(command.starts_with("env") ? "env"
                                              : command.starts_with(own) ? own
                                                                         : "python3") +
-                                 "' itself";
+                                 "' itself)";
     EXPECT_TRUE(hash_of_command(command).not_covered.starts_with(expected)) << command;
   }
   for (const std::string& command : std::vector<std::string>{

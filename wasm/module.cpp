@@ -186,7 +186,7 @@ GRAZE_EXPORT(map_row) void map_row(int x, int y, int up, int columns, int step) 
 
 // Computes the lane's comparisons on the first pair and the values passed to its policy, and beside them the same path
 // with 113 bits.
-// Returns: the number of steps; -1 if they are not known to be the lane's own.
+// Returns: the number of steps; -1 if nothing shows that they are the lane's own.
 GRAZE_EXPORT(steps) int steps(int lane) {
   const Lane& of = *deciders()[lane].lane;
   steps_out.clear();
@@ -207,7 +207,7 @@ GRAZE_EXPORT(steps) int steps(int lane) {
   }
   return static_cast<int>(steps_out.size());
 }
-// How sure it is that the steps are the lane's own, as analysis::Evidence.
+// The evidence that the steps are the lane's own, as in analysis::Evidence.
 GRAZE_EXPORT(evidence) int evidence() { return steps_evidence; }
 // The algorithm's verdict with 113 bits throughout, on its own path.
 GRAZE_EXPORT(with_113_bits) int with_113_bits() { return static_cast<int>(verdict_of_quads); }

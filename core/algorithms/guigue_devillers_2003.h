@@ -104,7 +104,7 @@ struct GuigueDevillers2003 {
       "Guigue and Devillers 2003",
       "all orientations zero: 2D orientation tests, projected along the normal's largest axis",
       "assumes none",
-      "depends in rounding",
+      "changes rounding",
       true};
 
   template <class Real, class Policy = ExactZero>

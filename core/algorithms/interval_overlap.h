@@ -91,8 +91,8 @@ struct IntervalOverlap {
       "interval_overlap",
       "Maffina 2012, final version (section 3.2), after Moller and Haines",
       "when the normals' cross product is exactly zero: 2D separating axes on the first plane",
-      "says they should be handled first, and does not",
-      "depends in rounding, and in which plane coplanar pairs are projected onto",
+      "should be handled first, says the text; the published code does not",
+      "changes rounding, and the plane onto which coplanar pairs are projected",
       false};
 
   template <class Real, class Policy = ExactZero>

@@ -93,7 +93,7 @@ struct Moller1997 {
       "Moller 1997, division-free variant",
       "all distances zero: edge against edge and vertex in triangle, projected along the normal's largest axis",
       "assumes none",
-      "depends in rounding",
+      "changes rounding",
       true};
 
   template <class Real, class Policy = ExactZero>

@@ -14,8 +14,8 @@ struct ProjectedSat {
   static constexpr AlgorithmInfo kInfo{"projected_sat",
                                        "Maffina 2012, first version (section 3.1)",
                                        "the projections' 2D test decides",
-                                       "says nothing; a zero normal divides by zero",
-                                       "depends: projects onto the first triangle's plane",
+                                       "not mentioned; a zero normal divides by zero",
+                                       "matters: projects onto the first triangle's plane",
                                        false,
                                        false};
   template <class Real, class Policy = ExactZero>

@@ -11,7 +11,7 @@ namespace graze {
 
 inline constexpr int kMostQuestions = 64, kMostChoices = 15;
 
-// Where the values of a run are kept: number k of question q at values[(2 q + k) * stride]. A question about one value
+// Memory for the values of a run: value k of question q is at values[(2 q + k) * stride]. A question about one value
 // has k = 0; a comparison of two has the left one at 0 and the right one at 1.
 template <class Real>
 struct Recorded {
@@ -19,8 +19,8 @@ struct Recorded {
   std::uint64_t stride;
 };
 
-// Which questions were asked, and which choices were made: 1 more than choice k in bits 4 k to 4 k + 3 of `path`. Its
-// bits 60 to 63 have 1 more than the verdict.
+// The questions that were asked, one bit each, and the choices: bits 4 k to 4 k + 3 of `path` are choice k plus 1. Bits
+// 60 to 63 are the verdict plus 1.
 struct RecordedPath {
   std::uint64_t asked = 0, path = 0;
 };

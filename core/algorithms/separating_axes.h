@@ -13,8 +13,8 @@ struct SeparatingAxes {
   static constexpr AlgorithmInfo kInfo{"separating_axes",
                                        "Gottschalk, Lin, Manocha 1996; Schneider and Eberly 2002, section 7.7",
                                        "the in-plane edge normals separate",
-                                       "says nothing; zero axes never separate, so degenerate pairs lack axes",
-                                       "depends in rounding",
+                                       "not mentioned; zero axes never separate, so degenerate pairs lack axes",
+                                       "changes rounding",
                                        true};
 
   template <class Real, class Policy = ExactZero>

@@ -103,10 +103,10 @@ struct Recorder {
   }
 };
 
-// none: every operation rounds. Otherwise a product that is added or subtracted is not rounded. Of two products, left
+// none: every operation rounds. Otherwise a sum or difference fuses a product among its terms. Of two products, left
 // fuses the left one, like g++ if it contracts them at all. nvcc fuses the one with fewer uses, else the left one, like
 // cuda/twin/generator/contraction.cpp. It fuses neither of two that scale by a quotient: in interval_overlap's
-// common_line, the only such place, nvcc moves the addition into another block. Rules guess: compare with the lane.
+// common_line, the only such place, nvcc moves the addition into another block. A rule may fail: compare with the lane.
 enum class Contraction { none, left, nvcc };
 
 inline namespace GRAZE_FP {
@@ -225,7 +225,7 @@ struct TracingPolicy {
   }
 };
 
-// Runs the algorithm (an index into Algorithms) on the pair with these numbers, led down the path.
+// Runs the algorithm (an index into Algorithms) on the pair with these numbers, forced along the path.
 template <class Number, Contraction contraction = Contraction::none>
 Trace<typename Recorder<Number>::Kept> run_traced(int algorithm, const Pair& pair, const Path& lead = {}) {
   using Real = Traced<Number, contraction>;

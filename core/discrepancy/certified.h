@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of twice a double's precision with a certified bound of their error, on host and device alike. What an
-// operation cannot keep is measured where it is a sum, so that the bound of an exact result is zero.
+// Numbers of twice a double's precision with a certified bound of their error, on host and device alike. The rounding
+// error of a sum is computed, not estimated, so that the bound of an exact result is zero.
 // References: T. J. Dekker, A floating-point technique for extending the available precision, Numerische Mathematik 18
-// (1971): errors of sums and products. `size` is that of core/lanes/with_magnitude.h.
+// (1971): errors of sums and products.
 // Requires: compiled without contraction, so that host and device give the same bits.
 #pragma once
 
@@ -13,15 +13,13 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// The true value lies in [hi + lo - bound, hi + lo + bound]. An infinite or NaN bound says nothing.
+// The true value lies in [hi + lo - bound, hi + lo + bound]. If the bound is infinite or NaN, nothing is known.
 struct Certified {
   double hi = 0, lo = 0, bound = 0;
-  double size = 0;  // of the quantities that it was computed from, in the value's unit; 0 if nothing was rounded
 
   Certified() = default;
   GRAZE_HD explicit Certified(double given) : hi(given) {}
-  GRAZE_HD Certified(const DoubleDouble& value, double error, double of_operands)
-      : hi(value.hi), lo(value.lo), bound(error), size(of_operands + fabs(value.hi)) {
+  GRAZE_HD Certified(const DoubleDouble& value, double error) : hi(value.hi), lo(value.lo), bound(error) {
     // Beyond these, an error of a sum or a quotient may itself overflow.
     if (!(fabs(hi) < 0x1p+1000)) bound = HUGE_VAL;
   }
@@ -40,13 +38,16 @@ namespace certified {
 // Rounds a sum of a few nonnegative terms up.
 GRAZE_HD inline double up(double bound) { return bound * (1 + 0x1p-48); }
 
-// What a product of doubles loses when its error is subnormal. Nothing is lost where a factor is zero.
+// Bound of the part of a product's error that underflows. It is zero if a factor is zero.
 GRAZE_HD inline double lost_below(double product, double x, double y) {
   return x != 0 && y != 0 && !(fabs(product) >= 0x1p-900) ? 0x1p-1060 : 0;
 }
 
 // |x| + |y| for the two parts of a number, rounded up.
 GRAZE_HD inline double above(const Certified& x) { return up(fabs(x.hi) + fabs(x.lo)); }
+
+// At most the number's size, which may be negative.
+GRAZE_HD inline double least_size(const Certified& x) { return (fabs(x.hi) - fabs(x.lo)) * (1 - 0x1p-48) - x.bound; }
 
 }  // namespace certified
 
@@ -63,7 +64,7 @@ GRAZE_HD inline Certified operator+(const Certified& x, const Certified& y) {
   const DoubleDouble middle = exact_sum(high.lo, low.hi), top = exact_sum(high.hi, middle.hi);
   const DoubleDouble rest = exact_sum(middle.lo, low.lo), below = exact_sum(top.lo, rest.hi);
   const DoubleDouble sum = exact_sum(top.hi, below.hi);
-  return {sum, certified::up(x.bound + y.bound + fabs(below.lo) + fabs(rest.lo)), x.size + y.size};
+  return {sum, certified::up(x.bound + y.bound + fabs(below.lo) + fabs(rest.lo))};
 }
 GRAZE_HD inline Certified operator-(const Certified& x, const Certified& y) { return x + -y; }
 
@@ -80,30 +81,28 @@ GRAZE_HD inline Certified operator*(const Certified& x, const Certified& y) {
                       lost_below(0, x.lo, y.lo);
   const double of_bounds =
       x.bound == 0 && y.bound == 0 ? 0 : above(x) * y.bound + above(y) * x.bound + x.bound * y.bound + 0x1p-1060;
-  return {top, up(rest + lost + of_bounds), fabs(x.hi) * y.size + fabs(y.hi) * x.size};
+  return {top, up(rest + lost + of_bounds)};
 }
 
-// The error is measured: what the quotient times the divisor lacks.
+// The error is computed from the remainder: the dividend minus the quotient times the divisor.
 GRAZE_HD inline Certified operator/(const Certified& x, const Certified& y) {
   using namespace certified;
   Certified quotient(x.hi / y.hi);
-  const double size = (x.size + fabs(quotient.hi) * y.size) / fabs(y.hi);
   const Certified first = x - quotient * y;
   const DoubleDouble better = double_double::exact_sum(quotient.hi, first.hi / y.hi);
   quotient.hi = better.hi;
   quotient.lo = better.lo;
   const Certified left = x - quotient * y;
-  const double least = (fabs(y.hi) - fabs(y.lo)) * (1 - 0x1p-48) - y.bound;
+  const double least = least_size(y);
   const double missing = above(left) + left.bound;
   const double bound = least > 0 ? missing == 0 ? 0 : up(missing / least) + 0x1p-1060 : HUGE_VAL;
-  return {better, bound, size};
+  return {better, bound};
 }
 
 GRAZE_HD inline Certified Certified::root() const {
   using namespace certified;
   if (is_exactly_zero()) return *this;
   Certified result(std::sqrt(hi));
-  const double of_operands = size == 0 ? 0 : size / (result.hi + result.hi);
   const Certified first = *this - result * result;
   const DoubleDouble better = double_double::exact_sum(result.hi, first.hi / (result.hi + result.hi));
   result.hi = better.hi;
@@ -113,7 +112,7 @@ GRAZE_HD inline Certified Certified::root() const {
   // |sqrt(x) - r| = |x - r r| / (sqrt(x) + r), and sqrt(x) > 0.
   const bool positive = hi - fabs(lo) - bound > 0;
   const double error = !positive ? HUGE_VAL : missing == 0 ? 0 : up(missing / (better.hi * (1 - 0x1p-48))) + 0x1p-1060;
-  return {better, error, of_operands};
+  return {better, error};
 }
 
 }  // namespace GRAZE_FP

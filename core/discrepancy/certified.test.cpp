@@ -14,7 +14,7 @@ using Rational = boost::multiprecision::cpp_rational;
 
 Rational exactly(const Certified& x) { return Rational(x.hi) + Rational(x.lo); }
 
-// A certified number with the rational that it stands for.
+// A certified number, and the rational number that it approximates.
 struct Both {
   Certified number;
   Rational truth;
@@ -40,7 +40,7 @@ class RandomNumbers {
   std::mt19937_64 random_{2012};
 };
 
-// Trees of operations whose leaves are doubles.
+// Computes a random tree of operations, whose leaves are doubles, in both kinds of numbers.
 Both tree(RandomNumbers& random, int depth, int exponents) {
   if (depth == 0) {
     const double x = random(exponents);

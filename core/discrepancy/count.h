@@ -8,7 +8,7 @@
 
 #include "core/algorithms/algorithms.h"
 #include "core/discrepancy/led.h"
-#include "core/margin/bucket.h"
+#include "core/margin/axis.h"
 
 namespace graze {
 
@@ -39,7 +39,7 @@ inline constexpr int kErrorNotFinite = kErrors - 2, kErrorUnknown = kErrors - 1;
 
 // A question's counts. Its sign is that of its value, or of the left value minus the right one.
 namespace question_counts {
-inline constexpr int kBands = 64, kLowestBand = -16;
+inline constexpr int kBands = 34, kLowestBand = -32;
 enum : int {
   asked,    // of both lanes, and compared
   differs,  // some value's bits differ
@@ -48,13 +48,14 @@ enum : int {
   outcome,  // the comparison goes the other way; of a question about one value: the sign differs
   verdict,  // of pairs with different verdicts: this is the first question with another outcome
   band,     // kBands: where the sign differs, the larger size of the two values, in bounds of the error, is
-            // 2^(k + kLowestBand) to the next power; the first and the last without end
-  band_unknown = band + kBands,  // the size has no finite bound
+            // 2^(k + kLowestBand) to the next power; the first without end. It is at most 2: each value is within a
+            // bound of the exact one, and they lie on both sides of zero
+  band_unknown = band + kBands,  // Unrounded has no bound
   kFields
 };
 }  // namespace question_counts
 
-// Counts of pairs by the site of a question; the last site is that of comparisons without an epsilon.
+// Counts of pairs by the site of a question. The last site stands for comparisons without an epsilon.
 namespace site_counts {
 enum : int { asked, differs, sign, kFields };
 }
@@ -71,9 +72,12 @@ enum : int {
 };
 }
 
-// The layout of an algorithm's counts.
-inline constexpr int kValuesAt = pair_counts::kFields + (kSiteCount + 1) * site_counts::kFields;
+// The layout of an algorithm's counts: those of pairs, by site, of pairs by their place on the stratum's axis, and by
+// question.
+inline constexpr int kPlacesAt = pair_counts::kFields + (kSiteCount + 1) * site_counts::kFields;
+inline constexpr int kValuesAt = kPlacesAt + kBucketCount * pair_counts::kFields;
 GRAZE_HD constexpr int site_at(int site) { return pair_counts::kFields + site * site_counts::kFields; }
+GRAZE_HD constexpr int place_at(int place) { return kPlacesAt + (place + kBucketMost) * pair_counts::kFields; }
 GRAZE_HD constexpr int question_at(int question) {
   return kValuesAt + question * (2 * value_counts::kFields + question_counts::kFields);
 }
@@ -82,8 +86,8 @@ GRAZE_HD constexpr int value_at(int question, int which) {
 }
 GRAZE_HD constexpr int counts_of(int questions) { return question_at(questions); }
 
-// Of each question the largest size at which a sign differs: in bounds of the error, and as a length in the unit of the
-// coordinates. Bits of nonnegative doubles, whose order is that of integers.
+// For each question, the largest size at which a sign differs: in bounds of the error, and as a length in the unit of
+// the coordinates. Stored as bits of nonnegative doubles, which are ordered like integers.
 namespace band_maxima {
 enum : int { in_bounds, length, kFields };
 }
@@ -121,6 +125,12 @@ GRAZE_HD int order_of(Real x, Real y) {
   return x < y ? -1 : x > y ? 1 : x == y ? 0 : 2;
 }
 
+// Whether `left < right`, or `left <= right`, is answered otherwise by values in the other order.
+GRAZE_HD inline bool answers_otherwise(int order, int other, bool at_most) {
+  const bool yes = order == -1 || (at_most && order == 0), other_yes = other == -1 || (at_most && other == 0);
+  return yes != other_yes;
+}
+
 // floor(log2(x)) of a positive number; of zero, less than of any other.
 GRAZE_HD inline int log2_of(const DoubleDouble& x) {
   const int k = floor_log2(x.hi);
@@ -136,12 +146,12 @@ GRAZE_HD int log2_ulp_of(const DoubleDouble& size) {
   return k < kLeast ? kLeast : k;
 }
 
-// The least and the greatest that a size may be.
+// Bounds of a size.
 struct SizeRange {
   DoubleDouble least, most;
 };
 
-// That of |x|. It rounds outward, and not at all where the bound is zero.
+// That of |x|. Rounds outward, but not if the bound is zero.
 GRAZE_HD inline SizeRange size_range(const Certified& x) {
   const double sign = x.hi < 0 ? -1 : 1;
   const DoubleDouble size(sign * x.hi, sign * x.lo);
@@ -164,7 +174,7 @@ GRAZE_HD inline int error_bucket(const DoubleDouble& size, int ulp) {
   return bucket < value_counts::kErrorNotFinite ? bucket : value_counts::kErrorNotFinite - 1;
 }
 
-// The bucket of the error, if its range lies within one bucket, whichever ulp the exact value has.
+// The bucket of the error, if its whole range lies within one bucket for every ulp that the exact value may have.
 template <class Real>
 GRAZE_HD int error_bucket(Real value, const Certified& exact) {
   using namespace value_counts;
@@ -176,7 +186,7 @@ GRAZE_HD int error_bucket(Real value, const Certified& exact) {
   return bucket == error_bucket(error.most, log2_ulp_of<Real>(size.least)) ? bucket : kErrorUnknown;
 }
 
-// How many ulps two finite numbers are apart.
+// The distance of two finite numbers in ulps.
 template <class Real>
 GRAZE_HD std::uint64_t apart(Real x, Real y) {
   const std::int64_t first = ordered_bits(x), second = ordered_bits(y);
@@ -184,7 +194,7 @@ GRAZE_HD std::uint64_t apart(Real x, Real y) {
                         : static_cast<std::uint64_t>(second) - static_cast<std::uint64_t>(first);
 }
 
-// Whether both runs made some choice, and made it otherwise. A run that ended earlier made fewer.
+// Whether the runs made some choice differently. A run that ended earlier made fewer choices.
 GRAZE_HD inline bool chose_otherwise(std::uint64_t first, std::uint64_t second) {
   for (int c = 0; c < kMostChoices; ++c) {
     const std::uint64_t x = first >> 4 * c & 15, y = second >> 4 * c & 15;
@@ -200,7 +210,7 @@ GRAZE_HD inline bool have_both(const RecordedPath& first, const RecordedPath& se
          !chose_otherwise(first.path, second.path);
 }
 
-// What the counting of one pair needs to know of a lane's run.
+// The data of a lane's run that counting one pair needs.
 template <class Real>
 struct Run {
   Recorded<const Real> values;
@@ -211,8 +221,8 @@ struct Run {
   }
 };
 
-// Sink: add(index) counts one more, most(question, which, size) keeps the largest. `degrees`: of each question, in
-// lengths.
+// Sink: add(index) adds one to a count, most(question, which, size) keeps the largest. degrees: for each question, the
+// power of a length that its values have.
 template <class Real, class Sink>
 class PairComparison {
  public:
@@ -224,35 +234,36 @@ class PairComparison {
   }
 
   // The policy's `found`.
-  GRAZE_HD void one(int question, int site, const Certified& exact) {
+  GRAZE_HD void one(int question, int site, const Unrounded& value) {
     if (!compared(question, site)) return;
     const Real x = lane_[0].value(question, 0), y = lane_[1].value(question, 0);
-    const bool differs = compare(question, 0, exact);
+    const bool differs = compare(question, 0, value.exact);
     const int sign = sign_of_value(x), other = sign_of_value(y);
-    conclude(question, site, differs, sign, other, sign != other, larger(fabs(x), fabs(y)), exact.size);
+    conclude(question, site, differs, sign, other, sign != other, larger(fabs(x), fabs(y)), value.rounding);
   }
-  GRAZE_HD void two(int question, int site, const Certified& left, const Certified& right, bool at_most) {
+  GRAZE_HD void two(int question, int site, const Unrounded& left, const Unrounded& right, bool at_most) {
     if (!compared(question, site)) return;
-    const bool left_differs = compare(question, 0, left), right_differs = compare(question, 1, right);
+    const bool left_differs = compare(question, 0, left.exact), right_differs = compare(question, 1, right.exact);
     const Real x[2] = {lane_[0].value(question, 0), lane_[0].value(question, 1)};
     const Real y[2] = {lane_[1].value(question, 0), lane_[1].value(question, 1)};
     const int order = order_of(x[0], x[1]), other = order_of(y[0], y[1]);
-    const bool outcome =
-        at_most ? (order == -1 || order == 0) != (other == -1 || other == 0) : (order == -1) != (other == -1);
     const double size = larger(fabs(static_cast<double>(x[0]) - static_cast<double>(x[1])),
                                fabs(static_cast<double>(y[0]) - static_cast<double>(y[1])));
-    conclude(question, site, left_differs || right_differs, order, other, outcome, size, left.size + right.size);
+    conclude(question, site, left_differs || right_differs, order, other, answers_otherwise(order, other, at_most),
+             size, left.rounding + right.rounding);
   }
 
-  // Counts the pair. Call it once, after all questions.
-  GRAZE_HD void finish() {
+  // Counts the pair among all (`at` is 0), or among those of its place. Call it after all questions.
+  GRAZE_HD void count_pair(int at) {
     using namespace pair_counts;
-    sink_.add(pairs);
-    if (some_differs_) sink_.add(pair_counts::differs);
-    if (some_sign_ || choice_differs_) sink_.add(pair_counts::sign);
-    if (some_outcome_ || choice_differs_) sink_.add(pair_counts::outcome);
-    if (choice_differs_) sink_.add(pair_counts::choice);
-    if (verdict_differs_) sink_.add(pair_counts::verdict);
+    sink_.add(at + pairs);
+    if (some_differs_) sink_.add(at + pair_counts::differs);
+    if (some_sign_ || choice_differs_) sink_.add(at + pair_counts::sign);
+    if (some_outcome_ || choice_differs_) sink_.add(at + pair_counts::outcome);
+    if (choice_differs_) sink_.add(at + pair_counts::choice);
+    if (verdict_differs_) sink_.add(at + pair_counts::verdict);
+  }
+  GRAZE_HD void count_sites() {
     for (int s = 0; s <= kSiteCount; ++s) {
       for (int f = 0; f < site_counts::kFields; ++f) {
         if (sites_ >> (s * site_counts::kFields + f) & 1) sink_.add(site_at(s) + f);
@@ -314,7 +325,7 @@ class PairComparison {
   }
 
   GRAZE_HD void conclude(int question, int site, bool differs, int sign, int other, bool outcome, double size,
-                         double of_operands) {
+                         double rounding) {
     using namespace question_counts;
     const int at = question_at(question);
     sink_.add(at + asked);
@@ -329,19 +340,18 @@ class PairComparison {
     mark(site, site_counts::sign);
     some_sign_ = true;
     if (sign == 0 || other == 0) sink_.add(at + zero_on_one_side);
-    count_band(question, size, of_operands);
+    count_band(question, size, rounding);
     if (!outcome) return;
     sink_.add(at + question_counts::outcome);
     if (verdict_differs_ && !some_outcome_) sink_.add(at + question_counts::verdict);
     some_outcome_ = true;
   }
 
-  GRAZE_HD void count_band(int question, double size, double of_operands) {
+  GRAZE_HD void count_band(int question, double size, double rounding) {
     using namespace question_counts;
-    constexpr double kUnit = sizeof(Real) == sizeof(float) ? 0x1p-24 : 0x1p-53;
     const int at = question_at(question);
-    const double in_bounds = size / (of_operands * kUnit);
-    if (!(in_bounds < HUGE_VAL) || !(size < HUGE_VAL)) return sink_.add(at + band_unknown);
+    const double in_bounds = size / rounding;
+    if (!(rounding < HUGE_VAL) || !(in_bounds < HUGE_VAL)) return sink_.add(at + band_unknown);
     int k = in_bounds > 0 ? floor_log2(in_bounds) - kLowestBand : 0;
     k = k < 0 ? 0 : k >= kBands ? kBands - 1 : k;
     sink_.add(at + band + k);
@@ -397,13 +407,26 @@ GRAZE_HD double extent_of(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3]) {
   return largest;
 }
 
-// Compares the runs of two lanes on one pair.
+// A pair from its coordinates in the lane's scalar.
+template <class Real>
+GRAZE_HD Pair narrowed(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3]) {
+  Pair pair;
+  for (int v = 0; v < 3; ++v) {
+    pair.a[v] = {static_cast<float>(a[v].x), static_cast<float>(a[v].y), static_cast<float>(a[v].z)};
+    pair.b[v] = {static_cast<float>(b[v].x), static_cast<float>(b[v].y), static_cast<float>(b[v].z)};
+  }
+  return pair;
+}
+
+// Compares the runs of two lanes on one pair. axis: that of the pair's stratum.
 template <class Algorithm, class Real, class Sink>
 GRAZE_HD void compare_runs(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Run<Real>& first,
-                           const Run<Real>& second, const std::uint8_t* degrees, Sink& sink) {
+                           const Run<Real>& second, const std::uint8_t* degrees, Axis axis, Sink& sink) {
   PairComparison<Real, Sink> comparison(first, second, degrees, extent_of(a, b), sink);
   run_led<Algorithm>(a, b, first.values, first.path, comparison);
-  comparison.finish();
+  comparison.count_pair(0);
+  comparison.count_sites();
+  if (axis != Axis::none) comparison.count_pair(place_at(place_on_axis(narrowed(a, b), axis)));
 }
 
 }  // namespace GRAZE_FP

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs an algorithm on certified numbers down the path that a lane's recorded run took. So each of its values is what
-// the lane would have had without rounding, with every comparison and every choice as the lane made it.
+// the lane would have had without rounding, with every comparison and every choice as the lane made it. Each also has a
+// bound of the error that rounding may cause in it.
+// Reference: N. J. Higham, Accuracy and Stability of Numerical Algorithms, second edition (2002), section 3.3: running
+// error analysis; here with the terms of second order, underflow and overflow.
 #pragma once
 
 #include "core/algorithms/recording.h"
@@ -9,16 +12,25 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// What a run shares: how far the least or greatest of several numbers may be from the true one, because their order is
-// in doubt. It adds to the bound of every later value.
+// Data of a whole run. If the order of some numbers is in doubt, `doubt` bounds the error of their least or greatest.
+// It adds to the bound of every later value.
 struct LedRun {
   double doubt = 0;
+};
+
+// What a value would be without rounding, and how far the computed one may be from it: with any of its products fused
+// or none, if each operation rounds to nearest. `rounding` is infinite if the computed value may overflow or have no
+// bound, or if the exact one is not settled.
+struct Unrounded {
+  Certified exact;
+  double rounding = 0;
 };
 
 // A certified number. If the lane compared it (`was_seen`), it also has the lane's value, which decides comparisons.
 template <class Real>
 struct Led {
   Certified exact;
+  mutable double rounding = 0;  // see Unrounded; comparisons raise it
   Real lane = 0;
   bool was_seen = false;
   LedRun* run = nullptr;
@@ -27,12 +39,31 @@ struct Led {
   GRAZE_HD explicit Led(int constant)
       : exact(static_cast<double>(constant)), lane(static_cast<Real>(constant)), was_seen(true) {}
   GRAZE_HD Led(Real coordinate, LedRun* r) : exact(static_cast<double>(coordinate)), run(r) {}
-  GRAZE_HD Led(const Certified& computed, const Led& l, const Led& r) : exact(computed), run(l.run ? l.run : r.run) {}
+  // `of_operands`: how far the operation moves the error of its operands. `lost`: at most by underflow.
+  GRAZE_HD Led(const Certified& computed, const Led& l, const Led& r, double of_operands, double lost)
+      : exact(computed), run(l.run ? l.run : r.run) {
+    const double size = size_of(exact), error = certified::up(of_operands * (1 + kUnit) + kUnit * size + lost);
+    rounding = size + error <= kLargest ? error : HUGE_VAL;
+  }
 
-  GRAZE_HD friend Led operator+(const Led& l, const Led& r) { return {l.exact + r.exact, l, r}; }
-  GRAZE_HD friend Led operator-(const Led& l, const Led& r) { return {l.exact - r.exact, l, r}; }
-  GRAZE_HD friend Led operator/(const Led& l, const Led& r) { return {l.exact / r.exact, l, r}; }
-  GRAZE_HD friend Led sqrt(const Led& x) { return {sqrt(x.exact), x, x}; }
+  GRAZE_HD friend Led operator+(const Led& l, const Led& r) {
+    return {l.exact + r.exact, l, r, l.rounding + r.rounding, 0};
+  }
+  GRAZE_HD friend Led operator-(const Led& l, const Led& r) {
+    return {l.exact - r.exact, l, r, l.rounding + r.rounding, 0};
+  }
+  GRAZE_HD friend Led operator/(const Led& l, const Led& r) {
+    const Certified quotient = l.exact / r.exact;
+    const double least = certified::least_size(r.exact) - r.rounding;
+    const double moved = least > 0 ? (l.rounding + size_of(quotient) * r.rounding) / least : HUGE_VAL;
+    return {quotient, l, r, moved, l.is_zero() ? 0 : kLost};
+  }
+  GRAZE_HD friend Led sqrt(const Led& x) {
+    const Certified root = sqrt(x.exact);
+    const bool positive = x.exact.hi > 0 && certified::least_size(x.exact) > x.rounding;
+    const double moved = x.is_zero() ? 0 : positive ? x.rounding / certified::least_size(root) : HUGE_VAL;
+    return {root, x, x, moved, 0};
+  }
   GRAZE_HD friend Led operator-(const Led& x) {
     Led result = x;
     result.exact = -x.exact;
@@ -41,7 +72,8 @@ struct Led {
   }
   // A product of values that the lane compares, like d0 * d1 > 0, is the lane's product: no contraction reaches it.
   GRAZE_HD friend Led operator*(const Led& l, const Led& r) {
-    Led result(l.exact * r.exact, l, r);
+    const double moved = size_of(l.exact) * r.rounding + size_of(r.exact) * l.rounding + l.rounding * r.rounding;
+    Led result(l.exact * r.exact, l, r, moved, l.is_zero() || r.is_zero() ? 0 : kLost);
     result.was_seen = l.was_seen && r.was_seen;
     if (result.was_seen) result.lane = l.lane * r.lane;
     return result;
@@ -64,22 +96,34 @@ struct Led {
   }
 
  private:
+  static constexpr bool kIsFloat = sizeof(Real) == sizeof(float);
+  static constexpr double kUnit = kIsFloat ? 0x1p-24 : 0x1p-53,
+                          kLargest = kIsFloat ? 0x1.fffffep+127 : 0x1.fffffffffffffp+1023;
+  // More than a product or quotient loses by underflow, and than the products of its bound do.
+  static constexpr double kLost = kIsFloat ? 0x1p-147 : 0x1p-1071;
+
+  // At least the number's size.
+  GRAZE_HD static double size_of(const Certified& x) { return certified::above(x) + x.bound; }
+  GRAZE_HD bool is_zero() const { return exact.is_exactly_zero() && rounding == 0; }
+
   // Values that the lane did not record are compared exactly: the least of several distances, for example. If their
-  // order is in doubt, the wrong one is off by at most what separates them.
+  // order is in doubt, the wrong one is off by at most what separates them. The lane may have taken the other one. So
+  // both get the larger rounding: that of a least or greatest value is at most the largest of all.
   template <class Comparison>
   GRAZE_HD static bool compare(const Led& l, const Led& r, const Comparison& comparison) {
     if (l.was_seen && r.was_seen) return comparison(l.lane, r.lane);
     const Certified difference = l.exact - r.exact;
     const double apart = certified::above(difference);
+    l.rounding = r.rounding = l.rounding < r.rounding ? r.rounding : l.rounding;
     LedRun* run = l.run ? l.run : r.run;
     if (!(apart > difference.bound) && !difference.is_exactly_zero()) run->doubt += apart + difference.bound;
     return comparison(difference.hi, 0.0);
   }
 };
 
-// The policy of such a run. `found(question, site, left, right)` gets the certified values of each question that the
-// lane was asked; `right` is null for a question about one value. site: kSiteCount for one that the source compares
-// itself.
+// The policy of such a run. `found` gets each question that the lane was asked: one(question, site, value) or
+// two(question, site, left, right, at_most), with values as Unrounded. site: kSiteCount for one that the source
+// compares itself.
 template <class Real, class Found>
 struct LedPolicy {
   Recorded<const Real> lane;
@@ -92,9 +136,12 @@ struct LedPolicy {
   GRAZE_HD Real value(int question, int which) const {
     return lane.values[(2 * static_cast<unsigned>(question) + static_cast<unsigned>(which)) * lane.stride];
   }
-  GRAZE_HD Certified certain(const Number& x) const {
-    Certified result = x.exact;
-    if (run->doubt != 0) result.bound = certified::up(result.bound + run->doubt);
+  GRAZE_HD Unrounded certain(const Number& x) const {
+    Unrounded result{x.exact, x.rounding};
+    if (run->doubt != 0) {
+      result.exact.bound = certified::up(result.exact.bound + run->doubt);
+      result.rounding = certified::up(result.rounding + run->doubt);
+    }
     return result;
   }
   GRAZE_HD Number replaced(const Number& x, int question) const {

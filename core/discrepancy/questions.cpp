@@ -17,11 +17,11 @@ std::string indexed(std::string name, int i, int j, const char* part) {
   return indexed(std::move(name), i, j) + "." + part;
 }
 
-// What an algorithm's `list` calls.
+// Collects the questions that an algorithm's `list` names.
 struct List {
   std::vector<Question> questions;
 
-  // Three of b's vertices to the plane of a, then three of a's to that of b.
+  // The distances of b's vertices from a's plane, then of a's vertices from b's plane.
   void plane_distances() {
     for (const char* triangle : {"b", "a"}) {
       for (int i = 0; i < 3; ++i) value(Site::plane_distance, 3, triangle, i);
@@ -35,7 +35,7 @@ struct List {
   void own(int degree, const char* of, Index... index) {
     add_value(kSiteCount, degree, indexed(of, index...));
   }
-  // Of range.h's overlap: two questions.
+  // The two questions of `overlap` in range.h.
   template <class... Index>
   void overlap(int degree, const char* axis, Index... index) {
     const std::string on = indexed(axis, index...);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The questions of each algorithm to its policy, by number, with stable names. Each algorithm lists its own in the
-// order of their numbers, see `list` at its end.
+// The questions of each algorithm to its policy, by number, with stable names. Each algorithm lists its questions in
+// the order of their numbers, in `list` at the end of its struct.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ std::string_view site_name(int site);
 // By number.   Requires: an index into Algorithms.
 const std::vector<Question>& questions_of(int algorithm);
 
-// Of each question, for core/discrepancy/count.h.
+// The degree of each question, for core/discrepancy/count.h.
 std::vector<std::uint8_t> degrees_of(int algorithm);
 
 }  // namespace graze

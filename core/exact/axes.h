@@ -8,7 +8,7 @@
 
 namespace graze::exact::detail {
 
-// What the axes examined so far have shown.
+// The findings of the axes examined so far.
 struct AxisEvidence {
   bool separated = false;
   bool touching = false;            // the origin lies on a face of D that is not all of D

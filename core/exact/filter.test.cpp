@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The filter exists with SSE2 and without. Both must find the same for every pair, and only what is true.
+// The filter exists with SSE2 and without. Both versions must return the same finding for every pair, and a true one.
 #include <gtest/gtest.h>
 
 #include <algorithm>

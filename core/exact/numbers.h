@@ -81,8 +81,8 @@ struct NumberKinds {
 
   GRAZE_HD static bool hold(const Grid& grid) { return (Kind::holds(grid) || ... || Larger::holds(grid)); }
 
-  // Calls visit(kind) with the first kind that holds the grid. The last kind is not asked whether it does.
-  // Requires: hold(grid).   Returns: what the call returned.
+  // Calls visit(kind) with the first kind that holds the grid. The last kind is not tested, because it must hold it.
+  // Requires: hold(grid).   Returns: the result of visit.
   template <class Visit>
   GRAZE_HD static auto visit(const Grid& grid, const Visit& visit) {
     if constexpr (sizeof...(Larger) > 0) {

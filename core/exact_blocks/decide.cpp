@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uses Google Highway: compiled for each instruction set; the best one is chosen at run time. Sets may round
-// differently, as some contract. Decisions beyond the error bound do not depend on that; all others are exact.
+// Uses Google Highway: compiled for each instruction set; the best one is chosen at run time. Instruction sets may
+// round differently, because some contract. Decisions beyond the error bound do not depend on that; all others are
+// exact.
 #ifdef __wasm__
 #include "core/exact_blocks/one_by_one.h"
 

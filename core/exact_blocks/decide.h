@@ -7,8 +7,8 @@
 
 namespace graze::exact {
 
-// Bit i % 64 of word i / 64 of `intersects`: whether the closed triangles of pair i share a point. That bit of
-// `declined`: whether a coordinate of pair i is not finite; its bit in `intersects` is then zero. pairs: 18 floats
+// Bit i % 64 of word i / 64 of `intersects`: whether the closed triangles of pair i share a point. The same bit of
+// `declined`: whether a coordinate of pair i is not finite; the bit of `intersects` is then zero. pairs: 18 floats
 // each, x y z of a's vertices and then of b's. Bits beyond `count` become zero. It decides eight pairs at a time with
 // AVX-512, four with AVX2, else one by one.
 // Exact: always, like intersects() of core/exact/exact.h, which decides one pair.

@@ -65,8 +65,8 @@ std::vector<float> drawn(std::size_t pairs, auto coordinate) {
   return all;
 }
 
-// Near contacts of a vertex and a face, of two edges, and of coplanar triangles: with ever smaller gaps, none, and the
-// same depths. The grids have all sizes, and each contact is closer than a coarser grid can show.
+// Near contacts of a vertex and a face, of two edges, and of coplanar triangles. Gaps and depths get smaller and
+// smaller, so that each pair needs its own grid, and all sizes of grids occur.
 std::vector<float> near_contacts() {
   std::vector<float> all;
   for (int exponent = 0; exponent >= -90; --exponent) {

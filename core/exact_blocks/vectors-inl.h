@@ -238,7 +238,7 @@ struct Ends {
   }
 };
 
-// Whether an axis separates: the origin lies on one side of all its differences.
+// Whether an axis separates the triangles, which it does if all differences along it have the same sign.
 struct Axes {
   M separated;
   V least, most;  // least and greatest difference of all axes

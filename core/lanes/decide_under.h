@@ -27,7 +27,7 @@ GRAZE_HD bool certainly_proper(const Vec3<WithErrorBound<Real>> (&v)[3]) {
   return normal.x.is_nonzero() || normal.y.is_nonzero() || normal.z.is_nonzero();
 }
 
-// The exact verdict, or declined. One axis that certainly separates is enough, whatever else is in doubt.
+// The exact verdict, or declined. One axis that certainly separates is enough, even if everything else is in doubt.
 // Exact: for algorithms that are right without rounding.
 template <class Algorithm, class Real>
 GRAZE_HD Verdict decide_bounded(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3]) {

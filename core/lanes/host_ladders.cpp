@@ -11,8 +11,8 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// Decides like rung `at`, and finds the next rung for which some comparison of this decision has another outcome. For
-// all rungs before that one the verdict is the same, because all comparisons are.
+// Decides like rung `at`, and finds the next rung for which some comparison of this decision has another outcome. On
+// all rungs before it, all comparisons and therefore the verdict are the same.
 template <class Real>
 class Climb {
  public:

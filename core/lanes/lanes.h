@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lane table: one row for each way to decide a pair. A name is `subject/scalar/variant`, plus `/policy` unless
-// zero. A row states what the lane is and can do; its position in the table has no meaning.
+// zero. A row describes the lane and its abilities; its position in the table has no meaning.
 #pragma once
 
 #include <cstddef>
@@ -109,8 +109,8 @@ struct Lane {
   LaneName lane_name() const;
 };
 
-// All lanes, subject by subject: f32 before f64, then in the order of the variants. Of our lanes the exact ones come
-// last; lanes of foreign code follow them.
+// All lanes, subject by subject: f32 before f64, then in the order of the variants. The exact lanes come after the
+// published algorithms, and lanes of foreign code after these.
 std::span<const Lane> lanes();
 
 // Adds the lanes of a foreign subject permanently.   Requires: no other thread uses lanes meanwhile.

@@ -54,7 +54,7 @@ void set(std::string_view whole, std::string_view text, std::optional<Site> site
   double value = 0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
   if (error != std::errc() || end != number.data() + number.size() || !std::isfinite(value) || std::signbit(value))
-    refuse(whole, ": " + shown(number) + " is no number of at least 0");
+    refuse(whole, ": " + shown(number) + " is not a number of at least 0");
   double(&of_sites)[kSiteCount] = relative ? epsilons.relative : epsilons.absolute;
   for (int s = 0; s < kSiteCount; ++s) {
     if (!site || static_cast<int>(*site) == s) of_sites[s] = value;
@@ -79,7 +79,7 @@ Policy parse_policy(std::string_view text, const AlgorithmInfo& info) {
       any = true;
     }
     if (!any)
-      refuse(text, ": the paper of " + std::string(info.id) + " compares with zero, as the lane without a policy");
+      refuse(text, ": the paper of " + std::string(info.id) + " compares with zero, like the lane without a policy");
     return policy;
   }
   if (text.find('=') == text.npos) {

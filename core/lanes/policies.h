@@ -24,7 +24,7 @@ struct Policy {
   Epsilons epsilons;  // for the kind tolerances
 };
 
-// Throws: UsageError that says what was expected and found, or why the algorithm has no such policy.
+// Throws: UsageError for an invalid text, or with the reason why the algorithm has no such policy.
 Policy parse_policy(std::string_view text, const AlgorithmInfo& info);
 
 }  // namespace graze

@@ -38,7 +38,7 @@ Pair apart(float scale) {
   return pair;
 }
 
-// A vertex of b at 2^-k of the size from the inside of a; b stands upright on it.
+// b stands upright above a; its lowest vertex is 2^-k of the size away from a's interior.
 Pair above(int k, float scale) {
   const float gap = std::ldexp(1.0f, -k);
   Pair pair{{{0, 0, 0}, {3, 0, 1}, {0, 3, 1}}, {{0.75f, 0.75f, 0.5f + gap}, {1, 2, 4}, {2, 1, 4}}};
@@ -140,7 +140,7 @@ TEST(Policies, RefuseWhatTheyDoNotKnow) {
   EXPECT_EQ(refusal("moller_1997/f32/cpu/parallel=abs:1,parallel=abs:2"),
             forms + "\"parallel=abs:1,parallel=abs:2\": it gives parallel=abs twice; leave one out");
   EXPECT_EQ(refusal("separating_axes/f32/cpu/paper"),
-            forms + "\"paper\": the paper of separating_axes compares with zero, as the lane without a policy");
+            forms + "\"paper\": the paper of separating_axes compares with zero, like the lane without a policy");
   EXPECT_EQ(refusal("projected_sat/f32/cpu/bound"),
             forms + "\"bound\": projected_sat is wrong on some pairs without any rounding, so no bound helps it");
   EXPECT_EQ(

@@ -9,8 +9,8 @@
 
 namespace graze {
 
-// Of pair i the value (question, which) is at values[(2 question + which) * stride + i], in the lane's scalar. Values
-// of questions that were not asked keep what they were.
+// The value (question, which) of pair i is at values[(2 question + which) * stride + i], in the lane's scalar. Values
+// of questions that were not asked stay unchanged.
 struct Records {
   void* values;
   std::uint64_t stride;  // at least the number of pairs
@@ -19,7 +19,7 @@ struct Records {
 
 using RecordBlock = void (*)(const Pair* pairs, std::size_t count, const Records& to);
 
-// Null for lanes of devices, of foreign code, of exact decisions and of policies.
+// Null for CUDA lanes, foreign code, exact lanes and lanes under a policy.
 RecordBlock host_record(const Lane& lane);
 
 }  // namespace graze

@@ -18,7 +18,7 @@ struct VerdictBits {
   std::vector<std::uint64_t> intersects, declined;
 };
 
-// Decides the pairs. The block is not called if there are none.
+// Decides the pairs. Does not call the block function if there are none.
 void decide(const DecideBlock& block, std::span<const Pair> pairs, VerdictBits& to);
 
 // What a lane's bits say.
@@ -33,7 +33,7 @@ struct LaneVerdicts {
   }
 };
 
-// The verdict on each pair. The block is not called if there are no pairs.
+// The verdict on each pair. Does not call the block function if there are no pairs.
 std::vector<Verdict> verdicts_of(const DecideBlock& block, std::span<const Pair> pairs);
 
 // The verdict of that name; nothing if there is none.

@@ -123,8 +123,8 @@ struct WithErrorBound {
     return result;
   }
 
-  // Whether the two exact quantities compare as their values do. Equal values do if both are exact. Others do if they
-  // are further apart than their bounds and the rounding of these sums.
+  // Whether the exact quantities have the same order as their values. Equal values do if both are exact. Others do if
+  // they differ by more than their bounds and the rounding here.
   GRAZE_IN_PLACE GRAZE_HD static bool is_settled(const WithErrorBound& x, const WithErrorBound& y) {
     const Real gap = magnitude(x.value - y.value), errors = (x.error + y.error) * kSlack;
     return (gap * (Real(1) - 4 * kUnit) > errors + kTiny && gap <= kLargest) ||
@@ -148,8 +148,8 @@ GRAZE_HD int dominant_axis(const Vec3<WithErrorBound<Real>>& v) {
   return axis;
 }
 
-// The exact least and greatest of three quantities lie within the largest bound of the least and the greatest value. It
-// need not be settled which of the three it is.
+// The exact least and greatest of three quantities lie within the largest bound of the least and the greatest value.
+// Which of the three it is may stay unknown.
 template <class Real>
 GRAZE_HD Range<WithErrorBound<Real>> project(const Vec3<WithErrorBound<Real>>& direction,
                                              const Vec3<WithErrorBound<Real>> (&v)[3]) {
@@ -166,7 +166,7 @@ GRAZE_HD Range<WithErrorBound<Real>> project(const Vec3<WithErrorBound<Real>>& d
   return range;
 }
 
-// False only if that is certain. If nothing is certain, it is true and raises a doubt.
+// False only if the ranges are certainly disjoint. If neither answer is certain, returns true and raises a doubt.
 template <class Real>
 GRAZE_HD bool overlap(const Range<WithErrorBound<Real>>& s, const Range<WithErrorBound<Real>>& t, const ExactZero&,
                       int /*question*/) {

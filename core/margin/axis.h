@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Axes: quantities that a few strata vary besides the margin, namely the coordinates' scale or their distance from the
-// origin. Host and device count by a small integer, the place on the axis, as they count margins by bucket.
+// origin. Pairs are counted by their place on the axis, a small integer, just as margins are counted by bucket.
 #pragma once
 
 #include <cstdint>

@@ -6,7 +6,7 @@
 
 #include "core/vec3.h"
 
-// Unrolls loops over arrays that should stay in registers, because registers cannot be indexed.
+// Unrolls loops over arrays, so that a device keeps them in registers, which cannot be indexed.
 #ifdef __CUDA_ARCH__
 #define GRAZE_UNROLL _Pragma("unroll")
 #else

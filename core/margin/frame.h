@@ -106,7 +106,7 @@ GRAZE_HD Vec3<Real> accurate_cross(const Vec3<Real>& u, const Vec3<Real>& v) {
           difference_of_products(u.x, v.y, u.y, v.x)};
 }
 
-// Direction number d of core/margin/directions.h. Its length carries no meaning.
+// Direction number d of core/margin/directions.h. Its length is arbitrary.
 template <class Real>
 GRAZE_HD Vec3<Real> direction(const MarginFrame<Real>& f, int d) {
   if (d == kNormalA) return accurate_cross(f.edge_a[0], f.edge_a[1]);

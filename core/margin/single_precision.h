@@ -37,7 +37,7 @@ GRAZE_HD inline bool fits_single(const Vec& extent) {
 
 GRAZE_HD inline bool bucket_of(const MarginBounds& bounds, Verdict verdict, int log2_ulp, Bucket& bucket) {
   // Differences of scaled coordinates may be as small as 2^-277. Squared lengths do not underflow, but larger products
-  // may. Then lo is no bound; it also is not between 0 and the connection's length, so this returns false.
+  // may. Then lo is not a bound, but it is not between 0 and the connection's length either, so this returns false.
   return bounds.lo > 0 && bounds.lo <= bounds.hi && bounds.hi < INFINITY &&
          bucket_from_bounds(bounds, verdict, log2_ulp, bucket);
 }

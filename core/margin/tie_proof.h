@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Proves in integers that a distance is at least a given power of two. It is for distances that are a power of two of
-// an ulp, up to rounding: only these remain undecided after the bounds of core/margin/margin.h.
+// Proves in integers that a distance is at least a given power of two. It is needed for distances very close to an ulp
+// times a power of two, which the bounds of core/margin/margin.h leave undecided.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bounds of margins are exactly as far apart as their comments derive, alone and in vectors of every instruction set. A
-// bound without one of the roundings would hold on all pairs that a test can draw. One with a rounding too many would
-// show nowhere.
+// The bounds of margins must be exactly as wide as their comments derive, in scalar code and for every instruction set.
+// No random pair would show a bound that counts one rounding too few or too many.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -77,7 +76,7 @@ void on_every_target(const Pair& pair, Verdict verdict, const Check& check) {
 
 constexpr Verdict kApart = Verdict::disjoint, kMeet = Verdict::intersects;
 
-// A pair of margin 1 and the sum of its terms' magnitudes, as distance.h and depth.h define them.
+// A pair of margin 1, and the sum of its terms' magnitudes as distance.h and depth.h define it.
 struct Unit {
   const char* what;
   Verdict verdict;
@@ -116,7 +115,8 @@ TEST(MarginBounds, AreAsFarApartAsTheErrorsDerived) {
   }
 }
 
-// A depth of 3 along (1, 2, 2): a vertex of b under a's face. The error is that of a's first vertex and b's lowest.
+// A depth of 3 along (1, 2, 2): a vertex of b under a's face. The error comes from a's first vertex and b's lowest
+// vertex.
 TEST(MarginBounds, OfADepthAreSeenFromTheFirstVertexOfAFace) {
   const Vec3<float> face[3] = {{0, 0, 0}, {18, 9, -18}, {18, -18, 9}},
                     over[3] = {{7, -4, -4}, {49, 80, -10}, {48, -12, 78}};
@@ -135,7 +135,8 @@ TEST(MarginBounds, OfADepthAreSeenFromTheFirstVertexOfAFace) {
   }
 }
 
-// An edge of a with each of b's edges gives the axis z, with the same depth of 1 as b's face, as the difference 4 - 3.
+// The cross product of an edge of a with any edge of b is along z. Its depth of 1 equals that of b's face, and is
+// computed as 4 - 3.
 TEST(MarginBounds, OfADepthCountTheErrorOfTheThirdVertex) {
   const Pair pair{{{-8, 0, -3}, {8, 0, -3}, {0, 0, 1}}, {{-8, -8, 0}, {8, -8, 0}, {0, 8, 0}}};
   const MarginBounds bounds = margin_bounds(pair, kMeet);
@@ -157,7 +158,7 @@ TEST(MarginBounds, InVectorsKnowWhichDifferencesAreExact) {
   expect_exact(0x1.000002p-99f, 0x1p-149f, false);
 }
 
-// A coplanar, disjoint pair: with the verdict of another pair it would be taken for a touching pair.
+// A coplanar, disjoint pair would count as touching if it got the other pair's verdict.
 TEST(MarginBounds, InVectorsLeaveOtherPairsAlone) {
   const Pair pairs[] = {{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{5, 0, 0}, {9, 0, 0}, {5, 4, 0}}}, kUnits[6].pair};
   const std::uint64_t intersects = 2;

@@ -47,7 +47,8 @@ HWY_INLINE Coordinates coordinates_at(const float* pairs, const Numbers& numbers
   return Coordinates(where);
 }
 
-// Writes the buckets that the bounds decide. squares: they bound the margins' squares.   Returns: which it wrote.
+// Writes the buckets that the bounds decide. squares: whether the bounds are of the squared margins.   Returns: which
+// it wrote.
 HWY_INLINE unsigned settle(const Bounds& bounds, bool squares, V largest, std::int64_t sign, const Numbers& numbers,
                            unsigned which, Bucket* buckets) {
   const auto log2 = [&](V x) HWY_ATTR { return squares ? hn::ShiftRight<1>(floor_log2_of(x)) : floor_log2_of(x); };

@@ -32,7 +32,7 @@ Child::Child(const std::function<void(int pipe)>& work) {
   const std::lock_guard lock(starting);
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
-    throw std::system_error(errno, std::generic_category(), "no pipe to another process");
+    throw std::system_error(errno, std::generic_category(), "cannot make a pipe to another process");
   const pid_t parent = getpid();
   process_ = fork();
   const int error = errno;  // fork's errno, if it failed

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A child of this process for work that may crash or never end. What it writes arrives through a pipe.
+// A child of this process for work that may crash or never end. Its output arrives through a pipe.
 #pragma once
 
 #include <sys/types.h>
@@ -18,7 +18,7 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  // The end to read from. Its end of file says that the child has closed the other one.
+  // The end of the pipe to read from. It reaches end of file when the child closes its own end.
   int pipe() const { return pipe_; }
   void kill() const;
   // Waits for its end.   Returns: whether it exited with 0.

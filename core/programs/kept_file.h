@@ -9,10 +9,10 @@
 
 namespace graze {
 
-// Renames `made` to `kept`, and replaces a file there.   Throws: std::runtime_error, after it has removed `made`.
+// Renames `made` to `kept`, replacing an old file.   Throws: std::runtime_error, after it has removed `made`.
 void move_over(const std::filesystem::path& made, const std::filesystem::path& kept);
 
-// Appends the checksum to `made` and renames it to `kept`: nobody sees a part of it.   Throws: std::runtime_error.
+// Appends the checksum to `made`, then renames it to `kept`. No reader sees a partial file.   Throws: as move_over.
 void keep_file(const std::filesystem::path& made, const std::filesystem::path& kept);
 
 // Returns: the content as it was kept; nothing if the file is missing or was changed.

@@ -46,7 +46,7 @@ Scratch::Scratch(const fs::path& within) {
   for (const fs::directory_entry& entry : fs::directory_iterator(within, none)) {
     if (entry.path().filename().string().starts_with("unfinished-")) remove_if_left(entry);
   }
-  // Another process may take a folder for one that was left, until it is locked.
+  // Until the folder is locked, another process may remove it as a leftover.
   do {
     if (lock_ >= 0) close(lock_);
     std::string name = (within / "unfinished-XXXXXX").string();
@@ -76,10 +76,10 @@ int run_program(const Program& program, const fs::path& scratch, std::string& ou
   for (const std::string& word : program.words) text += (text.empty() ? "" : " ") + word;
   int status = -1;
   if (supervisor.receive(&status, sizeof status) != sizeof status)
-    throw std::runtime_error(shown(text) + ": expected its end, found that its supervisor was ended");
+    throw std::runtime_error(shown(text) + ": its supervisor ended before it did");
   if (status < 0)
-    throw std::runtime_error(shown(text) + ": expected an end within " + rounded_up(program.seconds, 4) +
-                             " s, found none; it was killed");
+    throw std::runtime_error(shown(text) + ": not finished within " + rounded_up(program.seconds, 4) +
+                             " s, so it was killed");
   std::ifstream in(log, std::ios::binary);
   output.assign(std::istreambuf_iterator<char>(in), {});
   return status;

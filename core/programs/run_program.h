@@ -9,8 +9,8 @@
 
 namespace graze {
 
-// A new folder for files on their way, removed with its owner. Removes those whose owner was killed: nobody holds their
-// lock. Where the file system has no locks, those of a day ago.
+// A new folder for unfinished files, which the destructor removes. The constructor removes folders of killed owners:
+// those that nobody locks, or, on a file system without locks, those older than a day.
 class Scratch {
  public:
   explicit Scratch(const std::filesystem::path& within);

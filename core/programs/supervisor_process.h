@@ -15,12 +15,12 @@ inline constexpr char kAlive = 1;
 
 class SupervisorProcess {
  public:
-  // program: its file's name, in the folder of the running program. It has its end of a socket as descriptor 3, and
-  // those of `shared` from 4 on. It writes to `output`, or to /dev/null for -1.   Throws: std::system_error.
+  // program: its file name, in the folder of the running program. It gets its end of a socket as descriptor 3, and the
+  // descriptors `shared` from 4 on. output: where it writes; -1 for /dev/null.   Throws: std::system_error.
   SupervisorProcess(const std::string& program, const std::vector<std::string>& arguments,
                     const std::vector<int>& shared, int output);
-  // The supervisor ends all that it started when the socket closes. One that does not end within 6 s is killed; after a
-  // request to stop, it is left to end by itself after 1 s.
+  // Closes the socket, after which the supervisor ends everything that it started. Kills a supervisor that has not
+  // ended after 6 s. After a request to stop, waits 1 s only and then leaves it to end by itself.
   ~SupervisorProcess();
   SupervisorProcess(const SupervisorProcess&) = delete;
   SupervisorProcess& operator=(const SupervisorProcess&) = delete;

@@ -8,7 +8,7 @@
 
 namespace graze::cuda {
 
-// Reads a published value. What the publishing thread wrote before it is visible too.
+// Reads a published value. Everything that the publishing thread wrote before is visible too.
 GRAZE_HD inline std::uint64_t load_published(const std::uint64_t* at) {
 #ifdef __CUDA_ARCH__
   std::uint64_t value;

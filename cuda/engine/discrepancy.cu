@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::uint32_t kPairsAtOnce = 1u << 20;
 
-// Adds of a warp's threads to one place become one.
+// If several threads of a warp add to one counter, one atomic operation adds their sum.
 struct DeviceSink {
   std::uint64_t *counts, *maxima;
 
@@ -51,7 +51,7 @@ struct DeviceRecords {
 
 template <int algorithm, class Real>
 __global__ void __launch_bounds__(128)
-    compare_pairs(DevicePairs pairs, DeviceRecords first, DeviceRecords second, const std::uint8_t* degrees,
+    compare_pairs(DevicePairs pairs, DeviceRecords first, DeviceRecords second, const std::uint8_t* degrees, Axis axis,
                   std::uint64_t* counts, std::uint64_t* maxima, std::uint64_t* unlike) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= pairs.count) return;
@@ -71,18 +71,19 @@ __global__ void __launch_bounds__(128)
       atomicAdd(reinterpret_cast<unsigned long long*>(unlike + lane), 1ull);
   }
   DeviceSink sink{counts, maxima};
-  compare_runs<std::tuple_element_t<algorithm, Algorithms>>(t.a, t.b, runs[0], runs[1], degrees, sink);
+  compare_runs<std::tuple_element_t<algorithm, Algorithms>>(t.a, t.b, runs[0], runs[1], degrees, axis, sink);
 }
 
 using LaunchCompare = void (*)(DevicePairs pairs, const DeviceRecords& first, const DeviceRecords& second,
-                               const std::uint8_t* degrees, std::uint64_t* counts, std::uint64_t* maxima,
+                               const std::uint8_t* degrees, Axis axis, std::uint64_t* counts, std::uint64_t* maxima,
                                std::uint64_t* unlike);
 
 template <int algorithm, class Real>
 void launch_compare(DevicePairs pairs, const DeviceRecords& first, const DeviceRecords& second,
-                    const std::uint8_t* degrees, std::uint64_t* counts, std::uint64_t* maxima, std::uint64_t* unlike) {
+                    const std::uint8_t* degrees, Axis axis, std::uint64_t* counts, std::uint64_t* maxima,
+                    std::uint64_t* unlike) {
   compare_pairs<algorithm, Real>
-      <<<(pairs.count + 127) / 128, 128>>>(pairs, first, second, degrees, counts, maxima, unlike);
+      <<<(pairs.count + 127) / 128, 128>>>(pairs, first, second, degrees, axis, counts, maxima, unlike);
 }
 
 template <int... algorithm>
@@ -90,7 +91,7 @@ constexpr DeviceKernels<LaunchCompare> launchers(std::integer_sequence<int, algo
   return {std::array<LaunchCompare, 2>{launch_compare<algorithm, float>, launch_compare<algorithm, double>}...};
 }
 
-// A thread for each pair: the hash of its path and of the values of its questions.
+// Each thread hashes one pair: its path and the values of its questions.
 template <class Word>
 __global__ void hash_runs(const Word* values, std::uint64_t stride, const RecordedPath* paths, std::uint32_t count,
                           std::uint64_t two_values, std::uint64_t* hashes) {
@@ -98,10 +99,10 @@ __global__ void hash_runs(const Word* values, std::uint64_t stride, const Record
   if (i < count) hashes[i] = run_hash(values + i, stride, paths[i], two_values);
 }
 
-// The lane whose kernels give the lane's values.
+// The CUDA lane whose kernels compute this lane's values.
 const Lane& on_device(const Lane& lane) { return lane.is_cuda() ? lane : *counterpart(lane, Variant::cuda_nofma); }
 
-// Questions about two values, as bits.
+// The set of questions about two values, one bit for each question.
 std::uint64_t two_values_of(int algorithm) {
   std::uint64_t bits = 0;
   const std::vector<Question>& questions = questions_of(algorithm);
@@ -179,7 +180,7 @@ void count_discrepancies(const Lane& first, const Lane& second, const strata::Pa
   DeviceRun runs[2] = {DeviceRun(first), DeviceRun(second)};
   for_each_block(source, [&](DevicePairs pairs) {
     const DeviceRecords of_first = runs[0].record(pairs, exact), of_second = runs[1].record(pairs, exact);
-    compare(pairs, of_first, of_second, degrees_on_device.at_least(0), places[0], places[1], places[2]);
+    compare(pairs, of_first, of_second, degrees_on_device.at_least(0), source.axis, places[0], places[1], places[2]);
   });
   for (int p = 0; p < 3; ++p)
     check(cudaMemcpy(parts[p].data(), places[p], parts[p].size_bytes(), cudaMemcpyDeviceToHost));

@@ -11,13 +11,13 @@
 
 namespace graze::cuda {
 
-// Where counts are added to; see DiscrepancyCounts in analysis/discrepancy.h.
+// The memory to which counts are added; see DiscrepancyCounts in analysis/discrepancy.h.
 struct DiscrepancySums {
   std::span<std::uint64_t> counts, maxima, unlike;
 };
 
 // Whether the lane's values can be recorded on a device: a published CUDA lane that is built, or a host lane without
-// contraction. Its values have the bits of cuda-nofma, whose kernels run in its place; count_different_runs checks it.
+// contraction. The kernels of cuda-nofma compute a host lane's values; count_different_runs checks them.
 bool records_on_device(const Lane& lane);
 
 // Compares both lanes on all pairs of the source.   Requires: records_on_device of both; the algorithm and the scalar

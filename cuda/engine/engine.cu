@@ -131,7 +131,7 @@ class CudaEngine final : public DeviceEngine {
     check(cudaEventSynchronize(buffers.done));  // limits the blocks in progress to the number of buffers
     drawing_.draw(source, block.first, block.pairs.count, buffers.coordinates.at_least(0), stream);
     std::uint32_t* truth = buffers.truth.at_least(0);
-    // Pairs are finite, so nothing is declined. `wrong` serves as the unused output until it is written.
+    // Pairs are finite, so nothing is declined. `wrong` receives the unused declined bits, and is overwritten later.
     buffers.exact.decide(block.pairs, truth, block.wrong, nullptr, stream);
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
       const LaneWords& words = buffers.lanes_on_host[l];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the engine does with a block of pairs, step by step: the same code on a device, where each step is a kernel, and
 // on the host. Every pair gets its margin's bucket, from the cheapest bounds that decide it: each step lists what it
-// leaves for the next, so that a warp does not wait for one hard pair in 32. Those on which a lane is wrong, and those
+// leaves for the next, so that a warp does not wait for one hard pair in 32. Pairs on which a lane is wrong, and pairs
 // whose margin may be zero, get their relation. Then everything is counted.
 #pragma once
 
@@ -88,7 +88,7 @@ struct BreakTie {
   }
 };
 
-// Whether the pair's signatures are counted here: the host has those whose bucket is not known.
+// Whether the pair's signatures are counted here. Pairs without a known bucket go to the host.
 GRAZE_HD inline bool has_signatures(const EngineBlock& block, std::uint32_t i) {
   return bit(block.wrong, i) && block.buckets[i] != kUndecided;
 }
@@ -101,12 +101,12 @@ GRAZE_HD inline void settle(const EngineBlock& block, std::uint32_t i, const Rel
   block.buckets[i] = 0;
 }
 
-// Of those that are exact, the quickest on a device.
+// The exact kinds of numbers that are fastest on a device.
 using RelatingNumbers =
     exact::detail::NumberKinds<exact::detail::DoubleNumbers, exact::detail::ResidueNumbers, exact::detail::IntNumbers,
                                exact::detail::LongNumbers, exact::detail::WideNumbers>;
 
-// The list of pairs that the smallest of these numbers hold that hold this one.
+// The list for a pair: each list belongs to the smallest kind of these numbers that holds the pair.
 GRAZE_HD inline int list_by_numbers(const float* c) {
   return kByDoubles + RelatingNumbers::place(exact::detail::grid_of(c, c + 9));
 }
@@ -147,7 +147,7 @@ struct SettleDepth {
   }
 };
 
-// The last attempt, in numbers of twice a double's precision; what they leave the host has.
+// The last attempt, in double-double numbers. Pairs that stay undecided go to the host.
 template <Verdict verdict>
 struct MeasureClosely {
   static constexpr int kThreadBlocks = 1;
@@ -165,8 +165,8 @@ struct PlaceExtreme {
   }
 };
 
-// Calls add(counter, pairs) for what the pairs `same` of a word, all of one bucket, count by lanes [from, to); counters
-// as EngineResult lays them out, those of lane `from` first.
+// Calls add(counter, pairs) for each counter of lanes [from, to) to which pairs of the word contribute. same: the
+// pairs, all of one bucket. Counters are laid out as in EngineResult, starting with lane `from`.
 template <class Add>
 GRAZE_HD void count_word(const EngineBlock& block, std::uint32_t word, std::uint32_t same, std::uint32_t from,
                          std::uint32_t to, const Add& add) {
@@ -183,9 +183,9 @@ GRAZE_HD void count_word(const EngineBlock& block, std::uint32_t word, std::uint
   }
 }
 
-// All steps in their order. Run: words(step) takes the block's words; pairs(step) its pairs, pairs_by_verdict(step) the
-// same, best with like verdicts side by side; listed(step, list) the pairs that earlier steps listed;
-// add_signatures(list) adds the signatures of listed pairs that have them; tally(by_extreme) counts all pairs by
+// Runs all steps in order. Run has these members: words(step) runs a step on the block's words, pairs(step) on its
+// pairs, pairs_by_verdict(step) on its pairs sorted by verdict if possible, and listed(step, list) on listed pairs.
+// add_signatures(list) adds the signatures of those listed pairs that have them. tally(by_extreme) counts all pairs by
 // bucket, or by extreme.
 template <class Run>
 void run_steps(const EngineBlock& block, const Run& run) {

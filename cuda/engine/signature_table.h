@@ -74,7 +74,7 @@ GRAZE_HD std::uint64_t* find_row(const SignatureTable& table, const Key& key) {
 GRAZE_HD inline void keep(const SignatureTable& table, std::uint64_t* row, std::uint64_t index) {
   std::uint64_t* cases = table.cases(row);
   if (index >= load_relaxed(&cases[kEngineCases - 1])) return;
-  // The larger index moves on to the next place. So the smallest end up here in order, whatever order they came in.
+  // The larger index moves on to the next place. So the smallest ones end up here, in ascending order.
   for (int k = 0; k < kEngineCases; ++k) {
     const std::uint64_t old = lower_to(&cases[k], index);
     index = old > index ? old : index;

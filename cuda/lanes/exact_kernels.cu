@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The filter, with one thread for each pair, which needs few registers. Then the steps of exact_steps.cuh for the pairs
-// that the filter leaves open.
+// The filter, with one thread for each pair, which needs few registers. The steps of exact_steps.cuh then decide the
+// pairs that the filter leaves open.
 #include "cuda/lanes/exact_kernels.cuh"
 
 #include "cuda/lanes/exact_steps.cuh"

@@ -105,7 +105,7 @@ __global__ void __launch_bounds__(kThreads, kThreadBlocks)
   });
 }
 
-// Decides in 128-bit integers where they hold the pair, else by one error bound for each determinant.
+// Decides in 128-bit integers if they hold the pair, else with one error bound for each determinant.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads, 2)
     decide_on_int128(Pairs pairs, PairList from, PairList left, std::uint32_t* intersects, unsigned long long* stages) {
@@ -149,7 +149,7 @@ __global__ void __launch_bounds__(kThreads) decide_one_by_one(Pairs pairs, PairL
 constexpr int kBlocksForLeft = 1024;
 
 // Decides pairs whose grid is too large for the small number types. `left` has four lists: the pairs to decide, then
-// three empty ones for what a step leaves to the next.
+// three empty lists for pairs that a step leaves to the next.
 template <class Pairs>
 void launch_large_steps(const Pairs& pairs, const PairList* left, std::uint32_t* intersects, unsigned long long* stages,
                         cudaStream_t stream) {

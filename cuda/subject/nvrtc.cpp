@@ -34,7 +34,8 @@ std::vector<fs::path> places() {
   return all;
 }
 
-// What the work says in a child of this process: NVRTC may compile without end, crash, or catch signals itself.
+// Runs the work in a child process and returns its result, because NVRTC may compile for ever, crash, or catch signals
+// itself.
 // Throws: what the work throws, as CompileError or std::runtime_error; Stopped, within 0.1 s of the request.
 std::string in_child(const std::function<std::string()>& work) {
   const StopSignals stops;
@@ -83,7 +84,7 @@ Nvrtc::Nvrtc() {
   if (!library)
     throw std::runtime_error(
         "expected NVRTC of the CUDA Toolkit (libnvrtc.so.13 or .12), found none; install the toolkit, or its package "
-        "cuda-nvrtc, and set CUDA_HOME where it is in a place of its own");
+        "cuda-nvrtc, and set CUDA_HOME if it is in an unusual folder");
   int (*get_version)(int*, int*) = nullptr;
   find(library, "nvrtcVersion", get_version);
   find(library, "nvrtcCreateProgram", create_);

@@ -109,16 +109,7 @@ std::vector<std::int8_t> on_host(const std::string& style, Scalar scalar, const 
   return answers;
 }
 
-class Style : public testing::TestWithParam<std::pair<const std::string, std::string>> {
- protected:
-  void SetUp() override {
-    if (std::string why; no_nvrtc(why)) GTEST_SKIP() << why;
-  }
-};
-
-TEST_P(Style, HasATwinOrIsRefusedByName) {
-  const auto& [style, refusal] = GetParam();
-  std::string identical;
+void expect_twin_or_refusal(const std::string& style, const std::string& refusal) {
   for (const CudaBuild& build : builds_of(style)) {
     if (build.variant == Variant::cuda_fast && build.twin.empty()) {
       EXPECT_NE(build.why_no_twin.find("cannot be replayed"), std::string::npos) << build.why_no_twin;
@@ -140,11 +131,9 @@ TEST_P(Style, HasATwinOrIsRefusedByName) {
   }
 }
 
-TEST_P(Style, TwinEqualsTheHostCompiler) {
-  const auto& [style, refusal] = GetParam();
+void expect_twin_equals_host(const std::string& style) {
   const CudaBuild& build = builds_of(style).at(0);
   ASSERT_EQ(build.variant, Variant::cuda_nofma);
-  if (!refusal.empty()) GTEST_SKIP() << build.why_no_twin;
   ASSERT_EQ(build.why_no_twin, "");
   const std::vector<Pair> pairs = pairs_of_all_strata(6000);
   const std::vector<std::int8_t> expected = on_host(style, build.scalar, pairs);
@@ -166,9 +155,7 @@ TEST_P(Style, TwinEqualsTheHostCompiler) {
   EXPECT_GT(answers[1], 100);
 }
 
-TEST_P(Style, EverySiteUnfusedIsTheBuildWithoutContraction) {
-  const auto& [style, refusal] = GetParam();
-  if (!refusal.empty()) GTEST_SKIP() << "no twin";
+void expect_unfused_is_without_contraction(const std::string& style) {
   const CudaBuild &rounded = builds_of(style).at(0), &contracted = builds_of(style).at(1);
   ASSERT_EQ(contracted.variant, Variant::cuda_fma);
   const TwinLibrary with(contracted.twin, contracted.scalar), without(rounded.twin, rounded.scalar);
@@ -188,6 +175,18 @@ TEST_P(Style, EverySiteUnfusedIsTheBuildWithoutContraction) {
     EXPECT_EQ(fs::path(site.file).filename(), style + ".cu");
     EXPECT_GT(site.line, 1);
   }
+}
+
+class Style : public testing::TestWithParam<std::pair<const std::string, std::string>> {};
+
+// One test for each style, because its three builds take most of the time.
+TEST_P(Style, HasATwinThatEqualsTheHostCompilerOrIsRefusedByName) {
+  if (std::string why; no_nvrtc(why)) GTEST_SKIP() << why;
+  const auto& [style, refusal] = GetParam();
+  expect_twin_or_refusal(style, refusal);
+  if (!refusal.empty() || HasFailure()) return;
+  expect_twin_equals_host(style);
+  expect_unfused_is_without_contraction(style);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Style, testing::ValuesIn(kStyleTwins), [](const auto& row) { return row.param.first; });

@@ -110,7 +110,7 @@ void compare(Subject& subject, const TwinLibrary& twin, const float* on_device, 
 
 std::unique_ptr<SubjectOnDevice> open_on_device(const CudaBuild& build) {
   std::string why_not;
-  if (!open_device(why_not)) throw std::runtime_error("a user's CUDA code needs a device: " + why_not);
+  if (!open_device(why_not)) throw std::runtime_error("cannot run your CUDA code on a device: " + why_not);
   return std::make_unique<Subject>(build);
 }
 

@@ -29,7 +29,7 @@ class SubjectOnDevice {
 std::unique_ptr<SubjectOnDevice> open_on_device(const CudaBuild& build);
 
 // Compares each build that has a twin with that twin, on `options.twin_pairs` pairs over all strata. In the record, the
-// twin's counts and the counts of pairs are of the same pairs; there are no trace hashes.
+// twin decided all counted pairs, and there are no trace hashes.
 // Throws: as open_on_device.
 struct NamedBuild {
   std::string lane;  // "mine/f32/cuda-fma"

@@ -16,7 +16,7 @@ std::string wrapped(const std::string& text, const std::filesystem::path& source
 
 // The function's scalar type; float if it takes both. `compile` throws CompileError.
 // Throws: UsageError, one line with the user's file and line, when the source does not compile. Also throws it when no
-// function of that name takes two triangles; the message then says what was found.
+// function of that name takes two triangles; the message then names the functions that were found.
 Scalar scalar_of(const std::string& text, const std::filesystem::path& source, const std::string& function,
                  const std::function<std::string(const std::string& whole)>& compile);
 

@@ -102,7 +102,7 @@ TEST(Canaries, CpuFmaAndCudaFmaDiffer) {
   EXPECT_GT(lanes_that_differ, 0);
 }
 
-// Where the compiler contracts as nvcc does, cpu-fma must still differ from cpu.
+// If the compiler contracts like nvcc, cpu-fma must still differ from cpu.
 TEST(Canaries, CpuFmaAndCpuDiffer) {
   std::map<std::string, int> differ;
   for (const char* kind : {"cuda_nofma", "cpu_fma_gcc", "cpu_fma_clang", "right_first"}) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The contraction rule against ptxas, without a GPU: kernel by kernel, machine code of the default build beside that of
 // the PTX in which this project wrote out every contraction. Equal counts of fused and unfused operations are
-// required everywhere; most kernels are the same code, instruction for instruction. Skipped where there is no nvcc.
+// required everywhere; most kernels are the same code, instruction for instruction. Skipped if there is no nvcc.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -109,7 +109,7 @@ std::map<std::string, int> fused_and_products(const std::string& code) {
 
 class KernelsUnderTolerances : public testing::TestWithParam<const char*> {};
 
-// Where ptxas contracts a kernel otherwise than the rule, its twin would be wrong: the lane must have none.
+// If ptxas contracts a kernel differently from the rule, its twin would be wrong, so the lane must not have one.
 // scripts/update_generated reads the messages, and writes twin/contracted_otherwise.inc.
 TEST_P(KernelsUnderTolerances, HaveTwinsJustWhereMachineCodeHasTheirContractions) {
   if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";

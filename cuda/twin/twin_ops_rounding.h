@@ -13,7 +13,7 @@ namespace ptx {
 
 enum class Rounding { rz, rm, rp };
 
-// An exact number: a nearby double and the sign of the remainder, which is less than half of the double's last place.
+// An exact number: a nearby double, and the sign of the remainder (below half of the double's last place).
 struct Exact {
   f64 near;
   int rest;

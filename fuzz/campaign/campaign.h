@@ -58,7 +58,7 @@ Json build_info(const SelectedLanes& under_test);
 // The processor's name and the architecture, for timings.
 std::string machine_name();
 
-// What judges the pairs. automatic: the devices if all lanes run there alone, otherwise the CPU.
+// The engine that judges the pairs. automatic: the devices if all lanes run only there, otherwise the CPU.
 enum class EngineChoice { automatic, cpu, gpu };
 
 // Returns the engines that run the campaign; none means the CPU engine.

@@ -118,7 +118,7 @@ TEST_F(CampaignTest, RefusesADirectoryOfAnotherCampaign) {
   const std::string before = read_whole(root_ / "taken" / "summary.json");
   EXPECT_THROW(run(campaign("taken", 1, 5000)), UsageError);
   EXPECT_EQ(read_whole(root_ / "taken" / "summary.json"), before);
-  // Another build does not resume it either: type and flags count as well as the commit.
+  // Another build cannot resume it: commit, build type and flags must be the same.
   for (const char* key : {"commit", "type", "flags"}) {
     Campaign other = campaign("taken", 1, 4000);
     EXPECT_FALSE(other.build[key].get<std::string>().empty()) << key;

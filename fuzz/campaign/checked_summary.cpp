@@ -75,7 +75,7 @@ void expect_sides(const Json& stratum) {
     for (const auto& [lane, unused] : row->at("wrong").items())
       wrong[b <= 0][lane] += count(row->at("wrong"), lane.c_str());
   }
-  if (known != margins.size()) throw Impossible("its margins have names that are none");
+  if (known != margins.size()) throw Impossible("it has margins of invalid names");
   const std::uint64_t intersects = count(stratum, "intersects");
   expect(pairs == intersects, fmt::format("exactly {} pairs that intersect, by margin", intersects), pairs);
   for (const auto& [lane, row] : stratum.at("lanes").items()) {
@@ -100,7 +100,7 @@ void expect_possible(const Json& stratum) {
     if (!row.at("differs_from_cpu").is_null()) most("differs_from_cpu", pairs);
     const Counts counts = counts_of(row);
     const std::uint64_t judged = counts.not_right() + counts.by_convention;
-    expect(judged <= pairs, fmt::format("at most {} verdicts of {} that are not the truth's", pairs, lane), judged);
+    expect(judged <= pairs, fmt::format("at most {} verdicts of {} that differ from the truth", pairs, lane), judged);
   }
   expect_split("margin", stratum.at("margins"), stratum);
   expect_sides(stratum);

@@ -25,7 +25,7 @@ constexpr std::uint64_t kSample = 1000;     // where the exact lane judges, CGAL
 
 constexpr std::size_t kSidePatterns = 729;
 
-// On which side of each triangle's plane the other's vertices seem to lie: in [0, kSidePatterns).
+// A number in [0, kSidePatterns) for the sides of each triangle's plane on which the other's vertices seem to lie.
 std::size_t side_pattern(const Pair& pair) {
   const Vec3<float> normal_a = cross(pair.a[1] - pair.a[0], pair.a[2] - pair.a[0]);
   const Vec3<float> normal_b = cross(pair.b[1] - pair.b[0], pair.b[2] - pair.b[0]);
@@ -36,8 +36,8 @@ std::size_t side_pattern(const Pair& pair) {
   return pattern;
 }
 
-// Pairs alike in their sides stand together, in their order: lanes take the same branches for them, which the processor
-// then foresees. Nothing that is counted or kept depends on the order.
+// Sorts the pairs by their side pattern, and keeps the order within a pattern. Lanes take the same branches for such
+// neighbours, so the processor predicts them. Nothing that is counted or kept depends on the order.
 void bring_together(std::span<Pair> pairs, std::span<std::uint64_t> indices) {
   std::array<std::uint32_t, kSidePatterns + 1> next{};
   std::vector<std::uint16_t> patterns(pairs.size());

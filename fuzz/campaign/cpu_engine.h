@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the CPU engine does with pairs: all lanes, CGAL for every pair, GMP for every disagreement and a sample. Or the
-// exact lane for every pair, and CGAL and GMP for the sample; Confirmation then sees to the cases that are kept.
+// The CPU engine judges all lanes. CGAL decides every pair, GMP every disagreement and a sample. With --judge exact,
+// the exact lane decides every pair, CGAL and GMP a sample, and Confirmation checks the cases that are kept.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ namespace graze::fuzz {
 BatchResult judge(const Campaign& campaign, int source, std::size_t count,
                   const std::function<std::uint64_t(std::size_t)>& index_of, const DecideBlock& exact = nullptr);
 
-// The same of one pair at a time, by lanes of the host and twins, with what was found of each.
+// Judges one pair at a time, by host lanes and twins, and returns the finding of each.
 class PairJudge {
  public:
   // Requires: campaign outlives this, has one source, and nothing runs on a device.
@@ -38,7 +38,7 @@ class PairJudge {
   std::unique_ptr<Parts> parts_;
 };
 
-// Counts of nothing, for the campaign's lanes.
+// A result of zero pairs, with zero counts for each of the campaign's lanes.
 BatchResult no_counts(const Campaign& campaign);
 
 }  // namespace graze::fuzz

@@ -38,7 +38,7 @@ TEST_F(ExactJudge, LeavesTheBytesOfTheOracleOverAllStrata) {
     EXPECT_EQ(seen(oracle, "cgal"), 40'007u);
     EXPECT_EQ(seen(oracle, "exact"), 0u);
     EXPECT_EQ(seen(exact, "exact"), 40'007u);
-    // Of each of 19 strata three pairs are of the sample; the others are cases that were kept.
+    // CGAL decides three pairs of each of the 19 strata for the sample; all others are cases that were kept.
     EXPECT_GE(seen(exact, "cgal"), summary["signatures"].size() / 4 + 57);
     EXPECT_LT(seen(exact, "cgal"), 40'007u);
     EXPECT_GE(seen(exact, "gmp"), seen(exact, "cgal"));
@@ -54,7 +54,7 @@ TEST_F(ExactJudge, InterruptionsAndScenesChangeNothing) {
   expect_same_bytes("oracle", "exact");
 }
 
-// Right, but on pairs whose first coordinate's bits, hashed, are 0 modulo `kEvery`.
+// Decides exactly, but inverts the verdict if the hash of the first coordinate's bits is a multiple of `kEvery`.
 template <unsigned kEvery>
 void sometimes_wrong(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
   exact_lane()(pairs, count, intersects, declined);
@@ -70,7 +70,7 @@ TEST_F(ExactJudge, TheOracleFindsAnExactLaneThatIsNotRight) {
   EXPECT_THROW(run(c), oracle::OracleMismatch);
 }
 
-// No lane is there that would look wrong, so that the sample alone can tell.
+// The only lane is wrong in the same way as the judge, so only the sample shows the error.
 TEST_F(ExactJudge, TheSampleFindsWhatNoLaneShows) {
   lanes_ = select_lanes({"exact/f32/cpu"}, Executor::twin);
   lanes_.on_host[0] = &sometimes_wrong<20>;

@@ -66,7 +66,7 @@ TEST_F(DeviceTest, DiscrepanciesAreThoseOfTheHost) {
   EXPECT_GT(verdicts, 1000u);
 }
 
-// A host lane's values are those of cuda-nofma, and the check that says so finds others.
+// A host lane has the same values as cuda-nofma, and count_different_runs finds lanes that do not.
 TEST_F(DeviceTest, RunsThatDifferAreFound) {
   const strata::PairSource source = strata::stratum_sources(8, 50'000, {"thesis"})[0];
   const auto lane = [](const char* id) -> const Lane& { return *find_lane(id); };

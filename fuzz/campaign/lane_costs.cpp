@@ -57,12 +57,13 @@ Json measure_costs(const Campaign& campaign) {
 void expect_possible_costs(const Json& costs, const std::vector<std::string>& lanes,
                            const std::map<std::string, std::uint64_t>& sources) {
   const auto refuse_name = [](const std::string& name, const char* what) {
-    throw std::runtime_error(fmt::format("it has costs of {}, which is no {} of the campaign", shown(name), what));
+    throw std::runtime_error(fmt::format("it has costs of {}, but the campaign has no such {}", shown(name), what));
   };
   const auto is_one_to = [](const Json& count, std::uint64_t limit) {
     return count.is_number_integer() && count >= 1 && count <= limit;
   };
-  if (!is_one_to(costs.at("passes"), kMostPasses)) throw std::runtime_error("it has costs of no passes");
+  if (!is_one_to(costs.at("passes"), kMostPasses))
+    throw std::runtime_error("its costs have an invalid number of passes");
   for (const auto& [lane, rows] : costs.at("lanes").get_ref<const Json::object_t&>()) {
     if (std::find(lanes.begin(), lanes.end(), lane) == lanes.end()) refuse_name(lane, "lane");
     for (const auto& [source, row] : rows.get_ref<const Json::object_t&>()) {
@@ -72,8 +73,8 @@ void expect_possible_costs(const Json& costs, const std::vector<std::string>& la
       const double low = row.at("low").get<double>(), middle = row.at("middle").get<double>(),
                    high = row.at("high").get<double>();
       if (!is_one_to(row.at("pairs"), most) || !(0 < low && low <= middle && middle <= high))
-        throw std::runtime_error(fmt::format("it has impossible costs of {} on {}, of at most {} pairs: {}", lane,
-                                             source, most, shown(row.dump())));
+        throw std::runtime_error(fmt::format("it has impossible costs of {} on {} (at most {} pairs): {}", lane, source,
+                                             most, shown(row.dump())));
     }
   }
 }
@@ -84,7 +85,8 @@ void expect_possible_run(const Json& run, const std::vector<std::string>& lanes,
     // The parts of a merged campaign may have judged pairs again, after damage.
     const Json& judged = run["pairs"];
     if (!judged.is_number_integer() || judged < 0 || (judged > pairs && !run.contains("merged")))
-      throw std::runtime_error(fmt::format("it has a run of {} pairs, of at most {}", shown(judged.dump()), pairs));
+      throw std::runtime_error(
+          fmt::format("it has a run of {} pairs, but the campaign has {}", shown(judged.dump()), pairs));
   }
   if (run.contains("seconds") && !(run["seconds"].is_number() && run["seconds"] >= 0))
     throw std::runtime_error(fmt::format("it has a run of {} seconds", shown(run["seconds"].dump())));

@@ -20,7 +20,7 @@ constexpr double kRowPairs = 16777216;    // of the CPU engine; see store.cpp
 constexpr std::uint64_t kFewer = 8;       // the part of a sample that shows how its bytes grow
 constexpr double kDatabaseBytes = 65536;  // without rows; includes the small files beside it
 
-// Estimates the bytes for `pairs` pairs. New signatures become rarer and rarer, so this is rather too high.
+// Estimates the bytes for `pairs` pairs. New signatures become rarer and rarer, so the estimate is rather too high.
 double bytes_of(const Growing& growing, const Sample& sample, double pairs) {
   const double more = pairs / static_cast<double>(sample.pairs_of_row);
   return growing.bytes * std::pow(std::max(more, 1.0), growing.exponent);

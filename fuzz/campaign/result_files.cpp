@@ -118,7 +118,7 @@ Json summary_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_sourc
                   {"strata", results["strata"]},
                   {"disagreements", results["disagreements"]},
                   {"signatures", rows}};
-  // Pairs on which a device and its twin differ do not belong to any subject.
+  // Pairs on which a device and its twin differ are nobody's failures, so no subject has them.
   for (const auto& [lane, found] : executor_mismatches)
     summary["executor_mismatches"].push_back({{"lane", lane}, {"count", found.count}, {"case", case_name(lane)}});
   return summary;

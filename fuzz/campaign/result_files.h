@@ -15,7 +15,7 @@ namespace graze::fuzz {
 // The truth as fields of a case: truth, contact, margin, margin_ulps.
 std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Truth& truth);
 
-// Whether the lane's differences from its cpu lane are counted: it is no cpu lane, and that one is among `lanes`.
+// Whether the lane's differences from its cpu lane are counted: `lanes` has that cpu lane, and it is another lane.
 bool is_compared_with_cpu(const std::string& lane, const std::vector<std::string>& lanes);
 
 // Writes summary.json and cases/ from the store. A case file whose cases have not changed keeps the minimiser's
@@ -54,8 +54,8 @@ bool may_hold_campaign(const std::filesystem::path& folder);
 // Returns the runs in timings.json, each an object; none without such a file.   Throws: FormatError for a damaged one.
 Json read_timings(const std::filesystem::path& directory);
 
-// Checks before a run that the records it adds to do not end it: timings.json must be readable, and a damaged
-// status.json is removed.   Throws: as read_timings and remove_damaged_status.
+// Checks the records before a run, so that they do not stop it at its end: timings.json must be readable, and a damaged
+// status.json is removed. Throws: as read_timings and remove_damaged_status.
 void expect_usable_records(const std::filesystem::path& directory);
 
 // Adds a run to timings.json, the only file that depends on when, where and with which engine the campaign ran.

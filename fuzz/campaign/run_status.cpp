@@ -144,7 +144,7 @@ void remove_damaged_status(const fs::path& directory) {
   } catch (const std::runtime_error&) {
     if (may_replace_foreign) return;
     if (fs::is_symlink(file))
-      throw UsageError(cannot("replace", file, "it is a link to a file that is no status; remove the link"));
+      throw UsageError(cannot("replace", file, "it is a link to a file that is not a status; remove the link"));
     std::error_code later;  // where it cannot be removed, it cannot be written
     fs::remove(file, later);
   }

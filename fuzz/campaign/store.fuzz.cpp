@@ -61,7 +61,7 @@ class Whole {
     if (!files.log.empty()) write_whole(log(), files.log);
   }
 
-  // Checks a store that opened: its missing batches were committed, and with them it is whole.
+  // Checks a store that opened: once its missing batches are committed, it must equal the whole store.
   void check(Store& store) const {
     std::size_t rows = 0;
     for (std::size_t row = 0; row < std::size(kRows); ++row) {
@@ -70,7 +70,7 @@ class Whole {
       ++rows;
     }
     reached(rows);
-    must_hold(store.gaps(0).empty() && store.gaps(1).empty(), "what is missing are whole batches");
+    must_hold(store.gaps(0).empty() && store.gaps(1).empty(), "only whole batches are missing");
     must_hold(results(store) == results_, "the results are those of the whole store");
   }
 
@@ -146,12 +146,12 @@ const RegisterFuzzTarget kStore("store", [](std::string_view bytes) {
   reached(16 + said.size() % 512);
   if (said.find("--discard-damaged") == said.npos) return;
   try {
-    must_hold(discard_damaged(whole.spec()).has_value(), "what is refused for damage is damaged");
+    must_hold(discard_damaged(whole.spec()).has_value(), "only a damaged store is refused as damaged");
   } catch (const std::runtime_error& error) {
     must_be_one_line(error.what());
     return;
   }
-  must_hold(refusal(whole).empty(), "what is kept of a damaged store opens");
+  must_hold(refusal(whole).empty(), "a store opens once its damaged batches are discarded");
 });
 
 }  // namespace

@@ -51,7 +51,7 @@ class Store {
   // Pairs on which some lane is wrong.
   std::uint64_t disagreements() const;
 
-  // Of all committed pairs; see results_of.
+  // The results of all committed pairs; see results_of.
   Json results() const { return results_of(spec_, of_source_); }
 
   const StoreSpec& spec() const { return spec_; }

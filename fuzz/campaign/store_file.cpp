@@ -70,9 +70,9 @@ auto in_one_line(const fs::path& file, const Body& body, const std::optional<SQL
     if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY || code == SQLITE_PERM || code == SQLITE_IOERR)
       throw std::runtime_error(system != 0 ? cannot("read and write", file, system)
                                            : cannot("read and write", file, one_line(error.what())));
-    throw DamagedStore(cannot(
-        "use", file,
-        fmt::format("it is no campaign database of graze, or it is damaged ({}); {}", one_line(error.what()), kGoOn)));
+    throw DamagedStore(cannot("use", file,
+                              fmt::format("it is not a campaign database of graze, or it is damaged ({}); {}",
+                                          one_line(error.what()), kGoOn)));
   }
 }
 
@@ -86,7 +86,7 @@ std::string text_of(const StoreSpec& spec) {
 
 std::int64_t number(SQLite::Database& database, const char* sql) { return database.execAndGet(sql).getInt64(); }
 
-// Throws: Damaged unless the database has our two tables and nothing else. A trigger could drop what is stored.
+// Throws: Damaged unless the database has our two tables and nothing else. A trigger could drop stored rows.
 void expect_our_tables(SQLite::Database& database) {
   SQLite::Statement query(database, "SELECT sql FROM sqlite_schema ORDER BY rowid");
   std::size_t count = 0;
@@ -125,10 +125,10 @@ void begin(SQLite::Database& database, const std::string& text) {
 // The campaign's identity as the database records it.   Throws: Damaged.
 std::string recorded_text(SQLite::Database& database) {
   SQLite::Statement query(database, "SELECT text, checksum FROM campaign");
-  if (!query.executeStep()) throw Damaged("the record of what it is of is gone");
+  if (!query.executeStep()) throw Damaged("the record of its campaign is gone");
   const std::string text = query.getColumn(0).getString();
   if (query.getColumn(1).getInt64() != static_cast<std::int64_t>(fnv1a(text)))
-    throw Damaged("the record of what it is of and its checksum do not agree");
+    throw Damaged("the record of its campaign does not match its checksum");
   return text;
 }
 
@@ -145,7 +145,7 @@ std::string first_difference(const Json& expected, const Json& found) {
       return fmt::format("{} is {}, not {}", place.substr(1), value(theirs, place), value(ours, place));
     }
   }
-  return "the order is another one";
+  return "the keys are in another order";
 }
 
 namespace {
@@ -154,7 +154,7 @@ namespace {
 void compare(const StoreSpec& spec, const std::string& text) {
   if (text == text_of(spec)) return;
   const Json found = parse_shallow(text);
-  if (!found.is_object()) throw Damaged("its campaign is no JSON object");
+  if (!found.is_object()) throw Damaged("its campaign is not a JSON object");
   if (const std::string shard = found.value("shard", "none"), own = spec.shard.whole() ? "none" : spec.shard.name();
       found["spec"] == spec.spec && shard != own)
     throw UsageError(cannot("use", spec.directory,
@@ -230,8 +230,8 @@ std::int64_t insert(SQLite::Database& database, std::uint64_t campaign, const Pa
   return database.getLastInsertRowid();
 }
 
-// The files beside the database that SQLite would use, but did not write, or that are also another file: damaged ones,
-// foreign ones of this name, and links.   Throws: std::runtime_error for a pipe or a device.
+// The files beside the database that SQLite would read although it did not write them: damaged files, files of other
+// programs, and links. Throws: std::runtime_error for a pipe or a device.
 std::vector<fs::path> unusable_files_of(const fs::path& database) {
   constexpr std::string_view kJournal = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", kLog = "\x37\x7f\x06",
                              kIndex = "\x18\xe2\x2d";
@@ -297,8 +297,8 @@ struct KeptRow {
   std::string bytes;
 };
 
-// Returns the rows whose checksums are right. Reads from both ends, because a tree that is damaged in the middle can be
-// read up to the damage.
+// Returns the rows whose checksums are right. Reads from both ends, because a B-tree that is damaged in the middle can
+// be read up to the damage.
 std::vector<KeptRow> rows_that_check(SQLite::Database& database, const StoreSpec& spec, std::uint64_t campaign,
                                      std::size_t& seen) {
   std::vector<KeptRow> kept;
@@ -342,8 +342,8 @@ std::string bytes_of_store(const std::string& text, const std::vector<KeptRow>& 
   return {bytes.get(), bytes.get() + size};
 }
 
-// A row's checksum starts from the campaign's. So a row with the right checksum belongs to this campaign, whatever else
-// is damaged.
+// A row's checksum starts from the campaign's. So a row with the right checksum belongs to this campaign, even if the
+// rest is damaged.
 Salvage salvage(const StoreSpec& spec) {
   const fs::path file = behind_links(database_file(spec));
   const std::string text = text_of(spec);
@@ -440,7 +440,7 @@ StoreSpec recorded_store(const fs::path& directory) {
     OpenedToRead store(directory);
     if (is_fresh(store.database, file)) throw Damaged("it is empty");
     const Json text = parse_shallow(recorded_text(store.database));
-    if (!text.is_object()) throw Damaged("its campaign is no JSON object");
+    if (!text.is_object()) throw Damaged("its campaign is not a JSON object");
     StoreSpec spec{directory, text.at("spec"), text.at("build"), {}, text["spec"].at("lanes"), {}};
     if (text.contains("shard")) spec.shard = parse_shard(text["shard"].get<std::string>()).value();
     return spec;

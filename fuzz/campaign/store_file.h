@@ -81,7 +81,7 @@ void remove_store(const std::filesystem::path& directory);
 // run ended normally.   Throws: as recorded_store.
 void for_each_row(const StoreSpec& spec, const std::function<void(const PairRange&, const StoredCounts&)>& visit);
 
-// What discard_damaged recovered from a damaged database.
+// The rows that discard_damaged recovered from a damaged database.
 struct Salvage {
   std::size_t batches = 0;
   std::uint64_t pairs = 0;

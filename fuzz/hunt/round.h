@@ -56,7 +56,7 @@ bool has_libfuzzer();
 // Requires: has_libfuzzer().   Throws: std::runtime_error.
 pid_t start_round(const RoundTask& task, const std::filesystem::path& file);
 
-// Reads what the process wrote.   Throws: OracleMismatch, std::runtime_error, if the process failed.
+// Reads the result that the process wrote.   Throws: OracleMismatch, std::runtime_error, if the process failed.
 RoundResult round_result(const RoundTask& task, const std::filesystem::path& file);
 
 }  // namespace graze::fuzz

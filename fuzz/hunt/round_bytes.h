@@ -22,7 +22,7 @@ struct NewKind {
   Mutation mutation = Mutation::fresh;
 };
 
-// The part of a round that is kept, apart from its counts, which are in the campaign's store.
+// The part of a round that is kept. Its counts are in the campaign's store instead.
 struct KeptRound {
   std::uint64_t first = 0, pairs = 0;
   std::vector<Unit> units;                  // pairs that still showed something new when rounds were combined

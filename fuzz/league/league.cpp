@@ -38,7 +38,7 @@ Relation true_of(const Pair& pair) {
   return found;
 }
 
-// One row as it is counted.
+// A row of the league, with the data needed to count it.
 struct Counting {
   LeagueRow row;
   const Lane* fused;  // its cpu-fma counterpart; null for none
@@ -46,7 +46,7 @@ struct Counting {
   std::uint64_t of_source;  // it takes so many pairs of each source, the first ones
   Smallest smallest;
 
-  // GMP's word on a verdict that is not the truth.
+  // Checks with GMP the truth of a pair on which the lane is wrong.
   void confirm(const Pair& pair, const Relation& truth) const {
     const Contact contact = oracle::gmp_contact(pair);
     if (contact != truth.contact) {
@@ -98,7 +98,7 @@ struct Counting {
     }
   }
 
-  // Whether the verdict breaks an invariant other than those of orders, on an image within the contract.
+  // Whether the verdict breaks an invariant on an image within the lane's contract. The orders are counted separately.
   bool breaks_an_invariant(const Pair& pair, Verdict of_pair) const {
     std::vector<Pair> all;
     std::vector<analysis::Invariant> invariants;
@@ -118,8 +118,8 @@ struct Counting {
     return false;
   }
 
-  // On how many of the pairs the verdict changes with the order, or breaks another invariant; those within the
-  // contract.
+  // Counts the pairs on which the verdict changes with the order, or breaks another invariant. Pairs outside the lane's
+  // contract are skipped.
   void count_orders(std::span<const Pair> pairs, const std::vector<Relation>& truths) {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       if (analysis::is_outside(*row.lane, pairs[i], truths[i])) continue;

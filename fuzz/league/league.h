@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The league: libraries' functions and our algorithms on the same pairs, counted side by side: what is wrong within
-// each one's contract, what its convention leaves open, crashes, what depends on the order, what an answer costs; and
-// the smallest failure of each kind.
+// The league compares libraries and our algorithms on the same pairs. It counts errors within each lane's contract,
+// pairs outside it, crashes, and verdicts that depend on the order. It also measures the time for a pair, and finds the
+// smallest failure of each kind.
 #pragma once
 
 #include <array>
@@ -20,17 +20,19 @@
 
 namespace graze::fuzz {
 
-// Strata that a reader of the league asks after together: as in strata/groups.h, but near and exact contacts apart.
+// Groups of strata as in strata/groups.h, but near and exact contacts have a group of their own.
 enum class LeagueGroup : std::uint8_t { general, near, coplanar, degenerate, extreme };
 inline constexpr std::string_view kLeagueGroups[] = {"general", "near", "coplanar", "degenerate", "extreme"};
 inline constexpr std::size_t kLeagueGroupCount = std::size(kLeagueGroups);
 LeagueGroup league_group(std::string_view stratum);
 
-// From this many ulps of the largest coordinate on, no rounding of an input to float32 excuses a verdict.
+// From margins of 2^kClearExponent ulps of the largest coordinate on, rounding an input to float32 excuses no wrong
+// verdict.
 inline constexpr int kClearExponent = 12;
 inline constexpr std::string_view kClear = "clear";  // what such a failure has for its shape
 
-// Of one row and group, for its pairs within the lane's contract. Wrong is what a fresh process said again.
+// A lane's counts in a group of strata, on pairs within its contract. A verdict is wrong only if a fresh process
+// repeats it.
 struct LeagueCounts : Counts {
   std::uint64_t pairs = 0;    // within its contract
   std::uint64_t clear = 0;    // wrong ones with both triangles proper, not coplanar, |margin| >= 2^kClearExponent ulps
@@ -40,7 +42,8 @@ struct LeagueCounts : Counts {
   LeagueCounts& operator+=(const LeagueCounts& other);
 };
 
-// The smallest failure of a subject's kind: on a shape (kClear, or what shape_name says) in a way.
+// A subject's smallest failure with this wrong verdict on pairs of this shape. The shape is kClear or that of
+// shape_name.
 struct LeagueFailure {
   const Lane* lane;  // the first of its subject that fails so
   std::string shape;
@@ -72,18 +75,19 @@ struct League {
 // Throws: as select_lanes.
 SelectedLanes league_lanes(const std::vector<std::string>& globs);
 
-// A slow subject takes no more than so many pairs, the first of each stratum, by its name.
+// Limits of slow subjects, by name: such a subject gets at most this many pairs, the first ones of each stratum.
 using MostPairs = std::map<std::string, std::uint64_t, std::less<>>;
 
-// Runs it; deterministic, whatever the threads. `stop` is asked now and then with how many pairs are done, and ends it
-// with what there is.   Throws: OracleMismatch when two exact decisions differ.
+// Runs the league. The result does not depend on the number of threads. `stop` is called now and then with the number
+// of pairs done; if it returns true, the result has only these pairs. Throws: OracleMismatch when two exact decisions
+// differ.
 League run_league(
     const SelectedLanes& under_test, std::vector<strata::PairSource> sources, std::uint64_t seed,
     const MostPairs& most = {},
     const std::function<bool(std::uint64_t done)>& stop = [](std::uint64_t) { return false; });
 
-// Nanoseconds a pair of each row on the first pairs of `uniform`: the median of repetitions in turn. Of foreign code
-// what its own process took for it, without what the processes say to each other; nothing of a command.
+// Nanoseconds per pair of each row on the first pairs of `uniform`: the median of repetitions in which all rows take
+// turns. For foreign code it is the time in its own process, without communication. Commands have no time.
 inline constexpr std::size_t kLeagueTimedPairs = 1024, kLeagueRepetitions = 15;
 std::vector<std::optional<double>> league_costs(const League& league);
 

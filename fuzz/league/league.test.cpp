@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// All are right but where their names say otherwise.
+// Each of these functions is right, except for the defect that its name describes.
 constexpr const char* kPlanted = R"(
 #include <cstdlib>
 #include <graze/subject.h>
@@ -76,7 +76,7 @@ struct Planted : testing::Test {
   }
 };
 
-// What a subject must say, by the oracle.
+// The verdict that a planted subject must give, by the oracle.
 Verdict planted(std::string_view name, const Pair& pair) {
   const Hulls hulls = oracle::hulls(pair);
   const Verdict truth = oracle::truth(pair).verdict;
@@ -138,7 +138,7 @@ TEST_F(Planted, EveryNumberIsThatOfAnIndependentCount) {
     EXPECT_EQ(found.order_sample, sample) << name;
     EXPECT_FALSE(found.flips) << name;
   }
-  // None of it is empty.
+  // Each planted defect occurs often enough to be tested.
   EXPECT_GT(row("blind/f32/cpu").groups[2].false_negative, 100u);
   EXPECT_GT(row("dies/f32/cpu").groups[3].crashed, 100u);
   EXPECT_GT(row("narrow/f32/cpu").groups[3].by_convention, 50u);

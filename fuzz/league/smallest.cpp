@@ -20,8 +20,8 @@ namespace {
 
 constexpr std::size_t kMostMovedHere = 150'000;  // there may be hundreds; where a pair dies, each costs a process
 
-// A pair on which a process dies costs another one, a pair on which it does not return its time; what comes and goes
-// cannot be walked along.
+// A crash costs a new process, so a lane that dies gets fewer moves. A timeout costs its whole limit, and an unstable
+// verdict may not come back, so neither is minimised.
 std::size_t most_moved(const Candidate& candidate) {
   if (candidate.says == Verdict::timed_out || candidate.says == Verdict::unstable) return 0;
   return candidate.lane_dies ? kLeastMoved + 10'000 : kMostMovedHere;
@@ -57,7 +57,7 @@ LeagueFailure minimised(const Candidate& candidate) {
   return result;
 }
 
-// Whether the lane fails on the pair as on its own: the same truth, shape and verdict, within its contract.
+// Whether the lane fails on this pair as on the failure's own pair: the same shape and verdict, within its contract.
 bool fails_so(const LeagueFailure& failure, const Pair& pair) {
   const Verdict verdict = decide_one(failure.lane->decide, pair);
   const oracle::Truth truth = oracle::truth(pair);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The league's smallest failures: one pair of each subject, shape and wrong verdict, minimised, and shown again by a
-// process that has seen no other pair.
+// The league's smallest failures: for each subject, shape and wrong verdict, one minimised pair. A process that has
+// seen no other pair repeats each failure.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@
 
 namespace graze::fuzz {
 
-// What the lane says in a process that has seen no pair before these.
+// The lane's verdicts in a process that has seen no pair before these.
 std::vector<Verdict> verdicts_in_fresh_process(const Lane& lane, const std::vector<Pair>& pairs);
 
 struct Candidate {
@@ -25,7 +25,7 @@ struct Candidate {
   bool lane_dies;  // it crashed or did not return on some pair of the league
 };
 
-// Of one lane the simplest pair of each shape and wrong verdict. The order of adding does not matter.
+// Keeps one lane's simplest pair of each shape and wrong verdict. The order in which pairs are added does not matter.
 class Smallest {
  public:
   void add(std::string_view shape, Verdict says, const Pair& pair);
@@ -35,9 +35,9 @@ class Smallest {
   std::map<std::pair<std::string, Verdict>, std::pair<Simplicity, Pair>> pairs_;
 };
 
-// Minimises the first candidate of each subject, shape and verdict; where another subject's pair is simpler and fails
-// alike, that is the subject's too. Candidates are in the order of lanes. Returns: those that a fresh process shows
-// again; not_repeated: how many it does not. Throws: OracleMismatch.
+// Minimises the first candidate of each subject, shape and verdict. If another subject's pair is simpler and fails in
+// the same way here, it is taken instead. Candidates are in the order of lanes. Returns: the failures that a fresh
+// process repeats. not_repeated: the number of all others. Throws: OracleMismatch.
 std::vector<LeagueFailure> smallest_failures(const std::vector<Candidate>& candidates, std::uint64_t& not_repeated);
 
 }  // namespace graze::fuzz

@@ -66,7 +66,7 @@ Json find_kinds(
 // other subjects.
 // Throws: FormatError, with the command that writes the file again.
 Json read_kinds(const std::filesystem::path& directory);
-// The same; if there are none, finds the kinds of the campaign's lanes now and stores them.
+// Reads the kinds, or finds and stores the kinds of the campaign's lanes if there are none.
 // Throws: as find_kinds; UsageError for lanes that this build does not have.
 Json kinds_of(
     const std::filesystem::path& directory, const Json& summary,

@@ -106,14 +106,14 @@ void expect_places(const Known& known, const Json& kind) {
   const auto places = kind.at("places").get<std::vector<std::uint64_t>>();
   expect(!places.empty() && places.back() < known.cases.size() &&
              std::adjacent_find(places.begin(), places.end(), std::greater_equal<>()) == places.end(),
-         "other places than those of signatures, in their order");
+         "places that are not the ascending indices of signatures");
   const std::string subject = kind.at("subject"), shape = kind.at("shape");
   std::uint64_t pairs = 0;
   Counts margins, strata;
   for (const std::uint64_t place : places) {
     const Case& c = known.cases[place];
     expect(c.signature.subject == subject && shape_name(c.signature.hulls) == shape,
-           "a signature of another subject or shape: " + c.key);
+           "a kind with a signature of another subject or shape: " + c.key);
     pairs += c.pairs;
     margins[name_of_bucket(c.signature.bucket)] += c.pairs;
     for (const corpus::Entry& entry : c.entries) {
@@ -123,11 +123,11 @@ void expect_places(const Known& known, const Json& kind) {
   expect(kind.at("pairs") == pairs, fmt::format("a kind with {} pairs instead of {}", kind["pairs"].dump(), pairs));
   expect(kind.at("signatures") == places.size(),
          fmt::format("a kind with {} signatures instead of {}", kind["signatures"].dump(), places.size()));
-  expect(kind.at("margins").get<Counts>() == margins, "other margins than those of its signatures");
-  expect(kind.at("strata").get<Counts>() == strata, "other strata than those of its cases");
+  expect(kind.at("margins").get<Counts>() == margins, "a kind whose margins are not those of its signatures");
+  expect(kind.at("strata").get<Counts>() == strata, "a kind whose strata are not those of its cases");
   const LaneReason reason{nullptr, kind.at("cause"), kind.at("line"), false, false};
   expect(kind.at("key") == kind_key(subject, reason, known.cases[places.front()].signature.hulls),
-         "a key of other parts");
+         "a kind whose key differs from its fields");
 }
 
 void expect_lanes(const Known& known, const Json& kind) {
@@ -135,24 +135,24 @@ void expect_lanes(const Known& known, const Json& kind) {
   for (const std::string id : lanes) {
     const auto name = parse_lane_name(id);
     expect(name && name->subject == kind.at("subject").get_ref<const std::string&>() && known.lanes.contains(id),
-           "the lane " + shown(id) + ", which is none of its subject that was looked at");
+           "the lane " + shown(id) + ", which is not an examined lane of its subject");
   }
   const auto settled = kind.at("settled").get<std::array<std::uint64_t, 2>>();
   const std::uint64_t most = kind.at("signatures").get<std::uint64_t>() * lanes.size();
   expect(kind["settled"].size() == 2 && settled[0] <= settled[1] && settled[1] <= most,
-         fmt::format("{} settled of at most {} lanes", kind["settled"].dump(), most));
+         fmt::format("the counts {} of settled causes, for at most {} lanes", kind["settled"].dump(), most));
   const auto all = lanes.get<std::set<std::string>>(),
              own = kind.at("simplest").at("lanes").get<std::set<std::string>>();
   expect(all.size() == lanes.size() && !own.empty() && std::includes(all.begin(), all.end(), own.begin(), own.end()),
-         "no lanes, or one twice, or the simplest pair with others");
+         "a kind without lanes, with a lane twice, or with others on its simplest pair");
 }
 
 // Checks that the subject's own lanes have the verdicts of the case's first signature, and exact lanes the truth.
 void expect_verdicts(const Known& known, const Json& verdicts, const Case& c) {
-  expect(verdicts.size() == known.lanes.size(), "verdicts of other lanes than those that were looked at");
+  expect(verdicts.size() == known.lanes.size(), "verdicts that are not those of the examined lanes");
   const corpus::Entry& first = c.entries.front();
   for (const auto& [id, said] : verdicts.items()) {
-    expect(known.lanes.contains(id), "a verdict of the lane " + shown(id) + ", which was not looked at");
+    expect(known.lanes.contains(id), "a verdict of the lane " + shown(id) + ", which was not examined");
     const std::optional<Verdict> verdict = verdict_named(said.get<std::string>());
     expect(verdict.has_value(), "no verdict of " + id);
     const LaneName lane = parse_lane_name(id).value();
@@ -172,21 +172,21 @@ void expect_pairs(const Known& known, const Json& kind) {
       if (known.cases[place].file == shown.at("case").get_ref<const std::string&>()) return known.cases[place];
     }
     throw Impossible("the case " + graze::shown(shown.at("case").get<std::string>()) +
-                     ", which is none of its signatures");
+                     ", which belongs to none of the kind's signatures");
   };
   const auto is_shown = [](const Json& shown, const corpus::Entry& entry) {
     return pair_text(entry.pair) == shown.at("pair").get<std::string>() &&
            corpus::origin_of(entry) == shown.at("from").get<std::string>();
   };
   const Case &simplest = case_of(kind.at("simplest")), &worst = case_of(kind.at("worst"));
-  expect(is_shown(kind["simplest"], simplest.entries.front()), "another simplest pair than the case's first");
+  expect(is_shown(kind["simplest"], simplest.entries.front()), "a simplest pair that is not the first of its case");
   expect_verdicts(known, kind["simplest"].at("verdicts"), simplest);
   expect(std::any_of(worst.entries.begin(), worst.entries.end(),
                      [&](const corpus::Entry& entry) {
                        const double ulps = std::strtod(corpus::text_of(entry, "margin_ulps").c_str(), nullptr);
                        return is_shown(kind["worst"], entry) && kind["worst"].at("margin_ulps") == ulps;
                      }),
-         "another worst pair than one of the case");
+         "a worst pair that is not in its case");
 }
 
 // Checks that each own lane that is wrong on a signature's first pair has a kind there. Also checks that a pair on
@@ -212,7 +212,7 @@ void expect_all_covered(const Known& known, const Json& kinds) {
   }
   for (const auto& [subject, lanes] : least)
     expect(told[subject] >= lanes,
-           fmt::format("kinds of {} with {} of at least {} lanes that are wrong", subject, told[subject], lanes));
+           fmt::format("kinds of {} with {} wrong lanes instead of at least {}", subject, told[subject], lanes));
 }
 
 void expect_possible(const Known& known, const Json& kinds) {
@@ -226,7 +226,7 @@ void expect_possible(const Known& known, const Json& kinds) {
     expect(keys.insert(kind["key"]).second, "a kind twice: " + kind["key"].get<std::string>());
     expect(!before || (*before)["pairs"] > kind["pairs"] ||
                ((*before)["pairs"] == kind["pairs"] && (*before)["key"] < kind["key"]),
-           "kinds in another order than the commonest first");
+           "kinds that are not sorted by their numbers of pairs");
     before = &kind;
   }
   expect_all_covered(known, kinds);
@@ -236,7 +236,7 @@ std::string hash_of_summary(const fs::path& directory) {
   return fmt::format("{:016x}", fnv1a(read_whole(directory / "summary.json")));
 }
 
-// Its parts throw Json::exception if it is no JSON.
+// The campaign's summary. If the file is not JSON, access to its fields throws Json::exception.
 Json summary_in(const fs::path& directory) { return parse_shallow(read_whole(directory / "summary.json")); }
 
 // The hash of the present case files of all signatures.

@@ -22,8 +22,8 @@ constexpr std::size_t kBlockPairs = 64;  // one word of verdicts
 constexpr std::ptrdiff_t kForeignAtOnce = 8;  // each of them may take all of its time
 constexpr int kMostLate = 3;                  // after so many a case ends
 
-// Of at most 64 pairs, those that get the failure's verdict from every lane. The lanes that are wrong come first: they
-// leave the fewest pairs to the others. `late`: plus the pairs on which foreign code took all of its time.
+// Returns those of at most 64 pairs that get the failure's verdict from every lane. Wrong lanes decide first, because
+// they leave the fewest pairs to the others. late: increased by the number of timeouts of foreign code.
 std::vector<Pair> decided_alike(const Failure& failure, std::vector<Pair> pairs, int* late = nullptr) {
   for (const bool wrong : {true, false}) {
     for (std::size_t l = 0; l < failure.lanes.size() && !pairs.empty(); ++l) {
@@ -56,15 +56,15 @@ void keep_worst(Minimised& result, const Pair& pair, Verdict verdict) {
   result.worst_ulps = ulps;
 }
 
-// All but the cause itself: what can be known quickly.
+// A quick check before the cause is computed: false if the pair cannot have the reason.
 bool may_have_reason(const Failure& failure, const Reason& reason, const Pair& pair) {
   const bool by_range = reason.cause == analysis::Cause::overflow || reason.cause == analysis::Cause::underflow;
   if (!reason.in_range && !by_range) return true;
   return analysis::leaves_exponents(failure.first_wrong(pair), pair) != reason.in_range;
 }
 
-// What the moves of a kind make of the pair that is simpler than it, each pair once, the simplest first.
-// Adds to `made` how many pairs they make.
+// The pairs that moves of this kind make and that are simpler than the pair: each once, the simplest first. Adds the
+// number of all pairs made to `made`.
 std::vector<Pair> simpler_moves(const Pair& pair, int kind, std::size_t& made) {
   thread_local std::vector<Pair> moved;
   moved.clear();
@@ -96,8 +96,8 @@ std::vector<Pair> simpler_moves(const Pair& pair, int kind, std::size_t& made) {
 
 bool same_bits(const Pair& l, const Pair& r) { return !simpler_coordinates(l, r) && !simpler_coordinates(r, l); }
 
-// The pair after a move that made `after` of `before` is done `times` times: what was scaled by a power of two is
-// scaled by its power, all else goes as many times as far.   Returns: nothing where that is not finite.
+// Applies the move from `before` to `after` `times` times. Coordinates that it scaled by a power of two are scaled by
+// that power to the `times`; other coordinates move `times` as far.   Returns: nothing if a coordinate is not finite.
 std::optional<Pair> repeated(const Pair& before, const Pair& after, std::int64_t times) {
   const float *from = coordinates(before), *to = coordinates(after);
   std::optional<int> exponent;  // of the power of two; 0 when it is none
@@ -120,7 +120,8 @@ std::optional<Pair> repeated(const Pair& before, const Pair& after, std::int64_t
   return result;
 }
 
-// The place of the first lane that is wrong and does not only differ by its convention; the number of lanes for none.
+// The index of the first wrong lane, not counting lanes that differ only by their convention. The number of lanes if
+// there is none.
 std::size_t wrong_at(const Failure& failure, const Pair& pair) {
   const Relation& truth = failure.truth;
   std::size_t l = 0;
@@ -159,7 +160,8 @@ struct Walk {
            (cause == analysis::Cause::order_dependent && result.reason.cause == analysis::Cause::rounding);
   }
 
-  // Of a pair that gets the failure's verdicts.
+  // Makes the candidate the current pair if it fails alike for the same reason. Requires: it gets the failure's
+  // verdicts.
   bool take(const Pair& candidate) {
     if (relation_of(candidate) != failure.truth || !counts(failure, candidate)) return false;
     if (!may_have_reason(failure, result.reason, candidate)) return false;
@@ -175,7 +177,7 @@ struct Walk {
     return counts < now || (counts == now && simpler_coordinates(candidate, way.back()));
   }
 
-  // Does the last move again, for as long as that makes the pair simpler: 2, 4, 8, … times as far, then bisects.
+  // Repeats the last move 2, 4, 8, … times as far while the pair gets simpler, then bisects.
   void repeat() {
     const Pair before = way[way.size() - 2], once = way.back();
     const auto works = [&](std::int64_t times) {
@@ -192,7 +194,7 @@ struct Walk {
     }
   }
 
-  // Takes the simplest pair that a kind of move makes of the current one and that fails alike, if any.
+  // Moves to the simplest pair that this kind of move makes of the current one and that fails alike, if there is one.
   bool improve(int kind) {
     const std::vector<Pair> simpler = simpler_moves(way.back(), kind, result.moved);
     for (auto first = simpler.begin(); first != simpler.end();) {
@@ -235,7 +237,7 @@ struct Walk {
     result.one_minimal = !spent();
   }
 
-  // To a pair that has the cause, followed by one that does not.   Requires: the last pair lacks it.
+  // Goes back to a pair that has the cause while the next one lacks it.   Requires: the last pair lacks it.
   void go_back() {
     std::size_t has = 0, lacks = way.size() - 1;
     while (lacks - has > 1) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The minimiser on pairs of any bits, and of any stratum, on which lanes fail: it ends within its limit, and what it
-// leaves fails alike, for the reason that it says, and is no harder to read.
+// Runs the minimiser on pairs of any bits and of any stratum on which lanes fail. It must end within its limit. Its
+// result must fail alike, for the stated reason, and be at most as complex.
 #include "fuzz/minimise/minimise.h"
 
 #include "core/fuzz_pair.h"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMost = kLeastMoved + 5'000;
 
-// First byte 255: the stratum and the index that follow, which fails more often.
+// If the first byte is 255, a stratum and an index follow, because drawn pairs fail more often.
 Pair drawn_or_given(std::string_view bytes) {
   if (bytes.size() != 5 || bytes[0] != '\xff') return finite_pair_of(bytes);
   std::uint64_t index = 0;
@@ -25,14 +25,14 @@ const RegisterFuzzTarget kMinimise("minimise", [](std::string_view bytes) {
   static const SelectedLanes under_test = select_lanes({"*/f32/cpu", "*/f32/cuda-fma"}, Executor::twin);
   const Pair pair = drawn_or_given(bytes);
   for (const Failure& failure : failures_of(under_test, pair)) {
-    must_hold(fails_alike(failure, pair), "a pair fails as it does");
+    must_hold(fails_alike(failure, pair), "a pair fails like itself");
     if (!can_shrink(failure)) continue;
     const Minimised small = minimise(failure, pair, {}, kMost);
-    must_hold(small.moved <= kMost, "it ends after so many pairs");
-    must_hold(fails_alike(failure, small.pair), "what it leaves fails alike");
-    must_hold(reason_of(failure, small.pair) == small.reason, "the reason is that of the pair it leaves");
-    must_hold(small.reason.cause == reason_of(failure, pair).cause, "the cause is that of the first pair");
-    must_hold(simplicity(small.pair) <= simplicity(pair), "what it leaves is no harder to read");
+    must_hold(small.moved <= kMost, "the search ends within its limit");
+    must_hold(fails_alike(failure, small.pair), "the result fails alike");
+    must_hold(reason_of(failure, small.pair) == small.reason, "the reason is that of the result");
+    must_hold(small.reason.cause == reason_of(failure, pair).cause, "the cause is that of the original pair");
+    must_hold(simplicity(small.pair) <= simplicity(pair), "the result is at most as complex as the original");
     reached(static_cast<std::size_t>(small.reason.cause) * 64 +
             static_cast<std::size_t>(failure.lanes.front()->algorithm) * 4 + small.reason.in_range * 2 +
             small.one_minimal);

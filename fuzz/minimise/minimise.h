@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The minimiser: shrinks a pair while one algorithm's failure on it stays the same, and its cause, down to a pair that
-// no single move makes simpler. simplicity.h states what is simpler, moves.h what a single move is.
+// The minimiser shrinks a pair while one algorithm's failure and its cause stay the same. It ends when no single move
+// makes the pair simpler. simplicity.h defines which pair is simpler, and moves.h the single moves.
 #pragma once
 
 #include <optional>
@@ -14,34 +14,35 @@
 
 namespace graze::fuzz {
 
-// One algorithm's failure: the truth, and what each of its lanes says of it. A pair fails alike when all of it holds.
+// One algorithm's failure on a pair: the truth and the verdict of each lane. Another pair fails alike if it has the
+// same truth and verdicts.
 struct Failure {
-  // By the exact decision of core/exact/exact.h; the oracle confirms the results (see confirm). It stays when the pair
-  // shrinks. The margin's size need not: shrinking runs to the threshold, and would keep the coordinates long.
+  // By the exact decision of core/exact/exact.h; the oracle confirms the results (see confirm). Only the margin's sign
+  // is part of it: to keep its size, the coordinates would have to stay long.
   Relation truth;
   std::vector<const Lane*> lanes;    // of one algorithm, those among the lanes under test
   std::vector<DecideBlock> on_host;  // of each: the host lane or the twin
   std::vector<Verdict> verdicts;     // of each
   bool operator==(const Failure&) const = default;
 
-  // The first that is wrong on the pair, and does not only differ by its convention.   Requires: one is.
+  // The first lane that is wrong on the pair, not counting lanes that differ only by their convention.   Requires: one
+  // is.
   const Lane& first_wrong(const Pair& pair) const;
 };
 
-// The failures of a pair, one for each algorithm among those under test that is wrong on it; none for coordinates that
-// are not finite.   Throws: OracleMismatch; std::runtime_error where a lane's device and the twin differ.
+// The failures of a pair, one for each algorithm under test that is wrong on it. A pair with a coordinate that is not
+// finite has none.   Throws: OracleMismatch; std::runtime_error where a lane's device and the twin differ.
 std::vector<Failure> failures_of(const SelectedLanes& under_test, const Pair& pair);
 
 bool fails_alike(const Failure& failure, const Pair& pair);
 
-// The signature of a pair that fails alike, its own margin's bucket included.
+// The signature of a pair that fails alike, with the bucket of its own margin.
 analysis::Signature signature_of(const Failure& failure, const Pair& pair);
 
-// Why a failure happens. Its lanes may be wrong for different reasons; the one that counts is that of the first wrong
-// lane in the table's order. A pair fails for the same reason when the cause is the same and, where the lane's run left
-// the scalar's exponents nowhere, it still does so nowhere: what rounding did must not end as numbers of 1e-30. Once
-// nothing leaves the exponents on the way down, nothing does any more. Of foreign code, what is perhaps rounding may
-// turn out to be the order on a simpler pair; then the cause is that of the simpler one.
+// Why a failure happens. Its lanes may be wrong for different reasons; only that of the first wrong lane in table order
+// counts. A pair fails for the same reason if the cause is the same. If no result of the lane's run was out of the
+// exponents' range, none may become so, or a rounding error would shrink to numbers of 1e-30. On foreign code, a
+// simpler pair may show that a cause taken for rounding is the order; then that becomes the cause.
 struct Reason {
   analysis::Cause cause;
   bool in_range;  // no result of the lane's source, run without contraction, leaves the exponents
@@ -52,17 +53,16 @@ struct Reason {
 Reason reason_of(const Failure& failure, const Pair& pair);
 bool fails_for_reason(const Failure& failure, const Reason& reason, const Pair& pair);
 
-// A case ends after so many pairs that moves made of it, minimal or not. Each is asked for at most one verdict of every
-// lane and one of the exact decision, so that eight lanes give at most nine times as many verdicts. Finding out the
-// cause of a pair counts as kMovedPerCause.
+// The limit of pairs that moves may make of a case; it then ends even if it is not minimal. Each pair takes at most one
+// verdict of every lane and one exact decision. Finding the cause of a pair counts as kMovedPerCause pairs.
 inline constexpr std::size_t kMostMoved = 1'500'000;
 inline constexpr std::size_t kMovedPerCause = 500;
 inline constexpr std::size_t kLeastMoved = 40 * kMovedPerCause;  // kept back to find the cause again, see minimise
 // Each crash of foreign code costs a new process.
 inline constexpr std::size_t kMostMovedCrashing = 100'000;
 
-// Whether the failure can be shrunk. Not where a lane takes all of its time for each verdict, and not where its
-// verdicts change: such a pair stays as it is.
+// Whether the failure can be shrunk. Timeouts are not, because each verdict takes the whole time limit, and neither are
+// unstable verdicts.
 bool can_shrink(const Failure& failure);
 
 struct Minimised {
@@ -75,18 +75,18 @@ struct Minimised {
   double worst_ulps = 0;         // of either sign; the worst pair's cause may be another
 };
 
-// Goes through the kinds of moves in their order, over and over, and takes of each the simplest pair that fails alike,
-// until a whole round finds none. What a move did is done again 2, 4, 8, … times as far, while that makes the pair
-// simpler still, and then bisected. The cause, which is dear, is asked for at the end. Where it was lost, a bisection
-// of the way finds a pair that has it, followed by one that does not, and from there on every pair is asked.
-// `known`: results of the same failure; one that is met is the result. `most`: in place of most_moved.
+// Repeats rounds over all kinds of moves until a round changes nothing. From each kind it takes the simplest pair that
+// fails alike. A move that helped is repeated 2, 4, 8, … times as far while the pair gets simpler, and then bisected.
+// The cause is expensive, so it is checked at the end. If it was lost, a bisection finds the step that lost it; from
+// there on every pair's cause is checked. known: earlier results of this failure; if the search meets one, it returns
+// that. most: replaces most_moved.
 // Requires: fails_alike(failure, pair), most > kLeastMoved.   Throws: OracleMismatch.
 std::size_t most_moved(const Failure& failure);  // kMostMoved, or kMostMovedCrashing
 Minimised minimise(const Failure& failure, const Pair& pair, std::span<const Minimised> known = {},
                    std::optional<std::size_t> most = {});
 
-// Throws: OracleMismatch unless CGAL and GMP say of the pair what the failure does; std::runtime_error unless all lanes
-// under test do, on the device where it has one.
+// Confirms a result with the oracle and, for CUDA lanes, on the device if there is one. Throws: OracleMismatch if CGAL
+// and GMP give another truth than the failure has; std::runtime_error if a lane gives another verdict.
 void confirm(const SelectedLanes& under_test, const Failure& failure, const Pair& pair);
 
 }  // namespace graze::fuzz

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -48,14 +49,14 @@ struct Case {
   std::string name;
 };
 
-// The first failures of a stratum, `most` of each algorithm.
+// The first failures of a stratum, at most `most` for each algorithm.
 std::vector<Case> cases_of(strata::Stratum stratum, std::size_t most) {
   std::vector<Case> found;
-  std::vector<std::size_t> of_algorithm(lanes().size());
+  std::map<std::string_view, std::size_t> of_algorithm;
   for (std::uint64_t index = 0; index < 3000; ++index) {
     const Pair pair = strata::generate(kSeed, stratum, index);
     for (Failure& failure : failures_of(under_test(), pair)) {
-      if (++of_algorithm[static_cast<std::size_t>(failure.lanes.front()->algorithm)] > most) continue;
+      if (++of_algorithm[failure.lanes.front()->info->id] > most) continue;
       const std::string name = std::to_string(index) + " " + std::string(failure.lanes.front()->info->id);
       found.push_back({pair, std::move(failure), name});
     }
@@ -63,7 +64,8 @@ std::vector<Case> cases_of(strata::Stratum stratum, std::size_t most) {
   return found;
 }
 
-// Each row: a pair, one less simple, and the first criterion in which they differ; 9 are the coordinates themselves.
+// Each row has a pair, a less simple one, and the first criterion in which they differ. Criterion 9 compares the
+// coordinates.
 TEST(Simplicity, ComparesInTheStatedOrder) {
   struct Row {
     Pair simpler, other;
@@ -102,7 +104,7 @@ TEST(Simplicity, ComparesInTheStatedOrder) {
   EXPECT_EQ(count_of(simplicity(in_space), 7), 2);
 }
 
-// Any two of many pairs: one is simpler, or their bits are the same; and going on from one to the next never returns.
+// Of any two pairs one is simpler, unless their bits are the same, and the relation is transitive.
 TEST(Simplicity, IsATotalOrder) {
   std::vector<Pair> pairs;
   for (const strata::StratumInfo& row : strata::kStrata) {
@@ -113,7 +115,7 @@ TEST(Simplicity, IsATotalOrder) {
     for (std::size_t j = i; j < pairs.size(); ++j) {
       ASSERT_FALSE(simplicity(pairs[j]) < simplicity(pairs[i]));
       ASSERT_EQ(simplicity(pairs[i]) == simplicity(pairs[j]), same_bits(pairs[i], pairs[j]));
-      // What the minimiser asks instead, to be quick.
+      // The faster functions that the minimiser calls must agree with `<`.
       const std::uint64_t l = simplicity_counts(pairs[i]), r = simplicity_counts(pairs[j]);
       ASSERT_EQ(simplicity_counts(pairs[j], l) > l, r > l);
       ASSERT_EQ(simplicity_counts(pairs[i], r), l);  // at most r, as the pairs are sorted
@@ -161,7 +163,8 @@ TEST(Moves, AreFiniteWhateverThePair) {
 
 class MinimiseStratum : public testing::TestWithParam<strata::StratumInfo> {};
 
-// Same failure by the oracle itself, simpler or equal, 1-minimal by trying all moves again, and a fixed point.
+// The oracle confirms the same failure, the pair is not less simple, no move of any kind improves it, and minimising it
+// again changes nothing.
 TEST_P(MinimiseStratum, MinimisesToAOneMinimalPairThatFailsAlike) {
   const std::vector<Case> cases = cases_of(GetParam().stratum, 4);
   ASSERT_FALSE(cases.empty());
@@ -230,7 +233,7 @@ TEST(Minimise, ShrinksWhatFailsOnlyAtTheEndsOfTheRange) {
   }
 }
 
-// A shear that lowers a coordinate by 2 did so 620,000 times.
+// Each shear lowers a coordinate of this pair by only 2, so 620,000 single shears would be needed.
 TEST(Minimise, MovesThatHelpAreDoneManyTimesAtOnce) {
   const SelectedLanes one = select_lanes({"projected_sat/f32/cpu"});
   const Pair pair = strata::generate(21, strata::Stratum::mixed_scale, 649);
@@ -242,7 +245,7 @@ TEST(Minimise, MovesThatHelpAreDoneManyTimesAtOnce) {
   EXPECT_EQ(nontrivial_magnitudes(found.pair), 1);
 }
 
-// Whatever the limit, the case ends within it, with a pair that fails as the first one does and says what it is.
+// With any limit, the search ends within it, and its result fails alike and states its own reason.
 TEST(Minimise, EndsWithinItsLimit) {
   int stopped = 0;
   for (const auto stratum : {strata::Stratum::near_edge_edge, strata::Stratum::extreme_scale}) {
@@ -264,7 +267,7 @@ TEST(Minimise, EndsWithinItsLimit) {
   EXPECT_GT(stopped, 10);
 }
 
-// Results that are met on the way are the result, and are what would have come out.
+// A known result that the search meets is returned, and is the same as without it.
 TEST(Minimise, EndsWhereAnotherCaseEnded) {
   for (const Case& c : cases_of(strata::Stratum::near_vertex_face, 1)) {
     SCOPED_TRACE(c.name);
@@ -277,7 +280,7 @@ TEST(Minimise, EndsWhereAnotherCaseEnded) {
   }
 }
 
-// Failures of rounding near the ends of the exponents, which ended as overflow and underflow: 2^-75.
+// Rounding failures near the limits of the exponents (2^-75) must not shrink into overflow or underflow.
 TEST(Minimise, TheCauseStays) {
   std::set<analysis::Cause> seen;
   int out_of_range = 0;
@@ -299,7 +302,7 @@ TEST(Minimise, TheCauseStays) {
   EXPECT_GT(out_of_range, 0);
 }
 
-// What a lane's convention leaves open is not what the failure is about, though the lane comes first.
+// A lane that differs only by its convention is not the first wrong lane, even if it comes first.
 TEST(Minimise, TheFirstWrongLaneIsNotExcused) {
   const Pair touching = pair_of({0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, 0, 1, 1, 1, 3, 3, 1});
   static const AlgorithmInfo info{"excused", "test", "", "", "", false};

@@ -124,7 +124,8 @@ std::vector<MinimisedCase> minimise_cases(const SelectedLanes& under_test, const
     } catch (const oracle::OracleMismatch&) {
       throw;
     } catch (const std::runtime_error&) {
-      // Foreign code may give a different verdict the second time, by timing alone. Then only the original is known.
+      // Foreign code may give a different verdict the second time, just because of timing. Then the original is the
+      // result.
       if (!result.failure.lanes.front()->foreign) throw;
       result.result.pair = result.result.worst = result.original;
       result.result.one_minimal = false;

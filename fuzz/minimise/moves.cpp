@@ -44,7 +44,7 @@ double nearest_whole(double x) {
   return std::copysign((x + kWholeFromHere) - kWholeFromHere, x);
 }
 
-// Translates a vertex to the origin first; -1 leaves all where they are.
+// Rounds the pair to lattices. origin: the vertex that is translated to the origin first; -1 for no translation.
 void lattices(const Pair& pair, int origin, Pairs& moved) {
   double seen[kCoordinates], largest = 0;
   for (int i = 0; i < kCoordinates; ++i) {
@@ -263,7 +263,7 @@ void rearrange(const Pair& pair, Pairs& moved) {
   }
 }
 
-// In the order of moves.h: the number of kinds, and the function that appends the moves of the i-th one.
+// The kinds of moves in the order of moves.h: their number, and the function that appends the moves of the i-th kind.
 constexpr struct {
   int kinds;
   void (*append)(const Pair& pair, int i, Pairs& moved);

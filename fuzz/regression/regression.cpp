@@ -19,7 +19,7 @@ constexpr std::string_view kOwnFields[] = {"name",      "truth", "contact", "sta
 
 constexpr std::string_view kMarks = ".+-?~";
 
-// "moller_1997:-f32/cpu.f64/cpu;projected_sat:.f32/cpu": by subject, each lane after its mark.
+// "moller_1997:-f32/cpu.f64/cpu;projected_sat:.f32/cpu": each subject with its lanes, a mark before each lane.
 std::string text_of(const Marks& marks) {
   std::string text, last;
   for (const auto& [id, mark] : marks) {
@@ -68,7 +68,7 @@ struct Line {
     for (std::string subject; std::getline(subjects, subject, ';');) {
       const std::string id = subject.substr(0, subject.find(':'));
       std::string_view rest = std::string_view(subject).substr(std::min(id.size() + 1, subject.size()));
-      if (rest.empty()) fail("a subject and the marks of its lanes in lanes", '\'' + subject + '\'');
+      if (rest.empty()) fail("a subject and the marks of its lanes in the field lanes", '\'' + subject + '\'');
       while (!rest.empty()) {
         std::size_t end = rest.find(',');  // the lane ends at the end, or at a comma before a mark
         while (end != rest.npos && end + 1 < rest.size() && kMarks.find(rest[end + 1]) == kMarks.npos)
@@ -101,7 +101,7 @@ std::string verdict_of_mark(char mark, std::string_view truth) {
     case '%':
       return "unstable (wrong)";
     default:
-      return "another from replay to replay";
+      return "different in each replay";
   }
 }
 

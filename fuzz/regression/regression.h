@@ -43,7 +43,7 @@ struct RegressionCase {
 // The fields of an entry that a case does not store itself.
 std::vector<std::pair<std::string, std::string>> other_fields(const corpus::Entry& entry);
 
-// By signature, as first seen.
+// Cases by the signature that they were first seen with.
 using RegressionCorpus = std::map<std::string, RegressionCase>;
 
 // Throws: FormatError, also if the file is missing or holds a signature twice.

@@ -191,8 +191,8 @@ TEST_F(Regression, LanesThatDoNotRunChangeNothing) {
 
 TEST_F(Regression, VerdictsThatDifferBetweenReplaysAreFlakyForGood) {
   liars.alternating = {"moller_1997/f64/cpu"};
-  EXPECT_EQ(changes(), (Texts{"moller_1997/f64/cpu: was intersects (right), is another from replay to replay",
-                              "failing -> flaky"}));
+  EXPECT_EQ(changes(),
+            (Texts{"moller_1997/f64/cpu: was intersects (right), is different in each replay", "failing -> flaky"}));
   liars.alternating.clear();
   EXPECT_EQ(changes(), Texts());
   EXPECT_EQ(only().state, CaseState::flaky);
@@ -200,7 +200,7 @@ TEST_F(Regression, VerdictsThatDifferBetweenReplaysAreFlakyForGood) {
 
 TEST_F(Regression, ExecutorsThatDifferAreFlaky) {
   liars.apart = {"interval_overlap/f32/cuda-fma"};
-  EXPECT_EQ(changes(), (Texts{"interval_overlap/f32/cuda-fma: was intersects (right), is another from replay to replay",
+  EXPECT_EQ(changes(), (Texts{"interval_overlap/f32/cuda-fma: was intersects (right), is different in each replay",
                               "failing -> flaky"}));
 }
 

@@ -56,7 +56,7 @@ std::string named(const StoreSpec& store) {
   return store.directory.string() + (store.shard.whole() ? "" : ", shard " + store.shard.name());
 }
 
-// Throws: std::runtime_error if pairs are missing; its one line says what the part's owner must do.
+// Throws: std::runtime_error if pairs are missing; the message names the command to run.
 void expect_no_gaps(const std::vector<StoreSpec>& stores, const Sums& sums, const fs::path& out) {
   const std::vector<PairRange> gaps = sums.gaps();
   if (gaps.empty()) return;
@@ -160,7 +160,7 @@ fs::path folder_beside(const fs::path& place) {
   if (error) throw std::runtime_error(cannot("make the directory", part, error.message()));
   const auto is_ours = [](const fs::directory_entry& entry) { return entry.path().filename() == kCampaignPart; };
   if (fs::is_symlink(part) || !std::all_of(fs::directory_iterator(part), fs::directory_iterator(), is_ours))
-    throw UsageError(cannot("use", part, "it is not what a killed merge leaves; remove it"));
+    throw UsageError(cannot("use", part, "a killed merge did not leave it; remove it"));
   return part;
 }
 

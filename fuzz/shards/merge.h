@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Merges several stores into one campaign: shards, ranks, or campaigns that were merged before. The result has the same
-// bytes as one run of the whole, whatever the parts, their order and their executors. Shards of a hunt are separate
-// searches: each kind of failure counts once, by its first pair. The order of the parts does not matter there either.
+// bytes as one run of the whole, for any parts, order and executors. Shards of a hunt are separate searches: each kind
+// of failure counts once, by its first pair. The order of the parts does not matter there either.
 #pragma once
 
 #include <filesystem>

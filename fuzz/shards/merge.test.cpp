@@ -120,7 +120,7 @@ TEST_F(MergeTest, APartialMergeIsACampaignToGoOnWith) {
   expect_same_bytes("whole", "partial");
 }
 
-// The folder beside the target may have been left by a killed merge. Anything else of its name stays.
+// The folder beside the target may have been left by a killed merge. Other files and folders of that name stay.
 TEST_F(MergeTest, OnlyWhatAKilledMergeLeftIsReplaced) {
   const std::vector<fs::path> parts = run_shards(2);
   const fs::path out = root_ / "all", beside = out.string() + kPart, other = root_ / "other";
@@ -208,7 +208,7 @@ TEST_F(MergeTest, WhatIsWrongGetsOneLineAndLeavesNothing) {
   };
   Json timings = Json::parse(read_whole(parts[0] / "timings.json"));
   timings["runs"].back()["costs"]["passes"] = 0;
-  with_other(parts[0] / "timings.json", sealed(timings).dump(), "it has costs of no passes");
+  with_other(parts[0] / "timings.json", sealed(timings).dump(), "invalid number of passes");
   with_other(parts[0] / "timings.json", timings.dump(), "it has been changed or damaged since graze wrote it");
   with_other(parts[1] / "status.json", "{", "it has been changed or damaged since graze wrote it");
   fs::remove(parts[1] / "status.json");

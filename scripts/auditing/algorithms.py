@@ -9,8 +9,8 @@ from auditing.numbers import Fused, outcome, root_of
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 
-# The source line of a comparison: the only line of the header that contains this text, but for the numbers of questions
-# and choices.
+# The source line of a comparison: the only line of the header that contains this text, ignoring the numbers of
+# questions and choices.
 _sources = {}
 NUMBERS = (
     (re.compile(r"At\((Site::\w+), [^)]*\)"), r"\1"),

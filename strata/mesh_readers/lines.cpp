@@ -88,7 +88,7 @@ std::uint64_t Lines::whole(std::size_t i, const std::string& expected) const {
 
 std::uint32_t Lines::vertex(std::size_t i, std::size_t vertices) const {
   const auto expected = [&] {
-    return vertices == 0 ? std::string("no face, for there is no vertex")
+    return vertices == 0 ? std::string("no face, because there is no vertex")
                          : "a vertex from 0 to " + std::to_string(vertices - 1);
   };
   const std::optional<std::uint64_t> value = i < words_.size() ? parse_whole(words_[i]) : std::nullopt;

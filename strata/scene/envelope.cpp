@@ -35,7 +35,7 @@ double largest_of(const SceneFile& scene) {
   return largest;
 }
 
-// How long a stratum needs the longest edge to be, in steps of the exact grid; and the least factor between edges.
+// The least longest edge that a stratum needs, in steps of the exact grid, and the least ratio of edges.
 constexpr double kLeastSteps = 64, kMostLatticeSteps = 64, kLeastFactor = 16;
 
 double longest_in_steps(const SceneFile& scene, const Grid& grid) {

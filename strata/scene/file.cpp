@@ -157,7 +157,7 @@ class Reader {
       largest_ = std::max({largest_, std::fabs(low), std::fabs(high)});
     }
     diagonal_ = std::sqrt(squares);
-    if (diagonal_ == 0) fail(*node, "an extent of some size", "a point");
+    if (diagonal_ == 0) fail(*node, "an extent that is not a single point", "a point");
   }
 
   std::vector<double> quantiles(const toml::node& node, double low, double high) const {
@@ -315,8 +315,8 @@ std::string scene_text(const SceneFile& scene) {
   for (std::size_t kind = 0; kind < kKinds; ++kind) text += fmt::format("{} = {}\n", kKindIds[kind], scene.mix[kind]);
   if (!scene.margins.empty()) {
     text +=
-        "\n# Their margins, in ulps of the pair's largest coordinate: + apart, - deep; told, not drawn "
-        "from.\n[margins]\n";
+        "\n# Their margins, in ulps of the pair's largest coordinate: + apart, - deep; for information, not "
+        "used to draw.\n[margins]\n";
     for (const auto& [bucket, share] : scene.margins)
       text += fmt::format("\"{}\" = {}\n", name_of_bucket(bucket), share);
   }

@@ -17,7 +17,7 @@ const RegisterFuzzTarget kScene("scene", [](std::string_view bytes) {
     must_hold(scene_text(parse_scene("again", text)) == text, "the same scene gives the same text");
     const Scene drawn = resolved(scene);
     for (int axis = 0; axis < 3; ++axis)
-      must_hold(component(drawn.low, axis) <= component(drawn.high, axis), "an extent has an inside");
+      must_hold(component(drawn.low, axis) <= component(drawn.high, axis), "an extent is not empty");
   } catch (const std::runtime_error& error) {
     must_be_one_line(error.what());
   }

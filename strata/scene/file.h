@@ -36,7 +36,7 @@ struct SceneMeshes {
   friend bool operator==(const SceneMeshes&, const SceneMeshes&) = default;
 };
 
-// The initial values are the defaults of what a file may omit. extent and edges have no default.
+// The initial values are the defaults for fields that a file may omit. extent and edges have no default.
 struct SceneFile {
   std::string units = "units";
   std::array<std::array<double, 2>, 3> extent{};  // least and greatest coordinate on each axis

@@ -34,8 +34,8 @@ struct Scene {
 
 inline namespace GRAZE_FP {
 
-// The pair with this index. It lies within the extent and on the grid, and no edge is longer than the longest (but for
-// rounding). A pair that does not fit the extent along an axis is flattened along it.
+// The pair with this index. It lies within the extent and on the grid, and no edge is longer than the longest, up to
+// rounding. A pair that does not fit the extent along an axis is flattened along it.
 // Requires: the scene can contain the stratum, see left_out(); compiled without contraction.
 GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, const Scene& scene, std::uint64_t index);
 

@@ -66,7 +66,7 @@ GRAZE_HD inline Vec unit(const Vec& v) {
   return squared > 0x1p-200 ? v * (1 / sqrt(squared)) : unit_axis(0);
 }
 
-// Where directions are drawn: all of space, or the plane of x and y. x and y are perpendicular and have length 1.
+// The directions to draw from: all of space, or the plane of x and y. x and y are perpendicular and have length 1.
 struct Space {
   bool flat = false;
   Vec x{1, 0, 0}, y{0, 1, 0};

@@ -50,7 +50,7 @@ class Operands {
   // The address in "[%rd1+8]".
   std::string address(const std::string& memory) const;
 
-  // The elements of "{%r1,%r2}"; any other name is its own only element.
+  // The elements of "{%r1,%r2}"; for any other operand, the operand itself.
   static std::vector<std::string> elements(const std::string& name);
 
   // Throws: PtxError when a modifier between the operation and its type is not among these.

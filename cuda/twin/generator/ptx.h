@@ -27,8 +27,8 @@ struct Place {
   friend bool operator==(const Place&, const Place&) = default;
 };
 
-// Where an instruction comes from: its source line, and the line into which that code was inlined (file 0: not
-// inlined). PTX does not identify further levels of inlining reliably.
+// The origin of an instruction: its source line, and the line into which that code was inlined (file 0: not inlined).
+// PTX does not identify further levels of inlining reliably.
 struct Source {
   Place at;
   Place from;

@@ -47,7 +47,7 @@ void write_declarations(std::ostream& out, const Kernel& kernel) {
   }
 }
 
-// Path within the repository. Of a system header, only its name, because its folder differs between machines.
+// Path within the repository. For a system header, only the file name, because its folder differs between machines.
 std::string relative(std::string path, const std::string& root) {
   if (!path.starts_with(root + "/")) return path.substr(path.rfind('/') + 1);
   path.erase(0, root.size() + 1);

@@ -17,7 +17,7 @@ namespace graze::query {
 
 using Triangle = std::array<float, 9>;  // x y z of each vertex
 
-// Triangles of a type whose first nine floats are the coordinates.
+// An array of a type whose first nine floats are a triangle's coordinates.
 template <class T>
 graze_triangles rows_of(std::span<const T> triangles) {
   static_assert(sizeof(T) >= sizeof(Triangle) && alignof(T) % alignof(float) == 0);

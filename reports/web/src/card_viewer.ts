@@ -20,7 +20,7 @@ export const has_viewer = () => compressed !== '' && stored() !== null;
 
 const bits_of = ({ pair }: Card) => to_bits(Float32Array.from(pair.value));
 
-// A lane of the kind that is wrong on the pair shown, preferably one that the viewer has.
+// Returns a lane of the kind that is wrong on the pair shown, preferably one that the viewer can run.
 function lane_of(report: Report, { kind, verdicts }: Card) {
   const lanes = stored()!.replay.lanes,
     wrong = verdicts

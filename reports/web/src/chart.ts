@@ -3,7 +3,8 @@
 
 export const kChartStyle = { background: 'none', fontFamily: 'inherit', fontSize: '12px' };
 
-// A screen reader sees a plot as one picture with the label `label`; Plot's names of its parts become data-mark.
+// For a screen reader, a plot is one picture with the label `label`. The names that Plot gives to its parts are moved
+// to data-mark.
 export function named(plot: SVGSVGElement | HTMLElement, label: string) {
   for (const part of plot.querySelectorAll('[aria-label]')) {
     part.setAttribute('data-mark', part.getAttribute('aria-label')!);

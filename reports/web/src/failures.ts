@@ -102,7 +102,7 @@ export function failure_sections(report: Report) {
     shown.textContent = `${count(rows.length)} shown, of ${listed} signatures.`;
     table.show(rows);
 
-    // A kind belongs to a cell if its lane fails in this way in a signature with such pairs.
+    // A kind belongs to a cell if its lane makes the cell's error on a signature with pairs of the cell's strata.
     const of_cell = cell && new Set(rows.flatMap((s) => s.cards));
     const shows = (place: number) =>
       !of_cell ||

@@ -89,7 +89,8 @@ function strata_histogram({ strata }: FailureKind) {
   );
 }
 
-// Every power of two between the deepest and the shallowest overlap, 0, and the same for disjoint pairs.
+// All buckets between the deepest and the shallowest overlap, bucket 0, and all between the smallest and the largest
+// distance.
 function buckets_of(margins: FailureKind['margins']): string[] {
   const side = (sign: string) => {
     const exponents = Object.keys(margins)

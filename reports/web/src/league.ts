@@ -51,7 +51,7 @@ export function league_section(report: Report) {
       ? h('span', { class: 'none' }, '–')
       : h('span', { class: heat_class(share.share), 'data-kind': kind }, bare_percent(share.share));
 
-  // Leads from a cell to pairs that show it; if there are none, says so.
+  // Opens the pairs behind a cell, or shows a message if there are none.
   function press(event: Event, rate: Rate) {
     const pressed = (event.target as Element).closest<HTMLElement>('[data-kind]')?.dataset.kind;
     const kind = (pressed ?? (show === 'both' ? 'wrong' : show)) as Kind;

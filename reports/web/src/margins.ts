@@ -262,7 +262,7 @@ export function margins_section(report: Report) {
     show_thresholds();
   }
 
-  // Describes a lane's curve in words: where it is worst, at margin 0, and from where it is right.
+  // Describes a lane's curve in words: its worst margin, its share at margin 0, and the margins at which it is right.
   function lane_words(lane: number) {
     const points = (report.margins.find((row) => row.lane === lane)?.points ?? []).filter((p) => p.wrong.of > 0);
     const zero = points.find((p) => p.side === 'zero'),

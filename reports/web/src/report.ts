@@ -70,7 +70,8 @@ export interface Pareto {
   pairs: number;
   seed: number;
   machine: string;
-  // Of one core: in_cache and from_memory. Of a device: resident, with_copies and the resources of the kernels.
+  // Lanes on one core have in_cache and from_memory. Lanes on a device have resident, with_copies and the resources of
+  // the kernels.
   // failure: the smallest pair on which the lane is wrong, as input for `graze check`.
   lanes: {
     lane: string;

@@ -36,7 +36,7 @@ test('two campaigns compared: what changed on top, rates, kinds gained and lost'
     );
     for (const { key } of kinds.slice(0, 5)) await expect(section).toContainText(key);
   }
-  // Campaigns of one build seldom gain or lose a kind, so the page shows one that is written into it.
+  // Campaigns of one build seldom gain or lose a kind, so the test writes one into the page.
   const file = test.info().outputPath('gained.html');
   const gained = { key: 'moller_1997/rounding/plane.h:1/general', signatures: 40, count: 1234 };
   const whole = readFileSync(fileURLToPath(compare_url()), 'utf8');

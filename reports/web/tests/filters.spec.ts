@@ -181,8 +181,8 @@ test('where lanes of a device fail, a card has their program', async ({ report }
     );
   const has = (card: Report['cards'][number], program: string) => card.snippets.some(({ label }) => label === program);
   for (const card of report.cards) {
-    // On the pair shown, some lanes of the subject may fail for another reason than the kind's. If the kind's own lanes
-    // are among them, the card may lack a program.
+    // On the pair shown, some lanes of the subject may fail for another reason than the kind's. Then the card may lack
+    // a program.
     const mixed = card.verdicts.some(
       ({ lane, wrong }) =>
         wrong && report.lanes[lane].algorithm === card.kind.subject && !card.kind.lanes.includes(report.lanes[lane].id),

@@ -58,7 +58,7 @@ test('title, sentence, lanes and verdicts of a card do not contradict each other
     expect(first).toBe(sentences[0]);
     expect(first.startsWith(`${kind.subject}/`), first).toBe(true);
     expect(first).toContain(kind.line);
-    // The table marks those of the named lanes that the card calls wrong on the pair shown.
+    // Of the lanes in the title, the table marks exactly those that the card calls wrong on the pair shown.
     const said = card.all[0].split(', ').map((lane) => `${kind.subject}/${lane}`);
     expect(said).toEqual(kind.lanes);
     const claimed = card.here.length > 0 ? card.here[0].split(', ').map((lane) => `${kind.subject}/${lane}`) : said;

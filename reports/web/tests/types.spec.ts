@@ -9,7 +9,7 @@ import type { Costs, Report } from '../src/report';
 
 const here = dirname(fileURLToPath(import.meta.url));
 
-// What the page gets of a file: all but its checksum.
+// The part of a file that the page gets: everything except the checksum.
 function parsed(file: string) {
   const value = JSON.parse(readFileSync(file, 'utf8'));
   expect(value.checksum).toMatch(/^[0-9a-f]{16}$/);

@@ -32,7 +32,7 @@ function parting(run: Step[], other: Step[]): [number, number] | null {
   return at < 0 ? null : [mine[at], theirs[at]];
 }
 
-// Says what the comparison asks, if the values passed to the policy tell.
+// Describes the compared quantity, if the values passed to the policy show it.
 function meaning(runs: [Step[], number][], scalar: string): Child {
   const [[run, at]] = runs,
     step = run[at];
@@ -154,7 +154,7 @@ function places(sites: Site[]): Child {
   );
 }
 
-// brief: the values that each compares where they part, in one line.
+// brief: one line with the values that the two runs compare where they first differ.
 export function apart(model: Model, lane: string): { parts: Child[]; brief: Child } {
   const { graze, pair, decided } = model,
     [subject, scalar] = lane.split('/'),

@@ -116,7 +116,7 @@ export class Model {
     this.policy = policy;
     this.settle();
   }
-  // Sets what is shown, not what is decided.
+  // Changes the display only, not the decision.
   set(what: Partial<Pick<Model, 'chosen' | 'lane' | 'centre' | 'shows'>>) {
     Object.assign(this, what);
     this.changed(false);

@@ -48,7 +48,7 @@ export function on_a_line(model: Model) {
   };
   on_width(picture, redraw);
 
-  // beside: the ranges of the same lane on the other processor, if the two differ.
+  // beside: the ranges of the lane's counterpart on the GPU or CPU, if the two differ.
   function show(ranges: Ranges, how: Child, beside: [string, Ranges | null | undefined] | null) {
     const { a, b, exact_a, exact_b } = ranges,
       name = h('code', {}, model.lane);

@@ -62,7 +62,7 @@ function plane(corners: Vec[]): Vec[] {
   ].map(([s, t]) => middle.map((c, k) => c + s * e[k] + t * f[k]) as Vec);
 }
 
-// b's vertices projected onto a's plane, which is all that projected_sat finally compares; empty if a has no plane.
+// b's vertices projected onto a's plane, because projected_sat compares only this projection. Empty if a has no plane.
 function shadow_of(points: Vec[]): Vec[] {
   const [p, q, r] = points,
     u = q.map((c, k) => c - p[k]),

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/verdicts_apart.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+
+#include "analysis/convention.h"
+#include "core/lanes/verdicts.h"
+#include "core/relation_of.h"
+
+namespace graze::analysis {
+
+std::vector<VerdictsApart> verdicts_apart(const TwoDeciders& deciders, const std::vector<strata::PairSource>& sources,
+                                          int threads, const std::function<bool(const Pair&, const Pair&)>& simpler) {
+  constexpr std::uint64_t kPairsDecided = 64;
+  const std::vector<SourceBlock> blocks = blocks_of(sources, kPairsDecided);
+  const auto most = static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency());
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, most);
+  const auto pair_at = [&](const PairPlace& place) {
+    return sources[static_cast<std::size_t>(place.source)].pair(place.index);
+  };
+  // Equally simple pairs are ordered by their places, so that the simplest does not depend on the threads.
+  const auto keep_simplest = [&](std::optional<PairPlace>& kept, const PairPlace& found) {
+    if (!kept) {
+      kept = found;
+      return;
+    }
+    const Pair old_pair = pair_at(*kept), pair = pair_at(found);
+    if (simpler(pair, old_pair) || (!simpler(old_pair, pair) && found < *kept)) kept = found;
+  };
+  tbb::enumerable_thread_specific<std::vector<VerdictsApart>> results(std::vector<VerdictsApart>(sources.size()));
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+    const SourceBlock& block = blocks[b];
+    const auto source = static_cast<std::size_t>(block.source);
+    std::vector<Pair> pairs;
+    for (std::uint64_t i = 0; i < block.count; ++i) pairs.push_back(sources[source].pair(block.first + i));
+    const std::vector<Verdict> verdicts[2] = {verdicts_of(deciders.decide[0], pairs),
+                                              verdicts_of(deciders.decide[1], pairs)};
+    VerdictsApart& to = results.local()[source];
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (!is_finite(pairs[i])) continue;
+      ++to.pairs;
+      const Relation truth = relation_of(pairs[i]);
+      for (int lane = 0; lane < 2; ++lane) {
+        const Verdict verdict = verdicts[lane][i];
+        if (verdict == truth.verdict) continue;
+        ++(by_convention(*deciders.lanes[lane], verdict, pairs[i], truth) ? to.of[lane].by_convention
+                                                                          : to.of[lane].of(verdict));
+      }
+      if (verdicts[0][i] == verdicts[1][i]) continue;
+      ++to.differs;
+      keep_simplest(to.simplest, {block.source, block.first + i});
+    }
+  });
+  std::vector<VerdictsApart> all(sources.size());
+  for (const std::vector<VerdictsApart>& some : results) {
+    for (std::size_t s = 0; s < all.size(); ++s) {
+      all[s].pairs += some[s].pairs;
+      all[s].differs += some[s].differs;
+      for (int lane = 0; lane < 2; ++lane) all[s].of[lane] += some[s].of[lane];
+      if (some[s].simplest) keep_simplest(all[s].simplest, *some[s].simplest);
+    }
+  }
+  return all;
+}
+
+}  // namespace graze::analysis

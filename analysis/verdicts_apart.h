@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compares only the verdicts of two lanes: for code whose values are not seen.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "analysis/sweep.h"
+#include "core/counts.h"
+#include "core/lanes/lanes.h"
+
+namespace graze::analysis {
+
+struct VerdictsApart {
+  std::uint64_t pairs = 0;            // finite ones
+  std::uint64_t differs = 0;          // the two verdicts
+  Counts of[2];                       // each lane's errors
+  std::optional<PairPlace> simplest;  // of the pairs on which they differ
+
+  bool operator==(const VerdictsApart&) const = default;
+};
+
+struct TwoDeciders {
+  const Lane* lanes[2];
+  DecideBlock decide[2];
+};
+
+// counts[source]. The truth is the exact decision. The same for any number of threads.   simpler: orders pairs.
+std::vector<VerdictsApart> verdicts_apart(const TwoDeciders& deciders, const std::vector<strata::PairSource>& sources,
+                                          int threads, const std::function<bool(const Pair&, const Pair&)>& simpler);
+
+}  // namespace graze::analysis

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/discrepancy_answer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/tuning.h"
+#include "core/text.h"
+#include "reports/discrepancy_reading.h"
+#include "reports/findings.h"
+#include "reports/terminal.h"
+#include "reports/verdicts_apart.h"
+
+namespace graze::reports {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// "1 in 3,330 (moller_1997/f32/cpu and cuda-fma)"
+std::string extreme(const std::vector<const Json*>& lanes, const char* count, bool most) {
+  const auto rate = [&](const Json* of) {
+    return part_of(number_at(of->at("total"), count), number_at(of->at("total"), "pairs"));
+  };
+  const auto less = [&](const Json* l, const Json* r) { return rate(l) < rate(r); };
+  const Json* of =
+      most ? *std::max_element(lanes.begin(), lanes.end(), less) : *std::min_element(lanes.begin(), lanes.end(), less);
+  return fmt::format("{} ({})", rate_words(rate(of)), text_at(*of, "second"));
+}
+
+// Where a lane is not what its recorded run stands for.
+std::string unlike_words(const Json& json) {
+  std::string text;
+  for (const Json& of : json.at("lanes")) {
+    for (int lane = 0; lane < 2; ++lane) {
+      if (const std::uint64_t unlike = of.at("total").at("unlike").at(lane); unlike > 0)
+        text += fmt::format(" On {} pairs {} decides otherwise than its recorded run.", grouped(unlike),
+                            text_at(of, lane == 0 ? "first" : "second"));
+    }
+  }
+  return text;
+}
+
+std::string shares_sentence(const std::vector<const Json*>& lanes, std::uint64_t same) {
+  if (lanes.empty()) return "No value that a comparison sees differs in any bit, in none of the pairs of lanes.";
+  if (lanes.size() == 1 && same == 0) {
+    const Json &total = lanes[0]->at("total"), &distances = total.at("sites").at("plane_distance");
+    const std::uint64_t pairs = number_at(total, "pairs");
+    const auto rate = [&](const Json& of, const char* key) { return rate_words(part_of(number_at(of, key), pairs)); };
+    return fmt::format("Some value differs on {} of the pairs, some sign on {}, and the verdict on {}.{}",
+                       rate(total, "differs"), rate(total, "sign"), rate(total, "verdict"),
+                       number_at(distances, "differs") == 0
+                           ? ""
+                           : fmt::format(" A signed distance differs on {}, its sign on {}.",
+                                         rate(distances, "differs"), rate(distances, "sign")));
+  }
+  return fmt::format(
+      "Of {} pairs of lanes, {} have the same bits in every value. In the others some value differs on {} to {} of the "
+      "pairs of triangles, and the verdict on {} to {}.",
+      lanes.size() + same, same, extreme(lanes, "differs", false), extreme(lanes, "differs", true),
+      extreme(lanes, "verdict", false), extreme(lanes, "verdict", true));
+}
+
+// "core/vec3.h:48 within core/algorithms/plane.h:30"
+std::string place_of(const Json& line) {
+  const std::string within = text_at(line, "within");
+  return text_at(line, "line") + (within.empty() ? "" : " within " + within);
+}
+
+std::string start_sentence(const std::vector<const Json*>& lanes) {
+  std::map<std::string, std::uint64_t> starts;
+  std::uint64_t all = 0, fixed = 0, changed = 0;
+  std::string top_line;
+  for (const Json* of : lanes) {
+    const Json& origins = of->at("origins");
+    if (origins.is_null()) continue;
+    changed += number_at(origins, "verdicts");
+    for (const Json& start : origins.at("starts")) {
+      for (const auto& [line, count] : start.at("by_line").items()) {
+        starts[place_of(origins.at("lines").at(static_cast<std::size_t>(std::stoul(line))))] +=
+            count.get<std::uint64_t>();
+        all += count.get<std::uint64_t>();
+      }
+      all += number_at(start, "by_several_lines");
+    }
+    for (const Json& line : origins.at("lines")) {
+      if (number_at(line, "verdicts_fixed") > fixed) {
+        fixed = number_at(line, "verdicts_fixed");
+        top_line = fmt::format("{} of {}", place_of(line), text_at(*of, "second"));
+      }
+    }
+  }
+  if (all == 0) return "Where differences start is not known: no pair of lanes has contractions that can be traced.";
+  const auto top =
+      std::max_element(starts.begin(), starts.end(), [](const auto& l, const auto& r) { return l.second < r.second; });
+  return fmt::format("{} of the {} differing values that were traced first differ at {}.{}",
+                     rate_words(part_of(top->second, all)), grouped(all), top->first,
+                     changed == 0
+                         ? " No traced verdict changes."
+                         : fmt::format(" Not fusing the products of {} alone gives back {} of its verdicts that "
+                                       "contraction changes, the most of all lines.",
+                                       top_line, grouped(fixed)));
+}
+
+std::string nearer_sentence(const std::vector<const Json*>& lanes) {
+  std::uint64_t first = 0, second = 0, equal = 0, unknown = 0;
+  for (const Json* of : lanes) {
+    const auto sums = sum_by_bucket(of->at("total"), "nearer");
+    const auto at = [&](const char* key) { return sums.contains(key) ? sums.at(key) : 0; };
+    first += at("first"), second += at("second"), equal += at("equal"), unknown += at("unknown");
+  }
+  const std::uint64_t all = first + second + equal + unknown;
+  if (all == 0) return "No lane is nearer to the exact values: none differ.";
+  return fmt::format(
+      "Of {} values that differ, the second lane's is nearer to the exact one in {}, the first lane's in {}; {} are "
+      "equally near, and of {} the certified bounds do not tell.",
+      grouped(all), rate_words(part_of(second, all)), rate_words(part_of(first, all)), grouped(equal),
+      grouped(unknown));
+}
+
+std::string band_sentence(const std::vector<const Json*>& lanes) {
+  double widest = 0;
+  std::uint64_t asked = 0, beyond_range = 0;
+  std::string where;
+  for (const Json* of : lanes) {
+    for (const Json& question : of->at("total").at("questions")) {
+      asked += number_at(question, "asked");
+      if (question.at("band").contains("unknown"))
+        beyond_range += question.at("band").at("unknown").get<std::uint64_t>();
+      if (const double band = question.at("largest_in_bounds"); band > widest) {
+        widest = band;
+        where = fmt::format("{} of {}", text_at(question, "question"), text_at(*of, "second"));
+      }
+    }
+  }
+  if (widest == 0) return "No sign differs.";
+  return fmt::format(
+      "A sign differs only where both sizes are at most {} bounds of the value's rounding error ({}). In {} "
+      "comparisons none was farther from zero{}; at 95 % confidence the rate of such is under {}.",
+      rounded_up(widest, 2), where, grouped(asked),
+      beyond_range == 0 ? "" : fmt::format(", but for {} where the error has no bound", grouped(beyond_range)),
+      rounded_up(analysis::upper_bound(0, asked), 2));
+}
+
+std::string mending_sentence(const Json& json) {
+  std::uint64_t values = 0, pairs = 0, lanes = 0, others = 0;
+  for (const Json& of : json.at("lanes")) {
+    if (!text_at(of, "second").ends_with("/cuda-nofma") && !text_at(of, "first").ends_with("/cuda-nofma")) continue;
+    ++lanes;
+    values += sum_at(of.at("total"), "compared");
+    pairs += number_at(of.at("total"), "pairs");
+    others += number_at(of.at("total"), "differs");
+  }
+  if (lanes == 0)
+    return "What mends it was not measured here: compare cpu with cuda-nofma (-fmad=false), and see `graze tune "
+           "--agree`.";
+  if (others > 0)
+    return fmt::format("-fmad=false does not mend it: {} of {} pairs still differ.", grouped(others), grouped(pairs));
+  return fmt::format(
+      "-fmad=false mends it: cpu and cuda-nofma have the same bits in all {} values on {} pairs of triangles "
+      "({} {}). `graze bench` and docs/measurements.md have its cost, and that of the exact lane.",
+      grouped(values), grouped(pairs), lanes, lanes == 1 ? "comparison" : "comparisons");
+}
+
+}  // namespace
+
+std::vector<std::string> discrepancy_answer(const Json& json) {
+  std::vector<std::string> verdicts;
+  for (const Json& of : json.value("verdicts", Json::array())) verdicts.push_back(verdicts_sentence(of));
+  if (json.at("lanes").empty()) return verdicts;
+  const std::vector<const Json*> lanes = differing_lanes(json);
+  std::vector<std::string> answer = {
+      shares_sentence(lanes, json.at("lanes").size() - lanes.size()) + unlike_words(json), start_sentence(lanes),
+      nearer_sentence(lanes), band_sentence(lanes), mending_sentence(json)};
+  answer.insert(answer.end(), verdicts.begin(), verdicts.end());
+  return answer;
+}
+
+}  // namespace graze::reports

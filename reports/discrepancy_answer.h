@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// The results of `graze discrepancy` as five sentences.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace graze::reports {
+
+// What share of values and of verdicts differs, where that starts, who is nearer to exact, how near to zero it matters,
+// and what mends it. What the results do not tell is named. Then a sentence for each comparison of verdicts alone.
+// json: discrepancy.json.
+std::vector<std::string> discrepancy_answer(const nlohmann::ordered_json& json);
+
+}  // namespace graze::reports

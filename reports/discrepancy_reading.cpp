@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/discrepancy_reading.h"
+
+namespace graze::reports {
+
+using nlohmann::ordered_json;
+
+double part_of(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+std::optional<int> quantile(const Octaves& octaves, double share) {
+  std::uint64_t all = 0, so_far = 0;
+  for (const auto& [k, count] : octaves) all += count;
+  for (const auto& [k, count] : octaves) {
+    so_far += count;
+    if (all > 0 && static_cast<double>(so_far) >= share * static_cast<double>(all)) return k;
+  }
+  return {};
+}
+
+Octaves octaves_at(const ordered_json& histogram) {
+  Octaves octaves;
+  for (const auto& [bucket, count] : histogram.items()) octaves[power_of(bucket)] += count.get<std::uint64_t>();
+  return octaves;
+}
+
+std::map<std::string, std::uint64_t> sum_by_bucket(const ordered_json& counts, const char* histogram) {
+  std::map<std::string, std::uint64_t> sums;
+  for (const ordered_json& question : counts.at("questions")) {
+    for (const ordered_json& value : question.at("values")) {
+      for (const auto& [bucket, count] : value.at(histogram).items()) sums[bucket] += count.get<std::uint64_t>();
+    }
+  }
+  return sums;
+}
+
+std::uint64_t sum_at(const ordered_json& counts, const char* key) {
+  std::uint64_t sum = 0;
+  for (const ordered_json& question : counts.at("questions")) {
+    for (const ordered_json& value : question.at("values")) sum += number_at(value, key);
+  }
+  return sum;
+}
+
+std::vector<const ordered_json*> differing_lanes(const ordered_json& discrepancy) {
+  std::vector<const ordered_json*> lanes;
+  for (const ordered_json& of : discrepancy.at("lanes")) {
+    if (number_at(of.at("total"), "differs") > 0) lanes.push_back(&of);
+  }
+  return lanes;
+}
+
+}  // namespace graze::reports

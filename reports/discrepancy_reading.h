@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads discrepancy.json (docs/formats.md) for its page, sentences and pictures.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace graze::reports {
+
+inline std::uint64_t number_at(const nlohmann::ordered_json& json, const std::string& key) {
+  return json.at(key).get<std::uint64_t>();
+}
+inline std::string text_at(const nlohmann::ordered_json& json, const char* key) {
+  return json.at(key).get<std::string>();
+}
+
+// part / whole; 0 of nothing.
+double part_of(std::uint64_t part, std::uint64_t whole);
+
+// The exponent of a bucket's name, "2^-3".
+inline int power_of(const std::string& bucket) { return std::stoi(bucket.substr(2)); }
+
+// Counts by the exponent of their bucket.
+using Octaves = std::map<int, std::uint64_t>;
+
+// The octave up to which at least this share of all counts lies; nothing without counts.
+std::optional<int> quantile(const Octaves& octaves, double share);
+
+// A histogram whose buckets are all powers of 2.
+Octaves octaves_at(const nlohmann::ordered_json& histogram);
+
+// The sum of a histogram, or of a count, over all values of all questions.
+std::map<std::string, std::uint64_t> sum_by_bucket(const nlohmann::ordered_json& counts, const char* histogram);
+std::uint64_t sum_at(const nlohmann::ordered_json& counts, const char* key);
+
+// The comparisons in which some value differs.
+std::vector<const nlohmann::ordered_json*> differing_lanes(const nlohmann::ordered_json& discrepancy);
+
+}  // namespace graze::reports

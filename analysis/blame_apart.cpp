@@ -70,7 +70,7 @@ Blame blame_apart(const Lane& lane, const Pair& pair, double seconds) {
   const bool succeeded = child->succeeded();
   Blame result;
   if (!in_time) {
-    result.why_not = "with some of its products fused it does not come back";
+    result.why_not = "with some of its products fused it does not return";
   } else if (tail.size() < 2 || !succeeded) {
     result.why_not = "with some of its products fused it crashes";
   } else {

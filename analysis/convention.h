@@ -19,7 +19,7 @@ bool by_convention(const Lane& lane, Verdict verdict, const Pair& pair, const Re
 // Whether the lane's convention excludes the pair.   Requires: finite coordinates.
 bool is_outside(const Lane& lane, const Pair& pair, const Relation& truth);
 
-// Returns the verdicts, but replaces those that differ by convention with the truth. Others that differ are wrong.
+// Returns the verdicts, with the truth in place of those that differ by convention. Those that still differ are wrong.
 std::vector<Verdict> excused(std::span<const Lane* const> lanes, std::vector<Verdict> verdicts, const Pair& pair,
                              const oracle::Truth& truth);
 

@@ -11,7 +11,7 @@
 
 namespace graze::analysis {
 
-// The range of tolerances, as powers of two. Absolute ones are in units of the cube of a typical length.
+// The range of tolerances, as powers of two. Absolute tolerances are in units of the cube of a typical length.
 inline constexpr double kLeastTolerance = -60, kMostTolerance = 20;
 
 // The number in the name of one tolerance, "rel:24" or "separation=abs:1e-6".

@@ -190,6 +190,16 @@ std::string why_not_compared(const Lane& l, const Lane& r) {
   return "";
 }
 
+const Lane* fused_of(const LanesCompared& lanes) {
+  const auto is = [](const Lane* lane, Arithmetic arithmetic) {
+    return info_of(lane->variant).arithmetic == arithmetic;
+  };
+  for (const auto& [rounded, fused] : {std::pair(lanes.first, lanes.second), {lanes.second, lanes.first}}) {
+    if (is(rounded, Arithmetic::rounded) && fused->variant == Variant::cuda_fma) return fused;
+  }
+  return nullptr;
+}
+
 LanesCompared::LanesCompared(const Lane& l, const Lane& r) : first(&l), second(&r) {
   if (const std::string why = why_not_compared(l, r); !why.empty()) throw UsageError(why);
 }

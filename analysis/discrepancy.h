@@ -43,6 +43,10 @@ struct LanesCompared {
   LanesCompared(const Lane& l, const Lane& r);
 };
 
+// The contracted CUDA lane whose contractions are what differs, because the other lane rounds every operation. Null if
+// there is none.
+const Lane* fused_of(const LanesCompared& lanes);
+
 // A value that at least one of two lanes compares. Values are in the order of the first lane's run; those of the second
 // lane alone come last.
 struct ValueBeside {

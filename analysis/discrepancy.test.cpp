@@ -276,7 +276,7 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
               return value.question == question && value.which == which;
             });
             ASSERT_NE(certified, runs.values.end());
-            // Of several values MPFR follows the one that the lane took for the least; the counts want the least.
+            // Of several values MPFR follows the one that the lane chose as the least; the counts take the true least.
             const bool other =
                 std::fabs(certified->unrounded->exact.hi - beside.exact) > 1e-12 * std::fabs(beside.exact);
             const bool subnormal = std::fabs(beside.exact) < (first->scalar == Scalar::f32 ? 0x1p-126 : 0x1p-1022);
@@ -387,7 +387,7 @@ TEST(Discrepancy, TheBandIsUnknownWhereNothingIsSettled) {
     first[12] = 1, first[13] = 2;
     second[12] = 2, second[13] = 1;
   };
-  // Sections have 13 lengths as factors.
+  // The ends of these sections are products of 13 lengths.
   for (const Places& places : {planted<Moller1997, double>(twice, scaled(crossing, 0x1p+100f), swap_order),
                                planted<Moller1997, float>(single, scaled(crossing, 0x1p+20f), swap_order)}) {
     EXPECT_TRUE(places.has(question_at(6) + question_counts::sign));
@@ -453,7 +453,7 @@ TEST(Discrepancy, VerdictsAloneAreThoseOfTheLanes) {
   }
 }
 
-// A lane whose one value is off by an ulp is found at that value, with its side and its band.
+// If one value of a lane is off by an ulp, the counts show that value, the sign of the difference and its band.
 TEST(Discrepancy, FindsAPlantedUlp) {
   const Pair pair{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{0.25f, 0.25f, 1}, {0.25f, 0.25f, 2}, {1, 1, 2}}};
   const Lane& of = lane("moller_1997/f32/cpu");

@@ -178,7 +178,7 @@ class Trial {
             "scales",
             turn->text(), kMostFactors, limits().name);
         const bool once = turns_once(*turn);
-        if (!once) text += "; but it turns at more than this scale";
+        if (!once) text += "; but its verdict changes at other scales too";
         return Experiment{Cause::absolute_epsilon, once, std::move(text)};
       }
     }

@@ -128,7 +128,7 @@ std::string fused(const LaneExplanation& lane) {
 std::string doubt(const LaneExplanation& lane) {
   switch (lane.settled) {
     case Settled::not_without:
-      return "; not settled: without that something else makes it wrong as well";
+      return "; not settled: without that, something else still makes it wrong";
     case Settled::not_alone:
       return "; not settled: that alone, with all else exact, does not make it wrong";
     case Settled::not_by_few:
@@ -205,7 +205,7 @@ std::string reason_by_experiment(const LaneExplanation& lane) {
       case Cause::crash:
         return "the code crashes";
       case Cause::no_answer:
-        return "the code does not come back";
+        return "the code does not return";
       case Cause::unstable:
         return "its verdict changes";
       case Cause::policy:

@@ -18,7 +18,7 @@ struct Backend {
   DecideBlock (*on_host)(const Lane& lane);
   // "no fma instructions"; empty if the host runs the lane. why_no_device: why no device runs it; may be empty.
   std::string (*why_not_on_host)(const Lane& lane, const std::string& why_no_device);
-  // How verdicts of on_host come about: "twin, verified on …". Empty if the lane's own code runs here.
+  // How we know the verdicts of on_host: "twin, verified on …". Empty if the lane's own code runs here.
   std::string (*evidence)(const Lane& lane);
 };
 

@@ -32,7 +32,7 @@ struct LaneOptions {
 enum class Executors { chosen, twins };
 void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors = Executors::chosen);
 
-// Those of them about subjects alone.
+// Of these options, adds only those about subjects.
 void add_subject_options(CLI::App& command, LaneOptions& options);
 
 // Opens the subjects.   Throws: as subjects::open.

@@ -2,6 +2,8 @@
 // `graze discrepancy`: by how much the values behind the verdicts of two lanes differ.
 #include <fmt/format.h>
 
+#include <set>
+
 #include "cli/commands.h"
 #include "cli/results.h"
 #include "cli/screen.h"
@@ -40,14 +42,14 @@ struct Comparisons {
   std::vector<analysis::TwoDeciders> verdicts;
 };
 
-// A lane of a user's code with what runs it.   Throws: UsageError if nothing does here.
+// The function that runs a lane of a user's code here.   Throws: UsageError if there is none.
 DecideBlock on_host(const Lane& lane) {
   const fuzz::SelectedLanes selected = fuzz::select_lanes({lane.id});
   fuzz::expect_each_runs(selected);
   return selected.on_host.at(0);
 }
 
-// Those that the user named; without any, `cpu` against both CUDA builds of each algorithm and scalar.
+// The pairs of lanes that the user named; by default `cpu` with both CUDA builds, for each algorithm and scalar.
 Comparisons comparisons_of(const DiscrepancyOptions& options) {
   Comparisons comparisons;
   std::vector<analysis::LanesCompared>& lanes = comparisons.values;
@@ -62,6 +64,12 @@ Comparisons comparisons_of(const DiscrepancyOptions& options) {
     } else {
       lanes.emplace_back(published_lane(options.lanes[i]), published_lane(options.lanes[i + 1]));
     }
+  }
+  std::set<std::set<const Lane*>> named;
+  for (std::size_t i = 0; i < options.lanes.size(); i += 2) {
+    if (!named.insert({find_lane(options.lanes[i]), find_lane(options.lanes[i + 1])}).second)
+      throw UsageError(
+          fmt::format("{} and {} are named twice; name them once", options.lanes[i], options.lanes[i + 1]));
   }
   if (!options.lanes.empty()) return comparisons;
   for (const Variant second : {Variant::cuda_fma, Variant::cuda_nofma}) {
@@ -79,10 +87,9 @@ constexpr std::uint64_t kOriginPairs = 40'000;  // shared by the sources
 // Finds where the values start to differ, for each comparison of a contracted CUDA lane with a lane that rounds every
 // operation.
 std::vector<std::optional<analysis::Origins>> origins_of(const analysis::DiscrepancySpec& spec) {
-  const auto is_rounded = [](const Lane& lane) { return info_of(lane.variant).arithmetic == Arithmetic::rounded; };
   std::vector<std::optional<analysis::Origins>> origins;
-  for (const auto& [first, second] : spec.lanes) {
-    const Lane* fused = is_rounded(*first) ? second : is_rounded(*second) ? first : nullptr;
+  for (const analysis::LanesCompared& lanes : spec.lanes) {
+    const Lane* fused = analysis::fused_of(lanes);
     origins.emplace_back();
     if (fused && analysis::has_origins(*fused))
       origins.back() =
@@ -96,9 +103,8 @@ fuzz::Json results_of(const std::string& name) {
   const std::filesystem::path file = std::filesystem::is_directory(name)
                                          ? std::filesystem::path(name) / "discrepancy.json"
                                          : std::filesystem::path(name);
-  const fuzz::Json found = fuzz::read_sealed(file, "make it again");
+  const fuzz::Json found = reports::read_discrepancy(file);
   if (found.is_null()) throw std::runtime_error(cannot("read", file, "there is no such file"));
-  reports::expect_possible_discrepancy(found);
   return found;
 }
 
@@ -106,7 +112,7 @@ int compare(const std::vector<std::string>& names) {
   const fuzz::Json before = results_of(names[0]), after = results_of(names[1]);
   for (const char* spec : {"pairs", "seed", "scene"}) {
     if (before.value(spec, fuzz::Json()) != after.value(spec, fuzz::Json()))
-      throw UsageError(fmt::format("{} and {} are of other pairs: their {} differ", names[0], names[1], spec));
+      throw UsageError(fmt::format("{} and {} do not have the same pairs: their {} differ", names[0], names[1], spec));
   }
   fmt::print("{}", reports::discrepancy_changes(before, after, output_screen()));
   return 0;
@@ -179,7 +185,8 @@ int discrepancy(const DiscrepancyOptions& options) {
                               {"discrepancy.csv", csv},
                               {"discrepancy.html", reports::discrepancy_page(json)}});
   fmt::print("Wrote {0}/discrepancy.html, {0}/discrepancy.json, {0}/discrepancy.csv\n", folder.path.string());
-  if (!options.campaign.empty()) fmt::print("Next: graze report {}\n", path_word(options.campaign));
+  if (!options.campaign.empty() && options.out.empty())
+    fmt::print("Next: graze report {}\n", path_word(options.campaign));
   return 0;
 }
 
@@ -206,7 +213,7 @@ void add_discrepancy(CLI::App& app, int& status) {
   add_scene_option(*command, options->scene);
   command
       ->add_option("--campaign", options->campaign,
-                   "Compare on the first pairs of this campaign; its report shows the results then")
+                   "Compare on the first pairs of this campaign; without --out, its report shows the results")
       ->check(not_empty())
       ->excludes("--strata")
       ->excludes("--scene")

@@ -68,6 +68,13 @@ TEST_F(DiscrepancyCommand, ACampaignsColumnIsTheSumOfItsVerdicts) {
   EXPECT_GT(verdicts, 50u);
   expect_done("graze report c");
   EXPECT_NE(contents(shell.folder / "c/report.html").find("discrepancy.html"), std::string::npos);
+  const std::string other_pairs = "that the campaign did not draw (seed 7)",
+                    compare = "graze discrepancy " + first + " " + second + " --executor twin --pairs 50 ";
+  EXPECT_EQ(contents(shell.folder / "c/report.html").find(other_pairs), std::string::npos);
+  EXPECT_EQ(shell(compare + "--campaign c --out elsewhere").out.find("Next: "), std::string::npos);
+  expect_done(compare + "--strata lattice --seed 7 --out c");
+  expect_done("graze report c");
+  EXPECT_NE(contents(shell.folder / "c/report.html").find(other_pairs), std::string::npos);
   // An edited count is refused.
   auto forged = found;
   forged["lanes"][0]["strata"]["thesis"]["verdict"] = 5004;
@@ -182,6 +189,7 @@ TEST_F(DiscrepancyCommand, RefusesWhatItCannotCompare) {
   for (const char* wrong :
        {"graze discrepancy moller_1997/f32/cpu", "graze discrepancy moller_1997/f32/cpu nosuch/f32/cpu",
         "graze discrepancy moller_1997/f32/cpu moller_1997/f64/cpu", "graze discrepancy exact/f32/cpu exact/f32/cuda",
+        "graze discrepancy moller_1997/f32/cpu moller_1997/f32/cuda-fma moller_1997/f32/cuda-fma moller_1997/f32/cpu",
         "graze dump thesis --values moller_1997/f32/cpu", "graze discrepancy --compare a b --pairs 5",
         "graze discrepancy --campaign c --seed 3", "graze dump thesis --values exact/f32/cpu,exact/f32/cuda"}) {
     const Ran ran = shell(wrong);

@@ -77,7 +77,7 @@ TEST_F(ForeignCode, ACompilerEndsWithGraze) {
   }
 }
 
-// The program replaces its own file at the first pair. No record has verdicts of both.
+// The program replaces its own file at the first pair. No record mixes verdicts of the old and the new file.
 TEST_F(ForeignCode, ACampaignWhoseProgramChangesFailsAndGoesOnWithTheOldOne) {
   ASSERT_EQ(shell("printf 'while read l; do [ \"$l\" = describe ] && { echo; continue; }; echo 1; [ -e swap ] || "
                   "continue; rm swap; cp other.sh next.sh; mv next.sh m.sh; done\n' > m.sh && cp m.sh old.sh && "

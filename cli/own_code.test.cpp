@@ -193,7 +193,7 @@ TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
   EXPECT_NE(named.out.find("own.cu:2, inlined at "), std::string::npos) << named.out;
   const Ran late = shell(explain + "--subject own=./own.cu:both | tr -s ' \\n' ' '");
   EXPECT_NE(late.out.find("the compiler fuses products into additions (built without contraction it is right; which "
-                          "products matter is not known, for with some of its products fused it does not come back)."),
+                          "products matter is not known, for with some of its products fused it does not return)."),
             std::string::npos)
       << late.out << late.err;
 }
@@ -264,7 +264,7 @@ TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
   const std::string ours = "graze fuzz --pairs 400 --out d --fail-above ";
   expect_error(ours + "0 --lanes 'moller*/f32/cpu'", 1, {"moller_1997", "0", "--fail-above"});
   expect_done("graze fuzz --pairs 400 --out e --lanes 'exact/f32/cpu' --fail-above 0");
-  // A subject that is not asked is no success.
+  // A subject none of whose lanes is selected is an error.
   expect_error("export XDG_CACHE_HOME=$PWD/cache; graze fuzz --subject own=./own.c --lanes 'exact/f32/cpu' --out f", 2,
                {"own", "--lanes"});
 }

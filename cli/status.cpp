@@ -46,7 +46,7 @@ std::string state_of(const Json& status, std::int64_t silent, std::uint64_t stal
   return silent > static_cast<std::int64_t>(stalled) ? "stalled" : "running";
 }
 
-// known: the signatures, without margins, of the rows so far. Adds those of this row.
+// known: the signatures, without margins, of the rows so far; this row's are added.
 Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::string>& known) {
   Json row = {{"directory", directory.string()},
               {"shard", nullptr},

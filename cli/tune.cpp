@@ -183,7 +183,7 @@ void add_tune(CLI::App& app, int& status) {
       ->option_text("DIR");
   command->callback([options, forbid, &status] {
     if (options->agree != (options->lanes.size() == 2) || options->lanes.size() > 2)
-      throw UsageError(fmt::format("--agree and two lanes need each other, but got {} lane{} {} --agree",
+      throw UsageError(fmt::format("give one lane, or two lanes with --agree; got {} lane{} {} --agree",
                                    options->lanes.size(), options->lanes.size() == 1 ? "" : "s",
                                    options->agree ? "with" : "without"));
     if (options->agree && forbid->count() > 0)

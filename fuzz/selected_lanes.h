@@ -71,7 +71,7 @@ class BlockVerdicts {
  public:
   explicit BlockVerdicts(const SelectedLanes& under_test);
 
-  // on_device: what the device says of each of its lanes; `begin`: the first pair's place there, a multiple of 64.
+  // on_device: the device's verdicts, by lane; `begin`: the first pair's place there, a multiple of 64.
   // apart(l, i): called for each pair i on which device and twin of lane l differ.
   // Returns: the verdicts of each lane, valid until the next call.
   std::span<const LaneVerdicts> decide(std::span<const Pair> pairs, std::span<const VerdictBits> on_device,

@@ -50,7 +50,7 @@ Path outcomes_of(const Trace<Ball>& run) {
   return outcomes;
 }
 
-// A run led down the path, with as many bits as that path needs. Multi::precision keeps that number of bits.
+// The run of the algorithm along a given path, with as many bits as it needs; Multi::precision stays at that.
 struct SettledRun {
   Trace<Ball> run;
   Exactly exactly;

@@ -164,8 +164,9 @@ void choose_executor(const graze_query& query, bool any_lane, Question& question
     return;
   }
   for (const int place : question.places) {
-    expect(place >= 0 && place < count, "parts: expected all of them on devices 0 to " + std::to_string(count - 1) +
-                                            ", or all in the memory of the host, found " + std::to_string(place));
+    expect(place >= 0 && place < count, "parts: expected every part on one of the devices 0 to " +
+                                            std::to_string(count - 1) + ", or all in the memory of the host, found " +
+                                            std::to_string(place));
     if (std::find(question.devices.begin(), question.devices.end(), place) == question.devices.end())
       question.devices.push_back(place);
   }

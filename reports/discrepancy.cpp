@@ -132,7 +132,7 @@ DiscrepancyCounts total(const LanesCompared& lanes, const std::vector<Discrepanc
 
 std::string share_words(std::uint64_t part, std::uint64_t whole) { return rate_words(part_of(part, whole)); }
 
-// Both values' counts of different values by the octave of their difference in ulps.
+// The number of differing values in each octave of their distance in ulps, over both values of the question.
 Octaves octaves_of(const DiscrepancyCounts& of, int question, std::size_t values) {
   using namespace value_counts;
   Octaves octaves;
@@ -145,7 +145,7 @@ Octaves octaves_of(const DiscrepancyCounts& of, int question, std::size_t values
   return octaves;
 }
 
-// The most ulps of the smallest share of differing values, "1", "≤ 63"; "-" if none differs.
+// The quantile of the distances in ulps for this share of the differing values: "1", "≤ 63"; "-" if none differs.
 std::string ulps_of(const Octaves& octaves, double share) {
   const std::optional<int> k = quantile(octaves, share);
   if (!k) return "-";

@@ -2,6 +2,7 @@
 // Presents how the values of two lanes differ: sentences, tables, discrepancy.json and discrepancy.csv.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -26,6 +27,10 @@ std::string comparisons_table(const DiscrepancyResults& results, const Screen& s
 
 // {"lanes": [{"first", "second", "strata": {stratum: counts}}]}; docs/formats.md describes the counts.
 nlohmann::ordered_json discrepancy_json(const DiscrepancyResults& results);
+
+// Reads discrepancy.json; null if there is none.   Throws: corpus::FormatError, naming the file, if its counts cannot
+// be.
+nlohmann::ordered_json read_discrepancy(const std::filesystem::path& file);
 
 // Lists the counts that differ between two discrepancy.json of the same pairs, for example of two drivers, toolkits or
 // GPUs.

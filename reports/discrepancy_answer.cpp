@@ -28,13 +28,13 @@ std::string extreme(const std::vector<const Json*>& lanes, const char* count, bo
   return fmt::format("{} ({})", rate_words(rate(of)), text_at(*of, "second"));
 }
 
-// Where a lane is not what its recorded run stands for.
+// On how many pairs a lane's verdict differs from that of its recorded run; empty if on none.
 std::string unlike_words(const Json& json) {
   std::string text;
   for (const Json& of : json.at("lanes")) {
     for (int lane = 0; lane < 2; ++lane) {
       if (const std::uint64_t unlike = of.at("total").at("unlike").at(lane); unlike > 0)
-        text += fmt::format(" On {} pairs {} decides otherwise than its recorded run.", grouped(unlike),
+        text += fmt::format(" On {} pairs the verdict of {} differs from that of its recorded run.", grouped(unlike),
                             text_at(of, lane == 0 ? "first" : "second"));
     }
   }
@@ -70,10 +70,12 @@ std::string place_of(const Json& line) {
 std::string start_sentence(const std::vector<const Json*>& lanes) {
   std::map<std::string, std::uint64_t> starts;
   std::uint64_t all = 0, fixed = 0, changed = 0;
+  bool traced = false;
   std::string top_line;
   for (const Json* of : lanes) {
     const Json& origins = of->at("origins");
     if (origins.is_null()) continue;
+    traced = true;
     changed += number_at(origins, "verdicts");
     for (const Json& start : origins.at("starts")) {
       for (const auto& [line, count] : start.at("by_line").items()) {
@@ -90,6 +92,7 @@ std::string start_sentence(const std::vector<const Json*>& lanes) {
       }
     }
   }
+  if (all == 0 && traced) return "No difference starts: on the pairs that were traced, contraction changes no value.";
   if (all == 0) return "Where differences start is not known: no pair of lanes has contractions that can be traced.";
   const auto top =
       std::max_element(starts.begin(), starts.end(), [](const auto& l, const auto& r) { return l.second < r.second; });
@@ -113,12 +116,13 @@ std::string nearer_sentence(const std::vector<const Json*>& lanes) {
   if (all == 0) return "No lane is nearer to the exact values: none differ.";
   return fmt::format(
       "Of {} values that differ, the second lane's is nearer to the exact one in {}, the first lane's in {}; {} are "
-      "equally near, and of {} the certified bounds do not tell.",
+      "equally near, and for {} the certified bounds do not tell.",
       grouped(all), rate_words(part_of(second, all)), rate_words(part_of(first, all)), grouped(equal),
       grouped(unknown));
 }
 
-std::string band_sentence(const std::vector<const Json*>& lanes) {
+// A pair of triangles has up to dozens of comparisons, which are not independent. So the bound is one of pairs.
+std::string band_sentence(const std::vector<const Json*>& lanes, std::uint64_t pairs) {
   double widest = 0;
   std::uint64_t asked = 0, beyond_range = 0;
   std::string where;
@@ -136,30 +140,37 @@ std::string band_sentence(const std::vector<const Json*>& lanes) {
   if (widest == 0) return "No sign differs.";
   return fmt::format(
       "A sign differs only where both sizes are at most {} bounds of the value's rounding error ({}). In {} "
-      "comparisons none was farther from zero{}; at 95 % confidence the rate of such is under {}.",
-      rounded_up(widest, 2), where, grouped(asked),
+      "comparisons on {} none was farther from zero{}. At 95 % confidence, such a comparison occurs on fewer than {} "
+      "of "
+      "the pairs.",
+      rounded_up(widest, 2), where, grouped(asked), counted(pairs, "pair"),
       beyond_range == 0 ? "" : fmt::format(", but for {} where the error has no bound", grouped(beyond_range)),
-      rounded_up(analysis::upper_bound(0, asked), 2));
+      rounded_up(analysis::upper_bound(0, pairs), 2));
 }
 
 std::string mending_sentence(const Json& json) {
-  std::uint64_t values = 0, pairs = 0, lanes = 0, others = 0;
+  const std::uint64_t pairs = number_at(json, "pairs");
+  std::uint64_t values = 0, lanes = 0, others = 0, most = 0;
   for (const Json& of : json.at("lanes")) {
-    if (!text_at(of, "second").ends_with("/cuda-nofma") && !text_at(of, "first").ends_with("/cuda-nofma")) continue;
+    const std::string first = text_at(of, "first"), second = text_at(of, "second");
+    if (!(first.ends_with("/cpu") && second.ends_with("/cuda-nofma")) &&
+        !(second.ends_with("/cpu") && first.ends_with("/cuda-nofma")))
+      continue;
     ++lanes;
     values += sum_at(of.at("total"), "compared");
-    pairs += number_at(of.at("total"), "pairs");
-    others += number_at(of.at("total"), "differs");
+    others += number_at(of.at("total"), "differs") > 0;
+    most = std::max(most, number_at(of.at("total"), "differs"));
   }
   if (lanes == 0)
-    return "What mends it was not measured here: compare cpu with cuda-nofma (-fmad=false), and see `graze tune "
+    return "No remedy was measured here: compare cpu with cuda-nofma (-fmad=false), and see `graze tune "
            "--agree`.";
   if (others > 0)
-    return fmt::format("-fmad=false does not mend it: {} of {} pairs still differ.", grouped(others), grouped(pairs));
+    return fmt::format("-fmad=false does not mend it: in {} of {} values still differ, on up to {} of {}.", others,
+                       counted(lanes, "comparison"), grouped(most), counted(pairs, "pair"));
   return fmt::format(
-      "-fmad=false mends it: cpu and cuda-nofma have the same bits in all {} values on {} pairs of triangles "
-      "({} {}). `graze bench` and docs/measurements.md have its cost, and that of the exact lane.",
-      grouped(values), grouped(pairs), lanes, lanes == 1 ? "comparison" : "comparisons");
+      "-fmad=false mends it: cpu and cuda-nofma have the same bits in all {} values on {} of triangles ({}). `graze "
+      "bench` and docs/measurements.md have its cost, and that of the exact lane.",
+      grouped(values), counted(pairs, "pair"), counted(lanes, "comparison"));
 }
 
 }  // namespace
@@ -171,7 +182,7 @@ std::vector<std::string> discrepancy_answer(const Json& json) {
   const std::vector<const Json*> lanes = differing_lanes(json);
   std::vector<std::string> answer = {
       shares_sentence(lanes, json.at("lanes").size() - lanes.size()) + unlike_words(json), start_sentence(lanes),
-      nearer_sentence(lanes), band_sentence(lanes), mending_sentence(json)};
+      nearer_sentence(lanes), band_sentence(lanes, number_at(json, "pairs")), mending_sentence(json)};
   answer.insert(answer.end(), verdicts.begin(), verdicts.end());
   return answer;
 }

@@ -19,7 +19,7 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
   std::string text;
   std::size_t same = 0;
   TextTable table({{"lanes", Align::left}, {"question", Align::left}, {"count", Align::left}, {"before"}, {"after"}});
-  // Calls with_both(old, now) for the comparisons that both have.
+  // Calls with_both(old, now) for each comparison that is in both results.
   const auto match = [&](const char* kind, const auto& with_both) {
     const Json old_ones = before.value(kind, Json::array()), new_ones = after.value(kind, Json::array());
     const auto in = [&](const Json& list, const Json& wanted) {
@@ -50,8 +50,29 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
       }
     }
   };
+  const auto compare_origins = [&](const Json& of, const Json& old_ones, const Json& new_ones) {
+    compare(of, "origins", old_ones, new_ones);
+    for (const Json& line : old_ones.at("lines")) {
+      for (const Json& other : new_ones.at("lines")) {
+        if (line.at("line") == other.at("line") && line.at("within") == other.at("within"))
+          compare(of, text_at(line, "line"), line, other);
+      }
+    }
+    for (const Json& start : old_ones.at("starts")) {
+      for (const Json& other : new_ones.at("starts")) {
+        if (start.at("question") == other.at("question") && start.at("value") == other.at("value"))
+          compare(of, "start of " + text_at(start, "value"), start, other);
+      }
+    }
+  };
   match("lanes", [&](const Json& of, const Json& now) {
     compare(of, "", of.at("total"), now.at("total"));
+    if (const bool old = !of.at("origins").is_null(); old != !now.at("origins").is_null()) {
+      text += wrapped(fmt::format("Only the {} has origins of {}.", old ? "first" : "second", lanes_of(of)),
+                      screen.columns);
+    } else if (old) {
+      compare_origins(of, of["origins"], now["origins"]);
+    }
     for (const Json& question : of.at("total").at("questions")) {
       for (const Json& other : now.at("total").at("questions")) {
         if (question.at("question") == other.at("question"))

@@ -125,7 +125,7 @@ namespace {
 
 constexpr std::uint64_t kFewestPairs = 30;  // a share of fewer pairs is not drawn
 
-// A line of the picture of extremes.
+// A line in the picture of shares by scale or offset.
 struct ShareLine {
   const char *count, *label;
 };

@@ -142,7 +142,7 @@ std::string lines_table(const Json& origins) {
   return text + "</table></div>\n";
 }
 
-// The build that the results are of, if they record it.
+// The build that made the results, if they record it.
 std::string build_words(const Json& json) {
   if (!json.contains("build")) return "";
   const Json& build = json.at("build");

@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reports/discrepancy_reading.h"
 
+#include <stdexcept>
+
 namespace graze::reports {
 
 using nlohmann::ordered_json;
+
+std::uint64_t number_at(const ordered_json& json, const std::string& key) {
+  const ordered_json& number = json.at(key);
+  if (!number.is_number_unsigned()) throw std::runtime_error("expected a count as " + key + ", found " + number.dump());
+  return number.get<std::uint64_t>();
+}
 
 double part_of(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);

@@ -11,9 +11,8 @@
 
 namespace graze::reports {
 
-inline std::uint64_t number_at(const nlohmann::ordered_json& json, const std::string& key) {
-  return json.at(key).get<std::uint64_t>();
-}
+// Throws: nlohmann::json::exception if there is no such key; std::runtime_error if it is no count.
+std::uint64_t number_at(const nlohmann::ordered_json& json, const std::string& key);
 inline std::string text_at(const nlohmann::ordered_json& json, const char* key) {
   return json.at(key).get<std::string>();
 }
@@ -27,7 +26,7 @@ inline int power_of(const std::string& bucket) { return std::stoi(bucket.substr(
 // Counts by the exponent of their bucket.
 using Octaves = std::map<int, std::uint64_t>;
 
-// The octave up to which at least this share of all counts lies; nothing without counts.
+// The first octave at which the counts so far reach this share of all counts; nothing without counts.
 std::optional<int> quantile(const Octaves& octaves, double share);
 
 // A histogram whose buckets are all powers of 2.

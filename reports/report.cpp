@@ -176,17 +176,48 @@ Json make_costs(const std::filesystem::path& directory) {
   return made;
 }
 
+namespace {
+
+// Returns: null if there is no such file.
+Json read_checked(const std::filesystem::path& file, void (*expect_possible)(const Json&)) {
+  Json found = fuzz::read_sealed(file, "remove it, or make it again");
+  if (!found.is_null()) checked(file, "what graze writes into it", [&] { expect_possible(found); });
+  return found;
+}
+
+// A sentence if `graze discrepancy` wrote counts of other pairs into the campaign's folder; else empty.
+std::string other_pairs(const std::filesystem::path& directory, const Json& discrepancy) {
+  const Json spec = fuzz::recorded_spec(directory);
+  if (!spec.is_object()) return "";
+  const std::vector<std::string> drawn = spec.at("strata");
+  bool other = spec.at("seed") != discrepancy.at("seed");
+  for (const char* kind : {"lanes", "verdicts"}) {
+    for (const Json& of : discrepancy.value(kind, Json::array())) {
+      for (const auto& [stratum, unused] : of.at("strata").items())
+        other |= std::find(drawn.begin(), drawn.end(), stratum) == drawn.end();
+    }
+  }
+  if (!other) return "";
+  return fmt::format("These are {} that the campaign did not draw (seed {}).",
+                     counted(discrepancy.at("pairs").get<std::uint64_t>(), "pair"), discrepancy["seed"].dump());
+}
+
+}  // namespace
+
+Json read_discrepancy(const std::filesystem::path& file) { return read_checked(file, expect_possible_discrepancy); }
+
 Json make_choices(const std::filesystem::path& directory) {
-  const auto read = [&](const char* name, void (*expect_possible)(const Json&)) -> Json {
-    const std::filesystem::path file = directory / name;
-    Json found = fuzz::read_sealed(file, "remove it, or make it again");
-    if (found.is_null()) return found;
-    checked(file, "what graze writes into it", [&] { expect_possible(found); });
-    return found;
+  const auto read = [&](const char* name, void (*expect_possible)(const Json&)) {
+    return read_checked(directory / name, expect_possible);
   };
-  const Json values = read("discrepancy.json", expect_possible_discrepancy);
+  const Json values = read_discrepancy(directory / "discrepancy.json");
   Json discrepancy;
-  if (!values.is_null()) discrepancy = {{"sentences", discrepancy_answer(values)}, {"page", "discrepancy.html"}};
+  if (!values.is_null()) {
+    std::vector<std::string> sentences = discrepancy_answer(values);
+    if (std::string others = other_pairs(directory, values); !others.empty())
+      sentences.insert(sentences.begin(), std::move(others));
+    discrepancy = {{"sentences", sentences}, {"page", "discrepancy.html"}};
+  }
   return {{"tuned", read("tune.json", expect_possible_tuned)},
           {"pareto", read("pareto.json", expect_possible_pareto)},
           {"discrepancy", discrepancy}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Coplanar and parallel pairs: two triangles on a square grid, and a chart that maps the grid into space. With an
-// integer chart nothing rounds and the pair is exactly coplanar. With a real chart it is coplanar until rounding.
+// integer chart nothing rounds and the pair is exactly coplanar. With a real chart it is coplanar before rounding.
 #pragma once
 
 #include "strata/draws.h"

@@ -50,7 +50,7 @@ constexpr MeshFormat kFormats[] = {
 #undef GRAZE_MESH_FORMAT
 };
 
-// Null if the extension is none of a mesh.
+// Null if no mesh format has the extension.
 const MeshFormat* format_of(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

@@ -28,7 +28,7 @@ struct MeshPairs {
   Pair pair(std::size_t index) const;
 };
 
-// Whether the file's extension is that of a mesh.
+// Whether the file's extension is that of a mesh format.
 bool is_mesh(const std::filesystem::path& file);
 
 // "OFF, OBJ, STL or PLY"

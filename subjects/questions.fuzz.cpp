@@ -88,7 +88,7 @@ void ask_hostile(std::string_view bytes) {
     must_follow({before.data(), count}, questions.answers());
   }
   questions.give_up(kCrashed);
-  must_hold(questions.done(), "the questions can be given up");
+  must_hold(questions.done(), "after give_up no question is left");
   must_follow({questions.answers().data(), count}, questions.answers());
   reached(failures + 100 * count);
 }

@@ -46,7 +46,7 @@ GRAZE_HD inline double lost_below(double product, double x, double y) {
 // |x| + |y| for the two parts of a number, rounded up.
 GRAZE_HD inline double above(const Certified& x) { return up(fabs(x.hi) + fabs(x.lo)); }
 
-// At most the number's size, which may be negative.
+// A lower bound of the number's size; may be negative.
 GRAZE_HD inline double least_size(const Certified& x) { return (fabs(x.hi) - fabs(x.lo)) * (1 - 0x1p-48) - x.bound; }
 
 }  // namespace certified

@@ -125,13 +125,13 @@ GRAZE_HD int order_of(Real x, Real y) {
   return x < y ? -1 : x > y ? 1 : x == y ? 0 : 2;
 }
 
-// Whether `left < right`, or `left <= right`, is answered otherwise by values in the other order.
+// Whether `left < right`, or `left <= right`, gets another answer from values in the other order.
 GRAZE_HD inline bool answers_otherwise(int order, int other, bool at_most) {
   const bool yes = order == -1 || (at_most && order == 0), other_yes = other == -1 || (at_most && other == 0);
   return yes != other_yes;
 }
 
-// floor(log2(x)) of a positive number; of zero, less than of any other.
+// floor(log2(x)) of a positive number; for zero, less than for any other number.
 GRAZE_HD inline int log2_of(const DoubleDouble& x) {
   const int k = floor_log2(x.hi);
   return x.lo < 0 && x.hi == scalbn(1.0, k) ? k - 1 : k;
@@ -253,7 +253,7 @@ class PairComparison {
              size, left.rounding + right.rounding);
   }
 
-  // Counts the pair among all (`at` is 0), or among those of its place. Call it after all questions.
+  // Counts the pair: at 0 among all pairs, else among those of its place. Call it after all questions.
   GRAZE_HD void count_pair(int at) {
     using namespace pair_counts;
     sink_.add(at + pairs);

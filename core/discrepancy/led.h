@@ -39,7 +39,7 @@ struct Led {
   GRAZE_HD explicit Led(int constant)
       : exact(static_cast<double>(constant)), lane(static_cast<Real>(constant)), was_seen(true) {}
   GRAZE_HD Led(Real coordinate, LedRun* r) : exact(static_cast<double>(coordinate)), run(r) {}
-  // `of_operands`: how far the operation moves the error of its operands. `lost`: at most by underflow.
+  // `of_operands`: how far the operation moves the error of its operands. `lost`: bound of the loss by underflow.
   GRAZE_HD Led(const Certified& computed, const Led& l, const Led& r, double of_operands, double lost)
       : exact(computed), run(l.run ? l.run : r.run) {
     const double size = size_of(exact), error = certified::up(of_operands * (1 + kUnit) + kUnit * size + lost);
@@ -99,15 +99,15 @@ struct Led {
   static constexpr bool kIsFloat = sizeof(Real) == sizeof(float);
   static constexpr double kUnit = kIsFloat ? 0x1p-24 : 0x1p-53,
                           kLargest = kIsFloat ? 0x1.fffffep+127 : 0x1.fffffffffffffp+1023;
-  // More than a product or quotient loses by underflow, and than the products of its bound do.
+  // More than the loss by underflow of a product or quotient and of the products in its bound.
   static constexpr double kLost = kIsFloat ? 0x1p-147 : 0x1p-1071;
 
-  // At least the number's size.
+  // An upper bound of the number's size.
   GRAZE_HD static double size_of(const Certified& x) { return certified::above(x) + x.bound; }
   GRAZE_HD bool is_zero() const { return exact.is_exactly_zero() && rounding == 0; }
 
   // Values that the lane did not record are compared exactly: the least of several distances, for example. If their
-  // order is in doubt, the wrong one is off by at most what separates them. The lane may have taken the other one. So
+  // order is in doubt, the wrong choice is off by at most their distance. The lane may have taken the other one. So
   // both get the larger rounding: that of a least or greatest value is at most the largest of all.
   template <class Comparison>
   GRAZE_HD static bool compare(const Led& l, const Led& r, const Comparison& comparison) {

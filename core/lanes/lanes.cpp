@@ -171,7 +171,7 @@ Lane lane_under(const Lane& lane, std::string_view policy) {
 namespace {
 
 // A pattern, split into one for lanes without a policy and one for the policy. The policy begins at the fourth part. If
-// a star stands for several parts ("*/cpu/rel:8"), it is the last part, provided that names a policy.
+// a star stands for several parts ("*/cpu/rel:8"), it is the last part, if that names a policy.
 struct PolicyPattern {
   std::string zero, policy;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The policies that are one word, as the last part of a lane's name. All others spell tolerances ("rel:8").
+// The policies that are one word, as the last part of a lane's name. All other policies are tolerances ("rel:8").
 #pragma once
 
 #include <algorithm>

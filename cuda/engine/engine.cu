@@ -145,7 +145,7 @@ class CudaEngine final : public DeviceEngine {
     check(cudaEventRecord(buffers.done, stream));
   }
 
-  // An upper bound that does not wait for blocks in progress.
+  // An upper bound of the number of pairs left so far; does not wait for blocks in progress.
   std::uint32_t may_be_left(std::uint32_t block_pairs) const {
     std::uint32_t most = 0;
     for (const std::unique_ptr<Buffers>& buffers : buffers_) {

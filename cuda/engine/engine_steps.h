@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the engine does with a block of pairs, step by step: the same code on a device, where each step is a kernel, and
 // on the host. Every pair gets its margin's bucket, from the cheapest bounds that decide it: each step lists what it
-// leaves for the next, so that a warp does not wait for one hard pair in 32. Pairs on which a lane is wrong, and pairs
-// whose margin may be zero, get their relation. Then everything is counted.
+// leaves for the next, so that a warp does not wait for one hard pair in 32. The relation is computed
+// only if a lane is wrong or the margin may be zero. Then everything is counted.
 #pragma once
 
 #include "core/exact/exact.h"

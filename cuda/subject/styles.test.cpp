@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 const fs::path kStyles = fs::path(GRAZE_SOURCE_DIR) / "cuda/subject/styles";
 
-// Why a style has no twin: a part of the message. Empty for a style that has one.
+// Why a style has no twin, as a part of the message; empty if it has a twin.
 const std::map<std::string, std::string> kStyleTwins = {
     {"approximate", "cannot be replayed: rsqrt.approx.f32"},
     {"bit_tricks", ""},

@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kMostMovedHere = 150'000;  // there may be hundreds; where a pair dies, each costs a process
 
 // A crash costs a new process, so a lane that dies gets fewer moves. A timeout costs its whole limit, and an unstable
-// verdict may not come back, so neither is minimised.
+// verdict may not occur again, so neither is minimised.
 std::size_t most_moved(const Candidate& candidate) {
   if (candidate.says == Verdict::timed_out || candidate.says == Verdict::unstable) return 0;
   return candidate.lane_dies ? kLeastMoved + 10'000 : kMostMovedHere;

@@ -96,8 +96,9 @@ std::vector<Pair> simpler_moves(const Pair& pair, int kind, std::size_t& made) {
 
 bool same_bits(const Pair& l, const Pair& r) { return !simpler_coordinates(l, r) && !simpler_coordinates(r, l); }
 
-// Applies the move from `before` to `after` `times` times. Coordinates that it scaled by a power of two are scaled by
-// that power to the `times`; other coordinates move `times` as far.   Returns: nothing if a coordinate is not finite.
+// Applies the move from `before` to `after` `times` times. Where it scaled a coordinate by a
+// power of two, scales by that power `times` times; moves other coordinates `times` as far.   Returns: nothing if a
+// coordinate is not finite.
 std::optional<Pair> repeated(const Pair& before, const Pair& after, std::int64_t times) {
   const float *from = coordinates(before), *to = coordinates(after);
   std::optional<int> exponent;  // of the power of two; 0 when it is none
@@ -160,8 +161,8 @@ struct Walk {
            (cause == analysis::Cause::order_dependent && result.reason.cause == analysis::Cause::rounding);
   }
 
-  // Makes the candidate the current pair if it fails alike for the same reason. Requires: it gets the failure's
-  // verdicts.
+  // Makes the candidate the current pair if it fails in the same way for the same reason. Requires: its verdicts are
+  // the failure's.
   bool take(const Pair& candidate) {
     if (relation_of(candidate) != failure.truth || !counts(failure, candidate)) return false;
     if (!may_have_reason(failure, result.reason, candidate)) return false;
@@ -194,7 +195,7 @@ struct Walk {
     }
   }
 
-  // Moves to the simplest pair that this kind of move makes of the current one and that fails alike, if there is one.
+  // Tries all moves of this kind on the current pair; takes the simplest result that fails in the same way, if any.
   bool improve(int kind) {
     const std::vector<Pair> simpler = simpler_moves(way.back(), kind, result.moved);
     for (auto first = simpler.begin(); first != simpler.end();) {

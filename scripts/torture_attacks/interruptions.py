@@ -144,8 +144,8 @@ def full_disk(turn):
             command = [*turn.bench.campaign(name), "--out", campaign]
         limit = None
         if enlarge and turn.random.random() < 0.5:
-            # A tmpfs allocates whole pages, so there is more room than the sum of file sizes. A filler file takes the
-            # rest.
+            # A tmpfs allocates whole pages, so there is more room than the sum of file sizes. A filler file
+            # leaves only `room` bytes free.
             free = os.statvfs(turn.folder / "disk").f_bavail * 4096
             room = turn.random.randrange(0, needed * 2)
             with open(turn.folder / "disk" / "filler", "wb") as filler:

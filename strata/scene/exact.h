@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exact contacts and exactly coplanar pairs on a scene's grid of powers of two, or on the ulps of its largest
-// coordinate. On a decimal grid they are exact as written, before float32 rounds them.
+// coordinate. On a decimal grid they are exact for the decimal numbers, before rounding to float32.
 #pragma once
 
 #include "strata/coplanar.h"

@@ -23,13 +23,13 @@ class DiscrepancyResult : public testing::Test {
     const auto lane = [](const char* id) -> const Lane& { return *find_lane(id); };
     spec.lanes.emplace_back(lane("interval_overlap/f32/cpu"), lane("interval_overlap/f32/cuda-fma"));
     spec.lanes.emplace_back(lane("moller_1997/f64/cpu"), lane("moller_1997/f64/cuda-nofma"));
-    spec.sources = strata::stratum_sources(4, 3000, {"thesis", "near_edge_edge", "extreme_scale"});
+    spec.sources = strata::stratum_sources(4, 9000, {"thesis", "near_edge_edge", "extreme_scale"});
     const auto simpler = [](const Pair&, const Pair&) { return false; };
     const DiscrepancyResults results{
         spec,
         analysis::discrepancies(spec),
         {analysis::origins(*spec.lanes[0].second, spec.sources, 500, 0, simpler), std::nullopt}};
-    json_ = {{"pairs", 3000}, {"seed", 4}};
+    json_ = {{"pairs", 9000}, {"seed", 4}};
     json_.update(discrepancy_json(results));
     csv_ = discrepancy_csv(results);
   }
@@ -111,6 +111,24 @@ TEST_F(DiscrepancyResult, TheAnswersBoundsHold) {
   EXPECT_GE(std::stod(found[2]), analysis::upper_bound(0, 3000));  // comparisons of one pair depend on each other
   EXPECT_LT(std::stod(found[2]), analysis::upper_bound(0, 3000) * 1.2);
   EXPECT_NE(answer[4].find("-fmad=false mends it"), std::string::npos) << answer[4];
+}
+
+// Each point of the pictures of extremes has the counts of its place.
+TEST_F(DiscrepancyResult, ThePageDrawsTheExtremes) {
+  const std::string page = discrepancy_page(json_);
+  int drawn = 0;
+  const Json& strata = json_["lanes"][0]["strata"];
+  EXPECT_TRUE(strata["thesis"]["extremes"].empty());
+  for (const auto& [place, counts] : strata["extreme_scale"]["extremes"]["scale"].items()) {
+    if (counts["pairs"] < 30) continue;
+    for (const char* count : {"differs", "sign", "outcome", "verdict"}) {
+      EXPECT_NE(page.find("<title>2^" + place + ": " + counts[count].dump() + " of " + counts["pairs"].dump() + "<"),
+                std::string::npos)
+          << place << ' ' << count;
+      ++drawn;
+    }
+  }
+  EXPECT_GT(drawn, 100);
 }
 
 TEST_F(DiscrepancyResult, ThePageNamesEveryQuestionThatDiffers) {

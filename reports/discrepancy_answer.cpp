@@ -42,7 +42,7 @@ std::string unlike_words(const Json& json) {
 }
 
 std::string shares_sentence(const std::vector<const Json*>& lanes, std::uint64_t same) {
-  if (lanes.empty()) return "No value that a comparison sees differs in any bit, in none of the pairs of lanes.";
+  if (lanes.empty()) return "In every pair of lanes, all values that a comparison sees have the same bits.";
   if (lanes.size() == 1 && same == 0) {
     const Json &total = lanes[0]->at("total"), &distances = total.at("sites").at("plane_distance");
     const std::uint64_t pairs = number_at(total, "pairs");

@@ -32,7 +32,7 @@ std::optional<int> quantile(const Octaves& octaves, double share);
 // A histogram whose buckets are all powers of 2.
 Octaves octaves_at(const nlohmann::ordered_json& histogram);
 
-// The sum of a histogram, or of a count, over all values of all questions.
+// Adds up a histogram, or a count, over all values of all questions.
 std::map<std::string, std::uint64_t> sum_by_bucket(const nlohmann::ordered_json& counts, const char* histogram);
 std::uint64_t sum_at(const nlohmann::ordered_json& counts, const char* key);
 

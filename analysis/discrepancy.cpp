@@ -190,11 +190,11 @@ std::string why_not_compared(const Lane& l, const Lane& r) {
   return "";
 }
 
-const Lane* fused_of(const LanesCompared& lanes) {
+const Lane* fused_of(const Lane& l, const Lane& r) {
   const auto is = [](const Lane* lane, Arithmetic arithmetic) {
     return info_of(lane->variant).arithmetic == arithmetic;
   };
-  for (const auto& [rounded, fused] : {std::pair(lanes.first, lanes.second), {lanes.second, lanes.first}}) {
+  for (const auto& [rounded, fused] : {std::pair(&l, &r), {&r, &l}}) {
     if (is(rounded, Arithmetic::rounded) && fused->variant == Variant::cuda_fma) return fused;
   }
   return nullptr;

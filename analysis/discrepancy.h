@@ -45,7 +45,7 @@ struct LanesCompared {
 
 // The contracted CUDA lane whose contractions are what differs, because the other lane rounds every operation. Null if
 // there is none.
-const Lane* fused_of(const LanesCompared& lanes);
+const Lane* fused_of(const Lane& l, const Lane& r);
 
 // A value that at least one of two lanes compares. Values are in the order of the first lane's run; those of the second
 // lane alone come last.

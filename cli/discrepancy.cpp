@@ -89,7 +89,7 @@ constexpr std::uint64_t kOriginPairs = 40'000;  // shared by the sources
 std::vector<std::optional<analysis::Origins>> origins_of(const analysis::DiscrepancySpec& spec) {
   std::vector<std::optional<analysis::Origins>> origins;
   for (const analysis::LanesCompared& lanes : spec.lanes) {
-    const Lane* fused = analysis::fused_of(lanes);
+    const Lane* fused = analysis::fused_of(*lanes.first, *lanes.second);
     origins.emplace_back();
     if (fused && analysis::has_origins(*fused))
       origins.back() =

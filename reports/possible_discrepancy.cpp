@@ -166,7 +166,7 @@ void expect_possible_discrepancy(const Json& json) {
     expect(nlohmann::json(sum) == nlohmann::json(of.at("total")),
            text_at(of, "second") + ": the total is not that of the strata");
     expect(number_at(of.at("total"), "pairs") == number_at(json, "pairs"), "not all pairs are compared");
-    const Lane* fused = analysis::fused_of({*lanes[0], *lanes[1]});
+    const Lane* fused = analysis::fused_of(*lanes[0], *lanes[1]);
     expect(of.at("origins").is_null() || fused, text_at(of, "second") + ": origins of no contraction");
     if (!of["origins"].is_null()) expect_possible_origins(of, questions, text_at(of, "second"));
   }

@@ -133,8 +133,8 @@ TEST(Policies, RefuseWhatTheyDoNotKnow) {
   EXPECT_EQ(refusal("nothing/f32/cpu/rel:1"), "accepted");  // no such lane; the code that selects lanes reports it
   const std::string forms = "expected a policy (zero, abs:E, rel:K, SITE=abs:E,…, paper, bound or filtered), found ";
   EXPECT_EQ(refusal("moller_1997/f32/cpu/eps"), forms + "\"eps\"");
-  EXPECT_EQ(refusal("moller_1997/f32/cpu/abs:-1"), forms + "\"abs:-1\": \"-1\" is no number of at least 0");
-  EXPECT_EQ(refusal("moller_1997/f32/cpu/rel:nan"), forms + "\"rel:nan\": \"nan\" is no number of at least 0");
+  EXPECT_EQ(refusal("moller_1997/f32/cpu/abs:-1"), forms + "\"abs:-1\": \"-1\" is not a number of at least 0");
+  EXPECT_EQ(refusal("moller_1997/f32/cpu/rel:nan"), forms + "\"rel:nan\": \"nan\" is not a number of at least 0");
   EXPECT_EQ(refusal("moller_1997/f32/cpu/plane=abs:1"),
             forms + "\"plane=abs:1\": the sites are plane_distance, parallel, orientation, separation");
   EXPECT_EQ(refusal("moller_1997/f32/cpu/parallel=abs:1,parallel=abs:2"),

@@ -14,6 +14,7 @@
 #include "cuda/twin/twin.h"
 #include "fuzz/campaign/campaign_testing.h"
 #include "oracle/truth.h"
+#include "strata/strata.h"
 
 namespace graze::fuzz {
 namespace {

@@ -8,6 +8,7 @@
 
 #include <cmath>
 
+#include "core/exact/host_device.h"
 #include "core/margin/double_double.h"
 
 namespace graze {

@@ -234,14 +234,14 @@ class PairComparison {
   }
 
   // The policy's `found`.
-  GRAZE_HD void one(int question, int site, const Unrounded& value) {
+  GRAZE_HD GRAZE_CALLED void one(int question, int site, const Unrounded& value) {
     if (!compared(question, site)) return;
     const Real x = lane_[0].value(question, 0), y = lane_[1].value(question, 0);
     const bool differs = compare(question, 0, value.exact);
     const int sign = sign_of_value(x), other = sign_of_value(y);
     conclude(question, site, differs, sign, other, sign != other, larger(fabs(x), fabs(y)), value.rounding);
   }
-  GRAZE_HD void two(int question, int site, const Unrounded& left, const Unrounded& right, bool at_most) {
+  GRAZE_HD GRAZE_CALLED void two(int question, int site, const Unrounded& left, const Unrounded& right, bool at_most) {
     if (!compared(question, site)) return;
     const bool left_differs = compare(question, 0, left.exact), right_differs = compare(question, 1, right.exact);
     const Real x[2] = {lane_[0].value(question, 0), lane_[0].value(question, 1)};
@@ -280,7 +280,7 @@ class PairComparison {
   }
 
   // Counts one value of both lanes. Returns: whether its bits differ.
-  GRAZE_HD bool compare(int question, int which, const Certified& exact) {
+  GRAZE_HD GRAZE_CALLED bool compare(int question, int which, const Certified& exact) {
     using namespace value_counts;
     const int at = value_at(question, which);
     const Real x = lane_[0].value(question, which), y = lane_[1].value(question, which);

@@ -236,7 +236,7 @@ TEST_F(AgreeCommand, BadInputGetsOneLine) {
   expect_error("graze tune " + cpu + " " + fma + " " + cpu + " --agree", 2, {"3 lanes"});
   expect_error("graze tune " + cpu + " moller_1997/f64/cpu --agree", 2, {cpu, "moller_1997/f64/cpu", "scalar"});
   expect_error("graze tune " + cpu + " interval_overlap/f32/cpu --agree", 2, {cpu, "interval_overlap/f32/cpu"});
-  expect_error("graze tune " + cpu + " moller_1997/f32/cuda-fast --agree", 2, {"moller_1997/f32/cuda-fast", "twins"});
+  expect_error("graze tune " + cpu + " moller_1997/f32/cuda-fast --agree", 2, {"moller_1997/f32/cuda-fast", "twin"});
   expect_error("graze tune " + cpu + " " + fma + " --agree --forbid any", 2, {"--forbid", "--agree"});
   expect_error("graze tune " + cpu + " moller_1997/f32/cud --agree", 2, {"moller_1997/f32/cud"});
   expect_error("graze tune " + cpu + " " + fma + " --agree --max-rate 0", 2, {"--max-rate"});

@@ -233,7 +233,7 @@ TEST(Query, WrongArgumentsAreNamed) {
   wrong(
       [](auto& q) { q.lane = "moller_1997/f32/cpu/rel:x"; },
       "lane: expected a policy (zero, abs:E, rel:K, SITE=abs:E,…, paper, bound or filtered), found \"rel:x\": \"x\" is "
-      "no number of at least 0");
+      "not a number of at least 0");
   wrong([](auto& q) { q.lane = "moller_1997/f32/cuda-fma", q.executor = GRAZE_ONE_CORE; },
         "lane: expected a lane of the host for cores, found 'moller_1997/f32/cuda-fma'");
   wrong([](auto& q) { q.lane = "moller_1997/f32/cpu", q.executor = GRAZE_ONE_GPU; },

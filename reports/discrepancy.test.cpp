@@ -46,8 +46,8 @@ TEST_F(DiscrepancyResult, EveryCountThatIsEditedIsRefused) {
     const bool origins = place.find("/origins/") != std::string::npos;
     if (!value.is_number_unsigned() || !(origins || place.find("/strata/") != std::string::npos)) continue;
     if (++edited % 7 != 0) continue;  // some of them
-    for (const Json count : {Json(origins ? std::uint64_t{1} << 39 : value.get<std::uint64_t>() + 1),
-                             Json(std::uint64_t{1} << 40), Json(-5)}) {
+    for (const Json& count : {Json(origins ? std::uint64_t{1} << 39 : value.get<std::uint64_t>() + 1),
+                              Json(std::uint64_t{1} << 40), Json(-5)}) {
       Json other = json_;
       other[Json::json_pointer(place)] = count;
       EXPECT_THROW(expect_possible_discrepancy(other), std::exception) << place;

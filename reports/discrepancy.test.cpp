@@ -29,7 +29,7 @@ class DiscrepancyResult : public testing::Test {
         spec,
         analysis::discrepancies(spec),
         {analysis::origins(*spec.lanes[0].second, spec.sources, 500, 0, simpler), std::nullopt}};
-    json_ = {{"pairs", 9000}, {"seed", 4}};
+    json_ = {{"pairs", 9000u}, {"seed", 4u}};
     json_.update(discrepancy_json(results));
     csv_ = discrepancy_csv(results);
   }
@@ -55,7 +55,7 @@ TEST_F(DiscrepancyResult, EveryCountThatIsEditedIsRefused) {
     }
   }
   EXPECT_GT(passed, 200u);
-  for (const auto& [place, value] : {std::pair<const char*, Json>("/pairs", 2999),
+  for (const auto& [place, value] : {std::pair<const char*, Json>("/pairs", 8999u),
                                      {"/lanes/0/second", json_["lanes"][0]["first"]},
                                      {"/lanes/0/second", "interval_overlap/f32/cuda-nofma"},
                                      {"/lanes/1", json_["lanes"][0]},
@@ -108,8 +108,8 @@ TEST_F(DiscrepancyResult, TheAnswersBoundsHold) {
   }
   EXPECT_GE(std::stod(found[1]), widest);
   EXPECT_LT(std::stod(found[1]), widest * 1.2);
-  EXPECT_GE(std::stod(found[2]), analysis::upper_bound(0, 3000));  // comparisons of one pair depend on each other
-  EXPECT_LT(std::stod(found[2]), analysis::upper_bound(0, 3000) * 1.2);
+  EXPECT_GE(std::stod(found[2]), analysis::upper_bound(0, 9000));  // comparisons of one pair depend on each other
+  EXPECT_LT(std::stod(found[2]), analysis::upper_bound(0, 9000) * 1.2);
   EXPECT_NE(answer[4].find("-fmad=false mends it"), std::string::npos) << answer[4];
 }
 

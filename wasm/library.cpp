@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Replacements for parts that the module does not take from elsewhere: correct fused multiply-adds, lanes that it
-// cannot build, and the parts of twin.h that concern users' libraries.
+// cannot build, backends without words, and the parts of twin.h that concern users' libraries.
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 
+#include "backends/backends.h"
 #include "core/lanes/host_blocks.h"
+#include "cuda/twin/twin.h"
 #include "cuda/twin/twin_table.h"
 
 // wasi-libc's fmaf is wrong if the result is subnormal and halfway between two numbers. Here the product is exact in
@@ -55,4 +57,14 @@ Verdict decide_fusing(const Lane& lane, const Pair& pair, std::span<const std::u
 }
 
 }  // namespace cuda
+
+// Without the words about lanes, for which the module would need output streams.
+namespace backends {
+const Backend& backend_of(const Lane& lane) {
+  static constexpr Backend kProcessor{"exact/f32/cpu", false,  false, [](const Lane&of) { return of.decide; },
+                                      nullptr,         nullptr},
+      kTwins{"exact/f32/cuda", true, true, cuda::block_on_host, nullptr, nullptr};
+  return info_of(lane.variant).runs_on == RunsOn::host ? kProcessor : kTwins;
+}
+}  // namespace backends
 }  // namespace graze

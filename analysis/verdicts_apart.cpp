@@ -57,9 +57,7 @@ std::vector<VerdictsApart> verdicts_apart(const TwoDeciders& deciders, const std
   std::vector<VerdictsApart> all(sources.size());
   for (const std::vector<VerdictsApart>& some : results) {
     for (std::size_t s = 0; s < all.size(); ++s) {
-      all[s].pairs += some[s].pairs;
-      all[s].differs += some[s].differs;
-      for (int lane = 0; lane < 2; ++lane) all[s].of[lane] += some[s].of[lane];
+      all[s] += some[s];
       if (some[s].simplest) keep_simplest(all[s].simplest, *some[s].simplest);
     }
   }

@@ -19,6 +19,14 @@ struct VerdictsApart {
   std::optional<PairPlace> simplest;  // of the pairs on which they differ
 
   bool operator==(const VerdictsApart&) const = default;
+
+  // Adds the counts; the simplest pair stays.
+  VerdictsApart& operator+=(const VerdictsApart& other) {
+    pairs += other.pairs;
+    differs += other.differs;
+    for (int lane = 0; lane < 2; ++lane) of[lane] += other.of[lane];
+    return *this;
+  }
 };
 
 struct TwoDeciders {

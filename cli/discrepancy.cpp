@@ -17,7 +17,6 @@
 #include "reports/discrepancy.h"
 #include "reports/discrepancy_answer.h"
 #include "reports/discrepancy_page.h"
-#include "reports/possible_counts.h"
 #include "reports/verdicts_apart.h"
 
 namespace graze::cli {
@@ -53,6 +52,7 @@ DecideBlock on_host(const Lane& lane) {
 Comparisons comparisons_of(const DiscrepancyOptions& options) {
   Comparisons comparisons;
   std::vector<analysis::LanesCompared>& lanes = comparisons.values;
+  std::set<std::set<const Lane*>> named;
   if (options.lanes.size() % 2 != 0) throw UsageError("lanes are compared two by two: name an even number of them");
   for (std::size_t i = 0; i < options.lanes.size(); i += 2) {
     const Lane *first = find_lane(options.lanes[i]), *second = find_lane(options.lanes[i + 1]);
@@ -64,12 +64,8 @@ Comparisons comparisons_of(const DiscrepancyOptions& options) {
     } else {
       lanes.emplace_back(published_lane(options.lanes[i]), published_lane(options.lanes[i + 1]));
     }
-  }
-  std::set<std::set<const Lane*>> named;
-  for (std::size_t i = 0; i < options.lanes.size(); i += 2) {
-    if (!named.insert({find_lane(options.lanes[i]), find_lane(options.lanes[i + 1])}).second)
-      throw UsageError(
-          fmt::format("{} and {} are named twice; name them once", options.lanes[i], options.lanes[i + 1]));
+    if (!named.insert({first, second}).second)
+      throw UsageError(fmt::format("{} and {} are named twice; name them once", first->id, second->id));
   }
   if (!options.lanes.empty()) return comparisons;
   for (const Variant second : {Variant::cuda_fma, Variant::cuda_nofma}) {

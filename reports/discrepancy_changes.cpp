@@ -50,18 +50,13 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
       }
     }
   };
-  const auto compare_origins = [&](const Json& of, const Json& old_ones, const Json& new_ones) {
-    compare(of, "origins", old_ones, new_ones);
-    for (const Json& line : old_ones.at("lines")) {
-      for (const Json& other : new_ones.at("lines")) {
-        if (line.at("line") == other.at("line") && line.at("within") == other.at("within"))
-          compare(of, text_at(line, "line"), line, other);
-      }
-    }
-    for (const Json& start : old_ones.at("starts")) {
-      for (const Json& other : new_ones.at("starts")) {
-        if (start.at("question") == other.at("question") && start.at("value") == other.at("value"))
-          compare(of, "start of " + text_at(start, "value"), start, other);
+  // Compares the rows of two lists that have the same values at both keys. The first key names the row.
+  const auto compare_rows = [&](const Json& of, const std::string& what, const Json& old_rows, const Json& new_rows,
+                                const char* name, const char* key) {
+    for (const Json& row : old_rows) {
+      for (const Json& other : new_rows) {
+        if (row.at(name) == other.at(name) && row.at(key) == other.at(key))
+          compare(of, what + text_at(row, name), row, other);
       }
     }
   };
@@ -71,14 +66,12 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
       text += wrapped(fmt::format("Only the {} has origins of {}.", old ? "first" : "second", lanes_of(of)),
                       screen.columns);
     } else if (old) {
-      compare_origins(of, of["origins"], now["origins"]);
+      const Json &before_origins = of["origins"], &now_origins = now["origins"];
+      compare(of, "origins", before_origins, now_origins);
+      compare_rows(of, "", before_origins.at("lines"), now_origins.at("lines"), "line", "within");
+      compare_rows(of, "start of ", before_origins.at("starts"), now_origins.at("starts"), "value", "question");
     }
-    for (const Json& question : of.at("total").at("questions")) {
-      for (const Json& other : now.at("total").at("questions")) {
-        if (question.at("question") == other.at("question"))
-          compare(of, text_at(question, "question"), question, other);
-      }
-    }
+    compare_rows(of, "", of.at("total").at("questions"), now.at("total").at("questions"), "question", "question");
   });
   match("verdicts", [&](const Json& of, const Json& now) {
     compare(of, "", of.at("total"), now.at("total"));

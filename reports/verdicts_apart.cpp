@@ -50,9 +50,7 @@ Json verdicts_json(const analysis::TwoDeciders& deciders, const std::vector<stra
   analysis::VerdictsApart total;
   Json strata = Json::object();
   for (std::size_t s = 0; s < sources.size(); ++s) {
-    total.pairs += found[s].pairs;
-    total.differs += found[s].differs;
-    for (int lane = 0; lane < 2; ++lane) total.of[lane] += found[s].of[lane];
+    total += found[s];
     Json& row = strata[sources[s].id] = row_of(found[s]);
     if (const auto& simplest = found[s].simplest)
       row["simplest"] = {{"place", fmt::format("{}:{}:{}", sources[s].id, sources[s].seed, simplest->index)},
@@ -145,9 +143,7 @@ void expect_possible_verdicts(const Json& of) {
   for (const auto& [stratum, row] : of.at("strata").items()) {
     const analysis::VerdictsApart counts = read(row, stratum);
     expect((counts.differs > 0) == row.contains("simplest"), stratum + ": a simplest pair without a difference");
-    sum.pairs += counts.pairs;
-    sum.differs += counts.differs;
-    for (int lane = 0; lane < 2; ++lane) sum.of[lane] += counts.of[lane];
+    sum += counts;
   }
   expect(read(of.at("total"), "total") == sum, "the total is not that of the strata");
 }

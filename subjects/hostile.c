@@ -275,7 +275,7 @@ static void raise_task_limit(void) {
 ATTACK(raises_task_limit, raise_task_limit())
 // Memory that no limit counts, and programs that run in the kernel for every process.
 static void call_the_kernel(void) {
-  const long calls[] = {321 /* bpf */, 298 /* perf_event_open */, 425 /* io_uring_setup */, 447 /* memfd_secret */};
+  const long calls[] = {SYS_bpf, SYS_perf_event_open, SYS_io_uring_setup, 447 /* memfd_secret */};
   char nothing[128] = {0};
   for (int i = 0; i < 4; ++i) {
     if (syscall(calls[i], i == 3 ? 0 : 4, nothing, sizeof nothing, -1, 0) >= 0 || errno != EPERM)

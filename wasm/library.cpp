@@ -61,9 +61,9 @@ Verdict decide_fusing(const Lane& lane, const Pair& pair, std::span<const std::u
 // Without the words about lanes, for which the module would need output streams.
 namespace backends {
 const Backend& backend_of(const Lane& lane) {
-  static constexpr Backend kProcessor{"exact/f32/cpu", false,  false, [](const Lane&of) { return of.decide; },
-                                      nullptr,         nullptr},
-      kTwins{"exact/f32/cuda", true, true, cuda::block_on_host, nullptr, nullptr};
+  constexpr auto own_code = [](const Lane& of) { return of.decide; };
+  static constexpr Backend kProcessor{"exact/f32/cpu", false, false, own_code, nullptr, nullptr};
+  static constexpr Backend kTwins{"exact/f32/cuda", true, true, cuda::block_on_host, nullptr, nullptr};
   return info_of(lane.variant).runs_on == RunsOn::host ? kProcessor : kTwins;
 }
 }  // namespace backends

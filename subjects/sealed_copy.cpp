@@ -20,7 +20,7 @@ SealedCopy::SealedCopy(const std::string& name, std::string_view bytes)
     return;
   const int why = errno;
   if (fd_ >= 0) close(fd_);
-  throw std::system_error(why, std::generic_category(), "cannot copy the code of " + name + " into memory");
+  throw std::system_error(why, std::generic_category(), "cannot share memory with a subject for its code, " + name);
 }
 
 SealedCopy::~SealedCopy() { close(fd_); }

@@ -208,7 +208,7 @@ TEST_F(MergeTest, WhatIsWrongGetsOneLineAndLeavesNothing) {
   };
   Json timings = Json::parse(read_whole(parts[0] / "timings.json"));
   timings["runs"].back()["costs"]["passes"] = 0;
-  with_other(parts[0] / "timings.json", sealed(timings).dump(), "invalid number of passes");
+  with_other(parts[0] / "timings.json", sealed(timings).dump(), "its costs have an invalid number of passes");
   with_other(parts[0] / "timings.json", timings.dump(), "it has been changed or damaged since graze wrote it");
   with_other(parts[1] / "status.json", "{", "it has been changed or damaged since graze wrote it");
   fs::remove(parts[1] / "status.json");

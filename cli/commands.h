@@ -38,8 +38,10 @@ void add_subject_options(CLI::App& command, LaneOptions& options);
 // Opens the subjects.   Throws: as subjects::open.
 void open_subjects(const LaneOptions& options);
 
-// Opens the subjects that a campaign recorded. `name` is its directory or one of its case files; for other names
-// nothing happens.
+// The spec that a campaign recorded. `name` is its directory or one of its case files; for other names an empty object.
+fuzz::Json recorded_spec_of(const std::filesystem::path& name);
+
+// Opens the subjects of that spec.
 // Throws: as subjects::open_recorded.
 void open_subjects_of(const std::filesystem::path& name);
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -67,7 +68,24 @@ void print_next(const CorpusOptions& options, const char* verb) {
   fmt::print("Next: graze corpus {}{}\n", verb, usual ? "" : " --corpus " + path_word(options.folder));
 }
 
+// Throws: UsageError if two of the named campaigns recorded different code under one name.
+void expect_same_code(const std::vector<std::string>& names) {
+  std::map<std::string, std::pair<std::string, Json>> known;  // by subject: the campaign, and what it recorded
+  for (const std::string& name : names) {
+    for (const Json& row : recorded_spec_of(name).value("subjects", Json::array())) {
+      const auto& [other, before] = known.try_emplace(row.at("name"), name, row).first->second;
+      if (before.at("hash") == row.at("hash")) continue;
+      throw UsageError(
+          fmt::format("cannot add {} together with {}: they ran different code as {} ({} and {}); add them "
+                      "one at a time",
+                      printable(other), printable(name), printable(row["name"].get<std::string>()),
+                      printable(before["what"].get<std::string>()), printable(row["what"].get<std::string>())));
+    }
+  }
+}
+
 void add(const CorpusOptions& options) {
+  expect_same_code(options.names);
   for (const std::string& name : options.names) open_subjects_of(name);
   const fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
   const fuzz::DecideLanes by_bench = decide_by(under_test);

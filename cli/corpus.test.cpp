@@ -45,31 +45,42 @@ TEST_F(CorpusVerb, TakesACampaignListsItAndHolds) {
   EXPECT_EQ(again.out.find(" 0 seen again") == std::string::npos, true) << again.out;
 }
 
-TEST_F(CorpusVerb, TakesTheSimplestCaseOfEachKind) {
-  campaign("c", "--pairs 5000 --strata lattice");
-  const Ran added = shell("graze corpus add c --corpus r");
-  const Ran ran = shell(
-      "graze failures c --json | python3 -c 'import json,sys\n"
-      "for l in sys.stdin: k = json.loads(l); print(k[\"simplest\"][\"pair\"])' | sort -u > kinds;"
-      "grep '^[-0-9].* failure=' r/cases.pairs | sed 's/ |.*//' | sort -u > kept;"
-      "test -s kept && cmp kinds kept");
-  EXPECT_EQ(ran.status, 0) << ran.out << ran.err << added.out;
+// Each signature of the summary is a case with the pairs of that signature, minimised or not.
+TEST_F(CorpusVerb, TakesEverySignatureWithItsCount) {
+  campaign("c", "--pairs 3000 --strata 'lattice,near_edge_edge' --lanes '*/f32/cpu'");
+  const std::string same_as_summary =
+      "import json, re\n"
+      "wanted = {x['key']: x['count'] for x in json.load(open('c/summary.json'))['signatures']}\n"
+      "found = re.findall(r' count=(\\d+) signature=(\\S+)', open('$r/cases.pairs').read())\n"
+      "assert len(wanted) > 20 and wanted == {s: int(n) for n, s in found}, (len(wanted), len(found))\n";
+  const auto check = [&](const std::string& corpus) {
+    return shell("r=" + corpus + "; python3 -c \"" + same_as_summary + "\"");
+  };
+  ASSERT_EQ(shell("graze corpus add c --corpus r --lanes '*/f32/cpu'").status, 0);
+  const Ran found = check("r");
+  EXPECT_EQ(found.status, 0) << found.err;
+  ASSERT_EQ(shell("graze minimize c > /dev/null && graze corpus add c --corpus m --lanes '*/f32/cpu'").status, 0);
+  const Ran minimised = check("m");
+  EXPECT_EQ(minimised.status, 0) << minimised.err;
+  EXPECT_EQ(shell("grep -q kind=minimised m/cases.pairs && graze corpus verify --corpus m --lanes '*/f32/cpu'").status,
+            0);
 }
 
-// Failures of another campaign with the same kinds are counted, but add no cases, even with other signatures.
-TEST_F(CorpusVerb, CountsAnotherCampaignByKind) {
-  campaign("c", "--pairs 5000 --strata lattice");
-  campaign("d", "--pairs 4000 --strata lattice --seed 2");
-  ASSERT_EQ(shell("graze corpus add c --corpus r").status, 0);
-  const std::string sum =
-      "graze corpus list --corpus r | sed -n 's/^failing *\\([0-9,]*\\).*/\\1/p' | tr -d , | paste -sd+ | "
-      "(read -r s; echo $((s)))";
-  const int before = std::stoi(shell(sum).out);
-  const Ran ran = shell("graze corpus add d --corpus r");
-  int is_new = -1, again = -1;
-  ASSERT_EQ(std::sscanf(ran.out.c_str(), "%d new, %d seen again", &is_new, &again), 2) << ran.out << ran.err;
-  EXPECT_LT(3 * is_new, again) << ran.out;
-  EXPECT_GT(std::stoi(shell(sum).out), before + 500);
+// Code that always says yes, and other code of the same name that always says no.
+TEST_F(CorpusVerb, FailuresInBothDirectionsAreKeptAndOtherCodeOfOneNameIsRefused) {
+  for (const std::string answer : {"0", "1"}) {
+    const Ran ran = shell("mkdir d" + answer + " && echo 'extern \"C\" int hit(const float*, const float*) { return " +
+                          answer + "; }' > d" + answer + "/m.cpp && graze fuzz --subject mine=d" + answer +
+                          "/m.cpp:hit --lanes mine/f32/cpu --strata near_vertex_face --pairs 200 --out c" + answer);
+    ASSERT_EQ(ran.status, 0) << ran.err;
+  }
+  expect_error("graze corpus add c0 c1 --corpus both", 2, {"c0", "c1", "mine", "d0/m.cpp", "d1/m.cpp"});
+  EXPECT_FALSE(std::filesystem::exists(shell.folder / "both"));
+  EXPECT_NE(shell("graze corpus add c0 --corpus r").out.find(", 0 seen again"), std::string::npos);
+  EXPECT_NE(shell("graze corpus add c1 --corpus r").out.find(", 0 seen again"), std::string::npos);
+  EXPECT_EQ(
+      shell("grep -q 'signature=[^ ]*mine:-' r/cases.pairs && grep -q 'signature=[^ ]*mine:+' r/cases.pairs").status,
+      0);
 }
 
 TEST_F(CorpusVerb, AMinimisedCaseStandsForItsFile) {

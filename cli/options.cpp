@@ -177,14 +177,17 @@ void add_lane_options(CLI::App& command, LaneOptions& options, Executors executo
       ->default_str("auto");
 }
 
-void open_subjects_of(const std::filesystem::path& name) {
+fuzz::Json recorded_spec_of(const std::filesystem::path& name) {
   for (const std::filesystem::path& directory : {name, name.parent_path().parent_path()}) {
     if (!std::filesystem::is_regular_file(directory / "summary.json")) continue;
-    const fuzz::Json spec = fuzz::recorded_spec(directory);
-    if (spec.is_null()) continue;
-    for (const std::string& line : subjects::open_recorded(spec)) fmt::print(stderr, "graze: {}\n", printable(line));
-    return;
+    if (const fuzz::Json spec = fuzz::recorded_spec(directory); spec.is_object()) return spec;
   }
+  return fuzz::Json::object();
+}
+
+void open_subjects_of(const std::filesystem::path& name) {
+  for (const std::string& line : subjects::open_recorded(recorded_spec_of(name)))
+    fmt::print(stderr, "graze: {}\n", printable(line));
 }
 
 void open_subjects(const LaneOptions& options) {

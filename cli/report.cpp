@@ -18,6 +18,7 @@
 #include "reports/comparison.h"
 #include "reports/csv.h"
 #include "reports/page.h"
+#include "subjects/subjects.h"
 
 namespace graze::cli {
 
@@ -67,6 +68,26 @@ std::string page_of(const std::string& file) {
   }
 }
 
+// The campaign's report. Opens its foreign code, which the programs that show a failure need.
+Json make_report(const fs::path& directory) {
+  std::vector<std::string> missing;
+  for (const Json& row : recorded_spec_of(directory).value("subjects", Json::array())) {
+    try {
+      subjects::open_recorded({{"subjects", Json::array({row})}});
+    } catch (const UsageError&) {
+      throw;
+    } catch (const std::runtime_error& error) {
+      missing.push_back(
+          fmt::format("No program shows a failure of {}, because the code that the campaign ran is not "
+                      "there: {}.",
+                      printable(row.at("name").get<std::string>()), printable(error.what())));
+    }
+  }
+  Json report = reports::make_report(directory);
+  for (const std::string& sentence : missing) report["missing"].push_back(sentence);
+  return report;
+}
+
 void report(const ReportOptions& options) {
   const int named = !options.directory.empty() + !options.from.empty() + !options.compare.empty();
   if (named != 1)
@@ -78,16 +99,15 @@ void report(const ReportOptions& options) {
     fmt::print("Wrote {}\n", options.out);
     say_what_the_page_is();
   } else if (!options.compare.empty()) {
-    for (const std::string& directory : options.compare) open_subjects_of(directory);
-    Json after = reports::make_report(options.compare[1]);
-    reports::add_comparison(after, reports::make_report(options.compare[0]), fuzz::read_kinds(options.compare[1]),
-                            fuzz::read_kinds(options.compare[0]));
+    // First, while no foreign code is open: only its counts are needed, and both may use one name for different code.
+    const Json before = reports::make_report(options.compare[0]);
+    Json after = make_report(options.compare[1]);
+    reports::add_comparison(after, before, fuzz::read_kinds(options.compare[1]), fuzz::read_kinds(options.compare[0]));
     fmt::print("{}\n", after["compare"]["headline"].get<std::string>());
     for (const Json& sentence : after["compare"]["differences"]) fmt::print("{}\n", sentence.get<std::string>());
     write_report(options.compare[1], after, "compare");
   } else {
-    open_subjects_of(options.directory);
-    const Json made = reports::make_report(options.directory);
+    const Json made = make_report(options.directory);
     write_report(options.directory, made, "report");
     if (made["signature_count"] > 0) fmt::print("Next: graze corpus add {}\n", path_word(options.directory));
   }

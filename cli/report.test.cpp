@@ -50,7 +50,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   expect_error("graze failures c", 1, {"c/failures.json", "graze minimize"});
   // Kinds that are missing, and lanes, strata and margins that do not exist: no failure may be hidden or invented.
   const auto refused = [&](const std::string& found) {
-    for (const char* reader : {"failures c", "report c", "corpus add c --corpus r"})
+    for (const char* reader : {"failures c", "report c", "report --compare c c"})
       expect_error(std::string("graze ") + reader, 1, {"c/failures.json", found, "graze minimize c"});
   };
   more = kinds;
@@ -300,6 +300,39 @@ TEST_F(Report, ComparesTwoCampaigns) {
   expect_done("rm seed1/failures.json");
   EXPECT_NE(shell("graze report --compare seed1 seed2").out.find("and kinds of failure are not compared.\n"),
             std::string::npos);
+}
+
+// The code is edited between two campaigns. Both orders can be compared, and each page shows its own code.
+TEST_F(Report, ComparesCodeBeforeAndAfterAnEdit) {
+  for (const std::string answer : {"0", "1"}) {
+    expect_done("echo 'extern \"C\" int hit(const float*, const float*) { return " + answer +
+                "; }' > m.cpp && graze fuzz --subject mine=m.cpp:hit --lanes mine/f32/cpu --strata near_vertex_face "
+                "--pairs 200 --out c" +
+                answer + " > /dev/null && graze minimize c" + answer + " > /dev/null");
+  }
+  for (const char* order : {"c0 c1", "c1 c0"}) {
+    const Ran said = shell(std::string("graze report --compare ") + order);
+    ASSERT_EQ(said.status, 0) << said.err;
+    EXPECT_EQ(said.err, "");
+    EXPECT_TRUE(said.out.starts_with("Changed: 2 of 2 rates (false negatives in 2, false positives in 2); "))
+        << said.out;
+    EXPECT_NE(said.out.find("They differ in the code of mine: "), std::string::npos) << said.out;
+  }
+  EXPECT_EQ(json("c1/compare.json")["run"]["subjects"], json("c0/compare.json")["compare"]["other"]["subjects"]);
+  const auto shows_code = [&](const char* file) {
+    return contents(shell.folder / file).find("#include \\\"") != std::string::npos;
+  };
+  EXPECT_TRUE(shows_code("c1/compare.json"));
+  EXPECT_FALSE(shows_code("c0/compare.json"));
+  const Ran old = shell("graze report c0");
+  EXPECT_EQ(old.status, 0) << old.err;
+  EXPECT_EQ(old.err, "");
+  EXPECT_NE(old.out.find("m.cpp:hit has changed since the campaign ran: its hash is "), std::string::npos) << old.out;
+  // Code in two files of one name: each report has only the programs of its own.
+  expect_done(
+      "mkdir p && mv m.cpp p && graze fuzz --subject mine=p/m.cpp:hit --lanes mine/f32/cpu --strata "
+      "near_vertex_face --pairs 200 --out cp > /dev/null && graze minimize cp > /dev/null && "
+      "graze report --compare c0 cp > said && ! grep -q 'has changed' said && grep -q p/m.cpp cp/compare.json");
 }
 
 TEST_F(Report, BadUseIsOneLine) {

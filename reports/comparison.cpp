@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "fuzz/counts_json.h"
 #include "reports/tables.h"
 #include "reports/terminal.h"
 
@@ -22,14 +23,14 @@ namespace {
 using Name = std::pair<std::string, std::string>;  // lane and stratum
 constexpr const char* kAllStrata = "all strata";
 
-// A report's shares of wrong verdicts by lane and stratum, in its order.
-std::vector<std::pair<Name, Json>> wrong_by_name(const Json& report) {
+// A report's rates by lane and stratum, in its order.
+std::vector<std::pair<Name, Json>> rates_by_name(const Json& report) {
   std::vector<std::pair<Name, Json>> rates;
   for (const Json& row : report.at("rates")) {
     const Json& stratum = row.at("stratum");
     const std::string name =
         stratum.is_null() ? kAllStrata : report.at("strata").at(stratum.get<std::size_t>()).at("id");
-    rates.push_back({{report.at("lanes").at(row.at("lane").get<std::size_t>()).at("id"), name}, row.at("wrong")});
+    rates.push_back({{report.at("lanes").at(row.at("lane").get<std::size_t>()).at("id"), name}, row});
   }
   return rates;
 }
@@ -93,6 +94,33 @@ bool apart(const Json& l, const Json& r) {
   return 2 * std::min(most, least) < kLeastChance;
 }
 
+// Whether both campaigns ran on the same pairs, so that every other count is another verdict. Not for a hunt, whose
+// pairs depend on the lanes.
+bool same_pairs(const Json& l, const Json& r) {
+  const Json &run_l = l.at("run"), &run_r = r.at("run");
+  const auto same = [&](const char* what) { return run_l.value(what, Json()) == run_r.value(what, Json()); };
+  return same("seed") && same("pairs") && same("complete") && same("scene") && l.at("strata") == r.at("strata") &&
+         !strata_of(l).contains("hunt");
+}
+
+// The kinds of error whose rates changed: [{"error": "false positives", "before", "after"}].
+template <class Changed>
+Json changed_errors(const Json& before, const Json& after, Changed changed) {
+  Json rows = Json::array();
+  for (const fuzz::CountField& field : fuzz::kCountFields) {
+    const auto share_in = [&](const Json& rates) {
+      const Json found = rates.value(field.key, Json(0));
+      return found.is_object() ? found : to_json(share_of(found, rates.at("wrong").at("of")));
+    };
+    const Json old = share_in(before), now = share_in(after);
+    if (!changed(old, now)) continue;
+    std::string words = field.key;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    rows.push_back({{"error", words.starts_with("false") ? words + 's' : words}, {"before", old}, {"after", now}});
+  }
+  return rows;
+}
+
 // Kinds that are missing in `others` although enough of their signatures were expected there. A signature names all
 // wrong lanes of its subject, so only subjects with the same lanes in both reports count.
 Json only_in(const Json& kinds, const Json& others, const Json& report, const Json& other_report) {
@@ -150,6 +178,21 @@ Json differences_of(const Json& after, const Json& before) {
                                  then_drawn.at(id).at("describes").get<std::string>(),
                                  row.at("describes").get<std::string>()));
   }
+  const auto code = [](const Json& run) {
+    std::map<std::string, Json> by_name;
+    for (const Json& row : run.value("subjects", Json::array())) by_name[row.at("name")] = row;
+    return by_name;
+  };
+  const auto old_code = code(then);
+  for (const auto& [name, row] : code(now)) {
+    const auto old = old_code.find(name);
+    if (old == old_code.end() || old->second.at("hash") == row.at("hash")) continue;
+    const auto words = [](const Json& of) {
+      return fmt::format("{} (hash {})", of.at("what").get<std::string>(), of.at("hash").get<std::string>());
+    };
+    rows.push_back(
+        fmt::format("They differ in the code of {}: {} before, {} after.", name, words(old->second), words(row)));
+  }
   const auto commit = [](const Json& run) { return run.at("build").at("commit").get<std::string>(); };
   if (commit(now) != commit(then))
     rows.push_back(fmt::format("They differ in build: {} before, {} after.", commit(then), commit(now)));
@@ -159,23 +202,31 @@ Json differences_of(const Json& after, const Json& before) {
 }  // namespace
 
 void add_comparison(Json& report, const Json& before, const Json& kinds, const Json& kinds_before) {
-  const auto then = wrong_by_name(before);
+  const auto then = rates_by_name(before);
   const std::map<Name, Json> by_name(then.begin(), then.end());
   const auto now_drawn = strata_of(report), then_drawn = strata_of(before);
-  const bool alike = mixed_alike(report, before);
+  const bool alike = mixed_alike(report, before), same = same_pairs(report, before);
+  const auto is_changed = [same](const Json& l, const Json& r) {
+    return same ? l.at("count") != r.at("count") : apart(l, r);
+  };
   Json rows = Json::array();
   std::size_t changed = 0;
-  for (const auto& [name, now] : wrong_by_name(report)) {
+  std::map<std::string, std::size_t> changed_by_error;
+  for (const auto& [name, now] : rates_by_name(report)) {
     const auto old = by_name.find(name);
     const bool compared = name.second == kAllStrata ? alike : is_common(name.second, now_drawn, then_drawn);
     if (old == by_name.end() || !compared) continue;
-    const bool is_apart = apart(now, old->second);
-    changed += is_apart;
+    const Json errors = changed_errors(old->second, now, is_changed);
+    for (const Json& row : errors) ++changed_by_error[row.at("error")];
+    const Json &wrong_before = old->second.at("wrong"), &wrong = now.at("wrong");
+    const bool row_changed = !errors.empty() || is_changed(wrong_before, wrong);
+    changed += row_changed;
     rows.push_back({{"lane", name.first},
                     {"stratum", name.second},
-                    {"before", old->second},
-                    {"after", now},
-                    {"changed", is_apart}});
+                    {"before", wrong_before},
+                    {"after", wrong},
+                    {"changed", row_changed},
+                    {"errors", errors}});
   }
   const bool kinds_known = !kinds.is_null() && !kinds_before.is_null(), kinds_compared = kinds_known && alike;
   const Json gained = kinds_compared ? only_in(kinds, kinds_before, report, before) : Json::array();
@@ -187,8 +238,13 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
     headline = fmt::format("Nothing changed: none of {} rates, and {}.", grouped(rows.size()),
                            kinds_compared ? "no kind of failure came or went" : "kinds of failure are not compared");
   } else {
-    headline = fmt::format("Changed: {} of {} rates; {} kinds of failure came, {} went{}.", grouped(changed),
-                           grouped(rows.size()), gained.size(), lost.size(), kinds_compared ? "" : " (not compared)");
+    std::vector<std::string> errors;
+    for (const auto& [error, count] : changed_by_error)
+      errors.push_back(fmt::format("{} in {}", error, grouped(count)));
+    headline = fmt::format("Changed: {} of {} rates{}; {}.", grouped(changed), grouped(rows.size()),
+                           errors.empty() ? "" : fmt::format(" ({})", fmt::join(errors, ", ")),
+                           kinds_compared ? fmt::format("{} kinds of failure came, {} went", gained.size(), lost.size())
+                                          : "kinds of failure are not compared");
   }
   Json differences = differences_of(report, before);
   if (!alike)

@@ -12,8 +12,10 @@ namespace graze::reports {
 inline constexpr double kLeastChance = 1e-6;
 inline constexpr double kLeastSignatures = 14;
 
-// Adds `compare` to the second campaign's report: {"other": run, "headline", "differences": [sentence], "rates",
-// "gained", "lost": [{"key", "signatures", "count"}], "kinds_compared"}. Rates are matched by lane and stratum. Rates
+// Adds `compare` to the second campaign's report: {"other": run, "headline", "differences": [sentence], "rates":
+// [{"lane", "stratum", "before", "after", "changed", "errors"}], "gained", "lost": [{"key", "signatures", "count"}],
+// "kinds_compared"}. Rates are matched by lane and stratum; `errors` are the kinds of error whose own rate changed. If
+// both campaigns ran on the same pairs, every other count is a change. Rates
 // of all strata together, and kinds, are compared only if both campaigns have the same strata in the same shares, and
 // kinds only of subjects with the same lanes in both. Kinds are those of `graze failures`, or null if unknown.
 void add_comparison(nlohmann::ordered_json& report, const nlohmann::ordered_json& before,

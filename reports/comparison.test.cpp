@@ -23,7 +23,12 @@ Json report_of(std::uint64_t seed, std::uint64_t n, int rates = 1000) {
     const double chance = i % 7 == 0 ? 0 : i % 5 == 0 ? 1e-4 : 0.6 * i / rates;
     const std::uint64_t wrong = std::binomial_distribution<std::uint64_t>(n, chance)(random);
     report["lanes"].push_back({{"id", "lane/" + std::to_string(i)}, {"algorithm", "lane"}});
-    report["rates"].push_back({{"lane", i}, {"stratum", 0}, {"wrong", to_json(share_of(wrong, n))}});
+    report["rates"].push_back({{"lane", i},
+                               {"stratum", 0},
+                               {"false_positive", to_json(share_of(wrong, n))},
+                               {"false_negative", to_json(share_of(0, n))},
+                               {"wrong", to_json(share_of(wrong, n))},
+                               {"declined", 0}});
   }
   return report;
 }
@@ -53,6 +58,46 @@ TEST(Comparison, WhatIsSmallButSureIsAChange) {
   after["rates"][0]["wrong"] = to_json(share_of(40, 1'000'000));  // never wrong before
   EXPECT_EQ(headline(after, before, Json::array(), Json::array()),
             "Changed: 1 of 1,000 rates; 0 kinds of failure came, 0 went.");
+}
+
+// The sums of wrong verdicts are equal, so only the directions show the change.
+TEST(Comparison, FalsePositivesThatBecomeFalseNegativesAreAChange) {
+  const Json before = report_of(1, 50'000, 10);
+  for (const std::uint64_t seed : {1, 2}) {
+    Json after = before;
+    after["run"]["seed"] = seed;
+    std::swap(after["rates"][9]["false_positive"], after["rates"][9]["false_negative"]);
+    add_comparison(after, before, Json::array(), nullptr);
+    EXPECT_EQ(
+        after["compare"]["headline"],
+        "Changed: 1 of 10 rates (false negatives in 1, false positives in 1); kinds of failure are not compared.");
+    const Json& errors = after["compare"]["rates"][9]["errors"];
+    ASSERT_EQ(errors.size(), 2u);
+    EXPECT_EQ(errors[0]["error"], "false positives");
+    EXPECT_EQ(errors[0]["after"], before["rates"][9]["false_negative"]);
+  }
+}
+
+TEST(Comparison, OnTheSamePairsEveryOtherCountIsAChange) {
+  const Json before = report_of(1, 50'000, 10);
+  Json after = before;
+  after["rates"][3]["declined"] = 1;
+  EXPECT_EQ(headline(after, before, Json::array(), Json::array()),
+            "Changed: 1 of 10 rates (declined in 1); 0 kinds of failure came, 0 went.");
+  after["run"]["seed"] = 2;
+  EXPECT_TRUE(headline(after, before, Json::array(), Json::array()).starts_with("Nothing changed"));
+}
+
+TEST(Comparison, OtherCodeOfOneNameIsSaid) {
+  Json before = report_of(1, 50'000, 10), after = before;
+  before["run"]["subjects"] = {{{"name", "mine"}, {"what", "P/m.cpp"}, {"hash", "0a"}}};
+  after["run"]["subjects"] = {{{"name", "mine"}, {"what", "Q/m.cpp"}, {"hash", "0b"}}};
+  add_comparison(after, before, Json::array(), Json::array());
+  EXPECT_EQ(after["compare"]["differences"],
+            Json::array({"They differ in the code of mine: P/m.cpp (hash 0a) before, Q/m.cpp (hash 0b) after."}));
+  after["run"]["subjects"][0]["hash"] = "0a";  // a file that was moved
+  add_comparison(after, before, Json::array(), Json::array());
+  EXPECT_TRUE(after["compare"]["differences"].empty());
 }
 
 TEST(Comparison, AKindThatWasToBeExpectedHasGone) {

@@ -105,17 +105,20 @@ std::string signatures_csv(const Json& rows) {
 }
 
 std::string compare_csv(const Json& compare) {
-  Table table("what,lane,stratum,key,before,before_low,before_high,after,after_low,after_high,changed");
+  Table table("what,lane,stratum,key,before,before_low,before_high,after,after_low,after_high,changed,errors");
   for (const Json& row : compare["rates"]) {
     const Json &before = row["before"], &after = row["after"];
+    std::vector<std::string> errors;
+    for (const Json& error : row["errors"]) errors.push_back(error["error"]);
     table.row({"rate", row["lane"], row["stratum"], nullptr, before["share"], before["low"], before["high"],
-               after["share"], after["low"], after["high"], row["changed"]});
+               after["share"], after["low"], after["high"], row["changed"],
+               fmt::format("{}", fmt::join(errors, "; "))});
   }
   const auto add = [&](const char* what) {
     for (const Json& row : compare[what]) {
       const bool gained = what == std::string_view("gained");
       table.row({std::string("kind ") + what, nullptr, nullptr, row["key"], gained ? Json() : row["count"], nullptr,
-                 nullptr, gained ? row["count"] : Json(), nullptr, nullptr, nullptr});
+                 nullptr, gained ? row["count"] : Json(), nullptr, nullptr, nullptr, nullptr});
     }
   };
   add("gained");

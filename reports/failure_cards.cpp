@@ -76,13 +76,17 @@ Json verdicts_of(const CampaignCounts& counts, Verdict truth, const Json& stored
   return rows;
 }
 
-Json commands_of(const corpus::Entry& entry, const std::string& subject, const std::string& from) {
-  const subjects::Opened* opened = subjects::opened(subject);
-  std::string foreign = opened ? fmt::format(" --subject {}", shell_word(subject + '=' + opened->wanted.what)) : "";
-  if (opened && !opened->wanted.flags.empty())
-    foreign += " --flags=" + shell_word(fmt::format("{}", fmt::join(opened->wanted.flags, " ")));
-  if (opened && opened->wanted.timeout != subjects::Wanted().timeout)
-    foreign += fmt::format(" --subject-timeout {}", opened->wanted.timeout);
+// spec: the campaign's, which records how foreign code is opened.
+Json commands_of(const corpus::Entry& entry, const std::string& subject, const std::string& from, const Json& spec) {
+  std::string foreign;
+  for (const Json& row : spec.value("subjects", Json::array())) {
+    if (row.at("name") != subject) continue;
+    foreign = " --subject " + shell_word(subject + '=' + row.at("what").get<std::string>());
+    if (const std::vector<std::string> flags = row.at("flags"); !flags.empty())
+      foreign += " --flags=" + shell_word(fmt::format("{}", fmt::join(flags, " ")));
+    if (const double timeout = row.at("timeout"); timeout != subjects::Wanted().timeout)
+      foreign += fmt::format(" --subject-timeout {}", timeout);
+  }
   const std::string lanes = fmt::format("--lanes '{}/*'{}", subject, foreign);
   const std::string file = fmt::format("echo '{}' > case.pairs", fuzz::pair_text(entry.pair));
   Json rows = Json::array();
@@ -165,8 +169,8 @@ Json kept_pairs(const std::filesystem::path& directory, const Json& found) {
   return names;
 }
 
-Json card_of(const std::filesystem::path& directory, const CampaignCounts& counts, const Json& kind, std::size_t& room,
-             Lacking& lacking) {
+Json card_of(const std::filesystem::path& directory, const CampaignCounts& counts, const Json& spec, const Json& kind,
+             std::size_t& room, Lacking& lacking) {
   const Json& simplest = kind.at("simplest");
   const std::string subject = kind.at("subject");
   const std::filesystem::path file = fuzz::case_file(directory, simplest);
@@ -196,7 +200,7 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
                {"verdicts", verdicts},
                {"sentences", simplest.at("sentences")},
                {"maps", maps_of(file, entry.pair, room, lacking)},
-               {"commands", commands_of(entry, subject, from)},
+               {"commands", commands_of(entry, subject, from, spec)},
                {"snippets", snippets_of(counts, entry, kind, truth, verdicts, from)}});
   return card;
 }
@@ -256,7 +260,7 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
   for (const Json& kind : kinds) {
     if (cards.size() == fuzz::kMostShown) break;
     for (const Json& place : kind.at("places")) cards_of[place.get<std::size_t>()].push_back(cards.size());
-    cards.push_back(card_of(directory, counts, kind, room, lacking));
+    cards.push_back(card_of(directory, counts, summary.at("spec"), kind, room, lacking));
   }
   if (kinds.size() > cards.size())
     report["missing"].push_back(fmt::format("Cards show the commonest {} of {} kinds; `graze failures` lists all.",

@@ -171,14 +171,19 @@ std::string compare_section(const Json& compare) {
   if (compare.is_null()) return "";
   std::string text =
       "<h2>What has changed</h2>\n<p>Since commit " + html(compare.at("other").at("build").at("commit")) + ": " +
-      html(compare.at("headline")) + " Rates whose intervals are apart:</p>\n" +
-      "<div class=\"wide\"><table>\n<tr><th>lane</th><th>stratum</th><th>before</th><th>after</th></tr>\n";
+      html(compare.at("headline")) + " Rates that changed:</p>\n" +
+      "<div "
+      "class=\"wide\"><table>\n<tr><th>lane</th><th>stratum</th><th>before</th><th>after</th><th>changed</th></tr>\n";
   for (const Json& row : compare.at("rates")) {
     if (!row.at("changed")) continue;
     text += "<tr><td>" + html(row.at("lane")) + "</td><td>" + html(row.at("stratum")) + "</td>" +
-            share_cell(row.at("before")) + share_cell(row.at("after")) + "</tr>\n";
+            share_cell(row.at("before")) + share_cell(row.at("after")) + "<td>";
+    for (const Json& error : row.at("errors"))
+      text += (error == row["errors"][0] ? "" : ", ") + html(error.at("error"));
+    text += "</td></tr>\n";
   }
   text += "</table></div>\n";
+  if (!compare.at("kinds_compared")) return text;
   for (const char* what : {"gained", "lost"}) {
     text += fmt::format("<p>Kinds of failure {}: {}</p>\n<ul>\n", what, grouped(compare.at(what).size()));
     for (std::size_t i = 0; i < std::min(compare.at(what).size(), kMostRows); ++i)

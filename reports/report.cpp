@@ -42,14 +42,19 @@ Json run_of(const std::filesystem::path& directory, const Json& summary, const C
   Json build = Json::object();
   for (const char* key : {"version", "commit", "compiler", "cuda", "device"})
     build[key] = summary.at("build").value(key, Json());
-  return {{"seed", counts.seed},
-          {"pairs", counts.pairs},
-          {"complete", counts.complete},
-          {"command", campaign_command(summary)},
-          {"map_command", "graze report campaign"},
-          {"build", build},
-          {"scene", summary.at("spec").contains("scene") ? summary["spec"]["scene"].at("name") : Json()},
-          {"machine", machines(directory)}};
+  Json run = {{"seed", counts.seed},
+              {"pairs", counts.pairs},
+              {"complete", counts.complete},
+              {"command", campaign_command(summary)},
+              {"map_command", "graze report campaign"},
+              {"build", build},
+              {"scene", summary.at("spec").contains("scene") ? summary["spec"]["scene"].at("name") : Json()},
+              {"machine", machines(directory)}};
+  const Json& spec = summary["spec"];
+  if (!spec.contains("subjects")) return run;
+  for (const Json& row : spec["subjects"])
+    run["subjects"].push_back({{"name", row.at("name")}, {"what", row.at("what")}, {"hash", row.at("hash")}});
+  return run;
 }
 
 // Describes the pairs of a stratum. The text differs for two meshes, and for two hunts from different strata.

@@ -167,9 +167,11 @@ std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
 // recorded: the hash of the code that a campaign ran; empty accepts any code.
 void expect_code(const Opened& subject, const std::string& recorded) {
   if (const std::string found = fmt::format("{:016x}", subject.code.hash); !recorded.empty() && found != recorded)
-    throw std::runtime_error(fmt::format(
-        "{} has changed since the campaign ran: its hash is {}, not {}; --subject {}=… takes it as it is now",
-        subject.wanted.what, found, recorded, subject.wanted.name));
+    throw std::runtime_error(
+        fmt::format("{} has changed since the campaign ran: its hash is {}, not {}; restore it, or run the campaign "
+                    "again (a verb with "
+                    "--subject can use it as it is now: --subject {}=WHAT)",
+                    subject.wanted.what, found, recorded, subject.wanted.name));
 }
 
 // Throws: std::runtime_error where the file is not as it was kept.

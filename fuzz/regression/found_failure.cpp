@@ -16,7 +16,6 @@
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/files.h"
-#include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimised_cases.h"
 
 namespace graze::fuzz {
@@ -41,14 +40,6 @@ std::optional<analysis::Signature> without_lanes(const std::string& key) {
   return signature;
 }
 
-constexpr const char* kKindField = "failure";
-
-std::string kind_of(const RegressionCase& c) {
-  const auto field =
-      std::find_if(c.other.begin(), c.other.end(), [](const auto& other) { return other.first == kKindField; });
-  return field == c.other.end() ? "" : field->second;
-}
-
 // The pair's signatures, one for each subject, whether it is right or wrong.
 std::vector<analysis::Signature> signatures_of(const Pair& pair, const Replay& seen) {
   const analysis::Signature blank{
@@ -68,40 +59,28 @@ std::vector<analysis::Signature> signatures_of(const Pair& pair, const Replay& s
   return result;
 }
 
-// Requires: the summary and the kinds are whole; a missing part throws Json::exception.
-std::vector<FoundFailure> found_in_kinds(const std::filesystem::path& directory, const Json& summary, const Json& kinds,
-                                         const std::vector<std::string>& globs, std::size_t most) {
-  const std::string seen = seen_by(summary.at("build"), "campaign", summary.at("spec").dump());
-  std::vector<FoundFailure> failures;
-  std::map<std::string, std::size_t> taken;  // number of kinds taken, by subject
-  for (const Json& kind : kinds) {           // most frequent first
-    const std::filesystem::path file = case_file(directory, kind.at("simplest"));
-    const std::vector<corpus::Entry> entries = corpus::read_pairs(file);
-    const std::string* signature = entries.empty() ? nullptr : corpus::field(entries.front(), "signature");
-    if (!signature) throw corpus::FormatError(cannot("add", file, "its first case has no signature"));
-    const std::string key = kind.at("key");
-    if (!matches_any(globs, *signature) && !matches_any(globs, key)) continue;
-    if (taken[kind.at("subject")]++ >= most) continue;
-    failures.push_back({*signature, entries.front(), kind.at("pairs"), seen, key, file.string()});
-  }
-  return failures;
-}
-
 }  // namespace
 
 std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directory,
                                             const std::vector<std::string>& globs, std::size_t most) {
   const std::filesystem::path file = directory / "summary.json";
   const Json summary = checked_summary(directory);
-  Json kinds;
+  std::vector<FoundFailure> failures;
   try {
     if (!summary.at("complete").get<bool>())
       throw UsageError(cannot("add", directory, "its campaign is not finished; finish it with `graze fuzz`"));
-    kinds = kinds_of(directory, summary);
+    const std::string seen = seen_by(summary.at("build"), "campaign", summary.at("spec").dump());
+    std::map<std::string, std::size_t> taken;           // number of signatures taken, by subject
+    for (const Json& row : summary.at("signatures")) {  // most frequent first
+      const std::string signature = row.at("key");
+      if (!matches_any(globs, signature) || taken[analysis::subject_of(signature)]++ >= most) continue;
+      failures.push_back(
+          {signature, read_cases(directory, row).front(), row.at("count"), seen, case_file(directory, row).string()});
+    }
   } catch (const Json::exception&) {
     throw corpus::FormatError(cannot("use", file, "it is not the summary of a campaign"));
   }
-  return found_in_kinds(directory, summary, kinds, globs, most);
+  return failures;
 }
 
 std::vector<FoundFailure> found_in_cases(const std::vector<corpus::Entry>& entries, const Json& build,
@@ -132,10 +111,7 @@ std::vector<FoundFailure> found_in_cases(const std::vector<corpus::Entry>& entri
 
 Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const Lane* const> run,
           const DecideLanes& decide) {
-  auto known = corpus.find(failure.signature);
-  if (known == corpus.end() && !failure.kind.empty())
-    known =
-        std::find_if(corpus.begin(), corpus.end(), [&](const auto& c) { return kind_of(c.second) == failure.kind; });
+  const auto known = corpus.find(failure.signature);
   if (known != corpus.end() && known->second.last == failure.seen) return Added::known;
 
   const Replay now = replay(failure.entry.pair, run, decide);
@@ -153,9 +129,12 @@ Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const
       if (s.subject == algorithm) found = analysis::key(s);
     }
   }
-  if (!without_lanes(found) || without_lanes(found) != without_lanes(failure.signature)) {
+  // A minimised pair has its own margin, so it records its own signature.
+  const std::string* own = corpus::field(failure.entry, "signature");
+  const std::string& recorded = own ? *own : failure.signature;
+  if (!without_lanes(found) || without_lanes(found) != without_lanes(recorded)) {
     throw std::runtime_error(
-        fmt::format("the pair does not fail as recorded: its signature is {}, not {}", found, failure.signature));
+        fmt::format("the pair does not fail as recorded: its signature is {}, not {}", found, recorded));
   }
 
   RegressionCase c{fmt::format("{}_{:016x}", algorithm, fnv1a(failure.signature)),
@@ -168,16 +147,13 @@ Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const
                    failure.seen,
                    failure.seen};
   c.other = other_fields(failure.entry);
-  if (!failure.kind.empty()) c.other.emplace_back(kKindField, failure.kind);
   if (known == corpus.end()) {
     corpus.emplace(failure.signature, std::move(c));
     return Added::as_new;
   }
-  c.name = known->second.name;
   c.count = known->second.count;
   c.first = known->second.first;
-  corpus.erase(known);  // the known case may have another signature of the same kind
-  corpus.emplace(failure.signature, std::move(c));
+  known->second = std::move(c);
   return Added::seen_again;
 }
 

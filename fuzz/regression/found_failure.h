@@ -17,12 +17,11 @@ struct FoundFailure {
   corpus::Entry entry;
   std::uint64_t count;    // pairs of this signature
   std::string seen;       // the build and the campaign: "commit, compiler, toolkit, device; campaign HASH"
-  std::string kind = "";  // its kind's key; empty if unknown
   std::string file = "";  // the file that holds the entry; empty for the file that the user named
 };
 
-// Returns the simplest case of each kind of failure whose signature or key matches one of the shell patterns, or of all
-// kinds without patterns. For each subject only the `most` most frequent kinds.
+// Returns the first case of each signature that matches one of the shell patterns, or of all signatures without
+// patterns: the minimised one if there is one. For each subject only the `most` most frequent signatures.
 // Throws: UsageError if the directory holds no finished campaign; FormatError.
 std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directory,
                                             const std::vector<std::string>& globs, std::size_t most);
@@ -34,8 +33,8 @@ std::vector<FoundFailure> found_in_cases(const std::vector<corpus::Entry>& entri
 
 enum class Added { as_new, seen_again, known };
 
-// Replays a failure and adds it as a case. If its signature or its kind already has a case, it is counted there
-// instead. A fixed case that is wrong again becomes failing, with the new pair. The same failure twice in a row counts
+// Replays a failure and adds it as a case. If its signature already has a case, it is counted there instead.
+// A fixed case that is wrong again becomes failing, with the new pair. The same failure twice in a row counts
 // once, so that an interrupted command can be repeated.
 // Throws: std::runtime_error if the pair does not have the signature.
 Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const Lane* const> lanes,

@@ -160,22 +160,16 @@ TEST_F(Regression, AFixedCaseTakesThePairThatFailsAgain) {
   EXPECT_EQ(changes(), Texts());
 }
 
-// A failure is counted with a case of its kind. If it replaces a fixed case, it brings its own signature.
-TEST_F(Regression, AFixedCaseTakesAFailureOfItsKind) {
-  const std::string signature = std::string(kSignature).substr(0, std::string(kSignature).find(':')) + ":-f64/cpu";
-  const std::string kind = "moller_1997/rounding/moller_1997.h:1/general";
-  corpus.clear();
-  ASSERT_EQ(add({kSignature, {kTouching}, 7, "s1", kind}), Added::as_new);
-  EXPECT_EQ(add({signature, {kShifted}, 2, "s2", kind}), Added::seen_again);
-  EXPECT_EQ(corpus.begin()->first, kSignature);
-  liars.wrong.clear();
-  changes();
-  liars.wrong = {"moller_1997/f64/cpu"};
-  EXPECT_EQ(add({signature, {kShifted}, 1, "s3", kind}), Added::seen_again);
-  ASSERT_EQ(corpus.size(), 1u);
-  EXPECT_EQ(corpus.begin()->first, signature);
-  EXPECT_EQ(only().pair.b[0].x, 2);
-  EXPECT_EQ(only().count, 10u);
+// A minimised pair has its own margin, but stays the case of the campaign's signature.
+TEST_F(Regression, AMinimisedPairIsTheCaseOfItsSignature) {
+  std::string other = kSignature;
+  other.replace(other.find("/0/"), 3, "/-2^-3/");
+  EXPECT_THROW(add({other, {kTouching}, 2, "s2"}), std::runtime_error);
+  EXPECT_EQ(add({other, {kTouching, {{"signature", kSignature}}}, 2, "s2"}), Added::as_new);
+  EXPECT_EQ(corpus.at(other).count, 2u);
+  EXPECT_EQ(corpus.at(kSignature).count, 7u);
+  write_regressions(file, corpus);
+  EXPECT_EQ(read_regressions(file).size(), 2u);
 }
 
 TEST_F(Regression, LanesThatDoNotRunChangeNothing) {

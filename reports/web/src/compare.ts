@@ -11,6 +11,9 @@ type Seen = Compare['gained'][number];
 
 const cell = (share: Share) => h('td', { class: 'number', title: in_full(share) }, percent(share.share));
 
+const errors_in_full = (change: Change) =>
+  change.errors.map((e) => `${e.error}: ${in_full(e.before)} before, ${in_full(e.after)} after`).join('; ');
+
 function rates_table(compare: Compare) {
   const table = sortable_table<Change>(
     [
@@ -29,8 +32,9 @@ function rates_table(compare: Compare) {
       },
       {
         label: 'Changed',
-        title: 'More than chance would explain',
-        cell: (c) => (c.changed ? h('b', {}, 'yes') : 'no'),
+        title: 'More than chance would explain; on the same pairs, any other count',
+        cell: (c) =>
+          c.changed ? h('b', { title: errors_in_full(c) }, c.errors.map((e) => e.error).join(', ') || 'yes') : 'no',
         order: (c) => Number(c.changed),
         descending_first: true,
       },

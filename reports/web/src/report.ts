@@ -112,6 +112,7 @@ export interface Report {
     build: { version: string; commit: string; compiler: string; cuda: string | null; device: string | null };
     scene: string | null; // "arm.toml#0123456789abcdef"
     machine: string | null; // from timings.json only if deterministic; else null
+    subjects?: { name: string; what: string; hash: string }[]; // foreign code, as the campaign recorded it
   };
   strata: { id: string; describes: string; pairs: number; intersects: number }[];
   lanes: {
@@ -231,7 +232,14 @@ export interface Compare {
   other: Report['run'];
   headline: string; // "Nothing changed: …", "Changed: …"
   differences: string[]; // sentences on how the campaigns differ
-  rates: { lane: string; stratum: string; before: Share; after: Share; changed: boolean }[]; // changed: beyond chance
+  rates: {
+    lane: string;
+    stratum: string;
+    before: Share; // wrong
+    after: Share;
+    changed: boolean; // beyond chance; on the same pairs, at all
+    errors: { error: string; before: Share; after: Share }[]; // kinds of error that changed: "false positives", …
+  }[];
   gained: { key: string; signatures: number; count: number }[]; // kinds, with their signatures and pairs
   lost: { key: string; signatures: number; count: number }[];
   kinds_compared: boolean; // false unless `graze minimize` ran on both

@@ -18,6 +18,7 @@
 #include "reports/discrepancy_answer.h"
 #include "reports/discrepancy_page.h"
 #include "reports/verdicts_apart.h"
+#include "subjects/subjects.h"
 
 namespace graze::cli {
 namespace {
@@ -116,9 +117,9 @@ int compare(const std::vector<std::string>& names) {
 
 int discrepancy(const DiscrepancyOptions& options) {
   if (!options.compare.empty()) return compare(options.compare);
-  LaneOptions subjects = options.subjects;
-  subjects.executor = options.executor == kTwin ? fuzz::Executor::twin : fuzz::Executor::automatic;
-  open_subjects(subjects);
+  LaneOptions own_code = options.subjects;
+  own_code.executor = options.executor == kTwin ? fuzz::Executor::twin : fuzz::Executor::automatic;
+  open_subjects(own_code);
   if (!options.campaign.empty()) open_subjects_of(options.campaign);
   const Comparisons comparisons = comparisons_of(options);
   analysis::DiscrepancySpec spec;
@@ -181,6 +182,12 @@ int discrepancy(const DiscrepancyOptions& options) {
     csv += reports::verdicts_csv(of);
   }
   if (!verdicts.empty()) json["verdicts"] = verdicts;
+  std::vector<std::string> foreign;
+  for (const analysis::TwoDeciders& deciders : comparisons.verdicts) {
+    for (const Lane* lane : deciders.lanes) foreign.push_back(lane->id);
+  }
+  for (const fuzz::Json& row : subjects::record(foreign))
+    json["subjects"].push_back({{"name", row.at("name")}, {"what", row.at("what")}, {"hash", row.at("hash")}});
   for (const std::string& sentence : reports::discrepancy_answer(json))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
   write_results(folder.path, {{"discrepancy.json", fuzz::sealed(json).dump(1) + "\n"},

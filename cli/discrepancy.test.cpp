@@ -138,6 +138,13 @@ bool meet(const float a[9], const float b[9]) { return crosses(a, b) && crosses(
   const Ran same = shell("graze discrepancy --compare m m");
   EXPECT_NE(same.out.find("0 counts differ, "), std::string::npos) << same.out << same.err;
   EXPECT_EQ(same.out.find(", 0 are the same"), std::string::npos) << same.out;
+  // Results of other code say so.
+  expect_done("sed -i 's/x > 0/x >= 0/' mine.cpp");
+  expect_done("graze discrepancy " + first + " " + second +
+              " --subject mine=./mine.cpp:meet --executor twin --strata shared_vertex --pairs 1000 --out edited");
+  EXPECT_NE(shell("graze discrepancy --compare m edited").out.find("They differ in the code of mine:"),
+            std::string::npos);
+  expect_done("sed -i 's/x >= 0/x > 0/' mine.cpp");
   // Its simplest pair shows the difference, and a campaign's report the sentence.
   const Ran pair = shell("graze repro " + of["simplest"]["place"].get<std::string>() +
                          " --subject mine=./mine.cpp:meet --lanes 'mine/f32/cpu,mine/f32/cpu-fma' | grep '^  mine'");

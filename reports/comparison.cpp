@@ -14,6 +14,7 @@
 #include "fuzz/counts_json.h"
 #include "reports/tables.h"
 #include "reports/terminal.h"
+#include "reports/verdicts_apart.h"
 
 namespace graze::reports {
 
@@ -178,21 +179,7 @@ Json differences_of(const Json& after, const Json& before) {
                                  then_drawn.at(id).at("describes").get<std::string>(),
                                  row.at("describes").get<std::string>()));
   }
-  const auto code = [](const Json& run) {
-    std::map<std::string, Json> by_name;
-    for (const Json& row : run.value("subjects", Json::array())) by_name[row.at("name")] = row;
-    return by_name;
-  };
-  const auto old_code = code(then);
-  for (const auto& [name, row] : code(now)) {
-    const auto old = old_code.find(name);
-    if (old == old_code.end() || old->second.at("hash") == row.at("hash")) continue;
-    const auto words = [](const Json& of) {
-      return fmt::format("{} (hash {})", of.at("what").get<std::string>(), of.at("hash").get<std::string>());
-    };
-    rows.push_back(
-        fmt::format("They differ in the code of {}: {} before, {} after.", name, words(old->second), words(row)));
-  }
+  for (const std::string& sentence : code_differences(then, now)) rows.push_back(sentence);
   const auto commit = [](const Json& run) { return run.at("build").at("commit").get<std::string>(); };
   if (commit(now) != commit(then))
     rows.push_back(fmt::format("They differ in build: {} before, {} after.", commit(then), commit(now)));

@@ -7,6 +7,7 @@
 #include "reports/discrepancy_reading.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"
+#include "reports/verdicts_apart.h"
 
 namespace graze::reports {
 
@@ -17,6 +18,7 @@ using Json = nlohmann::ordered_json;
 std::string discrepancy_changes(const Json& before, const Json& after, const Screen& screen) {
   const auto lanes_of = [](const Json& of) { return text_at(of, "first") + " against " + text_at(of, "second"); };
   std::string text;
+  for (const std::string& sentence : code_differences(before, after)) text += wrapped(sentence, screen.columns);
   std::size_t same = 0;
   TextTable table({{"lanes", Align::left}, {"question", Align::left}, {"count", Align::left}, {"before"}, {"after"}});
   // Calls with_both(old, now) for each comparison that is in both results.
@@ -77,6 +79,8 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
     compare(of, "", of.at("total"), now.at("total"));
     for (const char* lane : {"of_first", "of_second"})
       compare(of, lane, of.at("total").at(lane), now.at("total").at(lane));
+    if (of.contains("operands") && now.contains("operands"))
+      compare_rows(of, "", of.at("operands").at("lines"), now.at("operands").at("lines"), "line", "within");
   });
   if (table.rows() > 0) text += table.text(screen);
   return text + wrapped(fmt::format("{} counts differ, {} are the same.", grouped(table.rows()), grouped(same)),

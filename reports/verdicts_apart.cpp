@@ -55,8 +55,7 @@ Json octaves_json(const std::array<std::uint64_t, 64>& counts) {
 Json operands_json(const analysis::OperandsApart& found) {
   Json lines = Json::array();
   for (const analysis::LineApart& of : found.lines) {
-    Json& line = lines.emplace_back(Json{{"line", line_of(of.at)}});
-    if (*of.from.file) line["within"] = line_of(of.from);
+    Json& line = lines.emplace_back(Json{{"line", line_of(of.at)}, {"within", line_of(of.from)}});
     for (const LineCount& field : kLineCounts) line[field.name] = of.*field.count;
     line["below"] = octaves_json(of.below);
     line["above"] = octaves_json(of.above);
@@ -69,7 +68,7 @@ std::string place_of(const Json& line) {
   const auto short_name = [&](const char* key) {
     return std::filesystem::path(text_at(line, key)).filename().string();
   };
-  return short_name("line") + (line.contains("within") ? " in " + short_name("within") : "");
+  return short_name("line") + (text_at(line, "within").empty() ? "" : " in " + short_name("within"));
 }
 
 // The differences of a line's operands in ulps, whatever their sign.
@@ -134,6 +133,21 @@ std::vector<VerdictsRow> rows_of(const Json& of) {
 
 std::string line_of(const cuda::SourceLine& line) {
   return *line.file == '\0' ? "" : fmt::format("{}:{}", line.file, line.line);
+}
+
+std::vector<std::string> code_differences(const Json& before, const Json& after) {
+  std::vector<std::string> sentences;
+  const auto words = [](const Json& of) {
+    return fmt::format("{} (hash {})", text_at(of, "what"), text_at(of, "hash"));
+  };
+  for (const Json& old : before.value("subjects", Json::array())) {
+    for (const Json& now : after.value("subjects", Json::array())) {
+      if (old.at("name") == now.at("name") && old.at("hash") != now.at("hash"))
+        sentences.push_back(fmt::format("They differ in the code of {}: {} before, {} after.", text_at(old, "name"),
+                                        words(old), words(now)));
+    }
+  }
+  return sentences;
 }
 
 Json verdicts_json(const analysis::TwoDeciders& deciders, const std::vector<strata::PairSource>& sources,

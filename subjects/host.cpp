@@ -411,7 +411,7 @@ int host(int argc, char** argv) {
   close_range(limits.program ? kSupervisorCodeFd : kSupervisorCodeFd + 1, ~0u, 0);
   limits.seconds = std::strtod(argv[6], nullptr);
   limits.bytes = on_device ? 0 : std::strtoull(argv[5], nullptr, 10) << 20;
-  enter_containment(!on_device && *argv[8] == '1', limits.bytes, kControlFd, argv[9]);
+  limits.system_v = enter_containment(!on_device && *argv[8] == '1', limits.bytes, kControlFd, argv[9]);
   char worker[] = "--worker";
   char* const arguments[] = {argv[0], worker, argv[1], argv[2], argv[3], argv[4], argv[5], argv[7], nullptr};
   return supervise(limits, arguments);

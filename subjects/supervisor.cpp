@@ -235,7 +235,7 @@ class Supervisor {
     close_range(static_cast<unsigned>(to[count - 1]) + 1, ~0u, 0);
     if (limits_.bytes > 0) {  // foreign code, and not a device's driver
       drop_rights();
-      forbid_calls();
+      forbid_calls(limits_.system_v);
     }
     execv("/proc/self/exe", arguments_);
     _exit(127);

@@ -20,6 +20,7 @@
 #include <thread>
 
 #include "core/lanes/verdicts.h"
+#include "core/message_testing.h"
 #include "core/programs/process_state.h"
 #include "core/programs/run_program.h"
 #include "core/stop.h"
@@ -704,6 +705,16 @@ TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
     EXPECT_EQ(run_program({{"no-such-program"}, 600, namespaces}, scratch.path(), said), 127);
     EXPECT_EQ(said, "No such file or directory\n");
     EXPECT_THROW(run("setsid sleep 1000 & sleep 1001", 0.2), std::runtime_error);
+    try {  // tail keeps the last line, here 300 MiB, and then waits
+      run_program({{"sh", "-c", "{ head -c 300M /dev/zero; sleep 1000; } | tail -n 1"}, 600, namespaces, 100},
+                  scratch.path(), said);
+      ADD_FAILURE() << "no limit of memory";
+    } catch (const std::runtime_error& error) {
+      EXPECT_TRUE(names(error.what(), {"head -c 300M", "100 MiB", "memory"})) << error.what();
+    }
+    EXPECT_NE(run("truncate -s 2G large", 600), 0);  // a file without blocks
+    EXPECT_FALSE(fs::exists("large") && fs::file_size("large") > (std::uint64_t{1} << 30));
+    fs::remove("large");
     const pid_t asking = fork();
     if (asking == 0) {
       const Scratch own(folder / "killed");

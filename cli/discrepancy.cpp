@@ -35,7 +35,7 @@ struct DiscrepancyOptions {
   std::string scene, campaign, out;
 };
 
-// What to compare: value by value, and of users' code the verdicts alone.
+// What to compare: value by value, and of users' code the verdicts.
 struct Comparisons {
   std::vector<analysis::LanesCompared> values;
   std::vector<analysis::TwoDeciders> verdicts;
@@ -154,9 +154,15 @@ int discrepancy(const DiscrepancyOptions& options) {
   const reports::DiscrepancyResults found{spec, analysis::discrepancies(spec), origins_of(spec)};
 
   fuzz::Json verdicts = fuzz::Json::array();
-  for (const analysis::TwoDeciders& deciders : comparisons.verdicts)
+  for (const analysis::TwoDeciders& deciders : comparisons.verdicts) {
+    const Lane &first = *deciders.lanes[0], &second = *deciders.lanes[1];
+    std::optional<analysis::OperandsApart> operands;
+    if (analysis::shows_operands(first, second))
+      operands = analysis::operands_apart(second, spec.sources, kOriginPairs / spec.sources.size());
     verdicts.push_back(reports::verdicts_json(
-        deciders, spec.sources, analysis::verdicts_apart(deciders, spec.sources, options.threads, is_simpler)));
+        deciders, spec.sources, analysis::verdicts_apart(deciders, spec.sources, options.threads, is_simpler),
+        operands ? &*operands : nullptr));
+  }
 
   const reports::Screen screen = output_screen();
   if (spec.lanes.size() <= kMostTables) fmt::print("{}", reports::discrepancy_tables(found, screen));
@@ -194,9 +200,11 @@ void add_discrepancy(CLI::App& app, int& status) {
   command->footer("Example: graze discrepancy moller_1997/f32/cpu moller_1997/f32/cuda-fma");
   const auto options = std::make_shared<DiscrepancyOptions>();
   command
-      ->add_option("lanes", options->lanes,
-                   "Lanes to compare, two by two; of your own code, only verdicts (default: cpu with cuda-fma and with "
-                   "cuda-nofma, of all algorithms)")
+      ->add_option(
+          "lanes", options->lanes,
+          "Lanes to compare, two by two; of your own code, only verdicts, and of cuda-nofma with cuda-fma of a CUDA "
+          "source also the operands of its comparisons (default: cpu with cuda-fma and with cuda-nofma, of all "
+          "algorithms)")
       ->option_text("LANE LANE");
   command
       ->add_option("--compare", options->compare,

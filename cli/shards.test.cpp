@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shards as processes: killed, resumed, started twice at once, and run by ranks; and their status messages. The results
 // have the same bytes as one run.
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "cli/run_graze.h"

@@ -12,6 +12,7 @@
 #include "reports/plain_figures.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"
+#include "reports/verdicts_apart.h"
 
 namespace graze::reports {
 namespace {
@@ -157,10 +158,6 @@ std::uint64_t sum_of(const DiscrepancyCounts& of, int question, std::size_t valu
   for (std::size_t v = 0; v < values; ++v)
     sum += of.counts[static_cast<std::size_t>(value_at(question, static_cast<int>(v)) + field)];
   return sum;
-}
-
-std::string line_of(const cuda::SourceLine& line) {
-  return *line.file == '\0' ? "" : fmt::format("{}:{}", line.file, line.line);
 }
 
 // The lines sorted by the number of verdicts that they change, then by that of values.

@@ -95,6 +95,15 @@ std::string lanes_table(const Json& json) {
   return text + "</table></div>\n";
 }
 
+// The simplest pair whose verdict the line changes, as numbers that `graze explain` reads.
+std::string simplest_cell(const Json& line) {
+  if (line.at("simplest").is_null()) return cell("-");
+  std::string numbers;
+  for (const Json& number : line.at("simplest").at("decimal"))
+    numbers += (numbers.empty() ? "" : " ") + number.get<std::string>();
+  return "<td><details><summary>show</summary><code>" + html(numbers) + "</code></details></td>";
+}
+
 std::string lines_table(const Json& origins) {
   std::vector<const Json*> lines;
   for (const Json& line : origins.at("lines")) {
@@ -108,14 +117,14 @@ std::string lines_table(const Json& origins) {
       "<p>Contraction changes {} verdicts of {} traced pairs. The source lines whose products are fused, by what they "
       "decide:</p>\n<div class=\"wide\"><table><tr><th>line</th><th>source</th><th>within</th><th>values that it "
       "changes "
-      "alone</th><th>verdicts, alone</th><th>verdicts that return without it</th></tr>\n",
+      "alone</th><th>verdicts, alone</th><th>verdicts that return without it</th><th>simplest pair</th></tr>\n",
       grouped(number_at(origins, "verdicts")), grouped(number_at(origins, "pairs")));
   for (std::size_t l = 0; l < std::min(lines.size(), kMostLinesShown); ++l) {
     const Json& line = *lines[l];
     text += "<tr>" + cell(text_at(line, "line"), "name") + cell(source_line(text_at(line, "line")), "code") +
             cell(text_at(line, "within"), "name") + cell(grouped(number_at(line, "values"))) +
             cell(grouped(number_at(line, "verdicts_alone"))) + cell(grouped(number_at(line, "verdicts_fixed"))) +
-            "</tr>\n";
+            simplest_cell(line) + "</tr>\n";
   }
   text +=
       "</table></div>\n<p>A value starts to differ by one rounding at some line. The table shows how far it has moved "

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <stdexcept>
 
 #include "fuzz/counts_json.h"
@@ -32,6 +33,92 @@ std::string simplest_in(const Json& row) {
   return row.contains("simplest") ? text_at(row.at("simplest"), "place") : "";
 }
 
+// Counts of a line: name and value.
+struct LineCount {
+  const char* name;
+  std::uint64_t analysis::LineApart::*count;
+};
+constexpr LineCount kLineCounts[] = {
+    {"compared", &analysis::LineApart::compared},   {"differs", &analysis::LineApart::differs},
+    {"zero_sign", &analysis::LineApart::zero_sign}, {"not_finite", &analysis::LineApart::not_finite},
+    {"sign", &analysis::LineApart::sign},           {"outcome", &analysis::LineApart::outcome},
+    {"verdict", &analysis::LineApart::verdict}};
+
+Json octaves_json(const std::array<std::uint64_t, 64>& counts) {
+  Json histogram = Json::object();
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    if (counts[k]) histogram[fmt::format("2^{}", k)] = counts[k];
+  }
+  return histogram;
+}
+
+Json operands_json(const analysis::OperandsApart& found) {
+  Json lines = Json::array();
+  for (const analysis::LineApart& of : found.lines) {
+    Json& line = lines.emplace_back(Json{{"line", line_of(of.at)}});
+    if (*of.from.file) line["within"] = line_of(of.from);
+    for (const LineCount& field : kLineCounts) line[field.name] = of.*field.count;
+    line["below"] = octaves_json(of.below);
+    line["above"] = octaves_json(of.above);
+  }
+  return {{"pairs", found.pairs}, {"verdict", found.verdict}, {"lines", lines}};
+}
+
+// Without folders.
+std::string place_of(const Json& line) {
+  const auto short_name = [&](const char* key) {
+    return std::filesystem::path(text_at(line, key)).filename().string();
+  };
+  return short_name("line") + (line.contains("within") ? " in " + short_name("within") : "");
+}
+
+// The differences of a line's operands in ulps, whatever their sign.
+Octaves sizes_of(const Json& line) {
+  Octaves sizes = octaves_at(line.at("below"));
+  for (const auto& [k, count] : octaves_at(line.at("above"))) sizes[k] += count;
+  return sizes;
+}
+
+std::string ulps_words(const Octaves& sizes, double share) {
+  const std::optional<int> k = quantile(sizes, share);
+  return k ? fmt::format("< 2^{}", *k + 1) : "-";
+}
+
+// The lines of which an operand differs.
+std::vector<const Json*> differing_lines(const Json& of) {
+  std::vector<const Json*> lines;
+  if (!of.contains("operands")) return lines;
+  for (const Json& line : of.at("operands").at("lines")) {
+    if (number_at(line, "differs") > 0) lines.push_back(&line);
+  }
+  return lines;
+}
+
+std::string operands_sentence(const Json& operands) {
+  std::uint64_t compared = 0, differs = 0, outcome = 0, decided = 0, most = 0;
+  std::string most_at;
+  for (const Json& line : operands.at("lines")) {
+    compared += number_at(line, "compared");
+    differs += number_at(line, "differs");
+    outcome += number_at(line, "outcome");
+    decided += number_at(line, "verdict");
+    if (number_at(line, "verdict") <= most) continue;
+    most = number_at(line, "verdict");
+    most_at = place_of(line);
+  }
+  std::string text = fmt::format(
+      "On the first {} pairs of these, an operand differs in {} of {} comparisons, and {} go the other way.",
+      grouped(number_at(operands, "pairs")), rate_words(part_of(differs, compared)), grouped(compared),
+      grouped(outcome));
+  const std::uint64_t verdicts = number_at(operands, "verdict");
+  if (most > 0)
+    text += fmt::format(" The comparison at {} is the first to go the other way for {} of {} differing verdicts.",
+                        most_at, grouped(most), grouped(verdicts));
+  if (decided < verdicts)
+    text += fmt::format(" For {} of them no comparison that was seen does.", grouped(verdicts - decided));
+  return text;
+}
+
 struct VerdictsRow {
   std::string stratum;
   const Json& counts;
@@ -45,8 +132,12 @@ std::vector<VerdictsRow> rows_of(const Json& of) {
 
 }  // namespace
 
+std::string line_of(const cuda::SourceLine& line) {
+  return *line.file == '\0' ? "" : fmt::format("{}:{}", line.file, line.line);
+}
+
 Json verdicts_json(const analysis::TwoDeciders& deciders, const std::vector<strata::PairSource>& sources,
-                   const std::vector<analysis::VerdictsApart>& found) {
+                   const std::vector<analysis::VerdictsApart>& found, const analysis::OperandsApart* operands) {
   analysis::VerdictsApart total;
   Json strata = Json::object();
   for (std::size_t s = 0; s < sources.size(); ++s) {
@@ -56,21 +147,28 @@ Json verdicts_json(const analysis::TwoDeciders& deciders, const std::vector<stra
       row["simplest"] = {{"place", fmt::format("{}:{}:{}", sources[s].id, sources[s].seed, simplest->index)},
                          {"pair", coordinates_of(sources[s].pair(simplest->index))}};
   }
-  return {{"first", deciders.lanes[0]->id},
-          {"second", deciders.lanes[1]->id},
-          {"total", row_of(total)},
-          {"strata", strata}};
+  Json of = {{"first", deciders.lanes[0]->id},
+             {"second", deciders.lanes[1]->id},
+             {"total", row_of(total)},
+             {"strata", strata}};
+  if (operands && operands->why_not.empty()) of["operands"] = operands_json(*operands);
+  if (operands && !operands->why_not.empty()) of["why_no_operands"] = operands->why_not;
+  return of;
 }
 
 std::string verdicts_sentence(const Json& of) {
   const Json& total = of.at("total");
   const std::uint64_t pairs = number_at(total, "pairs");
   const auto rate = [&](std::uint64_t count) { return rate_words(part_of(count, pairs)); };
-  return fmt::format(
-      "{0} and {1} give different verdicts on {2} of {3} pairs; {0} is wrong on {4}, {1} on {5}. Only verdicts are "
-      "compared: Graze sees no values inside your own code.",
-      text_at(of, "first"), text_at(of, "second"), rate(number_at(total, "differs")), grouped(pairs),
-      rate(wrong(total, 0)), rate(wrong(total, 1)));
+  const std::string verdicts =
+      fmt::format("{0} and {1} give different verdicts on {2} of {3} pairs; {0} is wrong on {4}, {1} on {5}. ",
+                  text_at(of, "first"), text_at(of, "second"), rate(number_at(total, "differs")), grouped(pairs),
+                  rate(wrong(total, 0)), rate(wrong(total, 1)));
+  if (of.contains("operands")) return verdicts + operands_sentence(of.at("operands"));
+  return verdicts + "Only verdicts are compared: " +
+         (of.contains("why_no_operands") ? text_at(of, "why_no_operands") + "."
+                                         : "Graze sees values inside your own code only between cuda-nofma and "
+                                           "cuda-fma of a CUDA source.");
 }
 
 std::string verdicts_table(const Json& of, const Screen& screen) {
@@ -86,7 +184,24 @@ std::string verdicts_table(const Json& of, const Screen& screen) {
     table.add({stratum, grouped(number_at(counts, "pairs")), number(number_at(counts, "differs")),
                number(wrong(counts, 0)), number(wrong(counts, 1)), simplest.empty() ? "-" : simplest});
   }
-  return table.text(screen);
+  std::string text = table.text(screen);
+  if (const std::vector<const Json*> differing = differing_lines(of); !differing.empty()) {
+    TextTable lines({{"line", Align::left},
+                     {"comparisons"},
+                     {"an operand differs"},
+                     {"median, ulps"},
+                     {"largest, ulps"},
+                     {"goes the other way"},
+                     {"decides the verdict"}});
+    for (const Json* line : differing) {
+      const Octaves sizes = sizes_of(*line);
+      lines.add({place_of(*line), grouped(number_at(*line, "compared")),
+                 rate_words(part_of(number_at(*line, "differs"), number_at(*line, "compared"))), ulps_words(sizes, 0.5),
+                 ulps_words(sizes, 1), grouped(number_at(*line, "outcome")), grouped(number_at(*line, "verdict"))});
+    }
+    text += lines.text(screen);
+  }
+  return text;
 }
 
 std::string verdicts_section(const Json& of) {
@@ -102,7 +217,25 @@ std::string verdicts_section(const Json& of) {
       text += fmt::format("<td class=\"number\">{}</td>", grouped(count));
     text += "<td>" + html(simplest_in(counts)) + "</td></tr>\n";
   }
-  return text + "</table></div>\n";
+  text += "</table></div>\n";
+  if (const std::vector<const Json*> differing = differing_lines(of); !differing.empty()) {
+    text +=
+        "<h3>By line</h3>\n<div class=\"wide\"><table><tr><th>line of your source</th><th>comparisons</th><th>an "
+        "operand differs</th>"
+        "<th>median, ulps</th><th>largest, ulps</th><th>goes the other way</th><th>decides the verdict</th></tr>\n";
+    for (const Json* line : differing) {
+      const Octaves sizes = sizes_of(*line);
+      text += "<tr><td>" + html(place_of(*line)) + "</td>";
+      for (const std::string& cell :
+           {grouped(number_at(*line, "compared")),
+            rate_words(part_of(number_at(*line, "differs"), number_at(*line, "compared"))), ulps_words(sizes, 0.5),
+            ulps_words(sizes, 1), grouped(number_at(*line, "outcome")), grouped(number_at(*line, "verdict"))})
+        text += "<td class=\"number\">" + html(cell) + "</td>";
+      text += "</tr>\n";
+    }
+    text += "</table></div>\n";
+  }
+  return text;
 }
 
 std::string verdicts_csv(const Json& of) {
@@ -116,6 +249,16 @@ std::string verdicts_csv(const Json& of) {
     add("", "verdict", counts.at("differs"));
     for (const char* lane : kOf) {
       for (const auto& [name, count] : counts.at(lane).items()) add(lane, name, count);
+    }
+  }
+  for (const Json* line : differing_lines(of)) {
+    const std::string start =
+        fmt::format("{},{},,\"{}\",\"\",", text_at(of, "first"), text_at(of, "second"), place_of(*line));
+    for (const auto& [name, count] : line->items()) {
+      if (count.is_number() && count != 0) text += fmt::format("{}{},,{}\n", start, name, count.get<std::uint64_t>());
+      if (!count.is_object()) continue;
+      for (const auto& [bucket, part] : count.items())
+        text += fmt::format("{}{},{},{}\n", start, name, bucket, part.get<std::uint64_t>());
     }
   }
   return text;
@@ -146,6 +289,21 @@ void expect_possible_verdicts(const Json& of) {
     sum += counts;
   }
   expect(read(of.at("total"), "total") == sum, "the total is not that of the strata");
+  if (!of.contains("operands")) return;
+  const Json& operands = of.at("operands");
+  std::uint64_t decided = 0;
+  for (const Json& line : operands.at("lines")) {
+    const auto all = [&](const char* name) { return number_at(line, name); };
+    std::uint64_t sizes = all("zero_sign") + all("not_finite");
+    for (const auto& [k, count] : sizes_of(line)) sizes += count;
+    expect(all("verdict") <= all("outcome") && all("outcome") <= all("sign") && all("sign") <= all("differs") &&
+               all("differs") <= all("compared") && all("differs") == sizes,
+           text_at(line, "line") + ": a part is more than the whole");
+    decided += all("verdict");
+  }
+  expect(decided <= number_at(operands, "verdict") && number_at(operands, "verdict") <= number_at(operands, "pairs") &&
+             number_at(operands, "pairs") <= sum.pairs,
+         "more operands decide than verdicts differ");
 }
 
 }  // namespace graze::reports

@@ -1,26 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presents how often only the verdicts of two lanes differ, as a part of what `graze discrepancy` finds.
+// Presents how often the verdicts of two lanes of a user's code differ, as a part of what `graze discrepancy` finds; of
+// a CUDA source also the operands of its comparisons.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "analysis/operands_apart.h"
 #include "analysis/verdicts_apart.h"
 #include "reports/screen.h"
 
 namespace graze::reports {
 
+// "core/vec3.h:48"; empty if the line is not known.
+std::string line_of(const cuda::SourceLine& line);
+
 // {"first", "second", "total": {"pairs", "differs", "of_first": counts, "of_second": counts},
 //  "strata": {stratum: the same and the "simplest" {"place", "pair"} that differs}}
+// operands: null if they are not seen. Else there is also "operands": {"pairs", "verdict", "lines": [{"line", "within",
+// "compared", …}]}, or "why_no_operands".
 nlohmann::ordered_json verdicts_json(const analysis::TwoDeciders& deciders,
                                      const std::vector<strata::PairSource>& sources,
-                                     const std::vector<analysis::VerdictsApart>& found);
+                                     const std::vector<analysis::VerdictsApart>& found,
+                                     const analysis::OperandsApart* operands);
 
-// of: such an object. How often the verdicts differ and which lane is wrong then, and why no value is compared.
+// of: such an object. How often the verdicts differ and which lane is wrong then; what decides, or why no value is
+// compared.
 std::string verdicts_sentence(const nlohmann::ordered_json& of);
 
-// A row for each stratum.
+// A row for each stratum, and one for each source line whose operands differ.
 std::string verdicts_table(const nlohmann::ordered_json& of, const Screen& screen);
 std::string verdicts_section(const nlohmann::ordered_json& of);  // of the page
 std::string verdicts_csv(const nlohmann::ordered_json& of);      // rows as in discrepancy.csv

@@ -3,6 +3,7 @@
 // that the generator writes, and what others call; see cuda/twin/twin_library.h. The kernel is the one that wrapper.cpp
 // appends.
 #include <cstddef>
+#include <iterator>
 #include <string_view>
 #include <tuple>
 
@@ -18,6 +19,14 @@ struct ContractionSite {
   bool by_ptxas;
   int ptx_line;
 };
+struct ComparisonSite {
+  SourceLine at, from;
+  int ptx_line;
+};
+struct Comparison {  // as in cuda/twin/twin.h
+  double left, right;
+  int ptx_line, outcome;
+};
 
 inline namespace GRAZE_FP {
 namespace ptx {
@@ -26,6 +35,19 @@ namespace {
 #include GRAZE_TWIN_KERNELS
 
 using Kernel = std::tuple_element_t<0, Kernels>;
+
+// Keeps the first `most` comparisons.
+struct Watched : SomeFused {
+  Comparison* made;
+  std::size_t most;
+  std::size_t* count;
+
+  template <class T>
+  bool compared(int ptx_line, T left, T right, bool outcome) const {
+    if (*count < most) made[(*count)++] = {static_cast<double>(left), static_cast<double>(right), ptx_line, outcome};
+    return outcome;
+  }
+};
 
 // One pair, as a block of one: stride 1, so that its coordinates are the 18 arrays.
 template <class Fuse>
@@ -62,9 +84,12 @@ void graze_twin_decide_block(const ptx::Real* pairs, std::size_t count, signed c
   ptx::decide_block(pairs, count, answers);
 }
 int graze_twin_is_f64(void) { return sizeof(ptx::Real) == 8; }
-int graze_twin_decide_fusing(const ptx::Real* pair, const std::uint64_t* fused) {
-  return ptx::decide(pair, ptx::SomeFused{fused});
+int graze_twin_decide_fusing(const ptx::Real* pair, const std::uint64_t* fused, Comparison* made, std::size_t most,
+                             std::size_t* count) {
+  return ptx::decide(pair, ptx::Watched{{fused}, made, most, count});
 }
+int graze_twin_comparison_count(void) { return static_cast<int>(std::size(ptx::Kernel::kComparisons)) - 1; }
+const ComparisonSite* graze_twin_comparisons(void) { return ptx::Kernel::kComparisons; }
 }
 
 GRAZE_SUBJECT(graze_subject) = {GRAZE_SUBJECT_ABI, 0,       GRAZE_TWIN_VERSION, nullptr, nullptr,

@@ -43,11 +43,20 @@ std::span<const ContractionSite> contraction_sites(const Lane& lane) {
   return found == foreign_twins().end() ? std::span<const ContractionSite>() : found->second.sites;
 }
 
+std::span<const ComparisonSite> comparison_sites(const Lane& lane) {
+  const auto found = foreign_twins().find(lane.id);
+  return found == foreign_twins().end() ? std::span<const ComparisonSite>() : found->second.library->comparisons();
+}
+
+Verdict decide_comparing(const Lane& lane, const Pair& pair, std::span<const std::uint64_t> fused,
+                         std::span<Comparison> made, std::size_t& count) {
+  const int answer = foreign_twins().at(lane.id).library->decide_fusing(pair, fused, made, &count);
+  return answer < 0 ? Verdict::declined : answer > 0 ? Verdict::intersects : Verdict::disjoint;
+}
+
 Verdict decide_fusing(const Lane& lane, const Pair& pair, std::span<const std::uint64_t> fused) {
-  if (lane.foreign) {
-    const int answer = foreign_twins().at(lane.id).library->decide_fusing(pair, fused);
-    return answer < 0 ? Verdict::declined : answer > 0 ? Verdict::intersects : Verdict::disjoint;
-  }
+  std::size_t none = 0;
+  if (lane.foreign) return decide_comparing(lane, pair, fused, {}, none);
   const TwinRow& row = twin_row(lane);
   if (!row.decide_fusing || fused.size() * 64 < row.sites.size())
     throw std::invalid_argument("decide_fusing: no such twin, or too few bits for its sites");

@@ -61,6 +61,12 @@ struct ContractionSite {
   int ptx_line;     // line of the addition
 };
 
+// A comparison of numbers in a kernel.
+struct ComparisonSite {
+  SourceLine at, from;  // as in ContractionSite
+  int ptx_line;
+};
+
 // The contraction sites of a lane's twin, in program order. Empty without a twin or without contractions.
 std::span<const ContractionSite> contraction_sites(const Lane& lane);
 
@@ -75,6 +81,20 @@ double most_seconds(const Lane& lane);  // for one verdict.   Requires: a foreig
 // process and may crash or not return.
 // Requires: (sites + 63) / 64 words.
 Verdict decide_fusing(const Lane& lane, const Pair& pair, std::span<const std::uint64_t> fused);
+
+// The comparisons of numbers in a foreign CUDA lane with contraction sites, in program order. `min`, `max` and tests of
+// bits are none.
+std::span<const ComparisonSite> comparison_sites(const Lane& lane);
+
+struct Comparison {
+  double left, right;  // exactly the operands
+  int ptx_line, outcome;
+};
+
+// decide_fusing of such a lane. `made` gets the first comparisons that it makes, as many as fit, and `count` their
+// number.
+Verdict decide_comparing(const Lane& lane, const Pair& pair, std::span<const std::uint64_t> fused,
+                         std::span<Comparison> made, std::size_t& count);
 
 // The contraction sites of the twin that records, and its records when sites whose bit is not set round twice; see
 // decide_fusing.

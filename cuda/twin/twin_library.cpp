@@ -38,6 +38,8 @@ TwinLibrary::TwinLibrary(const std::filesystem::path& file, Scalar scalar)
     throw std::runtime_error(file.string() + ": expected a twin in " + std::string(name(scalar)));
   block_ = symbol("graze_twin_decide_block");
   fusing_ = symbol("graze_twin_decide_fusing");
+  comparisons_ = {reinterpret_cast<const ComparisonSite* (*)()>(symbol("graze_twin_comparisons"))(),
+                  static_cast<std::size_t>(reinterpret_cast<int (*)()>(symbol("graze_twin_comparison_count"))())};
   const int count = reinterpret_cast<int (*)()>(symbol("graze_twin_site_count"))();
   for (int s = 0; s < count; ++s) {
     const auto text = [&](const char* name) { return reinterpret_cast<const char* (*)(int)>(symbol(name))(s); };
@@ -65,13 +67,24 @@ void TwinLibrary::decide(std::span<const Pair> pairs, std::int8_t* answers) cons
   for (std::thread& thread : threads) thread.join();
 }
 
-int TwinLibrary::decide_fusing(const Pair& pair, std::span<const std::uint64_t> fused) const {
+int TwinLibrary::decide_fusing(const Pair& pair, std::span<const std::uint64_t> fused, std::span<Comparison> made,
+                               std::size_t* count) const {
   if (fused.size() * 64 < sites_.size()) throw std::invalid_argument("decide_fusing: too few bits for the sites");
-  if (scalar_ == Scalar::f32)
-    return reinterpret_cast<int (*)(const float*, const std::uint64_t*)>(fusing_)(coordinates(pair), fused.data());
-  double wide[kCoordinates];
-  std::copy_n(coordinates(pair), kCoordinates, wide);
-  return reinterpret_cast<int (*)(const double*, const std::uint64_t*)>(fusing_)(wide, fused.data());
+  std::size_t stored = 0;
+  int answer = 0;
+  const auto run = [&]<class Real>(const Real* coordinates) {
+    using Decide = int (*)(const Real*, const std::uint64_t*, Comparison*, std::size_t, std::size_t*);
+    answer = reinterpret_cast<Decide>(fusing_)(coordinates, fused.data(), made.data(), made.size(), &stored);
+  };
+  if (scalar_ == Scalar::f32) {
+    run(coordinates(pair));
+  } else {
+    double wide[kCoordinates];
+    std::copy_n(coordinates(pair), kCoordinates, wide);
+    run(wide);
+  }
+  if (count) *count = stored;
+  return answer;
 }
 
 }  // namespace graze::cuda

@@ -11,6 +11,7 @@
 
 #include "core/lanes/lanes.h"
 #include "core/pair.h"
+#include "cuda/twin/twin.h"
 
 namespace graze::cuda {
 
@@ -38,9 +39,13 @@ class TwinLibrary {
 
   const std::vector<TwinSite>& sites() const { return sites_; }
 
-  // The answer when sites whose bit is not set round twice. Bit i % 64 of word i / 64 belongs to site i.
+  std::span<const ComparisonSite> comparisons() const { return comparisons_; }
+
+  // The answer when sites whose bit is not set round twice. Bit i % 64 of word i / 64 belongs to site i. `made`
+  // gets the first comparisons that the kernel makes, as many as fit, and `count` their number.
   // Throws: std::invalid_argument for too few bits.
-  int decide_fusing(const Pair& pair, std::span<const std::uint64_t> fused) const;
+  int decide_fusing(const Pair& pair, std::span<const std::uint64_t> fused, std::span<Comparison> made = {},
+                    std::size_t* count = nullptr) const;
 
  private:
   void* library_;
@@ -48,6 +53,7 @@ class TwinLibrary {
   void* block_ = nullptr;
   void* fusing_ = nullptr;
   std::vector<TwinSite> sites_;
+  std::span<const ComparisonSite> comparisons_;  // in the library
 };
 
 }  // namespace graze::cuda

@@ -222,6 +222,12 @@ struct AllFused {
     return fma(a, b, c);
   }
   static f32 flushing(int, f32 a, f32 b, f32 c) { return fma_ftz(a, b, c); }
+
+  // Every comparison of numbers passes through here, with its PTX line and its outcome.
+  template <class T>
+  static bool compared(int, T, T, bool outcome) {
+    return outcome;
+  }
 };
 
 // Rounds twice at the sites whose bit is not set.
@@ -236,6 +242,11 @@ struct SomeFused {
     return fused(site) ? fma_ftz(a, b, c) : flushed(mul_ftz(a, b) + flushed(c));
   }
   bool fused(int site) const { return bits[site / 64] >> (site % 64) & 1; }
+
+  template <class T>
+  static bool compared(int, T, T, bool outcome) {
+    return outcome;
+  }
 };
 
 }  // namespace ptx

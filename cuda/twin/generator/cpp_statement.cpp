@@ -64,7 +64,8 @@ std::string compare(const Operands& o) {
   const auto argument = [&](std::size_t at) {
     return i.has("ftz") ? fmt::format("flushed({})", o.value(at, type)) : o.value(at, type);
   };
-  const std::string result = fmt::format("{}<{}>({}, {})", op, cpp_type(type), argument(1), argument(2));
+  std::string result = fmt::format("{}<{}>({}, {})", op, cpp_type(type), argument(1), argument(2));
+  if (floats) result = fmt::format("fuse.compared({}, {}, {}, {})", i.line, argument(1), argument(2), result);
   const std::string symbol = combine == "and" ? "&&" : combine == "or" ? "||" : "!=";
   const std::string other = combine.empty() ? "" : fmt::format(" {} ({})", symbol, o.value(3, "pred"));
   const auto bar = o.operand(0).find('|');

@@ -92,6 +92,18 @@ KernelName parsed(const std::string& mangled) {
   return {match[1], std::stoi(match[2]), match[3].str()[0]};
 }
 
+// The comparisons of numbers, in the order of the PTX.
+void write_comparisons(std::ostream& out, const Module& module, const Kernel& of) {
+  for (const Kernel& kernel : module.kernels) {
+    if (!kernel.is_function && &kernel != &of) continue;
+    for (const Instruction& i : kernel.body) {
+      if (i.is_operation() && i.op[0] == "setp" && i.op.back()[0] == 'f')
+        out << fmt::format("    {{{}, {}, {}}},\n", spelled(module, i.source.at), spelled(module, i.source.from),
+                           i.line);
+    }
+  }
+}
+
 std::size_t count_sites(const Contracted& kernel, const std::vector<Contracted>& functions) {
   std::size_t count = kernel.sites.size();
   for (const Contracted& function : functions) count += function.sites.size();
@@ -132,6 +144,8 @@ void write_cpp(std::ostream& out, const Module& module, Rule rule) {
       out << fmt::format("    {{{}, {}, {}, {}}},\n", spelled(module, site.source.at),
                          spelled(module, site.source.from), site.by_ptxas ? "true" : "false", site.line);
     }
+    out << "    {}};\n  static constexpr ComparisonSite kComparisons[] = {\n";
+    write_comparisons(out, module, kernel);
     out << "    {}};\n";
     std::size_t first = contracted.sites.size();
     for (Contracted function : functions) {

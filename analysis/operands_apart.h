@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compares the operands of the comparisons in a user's CUDA source, without contraction and with it, by source line.
+// The twin of the contracted lane runs both ways.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/lanes/lanes.h"
+#include "cuda/twin/twin.h"
+#include "strata/pair_source.h"
+
+namespace graze::analysis {
+
+// The comparisons of one source line. Two runs are compared comparison by comparison, up to the first that goes the
+// other way, because what they compare later may not be the same.
+struct LineApart {
+  cuda::SourceLine at, from;    // as in cuda::ComparisonSite
+  std::uint64_t compared = 0;   // comparisons
+  std::uint64_t differs = 0;    // an operand's bits do: it is the sum of the next four
+  std::uint64_t zero_sign = 0;  // only signs of zeros
+  std::uint64_t not_finite = 0;
+  // The operand that differs by more ulps is lower, or higher, with contraction, by 2^k to 2^(k+1) ulps.
+  std::array<std::uint64_t, 64> below = {}, above = {};
+  std::uint64_t sign = 0;     // that of left minus right differs
+  std::uint64_t outcome = 0;  // goes the other way
+  std::uint64_t verdict = 0;  // …and the verdict differs
+};
+
+struct OperandsApart {
+  std::uint64_t pairs = 0, verdict = 0;  // finite ones; those whose verdicts differ
+  std::vector<LineApart> lines;          // in program order
+  std::string why_not;                   // the runs did not end in order; there are no counts then
+};
+
+// Whether the lanes are a user's CUDA source without contraction, then with it, and a twin shows its comparisons.
+bool shows_operands(const Lane& rounded, const Lane& fused);
+
+// Runs the first `pairs` pairs of each source in a separate process, because the code may crash or hang.
+// Requires: shows_operands.
+OperandsApart operands_apart(const Lane& fused, const std::vector<strata::PairSource>& sources, std::uint64_t pairs);
+
+}  // namespace graze::analysis

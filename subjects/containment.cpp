@@ -9,11 +9,14 @@
 #include <linux/seccomp.h>
 #include <poll.h>
 #include <sched.h>
+#include <sys/mman.h>
 #include <sys/mount.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <sys/syscall.h>
+#include <sys/sysmacros.h>
 #include <sys/utsname.h>
 #include <sys/vfs.h>
 #include <sys/wait.h>
@@ -31,10 +34,13 @@
 #include <fstream>
 #include <initializer_list>
 #include <iterator>
+#include <map>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "core/programs/process_state.h"
 
 namespace graze::subjects {
 namespace {
@@ -152,9 +158,18 @@ bool mount_proc() {
          fs::exists("/proc/thread-self/children");
 }
 
-// In the new namespace: named shared memory, of System V and of POSIX, gets a limit and ends with the namespace.
+// In the new namespace: System V memory, semaphores and message queues get limits and end with the namespace.
+// Returns: whether they have limits. Before Linux 6.10 only root may set them.
+bool limit_system_v(std::uint64_t bytes) {
+  const auto set = [](const char* name, const std::string& value) {
+    return bool(std::ofstream(std::string("/proc/sys/kernel/") + name) << value << std::flush);
+  };
+  const std::string pages = std::to_string(bytes / static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)));
+  return set("shmall", pages) && set("sem", "250 32000 32 128") && set("msgmni", "32");
+}
+
+// In the new namespace: POSIX shared memory gets a limit and ends with the namespace.
 bool limit_shared_memory(std::uint64_t bytes) {
-  std::ofstream("/proc/sys/kernel/shmall") << bytes / static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
   return mount("tmpfs", "/dev/shm", "tmpfs", MS_NOSUID | MS_NODEV, ("size=" + std::to_string(bytes)).c_str()) == 0 ||
          errno == ENOENT;
 }
@@ -227,18 +242,74 @@ std::uint64_t bytes_in(const fs::path& file, std::initializer_list<std::string_v
   return kib << 10;
 }
 
-// Memory of a process, its page tables included. Counts whole pages first, which is fast; if that exceeds `most`,
-// counts shares of shared pages.
-std::uint64_t bytes_of(pid_t process, std::uint64_t most) {
+// /proc of a process. Where its first thread has ended and others run, the system shows the memory only of those.
+fs::path memory_folder(pid_t process) {
   const fs::path folder = "/proc/" + std::to_string(process);
-  const std::uint64_t whole = bytes_in(folder / "status", {"VmRSS:", "VmSwap:", "VmPTE:"});
+  std::error_code error;
+  if (process_state(process) == 'Z') {
+    for (fs::directory_iterator task(folder / "task", error), end; !error && task != end; task.increment(error)) {
+      const std::string thread = task->path().filename();
+      if (process_state(std::stoi(thread)) != 'Z') return "/proc/" + thread;
+    }
+  }
+  return folder;
+}
+
+// Memory that several processes can map, such as MAP_SHARED | MAP_ANONYMOUS: its inode and bytes. It stays while any
+// part of it is mapped, even if no page table shows it.
+using Shared = std::map<std::uint64_t, std::uint64_t>;
+
+// The device of the file system that has this memory. It is the same for memfd_create.
+dev_t shared_device() {
+  struct stat file {};
+  const int fd = memfd_create("graze-device", MFD_CLOEXEC);
+  if (fd < 0 || fstat(fd, &file) != 0) file.st_dev = 0;
+  if (fd >= 0) close(fd);
+  return file.st_dev;
+}
+
+// Adds what the process maps of shared memory.   Returns: the bytes that were not in `shared` before.
+std::uint64_t add_shared(const fs::path& folder, Shared& shared) {
+  static const dev_t device = shared_device();
+  std::uint64_t more = 0;
+  std::ifstream in(folder / "maps");
+  for (std::string line; std::getline(in, line);) {
+    unsigned long from = 0, to = 0, offset = 0, inode = 0;
+    unsigned of_major = 0, of_minor = 0;
+    char flags[5] = {};
+    if (std::sscanf(line.c_str(), "%lx-%lx %4s %lx %x:%x %lu", &from, &to, flags, &offset, &of_major, &of_minor,
+                    &inode) != 7 ||
+        flags[3] != 's' || makedev(of_major, of_minor) != device)
+      continue;
+    // Only root may ask for the bytes in use. For others, the end of what is mapped counts, used or not.
+    struct stat file {};
+    char name[64];
+    std::snprintf(name, sizeof name, "map_files/%lx-%lx", from, to);
+    const std::uint64_t bytes = stat((folder / name).c_str(), &file) == 0
+                                    ? 512 * static_cast<std::uint64_t>(file.st_blocks)
+                                    : offset + (to - from);
+    std::uint64_t& known = shared[inode];
+    more += bytes - std::min(bytes, known);
+    known = std::max(bytes, known);
+  }
+  return more;
+}
+
+// Memory of a process without shared memory, its page tables included. Counts whole pages of files first, which is
+// fast; if that exceeds `most`, counts shares of them. A process that hides its pages counts with all its addresses.
+std::uint64_t bytes_of(const fs::path& folder, std::uint64_t most) {
+  const int maps = open((folder / "maps").c_str(), O_RDONLY | O_CLOEXEC);
+  if (maps < 0 && errno == EACCES) return bytes_in(folder / "status", {"VmSize:", "VmSwap:", "VmPTE:"});
+  if (maps >= 0) close(maps);
+  const std::uint64_t whole = bytes_in(folder / "status", {"RssAnon:", "RssFile:", "VmSwap:", "VmPTE:"});
   if (whole <= most) return whole;
-  return bytes_in(folder / "smaps_rollup", {"Pss:", "SwapPss:"}) + bytes_in(folder / "status", {"VmPTE:"});
+  return bytes_in(folder / "smaps_rollup", {"Pss_Anon:", "Pss_File:", "SwapPss:"}) +
+         bytes_in(folder / "status", {"VmPTE:"});
 }
 
 }  // namespace
 
-void enter_containment(bool namespaces, std::uint64_t shared_bytes, int control, const std::string& read_only) {
+bool enter_containment(bool namespaces, std::uint64_t shared_bytes, int control, const std::string& read_only) {
   const uid_t user = geteuid();
   const gid_t group = getegid();
   const std::vector<std::string> terminals = terminals_of_parent();
@@ -253,9 +324,10 @@ void enter_containment(bool namespaces, std::uint64_t shared_bytes, int control,
                          limit_shared_memory(shared_bytes) && hide_terminals(terminals) && hide_control_groups();
       if (!ready || write(answer[1], "y", 1) != 1) _exit(0);
       make_read_only(read_only);
+      const bool limited = limit_system_v(shared_bytes);
       limit_tasks();
       close(answer[1]);
-      return;
+      return limited;
     }
     close(answer[1]);
     char ready = 0;
@@ -265,6 +337,7 @@ void enter_containment(bool namespaces, std::uint64_t shared_bytes, int control,
     if (supervisor > 0) waitpid(supervisor, nullptr, 0);
   }
   prctl(PR_SET_CHILD_SUBREAPER, 1);
+  return false;
 }
 
 int open_process(pid_t process) { return static_cast<int>(syscall(SYS_pidfd_open, process, 0)); }
@@ -284,12 +357,15 @@ bool is_descendant(pid_t process) {
 
 Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processes) {
   Usage usage{};
+  Shared shared;
   for (std::vector<pid_t> left = own_children(); !left.empty();) {
     const pid_t process = left.back();
     left.pop_back();
     ++usage.processes;
-    // Counts shares of shared pages once whole pages would exceed the limit.
-    usage.bytes += bytes_of(process, most_bytes > usage.bytes ? (most_bytes - usage.bytes) / 2 : 0);
+    const fs::path folder = memory_folder(process);
+    usage.bytes += add_shared(folder, shared);
+    // Counts shares of the pages of files once whole pages would exceed the limit.
+    usage.bytes += bytes_of(folder, most_bytes > usage.bytes ? (most_bytes - usage.bytes) / 2 : 0);
     if (usage.processes > most_processes || usage.bytes > most_bytes) break;
     for (const pid_t child : children_of(process)) left.push_back(child);
   }
@@ -325,9 +401,10 @@ struct Calls {
   // memfd_create, memfd_secret, io_uring_setup: memory that no limit counts. bpf, perf_event_open: these reach other
   // processes. unshare, setns: new namespaces.
   std::array<std::uint32_t, 7> forbidden;
+  std::vector<std::uint32_t> system_v;  // calls that make System V objects
 };
 
-void append_rules(std::vector<sock_filter>& steps, const Calls& calls) {
+void append_rules(std::vector<sock_filter>& steps, const Calls& calls, bool system_v) {
   constexpr std::uint32_t kX32 = 0x40000000, kArgument = offsetof(seccomp_data, args);
   constexpr std::uint32_t kNamespaces =
       CLONE_NEWUSER | CLONE_NEWNS | CLONE_NEWPID | CLONE_NEWNET | CLONE_NEWIPC | CLONE_NEWUTS | CLONE_NEWCGROUP;
@@ -336,6 +413,9 @@ void append_rules(std::vector<sock_filter>& steps, const Calls& calls) {
                     allow = BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW);
   add({BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)), BPF_STMT(BPF_ALU | BPF_AND | BPF_K, ~kX32)});
   for (const std::uint32_t number : calls.forbidden) add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, number, 0, 1), refuse});
+  for (const std::uint32_t number : calls.system_v) {
+    if (!system_v) add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, number, 0, 1), refuse});
+  }
   add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.prlimit, 0, 4), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0, 1, 0), refuse, allow});
   add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.clone, 0, 4), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
@@ -348,17 +428,21 @@ void append_rules(std::vector<sock_filter>& steps, const Calls& calls) {
 }  // namespace
 
 // In a user namespace of its own, code could mount file systems: memory that is not counted, and control groups.
-void forbid_calls() {
+void forbid_calls(bool system_v) {
   constexpr std::uint32_t kMemfdSecret = 447;  // older headers lack it
   std::vector<sock_filter> i386, steps{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, arch))};
-  append_rules(i386, {340, 120, 435, {356, 447, 425, 357, 336, 310, 346}});
+  // The last four: ipc, which makes all three objects, semget, shmget and msgget.
+  append_rules(i386, {340, 120, 435, {356, 447, 425, 357, 336, 310, 346}, {117, 393, 395, 399}}, system_v);
   steps.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, AUDIT_ARCH_I386, 0, static_cast<std::uint8_t>(i386.size())));
   steps.insert(steps.end(), i386.begin(), i386.end());
-  append_rules(steps, {SYS_prlimit64,
-                       SYS_clone,
-                       SYS_clone3,
-                       {SYS_memfd_create, kMemfdSecret, SYS_io_uring_setup, SYS_bpf, SYS_perf_event_open, SYS_unshare,
-                        SYS_setns}});
+  append_rules(
+      steps,
+      {SYS_prlimit64,
+       SYS_clone,
+       SYS_clone3,
+       {SYS_memfd_create, kMemfdSecret, SYS_io_uring_setup, SYS_bpf, SYS_perf_event_open, SYS_unshare, SYS_setns},
+       {SYS_shmget, SYS_semget, SYS_msgget}},
+      system_v);
   const sock_fprog program{static_cast<unsigned short>(steps.size()), steps.data()};
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program);

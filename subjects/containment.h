@@ -16,8 +16,8 @@ namespace graze::subjects {
 // has its own shared memory and no control groups. The system ends the namespace with the supervisor. If no namespace
 // is possible, returns in the calling process, as a subreaper. namespaces: whether to try. shared_bytes: of memory that
 // is shared by name. read_only: a folder that cannot be written to or moved in the namespace; empty for none. Requires:
-// one thread.
-void enter_containment(bool namespaces, std::uint64_t shared_bytes, int control, const std::string& read_only = "");
+// one thread.   Returns: whether System V memory, semaphores and message queues have limits.
+bool enter_containment(bool namespaces, std::uint64_t shared_bytes, int control, const std::string& read_only = "");
 
 // A descriptor that becomes readable when the process ends; -1 when there is no such process.
 int open_process(pid_t process);
@@ -27,7 +27,7 @@ bool is_descendant(pid_t process);
 
 struct Usage {
   std::uint64_t processes,
-      bytes;  // bytes of memory; each process counts its page tables, and its share of shared pages
+      bytes;  // of memory and page tables; shared memory counts once, and each process has its share of pages of files
 };
 // Current usage of all descendants. Stops counting a little beyond `most_bytes` or `most_processes`.
 Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processes);
@@ -37,8 +37,8 @@ bool end_children(pid_t except);
 
 // From now on this process and its descendants cannot change the limits of other processes. (The supervisor runs as
 // the same user.) They also cannot allocate memory that no limit counts (memfd_create and the like), make namespaces,
-// or run programs in the kernel.
-void forbid_calls();
+// or run programs in the kernel. system_v: whether they may make System V memory, semaphores and message queues.
+void forbid_calls(bool system_v);
 
 // Gives up all rights of root but those about files, users and low ports. The others reach beyond the limits: tracing,
 // mounting, lifting limits, rebooting, setting the clock, delaying the supervisor, reaching files by handles and disks.

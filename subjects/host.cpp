@@ -4,7 +4,7 @@
 // The supervisor starts this program again as the process that loads the code and forks workers:
 //   graze-subject-host --worker KIND WHAT NAME SCALAR MEMORY DESCRIBE
 // As the supervisor of a build tool whose temporary files are in the folder SCRATCH:
-//   graze-subject-host --run SECONDS SCRATCH NAMESPACES WORD...
+//   graze-subject-host --run SECONDS SCRATCH NAMESPACES MEMORY WORD...
 // KIND WHAT NAME SCALAR:  library FILE NAME f32|f64|any   a shared object and its export; see graze/subject.h
 //                         command TEXT "" f32             a program; see subjects/README.md
 //                         device FILE "" f32|f64          PTX of cuda/subject; run by graze-subject-device with CUDA
@@ -293,11 +293,13 @@ void set_limit(int resource, rlim_t most) {
   setrlimit(static_cast<__rlimit_resource>(resource), &limit);
 }
 
+constexpr rlim_t kMostFileBytes = rlim_t{1} << 30;
+
 // Limits that the system keeps for each process. The supervisor checks the sum over all processes.
 void set_limits(const char* mib) {
   set_limit(RLIMIT_DATA, std::strtoull(mib, nullptr, 10) << 20);
   set_limit(RLIMIT_CORE, 0);
-  set_limit(RLIMIT_FSIZE, rlim_t{1} << 30);
+  set_limit(RLIMIT_FSIZE, kMostFileBytes);
   set_limit(RLIMIT_NOFILE, 1024);  // a socket's buffers are system memory, which is not charged to the process
 }
 
@@ -392,12 +394,14 @@ int load_and_fork(char** argv, const std::string& kind, const std::string& what,
 int host(int argc, char** argv) {
   if (argc == 8 && std::strcmp(argv[1], "--worker") == 0)
     return load_and_fork(argv, argv[2], argv[3], argv[4], argv[5], argv[6], *argv[7] == '1');
-  if (argc > 5 && std::strcmp(argv[1], "--run") == 0) {
+  if (argc > 6 && std::strcmp(argv[1], "--run") == 0) {
     fcntl(kControlFd, F_SETFD, FD_CLOEXEC);
     close_range(kControlFd + 1, ~0u, 0);
     setenv("TMPDIR", argv[3], 1);
     enter_containment(*argv[4] == '1', std::uint64_t{1} << 30, kControlFd);
-    return supervise_program(std::strtod(argv[2], nullptr), argv[3], argv + 5);
+    set_limit(RLIMIT_FSIZE, kMostFileBytes);
+    return supervise_program(std::strtod(argv[2], nullptr), std::strtoull(argv[5], nullptr, 10) << 20, argv[3],
+                             argv + 6);
   }
   if (argc != 10) {
     fmt::print(stderr, "graze-subject-host: is started by graze\n");
@@ -411,7 +415,7 @@ int host(int argc, char** argv) {
   close_range(limits.program ? kSupervisorCodeFd : kSupervisorCodeFd + 1, ~0u, 0);
   limits.seconds = std::strtod(argv[6], nullptr);
   limits.bytes = on_device ? 0 : std::strtoull(argv[5], nullptr, 10) << 20;
-  enter_containment(!on_device && *argv[8] == '1', limits.bytes, kControlFd, argv[9]);
+  limits.system_v = enter_containment(!on_device && *argv[8] == '1', limits.bytes, kControlFd, argv[9]);
   char worker[] = "--worker";
   char* const arguments[] = {argv[0], worker, argv[1], argv[2], argv[3], argv[4], argv[5], argv[7], nullptr};
   return supervise(limits, arguments);

@@ -12,9 +12,11 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/msg.h>
 #include <sys/prctl.h>
 #include <sys/ptrace.h>
 #include <sys/resource.h>
+#include <sys/sem.h>
 #include <sys/shm.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -149,14 +151,31 @@ ATTACK(children_eat, for (int i = 0; i < 4; ++i) child_eats(); for (;;) pause())
 ATTACK(eats_shared, char* p = mmap(0, 300 << 20, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
        if (p != MAP_FAILED) memset(p, 1, 300 << 20); for (;;) pause())
 ATTACK(waits_uninterruptibly, if (vfork() == 0) for (;;) pause())
-ATTACK(
-    eats_system_v, for (;;) {
-      int id = shmget(IPC_PRIVATE, 100 << 20, 0600 | IPC_CREAT);
-      if (id < 0) abort();
-      char* p = shmat(id, 0, 0);
-      memset(p, 1, 100 << 20);
-      shmdt(p);
-    })
+// System V objects outlive their process, so these attacks remove what they could make.
+static void make_segments(void) {
+  int made[10], count = 0;
+  while (count < 10 && (made[count] = shmget(IPC_PRIVATE, 100 << 20, 0600 | IPC_CREAT)) >= 0) ++count;
+  const int limited = count < 10;
+  while (count > 0) shmctl(made[--count], IPC_RMID, 0);
+  if (limited) abort();  // else the pair has an answer, and the test fails
+}
+ATTACK(eats_system_v, make_segments())
+static void make_semaphores(void) {
+  int made[600], count = 0;
+  while (count < 600 && (made[count] = semget(IPC_PRIVATE, 250, 0600 | IPC_CREAT)) >= 0) ++count;
+  const int limited = count < 600;
+  while (count > 0) semctl(made[--count], 0, IPC_RMID);
+  if (limited) abort();
+}
+ATTACK(makes_semaphores, make_semaphores())
+static void make_message_queues(void) {
+  int made[100], count = 0;
+  while (count < 100 && (made[count] = msgget(IPC_PRIVATE, 0600 | IPC_CREAT)) >= 0) ++count;
+  const int limited = count < 100;
+  while (count > 0) msgctl(made[--count], IPC_RMID, 0);
+  if (limited) abort();
+}
+ATTACK(makes_message_queues, make_message_queues())
 ATTACK(
     eats_memfd, for (;;) {
       int fd = memfd_create("x", 0);

@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -19,6 +20,7 @@
 #include <thread>
 
 #include "core/lanes/verdicts.h"
+#include "core/message_testing.h"
 #include "core/programs/process_state.h"
 #include "core/programs/run_program.h"
 #include "core/stop.h"
@@ -213,7 +215,9 @@ constexpr Attack kAttacks[] = {{"writes_zeros"},
                                {"children_eat"},
                                {"waits_uninterruptibly"},
                                {"eats_shared"},
-                               {"eats_system_v", false},
+                               {"eats_system_v"},
+                               {"makes_semaphores"},
+                               {"makes_message_queues"},
                                {"eats_memfd"},
                                {"eats_dev_shm", false},
                                {"lifts_limits"},
@@ -235,26 +239,95 @@ INSTANTIATE_TEST_SUITE_P(Subjects, EveryAttack, testing::Combine(testing::Values
                                   (std::get<1>(of.param) ? "" : "_without_namespaces");
                          });
 
-TEST_F(Hostile, PageTablesAreMemory) {
-  constexpr std::size_t kPages = 10'000, kStep = 2 << 20;
+// The usage of a child that does `work` and then waits, counted up to `most`.
+std::uint64_t usage_after(const std::function<bool()>& work, std::uint64_t most = std::uint64_t{1} << 40) {
   int ready[2];
-  ASSERT_EQ(pipe2(ready, O_CLOEXEC), 0);
+  EXPECT_EQ(pipe2(ready, O_CLOEXEC), 0);
   const pid_t child = fork();
   if (child == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    void* at = mmap(nullptr, kPages * kStep, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (at == MAP_FAILED) _exit(1);
-    madvise(at, kPages * kStep, MADV_NOHUGEPAGE);
-    for (std::size_t i = 0; i < kPages; ++i) (void)static_cast<volatile char*>(at)[i * kStep];
-    if (write(ready[1], "y", 1) == 1) pause();
+    if (work() && write(ready[1], "y", 1) == 1) pause();
     _exit(1);
   }
   close(ready[1]);
   char said = 0;
   EXPECT_EQ(read(ready[0], &said, 1), 1);
   close(ready[0]);
+  const std::uint64_t bytes = usage_of_descendants(most, 64).bytes;
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  return bytes;
+}
+
+TEST_F(Hostile, PageTablesAreMemory) {
+  constexpr std::size_t kPages = 10'000, kStep = 2 << 20;
+  const auto read_pages = [] {
+    void* at = mmap(nullptr, kPages * kStep, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (at == MAP_FAILED) return false;
+    madvise(at, kPages * kStep, MADV_NOHUGEPAGE);
+    for (std::size_t i = 0; i < kPages; ++i) (void)static_cast<volatile char*>(at)[i * kStep];
+    return true;
+  };
   for (const std::uint64_t most : {std::uint64_t{1} << 40, std::uint64_t{1} << 20})  // both ways to count
-    EXPECT_GE(usage_of_descendants(most, 64).bytes, std::min<std::uint64_t>(kPages * 4096, most));
+    EXPECT_GE(usage_after(read_pages, most), std::min<std::uint64_t>(kPages * 4096, most));
+}
+
+constexpr std::size_t kEaten = 64 << 20;
+
+char* written(int flags) {
+  void* at = mmap(nullptr, kEaten, PROT_READ | PROT_WRITE, flags | MAP_ANONYMOUS, -1, 0);
+  if (at == MAP_FAILED) _exit(1);
+  std::fill_n(static_cast<char*>(at), kEaten, '1');
+  return static_cast<char*>(at);
+}
+
+// Forks a child that waits; it ends with its parent.
+bool fork_idle() {
+  const pid_t idle = fork();
+  if (idle == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    for (;;) pause();
+  }
+  return idle > 0;
+}
+
+TEST_F(Hostile, SharedMemoryThatNoPageTableShowsIsMemory) {
+  EXPECT_GE(usage_after([] { return madvise(written(MAP_SHARED), kEaten, MADV_DONTNEED) == 0; }), kEaten);
+  EXPECT_GE(usage_after([] {
+              char* at = written(MAP_SHARED);
+              return madvise(at, kEaten, MADV_DONTNEED) == 0 && fork_idle() && munmap(at, kEaten) == 0;
+            }),
+            kEaten);
+  // Several processes that map it count it once.
+  EXPECT_LT(usage_after([] { return written(MAP_SHARED) && fork_idle() && fork_idle(); }), 2 * kEaten);
+}
+
+// Only root may ask how much of it there is; see subjects/README.md.
+TEST_F(Hostile, SharedMemoryOfWhichAPartIsMappedIsMemory) {
+  if (geteuid() != 0 || !fs::exists("/proc/self/map_files")) GTEST_SKIP() << "only for root";
+  const std::uint64_t bytes = usage_after([] { return munmap(written(MAP_SHARED) + 4096, kEaten - 4096) == 0; });
+  EXPECT_GE(bytes, kEaten);
+}
+
+TEST_F(Hostile, MemoryOfAProcessWhoseFirstThreadHasEndedIsMemory) {
+  int ready[2];
+  ASSERT_EQ(pipe2(ready, O_CLOEXEC), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    written(MAP_PRIVATE);
+    std::thread([&] {
+      while (process_state(getpid()) != 'Z') usleep(1000);
+      if (write(ready[1], "y", 1) == 1) pause();
+      _exit(1);
+    }).detach();
+    syscall(SYS_exit, 0);  // only this thread
+  }
+  close(ready[1]);
+  char said = 0;
+  EXPECT_EQ(read(ready[0], &said, 1), 1);
+  close(ready[0]);
+  EXPECT_GE(usage_of_descendants(std::uint64_t{1} << 40, 64).bytes, kEaten);
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
 }
@@ -632,6 +705,16 @@ TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
     EXPECT_EQ(run_program({{"no-such-program"}, 600, namespaces}, scratch.path(), said), 127);
     EXPECT_EQ(said, "No such file or directory\n");
     EXPECT_THROW(run("setsid sleep 1000 & sleep 1001", 0.2), std::runtime_error);
+    try {  // tail keeps the last line, here 300 MiB, and then waits
+      run_program({{"sh", "-c", "{ head -c 300M /dev/zero; sleep 1000; } | tail -n 1"}, 600, namespaces, 100},
+                  scratch.path(), said);
+      ADD_FAILURE() << "no limit of memory";
+    } catch (const std::runtime_error& error) {
+      EXPECT_TRUE(names(error.what(), {"head -c 300M", "100 MiB", "memory"})) << error.what();
+    }
+    EXPECT_NE(run("truncate -s 2G large", 600), 0);  // a file without blocks
+    EXPECT_FALSE(fs::exists("large") && fs::file_size("large") > (std::uint64_t{1} << 30));
+    fs::remove("large");
     const pid_t asking = fork();
     if (asking == 0) {
       const Scratch own(folder / "killed");

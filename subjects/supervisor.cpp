@@ -235,7 +235,7 @@ class Supervisor {
     close_range(static_cast<unsigned>(to[count - 1]) + 1, ~0u, 0);
     if (limits_.bytes > 0) {  // foreign code, and not a device's driver
       drop_rights();
-      forbid_calls();
+      forbid_calls(limits_.system_v);
     }
     execv("/proc/self/exe", arguments_);
     _exit(127);
@@ -359,7 +359,7 @@ class Supervisor {
 
 int supervise(const Limits& limits, char* const* arguments) { return Supervisor(limits, arguments).run(); }
 
-int supervise_program(double seconds, const std::string& scratch, char* const* words) {
+int supervise_program(double seconds, std::uint64_t bytes, const std::string& scratch, char* const* words) {
   const Time until = after(seconds);
   const pid_t self = getpid(), program = fork();
   if (program == 0) {
@@ -376,10 +376,14 @@ int supervise_program(double seconds, const std::string& scratch, char* const* w
   bool ended = false, wanted = true;
   while (process >= 0 && wanted && !ended && Clock::now() < until) {
     pollfd news[] = {{process, POLLIN, 0}, {kControlFd, POLLRDHUP, 0}};
-    if (poll(news, 2, 1000) < 0 && errno != EINTR) break;
+    if (poll(news, 2, 100) < 0 && errno != EINTR) break;
     ended = news[0].revents;
     wanted = !news[1].revents;
     tell_alive();
+    if (!ended && usage_of_descendants(bytes, 1 << 20).bytes > bytes) {
+      status = kTookTooMuchMemory;
+      break;
+    }
   }
   if (ended && waitpid(program, &status, 0) == program)
     status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

@@ -13,7 +13,8 @@ struct Limits {
   double load_seconds = 60;  // to load the code and start a worker
   std::uint64_t bytes = 0;   // memory of all its processes together; 0: unlimited
   std::uint64_t processes = 64;
-  bool program = false;  // it answers by lines
+  bool program = false;   // it answers by lines
+  bool system_v = false;  // it may make System V memory, semaphores and message queues, which have limits then
 };
 
 // Answers blocks on kControlFd until graze closes it, then ends all processes that it started.
@@ -22,8 +23,8 @@ struct Limits {
 int supervise(const Limits& limits, char* const* arguments);
 
 // Runs a program, ends all processes that it started, and sends its exit status to graze as an int; -1 when it ran too
-// long. If graze closes kControlFd first, also removes the program's temporary folder `scratch`.
-// Returns: the exit status.
-int supervise_program(double seconds, const std::string& scratch, char* const* words);
+// long, kTookTooMuchMemory when all its processes together used more than `bytes`. If graze closes kControlFd first,
+// also removes the program's temporary folder `scratch`. Returns: the exit status.
+int supervise_program(double seconds, std::uint64_t bytes, const std::string& scratch, char* const* words);
 
 }  // namespace graze::subjects

@@ -68,7 +68,8 @@ int run_program(const Program& program, const fs::path& scratch, std::string& ou
   const std::string log = scratch / "output.txt";
   const int to = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   if (to < 0) throw std::runtime_error(cannot("write", log, errno));
-  std::vector<std::string> arguments{"--run", std::to_string(program.seconds), scratch, program.namespaces ? "1" : "0"};
+  std::vector<std::string> arguments{"--run", std::to_string(program.seconds), scratch, program.namespaces ? "1" : "0",
+                                     std::to_string(program.mib)};
   arguments.insert(arguments.end(), program.words.begin(), program.words.end());
   SupervisorProcess supervisor("graze-subject-host", arguments, {}, to);
   close(to);
@@ -77,6 +78,9 @@ int run_program(const Program& program, const fs::path& scratch, std::string& ou
   int status = -1;
   if (supervisor.receive(&status, sizeof status) != sizeof status)
     throw std::runtime_error(shown(text) + ": its supervisor ended before it did");
+  if (status == kTookTooMuchMemory)
+    throw std::runtime_error(shown(text) + ": used more than " + std::to_string(program.mib) +
+                             " MiB of memory, so it was killed");
   if (status < 0)
     throw std::runtime_error(shown(text) + ": not finished within " + rounded_up(program.seconds, 4) +
                              " s, so it was killed");

@@ -3,6 +3,7 @@
 // supervisor runs each program and all its children, in a process namespace of their own if the system allows one.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -28,11 +29,13 @@ struct Program {
   std::vector<std::string> words;  // run without a shell
   double seconds = 1800;           // time limit
   bool namespaces = true;          // whether to try a process namespace
+  std::uint64_t mib = 8192;        // memory of all its processes together
 };
 
 // Runs the program with `scratch` for its temporary files. If graze is killed, the supervisor removes `scratch`.
 // Returns: the exit status, or 128 plus the signal, as a shell does; 127 if there is no such program.
-// output: what it wrote to both streams.   Throws: Stopped; std::runtime_error if it takes too long.
+// output: what it wrote to both streams.   Throws: Stopped; std::runtime_error if it takes too long or too
+// much memory. Each file that it writes may have up to 1 GiB.
 int run_program(const Program& program, const std::filesystem::path& scratch, std::string& output);
 
 }  // namespace graze

@@ -13,6 +13,9 @@ namespace graze {
 // While graze waits, the supervisor sends this one-byte message at least once a second.
 inline constexpr char kAlive = 1;
 
+// A supervisor of a build tool reports this, not an exit status.
+inline constexpr int kTookTooMuchMemory = -2;
+
 class SupervisorProcess {
  public:
   // program: its file name, in the folder of the running program. It gets its end of a socket as descriptor 3, and the

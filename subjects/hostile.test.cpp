@@ -283,10 +283,11 @@ char* written(int flags) {
 
 // Forks a child that waits; it ends with its parent.
 bool fork_idle() {
-  const pid_t idle = fork();
+  const pid_t parent = getpid(), idle = fork();
   if (idle == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    for (;;) pause();
+    while (getppid() == parent) pause();
+    _exit(0);
   }
   return idle > 0;
 }

@@ -25,13 +25,6 @@ int open_process(pid_t process);
 // Whether the process descends from the calling one. Unreliable for a process that may end; see open_process.
 bool is_descendant(pid_t process);
 
-struct Usage {
-  std::uint64_t processes,
-      bytes;  // of memory and page tables; shared memory counts once, and each process has its share of pages of files
-};
-// Current usage of all descendants. Stops counting a little beyond `most_bytes` or `most_processes`.
-Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processes);
-
 // Kills all children except one, and their descendants.   Returns: whether none is left.
 bool end_children(pid_t except);
 

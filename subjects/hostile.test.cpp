@@ -28,6 +28,7 @@
 #include "subjects/containment.h"
 #include "subjects/process.h"
 #include "subjects/source_build.h"
+#include "subjects/usage.h"
 
 namespace graze::subjects {
 namespace {

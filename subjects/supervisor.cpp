@@ -26,6 +26,7 @@
 #include "core/programs/supervisor_process.h"
 #include "subjects/containment.h"
 #include "subjects/questions.h"
+#include "subjects/usage.h"
 
 namespace graze::subjects {
 namespace {

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subjects/usage.h"
+
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+#include <map>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "core/programs/process_state.h"
+
+namespace graze::subjects {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<pid_t> read_children(const std::string& file) {
+  std::ifstream in(file);
+  std::vector<pid_t> found;
+  for (pid_t child; in >> child;) found.push_back(child);
+  return found;
+}
+
+// The children of all threads of the process.
+std::vector<pid_t> children_of(pid_t process) {
+  std::vector<pid_t> found;
+  std::error_code error;
+  for (fs::directory_iterator task("/proc/" + std::to_string(process) + "/task", error), end; !error && task != end;
+       task.increment(error)) {
+    for (const pid_t child : read_children(task->path() / "children")) found.push_back(child);
+  }
+  return found;
+}
+
+// The sum of fields that the file gives in KiB.
+std::uint64_t bytes_in(const fs::path& file, std::initializer_list<std::string_view> names) {
+  std::ifstream in(file);
+  std::uint64_t kib = 0;
+  for (std::string line; std::getline(in, line);) {
+    for (const std::string_view name : names) {
+      if (line.starts_with(name)) kib += std::strtoull(line.c_str() + name.size(), nullptr, 10);
+    }
+  }
+  return kib << 10;
+}
+
+// /proc of a process. Where its first thread has ended and others run, the system shows the memory only of those.
+fs::path memory_folder(pid_t process) {
+  const fs::path folder = "/proc/" + std::to_string(process);
+  std::error_code error;
+  if (process_state(process) == 'Z') {
+    for (fs::directory_iterator task(folder / "task", error), end; !error && task != end; task.increment(error)) {
+      const std::string thread = task->path().filename();
+      if (process_state(std::stoi(thread)) != 'Z') return "/proc/" + thread;
+    }
+  }
+  return folder;
+}
+
+// Memory that several processes can map, such as MAP_SHARED | MAP_ANONYMOUS: its inode and bytes. It stays while any
+// part of it is mapped, even if no page table shows it.
+using Shared = std::map<std::uint64_t, std::uint64_t>;
+
+// The device of the file system that has this memory. It is the same for memfd_create.
+dev_t shared_device() {
+  struct stat file {};
+  const int fd = memfd_create("graze-device", MFD_CLOEXEC);
+  if (fd < 0 || fstat(fd, &file) != 0) file.st_dev = 0;
+  if (fd >= 0) close(fd);
+  return file.st_dev;
+}
+
+// Adds what the process maps of shared memory.   Returns: the bytes that were not in `shared` before.
+std::uint64_t add_shared(std::ifstream& maps, const fs::path& folder, Shared& shared) {
+  static const dev_t device = shared_device();
+  std::uint64_t more = 0;
+  for (std::string line; std::getline(maps, line);) {
+    unsigned long from = 0, to = 0, offset = 0, inode = 0;
+    unsigned of_major = 0, of_minor = 0;
+    char flags[5] = {};
+    if (std::sscanf(line.c_str(), "%lx-%lx %4s %lx %x:%x %lu", &from, &to, flags, &offset, &of_major, &of_minor,
+                    &inode) != 7 ||
+        flags[3] != 's' || makedev(of_major, of_minor) != device)
+      continue;
+    // Only root may ask for the bytes in use. For others, the end of what is mapped counts, used or not.
+    struct stat file {};
+    char name[64];
+    std::snprintf(name, sizeof name, "map_files/%lx-%lx", from, to);
+    const std::uint64_t bytes = stat((folder / name).c_str(), &file) == 0
+                                    ? 512 * static_cast<std::uint64_t>(file.st_blocks)
+                                    : offset + (to - from);
+    std::uint64_t& known = shared[inode];
+    more += bytes - std::min(bytes, known);
+    known = std::max(bytes, known);
+  }
+  return more;
+}
+
+// Memory of a process without shared memory, its page tables included. Counts whole pages of files first, which is
+// fast; if that exceeds `most`, counts shares of them.
+std::uint64_t bytes_of(const fs::path& folder, std::uint64_t most) {
+  const std::uint64_t whole = bytes_in(folder / "status", {"RssAnon:", "RssFile:", "VmSwap:", "VmPTE:"});
+  if (whole <= most) return whole;
+  return bytes_in(folder / "smaps_rollup", {"Pss_Anon:", "Pss_File:", "SwapPss:"}) +
+         bytes_in(folder / "status", {"VmPTE:"});
+}
+
+}  // namespace
+
+std::vector<pid_t> own_children() { return read_children("/proc/thread-self/children"); }
+
+Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processes) {
+  Usage usage{};
+  Shared shared;
+  for (std::vector<pid_t> left = own_children(); !left.empty();) {
+    const pid_t process = left.back();
+    left.pop_back();
+    ++usage.processes;
+    const fs::path folder = memory_folder(process);
+    std::ifstream maps(folder / "maps");
+    if (!maps && errno == EACCES) {  // a process that hides its pages counts with all its addresses
+      usage.bytes += bytes_in(folder / "status", {"VmSize:", "VmSwap:", "VmPTE:"});
+    } else {
+      usage.bytes += add_shared(maps, folder, shared);
+      // Counts shares of the pages of files once whole pages would exceed the limit.
+      usage.bytes += bytes_of(folder, most_bytes > usage.bytes ? (most_bytes - usage.bytes) / 2 : 0);
+    }
+    if (usage.processes > most_processes || usage.bytes > most_bytes) break;
+    for (const pid_t child : children_of(process)) left.push_back(child);
+  }
+  return usage;
+}
+
+}  // namespace graze::subjects

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// The processes and the memory of all descendants of this process, by /proc.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace graze::subjects {
+
+std::vector<pid_t> own_children();  // of the calling thread
+
+struct Usage {
+  std::uint64_t processes,
+      bytes;  // of memory and page tables; shared memory counts once, and each process has its share of pages of files
+};
+// Current usage of all descendants. Stops counting a little beyond `most_bytes` or `most_processes`.
+Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processes);
+
+}  // namespace graze::subjects

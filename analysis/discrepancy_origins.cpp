@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <string_view>
 
 #include "analysis/sweep.h"
 #include "core/discrepancy/count.h"
@@ -18,16 +17,12 @@ namespace {
 
 constexpr std::uint64_t kPairsTraced = 64;  // pairs
 
-bool same_line(const cuda::SourceLine& l, const cuda::SourceLine& r) {
-  return l.line == r.line && std::string_view(l.file) == r.file;
-}
-
 std::vector<FusedLine> lines_of(const Lane& lane) {
   const std::span<const cuda::ContractionSite> sites = cuda::record_sites(lane);
   std::vector<FusedLine> lines;
   for (std::size_t s = 0; s < sites.size(); ++s) {
     const auto known = std::find_if(lines.begin(), lines.end(), [&](const FusedLine& line) {
-      return same_line(line.at, sites[s].at) && same_line(line.from, sites[s].from);
+      return line.at == sites[s].at && line.from == sites[s].from;
     });
     FusedLine& line = known == lines.end() ? lines.emplace_back() : *known;
     line.at = sites[s].at;

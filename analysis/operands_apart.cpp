@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <map>
-#include <string_view>
+#include <type_traits>
 
 #include "analysis/apart.h"
 #include "analysis/discrepancy.h"
+#include "core/discrepancy/count.h"
 
 namespace graze::analysis {
 namespace {
@@ -25,24 +25,13 @@ struct Run {
   Verdict verdict = Verdict::declined;
 };
 
-int sign_of(const cuda::Comparison& c) {
-  return c.left < c.right ? -1 : c.left > c.right ? 1 : c.left == c.right ? 0 : 2;
-}
-
-bool same_number(double l, double r) {
-  return std::bit_cast<std::uint64_t>(l) == std::bit_cast<std::uint64_t>(r) || (std::isnan(l) && std::isnan(r));
-}
-
 class OperandCounts {
  public:
   explicit OperandCounts(const Lane& fused)
       : fused_(fused), all_(1 + cuda::contraction_sites(fused).size() / 64, ~std::uint64_t{0}), none_(all_.size()) {
-    const auto same = [](const cuda::SourceLine& l, const cuda::SourceLine& r) {
-      return l.line == r.line && std::string_view(l.file) == r.file;
-    };
     for (const cuda::ComparisonSite& site : cuda::comparison_sites(fused)) {
       auto line = std::find_if(result_.lines.begin(), result_.lines.end(),
-                               [&](const LineApart& of) { return same(of.at, site.at) && same(of.from, site.from); });
+                               [&](const LineApart& of) { return of.at == site.at && of.from == site.from; });
       if (line == result_.lines.end()) line = result_.lines.insert(line, {site.at, site.from});
       by_ptx_line_[site.ptx_line] = static_cast<std::size_t>(line - result_.lines.begin());
     }
@@ -75,10 +64,11 @@ class OperandCounts {
 
   void count_operands(LineApart& line, const cuda::Comparison& l, const cuda::Comparison& r) const {
     ++line.compared;
-    if (same_number(l.left, r.left) && same_number(l.right, r.right)) return;
+    if (same_bits(l.left, r.left) && same_bits(l.right, r.right)) return;
     ++line.differs;
-    line.sign += sign_of(l) != sign_of(r);
-    if (!std::isfinite(l.left) || !std::isfinite(l.right) || !std::isfinite(r.left) || !std::isfinite(r.right)) {
+    line.sign += order_of(l.left, l.right) != order_of(r.left, r.right);
+    if (!is_finite_value(l.left) || !is_finite_value(l.right) || !is_finite_value(r.left) ||
+        !is_finite_value(r.right)) {
       ++line.not_finite;
       return;
     }

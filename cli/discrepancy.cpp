@@ -17,6 +17,7 @@
 #include "reports/discrepancy.h"
 #include "reports/discrepancy_answer.h"
 #include "reports/discrepancy_page.h"
+#include "reports/recorded_code.h"
 #include "reports/verdicts_apart.h"
 #include "subjects/subjects.h"
 
@@ -186,8 +187,7 @@ int discrepancy(const DiscrepancyOptions& options) {
   for (const analysis::TwoDeciders& deciders : comparisons.verdicts) {
     for (const Lane* lane : deciders.lanes) foreign.push_back(lane->id);
   }
-  for (const fuzz::Json& row : subjects::record(foreign))
-    json["subjects"].push_back({{"name", row.at("name")}, {"what", row.at("what")}, {"hash", row.at("hash")}});
+  if (const fuzz::Json code = reports::code_json(subjects::record(foreign)); !code.is_null()) json["subjects"] = code;
   for (const std::string& sentence : reports::discrepancy_answer(json))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
   write_results(folder.path, {{"discrepancy.json", fuzz::sealed(json).dump(1) + "\n"},

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "fuzz/counts_json.h"
+#include "reports/recorded_code.h"
 #include "reports/tables.h"
 #include "reports/terminal.h"
-#include "reports/verdicts_apart.h"
 
 namespace graze::reports {
 

@@ -30,8 +30,6 @@ struct Field {
   std::string bucket;
 };
 
-std::string octave(int k) { return fmt::format("2^{}", k); }
-
 void add_octaves(std::vector<Field>& fields, const char* name, int at, int count, int lowest) {
   for (int k = 0; k < count; ++k) fields.push_back({name, at + k, octave(lowest + k)});
 }
@@ -202,19 +200,16 @@ Json origins_json(const analysis::Origins& origins, const std::vector<Question>&
                      {"simplest", line.simplest ? coordinates_of(*line.simplest) : Json()}});
   }
   for (const auto& [place, start] : origins.starts) {
-    Json by_line = Json::object(), growth = Json::object();
+    Json by_line = Json::object();
     for (std::size_t l = 0; l < origins.lines.size(); ++l) {
       if (start.by_line[l]) by_line[std::to_string(l)] = start.by_line[l];
-    }
-    for (std::size_t k = 0; k < start.growth.size(); ++k) {
-      if (start.growth[k]) growth[octave(static_cast<int>(k))] = start.growth[k];
     }
     starts.push_back(
         {{"value", questions[static_cast<std::size_t>(place.first)].of[static_cast<std::size_t>(place.second)]},
          {"question", questions[static_cast<std::size_t>(place.first)].name},
          {"by_line", by_line},
          {"by_several_lines", start.by_line.back()},
-         {"growth", growth}});
+         {"growth", octaves_json(start.growth)}});
   }
   return {{"pairs", origins.pairs}, {"verdicts", origins.verdicts}, {"lines", lines}, {"starts", starts}};
 }

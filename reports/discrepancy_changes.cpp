@@ -5,9 +5,9 @@
 
 #include "reports/discrepancy.h"
 #include "reports/discrepancy_reading.h"
+#include "reports/recorded_code.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"
-#include "reports/verdicts_apart.h"
 
 namespace graze::reports {
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reports/discrepancy_reading.h"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 
 namespace graze::reports {
@@ -15,6 +17,16 @@ std::uint64_t number_at(const ordered_json& json, const std::string& key) {
 
 double part_of(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+std::string octave(int k) { return fmt::format("2^{}", k); }
+
+ordered_json octaves_json(std::span<const std::uint64_t> counts) {
+  ordered_json histogram = ordered_json::object();
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    if (counts[k]) histogram[octave(static_cast<int>(k))] = counts[k];
+  }
+  return histogram;
 }
 
 std::optional<int> quantile(const Octaves& octaves, double share) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads discrepancy.json (docs/formats.md) for its page, sentences and pictures.
+// Reads discrepancy.json (docs/formats.md) for its page, sentences and pictures; the names of its buckets.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,10 @@ inline std::string text_at(const nlohmann::ordered_json& json, const char* key) 
 
 // part / whole; 0 of nothing.
 double part_of(std::uint64_t part, std::uint64_t whole);
+
+// The name of a bucket by its exponent, and a histogram with the buckets that are not zero.
+std::string octave(int k);
+nlohmann::ordered_json octaves_json(std::span<const std::uint64_t> counts);
 
 // The exponent of a bucket's name, "2^-3".
 inline int power_of(const std::string& bucket) { return std::stoi(bucket.substr(2)); }

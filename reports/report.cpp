@@ -19,6 +19,7 @@
 #include "reports/failure_cards.h"
 #include "reports/findings.h"
 #include "reports/possible_counts.h"
+#include "reports/recorded_code.h"
 #include "reports/tables.h"
 #include "reports/terminal.h"
 #include "strata/strata.h"
@@ -50,10 +51,7 @@ Json run_of(const std::filesystem::path& directory, const Json& summary, const C
               {"build", build},
               {"scene", summary.at("spec").contains("scene") ? summary["spec"]["scene"].at("name") : Json()},
               {"machine", machines(directory)}};
-  const Json& spec = summary["spec"];
-  if (!spec.contains("subjects")) return run;
-  for (const Json& row : spec["subjects"])
-    run["subjects"].push_back({{"name", row.at("name")}, {"what", row.at("what")}, {"hash", row.at("hash")}});
+  if (const Json code = code_json(summary["spec"].value("subjects", Json())); !code.is_null()) run["subjects"] = code;
   return run;
 }
 

@@ -44,14 +44,6 @@ constexpr LineCount kLineCounts[] = {
     {"sign", &analysis::LineApart::sign},           {"outcome", &analysis::LineApart::outcome},
     {"verdict", &analysis::LineApart::verdict}};
 
-Json octaves_json(const std::array<std::uint64_t, 64>& counts) {
-  Json histogram = Json::object();
-  for (std::size_t k = 0; k < counts.size(); ++k) {
-    if (counts[k]) histogram[fmt::format("2^{}", k)] = counts[k];
-  }
-  return histogram;
-}
-
 Json operands_json(const analysis::OperandsApart& found) {
   Json lines = Json::array();
   for (const analysis::LineApart& of : found.lines) {
@@ -133,21 +125,6 @@ std::vector<VerdictsRow> rows_of(const Json& of) {
 
 std::string line_of(const cuda::SourceLine& line) {
   return *line.file == '\0' ? "" : fmt::format("{}:{}", line.file, line.line);
-}
-
-std::vector<std::string> code_differences(const Json& before, const Json& after) {
-  std::vector<std::string> sentences;
-  const auto words = [](const Json& of) {
-    return fmt::format("{} (hash {})", text_at(of, "what"), text_at(of, "hash"));
-  };
-  for (const Json& old : before.value("subjects", Json::array())) {
-    for (const Json& now : after.value("subjects", Json::array())) {
-      if (old.at("name") == now.at("name") && old.at("hash") != now.at("hash"))
-        sentences.push_back(fmt::format("They differ in the code of {}: {} before, {} after.", text_at(old, "name"),
-                                        words(old), words(now)));
-    }
-  }
-  return sentences;
 }
 
 Json verdicts_json(const analysis::TwoDeciders& deciders, const std::vector<strata::PairSource>& sources,

@@ -16,10 +16,6 @@ namespace graze::reports {
 // "core/vec3.h:48"; empty if the line is not known.
 std::string line_of(const cuda::SourceLine& line);
 
-// A sentence for each subject whose code differs between two results. Each result may have "subjects": [{"name",
-// "what", "hash"}].
-std::vector<std::string> code_differences(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after);
-
 // {"first", "second", "total": {"pairs", "differs", "of_first": counts, "of_second": counts},
 //  "strata": {stratum: the same and the "simplest" {"place", "pair"} that differs}}
 // operands: null if they are not seen. Else there is also "operands": {"pairs", "verdict", "lines": [{"line", "within",

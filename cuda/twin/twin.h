@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "core/lanes/records.h"
 
@@ -51,6 +52,9 @@ std::string twin_evidence(const Lane& lane);
 struct SourceLine {
   const char* file;  // from the repository's root; empty when there is none
   int line;
+  friend bool operator==(const SourceLine& l, const SourceLine& r) {
+    return l.line == r.line && std::string_view(l.file) == r.file;
+  }
 };
 
 // An operation that a kernel rounds once and its source rounds twice.

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// The code that is not ours in a result, and how it differs between two results.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace graze::reports {
+
+// [{"name", "what", "hash"}] of what subjects::record gives; null without subjects.
+nlohmann::ordered_json code_json(const nlohmann::ordered_json& recorded);
+
+// A sentence for each subject whose code differs between two results. Each may have "subjects" of code_json.
+std::vector<std::string> code_differences(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after);
+
+}  // namespace graze::reports

@@ -250,6 +250,17 @@ void print_shard(const std::string& out, const Json& summary, bool json) {
       summary["shard"].get<std::string>(), reports::counted(summary["pairs"], "pair"),
       reports::counted(summary["disagreements"], "disagreement"), reports::counted(summary["signatures"], "signature"),
       out);
+  std::cout << not_covered_text(summary);
+}
+
+std::string not_covered_text(const Json& summary) {
+  std::string text;
+  for (const Json& subject : summary["spec"].value("subjects", Json::array())) {
+    if (subject.contains("not_covered"))
+      text += fmt::format("{}: Graze does not notice a change of {}.\n", subject["name"].get<std::string>(),
+                          subject["not_covered"].get<std::string>());
+  }
+  return text;
 }
 
 void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool json,
@@ -261,12 +272,7 @@ void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool j
     return;
   }
   reports::print_summary(std::cout, summary, outcome.oracle, output_screen());
-  std::cout << left_out_text(left_out);
-  for (const Json& subject : summary["spec"].value("subjects", Json::array())) {
-    if (subject.contains("not_covered"))
-      std::cout << fmt::format("{}: Graze does not notice a change of {}.\n", subject["name"].get<std::string>(),
-                               subject["not_covered"].get<std::string>());
-  }
+  std::cout << left_out_text(left_out) << not_covered_text(summary);
   std::cout << fmt::format(
       "\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", out);
   if (summary["signatures"].empty()) return;

@@ -68,6 +68,7 @@ int main(int argc, char** argv) {
   app.footer("Run `graze VERB --help` for the options of a verb.");  // verbs that exist already keep their own footers
   graze::cli::add_force(app);
   try {
+    std::cout.exceptions(std::ios_base::badbit);
     expect_verb(app, argc > 1 ? argv[1] : "");
     app.parse(argc, argv);
     errno = 0;
@@ -75,6 +76,7 @@ int main(int argc, char** argv) {
       throw std::runtime_error(graze::cannot("write", "standard output", errno != 0 ? errno : EIO));
     return status;
   } catch (const CLI::Success& help) {
+    std::cout.exceptions(std::ios_base::goodbit);
     app.exit(help);
     return std::cout.flush() ? 0 : 1;
   } catch (const CLI::ParseError& error) {
@@ -85,6 +87,8 @@ int main(int argc, char** argv) {
     return fail("interrupted", graze::cli::kInterrupted);
   } catch (const graze::UsageError& error) {
     return fail(error.what(), 2);
+  } catch (const std::ios_base::failure&) {  // only std::cout throws it
+    return fail(graze::cannot("write", "standard output", errno != 0 ? errno : EIO), 1);
   } catch (const std::exception& error) {
     constexpr std::string_view kByFmt = "cannot write to file";  // fmt does not know that this is standard output
     std::string what = error.what();

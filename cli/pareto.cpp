@@ -40,7 +40,6 @@ struct Measured {
 
 // Why the lane's time cannot be measured: the time of a twin or a process is not the time of the code.
 std::string why_not_timed(const Lane& lane, bool device) {
-  if (lane.foreign) return "pareto times no foreign code";
   if (device) return backends::backend_of(lane).has_device ? "" : "--device times only CUDA lanes";
   return lane.decide ? "" : "only --device times CUDA lanes";
 }
@@ -109,11 +108,9 @@ int pareto(ParetoOptions options) {
   } else if (options.lanes.globs.empty()) {
     options.lanes.globs = {"*/cpu", "exact/f32/cpu", "moller_1997/*/cpu/paper", "guigue_devillers_2003/*/cpu/filtered"};
   }
-  if (options.device) {
-    std::string why_not;
-    if (!cuda::open_device(why_not)) throw std::runtime_error("--device needs a CUDA device: " + why_not);
-    options.lanes.executor = fuzz::Executor::device;
-  }
+  options.lanes.executor = options.device ? fuzz::Executor::device : fuzz::Executor::twin;
+  if (std::string why_not; options.device && !cuda::open_device(why_not))
+    throw std::runtime_error("--device needs a CUDA device: " + why_not);
   fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
   say_left_out(leave_out(under_test, [&](const Lane& lane) { return why_not_timed(lane, options.device); }));
   const Measured lanes = measured(options, under_test);
@@ -164,7 +161,7 @@ void add_pareto(CLI::App& app, int& status) {
       "pareto", "Measure errors against nanoseconds per pair, and how extreme pairs may be before a lane fails");
   command->footer("Example: graze pareto --strata 'near_*' --pairs 20k");
   const auto options = std::make_shared<ParetoOptions>();
-  add_lane_options(*command, options->lanes, Executors::twins);
+  add_globs(*command, "--lanes", options->lanes.globs, "Patterns of the lanes to run");
   command->get_option("--lanes")->default_str("common CPU lanes, or CUDA lanes with --device");
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);

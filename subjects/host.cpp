@@ -297,7 +297,11 @@ constexpr rlim_t kMostFileBytes = rlim_t{1} << 30;
 
 // Limits that the system keeps for each process. The supervisor checks the sum over all processes.
 void set_limits(const char* mib) {
+#ifdef __SANITIZE_ADDRESS__
+  static_cast<void>(mib);  // the sanitizer's shadow memory counts as data
+#else
   set_limit(RLIMIT_DATA, std::strtoull(mib, nullptr, 10) << 20);
+#endif
   set_limit(RLIMIT_CORE, 0);
   set_limit(RLIMIT_FSIZE, kMostFileBytes);
   set_limit(RLIMIT_NOFILE, 1024);  // a socket's buffers are system memory, which is not charged to the process

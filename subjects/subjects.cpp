@@ -61,7 +61,8 @@ std::string kind_of(std::string_view file) {
 Opened parsed(const Wanted& wanted) {
   Opened result;
   result.wanted = wanted;
-  if (wanted.what.starts_with(kCommand)) {
+  const bool blank = wanted.what.find_first_not_of(" \t\n", kCommand.size()) == std::string::npos;
+  if (wanted.what.starts_with(kCommand) && !blank) {
     result.kind = "command";
     result.code = hash_of_command(wanted.what.substr(kCommand.size()));
     result.hash = result.code.hash;

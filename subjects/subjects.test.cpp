@@ -431,6 +431,7 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
   expect_error("x", "expected NAME=WHAT .* found 'x'");
   expect_error("a/b=" + so, "expected NAME=WHAT");
   expect_error("x=", "expected NAME=WHAT");
+  expect_error("x=cmd: ", "expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found .*cmd:");
   expect_error("x=mine.txt", "expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found .*mine.txt");
   expect_error("x=nothere.so", "cannot read the code in .*nothere.so.: No such file");
   expect_error("x=" + std::string(100'000, 'y') + ".so", "cannot read the code in .*: File name too long");

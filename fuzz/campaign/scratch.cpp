@@ -16,12 +16,15 @@ fs::path scratch_of(const fs::path& disk, const fs::path& directory) {
 }
 
 void fetch_from_directory(const Campaign& campaign) {
-  std::error_code error;
-  for (const fs::path& folder : {campaign.scratch, campaign.directory}) {
+  const auto make = [](const fs::path& folder) {
+    std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw std::runtime_error(cannot("make the directory", folder, error.message()));
-  }
+  };
+  make(campaign.scratch);
+  make(campaign.directory);
   const FolderLock alone(campaign.scratch, FolderLock::WhenTaken::refuse);
+  make(campaign.scratch);  // a process that ended while this one waited has removed it
   if (fs::exists(campaign.scratch / kDatabase) || !fs::exists(campaign.directory / kDatabase)) return;
   copy_whole(campaign.directory / kDatabase, campaign.scratch / kDatabase);
 }

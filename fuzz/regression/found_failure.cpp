@@ -137,7 +137,7 @@ Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const
         fmt::format("the pair does not fail as recorded: its signature is {}, not {}", found, recorded));
   }
 
-  RegressionCase c{fmt::format("{}_{:016x}", algorithm, fnv1a(failure.signature)),
+  RegressionCase c{case_name(failure.signature),
                    failure.entry.pair,
                    std::string(name(now.truth.verdict)),
                    std::string(name(now.truth.contact)),

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "analysis/signature.h"
+#include "core/fnv1a.h"
 #include "core/text.h"
 #include "fuzz/campaign/result_files.h"
 
@@ -121,6 +122,10 @@ std::vector<std::pair<std::string, std::string>> other_fields(const corpus::Entr
   return others;
 }
 
+std::string case_name(const std::string& signature) {
+  return fmt::format("{}_{:016x}", analysis::subject_of(signature), fnv1a(signature));
+}
+
 RegressionCorpus read_regressions(const std::filesystem::path& file) {
   RegressionCorpus corpus;
   for (const corpus::Entry& entry : corpus::read_pairs(file)) {
@@ -130,6 +135,8 @@ RegressionCorpus read_regressions(const std::filesystem::path& file) {
     c.other = other_fields(entry);
     const std::string& signature = line.text("signature");
     if (!analysis::parse_signature(signature)) line.fail("the signature of a failure", '\'' + signature + '\'');
+    if (const std::string own = case_name(signature); c.name != own)
+      line.fail(fmt::format("{}, the name that belongs to its signature", own), '\'' + c.name + '\'');
     if (!corpus.emplace(signature, std::move(c)).second) line.fail("every signature once", "a second " + signature);
   }
   return corpus;

@@ -46,7 +46,10 @@ std::vector<std::pair<std::string, std::string>> other_fields(const corpus::Entr
 // Cases by the signature that they were first seen with.
 using RegressionCorpus = std::map<std::string, RegressionCase>;
 
-// Throws: FormatError, also if the file is missing or holds a signature twice.
+// The name of a case: its subject and a hash of its signature.
+std::string case_name(const std::string& signature);
+
+// Throws: FormatError, also if the file is missing, holds a signature twice, or a name is not that of its signature.
 RegressionCorpus read_regressions(const std::filesystem::path& file);
 
 // Replaces the file atomically.

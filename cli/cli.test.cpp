@@ -197,8 +197,7 @@ TEST_F(Cli, AFullDiskLosesNothing) {
   for (const char* verb : {"strata", "lanes", "lanes --json"})
     expect_error(std::string("graze ") + verb + " > /dev/full", 1, {"standard output", "No space left on device"});
   // The exit status is right even if there is no room for the error message.
-  expect_error("graze dump --strata uniform --pairs 2000 > /dev/full", 1,
-               {"standard output", "No space left on device"});
+  expect_error("graze dump uniform --pairs 2000 > /dev/full", 1, {"standard output", "No space left on device"});
   EXPECT_EQ(shell("graze check nofile 2> /dev/full").status, 1);
   EXPECT_EQ(shell("graze check nofile 2>&-").status, 1);
   EXPECT_EQ(shell("graze fuzz --pairs -1 2> /dev/full").status, 2);

@@ -62,8 +62,8 @@ TEST(Answer, TellsWhatContractionChanges) {
       {"false_positive", 7}, {"false_negative", 3}, {"declined", 0}, {"differs_from_cpu", 10}};
   const auto said = answer_of(summary);
   EXPECT_EQ(said[0],
-            "Use exact/f32/cpu: right on all 1,000 pairs. What it costs is not settled: the campaign has no timings of "
-            "it.");
+            "Use exact/f32/cpu: right on all 1,000 pairs. Its cost depends on the machine; costs.json has it if the "
+            "campaign was timed.");
   EXPECT_EQ(
       said[1],
       "Of the 3 published lanes the least wrong are interval_overlap/f32/cpu and interval_overlap/f32/cuda-nofma: on "

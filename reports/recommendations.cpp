@@ -70,6 +70,7 @@ std::string over_all_strata(const CampaignCounts& counts, const Costs* costs, co
 
 // The cost of exactness, as the end of a sentence.
 std::string price(const CampaignCounts& counts, const Costs* costs, const LaneIndices& exact) {
+  if (!costs) return ". Its cost depends on the machine; costs.json has it if the campaign was timed.";
   const Ground ground = ground_of(counts);
   const int own = cheapest(costs, exact, ground.strata);
   if (own < 0) return ". What it costs is not settled: the campaign has no timings of it.";

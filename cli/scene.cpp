@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 struct SceneVerb {
   std::vector<std::string> files;
   std::string out, poses, units = "units";
+  double sufficient = 0;  // the rate; 0: not asked
 };
 
 std::string relative_to(const fs::path& folder, const std::string& file) {
@@ -82,6 +83,7 @@ void scene(const SceneVerb& options) {
   write_result(options.out, text, fuzz::NamedBy::user);
   fmt::print("Wrote {}: {} triangles, {} pairs whose boxes overlap.\n", options.out,
              reports::grouped(sample.triangles.size()), reports::grouped(sample.pairs));
+  if (options.sufficient > 0) print_sufficient(options.out, options.sufficient);
   fmt::print("Next: graze fuzz --scene {}\n", path_word(options.out));
 }
 
@@ -91,13 +93,16 @@ void add_scene(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand(
       "scene",
       "Measure meshes or pairs, and write a scene that pairs can be drawn from: extent, sizes, grid, kinds of pairs");
-  command->footer("Example: graze scene arm.off table.stl --units mm --out arm.toml");
+  command->footer(
+      "Example: graze scene arm.off table.stl --units mm --out arm.toml\n"
+      "Example: graze scene arm.toml --sufficient 1e-3");
   auto options = std::make_shared<SceneVerb>();
   command
       ->add_option(
           "FILE", options->files,
           "Meshes (" + strata::mesh_formats() +
-              ") or one file of pairs (.pairs). One mesh is measured against itself, several against each other")
+              ") or one file of pairs (.pairs). One mesh is measured against itself, several against each other. With "
+              "--sufficient also a scene (.toml)")
       ->required();
   command
       ->add_option("--poses", options->poses,
@@ -111,7 +116,20 @@ void add_scene(CLI::App& app, int&) {
   command->add_option("--out", options->out, "File for the scene (default: standard output)")
       ->check(not_empty())
       ->option_text("FILE");
-  command->callback([options] { scene(*options); });
+  command
+      ->add_option("--sufficient", options->sufficient,
+                   "Highest rate of wrong verdicts; finds the cheapest lane that keeps it in the scene")
+      ->check(number(1e-6, 0.5))
+      ->option_text("RATE");
+  command->callback([options] {
+    const bool is_scene = fs::path(options->files[0]).extension() == ".toml";
+    if (options->sufficient > 0 && options->out.empty() != is_scene)
+      throw UsageError("--sufficient needs a scene: one that exists alone, or measured ones with --out");
+    if (!is_scene) return scene(*options);
+    if (options->files.size() > 1 || options->sufficient == 0)
+      throw UsageError("graze scene measures meshes or pairs; a scene that exists needs --sufficient");
+    print_sufficient(options->files[0], options->sufficient);
+  });
 }
 
 void add_scene_option(CLI::App& command, std::string& file) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes as users handle them: measured, edited, drawn from, resumed, named by cases, refused in one line.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -134,13 +135,44 @@ TEST_F(SceneVerb, PosesAndSeveralMeshes) {
   expect_error("graze scene hills.off b.off --poses p.csv", 2, {"--poses", "2"});
 }
 
+// Whatever lanes its measurements make the cheapest, a fresh campaign shows that they suffice.
+TEST_F(SceneVerb, WhatSufficesKeepsTheRateInAFreshCampaign) {
+  for (const std::string measured : {"hills.off --out s.toml", "mm.toml"}) {
+    const Ran ran = shell("graze scene " + measured + " --sufficient 0.05 | tr '\\n' ' '");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_NE(ran.out.find("Wrong on at most 0.05 of this scene's pairs: use "), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find("exact/f32/cpu"), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find("far_from_origin: your coordinates"), std::string::npos) << ran.out;
+    const std::regex lane("(?:: use|suffices is) (\\w+/f(?:32|64)/cpu(?:/[^ ,]+[0-9])?)[,:]");
+    int checked = 0;
+    for (std::sregex_iterator at(ran.out.begin(), ran.out.end(), lane), end; at != end; ++at) {
+      const std::string id = (*at)[1], out = fmt::format("c{}", ++checked);
+      if (id.starts_with("exact")) continue;
+      expect_done("rm -rf " + out + "; graze fuzz --scene " + (measured == "mm.toml" ? "mm" : "s") +
+                  ".toml --pairs 40000 --seed 77 --lanes '" + id + "' --out " + out);
+      std::uint64_t pairs = 0, wrong = 0;
+      const Json summary = json(out + "/summary.json");
+      for (const auto& [stratum, row] : summary["strata"].items()) {
+        pairs += row["pairs"].get<std::uint64_t>();
+        const Json& counts = row["lanes"].at(id);
+        wrong += counts["false_positive"].get<std::uint64_t>() + counts["false_negative"].get<std::uint64_t>();
+      }
+      EXPECT_LE(static_cast<double>(wrong), 0.05 * static_cast<double>(pairs)) << id;
+    }
+    EXPECT_GE(checked, 2) << ran.out;
+  }
+}
+
 TEST_F(SceneVerb, WrongUseIsOneLine) {
   expect_error("graze scene missing.off", 1, {"missing.off", "No such file or directory"});
   expect_error("cp hills.off $'\\xff.off'; graze scene $'\\xff.off'", 2, {"UTF-8"});
   expect_error(
       "printf '1 0 0 0 0 1 0 0 0 0 1 0\\n1 0 0 9e37 0 1 0 0 0 0 1 0\\n' > p.csv; graze scene hills.off --poses p.csv",
       1, {"hills.off"});
-  expect_error("graze scene mm.toml", 1, {".off", ".obj", ".stl", ".ply", ".toml"});
+  expect_error("graze scene mm.toml", 2, {"meshes or pairs", "--sufficient"});
+  expect_error("graze scene mm.toml hills.off --sufficient 0.1", 2, {"meshes or pairs", "--sufficient"});
+  expect_error("graze scene hills.off --sufficient 0.1", 2, {"--sufficient", "--out"});
+  expect_error("graze scene mm.toml --sufficient 1", 2, {"--sufficient", "1"});
   expect_error("graze fuzz --scene missing.toml", 1, {"missing.toml", "No such file or directory"});
   expect_error("graze fuzz --scene .", 1, {".", "not a regular file"});
   expect_error("printf 'extent = [0, 1]\\nedges = [1, nan]\\n' > bad.toml; graze fuzz --scene bad.toml", 1,

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze scene --sufficient RATE`: tunes every published host lane in the scene and compares those that keep the rate.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/pareto.h"
+#include "analysis/tuning.h"
+#include "backends/backends.h"
+#include "cli/commands.h"
+#include "cli/screen.h"
+#include "reports/sufficient.h"
+#include "reports/terminal.h"
+
+namespace graze::cli {
+
+namespace {
+
+using reports::Candidate;
+
+// Without an error, 3 / rate pairs show a rate; more leave room for some errors.
+std::uint64_t pairs_for(double rate) { return std::max<std::uint64_t>(100'000, std::llround(std::ceil(6 / rate))); }
+
+// Pairs to choose on and to judge by: all but a mesh's own, which do not depend on the seed and are left for the end.
+std::vector<strata::PairSource> pairs_before(const std::string& scene, std::uint64_t seed, std::uint64_t pairs) {
+  std::vector<strata::PairSource> sources = drawn(scene, seed, pairs, {}).sources;
+  std::erase_if(sources, [](const strata::PairSource& source) { return source.id == "mesh"; });
+  return sources;
+}
+
+}  // namespace
+
+void print_sufficient(const std::string& scene, double rate) {
+  const std::uint64_t pairs = pairs_for(rate);
+  analysis::TuneSpec spec;
+  spec.sources = pairs_before(scene, 1, pairs / 10);
+  spec.others = pairs_before(scene, 2, pairs);
+  spec.max_rate = rate;
+  std::vector<Candidate> candidates;
+  std::vector<Lane> lanes;  // under their tolerances
+  for (const Lane& lane : published_lanes()) {
+    if (lane.exact || lane.variant != Variant::cpu) continue;
+    spec.sweep = analysis::host_sweep(lane);
+    spec.sites = analysis::sites_asked(lane, spec.sources);
+    const analysis::Tuned tuned = analysis::tune(spec);
+    lanes.push_back(tuned.chosen.empty() ? lane : lane_under(lane, tuned.chosen));
+    candidates.push_back({lanes.back().id, lane.scalar, tuned.result, tuned.confirmed, tuned.bound, {}});
+    // Without a tolerance a lane is cheaper, so it may suffice although another tolerance has fewer errors.
+    const double bound = analysis::upper_bound(tuned.zero_confirmed.wrong(), tuned.zero_confirmed.pairs);
+    if (tuned.chosen.empty() || bound > rate) continue;
+    lanes.push_back(lane);
+    candidates.push_back({lane.id, lane.scalar, analysis::TuneResult::satisfied, tuned.zero_confirmed, bound, {}});
+  }
+  const Lane& exact = backends::exact_beside(lanes.front());
+  std::vector<DecideBlock> timed{exact.decide};
+  for (const Lane& lane : lanes) timed.push_back(lane.decide);
+  const std::vector<analysis::Cost> costs = analysis::costs_of(timed, analysis::first_pairs(spec.others, 8192), 9);
+  for (std::size_t c = 0; c < candidates.size(); ++c) candidates[c].cost = costs[c + 1];
+  const strata::SceneSources last = drawn(scene, 3, pairs, {});
+  // The cheapest was chosen among lanes that passed by their errors on these pairs, so others confirm it.
+  for (int best; (best = reports::cheapest_sufficient(candidates)) >= 0;) {
+    Candidate& chosen = candidates[static_cast<std::size_t>(best)];
+    const Lane& lane = lanes[static_cast<std::size_t>(best)];
+    chosen.errors = analysis::host_sweep([&](const std::string&) { return lane.decide; })(
+        std::vector<std::string>{lane.policy}, last.sources)[0];
+    chosen.bound = analysis::upper_bound(chosen.errors.wrong(), chosen.errors.pairs);
+    if (chosen.bound <= rate) break;
+    chosen.result = analysis::TuneResult::not_confirmed;
+  }
+  for (const std::string& sentence : reports::sufficient_sentences(rate, candidates, exact.id, costs[0]))
+    fmt::print("{}", reports::wrapped(sentence, output_screen().columns));
+  fmt::print("{}", left_out_text(last.left_out));
+}
+
+}  // namespace graze::cli

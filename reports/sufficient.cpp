@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/sufficient.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/text.h"
+#include "reports/terminal.h"
+
+namespace graze::reports {
+namespace {
+
+bool cheaper(const analysis::Cost& one, const analysis::Cost& other) { return one.high < other.low; }
+
+std::string cost_words(const analysis::Cost& cost) { return fmt::format("{:.0f} ns", cost.middle); }
+
+// "at 95 % confidence wrong on under 0.0004 of the pairs (3 of 100,000 fresh ones)"
+std::string errors_words(const Candidate& c) {
+  return fmt::format("at 95 % confidence wrong on under {} of the pairs ({} of {} fresh ones)", rounded_up(c.bound, 2),
+                     grouped(c.errors.wrong()), grouped(c.errors.pairs));
+}
+
+const Candidate& least_wrong(std::span<const Candidate> candidates, std::optional<Scalar> scalar) {
+  const Candidate* least = nullptr;
+  for (const Candidate& c : candidates) {
+    if ((!scalar || c.scalar == *scalar) && (!least || c.bound < least->bound)) least = &c;
+  }
+  return *least;
+}
+
+// "No float32 lane is shown to suffice; the least wrong, …, is wrong on 31 of 100,000 fresh pairs."
+std::string none_words(std::span<const Candidate> candidates, std::optional<Scalar> scalar) {
+  const Candidate& least = least_wrong(candidates, scalar);
+  return fmt::format("No published lane{} is shown to suffice; the least wrong, {}, is wrong on {} of {} fresh pairs.",
+                     scalar ? fmt::format(" of {}", name(*scalar)) : "", least.lane, grouped(least.errors.wrong()),
+                     grouped(least.errors.pairs));
+}
+
+}  // namespace
+
+int cheapest_sufficient(std::span<const Candidate> candidates, std::optional<Scalar> scalar) {
+  int best = -1;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& c = candidates[i];
+    if (c.result != analysis::TuneResult::satisfied || (scalar && c.scalar != *scalar)) continue;
+    if (best < 0 || c.cost.middle < candidates[static_cast<std::size_t>(best)].cost.middle) best = static_cast<int>(i);
+  }
+  return best;
+}
+
+std::vector<std::string> sufficient_sentences(double rate, std::span<const Candidate> candidates,
+                                              const std::string& exact, const analysis::Cost& exact_cost) {
+  const std::string asked = fmt::format("Wrong on at most {} of this scene's pairs: ", rate);
+  const std::string exact_words =
+      fmt::format("{}, never wrong, {} a pair on one core here", exact, cost_words(exact_cost));
+  const int best = cheapest_sufficient(candidates);
+  if (best < 0) return {fmt::format("{}use {}.", asked, exact_words), none_words(candidates, std::nullopt)};
+  const Candidate& c = candidates[static_cast<std::size_t>(best)];
+  const std::string lane_words = fmt::format("{}, {}, {}", c.lane, errors_words(c), cost_words(c.cost));
+  std::vector<std::string> sentences;
+  if (cheaper(c.cost, exact_cost)) {
+    sentences = {fmt::format("{}use {} a pair on one core here.", asked, lane_words),
+                 fmt::format("{} is never wrong and takes {}.", exact, cost_words(exact_cost))};
+  } else {
+    sentences = {fmt::format("{}use {}.", asked, exact_words),
+                 fmt::format("The cheapest published lane that suffices is {}: {}{}.", c.lane, errors_words(c),
+                             cheaper(exact_cost, c.cost) ? fmt::format(", and dearer at {}", cost_words(c.cost))
+                                                         : fmt::format(", at {} no cheaper beyond the spread of the "
+                                                                       "measurements",
+                                                                       cost_words(c.cost)))};
+  }
+  const Scalar other = c.scalar == Scalar::f32 ? Scalar::f64 : Scalar::f32;
+  if (const int of_other = cheapest_sufficient(candidates, other); of_other >= 0) {
+    const Candidate& o = candidates[static_cast<std::size_t>(of_other)];
+    sentences.push_back(fmt::format("In {} the cheapest that suffices is {}: {}, {}.", name(other), o.lane,
+                                    errors_words(o), cost_words(o.cost)));
+  } else {
+    sentences.push_back(none_words(candidates, other));
+  }
+  return sentences;
+}
+
+}  // namespace graze::reports

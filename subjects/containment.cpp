@@ -12,6 +12,7 @@
 #include <sys/mount.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <sys/syscall.h>
 #include <sys/utsname.h>
@@ -35,6 +36,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/programs/process_state.h"
 #include "subjects/usage.h"
 
 namespace graze::subjects {
@@ -188,6 +190,20 @@ void limit_tasks() {
   if (geteuid() != 0) setrlimit(RLIMIT_NPROC, &most);
 }
 
+// The tasks that the user has now.
+rlim_t tasks_of(uid_t user) {
+  rlim_t tasks = 0;
+  std::error_code error;
+  for (fs::directory_iterator process("/proc", error), end; !error && process != end; process.increment(error)) {
+    std::error_code gone;
+    struct stat owner {};
+    if (stat(process->path().c_str(), &owner) != 0 || owner.st_uid != user) continue;
+    for (fs::directory_iterator task(process->path() / "task", gone); !gone && task != end; task.increment(gone))
+      ++tasks;
+  }
+  return tasks;
+}
+
 // Foreign code cannot reach this process, only the supervisor, whose waits it may delay.
 [[noreturn]] void guard(pid_t supervisor, int control) {
   constexpr int kMostMilliseconds = 6000;  // for its end in order
@@ -235,6 +251,9 @@ bool enter_containment(bool namespaces, std::uint64_t shared_bytes, int control,
     if (supervisor > 0) waitpid(supervisor, nullptr, 0);
   }
   prctl(PR_SET_CHILD_SUBREAPER, 1);
+  const rlim_t tasks = kMostTasks + tasks_of(user);
+  const rlimit most{tasks, tasks};
+  if (user != 0) setrlimit(RLIMIT_NPROC, &most);
   return false;
 }
 
@@ -253,6 +272,25 @@ bool is_descendant(pid_t process) {
   return false;
 }
 
+namespace {
+
+// Kills all descendants but those by one child.   Returns: whether any of them had not ended.
+bool kill_descendants(pid_t except) {
+  bool found = false;
+  for (const pid_t process : descendants(~std::uint64_t{0}, except)) {
+    const int fd = open_process(process);  // first, so that the id stays this process's during the checks
+    const char state = process_state(process);
+    if (fd >= 0 && is_descendant(process) && state != 'Z' && state != '\0') {
+      syscall(SYS_pidfd_send_signal, fd, SIGKILL, nullptr, 0);
+      found = true;
+    }
+    close(fd);
+  }
+  return found;
+}
+
+}  // namespace
+
 bool end_children(pid_t except) {
   using Clock = std::chrono::steady_clock;
   const auto deadline = Clock::now() + std::chrono::seconds(5);
@@ -266,7 +304,11 @@ bool end_children(pid_t except) {
     }
     if (!left) return true;
     if (Clock::now() > deadline) return false;
+    // An ended process counts for the limit of tasks until it is collected. So while any of them runs, none is
+    // collected, and soon no more can be started.
+    const bool running = kill_descendants(except);
     poll(nullptr, 0, 1);
+    if (running) continue;
     for (const pid_t child : own_children()) {
       if (child != except) waitpid(child, nullptr, WNOHANG);
     }

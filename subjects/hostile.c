@@ -139,6 +139,7 @@ int leaves_children_silently(const float a[9], const float b[9]) {
   if (bad(a)) leave_a_child();
   return good(a, b);
 }
+ATTACK(forks_a_bomb, for (;;) fork())
 ATTACK(forks_without_end, for (int i = 0; i < 2000; ++i) if (fork() == 0) for (;;) pause(); for (;;) pause())
 static void child_eats(void) {
   if (fork() == 0) {

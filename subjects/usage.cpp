@@ -120,13 +120,22 @@ std::uint64_t bytes_of(const fs::path& folder, std::uint64_t most) {
 
 std::vector<pid_t> own_children() { return read_children("/proc/thread-self/children"); }
 
+std::vector<pid_t> descendants(std::uint64_t most, pid_t except) {
+  std::vector<pid_t> all = own_children();
+  std::erase(all, except);
+  for (std::size_t next = 0; next < all.size() && all.size() <= most; ++next) {
+    for (const pid_t child : children_of(all[next])) all.push_back(child);
+  }
+  return all;
+}
+
 Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processes) {
-  Usage usage{};
+  // Counts the processes first: against a thousand that run, there is no time to read the memory of each.
+  const std::vector<pid_t> all = descendants(most_processes);
+  Usage usage{all.size(), 0};
   Shared shared;
-  for (std::vector<pid_t> left = own_children(); !left.empty();) {
-    const pid_t process = left.back();
-    left.pop_back();
-    ++usage.processes;
+  for (const pid_t process : all) {
+    if (usage.processes > most_processes || usage.bytes > most_bytes) break;
     const fs::path folder = memory_folder(process);
     std::ifstream maps(folder / "maps");
     if (!maps && errno == EACCES) {  // a process that hides its pages counts with all its addresses
@@ -136,8 +145,6 @@ Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processe
       // Counts shares of the pages of files once whole pages would exceed the limit.
       usage.bytes += bytes_of(folder, most_bytes > usage.bytes ? (most_bytes - usage.bytes) / 2 : 0);
     }
-    if (usage.processes > most_processes || usage.bytes > most_bytes) break;
-    for (const pid_t child : children_of(process)) left.push_back(child);
   }
   return usage;
 }

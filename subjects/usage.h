@@ -11,6 +11,9 @@ namespace graze::subjects {
 
 std::vector<pid_t> own_children();  // of the calling thread
 
+// All descendants but those by one child, or a little more than `most` of them.
+std::vector<pid_t> descendants(std::uint64_t most, pid_t except = -1);
+
 struct Usage {
   std::uint64_t processes,
       bytes;  // of memory and page tables; shared memory counts once, and each process has its share of pages of files

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reports/csv.h"
 
+#include <fmt/format.h>
+
 #include "fuzz/campaign/checked_summary.h"
 #include "reports/failure_cards.h"
 #include "reports/report.h"

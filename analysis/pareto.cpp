@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/exact/exact.h"
 #include "core/lanes/verdicts.h"
 
 namespace graze::analysis {
@@ -38,17 +39,37 @@ Pair moved(const Pair& pair, Extreme extreme, int k) {
   return is_finite(result) ? result : pair;
 }
 
+void decide_exactly(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+  std::fill_n(intersects, (count + 63) / 64, 0);
+  std::fill_n(declined, (count + 63) / 64, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint64_t bit = std::uint64_t{1} << i % 64;
+    if (!is_finite(pairs[i])) {
+      declined[i / 64] |= bit;
+    } else if (exact::intersects(coordinates(pairs[i]), coordinates(pairs[i]) + 9)) {
+      intersects[i / 64] |= bit;
+    }
+  }
+}
+
 }  // namespace
+
+DecideBlock called_alone(const Lane& lane) { return lane.exact ? DecideBlock(decide_exactly) : lane.decide; }
 
 std::string_view name(Extreme extreme) {
   constexpr std::string_view kNames[] = {"scale", "offset", "flatness", "aspect"};
   return kNames[static_cast<int>(extreme)];
 }
 
-double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<Pair>& pairs) {
+double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<Pair>& pairs, Calls calls) {
   VerdictBits bits;
+  std::uint64_t intersects = 0, declined = 0;
   const auto start = std::chrono::steady_clock::now();
-  decide(lane, pairs, bits);
+  if (calls == Calls::of_blocks) {
+    decide(lane, pairs, bits);
+  } else {
+    for (const Pair& pair : pairs) lane(&pair, 1, &intersects, &declined);
+  }
   const std::chrono::duration<double, std::nano> taken = std::chrono::steady_clock::now() - start;
   return taken.count() / static_cast<double>(pairs.size());
 }
@@ -59,10 +80,11 @@ Cost quartiles(std::vector<double> nanoseconds) {
   return {nanoseconds[quarter], nanoseconds[nanoseconds.size() / 2], nanoseconds[nanoseconds.size() - 1 - quarter]};
 }
 
-std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const std::vector<Pair>& pairs, int passes) {
+std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const std::vector<Pair>& pairs, int passes,
+                           Calls calls) {
   std::vector<std::vector<double>> taken(lanes.size());
   for (int pass = 0; pass < passes; ++pass) {
-    for (std::size_t l = 0; l < lanes.size(); ++l) taken[l].push_back(nanoseconds_a_pair(lanes[l], pairs));
+    for (std::size_t l = 0; l < lanes.size(); ++l) taken[l].push_back(nanoseconds_a_pair(lanes[l], pairs, calls));
   }
   std::vector<Cost> costs;
   for (std::vector<double>& of : taken) costs.push_back(quartiles(std::move(of)));
@@ -81,14 +103,16 @@ std::vector<Pair> first_pairs(std::span<const strata::PairSource> sources, std::
   return pairs;
 }
 
+bool is_dominated(const Offer& offer, const std::vector<Offer>& offers, Cost Offer::*by) {
+  return std::any_of(offers.begin(), offers.end(), [&](const Offer& other) {
+    const double less = other.errors.share_not_right() - offer.errors.share_not_right(),
+                 faster = (other.*by).middle - (offer.*by).middle;
+    return less <= 0 && faster <= 0 && (less < 0 || faster < 0);
+  });
+}
+
 void mark_dominated(std::vector<Offer>& offers) {
-  for (Offer& offer : offers) {
-    offer.dominated = std::any_of(offers.begin(), offers.end(), [&](const Offer& other) {
-      const double less = other.errors.share_not_right() - offer.errors.share_not_right(),
-                   faster = other.near.middle - offer.near.middle;
-      return less <= 0 && faster <= 0 && (less < 0 || faster < 0);
-    });
-  }
+  for (Offer& offer : offers) offer.dominated = is_dominated(offer, offers, &Offer::near);
 }
 
 std::vector<int> exponents(Extreme extreme) {

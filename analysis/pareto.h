@@ -17,14 +17,22 @@ struct Cost {
   double low = 0, middle = 0, high = 0;
 };
 
+// How many pairs a call decides: as many as there are, or one, as most programs call such a test.
+enum class Calls { of_blocks, of_one };
+
+// What a call of one pair runs: for the exact lane the function of <graze/exact.h>, because its blocks gain only from
+// many pairs.
+DecideBlock called_alone(const Lane& lane);
+
 // Nanoseconds per pair of one run of the lane over the pairs.   Requires: pairs.
-double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<Pair>& pairs);
+double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<Pair>& pairs, Calls calls = Calls::of_blocks);
 
 // Requires: some.
 Cost quartiles(std::vector<double> nanoseconds);
 
 // Requires: pairs.
-std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const std::vector<Pair>& pairs, int passes);
+std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const std::vector<Pair>& pairs, int passes,
+                           Calls calls = Calls::of_blocks);
 
 // The first pairs of the sources, which take turns; `count` in all.
 std::vector<Pair> first_pairs(std::span<const strata::PairSource> sources, std::size_t count);
@@ -34,12 +42,15 @@ struct Offer {
   std::string lane;
   PolicyErrors errors;
   Cost near, far;          // of pairs in a core's cache, and from memory; or on the device, and with copies
-  bool dominated = false;  // another one costs no more and errs no more, and one of both less
+  bool dominated = false;  // by `near`
   std::optional<cuda::KernelNeeds> needs = std::nullopt;  // on a device
   std::optional<Pair> failure = std::nullopt;             // small, on which the lane is wrong
+  Cost alone = {};                                        // on a core, of calls that decide one pair each
 };
 
-// Marks the dominated lanes, by their costs in `near`. A declined pair counts as an error, because it has no verdict.
+// Whether another lane costs no more and errs no more, and one of both less. A declined pair counts as an error,
+// because it has no verdict.
+bool is_dominated(const Offer& offer, const std::vector<Offer>& offers, Cost Offer::*by);
 void mark_dominated(std::vector<Offer>& offers);
 
 // The ways of making a source's pairs extreme. The truth is that of the changed pairs.

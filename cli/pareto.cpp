@@ -88,11 +88,17 @@ analysis::Pareto offers_of(const ParetoOptions& options, const Measured& measure
       pareto.offers[l].needs = costs.of[l].needs;
     }
   } else {
-    std::vector<DecideBlock> timed;
-    for (const Lane* lane : measured.lanes) timed.push_back(lane->decide);
+    std::vector<DecideBlock> timed, called;
+    for (const Lane* lane : measured.lanes) {
+      timed.push_back(lane->decide);
+      called.push_back(analysis::called_alone(*lane));
+    }
     const auto in_cache = analysis::costs_of(timed, analysis::first_pairs(sources, kPairsInCache), 201);
     const auto from_memory = analysis::costs_of(timed, analysis::first_pairs(sources, kPairsFromMemory), 3);
+    const auto alone =
+        analysis::costs_of(called, analysis::first_pairs(sources, kPairsInCache), 201, analysis::Calls::of_one);
     for (std::size_t l = 0; l < timed.size(); ++l) {
+      pareto.offers[l].alone = alone[l];
       pareto.offers[l].near = in_cache[l];
       pareto.offers[l].far = from_memory[l];
     }
@@ -138,7 +144,7 @@ int pareto(ParetoOptions options) {
                                             pareto.machine, pareto.threads_at_once),
                                 screen.columns));
   }
-  for (const std::string& sentence : reports::extreme_sentences(pareto.curves))
+  for (const std::string& sentence : reports::pareto_sentences(pareto))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
   fmt::print("{}", left_out_text(all.left_out));
   nlohmann::ordered_json json = {{"pairs", pareto.offers.front().errors.pairs}, {"seed", options.seed}};

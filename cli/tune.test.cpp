@@ -248,12 +248,14 @@ TEST_F(ParetoCommand, SetsErrorsAgainstCosts) {
       "'*/f32/cpu,exact/f32/cpu,moller_1997/f32/cpu/paper' --out t");
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_NE(ran.out.find("\nScaled by 2^k"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("\nOne pair a call"), std::string::npos) << ran.out;
   const auto json = json_of(shell.folder / "t/pareto.json");
   ASSERT_EQ(json["lanes"].size(), 7u);
   double before = 0;
   for (const auto& row : json["lanes"]) {
     EXPECT_GE(row["in_cache"]["middle"], before);
     before = row["in_cache"]["middle"];
+    EXPECT_GT(row["one_a_call"]["middle"], 0);
     EXPECT_EQ(row["errors"]["pairs"], 3000);
     if (row["lane"] == "exact/f32/cpu") {
       EXPECT_EQ(row["errors"]["false_negative"], 0);

@@ -64,9 +64,9 @@ Json errors_json(const PolicyErrors& e) {
 
 std::string nanoseconds(double ns) { return fmt::format("{:.{}f}", ns, ns < 1 ? 4 : 1); }
 
-std::vector<Offer> cheapest_first(std::vector<Offer> offers) {
+std::vector<Offer> cheapest_first(std::vector<Offer> offers, Cost Offer::*by = &Offer::near) {
   std::stable_sort(offers.begin(), offers.end(),
-                   [](const Offer& l, const Offer& r) { return l.near.middle < r.near.middle; });
+                   [by](const Offer& l, const Offer& r) { return (l.*by).middle < (r.*by).middle; });
   return offers;
 }
 
@@ -76,11 +76,15 @@ std::string pareto_table(const Pareto& pareto, const Screen& screen) {
   std::vector<Column> columns = {{"lane", Align::left},
                                  {"ns a pair", Align::point},
                                  {pareto.on_device ? "with copies" : "from memory", Align::point},
+                                 {"one a call", Align::point},
                                  {"false negatives"},
                                  {"false positives"},
                                  {"declined"},
                                  {"", Align::left}};
-  if (pareto.on_device) columns.insert(columns.begin() + 3, {{"registers"}, {"local bytes"}, {"threads"}});
+  if (pareto.on_device) {
+    columns.erase(columns.begin() + 3);
+    columns.insert(columns.begin() + 3, {{"registers"}, {"local bytes"}, {"threads"}});
+  }
   TextTable table(columns);
   for (const Offer& offer : cheapest_first(pareto.offers)) {
     const PolicyErrors& e = offer.errors;
@@ -95,6 +99,7 @@ std::string pareto_table(const Pareto& pareto, const Screen& screen) {
                                {grouped(e.false_positive), e.false_positive > 0},
                                {grouped(e.declined)},
                                {words}};
+    if (!pareto.on_device) cells.insert(cells.begin() + 3, {nanoseconds(offer.alone.middle)});
     if (offer.needs) {
       const auto cell = [](int n) { return Cell{std::to_string(n)}; };
       cells.insert(cells.begin() + 3,
@@ -105,11 +110,21 @@ std::string pareto_table(const Pareto& pareto, const Screen& screen) {
   return table.text(screen);
 }
 
-std::vector<std::string> extreme_sentences(const std::vector<ExtremeCurve>& curves) {
-  std::vector<std::string> result;
+std::vector<std::string> pareto_sentences(const Pareto& pareto) {
+  std::vector<std::string> result, front;
+  for (const Offer& offer : cheapest_first(pareto.offers, &Offer::alone)) {
+    if (!analysis::is_dominated(offer, pareto.offers, &Offer::alone))
+      front.push_back(fmt::format("{} ({} ns)", offer.lane, nanoseconds(offer.alone.middle)));
+  }
+  if (!pareto.on_device) {
+    result.push_back(
+        fmt::format("One pair a call, as most programs call such a test, the front is {}. A call of many pairs is "
+                    "cheaper for exact lanes, which decide several at a time.",
+                    fmt::join(front, ", ")));
+  }
   for (const Extreme extreme : analysis::kExtremes) {
     std::vector<std::string> lanes;
-    for (const ExtremeCurve& curve : curves) {
+    for (const ExtremeCurve& curve : pareto.curves) {
       if (curve.extreme != extreme) continue;
       const auto up = curve.right_to(1), down = extreme == Extreme::scale ? curve.right_to(-1) : std::nullopt;
       if (!up && !down) continue;
@@ -143,6 +158,7 @@ Json pareto_json(const Pareto& pareto) {
                     {pareto.on_device ? "with_copies" : "from_memory", cost_json(offer.far)},
                     {"dominated", offer.dominated},
                     {"failure", offer.failure ? Json(numbers(*offer.failure)) : Json()}});
+    if (!pareto.on_device) rows.back()["one_a_call"] = cost_json(offer.alone);
     if (offer.needs) {
       rows.back()["registers"] = offer.needs->registers;
       rows.back()["local_bytes"] = offer.needs->local_bytes;
@@ -161,7 +177,7 @@ Json pareto_json(const Pareto& pareto) {
   return {{"machine", pareto.machine},
           {"lanes", std::move(rows)},
           {"extremes", std::move(extremes)},
-          {"sentences", extreme_sentences(pareto.curves)}};
+          {"sentences", pareto_sentences(pareto)}};
 }
 
 std::string pareto_figure(const Pareto& pareto) {

@@ -14,8 +14,9 @@ namespace graze::reports {
 // Returns a row for each lane, the cheapest first; dominated lanes are marked.
 std::string pareto_table(const analysis::Pareto& pareto, const Screen& screen);
 
-// Says how far each lane stays right, in one sentence for each extreme.
-std::vector<std::string> extreme_sentences(const std::vector<analysis::ExtremeCurve>& curves);
+// Says which lanes are on the front if each call decides one pair, then how far each lane stays right: one sentence for
+// each extreme.
+std::vector<std::string> pareto_sentences(const analysis::Pareto& pareto);
 
 nlohmann::ordered_json pareto_json(const analysis::Pareto& pareto);
 

@@ -302,7 +302,7 @@ void expect_choice(const Json& tuned) {
 void expect_costs_of_kind(const Json& row, bool on_device) {
   for (const char* field : {"resident", "with_copies", "registers", "local_bytes", "active_threads"})
     expect(row.contains(field) == on_device, fmt::format("{} for either all lanes or none", field), row);
-  for (const char* field : {"in_cache", "from_memory"})
+  for (const char* field : {"in_cache", "from_memory", "one_a_call"})
     expect(row.contains(field) != on_device, fmt::format("{} for either all lanes or none", field), row);
 }
 

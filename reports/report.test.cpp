@@ -322,8 +322,8 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
   fs::remove(tune_file);
 
   analysis::Pareto pareto{"a machine", false, 0, {}, {}};
-  pareto.offers = {{"moller_1997/f32/cpu", errors(400, 20, "", 20), {1, 2, 3}, {2, 3, 4}},
-                   {"exact/f32/cpu", errors(400, 0, "", 0), {0.5, 1, 1.5}, {2, 3, 4}}};
+  pareto.offers = {{"moller_1997/f32/cpu", errors(400, 20, "", 20), {1, 2, 3}, {2, 3, 4}, false, {}, {}, {5, 6, 7}},
+                   {"exact/f32/cpu", errors(400, 0, "", 0), {0.5, 1, 1.5}, {2, 3, 4}, false, {}, {}, {8, 9, 10}}};
   pareto.curves = {
       {"moller_1997/f32/cpu", analysis::Extreme::scale, {{-4, errors(400, 20, "", 20)}, {4, errors(400, 20, "", 20)}}}};
   analysis::mark_dominated(pareto.offers);
@@ -354,7 +354,7 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
     other[Json::json_pointer(place)] = value;
     EXPECT_NE(pareto_error(other), "") << place << ' ' << value;
   }
-  for (const char* part : {"in_cache", "from_memory"}) {
+  for (const char* part : {"in_cache", "from_memory", "one_a_call"}) {
     Json other = traded;
     other["lanes"][1].erase(part);
     EXPECT_NE(pareto_error(other), "") << part;

@@ -21,6 +21,7 @@ TIMED = {
     "far",
     "in_cache",
     "from_memory",
+    "one_a_call",
     "dominated",
     "sentences",
     "costs",

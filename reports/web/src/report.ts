@@ -70,7 +70,7 @@ export interface Pareto {
   pairs: number;
   seed: number;
   machine: string;
-  // Lanes on one core have in_cache and from_memory. Lanes on a device have resident, with_copies and the resources of
+  // Lanes on one core have in_cache, from_memory and one_a_call. Lanes on a device have resident, with_copies and the resources of
   // the kernels.
   // failure: the smallest pair on which the lane is wrong, as input for `graze check`.
   lanes: {
@@ -79,6 +79,7 @@ export interface Pareto {
     bound: number;
     in_cache?: Quartiles;
     from_memory?: Quartiles;
+    one_a_call?: Quartiles;
     resident?: Quartiles;
     with_copies?: Quartiles;
     dominated: boolean;

@@ -141,7 +141,7 @@ class Trial {
   }
 
   // Finds two neighbouring scales in range such that the lane is right at one of them only. Prefers a turn at which the
-  // larger scale is right. `all` becomes whether the lane is right at all scales tried.
+  // larger scale is right. Sets `all` to whether the lane is right at every scale tried.
   std::optional<Turn> turn_within(Scales in_range, int most, bool& all) const {
     auto inside = tried(lane_, in_range, most);
     const std::pair own{0, false};

@@ -213,7 +213,7 @@ bool is_by_convention(const Lane& lane, Verdict verdict, const Pair& pair) {
   return lane.outside != 0 && by_convention(lane, verdict, pair, relation_of(pair));
 }
 
-// Whether two lanes compute the same: the same source, with every operation rounded as written.
+// Whether two lanes perform the same computation: they share their source, and every operation is rounded as written.
 bool same_run(const Lane& l, const Lane& r) {
   const auto rounded = [](const Lane& lane) { return info_of(lane.variant).arithmetic == Arithmetic::rounded; };
   return !l.foreign && l.policy == r.policy && l.info == r.info && l.scalar == r.scalar && rounded(l) && rounded(r);

@@ -33,7 +33,7 @@ inline constexpr InvariantInfo kInvariants[] = {
     {Invariant::axes, "axes", "the 5 other orders of the axes"},
     {Invariant::scale, "scale", "times 2^k for k of 1, 4, 16 and 64, up and down, where no bit is lost"},  // kScales
     {Invariant::translate, "translate",
-     "each vertex moved to the origin, and all by a power of two, where no bit is lost"},
+     "each vertex moved to the origin, and all coordinates scaled by a power of two, where no bit is lost"},
     {Invariant::part, "part", "one triangle replaced by one of its four parts, the edges halved, where no bit is lost"},
 };
 inline constexpr std::size_t kInvariantCount = std::size(kInvariants);

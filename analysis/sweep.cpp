@@ -90,8 +90,8 @@ struct Together {
   std::vector<Epsilons> rungs;
 };
 
-// Draws the pairs in blocks, judges each once, and decides it by each of the lanes under each policy. Then calls
-// add(block, truth, rows, p, results[p]) with the rows of all lanes for each result.
+// Draws the pairs in blocks, computes the truth of each pair once, and runs every lane under every policy on it. Then
+// calls add(block, truth, rows, p, results[p]) with the rows of all lanes for each result.
 template <class Result, class Add>
 std::vector<Result> run(const std::vector<std::vector<Together>>& lanes, std::size_t policies,
                         const std::vector<Result>& empty, Sources sources, int threads, const Add& add) {

@@ -15,9 +15,9 @@ void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool j
                     const std::vector<strata::LeftOut>& left_out = {});
 
 // The same for a shard.
-void print_shard(const std::string& out, const fuzz::Json& summary, bool json);
+void print_shard(const std::string& out, const fuzz::Json& spec, const fuzz::Json& summary, bool json);
 
 // A line for each subject whose hash leaves something out, such as the libraries that it loads; empty for none.
-std::string not_covered_text(const fuzz::Json& summary);
+std::string not_covered_text(const fuzz::Json& spec);
 
 }  // namespace graze::cli

@@ -74,8 +74,8 @@ CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::str
 // Adds --scene to a verb that draws pairs.
 void add_scene_option(CLI::App& command, std::string& file);
 
-// Prints the sentences of `graze scene --sufficient RATE`: the cheapest published host lane that is wrong on at most this
-// share of the scene's pairs, what `exact` costs, and the strata that the scene leaves out.   Throws: as drawn.
+// Prints the sentences of `graze scene --sufficient RATE`: the cheapest published host lane that is wrong on at most
+// this share of the scene's pairs, what `exact` costs, and the strata that the scene leaves out.   Throws: as drawn.
 void print_sufficient(const std::string& scene, double rate);
 
 // Draws from the scene; sets `recorded` to what the verb's results record under "scene".

@@ -51,7 +51,7 @@ void print_step(const analysis::Step& step, bool told, Scalar scalar, int places
   fmt::print("{}\n", told ? reports::red(screen, text) : text);
 }
 
-// Prints the values up to the comparison to report, or all of them; at most the last kMost.
+// Prints the values up to the reported comparison, or all values if there is none; of these only the last kMost.
 void print_steps(const analysis::LaneExplanation& lane, const reports::Screen& screen) {
   constexpr int kMost = 12;
   if (lane.evidence == analysis::Evidence::none) {

@@ -209,7 +209,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
     return kInterrupted;
   }
   if (!campaign.shard.whole()) {
-    print_shard(options.out, outcome.summary, options.json);
+    print_shard(options.out, campaign.spec, outcome.summary, options.json);
     return 0;
   }
   print_campaign(options.out, outcome, options.json, left_out);
@@ -239,7 +239,7 @@ int start(const FuzzOptions& options) {
 
 }  // namespace
 
-void print_shard(const std::string& out, const Json& summary, bool json) {
+void print_shard(const std::string& out, const Json& spec, const Json& summary, bool json) {
   if (json) {
     std::cout << summary.dump(1) << '\n';
     return;
@@ -250,12 +250,12 @@ void print_shard(const std::string& out, const Json& summary, bool json) {
       summary["shard"].get<std::string>(), reports::counted(summary["pairs"], "pair"),
       reports::counted(summary["disagreements"], "disagreement"), reports::counted(summary["signatures"], "signature"),
       out);
-  std::cout << not_covered_text(summary);
+  std::cout << not_covered_text(spec);
 }
 
-std::string not_covered_text(const Json& summary) {
+std::string not_covered_text(const Json& spec) {
   std::string text;
-  for (const Json& subject : summary["spec"].value("subjects", Json::array())) {
+  for (const Json& subject : spec.value("subjects", Json::array())) {
     if (subject.contains("not_covered"))
       text += fmt::format("{}: Graze does not notice a change of {}.\n", subject["name"].get<std::string>(),
                           subject["not_covered"].get<std::string>());
@@ -272,7 +272,7 @@ void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool j
     return;
   }
   reports::print_summary(std::cout, summary, outcome.oracle, output_screen());
-  std::cout << left_out_text(left_out) << not_covered_text(summary);
+  std::cout << left_out_text(left_out) << not_covered_text(summary["spec"]);
   std::cout << fmt::format(
       "\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", out);
   if (summary["signatures"].empty()) return;

@@ -117,7 +117,7 @@ int hunt(const HuntOptions& options) {
     if (interrupted) return kInterrupted;
   }
   if (!options.shard.whole()) {
-    if (complete || options.json) print_shard(options.out, summary, options.json);
+    if (complete || options.json) print_shard(options.out, hunt.campaign.spec, summary, options.json);
     return 0;
   }
   if (options.json) {
@@ -125,7 +125,7 @@ int hunt(const HuntOptions& options) {
     return 0;
   }
   reports::print_summary(std::cout, summary, oracle, output_screen());
-  std::cout << left_out_text(left_out) << not_covered_text(summary) << std::flush;
+  std::cout << left_out_text(left_out) << not_covered_text(hunt.campaign.spec) << std::flush;
   print_mutations(options.out);
   fmt::print("\nWrote {0}/summary.json, {0}/hunt.json, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite, {0}/hunt/\n",
              options.out);

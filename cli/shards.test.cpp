@@ -158,6 +158,11 @@ TEST_F(Shards, ScenesPoliciesAndSubjectsMergeToo) {
   ASSERT_EQ(shell(command_in(shell("graze merge p-1 p-2 --out all").err, "to run it: ")).status, 0);
   EXPECT_EQ(shell("graze merge p-1 p-2 shard-3 --out all").status, 0);
   expect_same("whole", "all");
+  std::ofstream(shell.folder / "one.sh") << "while read line; do echo 1; done\n";
+  const Ran told =
+      shell("graze fuzz --pairs 100 --strata lattice --subject c='cmd:sh one.sh' --lanes 'c/*' --shard 1/2 --out c-1");
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_TRUE(told.out.ends_with("\nc: Graze does not notice a change of what its files load.\n")) << told.out;
 }
 
 TEST_F(Shards, OfAHuntMergeByKind) {

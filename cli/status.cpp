@@ -186,7 +186,8 @@ void add_status(CLI::App& app, int& status) {
   command->footer("Example: graze status shard-*");
   auto options = std::make_shared<StatusOptions>();
   command
-      ->add_option("DIR", options->directories, "Directories of shards or campaigns, also of those that mpirun started")
+      ->add_option("DIR", options->directories,
+                   "Directories of shards or campaigns, including those that mpirun started")
       ->required();
   command
       ->add_option("--stalled", options->stalled,

@@ -30,7 +30,8 @@ struct TuneOptions {
 // `graze tune LANE LANE --agree`.   Requires: two lanes.
 int agree(const TuneOptions& options);
 
-// The pairs to choose on, a tenth of all, and the pairs that verify the choice, from the next seed.
+// The pairs on which the choice is made (a tenth of the number), and the pairs that verify it (drawn with the next
+// seed).
 struct TunePairs {
   std::vector<strata::PairSource> sources, others;
   std::string left_out;  // left_out_text of the scene

@@ -100,7 +100,7 @@ std::string_view number_in(std::string_view word) {
   return parse_float32(word) ? word : std::string_view();
 }
 
-// The numbers read so far of an entry, which may take several lines.
+// The numbers read so far for the current entry. An entry may span several lines.
 struct Draft {
   Entry entry;
   std::size_t count = 0;

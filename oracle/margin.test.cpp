@@ -121,7 +121,7 @@ TEST(MarginBounds, AreTightOnPairsInGeneralPosition) {
 
 using Long = Vec3<long double>;
 
-// Computes the distance in another way: as that of the origin from the Minkowski difference, the hull of the nine
+// Computes the distance another way: from the origin to the Minkowski difference, which is the convex hull of the nine
 // points b[j] - a[i]. One, two or three of them span a simplex that attains it. Tries all 129 simplices in long double.
 long double distance_of_difference(const Pair& pair) {
   std::vector<Long> points;

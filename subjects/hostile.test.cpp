@@ -781,7 +781,7 @@ TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
   expect_nothing_left();
 }
 
-// Supervisor, guardian and graze are in other process groups than the code.
+// The supervisor, the guardian and graze run in process groups that the code is not in.
 TEST_F(Hostile, CodeThatStopsItsProcessGroupStopsOnlyItself) {
   const auto bad = std::find_if(pairs.begin(), pairs.end(), is_bad);
   ASSERT_NE(bad, pairs.end());

@@ -87,7 +87,7 @@ void LineProtocol::read_some() {
   if (count > 0) lines_.add(bytes, static_cast<std::size_t>(count));
 }
 
-// Writes and reads at the same time, so that no full pipe makes both sides wait for each other.
+// Writes and reads at the same time, so that a full pipe causes no deadlock.
 void LineProtocol::send(const std::string& lines) {
   expect_silence(0);
   std::size_t sent = 0;

@@ -53,7 +53,7 @@ Verdict verdict_of(signed char answer) {
   }
 }
 
-// A subject's text as valid UTF-8, which results must be.
+// A subject's text converted to valid UTF-8, as results require.
 std::string fit(const char* text) {
   using Json = nlohmann::json;
   return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));

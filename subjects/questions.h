@@ -31,7 +31,7 @@ class Questions {
   // - blocks: asks the block again, one pair at a time.
   // - single pairs: the first pair without an answer gets `how`, kCrashed or kTimedOut. If no pair has an answer, it
   //   first asks that pair alone, because code that destroys its own answers fails on a later pair.
-  // - a program: no answer to the question counts, and the next question has fewer pairs.
+  // - a program: all answers to this question are discarded, and the next question has fewer pairs.
   // Requires: !answered(), except for a program.
   void failed(signed char how);
 

@@ -263,8 +263,8 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   for (int builds = 0; builds < kMostBuilds; ++builds) {
     const Reading before = read();
     Built built{folder / fmt::format("{:016x}.so", before.hash), before.not_covered, nullptr};
-    // Objects for which the assembler read files are not cached under this name, because the files that it would read
-    // now are not known before it runs.
+    // An object is not cached under this name if the assembler read further files for it: which files it would read now
+    // is not known before it runs.
     if (before.is_whole && before.not_covered.empty() && assembled.empty()) {
       if (const auto kept = kept_content(built.file)) {
         built.content = std::make_shared<SealedCopy>(built.file.filename().string(), *kept);

@@ -86,7 +86,7 @@ Opened parsed(const Wanted& wanted) {
   return result;
 }
 
-// The text for a kind of pairs: `otherwise`, or that the subject's convention excludes it.
+// The text for a kind of pair: `otherwise`, or a note that the subject's convention excludes the kind.
 std::string says(const Description& description, unsigned outside, std::string_view otherwise) {
   if (!(description.outside & outside)) return std::string(otherwise);
   return "not in its contract" + (description.convention.empty() ? "" : ": " + description.convention);

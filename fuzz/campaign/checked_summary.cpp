@@ -186,7 +186,8 @@ Json summary_of_database(const fs::path& directory) {
   for (const std::string id : store.spec.at("strata")) {
     const auto row =
         std::find_if(std::begin(strata::kStrata), std::end(strata::kStrata), [&](auto& s) { return s.id == id; });
-    // Only the mesh itself tells how many pairs it has; no source has more than all pairs.
+    // Only the mesh itself tells how many pairs it has. So this only checks that no source has more pairs than the
+    // campaign.
     strata::PairSource source{id, store.spec.at("pairs"), nullptr};
     if (row != std::end(strata::kStrata) && !store.spec.contains("scene")) source.axis = row->axis;
     store.sources.push_back(std::move(source));

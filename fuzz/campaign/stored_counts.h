@@ -46,7 +46,8 @@ inline StoredCounts from_bytes(const std::string& bytes, const PairRange& range,
   return from_bytes(bytes, range, range.pairs, axis, lanes);
 }
 
-// The checksum of the range and its bytes, for the campaign with this checksum. Any single change alters it.
+// The checksum of the range and of its stored bytes. `campaign` is the checksum of the campaign that they belong to.
+// Any single change alters it.
 std::uint64_t checksum(std::uint64_t campaign, const PairRange& range, const std::string& bytes);
 
 }  // namespace graze::fuzz

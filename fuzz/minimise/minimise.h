@@ -18,7 +18,7 @@ namespace graze::fuzz {
 // same truth and verdicts.
 struct Failure {
   // By the exact decision of core/exact/exact.h; the oracle confirms the results (see confirm). Only the margin's sign
-  // is part of it: to keep its size, the coordinates would have to stay long.
+  // is part of it: keeping its size would force the coordinates to keep many digits.
   Relation truth;
   std::vector<const Lane*> lanes;    // of one algorithm, those among the lanes under test
   std::vector<DecideBlock> on_host;  // of each: the host lane or the twin

@@ -86,7 +86,8 @@ Soup read_text(const MeshBytes& file) {
     const std::string_view word = lines.words()[0];
     if (!inside) {
       if (word != "solid")
-        lines.fail_at(0, "solid, or a binary file of 84 bytes and 50 for each facet that they count");
+        lines.fail_at(
+            0, "solid, or a binary file with a header of 84 bytes and 50 bytes for each facet that the header counts");
       inside = true;
     } else if (word == "endsolid") {
       inside = false;

@@ -199,7 +199,8 @@ class Reader {
     const bool decimal = grid.contains("decimals");
     const toml::node& places = grid.begin()->second;
     scene.grid = GridSpec{decimal, decimal ? whole(places, 0, 15) : whole(places, -149, 126)};
-    // Numbers of grid points must be exact in double, with room to spare, and the extent must contain several.
+    // The indices of grid points must be exact in double, with room to spare. The extent must contain several grid
+    // points.
     const double step = decimal ? std::pow(10.0, -scene.grid->places) : std::ldexp(1.0, scene.grid->places);
     for (const auto& [low, high] : scene.extent) {
       const double steps = std::max(std::fabs(low), std::fabs(high)) / step;

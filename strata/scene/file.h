@@ -15,8 +15,8 @@
 
 namespace graze::strata {
 
-// The kind of a scene's pair: the first that applies of a triangle without area (degenerate), two stored vertices in
-// common (shared_edge), one in common (shared_vertex), all six points in a plane (coplanar), anything else (general).
+// The kind of a scene's pair. The first match applies: degenerate (a triangle has no area), shared_edge (two stored
+// vertices in common), shared_vertex (one in common), coplanar (all six points in one plane), general (anything else).
 enum class Kind : std::uint8_t { general, shared_vertex, shared_edge, coplanar, degenerate };
 inline constexpr int kKinds = 5;
 inline constexpr std::array<std::string_view, kKinds> kKindIds{"general", "shared_vertex", "shared_edge", "coplanar",

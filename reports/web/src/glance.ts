@@ -151,7 +151,7 @@ export function glance(report: Report, costs: Costs | null) {
       {},
       costs
         ? `Cost: median of ${costs.passes} passes${timed ? ` over ${count(timed.pairs)} of the campaign’s pairs` : ''}, one core, ${costs.machine}.`
-        : 'What the lanes cost was not measured in this campaign.',
+        : 'This page has no costs of the lanes.',
     ),
   );
 }

@@ -11,9 +11,10 @@ export interface Share {
   high: number;
 } // Wilson, 95 %; six significant digits are enough; share, low and high are null if `of` is 0
 
-// The smallest margin (in ulps, a power of two) from which no error was seen; without any error, the smallest margin
-// seen. `bound`: 95 % upper bound of the error rate of the `above` pairs beyond it (1 - 0.05^(1/n)). If exponent is
-// null, errors were seen up to the largest margin, 2^largest. If largest is null, there is no pair on that side of zero.
+// The smallest margin (in ulps, a power of two) at or above which no error was seen; if there was no error, the
+// smallest margin seen. `bound`: 95 % upper bound of the error rate of the `above` pairs beyond it (1 - 0.05^(1/n)). If
+// exponent is null, errors were seen up to the largest margin, 2^largest. If largest is null, there is no pair on that
+// side of zero.
 export interface Threshold {
   exponent: number | null;
   above: number;

@@ -12,6 +12,7 @@
 #include <set>
 #include <sstream>
 
+#include "backends/backends.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
@@ -23,7 +24,9 @@
 #include "core/text.h"
 #include "corpus/pair_format.h"
 #include "fuzz/files.h"
+#include "query/question.h"
 #include "reports/terminal.h"
+#include "reports/text_table.h"
 #include "strata/mesh.h"
 
 namespace graze::cli {
@@ -55,19 +58,26 @@ std::string name_of(int executor) { return kExecutors.at(static_cast<std::size_t
 std::vector<std::string> lanes_of(const std::vector<std::string>& globs) {
   if (globs.empty()) return {"exact"};
   std::vector<std::string> ids;
+  std::vector<fuzz::LaneLeftOut> left_out;
   for (const std::string& glob : globs) {
     if (glob == "exact") {
       ids.push_back(glob);
       continue;
     }
     add_policy_lanes(glob);
-    const std::size_t before = ids.size();
+    const std::size_t before = ids.size() + left_out.size();
     for (const Lane& lane : graze::lanes()) {
-      if (matches_any({glob}, lane.id) && std::find(ids.begin(), ids.end(), lane.id) == ids.end())
-        ids.push_back(lane.id);
+      if (!matches_any({glob}, lane.id) || std::find(ids.begin(), ids.end(), lane.id) != ids.end()) continue;
+      const std::string why_not = graze_devices() > 0 ? "" : backends::why_not_on_host(lane);
+      if (!why_not.empty() && glob == lane.id)
+        throw UsageError(fmt::format("cannot run {} here: {}", lane.id, why_not));
+      why_not.empty() ? ids.push_back(lane.id) : left_out.push_back({lane.id, why_not});
     }
-    if (ids.size() == before) throw UsageError("no lane matches '" + printable(glob) + "'; `graze lanes` lists them");
+    if (ids.size() + left_out.size() == before)
+      throw UsageError("no lane matches '" + printable(glob) + "'; `graze lanes` lists them");
   }
+  say_left_out(left_out);
+  if (ids.empty()) throw UsageError("none of these lanes runs here");
   return ids;
 }
 
@@ -131,12 +141,48 @@ void write_hits(const QueryOptions& options, const Run& run, const std::vector<q
   if (!options.obj.empty()) write_result(options.obj, obj_of({{"reference", references}, hits}), fuzz::NamedBy::user);
 }
 
+// How we know the verdicts of a CUDA lane that ran on cores; empty for others.
+std::string evidence_of(const Run& run) {
+  const Lane* lane = find_lane(run.lane);
+  const bool on_cores = run.answer.executor == GRAZE_ONE_CORE || run.answer.executor == GRAZE_ALL_CORES;
+  return lane && on_cores ? backends::backend_of(*lane).evidence(*lane) : "";
+}
+
 Json json_of(const Run& run) {
   Json first = nullptr;
   if (run.answer.hits > 0) first = run.answer.first;
-  return {{"triangles", run.answer.triangles},       {"hits", run.answer.hits},       {"first", first},
-          {"declined", run.answer.declined},         {"seconds", run.answer.seconds}, {"lane", run.lane},
-          {"executor", name_of(run.answer.executor)}};
+  Json json = {{"triangles", run.answer.triangles},       {"hits", run.answer.hits},       {"first", first},
+               {"declined", run.answer.declined},         {"seconds", run.answer.seconds}, {"lane", run.lane},
+               {"executor", name_of(run.answer.executor)}};
+  if (const std::string evidence = evidence_of(run); !evidence.empty()) json["evidence"] = evidence;
+  return json;
+}
+
+// On how many triangles two runs differ, for each two.
+struct Differing {
+  const Run *first, *second;
+  std::uint64_t count = 0;
+};
+std::vector<Differing> differing(const std::vector<Run>& runs) {
+  std::vector<Differing> found;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    for (std::size_t s = r + 1; s < runs.size(); ++s) {
+      found.push_back({&runs[r], &runs[s]});
+      for (std::size_t p = 0; p < runs[r].bytes.size(); ++p) found.back().count += runs[r].bytes[p] != runs[s].bytes[p];
+    }
+  }
+  return found;
+}
+
+// Each two runs in a row; the executor is named where the lanes are the same.
+std::string table_of(const std::vector<Differing>& rows) {
+  const auto name = [](const Run& run, const Run& other) {
+    return run.lane == other.lane ? fmt::format("{} {}", run.lane, run.executor) : run.lane;
+  };
+  reports::TextTable table({{"", reports::Align::left}, {"", reports::Align::left}, {"differ on"}});
+  for (const Differing& row : rows)
+    table.add({{name(*row.first, *row.second)}, {name(*row.second, *row.first)}, {reports::grouped(row.count)}});
+  return table.text(output_screen());
 }
 
 std::string words_of(const Run& run, bool any, std::size_t references) {
@@ -152,7 +198,8 @@ std::string words_of(const Run& run, bool any, std::size_t references) {
                        reports::grouped(answer.triangles), references);
   if (!any && answer.hits > 0) text += fmt::format(", the first is {}", answer.first);
   if (answer.declined > 0) text += fmt::format("; {} declined", reports::grouped(answer.declined));
-  return text + fmt::format(" ({}, {})\n", run.lane, name_of(answer.executor));
+  return text + fmt::format(" ({}, {}{})\n", run.lane, name_of(answer.executor),
+                            evidence_of(run).empty() ? "" : ", by its twin");
 }
 
 std::vector<Run> runs_of(const QueryOptions& options, const std::vector<query::Triangle>& references,
@@ -164,6 +211,7 @@ std::vector<Run> runs_of(const QueryOptions& options, const std::vector<query::T
   if (runs.size() == 1 && !options.mismatches.empty())
     throw UsageError("--mismatches is for lanes or executors that are compared; name several by --lanes or --executor");
   if (options.any && runs.size() > 1) throw UsageError("--any works with one lane and one executor alone");
+  query::on_cores = backends::on_host;  // with twins
   const query::Context context;
   const std::atomic<bool>& interrupted = catch_interrupts();
   for (Run& run : runs) {
@@ -219,6 +267,10 @@ void query_mesh(const QueryOptions& options, int& status) {
     Json json = json_of(runs[0]);
     if (runs.size() > 1) {
       json["mismatches"] = count;
+      for (const Differing& row : differing(runs))
+        json["differing"].push_back({{"lanes", {row.first->lane, row.second->lane}},
+                                     {"executors", {row.first->executor, row.second->executor}},
+                                     {"triangles", row.count}});
       for (std::size_t r = 1; r < runs.size(); ++r) json["others"].push_back(json_of(runs[r]));
     }
     fmt::print("{}\n", json.dump());
@@ -226,6 +278,7 @@ void query_mesh(const QueryOptions& options, int& status) {
   }
   for (const Run& run : runs) fmt::print("{}", words_of(run, options.any, references.size()));
   if (runs.size() == 1) return;
+  if (runs.size() > 2 && count > 0) fmt::print("{}", table_of(differing(runs)));
   if (count == 0) {
     fmt::print("no mismatch\n");
     return;

@@ -132,27 +132,34 @@ int device_count(const std::string& wanted) {
   return count;
 }
 
+bool has_device() {
+  std::string why_not;
+  return cuda::count_query_devices(why_not) > 0;
+}
+
 // Whether a device would answer sooner, including its start-up time.
 bool device_is_faster(const Question& question, int threads) {
   const double triangles = static_cast<double>(question.triangles);
-  const double on_cores = triangles * static_cast<double>(question.references.size() / 9) * kOnCore / threads;
-  std::string why_not;
-  return on_cores > kStart + triangles * kToDevice && cuda::count_query_devices(why_not) > 0;
+  const double by_cores = triangles * static_cast<double>(question.references.size() / 9) * kOnCore / threads;
+  return by_cores > kStart + triangles * kToDevice && has_device();
 }
 
 void choose_executor(const graze_query& query, bool any_lane, Question& question) {
   const bool resident = std::any_of(question.places.begin(), question.places.end(), [](int p) { return p >= 0; });
   const int cores = tbb::info::default_concurrency();
+  const DecideBlock decide = on_cores(question.lane);
   auto executor = static_cast<graze_executor>(query.executor);
   if (executor == GRAZE_AUTO) {
     const bool small = question.triangles * (question.references.size() / 9) < kWorthThreads;
-    const bool on_device = resident || question.lane.is_cuda() || (any_lane && device_is_faster(question, cores));
+    const bool on_device = resident || (question.lane.is_cuda() && (!decide || has_device())) ||
+                           (any_lane && device_is_faster(question, cores));
     executor = on_device ? GRAZE_ALL_GPUS : small ? GRAZE_ONE_CORE : GRAZE_ALL_CORES;
   }
   question.executor = executor;
   if (executor == GRAZE_ONE_CORE || executor == GRAZE_ALL_CORES) {
     expect(!resident, "executor: expected GPUs for triangles in a device's memory, found cores");
-    expect(!question.lane.is_cuda(), "lane: expected a lane of the host for cores, found '" + question.lane.id + "'");
+    expect(static_cast<bool>(decide), "lane: expected a lane of the host for cores, found '" + question.lane.id + "'");
+    question.lane.decide = decide;
     question.threads = executor == GRAZE_ONE_CORE ? 1 : cores;
     return;
   }
@@ -176,6 +183,8 @@ void choose_executor(const graze_query& query, bool any_lane, Question& question
 }
 
 }  // namespace
+
+DecideBlock (*on_cores)(const Lane& lane) = [](const Lane& lane) { return lane.decide; };
 
 Question question_of(const graze_query& query) {
   Question question;

@@ -30,6 +30,10 @@ struct Question {
   Lane lane;
 };
 
+// What decides a lane on cores: a lane's own code, or nothing for CUDA lanes, as the library has no twins. A program
+// that has them sets another function, before it asks anything.
+extern DecideBlock (*on_cores)(const Lane& lane);
+
 // Throws: QueryError if an argument is invalid or a required device is missing.
 Question question_of(const graze_query& query);
 

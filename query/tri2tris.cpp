@@ -50,7 +50,7 @@ std::int8_t detect(const triangle_t& ref, const triangle_t* triangles, int count
 
 extern "C" {
 
-void config_set(uint8_t config) { flags = config; }
+void config_set(uint8_t config) { flags |= config; }
 
 void config_reset(void) { flags = 0; }
 

@@ -24,7 +24,7 @@ triangle_t special_cases[] = {
     {{1.5f, -3, 5.5f}, {-2, -2, 5.5f}, {1.5f, 0, 5.5f}},
     {{2, 0, 0.5f}, {-2, 0, 1.5f}, {1, 0, 4}},
     {{0, 3, 1}, {0, 1, 1.5f}, {0, 4, 3}},
-    {{-3, 3, 0}, {0, 2.5f, 0}, {0, -3.5f, 0}},
+    {{-3, 3, 0}, {0, 2.5f, 0}, {0, 3.5f, 0}},
 };
 constexpr int kCases = sizeof special_cases / sizeof special_cases[0];
 
@@ -83,11 +83,24 @@ TEST_P(Tri2Tris, TheRandomTrianglesAreDecidedExactly) {
     config_set(static_cast<std::uint8_t>(COMPUTE_ALL_INTERSECTION | flags));
     EXPECT_EQ(GetParam()(reference, triangles.data(), 200'000, results.data()), 1);
     EXPECT_EQ(results, expected);
+    config_reset();
     config_set(static_cast<std::uint8_t>(flags));
     EXPECT_EQ(GetParam()(reference, triangles.data(), 200'000, results.data()), 1);
     EXPECT_EQ(results[answer.first], 1);
     EXPECT_EQ(std::count(results.begin(), results.end(), 0), 199'999);
   }
+}
+
+TEST_P(Tri2Tris, FlagsAddUpUntilAReset) {
+  triangle_t three[3] = {special_cases[0], {{9, 9, 9}, {9, 8, 9}, {9, 9, 8}}, special_cases[1]};
+  std::vector<uint8_t> results(3);
+  config_set(COMPUTE_ALL_INTERSECTION);
+  config_set(VERBOSE_MODE);
+  EXPECT_EQ(GetParam()(kReference, three, 3, results.data()), 1);
+  EXPECT_EQ(results, (std::vector<uint8_t>{1, 0, 1}));
+  config_reset();
+  EXPECT_EQ(GetParam()(kReference, three, 3, results.data()), 1);
+  EXPECT_EQ(results, (std::vector<uint8_t>{1, 0, 0}));
 }
 
 TEST_P(Tri2Tris, NoneAndErrors) {

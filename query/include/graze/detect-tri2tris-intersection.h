@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0
-   The two functions of the 2012 thesis (docs/query.md). With this folder on the include path, its callers compile
-   without changes. New code should use <graze/query_c.h>. Verdicts are exact. */
+   The two functions of the 2012 thesis. With this folder on the include path, its console program compiles;
+   docs/query.md lists what differs on purpose. New code should use <graze/query_c.h>. Verdicts are exact. */
 #ifndef GRAZE_DETECT_TRI2TRIS_INTERSECTION_H
 #define GRAZE_DETECT_TRI2TRIS_INTERSECTION_H
 
-#include <stdint.h>
+#include "geometric-types.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -15,16 +15,8 @@ extern "C" {
 #define NO_WDDM_TDR_WORKAROUND 0x04       /* do not limit the time of a kernel */
 #define FORCE_SINGLE_GPU_COMPUTATION 0x08 /* use only the first device */
 
-typedef struct {
-  float x, y, z;
-} coord_t;
-
-typedef struct {
-  coord_t p1, p2, p3;
-} triangle_t;
-
-void config_set(uint8_t config);
-void config_reset(void);
+void config_set(uint8_t config); /* adds flags to those that are set */
+void config_reset(void);         /* clears all flags */
 
 /* Returns: 1 if a triangle meets ref, 0 if none does, -1 on an error, or if none does but some are not finite.
    result_array receives a byte for each triangle: 1 meets ref, 0 does not, 2 is not finite. If the search stops at a

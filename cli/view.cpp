@@ -89,8 +89,10 @@ void show_against_the_first(Viewed& viewed) {
     return one.name.starts_with("reference_") && first_of(one.pair) == first_of(viewed.pairs[0].pair);
   };
   if (viewed.pairs.empty() || !std::all_of(viewed.pairs.begin(), viewed.pairs.end(), of_it)) return;
-  for (const reports::ViewedPair& one : viewed.pairs)
+  for (const reports::ViewedPair& one : viewed.pairs) {
     viewed.triangles.push_back({one.pair.b[0], one.pair.b[1], one.pair.b[2]});
+    viewed.ids.push_back(std::strtoull(one.name.substr(one.name.rfind('_') + 1).c_str(), nullptr, 10));
+  }
   viewed.opens_with_triangles = true;
 }
 
@@ -103,6 +105,7 @@ void add_query(const std::string& reference, const std::string& file, Viewed& vi
   const Lane* exact = find_lane("exact/f32/cpu");
   const std::vector<query::Triangle> mesh = read_mesh(file);
   std::vector<Triangle> others;
+  std::vector<std::size_t> other_ids;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const Pair pair = pair_of(references[0], mesh[i]);
     const bool hit = decide_one(exact->decide, pair) == Verdict::intersects;
@@ -110,17 +113,21 @@ void add_query(const std::string& reference, const std::string& file, Viewed& vi
     if (shown && viewed.pairs.size() < kMostOfAMesh)
       viewed.pairs.push_back({fmt::format("{}, triangle {}", printable(fs::path(file).filename().string()), i), pair});
     std::vector<Triangle>& of = hit ? viewed.triangles : others;
-    if (of.size() < reports::kMostViewedTriangles) of.push_back({pair.b[0], pair.b[1], pair.b[2]});
+    if (of.size() == reports::kMostViewedTriangles) continue;
+    of.push_back({pair.b[0], pair.b[1], pair.b[2]});
+    (hit ? viewed.ids : other_ids).push_back(i);
   }
-  const std::size_t room = reports::kMostViewedTriangles - viewed.triangles.size();
-  viewed.triangles.insert(viewed.triangles.end(), others.begin(),
-                          others.begin() + static_cast<std::ptrdiff_t>(std::min(room, others.size())));
+  const auto room =
+      static_cast<std::ptrdiff_t>(std::min(reports::kMostViewedTriangles - viewed.triangles.size(), others.size()));
+  viewed.triangles.insert(viewed.triangles.end(), others.begin(), others.begin() + room);
+  viewed.ids.insert(viewed.ids.end(), other_ids.begin(), other_ids.begin() + room);
   viewed.title = fmt::format("hits of {} in {}", printable(reference), printable(fs::path(file).filename().string()));
   viewed.opens_with_triangles = true;
 }
 
 Viewed viewed_of(const std::string& what, const std::string& mesh) {
-  Viewed viewed{printable(fs::path(what).filename().string()), {}, {}};
+  Viewed viewed;
+  viewed.title = printable(fs::path(what).filename().string());
   std::error_code ignored;
   if (what.empty()) return viewed;
   if (!mesh.empty()) {
@@ -150,17 +157,20 @@ void open_page(const std::string& page) {
   posix_spawn_file_actions_destroy(&quiet);
 }
 
-void view(const std::string& what, const std::string& mesh, const std::string& out) {
+void view(const std::string& what, const std::string& mesh, std::size_t random, const std::string& out) {
   if (!reports::has_viewer()) {
     throw std::runtime_error(
         "the viewer is not in this build: it needs Node with npm, clang and wasi-libc; run scripts/setup to install "
         "them and build");
   }
-  const Viewed viewed = viewed_of(what, mesh);
+  Viewed viewed = viewed_of(what, mesh);
+  viewed.random = random;
   write_result(out, reports::viewer_page(viewed), fuzz::NamedBy::user);
   const std::size_t count = viewed.pairs.size();
   fmt::print("Wrote {}: {}{}\n", path_word(out),
-             count == 0 ? "the special cases of 2012" : fmt::format("{} pair{}", count, count == 1 ? "" : "s"),
+             random > 0   ? fmt::format("{} random triangle{} of 2012", random, random == 1 ? "" : "s")
+             : count == 0 ? "the special cases of 2012"
+                          : fmt::format("{} pair{}", count, count == 1 ? "" : "s"),
              viewed.triangles.empty() ? "" : fmt::format(", {} triangles", viewed.triangles.size()));
   std::fflush(stdout);
   open_page(out);
@@ -174,20 +184,28 @@ void add_view(CLI::App& app, int&) {
   command->footer("Example: graze view thesis:1:0");
   auto what = std::make_shared<std::string>(), mesh = std::make_shared<std::string>(),
        out = std::make_shared<std::string>("view.html");
-  command->add_option("WHAT", *what,
-                      "File of pairs, campaign directory or folder of such files, mesh (" + strata::mesh_formats() +
-                          "), or STRATUM:SEED:INDEX (default: the special cases of the thesis of 2012)");
+  auto random = std::make_shared<std::size_t>(0);
+  CLI::Option* pairs =
+      command->add_option("WHAT", *what,
+                          "File of pairs, campaign directory or folder of such files, mesh (" + strata::mesh_formats() +
+                              "), or STRATUM:SEED:INDEX (default: the special cases of the thesis of 2012)");
   command
       ->add_option("MESH", *mesh,
                    "Mesh whose triangles are shown against WHAT, which is then a reference triangle as for `graze "
                    "query`: a file of "
                    "nine numbers, or MESH#FACE")
       ->check(not_empty());
+  command
+      ->add_option("--random", *random,
+                   "Number of random triangles of the thesis of 2012 that are shown first, against its reference")
+      ->transform(whole_number(1, reports::kMostViewedTriangles))
+      ->excludes(pairs)
+      ->option_text("N");
   command->add_option("--out", *out, "File for the page")
       ->check(not_empty())
       ->capture_default_str()
       ->option_text("FILE");
-  command->callback([what, mesh, out] { view(*what, *mesh, *out); });
+  command->callback([what, mesh, random, out] { view(*what, *mesh, *random, *out); });
 }
 
 }  // namespace graze::cli

@@ -80,6 +80,7 @@ TEST_F(ViewCommand, QueriesAndTheirResults) {
   nlohmann::json held = data("view.html");
   EXPECT_EQ(held["opens"], "triangles");
   EXPECT_EQ(held["title"], "hits of ref.txt in tent.obj");
+  EXPECT_EQ(held["ids"], (std::vector<int>{1, 2, 0}));
   EXPECT_EQ(held["pairs"][0]["name"], "tent.obj, triangle 1");
   EXPECT_EQ(held["pairs"][0]["bits"].get<std::string>().substr(72), held["triangles"][0]);  // hits come first
   EXPECT_EQ(held["pairs"][1]["bits"].get<std::string>().substr(72), held["triangles"][1]);
@@ -93,6 +94,16 @@ TEST_F(ViewCommand, QueriesAndTheirResults) {
   expect_error("graze view far.txt no.obj", 1, {"no.obj", "No such file or directory"});
   expect_done("graze view thesis:1:0");
   EXPECT_EQ(data("view.html")["opens"], "pair");
+}
+
+TEST_F(ViewCommand, BeginsWithRandomTrianglesOf2012) {
+  EXPECT_EQ(shell("graze view --random 12").out, "Wrote view.html: 12 random triangles of 2012\n");
+  EXPECT_EQ(data("view.html")["random"], 12);
+  EXPECT_EQ(data("view.html")["opens"], "random");
+  EXPECT_EQ(shell("graze view --random 1").out, "Wrote view.html: 1 random triangle of 2012\n");
+  expect_error("graze view --random 0", 2, {"--random", "0"});
+  expect_error("graze view --random 5001", 2, {"--random", "5001"});
+  expect_error("graze view thesis:1:0 --random 5", 2, {"--random", "WHAT"});
 }
 
 TEST_F(ViewCommand, BadInputGetsOneLine) {

@@ -102,7 +102,11 @@ std::string viewer_page(const Viewed& viewed) {
                {"title", viewed.title},
                {"pairs", pairs},
                {"triangles", triangles},
-               {"opens", viewed.opens_with_triangles ? "triangles" : "pair"}};
+               {"opens", viewed.random > 0             ? "random"
+                         : viewed.opens_with_triangles ? "triangles"
+                                                       : "pair"}};
+  if (!viewed.ids.empty()) data["ids"] = viewed.ids;
+  if (viewed.random > 0) data["random"] = viewed.random;
   data.update(viewer_checks());
   return with_data(kTemplate, "view", data);
 }

@@ -21,7 +21,9 @@ struct Viewed {
   std::vector<ViewedPair> pairs;  // empty: the special cases of 2012
   std::vector<std::array<Vec3<float>, 3>>
       triangles;                      // of a mesh or a query, to be seen against the first triangle of a pair
+  std::vector<std::size_t> ids;       // of these triangles; empty: they are numbered as they come
   bool opens_with_triangles = false;  // show all triangles at once instead of a pair
+  std::size_t random = 0;             // not 0: show so many random triangles of 2012 first
 };
 
 // Limits of the page's size.

@@ -9,7 +9,8 @@ import type { Report } from './report';
 import { choose, chosen, into_viewer, out_of_viewer, place_of_address, when_chosen } from './state';
 import { from_bits, to_bits, type Stored, type ViewData } from './viewer/data';
 import type { Model } from './viewer/model';
-import { make_ready, no_verdicts, viewer, type First } from './viewer/viewer';
+import { make_ready, no_verdicts } from './viewer/ready';
+import { viewer, type First } from './viewer/viewer';
 
 type Card = Report['cards'][number];
 

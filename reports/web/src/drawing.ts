@@ -15,7 +15,12 @@ export interface Shape {
   radius: number;
   note: string;
   marks?: Mark[];
-  names?: { p: Vec; name: string }[];
+  names?: Name[];
+  many_names?: Name[][]; // of many triangles, the names of each
+}
+export interface Name {
+  p: Vec;
+  name: string;
 }
 // Additional marks in a colour of the style sheet: triangles with three corners each, or polylines of the given width.
 export interface Mark {
@@ -125,7 +130,20 @@ export function project(
   return { x: width / 2 + scale * dot(p, right), y: height / 2 - scale * dot(p, up), depth: dot(p, eye) };
 }
 
-// The vertices' names, pushed away from the centre of the drawing. Coinciding vertices share one label.
+const kMostNames = 30; // more cannot be read
+
+// The names of many triangles that are in view; if these are too many, of those nearest to the eye.
+function names_of_many(shape: Shape, view: View, width: number, height: number) {
+  const inside = ({ x, y }: { x: number; y: number }) => x > 0 && y > 0 && x < width && y < height;
+  const seen = (shape.many_names ?? [])
+    .map((names) => names.map(({ p, name }) => ({ ...project(shape, p, view, width, height), text: name })))
+    .filter((names) => names.some(inside))
+    .map((names) => ({ names, depth: Math.max(...names.map(({ depth }) => depth)) }))
+    .sort((s, t) => t.depth - s.depth);
+  return seen.slice(0, Math.floor(kMostNames / (seen[0]?.names.length ?? 1))).flatMap(({ names }) => names);
+}
+
+// The names: those of vertices pushed away from the centre of the drawing. Coinciding vertices share one label.
 export function labels(shape: Shape, view: View, width: number, height: number) {
   const at = new Map<string, { x: number; y: number; text: string }>();
   const kAway = 14,
@@ -142,7 +160,7 @@ export function labels(shape: Shape, view: View, width: number, height: number) 
     if (found) found.text += ` ${name}`;
     else at.set(key, { x, y, text: name });
   }
-  return [...at.values()]
+  const of_vertices = [...at.values()]
     .map(({ x, y, text }) => {
       const away = Math.hypot(x - middle.x, y - middle.y) || 1;
       return {
@@ -152,4 +170,5 @@ export function labels(shape: Shape, view: View, width: number, height: number) 
       };
     })
     .filter(({ x, y }) => x > -10 && y > -10 && x < width + 10 && y < height + 10);
+  return [...of_vertices, ...names_of_many(shape, view, width, height)];
 }

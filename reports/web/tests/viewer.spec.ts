@@ -5,52 +5,14 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import AxeBuilder from '@axe-core/playwright';
-import { expect, test as base, type Page } from '@playwright/test';
 import { pixels, without_webgl } from './page';
+import { coordinate, expect, file, name, test, url, verdict, verdicts } from './viewer_page';
 
-const file = () => process.env.GRAZE_VIEW!;
-const url = () => pathToFileURL(file()).href;
 const kCells = 256;
 const kEndsApart =
   '40000000c0000000408000003f80000040a00000c00000003f800000c0400000c04000003ff333344019999a40d66666bdccccc0bf19999a409666663ff33334bf19999a402ccccd'; // thesis:1:15524
 const kOverflow =
   'd01cb3ffcf1130a24fd0e03dd0111e894fc5fbfb4fb67a05cee82f564ea92d6bce58537dceb4244ccf02f27ccf8846bbcf581c374eb351f54dda496bcec4d16a4f5f9694ce41af95'; // extreme_scale:1:2
-
-// Without WebGL, except in tests that ask for it, because it takes most of the time if there is no GPU.
-const test = base.extend<{ webgl: boolean; viewer: Page }>({
-  webgl: [false, { option: true }],
-  viewer: async ({ page, webgl }, use) => {
-    if (!webgl) await page.addInitScript(without_webgl);
-    test.skip(!file(), 'this build has no viewer');
-    const fetched: string[] = [],
-      said: string[] = [];
-    page.on('request', (request) => {
-      const asked = request.url().split('#')[0];
-      if (asked !== url() && !asked.startsWith('data:') && !asked.startsWith('blob:')) fetched.push(asked);
-    });
-    page.on('console', (message) => said.push(`${message.type()}: ${message.text()}`));
-    page.on('pageerror', (error) => said.push(`error: ${error.message}`));
-    await page.goto(url());
-    await page.waitForSelector('#replayed');
-    await use(page);
-    expect(fetched, 'fetched').toEqual([]);
-    expect(said, 'on the console').toEqual([]);
-  },
-});
-
-const coordinate = (page: Page, c: number) => page.locator(`[data-coordinate="${c}"]`);
-const verdict = (page: Page, lane: string) => page.locator(`[data-lane="${lane}"]`);
-const name = (page: Page) => page.locator('h1').textContent();
-
-// The verdicts on the page, without their marks.
-const verdicts = (page: Page) =>
-  page
-    .locator('[data-lane]')
-    .evaluateAll((cells) =>
-      Object.fromEntries(
-        cells.map((cell) => [cell.getAttribute('data-lane')!, cell.textContent!.replace(/[^a-z]/g, '')]),
-      ),
-    );
 
 test('it checks itself by stored verdicts, and says on how many pairs', async ({ viewer }) => {
   const said = (await viewer.locator('#replayed').textContent())!;
@@ -291,121 +253,16 @@ test('a query is shown with all triangles, its hits and what a lane gets wrong',
   await expect(page.locator('#why')).toContainText('logic');
 });
 
-test('every key does what the help says', async ({ viewer }) => {
-  test.slow();
-  const board = viewer.locator('#board');
-  await board.focus();
-  const looks = () => board.locator('svg').innerHTML();
-  const value = (c: number) => coordinate(viewer, c).inputValue();
-  // Waits until earlier requests are drawn; otherwise two keys that undo each other would seem to do nothing.
-  const drawn = () =>
-    viewer.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-  const changes = (of: () => Promise<unknown>) => async (key: string) => {
-    await drawn();
-    const before = await of();
-    await viewer.keyboard.press(key);
-    await expect.poll(of, { message: key }).not.toEqual(before);
-  };
-  const moves = (c: number, by: number) => async (key: string) => {
-    const before = Number(await value(c));
-    await viewer.keyboard.press(key);
-    await expect.poll(async () => Number(await value(c)), { message: key }).toBe(before + by);
-  };
-  const chosen = (c: number) => async (key: string) => {
-    await viewer.keyboard.press(key);
-    await expect(coordinate(viewer, c), key).toHaveClass(/chosen/);
-  };
-  const shown = (what: string) => changes(() => viewer.locator(`[data-shows="${what}"]`).getAttribute('aria-pressed'));
-  const names = () => name(viewer),
-    field = async () => (await viewer.locator('#field').textContent())!;
-  const expected: [string, (key: string) => Promise<void>][] = [
-    ['t', changes(names)],
-    ['←', changes(looks)],
-    ['→', changes(looks)],
-    ['↑', changes(looks)],
-    ['↓', changes(looks)],
-    ['a', moves(0, -0.0625)],
-    ['d', moves(3, 0.0625)],
-    ['s', moves(1, -0.0625)],
-    ['w', moves(4, 0.0625)],
-    ['q', moves(2, -0.0625)],
-    ['e', moves(8, 0.0625)],
-    ['o', shown('axes')],
-    ['c', shown('coordinates')],
-    ['i', shown('ids')],
-    ['p', shown('planes')],
-    ['g', changes(() => viewer.locator('[data-lane][aria-pressed="true"]').getAttribute('data-lane'))],
-    ['+', changes(field)],
-    ['-', changes(field)],
-    ['space', changes(field)],
-    ['n', changes(names)],
-    ['b', changes(names)],
-    ...['0', '1', '2', '3', '4', '5'].map((key, v) => [key, chosen(3 * v)] as [string, (key: string) => Promise<void>]),
-    ['y', chosen(16)],
-    ['z', chosen(17)],
-    ['x', chosen(15)],
-    ['[', changes(() => value(15))],
-    [']', changes(() => value(15))],
-    ['f', changes(() => viewer.getByLabel('Centre').inputValue())],
-    ['Home', changes(() => viewer.getByLabel('Centre').inputValue())],
-    ['u', changes(() => value(15))],
-    ['r', changes(() => value(15))],
-    ['Control+z', changes(() => value(15))],
-    ['Control+y', changes(() => value(15))],
-    [
-      'h',
-      async (key) => {
-        await viewer.keyboard.press(key);
-        await expect(viewer.locator('#help')).toBeVisible();
-        await expect(viewer.locator('#help-title')).toBeFocused();
-        await viewer.keyboard.press(key);
-        await expect(viewer.locator('#help')).toBeHidden();
-      },
-    ],
-  ];
-  const kNames: Record<string, string> = {
-    '←': 'ArrowLeft',
-    '→': 'ArrowRight',
-    '↑': 'ArrowUp',
-    '↓': 'ArrowDown',
-    space: ' ',
-  };
-  for (const [key, check] of expected) await check(kNames[key] ?? key);
-  const listed = await viewer.locator('#help kbd').allTextContents();
-  expect(
-    expected
-      .map(([key]) => key)
-      .filter((key) => !key.startsWith('Control'))
-      .sort(),
-  ).toEqual(listed.sort());
-});
-
-test('steps are of one ulp, of 256 with Shift, of 65,536 with Alt', async ({ viewer }) => {
-  await coordinate(viewer, 0).fill('1');
-  await coordinate(viewer, 0).blur();
-  for (const [key, expected] of [
-    [']', 1 + 2 ** -23],
-    ['[', 1],
-    ['Shift+BracketRight', 1 + 2 ** -15],
-    ['Shift+BracketLeft', 1],
-    ['Alt+BracketRight', 1 + 2 ** -7],
-    ['Alt+BracketLeft', 1],
-  ] as const) {
-    await viewer.keyboard.press(key);
-    await expect
-      .poll(async () => Math.fround(Number(await coordinate(viewer, 0).inputValue())))
-      .toBe(Math.fround(expected));
-  }
-});
-
 test.describe('by WebGL', () => {
   test.use({ webgl: true });
   test('dragging a vertex decides anew, says what changed, and is one step to undo', async ({ viewer }) => {
     await viewer.setViewportSize({ width: 700, height: 450 }); // fewer places to try below
     await viewer.keyboard.press('t');
+    await viewer.locator('button', { hasText: 'Take a hit' }).click();
     await expect(coordinate(viewer, 9)).toHaveValue('-2');
-    const board = viewer.locator('#board'),
-      box = (await board.boundingBox())!;
+    const board = viewer.locator('#board');
+    await board.scrollIntoViewIfNeeded();
+    const box = (await board.boundingBox())!;
     // Finds a vertex by trying where the pointer grabs one.
     let held = false;
     for (let x = 20; x < box.width - 20 && !held; x += 20) {

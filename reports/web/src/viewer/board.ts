@@ -5,7 +5,7 @@ import { choice, h } from '../dom';
 import { axes, framed_half_height, good_view, project, type Vec } from '../drawing';
 import { svg_projection } from '../projection';
 import { has_webgl, picture, type Picture } from '../view3d';
-import { kCentres, type Centre, type Model } from './model';
+import { kCentres, without_changed, type Centre, type Model } from './model';
 import { placed, type Field, type Placed } from './shape';
 
 const kReach = 16; // pixels around a vertex in which it can be grabbed
@@ -36,8 +36,9 @@ export function board(model: Model, fields: () => Field | null) {
   place();
   const { camera, set } = orbit(ground, best_view(), draw, draw);
 
-  // A direction from which the shown shapes are not edge-on.
+  // The first view of 2012 for its triangles; otherwise a direction from which the shown shapes are not edge-on.
   function best_view() {
+    if (fields()?.of_2012) return { azimuth: 0, elevation: 0.56, zoom: 1 };
     const seen = [now.shape.a, now.shape.b].filter((polygon) => polygon.length > 2);
     return good_view({ ...now.shape, a: seen[0] ?? kFlat, b: seen[1] ?? seen[0] ?? kFlat });
   }
@@ -61,7 +62,8 @@ export function board(model: Model, fields: () => Field | null) {
   let last_name = '';
   function update() {
     const { truth } = model.decided,
-      name = model.name.replace(/, changed$/, '');
+      field = fields(),
+      name = field ? 'many triangles' : without_changed(model.name);
     if (name !== last_name) magnified = 1; // a new pair starts with its best view
     place();
     if (name !== last_name) set(best_view());
@@ -74,14 +76,14 @@ export function board(model: Model, fields: () => Field | null) {
     gap_button.hidden = witness_key.hidden;
     gap_button.textContent = truth.verdict === 'disjoint' ? 'Show the gap' : 'Show the depth';
     witness_key.textContent = truth.verdict === 'disjoint' ? 'nearest points' : 'shortest push of b that parts them';
-    b_key.hidden = fields() !== null;
-    field_keys.forEach((key) => (key.hidden = fields() === null));
-    shadow_key.hidden = fields() !== null || !model.lane.startsWith('projected_sat/');
+    b_key.hidden = field !== null;
+    field_keys.forEach((key) => (key.hidden = field === null));
+    shadow_key.hidden = field !== null || !model.lane.startsWith('projected_sat/');
     line_key.hidden = now.shape.line.length === 0;
     centre_choice.querySelector('select')!.value = model.centre;
     ground.setAttribute(
       'aria-label',
-      `Two triangles, ${truth.verdict}, contact ${truth.contact}. Arrow keys turn and magnify; h lists all keys.`,
+      `${field ? field.title : `Two triangles, ${truth.verdict}, contact ${truth.contact}`}. Arrow keys turn and magnify; h lists all keys.`,
     );
     draw();
   }

@@ -19,7 +19,9 @@ export interface ViewData extends Stored {
   title: string;
   pairs: { name: string; bits: string }[];
   triangles: string[]; // of a mesh or a query, 9 words each; may be empty
-  opens?: 'pair' | 'triangles'; // show all triangles at once, against the first triangle of the pair
+  ids?: number[]; // of these triangles; without it, they are numbered as they come
+  opens?: 'pair' | 'triangles' | 'random'; // triangles: all at once, against the first triangle of the pair
+  random?: number; // how many random triangles are drawn first
 }
 
 export function from_bits(bits: string): Coordinates {

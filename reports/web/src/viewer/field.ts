@@ -1,33 +1,87 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many triangles against the reference, as in 2012: random ones of the thesis's generator, or those of a mesh or a
-// query.
+// Many triangles against the reference, as in 2012: random ones of the thesis's generator, its special cases, or those
+// of a mesh or a query.
 import { h } from '../dom';
 import { count } from '../format';
 import { from_bits, type Coordinates, type ViewData } from './data';
-import type { Model } from './model';
+import { special_cases, without_changed, type Model } from './model';
 import type { Field } from './shape';
 
-const kLeast = 16,
-  kMost = 8192;
+const kFirst = 10, // as in 2012
+  kMost = 5000;
 
-export function field(model: Model, data: ViewData, changed: () => void) {
+type Kind = 'given' | 'random' | 'special';
+
+export function field(model: Model, data: ViewData, say: (text: string) => void, changed: () => void) {
   const { graze } = model,
-    mesh = data.triangles.map(from_bits);
-  let shown = 0,
+    given = data.triangles.map(from_bits);
+  let kind: Kind | null = null, // null: the pair
     seed = 1n,
+    own: { name: string; pair: Coordinates }, // the pair with the reference that the triangles were made for
     triangles: Coordinates[] = [],
+    ids: number[] = [],
     current: Field | null = null;
+  const shown = { given: given.length, random: data.random || kFirst, special: special_cases.length };
+  const left: { kind: Kind | null; name: string; pair: Coordinates }[] = []; // what was drawn before
   const told = h('p', { class: 'small', id: 'field' });
 
-  function draw_triangles() {
-    triangles = mesh.length
-      ? mesh.slice(0, shown)
-      : Array.from({ length: shown }, (_, i) => graze.generate('thesis', seed, BigInt(i)).slice(9));
+  // Random triangles and special cases have a reference of their own, so another pair ends them.
+  const drawn = () => (kind && (kind === 'given' || without_changed(model.name) === own.name) ? kind : null);
+  const moved = () => kind !== 'given' && own.pair.subarray(0, 9).some((x, c) => x !== model.pair[c]);
+
+  function title() {
+    const now = drawn();
+    if (!now) return null;
+    const many = `${count(shown[now])} ${now === 'random' ? 'random ' : ''}triangle${shown[now] === 1 ? '' : 's'}`;
+    const of = {
+      given: `${data.title}: ${many}`,
+      random: `${many} of 2012, seed ${seed}`,
+      special: 'the ten special cases of 2012',
+    };
+    return of[now] + (moved() ? ', reference moved' : '');
+  }
+
+  function make() {
+    triangles =
+      kind === 'given'
+        ? given.slice(0, shown.given)
+        : kind === 'special'
+          ? special_cases.map(({ pair }) => pair.slice(9))
+          : Array.from({ length: shown.random }, (_, i) => graze.generate('thesis', seed, BigInt(i)).slice(9));
+    ids = triangles.map((_, i) => (kind === 'given' ? (data.ids?.[i] ?? i) : i));
+    changed();
+  }
+  const pair_of = (i: number) =>
+    kind === 'special'
+      ? special_cases[i]
+      : { name: `thesis:${seed}:${i}`, pair: graze.generate('thesis', seed, BigInt(i)) };
+
+  function begin(next: Kind) {
+    left.push({ kind: drawn(), name: model.name, pair: model.pair });
+    kind = next;
+    if (kind !== 'given') face();
+    make();
+  }
+  // Sets the pair to the reference of these triangles, and the first of them.
+  function face() {
+    own = pair_of(0);
+    model.show(own.pair, own.name);
+  }
+  function back() {
+    const before = left.pop()!;
+    kind = before.kind;
+    if (kind === 'random') own = pair_of(0);
+    model.show(before.pair, before.name);
+    if (kind) make();
   }
 
   // Decides all triangles with the chosen lane and with the exact decision.
   function decide() {
-    if (!shown) return (current = null);
+    if (!drawn()) {
+      kind = null;
+      left.length = 0;
+      return (current = null);
+    }
     const { exports } = graze,
       lane = graze.lanes.indexOf(model.lane),
       hit: boolean[] = [],
@@ -48,7 +102,7 @@ export function field(model: Model, data: ViewData, changed: () => void) {
         wrong.push(verdict !== truth[i]);
       });
     }
-    return (current = { triangles, hit, wrong });
+    return (current = { title: title()!, of_2012: kind !== 'given', triangles, ids, hit, wrong });
   }
 
   function tell() {
@@ -59,17 +113,25 @@ export function field(model: Model, data: ViewData, changed: () => void) {
             h(
               'strong',
               {},
-              `${count(triangles.length)} ${mesh.length ? '' : 'random '}triangles against a, the reference: `,
+              `${count(triangles.length)} triangle${triangles.length === 1 ? '' : 's'} against a, the reference: `,
             ),
             h('code', {}, model.lane),
-            ` hits ${sum(current.hit)}, wrong on ${sum(current.wrong)} (outlined). The table is of the pair named above; press a verdict to see its lane here. `,
+            ` hits ${sum(current.hit)}, wrong on ${sum(current.wrong)} (outlined). The table is of one pair, ${model.name}; press a verdict to see its lane here. `,
+            ...(current.hit.some(Boolean) || current.wrong.some(Boolean)
+              ? [
+                  h(
+                    'button',
+                    { type: 'button', onclick: take },
+                    current.wrong.some(Boolean) ? 'Take a wrong one' : 'Take a hit',
+                  ),
+                  ' ',
+                ]
+              : []),
             h(
               'button',
-              { type: 'button', onclick: take },
-              current.wrong.some(Boolean) ? 'Take a wrong one' : 'Take a hit',
+              { type: 'button', onclick: back },
+              left.at(-1)!.kind ? 'Back to the random triangles' : 'Back to the pair',
             ),
-            ' ',
-            h('button', { type: 'button', onclick: () => set_shown(0) }, 'Back to the pair'),
           ]
         : []),
     );
@@ -79,26 +141,36 @@ export function field(model: Model, data: ViewData, changed: () => void) {
     const at = current!.wrong.indexOf(true),
       one = at < 0 ? current!.hit.indexOf(true) : at;
     if (one < 0) return;
-    const triangle = triangles[one];
-    set_shown(0);
-    model.change((pair) => pair.set(triangle, 9));
+    const name = kind === 'given' ? model.name : pair_of(one).name,
+      unchanged = kind !== 'given' && !moved(),
+      pair = model.pair.slice();
+    pair.set(triangles[one], 9);
+    kind = null;
+    model.show(pair, unchanged ? name : `${without_changed(name)}, changed`);
   }
-  function set_shown(next: number) {
-    shown = Math.min(mesh.length || kMost, next);
-    if (shown < Math.min(kLeast, mesh.length || kLeast)) shown = 0;
-    draw_triangles();
-    changed();
-  }
+
+  // What +, - and space change: the triangles of a mesh or a query if there are any, otherwise random ones.
+  const changing = given.length ? 'given' : 'random';
+  const special_stay = () => say('the special cases stay as they are; t leaves them');
   return {
     element: told,
+    title,
     current: () => current,
-    all: () => set_shown(mesh.length),
-    more: () => set_shown(shown ? 2 * shown : mesh.length || 4 * kLeast),
-    fewer: () => set_shown(Math.floor(shown / 2)),
+    all: () => begin(changing),
+    special: () => (drawn() === 'special' ? back() : begin('special')),
+    add(more: 1 | -1) {
+      if (drawn() === 'special') return special_stay();
+      if (!drawn()) return begin(changing);
+      shown[changing] = Math.max(1, Math.min(given.length || kMost, shown[changing] + more));
+      make();
+    },
     again() {
-      if (mesh.length) return set_shown(shown || mesh.length);
+      if (drawn() === 'special') return special_stay();
+      if (!drawn()) return begin(changing);
+      if (changing === 'given') return;
       ++seed;
-      set_shown(shown || 4 * kLeast);
+      face();
+      make();
     },
     update() {
       decide();

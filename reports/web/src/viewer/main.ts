@@ -4,7 +4,8 @@ import '../style.css';
 import { h } from '../dom';
 import { from_bits, type ViewData } from './data';
 import { fragment_of, from_fragment, special_cases, type Model } from './model';
-import { make_ready, no_verdicts, viewer, type First } from './viewer';
+import { make_ready, no_verdicts } from './ready';
+import { viewer, type First } from './viewer';
 
 function first_of({ pairs, opens }: ViewData): First {
   const linked = from_fragment();
@@ -12,7 +13,7 @@ function first_of({ pairs, opens }: ViewData): First {
     ? { name: 'the pair of a link', ...linked }
     : pairs.length
       ? { name: pairs[0].name, pair: from_bits(pairs[0].bits), lane: opens === 'triangles' ? 'exact/f32/cpu' : '' }
-      : special_cases[0];
+      : { ...special_cases[0], lane: opens === 'random' ? 'interval_overlap/f32/cpu' : '' }; // the thesis's algorithm
 }
 
 async function start() {

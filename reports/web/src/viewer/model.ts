@@ -6,24 +6,27 @@ import type { Graze, Margin, Truth, Verdict } from './graze.js';
 export type Centre = 'both triangles' | 'the chosen vertex' | 'the contact or gap';
 export const kCentres: Centre[] = ['both triangles', 'the chosen vertex', 'the contact or gap'];
 
-// The thesis's special cases: B against the reference triangle, one for each placement of the vertices along the line.
+// The thesis's special cases, in its order: B against the reference triangle, one for each placement of the vertices
+// along the line.
 const kReference = [0, -2, 6, 0, 5, 0, 0, -3, 0];
 const kSpecial = [
   ['across the line', -2, -2, 0, 2, -3, 0, 3, -1, 0],
-  ['a vertex on the line', -2, 4.7, 0, 0, 3.7, 0, 2, 4.7, 0],
   ['across the line, other side', 2, -1, 0, -2, -1.5, 0, -3, 0, 0],
-  ['the reference pierces B', 1.5, -3, 5.5, -2, -2, 5.5, 1.5, 0, 5.5],
   ['a vertex on the edge', 0, 0, 0, -2, 0.5, 0, -3, 2, 0],
-  ['B pierces the reference', 2, 0, 0.5, -2, 0, 1.5, 1, 0, 4],
   ['a vertex on the edge, other side', 0, 0.5, 0, 2, 0, 0, 3, 1, 0],
-  ['in the same plane', 0, 3, 1, 0, 1, 1.5, 0, 4, 3],
   ['an edge within the edge', 3, 1.5, 0, 0, 1, 0, 0, 2, 0],
   ['an edge within the edge, other side', -3, 3, 0, 0, 2.5, 0, 0, 3.5, 0],
+  ['a vertex on the line', -2, 4.7, 0, 0, 3.7, 0, 2, 4.7, 0],
+  ['the reference pierces B', 1.5, -3, 5.5, -2, -2, 5.5, 1.5, 0, 5.5],
+  ['B pierces the reference', 2, 0, 0.5, -2, 0, 1.5, 1, 0, 4],
+  ['in the same plane', 0, 3, 1, 0, 1, 1.5, 0, 4, 3],
 ] as const;
 export const special_cases = kSpecial.map(([what, ...b], i) => ({
   name: `special case ${i + 1} of 2012: ${what}`,
   pair: new Float32Array([...kReference, ...b]),
 }));
+
+export const without_changed = (name: string) => name.replace(/, changed$/, '');
 
 export interface Decided {
   verdicts: Record<string, Verdict | null>;
@@ -90,7 +93,7 @@ export class Model {
   change(edit: (pair: Coordinates) => void) {
     const next = this.pair.slice();
     edit(next);
-    this.show(next, this.name.replace(/(, changed)?$/, ', changed'));
+    this.show(next, `${without_changed(this.name)}, changed`);
   }
   step(ulps: number) {
     this.change((pair) => (pair[this.chosen] = this.graze.nudged(pair[this.chosen], ulps)));

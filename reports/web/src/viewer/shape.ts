@@ -77,10 +77,23 @@ function shadow_of(points: Vec[]): Vec[] {
 }
 
 export interface Field {
-  triangles: Coordinates[];
+  title: string;
+  of_2012: boolean;
+  triangles: Coordinates[]; // 9 coordinates each
+  ids: number[];
   hit: boolean[];
   wrong: boolean[];
-} // 9 coordinates each
+}
+
+// The names of a triangle among many: its number in the middle, its coordinates at the vertices.
+function names_of(triangle: Coordinates, id: number, shows: Model['shows'], place: (p: readonly number[]) => Vec) {
+  const corners = [0, 1, 2].map((v) => vertex(triangle, v)),
+    middle = corners[0].map((_, k) => corners.reduce((sum, p) => sum + p[k] / 3, 0));
+  return [
+    ...(shows.ids ? [{ p: place(middle), name: String(id) }] : []),
+    ...(shows.coordinates ? corners.map((p) => ({ p: place(p), name: `(${p.map(decimal).join(', ')})` })) : []),
+  ];
+}
 
 // magnified: the factor beyond fitting the board.
 export function placed(model: Model, drawing: Drawing, magnified: number, field: Field | null): Placed {
@@ -111,7 +124,11 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
   const radius =
     Math.max(
       0.6,
-      ...points.map((p) => Math.hypot(...p.map((c, k) => (c - (low[k] / 2 + high[k] / 2)) / unit[k] / magnified))),
+      all.reduce(
+        (most, p) =>
+          Math.max(most, Math.hypot(...p.map((c, k) => (c - (low[k] / 2 + high[k] / 2)) / unit[k] / magnified))),
+        0,
+      ),
     ) * 0.95;
   if (shows.planes) {
     [a, b].forEach((corners, i) =>
@@ -196,6 +213,10 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
               p,
               name: `${shows.ids ? `${i < 3 ? 'a' : 'b'}${i % 3}` : ''}${shows.coordinates ? ` (${points[i].map(decimal).join(', ')})` : ''}`,
             }))
+          : [],
+      many_names:
+        field && (shows.ids || shows.coordinates)
+          ? field.triangles.map((triangle, i) => names_of(triangle, field.ids[i], shows, place))
           : [],
     },
   };

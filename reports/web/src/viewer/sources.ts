@@ -87,15 +87,6 @@ export function sources(model: Model, data: ViewData, say: (text: string) => voi
     seed = 1n;
     show(0);
   });
-  function next_special() {
-    source = 'special';
-    select.querySelector('select')!.value = source;
-    show(
-      special_cases.findIndex(({ name }) => name === model.name) + 1 === special_cases.length
-        ? 0
-        : special_cases.findIndex(({ name }) => name === model.name) + 1,
-    );
-  }
   function update() {
     const of = Number.isFinite(length()) ? `${at + 1} of ${length()}` : `index ${at}, seed ${seed}`;
     place.textContent = of;
@@ -104,7 +95,6 @@ export function sources(model: Model, data: ViewData, say: (text: string) => voi
   return {
     go,
     update,
-    next_special,
     find,
     element: h(
       'div',

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Prepares the module, and checks it against the native build.
+import compressed from 'graze.wasm';
+import { h } from '../dom';
+import { replay, type Replay } from './data';
+import { load, type Graze } from './graze.js';
+
+async function module_of(base64: string): Promise<WebAssembly.Module> {
+  const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
+  return WebAssembly.compile(await new Response(stream).arrayBuffer());
+}
+
+export interface Ready {
+  graze: Graze;
+  module: WebAssembly.Module;
+  said: string;
+}
+
+// Returns the module after it has decided the stored pairs.   Throws: its differences from the native build, in words.
+export async function make_ready(stored: Replay): Promise<Ready> {
+  const module = await module_of(compressed),
+    graze = await load(module),
+    apart = replay(graze, stored);
+  if (apart.length)
+    throw new Error(
+      `This browser decides otherwise than the native build: ${apart.slice(0, 3).join('; ')}${apart.length > 3 ? `; and ${apart.length - 3} more` : ''}.`,
+    );
+  return {
+    graze,
+    module,
+    said: `Same as the native build on ${stored.pairs.length} pairs, ${stored.lanes.length} lanes each.`,
+  };
+}
+
+export const no_verdicts = (error: unknown) => [
+  h('h1', {}, 'No verdicts'),
+  h('p', { class: 'notice', role: 'alert', id: 'warning' }, String(error instanceof Error ? error.message : error)),
+  h('p', {}, 'The same pair in a terminal: ', h('code', {}, 'graze check FILE'), '.'),
+];

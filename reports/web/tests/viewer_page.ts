@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page of `graze view` under test. In every test it must fetch nothing and leave the console clean.
+import { pathToFileURL } from 'node:url';
+import { expect, test as base, type Page } from '@playwright/test';
+import { without_webgl } from './page';
+
+export const file = () => process.env.GRAZE_VIEW!;
+export const url = () => pathToFileURL(file()).href;
+
+// Without WebGL, except in tests that ask for it, because it takes most of the time if there is no GPU.
+export const test = base.extend<{ webgl: boolean; viewer: Page }>({
+  webgl: [false, { option: true }],
+  viewer: async ({ page, webgl }, use) => {
+    if (!webgl) await page.addInitScript(without_webgl);
+    test.skip(!file(), 'this build has no viewer');
+    const fetched: string[] = [],
+      said: string[] = [];
+    page.on('request', (request) => {
+      const asked = request.url().split('#')[0];
+      if (asked !== url() && !asked.startsWith('data:') && !asked.startsWith('blob:')) fetched.push(asked);
+    });
+    page.on('console', (message) => said.push(`${message.type()}: ${message.text()}`));
+    page.on('pageerror', (error) => said.push(`error: ${error.message}`));
+    await page.goto(url());
+    await page.waitForSelector('#replayed');
+    await use(page);
+    expect(fetched, 'fetched').toEqual([]);
+    expect(said, 'on the console').toEqual([]);
+  },
+});
+
+export const coordinate = (page: Page, c: number) => page.locator(`[data-coordinate="${c}"]`);
+export const verdict = (page: Page, lane: string) => page.locator(`[data-lane="${lane}"]`);
+export const name = (page: Page) => page.locator('h1').textContent();
+
+// The verdicts on the page, without their marks.
+export const verdicts = (page: Page) =>
+  page
+    .locator('[data-lane]')
+    .evaluateAll((cells) =>
+      Object.fromEntries(
+        cells.map((cell) => [cell.getAttribute('data-lane')!, cell.textContent!.replace(/[^a-z]/g, '')]),
+      ),
+    );
+
+export { expect };

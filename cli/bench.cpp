@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 
+#include "backends/backends.h"
 #include "cli/bench_rows.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
@@ -14,6 +16,7 @@
 #include "core/error.h"
 #include "core/exact_blocks/decide.h"
 #include "fuzz/campaign/campaign.h"
+#include "query/question.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"
 #include "strata/mesh.h"
@@ -22,12 +25,12 @@ namespace graze::cli {
 namespace {
 
 struct Options {
-  std::vector<std::string> sizes = {"1e4", "1e5", "1e6", "1e7"};
+  std::vector<std::string> sizes = {"10000", "100000", "1000000", "5000000", "10000000", "20000000"};
   std::vector<std::string> lanes = {"interval_overlap/f32/cpu",           "guigue_devillers_2003/f32/cpu",
                                     "interval_overlap/f32/cpu/filtered",  "interval_overlap/f32/cuda-fma",
                                     "guigue_devillers_2003/f32/cuda-fma", "interval_overlap/f32/cuda-fma/filtered"};
   std::string mesh, plot;
-  bool json = false;
+  bool json = false, asked_lanes = false;
 };
 
 std::string words(const BenchMachine& machine) {
@@ -58,7 +61,7 @@ nlohmann::ordered_json json_of(const Bench& bench) {
   }
   nlohmann::ordered_json crossover = nullptr;
   if (bench.crossover > 0) crossover = bench.crossover;
-  return {{"machine", machine}, {"crossover", crossover}, {"rows", rows}};
+  return {{"machine", machine}, {"crossover", crossover}, {"not_timed_above", bench.not_timed_above}, {"rows", rows}};
 }
 
 // Formats the rows of one array.
@@ -102,20 +105,35 @@ std::string shares(const Bench& bench) {
   return text;
 }
 
-// The requested CUDA lanes, if there is no device.
-std::vector<fuzz::LaneLeftOut> without_device(const std::vector<std::string>& lanes) {
+// Leaves out lanes that run neither on a device nor by a twin, and says which if they were asked for.
+void leave_out(std::vector<std::string>& lanes, bool asked) {
   std::vector<fuzz::LaneLeftOut> left_out;
-  if (graze_devices() > 0) return left_out;
-  for (const std::string& lane : lanes) {
-    if (lane.find("/cuda") != lane.npos) left_out.push_back({lane, "no CUDA device"});
-  }
-  return left_out;
+  std::erase_if(lanes, [&](const std::string& id) {
+    add_policy_lanes(id);
+    const Lane* lane = find_lane(id);
+    if (!lane || graze_devices() > 0) return false;
+    const std::string why_not = backends::why_not_on_host(*lane);
+    if (!why_not.empty()) left_out.push_back({id, why_not});
+    return !why_not.empty();
+  });
+  if (asked) say_left_out(left_out);
+}
+
+std::string not_timed(const Bench& bench) {
+  std::map<std::uint64_t, std::vector<std::string>> by_size;
+  for (const auto& [lane, most] : bench.not_timed_above) by_size[most].push_back(lane);
+  std::string text;
+  for (const auto& [most, lanes] : by_size)
+    text += fmt::format("not timed above {} triangles: {}\n", reports::grouped(most), fmt::join(lanes, ", "));
+  return text;
 }
 
 void bench(const Options& options, int& status) {
   BenchOptions wanted;
   for (const std::string& size : options.sizes) wanted.sizes.push_back(std::stoull(size));
   wanted.lanes = options.lanes;
+  leave_out(wanted.lanes, options.asked_lanes);
+  query::on_cores = backends::on_host;  // with twins
   if (!options.mesh.empty()) {
     wanted.mesh_name = std::filesystem::path(options.mesh).filename().string();
     for (const auto& t : strata::read_triangles(options.mesh).triangles)
@@ -154,7 +172,7 @@ void bench(const Options& options, int& status) {
     fmt::print("{}\n", json_of(result).dump(1));
     return;
   }
-  fmt::print("{}", shares(result));
+  fmt::print("{}{}", not_timed(result), shares(result));
   if (!result.machine.devices.empty()) {
     fmt::print("crossover: {}\n", result.crossover == 0
                                       ? "none; with copies all cores are faster"
@@ -173,7 +191,7 @@ void add_bench(CLI::App& app, int& status) {
   command->add_option("--triangles", options->sizes, "Sizes of the arrays of random triangles")
       ->delimiter(',')
       ->transform(whole_number(1, std::uint64_t{1} << 34))
-      ->default_str("1e4,1e5,1e6,1e7")
+      ->default_str("1e4,1e5,1e6,5e6,1e7,2e7")
       ->option_text("N,…");
   command
       ->add_option("--mesh", options->mesh,
@@ -181,17 +199,18 @@ void add_bench(CLI::App& app, int& status) {
       ->check(not_empty())
       ->option_text("FILE");
   command
-      ->add_option("--lanes", options->lanes,
-                   "Lanes to time besides the exact one: host lanes on cores, CUDA lanes on GPUs")
+      ->add_option(
+          "--lanes", options->lanes,
+          "Lanes to time besides the exact one: host lanes on cores, CUDA lanes on GPUs, or by twins without one")
       ->delimiter(',')
       ->default_str("six common ones")
       ->option_text("LANE,…");
-  command->add_option("--plot", options->plot, "Picture to write: exact verdicts per second against array size")
+  command->add_option("--plot", options->plot, "Picture to write: verdicts per second against array size")
       ->check(not_empty())
       ->option_text("FILE.svg");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->callback([options, command, &status] {
-    if (command->count("--lanes") > 0) say_left_out(without_device(options->lanes));
+    options->asked_lanes = command->count("--lanes") > 0;
     bench(*options, status);
   });
 }

@@ -13,7 +13,7 @@ namespace {
 
 using reports::svg_text;
 
-constexpr double kWidth = 900, kHeight = 420, kLeft = 64, kRight = 230, kTop = 44, kBottom = 52;
+constexpr double kWidth = 900, kHeight = 420, kLeft = 64, kRight = 300, kTop = 44, kBottom = 52;
 // The range of decades of a logarithmic axis that holds the given values.
 struct Decades {
   int low = 99, high = -99;
@@ -32,16 +32,18 @@ std::string bench_plot(const Bench& bench, const std::string& machine) {
   std::map<std::string, std::map<double, double>> series;
   Decades sizes, rates;
   for (const BenchRow& row : bench.rows) {
-    if (row.array != "thesis" || row.mode != "all" || row.lane != "exact") continue;
+    const bool of_2012 = row.lane == "interval_overlap/f32/cpu" || row.lane == "interval_overlap/f32/cuda-fma";
+    if (row.array != "thesis" || row.mode != "all" || !(row.lane == "exact" || of_2012)) continue;
+    if (row.executor.ends_with("twin")) continue;
     const double size = static_cast<double>(row.triangles);
-    series[row.by()][size] = row.rate();
+    series[fmt::format("{}, {}", row.lane, row.by())][size] = row.rate();
     sizes.hold(size);
     rates.hold(row.rate());
   }
   const auto x_of = [&](double size) { return kLeft + (kWidth - kLeft - kRight) * sizes.share(size); };
   const auto y_of = [&](double rate) { return kHeight - kBottom - (kHeight - kTop - kBottom) * rates.share(rate); };
   std::string svg = reports::svg_begin("Triangles a second by the size of the array");
-  svg += svg_text(kLeft, 20, "start", "Exact verdicts: triangles a second by the size of the array. " + machine);
+  svg += svg_text(kLeft, 20, "start", "Triangles a second by the size of the array. " + machine);
   for (int k = rates.low; k <= rates.high; ++k) {
     const double y = y_of(std::pow(10.0, k));
     svg += reports::svg_level(kLeft, kWidth - kRight, y);

@@ -91,8 +91,11 @@ class Measuring {
     std::vector<std::uint8_t> exact(array.triangles.size());
     by_executors(array, host, "all", "exact", exact, nullptr);
     for (const std::string& lane : options_.lanes) {
-      if (host.count <= (is_cuda(lane) ? kByCudaLanes : kByLanes))
+      const std::uint64_t most = is_cuda(lane) && devices_ > 0 ? kByCudaLanes : kByLanes;
+      if (host.count <= most)
         by_executors(array, host, "all", lane, exact, &exact);
+      else
+        bench_.not_timed_above[lane] = most;
     }
     if (array.name == "thesis") {
       const Array with_hit = any_array(array.triangles.size());
@@ -115,11 +118,13 @@ class Measuring {
     BenchRow row{group_, array.name, host.count, "", "host", mode, lane, 0, 0, 0, {}};
     graze_query query = query::query_of(array.reference, host);
     query.mode = mode == "any" ? GRAZE_ANY : GRAZE_ALL;
-    const bool on_host = !is_cuda(lane), on_device = lane == "exact" || !on_host;
+    const bool by_twin = is_cuda(lane) && devices_ == 0;
+    const bool on_host = !is_cuda(lane) || by_twin, on_device = lane == "exact" || !on_host;
     query.lane = lane.c_str();
     if (on_host) {
-      if (host.count <= kOnOneCore) add(row, query, GRAZE_ONE_CORE, "one core", &bytes, exact);
-      if (bench_.machine.cores > 1) add(row, query, GRAZE_ALL_CORES, "all cores", &bytes, exact);
+      const std::string twin = by_twin ? ", twin" : "";
+      if (host.count <= kOnOneCore) add(row, query, GRAZE_ONE_CORE, "one core" + twin, &bytes, exact);
+      if (bench_.machine.cores > 1) add(row, query, GRAZE_ALL_CORES, "all cores" + twin, &bytes, exact);
     }
     if (!on_device || devices_ == 0) return;
     add(row, query, GRAZE_ONE_GPU, "one GPU", &bytes, exact);

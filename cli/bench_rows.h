@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,7 +25,7 @@ struct BenchRow {
   std::size_t group;  // identifies the rows of one array
   std::string array;  // "thesis", or the name of a mesh
   std::uint64_t triangles;
-  std::string executor;               // "one core", "all cores", "one GPU", "2 GPUs"
+  std::string executor;               // "one core", "all cores", "one GPU", "2 GPUs"; "one core, twin"
   std::string data;                   // "host", "resident"
   std::string mode;                   // "all", "any"
   std::string lane;                   // "exact"; "CGAL AABB tree"
@@ -48,14 +49,16 @@ struct Bench {
   // The smallest measured array from which one GPU, copies included, is always faster than all cores; 0 if there is
   // none.
   std::uint64_t crossover = 0;
+  std::map<std::string, std::uint64_t> not_timed_above;  // lanes: the largest array on which they would be timed
 };
 
 // Calls `told` with the results so far after each row; `told` returns false to stop.
 // Throws: std::runtime_error if a measurement fails.
 Bench measure(const BenchOptions& options, const std::function<bool(const Bench&)>& told);
 
-// Returns an SVG of 900 x 420: triangles per second of the exact lane on the thesis arrays, against the array's size.
-// Both axes are logarithmic; each executor has a line. `machine`: a description of the machine.
+// Returns an SVG of 900 x 420: triangles per second on the thesis arrays, against the array's size, by the exact lane
+// and by the thesis's own algorithm. Both axes are logarithmic; each lane has a line for each executor. Twins have
+// none, because their time is not that of the lane. `machine`: a description of the machine.
 std::string bench_plot(const Bench& bench, const std::string& machine);
 
 }  // namespace graze::cli

@@ -261,8 +261,10 @@ TEST_F(QueryCommand, BenchMeasuresAndCompares) {
   EXPECT_EQ(trees, 1);
   std::set<std::string> executors;
   for (const Json& row : found["rows"]) {
-    if (row["lane"] == "exact" && row["mode"] == "all" && row["array"] == "thesis")
-      executors.insert(row["executor"].get<std::string>() + (row["data"] == "resident" ? ", resident" : ""));
+    if ((row["lane"] == "exact" || row["lane"] == "interval_overlap/f32/cpu") && row["mode"] == "all" &&
+        row["array"] == "thesis")
+      executors.insert(row["lane"].get<std::string>() + ", " + row["executor"].get<std::string>() +
+                       (row["data"] == "resident" ? ", resident" : ""));
   }
   const std::string plot = out("cat speed.svg");
   for (const std::string& executor : executors) EXPECT_NE(plot.find(">" + executor + "</text>"), std::string::npos);
@@ -277,6 +279,19 @@ TEST_F(QueryCommand, BenchMeasuresAndCompares) {
   expect_error("graze bench --triangles 0", 2, {"--triangles", "'0'", "1"});
   expect_error("graze bench --mesh no.obj", 1, {"no.obj", "No such file or directory"});
   expect_error("graze bench --triangles 10 --lanes nosuch", 2, {"'nosuch'"});
+  const Json large = json("graze bench --triangles 1000001 --lanes moller_1997/f32/cpu --json");
+  EXPECT_EQ(large["not_timed_above"], Json({{"moller_1997/f32/cpu", 1'000'000}}));
+  EXPECT_TRUE(found["not_timed_above"].empty());
+  if (shell("graze lanes | grep -q 'available (device)'").status == 0) return;
+  const Ran ran =
+      shell("graze bench --triangles 1000 --lanes interval_overlap/f32/cuda-fma,interval_overlap/f32/cuda-fast --json");
+  EXPECT_EQ(ran.err, "graze: left out (no twin): interval_overlap/f32/cuda-fast\n");
+  bool by_twin = false;
+  const Json twins = Json::parse(ran.out);
+  for (const Json& row : twins["rows"]) {
+    if (row["lane"] == "interval_overlap/f32/cuda-fma") by_twin |= row["executor"] == "one core, twin";
+  }
+  EXPECT_TRUE(by_twin);
 }
 
 }  // namespace

@@ -367,13 +367,17 @@ TEST_F(Hostile, MemoryOfAProcessWhoseFirstThreadHasEndedIsMemory) {
 }
 
 TEST_F(Hostile, ChildrenThatAreLeftInSilenceEndWithTheSubject) {
+  const auto children = 2 * static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(), is_bad));
+  ASSERT_GT(children, 0u);
   for (const bool namespaces : {true, false}) {
     Code code{"library", (folder / "libhostile.so").string(), "leaves_children_silently", "f32", 1, 256};
     code.namespaces = namespaces;
     auto subject = std::make_unique<ForeignProcesses>(code, Scalar::f32);
     const std::vector<Verdict> found = verdicts(*subject);
     for (std::size_t i = 0; i < pairs.size(); ++i) EXPECT_EQ(found[i], left_of(pairs[i])) << i;
-    EXPECT_GT(left_over().size(), 3u);
+    // Beside the supervisor, the process that loads the code and the worker. A child may still be starting.
+    for (int times = 0; times < 6000 && left_over().size() < 3 + children; ++times) usleep(10'000);
+    EXPECT_GE(left_over().size(), 3 + children);
     subject.reset();
     expect_nothing_left();
   }

@@ -16,7 +16,7 @@ export interface Shape {
   note: string;
   marks?: Mark[];
   names?: Name[];
-  many_names?: Name[][]; // of many triangles, the names of each
+  many_names?: Name[][]; // of many triangles, the names of each, the nearest triangle first
 }
 export interface Name {
   p: Vec;
@@ -130,17 +130,16 @@ export function project(
   return { x: width / 2 + scale * dot(p, right), y: height / 2 - scale * dot(p, up), depth: dot(p, eye) };
 }
 
-const kMostNames = 30; // more cannot be read
+const kMostNumbers = 30, // triangles; more cannot be read
+  kMostCoordinates = 10;
 
-// The names of many triangles that are in view; if these are too many, of those nearest to the eye.
+// The names of many triangles that are in view; if these are too many, of the nearest.
 function names_of_many(shape: Shape, view: View, width: number, height: number) {
   const inside = ({ x, y }: { x: number; y: number }) => x > 0 && y > 0 && x < width && y < height;
   const seen = (shape.many_names ?? [])
     .map((names) => names.map(({ p, name }) => ({ ...project(shape, p, view, width, height), text: name })))
-    .filter((names) => names.some(inside))
-    .map((names) => ({ names, depth: Math.max(...names.map(({ depth }) => depth)) }))
-    .sort((s, t) => t.depth - s.depth);
-  return seen.slice(0, Math.floor(kMostNames / (seen[0]?.names.length ?? 1))).flatMap(({ names }) => names);
+    .filter((names) => names.some(inside));
+  return seen.slice(0, seen[0]?.length === 1 ? kMostNumbers : kMostCoordinates).flat();
 }
 
 // The names: those of vertices pushed away from the centre of the drawing. Coinciding vertices share one label.

@@ -158,7 +158,7 @@ test('i and c name every triangle when they can be read, and the nearest otherwi
     names = page.locator('#board svg text');
   await page.addInitScript(without_webgl);
   for (const [many, numbers, coordinates] of [
-    [6, 6, 18],
+    [10, 10, 30],
     [60, 30, 30],
   ]) {
     execFileSync(process.env.GRAZE!, ['view', '--random', String(many), '--out', 'random.html'], { cwd: folder });
@@ -166,9 +166,17 @@ test('i and c name every triangle when they can be read, and the nearest otherwi
     await expect(page.locator('h1')).toHaveText(`${many} random triangles of 2012, seed 1`);
     await expect(names.filter({ hasText: /^\d+$/ })).toHaveCount(numbers); // at first numbers are shown
     await page.locator('#board').focus();
+    await page.keyboard.press('c');
+    await expect(names.filter({ hasText: /\(.*, .*, .*\)/ })).toHaveCount(coordinates + 3); // and the reference's
+    await expect(names.filter({ hasText: /^\d+$/ })).toHaveCount(10);
     await page.keyboard.press('i');
     await expect(names.filter({ hasText: /^\d+$/ })).toHaveCount(0);
     await page.keyboard.press('c');
-    await expect(names.filter({ hasText: /\(.*, .*, .*\)/ })).toHaveCount(coordinates + 3); // and the reference's
+    await expect(names).toHaveCount(0);
   }
+  await page.keyboard.press('i');
+  const named = await names.filter({ hasText: /^\d+$/ }).allTextContents();
+  await page.locator('button', { hasText: 'Take a hit' }).click();
+  await expect(page.locator('h1')).toHaveText(/^thesis:1:\d+$/);
+  expect(named).toContain((await page.locator('h1').textContent())!.replace('thesis:1:', ''));
 });

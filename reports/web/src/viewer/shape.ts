@@ -85,14 +85,23 @@ export interface Field {
   wrong: boolean[];
 }
 
-// The names of a triangle among many: its number in the middle, its coordinates at the vertices.
-function names_of(triangle: Coordinates, id: number, shows: Model['shows'], place: (p: readonly number[]) => Vec) {
-  const corners = [0, 1, 2].map((v) => vertex(triangle, v)),
-    middle = corners[0].map((_, k) => corners.reduce((sum, p) => sum + p[k] / 3, 0));
-  return [
-    ...(shows.ids ? [{ p: place(middle), name: String(id) }] : []),
-    ...(shows.coordinates ? corners.map((p) => ({ p: place(p), name: `(${p.map(decimal).join(', ')})` })) : []),
-  ];
+const middle_of = (corners: Vec[]) => corners[0].map((_, k) => corners.reduce((sum, p) => sum + p[k] / 3, 0));
+
+// The names of many triangles: their numbers in the middle, their coordinates at the vertices. Those that the lane hits
+// come first, then those whose middle is nearest to the reference's.
+function names_of(field: Field, reference: Vec[], shows: Model['shows'], place: (p: readonly number[]) => Vec) {
+  const from = middle_of(reference);
+  const named = field.triangles.map((triangle, i) => {
+    const corners = [0, 1, 2].map((v) => vertex(triangle, v)),
+      middle = middle_of(corners);
+    return { corners, middle, i, away: field.hit[i] ? 0 : Math.hypot(...middle.map((c, k) => c - from[k])) };
+  });
+  return named
+    .sort((s, t) => s.away - t.away)
+    .map(({ corners, middle, i }) => [
+      ...(shows.ids ? [{ p: place(middle), name: String(field.ids[i]) }] : []),
+      ...(shows.coordinates ? corners.map((p) => ({ p: place(p), name: `(${p.map(figure).join(', ')})` })) : []),
+    ]);
 }
 
 // magnified: the factor beyond fitting the board.
@@ -131,7 +140,7 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
       ),
     ) * 0.95;
   if (shows.planes) {
-    [a, b].forEach((corners, i) =>
+    (field ? [a] : [a, b]).forEach((corners, i) =>
       marks.push({ colour: i ? '--triangle-b' : '--triangle-a', triangles: fan(cut(plane(corners))), opacity: 0.18 }),
     );
   }
@@ -214,10 +223,7 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
               name: `${shows.ids ? `${i < 3 ? 'a' : 'b'}${i % 3}` : ''}${shows.coordinates ? ` (${points[i].map(decimal).join(', ')})` : ''}`,
             }))
           : [],
-      many_names:
-        field && (shows.ids || shows.coordinates)
-          ? field.triangles.map((triangle, i) => names_of(triangle, field.ids[i], shows, place))
-          : [],
+      many_names: field && (shows.ids || shows.coordinates) ? names_of(field, points.slice(0, 3), shows, place) : [],
     },
   };
 }

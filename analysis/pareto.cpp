@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/exact/exact.h"
 #include "core/lanes/verdicts.h"
 
 namespace graze::analysis {
@@ -39,22 +38,7 @@ Pair moved(const Pair& pair, Extreme extreme, int k) {
   return is_finite(result) ? result : pair;
 }
 
-void decide_exactly(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-  std::fill_n(intersects, (count + 63) / 64, 0);
-  std::fill_n(declined, (count + 63) / 64, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint64_t bit = std::uint64_t{1} << i % 64;
-    if (!is_finite(pairs[i])) {
-      declined[i / 64] |= bit;
-    } else if (exact::intersects(coordinates(pairs[i]), coordinates(pairs[i]) + 9)) {
-      intersects[i / 64] |= bit;
-    }
-  }
-}
-
 }  // namespace
-
-DecideBlock called_alone(const Lane& lane) { return lane.exact ? DecideBlock(decide_exactly) : lane.decide; }
 
 std::string_view name(Extreme extreme) {
   constexpr std::string_view kNames[] = {"scale", "offset", "flatness", "aspect"};

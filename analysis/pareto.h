@@ -20,10 +20,6 @@ struct Cost {
 // How many pairs a call decides: as many as there are, or one, as most programs call such a test.
 enum class Calls { of_blocks, of_one };
 
-// What a call of one pair runs: for the exact lane the function of <graze/exact.h>, because its blocks gain only from
-// many pairs.
-DecideBlock called_alone(const Lane& lane);
-
 // Nanoseconds per pair of one run of the lane over the pairs.   Requires: pairs.
 double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<Pair>& pairs, Calls calls = Calls::of_blocks);
 

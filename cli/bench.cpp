@@ -26,12 +26,14 @@ namespace {
 
 struct Options {
   std::vector<std::string> sizes = {"10000", "100000", "1000000", "5000000", "10000000", "20000000"};
-  std::vector<std::string> lanes = {"interval_overlap/f32/cpu",           "guigue_devillers_2003/f32/cpu",
-                                    "interval_overlap/f32/cpu/filtered",  "interval_overlap/f32/cuda-fma",
-                                    "guigue_devillers_2003/f32/cuda-fma", "interval_overlap/f32/cuda-fma/filtered"};
+  std::vector<std::string> lanes;  // empty: common ones
   std::string mesh, plot;
-  bool json = false, asked_lanes = false;
+  bool json = false;
 };
+
+const std::vector<std::string> kCommonLanes = {
+    "interval_overlap/f32/cpu",      "guigue_devillers_2003/f32/cpu",      "interval_overlap/f32/cpu/filtered",
+    "interval_overlap/f32/cuda-fma", "guigue_devillers_2003/f32/cuda-fma", "interval_overlap/f32/cuda-fma/filtered"};
 
 std::string words(const BenchMachine& machine) {
   std::string text = fmt::format("{}, {} threads, {}", fuzz::machine_name(), machine.cores, exact::decide_target());
@@ -131,8 +133,8 @@ std::string not_timed(const Bench& bench) {
 void bench(const Options& options, int& status) {
   BenchOptions wanted;
   for (const std::string& size : options.sizes) wanted.sizes.push_back(std::stoull(size));
-  wanted.lanes = options.lanes;
-  leave_out(wanted.lanes, options.asked_lanes);
+  wanted.lanes = options.lanes.empty() ? kCommonLanes : options.lanes;
+  leave_out(wanted.lanes, !options.lanes.empty());
   query::on_cores = backends::on_host;  // with twins
   if (!options.mesh.empty()) {
     wanted.mesh_name = std::filesystem::path(options.mesh).filename().string();
@@ -209,10 +211,7 @@ void add_bench(CLI::App& app, int& status) {
       ->check(not_empty())
       ->option_text("FILE.svg");
   command->add_flag("--json", options->json, "Print one JSON object");
-  command->callback([options, command, &status] {
-    options->asked_lanes = command->count("--lanes") > 0;
-    bench(*options, status);
-  });
+  command->callback([options, &status] { bench(*options, status); });
 }
 
 }  // namespace graze::cli

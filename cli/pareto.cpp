@@ -88,15 +88,12 @@ analysis::Pareto offers_of(const ParetoOptions& options, const Measured& measure
       pareto.offers[l].needs = costs.of[l].needs;
     }
   } else {
-    std::vector<DecideBlock> timed, called;
-    for (const Lane* lane : measured.lanes) {
-      timed.push_back(lane->decide);
-      called.push_back(analysis::called_alone(*lane));
-    }
+    std::vector<DecideBlock> timed;
+    for (const Lane* lane : measured.lanes) timed.push_back(lane->decide);
     const auto in_cache = analysis::costs_of(timed, analysis::first_pairs(sources, kPairsInCache), 201);
     const auto from_memory = analysis::costs_of(timed, analysis::first_pairs(sources, kPairsFromMemory), 3);
     const auto alone =
-        analysis::costs_of(called, analysis::first_pairs(sources, kPairsInCache), 201, analysis::Calls::of_one);
+        analysis::costs_of(timed, analysis::first_pairs(sources, kPairsInCache), 201, analysis::Calls::of_one);
     for (std::size_t l = 0; l < timed.size(); ++l) {
       pareto.offers[l].alone = alone[l];
       pareto.offers[l].near = in_cache[l];

@@ -76,15 +76,13 @@ std::string pareto_table(const Pareto& pareto, const Screen& screen) {
   std::vector<Column> columns = {{"lane", Align::left},
                                  {"ns a pair", Align::point},
                                  {pareto.on_device ? "with copies" : "from memory", Align::point},
-                                 {"one a call", Align::point},
                                  {"false negatives"},
                                  {"false positives"},
                                  {"declined"},
                                  {"", Align::left}};
-  if (pareto.on_device) {
-    columns.erase(columns.begin() + 3);
-    columns.insert(columns.begin() + 3, {{"registers"}, {"local bytes"}, {"threads"}});
-  }
+  const std::vector<Column> more = pareto.on_device ? std::vector<Column>{{"registers"}, {"local bytes"}, {"threads"}}
+                                                    : std::vector<Column>{{"one a call", Align::point}};
+  columns.insert(columns.begin() + 3, more.begin(), more.end());
   TextTable table(columns);
   for (const Offer& offer : cheapest_first(pareto.offers)) {
     const PolicyErrors& e = offer.errors;

@@ -153,6 +153,7 @@ HWY_EXPORT(decide_all);
 HWY_EXPORT(target);
 
 void decide(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+  if (count == 1) return one_by_one(pairs, count, intersects, declined);  // vectors gain only from several
   HWY_DYNAMIC_DISPATCH(decide_all)(pairs, count, intersects, declined);
 }
 

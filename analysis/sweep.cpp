@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <iterator>
 
 #include "backends/backends.h"
 #include "core/exact/exact.h"
@@ -80,6 +81,30 @@ void add(const SourceBlock& block, const Rows& truth, const Rows& first, const R
     agreement.added += count(now & ~before);
   }
   agreement.pairs += block.count;
+}
+
+void keep_first(std::vector<NotRightPair>& pairs) {
+  const auto by_place = [](const NotRightPair& l, const NotRightPair& r) { return l.place < r.place; };
+  std::sort(pairs.begin(), pairs.end(), by_place);
+  if (pairs.size() > NotRightPairs::kMostListed) pairs.resize(NotRightPairs::kMostListed);
+}
+
+void add(const SourceBlock& block, const Rows& truth, const Rows& lane, NotRightPairs& found) {
+  const std::size_t policies = lane.intersects.size() / lane.words;
+  for (std::size_t w = 0; w < truth.words; ++w) {
+    std::uint64_t wrong = 0;
+    for (std::size_t p = 0; p < policies; ++p)
+      wrong |= judge(lane.yes(p, w), lane.none(p, w), truth.yes(0, w), ~truth.none(0, w)).not_right();
+    found.count += static_cast<std::uint64_t>(std::popcount(wrong));
+    for (; wrong != 0; wrong &= wrong - 1) {
+      const auto bit = static_cast<std::uint64_t>(std::countr_zero(wrong));
+      const auto is_set = [&](std::uint64_t word) { return (word >> bit & 1) != 0; };
+      found.first.push_back({{block.source, block.first + w * 64 + bit}, is_set(truth.yes(0, w)), {}});
+      for (std::size_t p = 0; p < policies; ++p)
+        found.first.back().verdicts.push_back(verdict_of_bits(is_set(lane.yes(p, w)), is_set(lane.none(p, w))));
+    }
+  }
+  if (found.first.size() > 2 * NotRightPairs::kMostListed) keep_first(found.first);
 }
 
 // Policies that are decided together, one after the other in the list of policies.
@@ -209,6 +234,13 @@ Agreement& Agreement::operator+=(const Agreement& other) {
   return *this;
 }
 
+NotRightPairs& NotRightPairs::operator+=(NotRightPairs other) {
+  count += other.count;
+  first.insert(first.end(), std::make_move_iterator(other.first.begin()), std::make_move_iterator(other.first.end()));
+  keep_first(first);
+  return *this;
+}
+
 Sweep host_sweep(DecideUnder decide, int threads) {
   return [decide = std::move(decide), threads](Policies policies, Sources sources) {
     std::vector<Together> parts;
@@ -221,6 +253,13 @@ Sweep host_sweep(const Lane& lane, int threads) {
   return [&lane, threads](Policies policies, Sources sources) {
     return errors_of(parts_of(lane, with_zero(policies)), policies, sources, threads);
   };
+}
+
+NotRightPairs not_right_pairs(const Lane& lane, Policies policies, Sources sources, int threads) {
+  return run({parts_of(lane, policies)}, policies.size(), std::vector<NotRightPairs>(1), sources, threads,
+             [](const SourceBlock& block, const Rows& truth, const std::vector<Rows>& rows, std::size_t,
+                NotRightPairs& found) { add(block, truth, rows[0], found); })
+      .front();
 }
 
 AgreementSweep agreement_sweep(const Lane& first, const Lane& second, int threads) {

@@ -75,6 +75,25 @@ Sweep host_sweep(DecideUnder decide, int threads = 0);
 // The returned sweep throws UsageError for a policy that the lane cannot have.
 Sweep host_sweep(const Lane& lane, int threads = 0);
 
+// A pair on which a lane is not right under at least one of several policies.
+struct NotRightPair {
+  PairPlace place;
+  bool intersects;
+  std::vector<Verdict> verdicts;  // under each policy
+};
+
+struct NotRightPairs {
+  std::uint64_t count = 0;          // of all of them
+  std::vector<NotRightPair> first;  // by place, at most kMostListed
+  static constexpr std::size_t kMostListed = 1'000'000;
+
+  NotRightPairs& operator+=(NotRightPairs other);
+};
+
+// Runs on the host; a CUDA lane runs as its twin. The result does not depend on the number of threads.
+// Requires: a lane with a host lane or a twin under each policy.
+NotRightPairs not_right_pairs(const Lane& lane, Policies policies, Sources sources, int threads = 0);
+
 // How two published lanes compare under each policy, on all pairs of the sources.
 using AgreementSweep = std::function<std::vector<Agreement>(Policies policies, Sources sources)>;
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/exact/exact.h"
@@ -60,6 +61,37 @@ TEST(Sweep, CountsWhatEachPolicyGetsWrong) {
       EXPECT_EQ(again[p].false_positive, found[p].false_positive);
       EXPECT_EQ(again[p].first_broken, found[p].first_broken);
     }
+  }
+}
+
+TEST(Sweep, ListsEachPairOnWhichSomePolicyIsNotRight) {
+  const auto sources = drawn(3, 3001, {"near_vertex_face", "extreme_scale"});
+  const std::vector<std::string> policies = {"", "abs:1e-6", "rel:100", "bound"};
+  std::vector<DecideBlock> lanes = {moller().decide};
+  for (std::size_t p = 1; p < policies.size(); ++p) lanes.push_back(lane_under(moller(), policies[p]).decide);
+  for (const int threads : {1, 3}) {
+    const NotRightPairs found = not_right_pairs(moller(), policies, sources, threads);
+    std::size_t at = 0;
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      for (std::uint64_t i = 0; i < sources[s].pairs; ++i) {
+        const Pair pair = sources[s].pair(i);
+        const bool intersects = exact::intersects(&pair.a[0].x, &pair.b[0].x);
+        std::vector<Verdict> verdicts;
+        for (const DecideBlock& lane : lanes) verdicts.push_back(decide_one(lane, pair));
+        if (std::all_of(verdicts.begin(), verdicts.end(), [&](Verdict verdict) {
+              return verdict == (intersects ? Verdict::intersects : Verdict::disjoint);
+            }))
+          continue;
+        ASSERT_LT(at, found.first.size());
+        EXPECT_EQ(found.first[at].place, (PairPlace{static_cast<int>(s), i}));
+        EXPECT_EQ(found.first[at].intersects, intersects);
+        EXPECT_EQ(found.first[at].verdicts, verdicts);
+        ++at;
+      }
+    }
+    EXPECT_EQ(at, found.first.size());
+    EXPECT_EQ(at, found.count);
+    EXPECT_GT(at, 100u);
   }
 }
 

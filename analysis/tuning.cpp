@@ -17,6 +17,12 @@ namespace {
 constexpr double kOutward = 0x1p-40;  // more than the relative error of the library's quantiles
 constexpr std::uint64_t kPairsForScale = 100'000;
 
+const PolicyErrors& best_of(const Curve& curve, Forbid forbid, double max_rate) {
+  return *std::min_element(curve.points.begin(), curve.points.end(), [&](const PolicyErrors& l, const PolicyErrors& r) {
+    return rank(l, forbid, max_rate) < rank(r, forbid, max_rate);
+  });
+}
+
 class Tuner {
  public:
   explicit Tuner(const TuneSpec& spec) : spec_(spec) {}
@@ -30,12 +36,7 @@ class Tuner {
     }
     sweep_curves(
         result_.curves, log2_cube(spec_.sources), [&](Policies policies) { return sweep_all(policies); },
-        [&](const Curve& curve) {
-          const auto best =
-              std::min_element(curve.points.begin(), curve.points.end(),
-                               [&](const PolicyErrors& l, const PolicyErrors& r) { return rank(l) < rank(r); });
-          return best - curve.points.begin();
-        });
+        [&](const Curve& curve) { return &best_of(curve, spec_.forbid, spec_.max_rate) - curve.points.data(); });
     choose();
     find_dead();
     find_scale_break();
@@ -60,7 +61,8 @@ class Tuner {
     result_.zero_confirmed = found[0];
     result_.confirmed = found[1];
     result_.bound = upper_bound(forbidden(result_.confirmed, spec_.forbid), result_.confirmed.pairs);
-    result_.result = result_of(*best, result_.confirmed, result_.bound, spec_.forbid, spec_.max_rate);
+    result_.other_bound = other_bound(result_.confirmed, spec_.forbid);
+    result_.result = result_of(*best, result_.confirmed, spec_.forbid, spec_.max_rate, spec_.max_other);
   }
 
   void find_dead() {
@@ -156,12 +158,26 @@ PolicyRank rank(const PolicyErrors& errors, Forbid forbid, double max_rate) {
   return too_many ? PolicyRank{true, bad, others} : PolicyRank{false, others, bad};
 }
 
-TuneResult result_of(const PolicyErrors& chosen_on, const PolicyErrors& confirmed, double bound, Forbid forbid,
-                     double max_rate) {
-  return bound <= max_rate                             ? TuneResult::satisfied
-         : !rank(confirmed, forbid, max_rate).too_many ? TuneResult::too_few_pairs
-         : !rank(chosen_on, forbid, max_rate).too_many ? TuneResult::not_confirmed
-                                                       : TuneResult::not_satisfiable;
+double other_bound(const PolicyErrors& errors, Forbid forbid) {
+  return forbid == Forbid::any ? 0 : upper_bound(errors.wrong() - forbidden(errors, forbid), errors.pairs);
+}
+
+TuneResult result_of(const PolicyErrors& chosen_on, const PolicyErrors& confirmed, Forbid forbid, double max_rate,
+                     double max_other) {
+  const std::uint64_t bad = forbidden(confirmed, forbid);
+  if (rank(chosen_on, forbid, max_rate).too_many && rank(confirmed, forbid, max_rate).too_many)
+    return TuneResult::not_satisfiable;
+  if (rank(confirmed, forbid, max_rate).too_many) return TuneResult::not_confirmed;
+  if (lower_bound(confirmed.wrong() - bad, confirmed.pairs) > max_other) return TuneResult::not_useful;
+  return upper_bound(bad, confirmed.pairs) <= max_rate && other_bound(confirmed, forbid) <= max_other
+             ? TuneResult::satisfied
+             : TuneResult::too_few_pairs;
+}
+
+std::vector<const PolicyErrors*> best_of_curves(const std::vector<Curve>& curves, Forbid forbid, double max_rate) {
+  std::vector<const PolicyErrors*> best;
+  for (const Curve& curve : curves) best.push_back(&best_of(curve, forbid, max_rate));
+  return best;
 }
 
 Tuned tune(const TuneSpec& spec) { return Tuner(spec).run(); }

@@ -43,7 +43,7 @@ struct TuneSpec {
   std::vector<strata::PairSource> sources;  // pairs to choose on
   std::vector<strata::PairSource> others;   // pairs to verify the choice on
   Forbid forbid = Forbid::any;
-  double max_rate = 1e-6;
+  double max_rate = 1e-6, max_other = 0.1;  // of forbidden errors, and of others
 };
 
 using Curve = CurveOf<PolicyErrors>;
@@ -62,10 +62,11 @@ struct Interaction {
 };
 
 enum class TuneResult {
-  satisfied,       // the rate's upper bound is at most max_rate
-  too_few_pairs,   // few enough errors, but on too few pairs to prove it
-  not_confirmed,   // few enough errors on the pairs of the choice, too many on the others
-  not_satisfiable  // every policy has too many errors on the pairs of the choice; the chosen one has the fewest
+  satisfied,        // the upper bounds of both rates are at most max_rate and max_other
+  too_few_pairs,    // few enough errors, but on too few pairs to prove it
+  not_confirmed,    // few enough forbidden errors on the pairs of the choice, too many on the others
+  not_satisfiable,  // every policy has too many of them on the pairs of the choice; the chosen one has the fewest
+  not_useful        // few enough of them, but more others than max_other
 };
 
 struct Tuned {
@@ -74,15 +75,21 @@ struct Tuned {
   std::string chosen;  // policy; empty: compare with zero exactly
   TuneResult result = TuneResult::not_satisfiable;
   PolicyErrors confirmed, zero_confirmed;  // on the other pairs
-  double bound = 1;                        // upper bound of the forbidden rate, computed from `confirmed`
+  double bound = 1, other_bound = 1;       // upper bounds of both rates, computed from `confirmed`
   std::vector<std::string> dead;           // sites at which no tolerance changes any verdict
   ScaleBreak scale;
   std::vector<Interaction> interactions;
 };
 
-// Judges the choice by its errors on the pairs of the choice, its errors on the other pairs, and the bound of those.
-TuneResult result_of(const PolicyErrors& chosen_on, const PolicyErrors& confirmed, double bound, Forbid forbid,
-                     double max_rate);
+// The upper bound of the rate of errors that are not forbidden; 0 if all are.
+double other_bound(const PolicyErrors& errors, Forbid forbid);
+
+// Judges the choice by its errors on the pairs of the choice and on the other pairs.
+TuneResult result_of(const PolicyErrors& chosen_on, const PolicyErrors& confirmed, Forbid forbid, double max_rate,
+                     double max_other);
+
+// The best policy of each curve.   Requires: points on each.
+std::vector<const PolicyErrors*> best_of_curves(const std::vector<Curve>& curves, Forbid forbid, double max_rate);
 
 // Chooses a policy on some pairs and verifies it on others. Among the policies whose forbidden rate is low enough, it
 // takes the one with the fewest other errors. Ties prefer no tolerance, then relative tolerances at all sites, then

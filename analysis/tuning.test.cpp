@@ -74,6 +74,27 @@ TEST(Scaled, IsExactOrLeftAlone) {
   EXPECT_LT(changed, 200);
 }
 
+// The bounds of both rates decide; whether a rate is low enough is settled at 95 % confidence, or not at all.
+TEST(Tune, BothRatesNeedABound) {
+  const auto with = [](std::uint64_t negative, std::uint64_t positive, std::uint64_t pairs) {
+    PolicyErrors errors;
+    errors.false_negative = negative;
+    errors.false_positive = positive;
+    errors.pairs = pairs;
+    return errors;
+  };
+  const auto result = [&](const PolicyErrors& chosen_on, const PolicyErrors& confirmed) {
+    return result_of(chosen_on, confirmed, Forbid::false_negative, 1e-3, 0.1);
+  };
+  EXPECT_EQ(result(with(0, 9, 100), with(0, 200, 2995)), TuneResult::satisfied);
+  EXPECT_EQ(result(with(0, 9, 100), with(0, 200, 2994)), TuneResult::too_few_pairs);  // of the forbidden errors
+  EXPECT_EQ(result(with(0, 9, 100), with(0, 299, 2995)), TuneResult::too_few_pairs);  // of the others
+  EXPECT_EQ(result(with(0, 40, 100), with(0, 1198, 2995)), TuneResult::not_useful);   // 40 %
+  EXPECT_EQ(result(with(0, 9, 100), with(4, 200, 2995)), TuneResult::not_confirmed);
+  EXPECT_EQ(result(with(1, 9, 100), with(4, 1198, 2995)), TuneResult::not_satisfiable);
+  EXPECT_EQ(result_of(with(0, 0, 100), with(0, 0, 2995), Forbid::any, 1e-3, 0), TuneResult::satisfied);
+}
+
 TEST(Tune, ChoosesForWhatIsForbidden) {
   TuneSpec spec;
   spec.sweep = host_sweep(moller());
@@ -82,6 +103,7 @@ TEST(Tune, ChoosesForWhatIsForbidden) {
   spec.sites = sites_asked(moller(), spec.sources);
   EXPECT_EQ(spec.sites, (std::vector<std::string>{"plane_distance", "separation"}));
   spec.max_rate = 1e-3;
+  spec.max_other = 0.75;
   spec.forbid = Forbid::false_negative;
   const Tuned no_negative = tune(spec);
   EXPECT_EQ(no_negative.result, TuneResult::satisfied) << no_negative.chosen << " " << no_negative.bound;

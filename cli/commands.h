@@ -56,6 +56,7 @@ const Lane& published_lane(const std::string& id);
 
 // The pairs of a campaign: strata are drawn again, meshes read again.
 struct CampaignPairs {
+  fuzz::Json summary;  // that was checked
   std::uint64_t seed = 1;
   std::vector<strata::PairSource> sources;
   std::string scene;  // that they were drawn from; may be empty

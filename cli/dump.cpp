@@ -144,10 +144,10 @@ void dump_values(const DumpOptions& options) {
 }  // namespace
 
 CampaignPairs pairs_of_campaign(const std::string& directory, std::uint64_t most, const char* verb) {
-  const Json summary = fuzz::checked_summary(directory);
   CampaignPairs pairs;
+  pairs.summary = fuzz::checked_summary(directory);
   try {
-    const Json& spec = summary.at("spec");
+    const Json& spec = pairs.summary.at("spec");
     if (spec.contains("hunt"))
       throw std::runtime_error(
           cannot(verb, directory, "the pairs of a hunt cannot be drawn again; those that it kept are in its cases/"));

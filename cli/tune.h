@@ -18,26 +18,28 @@ namespace graze::cli {
 
 struct TuneOptions {
   std::vector<std::string> lanes;
-  std::string scene, out;
+  std::string scene, from, out;
   std::vector<std::string> strata;
-  std::uint64_t pairs = 1'000'000, seed = 1;
+  std::uint64_t pairs = 0;  // 0: a million, or as many as the campaign `from` has
+  std::uint64_t seed = 1;
   int threads = 0;
   int forbid = 2;
-  double max_rate = 1e-6;
+  double max_rate = 1e-6, max_other = 0.1;
   bool agree = false;
 };
 
 // `graze tune LANE LANE --agree`.   Requires: two lanes.
 int agree(const TuneOptions& options);
 
-// The pairs on which the choice is made (a tenth of the number), and the pairs that verify it (drawn with the next
-// seed).
+// The pairs on which the choice is made (a tenth of the number, or the campaign's), and the pairs that verify it (drawn
+// with the next seed).
 struct TunePairs {
+  fuzz::Json campaign;  // summary of the campaign that `sources` are of; null: none
   std::vector<strata::PairSource> sources, others;
   std::string left_out;  // left_out_text of the scene
 };
 
-// Throws: as drawn; UsageError if no pairs are left to choose on.
+// Throws: as drawn and pairs_of_campaign; UsageError if no pairs are left to choose on, or to verify.
 TunePairs tune_pairs(const TuneOptions& options);
 
 Pair pair_at(const std::vector<strata::PairSource>& sources, const analysis::PairPlace& place);

@@ -2,7 +2,10 @@
 // Policies as users handle them: lanes under a policy with every verb, `graze tune` and `graze pareto`.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "cli/run_graze.h"
 
@@ -55,7 +58,8 @@ TEST_F(Policies, RefusedOnesGetOneLine) {
 
 TEST_F(TuneCommand, AFreshCampaignConfirmsWhatItRecommends) {
   const std::string tune =
-      "graze tune moller_1997/f32/cpu --strata 'near_*' --pairs 20k --forbid false-negative --max-rate 1e-3 ";
+      "graze tune moller_1997/f32/cpu --strata 'near_*' --pairs 20k --forbid false-negative --max-rate 1e-3 "
+      "--max-other 0.75 ";
   const Ran ran = shell(tune + "--out t");
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(ran.out.find("Use "), 0u) << ran.out;
@@ -80,6 +84,66 @@ TEST_F(TuneCommand, AFreshCampaignConfirmsWhatItRecommends) {
     EXPECT_EQ(first.find(" !") != std::string::npos, zero_wrong) << check.out;
     EXPECT_EQ(second.find(" !") != std::string::npos, !zero_wrong) << check.out;
   }
+}
+
+// What `--from` lists are the campaign's own disagreements, and what each tolerance of the table does to them.
+TEST_F(TuneCommand, ChoosesOnTheDisagreementsOfACampaign) {
+  expect_done("graze fuzz --strata 'near_*' --pairs 8k --seed 7 --lanes 'moller_1997/f32/*' --out c > /dev/null");
+  const std::string tune = "graze tune moller_1997/f32/cpu --from c --forbid false-negative --max-rate 1e-2 ";
+  const Ran ran = shell(tune + "--max-other 0.5 --pairs 6k --out t");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const auto tuned = json_of(shell.folder / "t/tune.json"), campaign = json_of(shell.folder / "c/summary.json");
+  EXPECT_EQ(tuned["zero"]["pairs"], 8000);
+  EXPECT_EQ(tuned["confirmed"]["pairs"], 6000);
+  std::uint64_t wrong = 0;
+  for (const auto& [stratum, row] : campaign["strata"].items()) {
+    for (const char* error : {"false_negative", "false_positive"})
+      wrong += row["lanes"]["moller_1997/f32/cpu"][error].get<std::uint64_t>();
+  }
+  std::map<std::string, std::uint64_t> rows;
+  std::map<std::string, std::string> last;
+  std::ifstream csv(shell.folder / "t/changes.csv");
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "stratum,seed,index,truth,tolerance,change");
+  while (std::getline(csv, line)) {
+    const std::size_t change = line.rfind(','), tolerance = line.rfind(',', change - 1);
+    ++rows[line.substr(tolerance + 1)];
+    last[line.substr(tolerance + 1)] = line.substr(0, tolerance);
+  }
+  EXPECT_GT(wrong, 100u);
+  EXPECT_EQ(rows["none,wrong"], wrong);
+  int tolerances = 0;
+  for (const auto& curve : tuned["curves"]) {
+    for (const auto& point : curve["points"]) {
+      const std::string policy = point["policy"];
+      if (rows[policy + ",fixes"] + rows[policy + ",breaks"] == 0) continue;
+      EXPECT_EQ(rows[policy + ",fixes"], point["fixed"]) << policy;
+      EXPECT_EQ(rows[policy + ",breaks"], point["broken"]) << policy;
+      EXPECT_NE(ran.out.find("\n" + policy + " "), std::string::npos) << ran.out;
+      ++tolerances;
+    }
+  }
+  EXPECT_GE(tolerances, 4);
+  // One pair of each kind, drawn again by its number.
+  const std::string chosen = tuned["chosen"];
+  for (const auto& [key, zero_wrong, chosen_wrong] :
+       {std::tuple{chosen + ",fixes", true, false}, {chosen + ",breaks", false, true}}) {
+    ASSERT_TRUE(last.contains(key)) << key;
+    std::string place = last[key].substr(0, last[key].rfind(','));
+    std::replace(place.begin(), place.end(), ',', ':');
+    const Ran again = shell("graze repro " + place + " --lanes 'moller_1997/f32/cpu,moller_1997/f32/cpu/" + chosen +
+                            "' | grep moller_1997/f32");
+    const std::size_t second = again.out.find('\n') + 1;
+    EXPECT_EQ(again.out.substr(0, second).find(" !") != std::string::npos, zero_wrong) << place << '\n' << again.out;
+    EXPECT_EQ(again.out.find(" !", second) != std::string::npos, chosen_wrong) << place << '\n' << again.out;
+  }
+  // The same bytes for any number of threads; changes.csv goes when another run does not write it.
+  expect_done(tune + "--max-other 0.5 --pairs 6k --threads 1 --out u > /dev/null && diff -r t u");
+  expect_done("graze tune moller_1997/f32/cpu --strata near_vertex_face --pairs 1k --out t > /dev/null");
+  EXPECT_FALSE(std::filesystem::exists(shell.folder / "t/changes.csv"));
+  expect_error("graze tune moller_1997/f64/cpu --from c", 2, {"c: it did not run moller_1997/f64/cpu"});
+  expect_error(tune + "--scene x.toml", 2, {"--scene", "--from"});
 }
 
 // If one file in the folder belongs to another program, no file is written.

@@ -63,6 +63,7 @@ std::string answer(const AgreeQuestion& q, const Agreed& a) {
           "choose on (--pairs) or a stricter --max-rate may find a tolerance that keeps it.",
           found, low, q.max_rate);
     case TuneResult::not_satisfiable:
+    case TuneResult::not_useful:  // two lanes have no other kind of difference
       break;
   }
   return fmt::format("No tolerance keeps the rate of differing verdicts at or under {}. {}: {}; {}.", q.max_rate,

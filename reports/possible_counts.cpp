@@ -294,7 +294,12 @@ void expect_choice(const Json& tuned) {
          "a choice that is the best policy of the curves", tuned["chosen"]);
   expect_upper_bound(tuned.at("bound"), forbidden(confirmed, forbid), confirmed.pairs);
   const auto result = among<analysis::TuneResult>(kTuneResults, tuned.at("result"));
-  const auto expected = result_of(*chosen_on, confirmed, tuned["bound"], forbid, max_rate);
+  if (forbid == analysis::Forbid::any) {
+    expect(tuned.at("other_bound") == 0, "0, because all errors are forbidden", tuned["other_bound"]);
+  } else {
+    expect_upper_bound(tuned.at("other_bound"), confirmed.wrong() - forbidden(confirmed, forbid), confirmed.pairs);
+  }
+  const auto expected = result_of(*chosen_on, confirmed, forbid, max_rate, tuned.at("max_other"));
   expect(result == expected, fmt::format("'{}'", kTuneResults[static_cast<int>(expected)]), tuned["result"]);
 }
 
@@ -363,7 +368,8 @@ void expect_possible_tuned(const Json& tuned) {
   expect_shape(tuned, "tuned");
   expect_possible_errors(tuned);
   expect_lane(tuned.at("lane"));
-  expect(tuned.at("max_rate") >= 0 && tuned["max_rate"] <= 1, "a rate", tuned["max_rate"]);
+  for (const char* field : {"max_rate", "max_other"})
+    expect(tuned.at(field) >= 0 && tuned[field] <= 1, "a rate", tuned[field]);
   expect_relocations(tuned);
   expect_choice(tuned);
   const Json& sentences = tuned.at("sentences");

@@ -265,6 +265,7 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
   tuned.confirmed = errors(4000, 552, "rel:8", 600);
   tuned.zero_confirmed = errors(4000, 600, "", 600);
   tuned.bound = analysis::upper_bound(552, 4000);
+  tuned.other_bound = analysis::other_bound(tuned.confirmed, analysis::Forbid::false_negative);
   tuned.zero = errors(400, 60, "", 60);
   tuned.curves = {{"", true, {errors(400, 50, "rel:1", 60), errors(400, 30, "rel:8", 60)}},
                   {"parallel", true, {tuned.zero}}};
@@ -273,7 +274,7 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
   tuned.scale.down = -4;
   tuned.scale.at_down = errors(400, 200, "rel:8", 60);
   tuned.interactions = {{"a", "b", errors(400, 1, "a", 60), errors(400, 2, "b", 60), errors(400, 3, "c", 60)}};
-  const Json tune = tuning_json({"moller_1997/f32/cpu", analysis::Forbid::false_negative, 1e-3}, tuned);
+  const Json tune = tuning_json({"moller_1997/f32/cpu", analysis::Forbid::false_negative, 1e-3, 0.1}, tuned);
   const fs::path tune_file = root_ / "forged" / "tune.json", pareto_file = root_ / "forged" / "pareto.json";
   const auto tune_error = [&](const Json& json) {
     return error_of([&] { make_choices(root_ / "forged"); }, tune_file, json);
@@ -282,6 +283,8 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
   for (const auto& [place, value] : {std::pair<const char*, Json>("/bound", 0),
                                      {"/bound", 2},
                                      {"/bound", tuned.bound * 1.01},
+                                     {"/other_bound", tuned.other_bound * 1.01},
+                                     {"/max_other", 1.5},
                                      {"/scale_break", Json::object()},
                                      {"/scale_break/down/log2", 4},
                                      {"/scale_break/down/errors/policy", "rel:1"},

@@ -42,7 +42,7 @@ TEST(Bounds, AreRoundedOutwardWhereverTheyAreWritten) {
 
 // For 23 of 1,610 the upper bound is about 0.0202. It is above the requested 0.02, so it must not be printed as 0.02.
 TEST(Bounds, ATunedPolicysBoundIsNotRoundedToWhatWasAsked) {
-  const TuneQuestion question{"moller_1997/f32/cpu", analysis::Forbid::any, 0.02};
+  const TuneQuestion question{"moller_1997/f32/cpu", analysis::Forbid::any, 0.02, 0.1};
   analysis::Tuned tuned;
   tuned.chosen = "rel:8";
   tuned.confirmed.pairs = 1610;

@@ -10,6 +10,7 @@
 #include "fuzz/counts_json.h"
 #include "reports/findings.h"
 #include "reports/terminal.h"
+#include "reports/text_table.h"
 #include "reports/tolerance_figure.h"
 
 namespace graze::reports {
@@ -25,6 +26,10 @@ std::string_view words(Forbid forbid) {
   return forbid == Forbid::false_negative   ? "false negatives"
          : forbid == Forbid::false_positive ? "false positives"
                                             : "wrong verdicts";
+}
+
+std::string_view other_words(Forbid forbid) {
+  return words(forbid == Forbid::false_negative ? Forbid::false_positive : Forbid::false_negative);
 }
 
 std::string policy_words(const std::string& policy) { return policy.empty() ? "no policy" : policy; }
@@ -45,11 +50,17 @@ std::string errors(const PolicyErrors& e) {
 std::string answer(const TuneQuestion& q, const Tuned& t) {
   const std::string of =
       fmt::format("{}: on pairs other than those it was chosen on, {}", policy_words(t.chosen), errors(t.confirmed));
-  const std::string trust = fmt::format("at 95 % confidence {} are under {}", words(q.forbid), rounded_up(t.bound, 2));
+  std::string trust = fmt::format("at 95 % confidence {} are under {}", words(q.forbid), rounded_up(t.bound, 2));
+  if (q.forbid != Forbid::any)
+    trust += fmt::format(", {} under {}", other_words(q.forbid), rounded_up(t.other_bound, 2));
   switch (t.result) {
     case TuneResult::satisfied:
       return fmt::format("Use {}; {}.", of, trust);
     case TuneResult::too_few_pairs:
+      if (t.bound <= q.max_rate)
+        return fmt::format(
+            "Not settled: {}; {}. The rate of {} may be at most {} (--max-other); more pairs (--pairs) settle it.", of,
+            trust, other_words(q.forbid), q.max_other);
       return fmt::format(
           "Not settled: {}; {}, and {} was asked for. To show such a rate, use at least {} pairs (--pairs), none with "
           "an error.",
@@ -60,12 +71,18 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
           "Not settled: {}. It keeps {} at or under {} on the pairs of the choice, but not on these. "
           "More pairs to choose on (--pairs) or a stricter --max-rate may find one that does.",
           of, words(q.forbid), q.max_rate);
+    case TuneResult::not_useful:
+      return fmt::format(
+          "No tolerance helps here: of those that keep {0} at or under {1}, none has fewer {2} than {3}; {4}. The rate "
+          "of "
+          "{2} may be at most {5} (--max-other). The exact lane has no errors.",
+          words(q.forbid), q.max_rate, other_words(q.forbid), of, trust, q.max_other);
     case TuneResult::not_satisfiable:
       break;
   }
   return fmt::format(
-      "No policy of {} keeps {} at or under {} here. On the pairs of the choice none had fewer than {}. The exact lane "
-      "has no errors.",
+      "No tolerance helps here: none of {} keeps {} at or under {}. On the pairs of the choice none had fewer than {}. "
+      "The exact lane has no errors.",
       q.lane, words(q.forbid), q.max_rate, of);
 }
 
@@ -108,13 +125,29 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
   return result;
 }
 
+std::string tuning_table(const TuneQuestion& question, const Tuned& tuned, const Screen& screen) {
+  TextTable table({{"tolerance", Align::left}, {"fixes"}, {"breaks"}, {"false negatives"}, {"false positives"}});
+  const auto add = [&](const PolicyErrors& e) {
+    table.add({e.policy.empty() ? "none" : e.policy, grouped(e.fixed), grouped(e.broken), grouped(e.false_negative),
+               grouped(e.false_positive)});
+  };
+  add(tuned.zero);
+  for (const PolicyErrors* best : analysis::best_of_curves(tuned.curves, question.forbid, question.max_rate)) {
+    if (!best->changes_nothing()) add(*best);
+  }
+  return fmt::format("The best tolerance of each kind and site, on the {} pairs of the choice:\n{}",
+                     grouped(tuned.zero.pairs), table.text(screen));
+}
+
 Json tuning_json(const TuneQuestion& question, const Tuned& tuned) {
   Json json = {{"lane", question.lane},
                {"forbid", kTuneForbids[static_cast<int>(question.forbid)]},
                {"max_rate", question.max_rate},
+               {"max_other", question.max_other},
                {"chosen", tuned.chosen.empty() ? "zero" : tuned.chosen},
                {"result", kTuneResults[static_cast<int>(tuned.result)]},
                {"bound", tuned.bound},
+               {"other_bound", tuned.other_bound},
                {"confirmed", errors_json(tuned.confirmed)},
                {"zero_confirmed", errors_json(tuned.zero_confirmed)},
                {"dead", tuned.dead},

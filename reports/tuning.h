@@ -9,22 +9,28 @@
 #include <vector>
 
 #include "analysis/tuning.h"
+#include "reports/screen.h"
 
 namespace graze::reports {
 
 // The words of tune.json, in the order of the enumerations.
 inline constexpr std::string_view kTuneForbids[] = {"false_negative", "false_positive", "any"},
-                                  kTuneResults[] = {"satisfied", "too few pairs", "not confirmed", "not satisfiable"};
+                                  kTuneResults[] = {"satisfied", "too few pairs", "not confirmed", "not satisfiable",
+                                                    "not useful"};
 
 // The tuned lane, and the goal of the tuning.
 struct TuneQuestion {
   std::string lane;
   analysis::Forbid forbid = analysis::Forbid::any;
-  double max_rate = 0;
+  double max_rate = 0, max_other = 0;
 };
 
 // Each sentence starts with its topic. Every number in it belongs to the pairs that the sentence names.
 std::vector<std::string> tuning_sentences(const TuneQuestion& question, const analysis::Tuned& tuned);
+
+// The best tolerance of each curve on the pairs of the choice: what it fixes and breaks, and what stays wrong.
+// Tolerances that change nothing there are left out.
+std::string tuning_table(const TuneQuestion& question, const analysis::Tuned& tuned, const Screen& screen);
 
 nlohmann::ordered_json tuning_json(const TuneQuestion& question, const analysis::Tuned& tuned);
 

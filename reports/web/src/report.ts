@@ -50,9 +50,11 @@ export interface Tuned {
   lane: string;
   forbid: 'false_negative' | 'false_positive' | 'any';
   max_rate: number;
+  max_other: number;
   chosen: string;
   result: string;
   bound: number;
+  other_bound: number;
   confirmed: PolicyErrors;
   zero_confirmed: PolicyErrors;
   dead: string[];

@@ -146,6 +146,26 @@ TEST_F(TuneCommand, ChoosesOnTheDisagreementsOfACampaign) {
   expect_error(tune + "--scene x.toml", 2, {"--scene", "--from"});
 }
 
+// A campaign of other code: its counts are possible, but its pairs show others.
+TEST_F(TuneCommand, ACampaignWhosePairsShowOtherErrorsIsRefused) {
+  expect_done("graze fuzz --strata near_edge_edge --pairs 2k --lanes moller_1997/f32/cpu --out c > /dev/null");
+  auto summary = json_of(shell.folder / "c/summary.json");
+  auto& stratum = summary["strata"]["near_edge_edge"];
+  const std::string lane = "moller_1997/f32/cpu";
+  const auto less = [](nlohmann::json& count) { count = count.get<int>() - 1; };
+  less(stratum["lanes"][lane]["false_negative"]);
+  less(stratum["margins"]["-2^-1"]["wrong"].at(lane));
+  less(summary["disagreements"]);
+  less(std::find_if(summary["signatures"].begin(), summary["signatures"].end(), [](const auto& signature) {
+         return signature["key"].template get<std::string>().find("moller_1997:-") != std::string::npos &&
+                signature["count"] > 1;
+       })->at("count"));
+  std::filesystem::remove(shell.folder / "c/campaign.sqlite");
+  std::ofstream(shell.folder / "c/summary.json") << summary.dump(1);
+  expect_error("graze tune moller_1997/f32/cpu --from c", 1,
+               {"wrong verdicts of moller_1997/f32/cpu in near_edge_edge", "its code differs"});
+}
+
 // If one file in the folder belongs to another program, no file is written.
 TEST_F(TuneCommand, AForeignFileStopsItBeforeAnythingIsWritten) {
   const std::string tune = "graze tune moller_1997/f32/cpu --strata near_vertex_face --pairs 1k --out t";

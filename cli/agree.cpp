@@ -88,7 +88,7 @@ int agree(const TuneOptions& options) {
   if (const auto& place = agreed.confirmed.first; place && !policy.empty())
     results.push_back({"differ_under.pairs", smallest(under[0], under[1], pair_at(spec.others, *place))});
   const bool last_is_under = results.back().name == "differ_under.pairs";
-  write_listed(folder.path, results, {"differ.pairs", "differ_under.pairs"});
+  write_listed(folder.path, results, {{"differ.pairs", kPairs}, {"differ_under.pairs", kPairs}});
   fmt::print("{}", next_command(folder.path, results.back(),
                                 last_is_under ? under[0].id + "," + under[1].id : first.id + "," + second.id));
   return 0;

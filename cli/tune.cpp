@@ -89,12 +89,12 @@ std::string smallest(const Lane& first, const Lane& second, const Pair& pair) {
   return text.str();
 }
 
-void write_listed(const fs::path& out, const std::vector<Result>& results, std::initializer_list<const char*> cases) {
+void write_listed(const fs::path& out, const std::vector<Result>& results, std::initializer_list<Result> optional) {
   write_results(out, results);
   std::vector<std::string> written;
   for (const Result& result : results) written.push_back(result.name);
-  for (const char* name : cases) {
-    if (std::find(written.begin(), written.end(), name) == written.end()) remove_result(out / name, kPairs);
+  for (const auto& [name, kind] : optional) {
+    if (std::find(written.begin(), written.end(), name) == written.end()) remove_result(out / name, kind);
   }
   fmt::print("Wrote {}/{{{}}}\n", out.string(), fmt::join(written, ","));
 }
@@ -230,8 +230,7 @@ int tune(const TuneOptions& options) {
     if (!place) continue;
     results.push_back({name, smallest(*lane, chosen, pair_at(spec.others, *place))});
   }
-  write_listed(out, results, {"fixed.pairs", "broken.pairs"});
-  if (changes.empty()) remove_result(out / "changes.csv", kChangesHeader);
+  write_listed(out, results, {{"fixed.pairs", kPairs}, {"broken.pairs", kPairs}, {"changes.csv", kChangesHeader}});
   fmt::print("{}", next_command(out, results.back(), lane->id + "," + chosen.id));
   return 0;
 }
@@ -258,12 +257,9 @@ void add_tune(CLI::App& app, int& status) {
       ->excludes("--strata")
       ->excludes("--scene")
       ->option_text("DIR");
-  command
-      ->add_option("--pairs", options->pairs,
-                   "Number of pairs that judge the choice; without --from it is made on a tenth as many others")
-      ->transform(whole_number(10, kMostWhole))
-      ->default_str("1000000; with --from as many as the campaign drew")
-      ->option_text("N");
+  add_count(*command, "--pairs", options->pairs, 10, kMostWhole,
+            "Number of pairs that judge the choice; without --from it is made on a tenth as many others")
+      ->default_str("1000000; with --from as many as the campaign drew");
   add_count(*command, "--seed", options->seed, 0, kMostWhole - 1,
             "Seed of the pairs that the choice is made on; those that judge it have the next seed")
       ->excludes("--from");

@@ -48,9 +48,10 @@ Pair pair_at(const std::vector<strata::PairSource>& sources, const analysis::Pai
 // Requires: a lane is wrong on the pair.
 std::string smallest(const Lane& first, const Lane& second, const Pair& pair);
 
-// Writes the results and lists them. Removes files of pairs of an earlier run that this run did not write again.
+// Writes the results and lists them. Removes those of the optional ones, each with the first line of its kind, that an
+// earlier run wrote and this one did not.
 void write_listed(const std::filesystem::path& out, const std::vector<Result>& results,
-                  std::initializer_list<const char*> cases);
+                  std::initializer_list<Result> optional);
 
 // The line with the next command, which checks the last result if that is a file of pairs.
 std::string next_command(const std::filesystem::path& out, const Result& last, const std::string& lanes);

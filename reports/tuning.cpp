@@ -74,8 +74,7 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
     case TuneResult::not_useful:
       return fmt::format(
           "No tolerance helps here: of those that keep {0} at or under {1}, none has fewer {2} than {3}; {4}. The rate "
-          "of "
-          "{2} may be at most {5} (--max-other). The exact lane has no errors.",
+          "of {2} may be at most {5} (--max-other). The exact lane has no errors.",
           words(q.forbid), q.max_rate, other_words(q.forbid), of, trust, q.max_other);
     case TuneResult::not_satisfiable:
       break;

@@ -111,7 +111,7 @@ TEST(Discrepancy, EveryQuestionIsListedWithItsSiteAndIsAsked) {
 TEST(Discrepancy, WithoutContractionNoBitDiffers) {
   const std::vector<LanesCompared> lanes = published(Variant::cpu, Variant::cuda_nofma);
   ASSERT_EQ(lanes.size(), 2u * kAlgorithmCount);
-  const Discrepancies found = counted(lanes, 11, 19 * 400);
+  const Discrepancies found = counted(lanes, 11, strata::kStrataCount * 400);
   for (std::size_t l = 0; l < lanes.size(); ++l) {
     std::uint64_t compared = 0;
     for (const DiscrepancyCounts& of : found[l]) {
@@ -163,7 +163,7 @@ TEST(Discrepancy, FindsTheSharesThatWereMeasuredByHand) {
 
 TEST(Discrepancy, EachCountIsPartOfTheOneBefore) {
   const std::vector<LanesCompared> lanes = published(Variant::cpu, Variant::cuda_fma);
-  const Discrepancies found = counted(lanes, 3, 19 * 300);
+  const Discrepancies found = counted(lanes, 3, strata::kStrataCount * 300);
   std::uint64_t verdicts = 0;
   for (std::size_t l = 0; l < lanes.size(); ++l) {
     for (const DiscrepancyCounts& of : found[l]) {
@@ -203,7 +203,7 @@ TEST(Discrepancy, EachCountIsPartOfTheOneBefore) {
 
 TEST(Discrepancy, CountsTheVerdictsThatTheLanesGive) {
   const std::vector<LanesCompared> lanes = published(Variant::cpu, Variant::cuda_fma);
-  const auto sources = strata::stratum_sources(9, 19 * 200, {});
+  const auto sources = strata::stratum_sources(9, strata::kStrataCount * 200, {});
   const Discrepancies found = discrepancies({lanes, sources, 0, false});
   std::uint64_t all = 0;
   for (std::size_t l = 0; l < lanes.size(); ++l) {
@@ -255,7 +255,7 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
   for (const auto& [first, second] : published(Variant::cpu, Variant::cuda_nofma)) {
     const std::vector<Question>& questions = questions_of(first->algorithm);
     const std::vector<std::uint8_t> degrees = degrees_of(first->algorithm);
-    for (const strata::PairSource& source : strata::stratum_sources(6, 19 * 12, {})) {
+    for (const strata::PairSource& source : strata::stratum_sources(6, strata::kStrataCount * 12, {})) {
       if (source.id == "extreme_scale") continue;  // MPFR's ulps ignore the limits of the exponents
       for (std::uint64_t i = 0; i < source.pairs; ++i) {
         const Pair pair = source.pair(i);
@@ -315,7 +315,7 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
 TEST(Discrepancy, BoundsOfTheRoundingErrorHold) {
   std::uint64_t bounded = 0, near = 0, unbounded = 0;
   for (const LanesCompared& lanes : published(Variant::cpu, Variant::cuda_fma)) {
-    for (const strata::PairSource& source : strata::stratum_sources(8, 19 * 60, {})) {
+    for (const strata::PairSource& source : strata::stratum_sources(8, strata::kStrataCount * 60, {})) {
       for (std::uint64_t i = 0; i < source.pairs; ++i) {
         for (const ValueBeside& value : runs_beside(lanes, source.pair(i)).values) {
           if (!value.compared) continue;
@@ -343,7 +343,8 @@ TEST(Discrepancy, BoundsOfTheRoundingErrorHold) {
 TEST(Discrepancy, NoSignDiffersBeyondTwoBounds) {
   double widest = 0;
   for (const Variant second : {Variant::cuda_fma, Variant::cpu_fma}) {
-    for (const std::vector<DiscrepancyCounts>& found : counted(published(Variant::cpu, second), 7, 19 * 500)) {
+    for (const std::vector<DiscrepancyCounts>& found :
+         counted(published(Variant::cpu, second), 7, strata::kStrataCount * 500)) {
       for (const DiscrepancyCounts& of : found) {
         for (std::size_t at = band_maxima::in_bounds; at < of.maxima.size(); at += band_maxima::kFields)
           widest = std::max(widest, std::bit_cast<double>(of.maxima[at]));

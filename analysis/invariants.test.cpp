@@ -179,9 +179,9 @@ TEST(Invariants, ClaimsHoldAndNothingElseDoes) {
   for (const Lane& lane : published_lanes()) {
     if (lane.variant == Variant::cpu || lane.variant == Variant::cuda_nofma) ids.push_back(lane.id);
   }
-  const InvariantSpec spec = spec_of(ids, 19 * 150);
+  const InvariantSpec spec = spec_of(ids, strata::kStrataCount * 150);
   const Invariants found = invariants(spec);  // throws where a claim is broken
-  EXPECT_EQ(found.pairs, 19u * 150);
+  EXPECT_EQ(found.pairs, strata::kStrataCount * 150u);
   for (std::size_t l = 0; l < ids.size(); ++l) {
     for (const InvariantInfo& invariant : kInvariants) {
       const InvariantCount count = found.lanes[l].total(invariant.invariant);

@@ -98,7 +98,7 @@ TEST(Sweep, ListsEachPairOnWhichSomePolicyIsNotRight) {
 // A sweep of many tolerances at once counts the same as one sweep for each: absolute and relative, at all sites and at
 // one.
 TEST(Sweep, ManyTolerancesAtOnceAreEachAlone) {
-  const auto sources = drawn(8, 19 * 300, {});
+  const auto sources = drawn(8, strata::kStrataCount * 300, {});
   std::vector<std::string> policies;
   for (const std::string_view form : {"abs", "rel", "plane_distance=abs", "separation=rel"}) {
     for (int k = -60; k <= 20; k += 5) policies.push_back(fmt::format("{}:{}", form, std::exp2(k)));

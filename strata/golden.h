@@ -46,6 +46,8 @@ inline constexpr std::uint64_t kGoldenHashes[kStrataCount] = {
     0x883979c266ef092cu,  // extreme_scale
     0x2ade04b9c6084f63u,  // mixed_scale
     0xb9af2272a9faaad8u,  // lattice
+    0x2f9d6e3df044236cu,  // thesis_special
+    0xd219147e92198826u,  // nested
 };
 
 }  // namespace graze::strata

@@ -23,7 +23,8 @@ inline constexpr GroupInfo kGroups[] = {
     {Group::general, "general",
      "strata of triangles of usual shape and size, with near and exact contacts; some pairs lie in parallel planes, "
      "and some are degenerate"},
-    {Group::coplanar, "coplanar", "triangles in one plane, in nearly one, or in parallel ones"},
+    {Group::coplanar, "coplanar",
+     "triangles in one plane, in nearly one, or in parallel ones; some small ones pierce a larger one"},
     {Group::degenerate, "degenerate", "segments and points in place of triangles, often or always"},
     {Group::extreme, "extreme", "needles, coordinates of extreme size, and pairs far from the origin"},
     {Group::mesh, "mesh", "pairs of a mesh's triangles whose boxes overlap"},

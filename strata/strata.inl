@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strata that need no construction, and the choice among all. The others: contact.h, coplanar.h, shapes.h, scale.h.
+// The strata that need no construction, and the choice among all. The others: contact.h, coplanar.h, nested.h,
+// shapes.h, scale.h.
 #include "strata/contact.h"
 #include "strata/coplanar.h"
 #include "strata/draws.h"
+#include "strata/nested.h"
 #include "strata/scale.h"
 #include "strata/shapes.h"
 
@@ -19,14 +21,19 @@ GRAZE_HD inline Pair uniform(Draws& draws) {
 }
 
 // The listing's `(rand()%80 - 40)/10.0f` per axis, and `x + rand()%5` per coordinate, in float, as it computes them.
-GRAZE_HD inline Pair thesis(Draws& draws) {
-  Pair pair{{{2, -2, 4}, {1, 5, -2}, {1, -3, -3}}, {}};
+GRAZE_HD inline Pair thesis_against(Draws& draws, Pair pair) {
   float base[3];
   for (float& x : base) x = static_cast<float>(draws.between(-40, 39)) / 10.0f;
   for (Vec3<float>& vertex : pair.b) {
     for (int axis = 0; axis < 3; ++axis) component(vertex, axis) = base[axis] + static_cast<float>(draws.below(5));
   }
   return pair;
+}
+
+GRAZE_HD inline Pair thesis(Draws& draws) { return thesis_against(draws, {{{2, -2, 4}, {1, 5, -2}, {1, -3, -3}}, {}}); }
+
+GRAZE_HD inline Pair thesis_special(Draws& draws) {
+  return thesis_against(draws, {{{0, -2, 6}, {0, 5, 0}, {0, -3, 0}}, {}});
 }
 
 GRAZE_HD inline Vec3<float> draw_lattice(Draws& draws) {

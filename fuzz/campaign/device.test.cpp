@@ -12,6 +12,7 @@
 #include "cuda/engine/discrepancy.h"
 #include "cuda/lanes/device_costs.h"
 #include "fuzz/campaign/campaign_testing.h"
+#include "strata/strata.h"
 
 namespace graze::fuzz {
 namespace {
@@ -52,7 +53,7 @@ TEST_F(DeviceTest, DiscrepanciesAreThoseOfTheHost) {
   std::uint64_t verdicts = 0;
   for (const Variant second : {Variant::cuda_fma, Variant::cuda_nofma}) {
     analysis::DiscrepancySpec spec;
-    spec.sources = strata::stratum_sources(8, 19 * 700, {});
+    spec.sources = strata::stratum_sources(8, strata::kStrataCount * 700, {});
     for (const Lane& lane : published_lanes()) {
       if (lane.variant == Variant::cpu) spec.lanes.emplace_back(lane, *counterpart(lane, second));
     }
@@ -202,8 +203,8 @@ TEST_F(DeviceTest, OddCountsLeaveTheSameBytes) {
 TEST_F(DeviceTest, InterruptionsInTheMiddleOfAStratumChangeNothing) {
   run(campaign(twins_, "twins", 30'011, 0));
   Campaign parts = campaign(on_device_, "parts", 30'011, 1);
-  parts.engine_batch = 701;  // out of a stratum's 1579 or 1580
-  EXPECT_EQ(run_in_parts(parts), 19 * 3);
+  parts.engine_batch = 701;  // out of a stratum's 1429 or 1430
+  EXPECT_EQ(run_in_parts(parts), strata::kStrataCount * 3);
   expect_same_bytes("twins", "parts");
 }
 
@@ -228,7 +229,7 @@ TEST_F(DeviceTest, TwoDevicesLeaveTheBytesOfOne) {
   run(campaign(on_device_, "two", 30'011, 2));
   Campaign parts = campaign(on_device_, "parts", 30'011, 2);
   parts.engine_batch = 401;
-  EXPECT_EQ(run_in_parts(parts), 19 * 2);
+  EXPECT_EQ(run_in_parts(parts), strata::kStrataCount * 2);
   for (const char* name : {"one", "two", "parts"}) expect_same_bytes("twins", name);
 }
 

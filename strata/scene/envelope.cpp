@@ -109,6 +109,7 @@ std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum) {
   const double factor = scene.edges.back() / scene.edges.front();
   switch (stratum) {
     case Stratum::thesis:
+    case Stratum::thesis_special:
       return "its triangles are fixed numbers, not those of a scene";
     case Stratum::far_from_origin:
       return coordinates_stay_within(scene);
@@ -116,6 +117,7 @@ std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum) {
       return fmt::format("{}, your triangles' longest edges within {} … {}", coordinates_stay_within(scene),
                          scene.edges.front(), scene.edges.back());
     case Stratum::mixed_scale:
+    case Stratum::nested:
       if (factor < kLeastFactor)
         return fmt::format("your triangles' longest edges differ by a factor of {:.3g}, less than {}", factor,
                            kLeastFactor);

@@ -60,6 +60,35 @@ GRAZE_HD inline Pair coplanar(Draws& draws, const Scene& scene, const Space& pla
   return finished(draws, scene, draft, {});
 }
 
+// A large triangle and a small one, in one plane. In half of the pairs the small one is inside; it pierces the face in
+// a quarter of these. In the other half it touches an edge from inside or outside, or nearly.
+GRAZE_HD inline Pair nested(Draws& draws, const Scene& scene) {
+  const bool tilted = draws.coin();
+  const int normal = draws.between(0, 2);
+  const Space any = draw_plane(draws);
+  const Space plane = tilted ? any : axis_plane(normal);
+  const Form large = draw_form(draws, scene, largest_eighth());
+  const Form small = draw_form(draws, scene, smallest_eighth());
+  const Vec u = draw_direction(draws, plane);
+  const Vec inward = draw_across(draws, plane, u);
+  Draft draft;
+  if (draws.coin()) {
+    const bool pierces = draws.below(4) == 0;
+    const Space other = draw_plane(draws);
+    const Vec turned = draw_direction(draws, plane);
+    const Vec across = draw_across(draws, plane, turned);
+    put_face(draws, {true, u, inward}, large, draft.a);
+    put_face(draws, pierces ? other : Space{true, turned, across}, small, draft.b);
+    return finished(draws, scene, draft, {});
+  }
+  const double side = draws.sign();
+  put_edge(draws, plane, large, u, inward, draft.a);
+  put_vertex(draws, plane, small, inward * side, draft.b);
+  const Push push = draw_push(draws);  // its ulps would leave the plane
+  move(draft.b, inward * (push.gap * small.length));
+  return finished(draws, scene, draft, {});
+}
+
 // Half tilted, and parallel until rounding: by up to 2^-40 of the size; half along two axes, by up to 4 steps or ulps.
 GRAZE_HD inline Pair parallel(Draws& draws, const Scene& scene) {
   const bool tilted = draws.coin();
@@ -201,13 +230,16 @@ GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, const Scene& 
       return in_scene::shared_vertex(draws, scene);
     case Stratum::shared_edge:
       return in_scene::shared_edge(draws, scene);
-    case Stratum::mixed_scale: {  // the longest eighth against the shortest
+    case Stratum::mixed_scale: {
       const Touch touch = draw_touch(draws);
-      return in_scene::near_contact(draws, scene, touch, {}, {{0.875, 1}, {}}, {{0, 0.125}, {}});
+      return in_scene::near_contact(draws, scene, touch, {}, in_scene::largest_eighth(), in_scene::smallest_eighth());
     }
     case Stratum::lattice:
       return in_scene::lattice(draws, scene);
+    case Stratum::nested:
+      return in_scene::nested(draws, scene);
     case Stratum::thesis:
+    case Stratum::thesis_special:
     case Stratum::far_from_origin:
     case Stratum::extreme_scale:
       break;  // never in a scene

@@ -18,6 +18,10 @@ struct Sizes {
   Part edges, aspect;
 };
 
+// These are functions, because device code cannot refer to constants of class type.
+GRAZE_HD inline Sizes largest_eighth() { return {{0.875, 1}, {}}; }
+GRAZE_HD inline Sizes smallest_eighth() { return {{0, 0.125}, {}}; }
+
 GRAZE_HD inline double draw_from(Draws& draws, const Quantiles& quantiles, const Part& part) {
   const double fraction = part.from + (part.to - part.from) * draws.positive();
   const double at = fraction * (kQuantiles - 1);

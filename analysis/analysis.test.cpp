@@ -257,18 +257,20 @@ TEST(Signature, NamesTheWrongLanesAndHowCloseTheCallWas) {
   }
   const std::vector wrong{Verdict::intersects, Verdict::declined}, right{Verdict::disjoint, Verdict::disjoint};
   const Relation truth{Verdict::disjoint, Contact::none, 1, {2, 1, true}};
-  const Signature failure = signature(truth, make_bucket(1, -3), run, wrong);
+  const Signature failure = signature(truth, Nesting::none, make_bucket(1, -3), run, wrong);
   EXPECT_TRUE(failure.wrong());
   EXPECT_EQ(key(failure), "none/21/coplanar/+2^-3/moller_1997:+f32/cpu;?f64/cpu-fma");
-  EXPECT_FALSE(signature(truth, make_bucket(1, -3), run, right).wrong());
+  EXPECT_FALSE(signature(truth, Nesting::none, make_bucket(1, -3), run, right).wrong());
   const std::vector declined{Verdict::declined, Verdict::disjoint};
-  EXPECT_FALSE(signature(truth, make_bucket(1, -3), run, declined).wrong());
+  EXPECT_FALSE(signature(truth, Nesting::none, make_bucket(1, -3), run, declined).wrong());
   EXPECT_EQ(mark(Verdict::disjoint, Verdict::intersects), '-');
   EXPECT_EQ(mark(Verdict::intersects, Verdict::intersects), '.');
 }
 
 TEST(Signature, AKeyIsReadBack) {
-  for (const char* text : {"none/21/coplanar/+2^-3/moller_1997:+f32/cpu;?f64/cpu-fma", "area/00/skew/0/mine:",
+  for (const char* text : {"none/21/coplanar/+2^-3/moller_1997:+f32/cpu;?f64/cpu-fma",
+                           "area/00/skew/0/mine:", "area/22/coplanar_a_in_b/0/mine:-f32/cpu",
+                           "segment/22/skew_b_in_a/-2^3/mine:", "area/22/coplanar_same/0/mine:",
                            "point/22/skew/-2^5/mine:-f32/cpu/plane_distance=abs:1e-6,orientation=rel:16;+f64/cpu"}) {
     const std::optional<Signature> read = parse_signature(text);
     ASSERT_TRUE(read) << text;
@@ -285,10 +287,11 @@ TEST(Signature, AKeyIsReadBack) {
   EXPECT_EQ(read->mark_of("f32/cpu/a=abs:1,b=rel:2"), '-');
   EXPECT_EQ(read->mark_of("f64/cpu"), '+');
   EXPECT_EQ(read->mark_of("f32/cpu"), '.');
-  for (const char* text : {"", "point", "point/22", "point/22/skew", "point/22/skew/mine:", "point/22/skew/0/mine",
-                           "dot/22/skew/0/mine:", "point/23/skew/0/mine:", "point/22/flat/0/mine:",
-                           "point/22/skew/2^3/mine:", "point/22/skew/0/mine:f32/cpu", "point/22/skew/+2^32/mine:",
-                           "point/22/skew/0/:+f32/cpu", "point/22/skew/0/mine:+", "executors/moller_1997/f32/cuda-fma"})
+  for (const char* text :
+       {"", "point", "point/22", "point/22/skew", "point/22/skew/mine:", "point/22/skew/0/mine", "dot/22/skew/0/mine:",
+        "point/23/skew/0/mine:", "point/22/flat/0/mine:", "point/22/skew/2^3/mine:", "point/22/skew/0/mine:f32/cpu",
+        "point/22/skew/+2^32/mine:", "point/22/skew/0/:+f32/cpu", "point/22/skew_/0/mine:",
+        "point/22/skew_c_in_a/0/mine:", "point/22/skew/0/mine:+", "executors/moller_1997/f32/cuda-fma"})
     EXPECT_FALSE(parse_signature(text)) << text;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,26 @@ void sweep_curves(std::vector<CurveOf<Point>>& curves, int cube, const SweepPoli
     const double at = kLeastTolerance + static_cast<double>(best(curve));
     return steps(at - 1, at + 1, 0.25);
   });
+}
+
+// The same for an absolute curve whose every point takes a build. It has fewer points: 0, every fourth power of two,
+// and smaller steps around the best point. The constant may bound a length, an area or a volume, so the range is wide.
+template <class Point, class SweepPolicies, class Best>
+void sweep_values(std::vector<CurveOf<Point>>& curves, int cube, const SweepPolicies& sweep, const Best& best) {
+  const int size = cube / 3;  // log2 of a typical length
+  const double least = std::min(size, cube) - 48, most = std::max(size, cube) + 4;
+  add_points(curves, 0, sweep, [&](const auto&) {
+    std::vector<double> powers = steps(least, most, 4);
+    powers.insert(powers.begin(), -std::numeric_limits<double>::infinity());  // the value 0
+    return powers;
+  });
+  for (const double step : {1.0, 0.25}) {
+    add_points(curves, 0, sweep, [&](const CurveOf<Point>& curve) {
+      const double value = tolerance_of(curve.points[static_cast<std::size_t>(best(curve))].policy);
+      const double at = std::round(4 * std::log2(value)) / 4;  // its name is rounded
+      return std::isfinite(at) ? steps(at - 3 * step, at + 3 * step, step) : std::vector<double>();
+    });
+  }
 }
 
 }  // namespace graze::analysis

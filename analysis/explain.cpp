@@ -172,6 +172,7 @@ LaneExplanation account_of_foreign(const Lane& lane, Verdict verdict, const Pair
   result.evidence = Evidence::none;
   result.settled = found.settled ? Settled::yes : Settled::unknown;
   result.experiment = std::move(found.evidence);
+  result.line = std::move(found.line);
   if (result.cause == Cause::contraction && !cuda::contraction_sites(lane).empty()) {
     result.contractions = blame_apart(lane, pair, cuda::most_seconds(lane));
     if (!result.contractions.why_not.empty())
@@ -263,8 +264,9 @@ std::string_view name(Settled settled) {
 
 std::string_view name(Cause cause) {
   constexpr std::string_view kNames[] = {
-      "rounding",        "contraction",      "fast math", "overflow",          "underflow", "logic", "absolute epsilon",
-      "order-dependent", "degenerate input", "crash",     "no answer in time", "unstable",  "policy"};
+      "rounding",         "contraction",      "fast math",        "overflow", "underflow",         "logic",
+      "absolute epsilon", "order-dependent",  "degenerate input", "crash",    "no answer in time", "unstable",
+      "policy",           "relative epsilon", "uninitialised"};
   return kNames[static_cast<int>(cause)];
 }
 

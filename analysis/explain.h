@@ -46,7 +46,9 @@ enum class Cause {
   crash,
   no_answer,
   unstable,
-  policy
+  policy,
+  relative_epsilon,
+  uninitialised
 };
 std::string_view name(Cause cause);
 
@@ -94,6 +96,7 @@ struct LaneExplanation {
   std::array<bool, kCoordinates> matters;  // false: no nudge of the coordinate changes the truth or the lane's verdict
   WrongOf orders, mirrored, scalings;      // see neighbours.h
   std::string experiment;  // for lanes without steps (foreign, or under a policy): the evidence for the cause
+  std::string line;        // of foreign code: "mine.cpp:9", the number in it that decides; empty if it is not known
   bool slow = false;       // for the same lanes: other pairs time out or fail, so no neighbours were tried
 
   // The comparison to report: the first deciding one. Null if there is none, and if the algorithm itself is to blame.

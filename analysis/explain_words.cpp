@@ -8,21 +8,29 @@
 
 #include "analysis/convention.h"
 #include "analysis/explain.h"
+#include "analysis/signature.h"
 
 namespace graze::analysis {
 namespace {
 
-std::string phrase(const oracle::Truth& truth) {
+// "the triangles meet in a segment inside b, 0.5 deep", "b lies inside a, coplanar".
+std::string phrase(const Pair& pair, const oracle::Truth& truth) {
   if (truth.contact == Contact::none)
-    return fmt::format("are {:.3g} apart ({:.3g} ulps of the largest coordinate)", truth.margin, truth.margin_ulps);
+    return fmt::format("the triangles are {:.3g} apart ({:.3g} ulps of the largest coordinate)", truth.margin,
+                       truth.margin_ulps);
+  const Nesting nesting = nesting_of(pair, truth);
+  const char inner = nesting == Nesting::b_in_a ? 'b' : 'a', outer = nesting == Nesting::b_in_a ? 'a' : 'b';
+  if (truth.hulls.coplanar && nesting == Nesting::same) return "a and b cover the same points";
+  if (truth.hulls.coplanar && nesting != Nesting::none) return fmt::format("{} lies inside {}, coplanar", inner, outer);
+  const std::string inside = nesting == Nesting::none ? "" : fmt::format(" inside {}", outer);
   const std::string deep = truth.margin < 0 ? fmt::format(", {:.3g} deep", -truth.margin) : "";
   switch (truth.contact) {
     case Contact::point:
-      return "meet in a point" + deep;
+      return "the triangles meet in a point" + deep;
     case Contact::segment:
-      return "meet in a segment" + deep;
+      return "the triangles meet in a segment" + inside + deep;
     default:
-      return "overlap in their common plane";
+      return "the triangles overlap in their common plane";
   }
 }
 
@@ -198,8 +206,12 @@ std::string reason_by_experiment(const LaneExplanation& lane) {
         return "the code itself is wrong here, not its rounding";
       case Cause::absolute_epsilon:
         return "an absolute epsilon decides, or another number that does not grow and shrink with the triangles";
+      case Cause::relative_epsilon:
+        return "a relative epsilon decides";
+      case Cause::uninitialised:
+        return "it reads a variable that has no value";
       case Cause::order_dependent:
-        return "its verdict depends on the order of the vertices or triangles";
+        return "the code itself is wrong here: its verdict depends on the order of the vertices or triangles";
       case Cause::degenerate_input:
         return "a triangle is a segment or a point";
       case Cause::crash:
@@ -280,11 +292,12 @@ std::string sentence(const Explanation& explanation, const AlgorithmInfo* subjec
   const Lane& lane = *first->lane;
   const std::string also = others.empty() ? "" : "; also wrong: " + others;
   if (by_experiment(lane))
-    return fmt::format("{}/{} ({}) says {}, but the triangles {}: {}{}.", lane.info->id, name(lane.scalar), same,
-                       name(first->verdict), phrase(explanation.truth), reason_by_experiment(*first), also);
-  return fmt::format("{}/{} ({}) says {}, but the triangles {}: {}; {}{}.", lane.info->id, name(lane.scalar), same,
-                     name(first->verdict), phrase(explanation.truth), reason(*first) + doubt(*first), remedy(*first),
-                     also);
+    return fmt::format("{}/{} ({}) says {}, but {}: {}{}.", lane.info->id, name(lane.scalar), same,
+                       name(first->verdict), phrase(explanation.pair, explanation.truth), reason_by_experiment(*first),
+                       also);
+  return fmt::format("{}/{} ({}) says {}, but {}: {}; {}{}.", lane.info->id, name(lane.scalar), same,
+                     name(first->verdict), phrase(explanation.pair, explanation.truth), reason(*first) + doubt(*first),
+                     remedy(*first), also);
 }
 
 std::vector<std::string> sentences(const Explanation& explanation) {

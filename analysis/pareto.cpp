@@ -2,11 +2,13 @@
 #include "analysis/pareto.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <utility>
 
+#include "backends/backends.h"
 #include "core/lanes/verdicts.h"
+#include "subjects/subjects.h"
 
 namespace graze::analysis {
 namespace {
@@ -38,7 +40,26 @@ Pair moved(const Pair& pair, Extreme extreme, int k) {
   return is_finite(result) ? result : pair;
 }
 
+// What reading the clock adds to a time: some nanoseconds a pair, if only few are timed.
+double nanoseconds_of_the_clock() {
+  static const double least = [] {
+    double found = HUGE_VAL;
+    for (int i = 0; i < 1000; ++i) {
+      const double start = processor_nanoseconds();
+      found = std::min(found, processor_nanoseconds() - start);
+    }
+    return found;
+  }();
+  return least;
+}
+
 }  // namespace
+
+double processor_nanoseconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
+}
 
 std::string_view name(Extreme extreme) {
   constexpr std::string_view kNames[] = {"scale", "offset", "flatness", "aspect"};
@@ -48,14 +69,14 @@ std::string_view name(Extreme extreme) {
 double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<Pair>& pairs, Calls calls) {
   VerdictBits bits;
   std::uint64_t intersects = 0, declined = 0;
-  const auto start = std::chrono::steady_clock::now();
+  const double start = processor_nanoseconds();
   if (calls == Calls::of_blocks) {
     decide(lane, pairs, bits);
   } else {
     for (const Pair& pair : pairs) lane(&pair, 1, &intersects, &declined);
   }
-  const std::chrono::duration<double, std::nano> taken = std::chrono::steady_clock::now() - start;
-  return taken.count() / static_cast<double>(pairs.size());
+  const double taken = std::max(0.0, processor_nanoseconds() - start - nanoseconds_of_the_clock());
+  return taken / static_cast<double>(pairs.size());
 }
 
 Cost quartiles(std::vector<double> nanoseconds) {
@@ -75,6 +96,37 @@ std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const std::vector
   return costs;
 }
 
+std::string why_not_timed(const Lane& lane) {
+  if (backends::language_of(lane) == backends::Language::cuda)
+    return lane.foreign ? "a CUDA source is not timed" : "only --device times CUDA lanes";
+  const subjects::Opened* subject = lane.foreign ? subjects::opened(lane.lane_name().subject) : nullptr;
+  return subject && subject->kind == "command" ? "the time of a program includes reading and writing lines" : "";
+}
+
+std::vector<std::optional<Cost>> costs_of(std::span<const Lane* const> lanes, const std::vector<Pair>& pairs,
+                                          int passes, Calls calls) {
+  std::vector<std::vector<double>> taken(lanes.size());
+  std::vector<bool> failed(lanes.size());  // then it may take seconds on a pair, and is not asked again
+  for (int pass = 0; pass < passes; ++pass) {
+    for (std::size_t l = 0; l < lanes.size(); ++l) {
+      const Lane& lane = *lanes[l];
+      if (failed[l] || !why_not_timed(lane).empty()) continue;
+      const double nanoseconds = nanoseconds_a_pair(lane.decide, pairs, lane.foreign ? Calls::of_blocks : calls);
+      if (!lane.foreign) {
+        taken[l].push_back(nanoseconds);
+      } else if (calls == Calls::of_blocks || !subjects::opened(lane.lane_name().subject)->description.of_blocks) {
+        const auto own = subjects::processes_of(lane).nanoseconds();
+        failed[l] = !own;
+        if (own) taken[l].push_back(static_cast<double>(*own) / static_cast<double>(pairs.size()));
+      }
+    }
+  }
+  std::vector<std::optional<Cost>> costs;
+  for (std::size_t l = 0; l < lanes.size(); ++l)
+    costs.push_back(failed[l] || taken[l].empty() ? std::nullopt : std::optional(quartiles(std::move(taken[l]))));
+  return costs;
+}
+
 std::vector<Pair> first_pairs(std::span<const strata::PairSource> sources, std::size_t count) {
   std::vector<Pair> pairs;
   for (std::uint64_t i = 0; pairs.size() < count; ++i) {
@@ -87,10 +139,11 @@ std::vector<Pair> first_pairs(std::span<const strata::PairSource> sources, std::
   return pairs;
 }
 
-bool is_dominated(const Offer& offer, const std::vector<Offer>& offers, Cost Offer::*by) {
+bool is_dominated(const Offer& offer, const std::vector<Offer>& offers, std::optional<Cost> Offer::*by) {
   return std::any_of(offers.begin(), offers.end(), [&](const Offer& other) {
+    if (!(offer.*by && other.*by)) return false;
     const double less = other.errors.share_not_right() - offer.errors.share_not_right(),
-                 faster = (other.*by).middle - (offer.*by).middle;
+                 faster = (other.*by)->middle - (offer.*by)->middle;
     return less <= 0 && faster <= 0 && (less < 0 || faster < 0);
   });
 }
@@ -117,19 +170,10 @@ std::vector<strata::PairSource> made_extreme(std::span<const strata::PairSource>
   return result;
 }
 
-std::optional<int> ExtremeCurve::right_to(int direction) const {
-  const auto ordinary = std::find_if(points.begin(), points.end(), [](const auto& point) { return point.first == 0; });
-  if (ordinary == points.end()) return std::nullopt;
-  const double most = std::max(2 * ordinary->second.share_not_right(), 1e-3);
-  int last = 0;
-  const auto at = [&](std::ptrdiff_t i) -> const std::pair<int, PolicyErrors>& {
-    return points[static_cast<std::size_t>(i)];
-  };
-  for (std::ptrdiff_t i = ordinary - points.begin(); i >= 0 && i < std::ssize(points); i += direction) {
-    if (at(i).second.share_not_right() > most) return last;
-    last = at(i).first;
-  }
-  return std::nullopt;
+std::vector<ErrorsAt> ExtremeCurve::errors() const {
+  std::vector<ErrorsAt> result;
+  for (const auto& [exponent, found] : points) result.push_back({exponent, found.not_right(), found.pairs});
+  return result;
 }
 
 }  // namespace graze::analysis

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/extremes.h"
 #include "analysis/tuning.h"
 #include "cuda/lanes/device_costs.h"
 
@@ -20,6 +21,10 @@ struct Cost {
 // How many pairs a call decides: as many as there are, or one, as most programs call such a test.
 enum class Calls { of_blocks, of_one };
 
+// Processor time of this thread: time in which other programs run does not count. They still slow it, by cache and
+// clock.
+double processor_nanoseconds();
+
 // Nanoseconds per pair of one run of the lane over the pairs.   Requires: pairs.
 double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<Pair>& pairs, Calls calls = Calls::of_blocks);
 
@@ -30,6 +35,15 @@ Cost quartiles(std::vector<double> nanoseconds);
 std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const std::vector<Pair>& pairs, int passes,
                            Calls calls = Calls::of_blocks);
 
+// Why the time of this lane is not that of its code: twins, programs that answer by lines, … Empty if it is measured.
+std::string why_not_timed(const Lane& lane);
+
+// The same for lanes. A user's code is timed by the processor time of its own process, without communication; there
+// each call decides one pair, unless the code takes blocks. Nothing for a lane that is not timed, or that failed on a
+// pair.
+std::vector<std::optional<Cost>> costs_of(std::span<const Lane* const> lanes, const std::vector<Pair>& pairs,
+                                          int passes, Calls calls = Calls::of_blocks);
+
 // The first pairs of the sources, which take turns; `count` in all.
 std::vector<Pair> first_pairs(std::span<const strata::PairSource> sources, std::size_t count);
 
@@ -37,16 +51,19 @@ std::vector<Pair> first_pairs(std::span<const strata::PairSource> sources, std::
 struct Offer {
   std::string lane;
   PolicyErrors errors;
-  Cost near, far;          // of pairs in a core's cache, and from memory; or on the device, and with copies
+  std::optional<Cost>
+      near = std::nullopt,
+      far = std::nullopt;  // of pairs in a core's cache, and from memory; or on the device, and with copies
   bool dominated = false;  // by `near`
   std::optional<cuda::KernelNeeds> needs = std::nullopt;  // on a device
   std::optional<Pair> failure = std::nullopt;             // small, on which the lane is wrong
-  Cost alone = {};                                        // on a core, of calls that decide one pair each
+  std::optional<Cost> alone = std::nullopt;               // on a core, of calls that decide one pair each
+  std::string why_not_timed = {};                         // without costs
 };
 
 // Whether another lane costs no more and errs no more, and one of both less. A declined pair counts as an error,
-// because it has no verdict.
-bool is_dominated(const Offer& offer, const std::vector<Offer>& offers, Cost Offer::*by);
+// because it has no verdict. Lanes without this cost take no part.
+bool is_dominated(const Offer& offer, const std::vector<Offer>& offers, std::optional<Cost> Offer::*by);
 void mark_dominated(std::vector<Offer>& offers);
 
 // The ways of making a source's pairs extreme. The truth is that of the changed pairs.
@@ -71,9 +88,8 @@ struct ExtremeCurve {
   Extreme extreme;
   std::vector<std::pair<int, PolicyErrors>> points;
 
-  // The last exponent, going up or down, before the share of errors exceeds both twice the share at exponent 0 and
-  // 0.001. Nothing if it never does.
-  std::optional<int> right_to(int direction) const;
+  // Pairs without a right verdict at each exponent.
+  std::vector<ErrorsAt> errors() const;
 };
 
 // The results of one machine; those of two are never mixed.

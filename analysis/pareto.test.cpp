@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 namespace graze::analysis {
 namespace {
@@ -58,23 +59,9 @@ TEST(Extremes, AreWhatTheySay) {
   }
 }
 
-TEST(Extremes, RightToIsTheLastOrdinaryShare) {
-  ExtremeCurve curve{"lane", Extreme::scale, {}};
-  for (const auto& [k, wrong] : {std::pair{-16, 300}, {-8, 15}, {0, 10}, {8, 20}, {16, 21}, {24, 0}}) {
-    PolicyErrors errors;
-    errors.pairs = 1000;
-    errors.false_negative = static_cast<std::uint64_t>(wrong);
-    curve.points.emplace_back(k, errors);
-  }
-  EXPECT_EQ(curve.right_to(1), 8);
-  EXPECT_EQ(curve.right_to(-1), -8);
-  curve.points[4].second.false_negative = 5;
-  EXPECT_EQ(curve.right_to(1), std::nullopt);
-}
-
 // Moller's epsilon fits one scale only. Without it, only over- and underflow limit the algorithm's scale.
 TEST(Extremes, FindTheScaleOfAnAbsoluteEpsilon) {
-  const auto sources = strata::stratum_sources(4, 400, {"uniform"});
+  const auto sources = strata::stratum_sources(4, 4'000, {"uniform"});
   const Lane& zero = *find_lane("moller_1997/f32/cpu");
   const Sweep sweep = host_sweep(zero);
   ExtremeCurve paper{"paper", Extreme::scale, {}}, none{"zero", Extreme::scale, {}};
@@ -83,9 +70,53 @@ TEST(Extremes, FindTheScaleOfAnAbsoluteEpsilon) {
     paper.points.emplace_back(k, found[0]);
     none.points.emplace_back(k, found[1]);
   }
-  ASSERT_TRUE(paper.right_to(-1) && none.right_to(-1));
-  EXPECT_GE(*paper.right_to(-1), -8);
-  EXPECT_LE(*none.right_to(-1), -8);
+  const auto of_paper = right_range(paper.errors()), of_none = right_range(none.errors());
+  ASSERT_TRUE(of_paper && of_none && of_paper->settled && of_none->settled);
+  EXPECT_EQ(of_paper->down.right, 0);
+  EXPECT_EQ(of_paper->down.worse, -8);
+  EXPECT_LE(of_none->down.right, -8);
+  ASSERT_TRUE(of_none->down.worse);
+  EXPECT_LT(*of_none->down.worse, -8);
+}
+
+// What the range says of some pairs is true of five times as many fresh ones: at its ends the lane is as right as at
+// 2^0, and where it is shown to err more, it does.
+TEST(Extremes, AreTrueOfFreshPairs) {
+  const std::vector<std::string> lanes = {"moller_1997/f32/cpu", "interval_overlap/f32/cpu", "separating_axes/f64/cpu"};
+  const std::vector<std::string> strata = {"near_edge_edge", "near_vertex_face", "uniform"};
+  const Sweep sweep =
+      host_sweep([](const std::string& id) { return find_lane(id.empty() ? "exact/f32/cpu" : id)->decide; });
+  const auto measured = [&](std::uint64_t seed, std::uint64_t pairs, Extreme extreme, int k) {
+    return sweep(lanes, made_extreme(strata::stratum_sources(seed, pairs, strata), extreme, k));
+  };
+  int ends = 0, beyond = 0;
+  for (const Extreme extreme : kExtremes) {
+    std::vector<ExtremeCurve> curves;
+    for (const std::string& lane : lanes) curves.push_back({lane, extreme, {}});
+    for (const int k : exponents(extreme)) {
+      const auto found = measured(1, 4'000, extreme, k);
+      for (std::size_t l = 0; l < lanes.size(); ++l) curves[l].points.emplace_back(k, found[l]);
+    }
+    std::map<int, std::vector<PolicyErrors>> fresh;
+    const auto share = [&](int k, std::size_t lane) {
+      if (!fresh.contains(k)) fresh[k] = measured(2, 20'000, extreme, k);
+      return fresh[k][lane].share_not_right();
+    };
+    for (std::size_t l = 0; l < lanes.size(); ++l) {
+      const auto range = right_range(curves[l].errors());
+      ASSERT_TRUE(range && range->settled) << lanes[l] << ' ' << name(extreme);
+      const double most = std::max(kAsRight * share(0, l), kRightShare);
+      for (const RightSide& side : {range->down, range->up}) {
+        EXPECT_LE(share(side.right, l), most) << lanes[l] << ' ' << name(extreme) << ' ' << side.right;
+        ++ends;
+        if (!side.worse) continue;
+        EXPECT_GT(share(*side.worse, l), most) << lanes[l] << ' ' << name(extreme) << ' ' << *side.worse;
+        ++beyond;
+      }
+    }
+  }
+  EXPECT_EQ(ends, 24);
+  EXPECT_GE(beyond, 6);
 }
 
 }  // namespace

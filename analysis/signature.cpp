@@ -5,10 +5,15 @@
 
 #include <algorithm>
 
+#include "core/exact/exact.h"
+#include "core/exact/find_nesting.h"
+
 namespace graze::analysis {
 namespace {
 
 constexpr std::string_view kWrongMarks = "+-?!@%";
+
+constexpr std::string_view kNestings[] = {"", "a_in_b", "b_in_a", "same"};
 
 // Removes and returns the text before the next `end`; nothing if there is no `end`.
 std::optional<std::string_view> take_until(std::string_view& rest, char end) {
@@ -65,9 +70,21 @@ char Signature::mark_of(std::string_view lane_within_subject) const {
   return '.';
 }
 
-Signature signature(const Relation& truth, Bucket bucket, std::span<const Lane* const> lanes,
+std::string_view name(Nesting nesting) { return kNestings[static_cast<int>(nesting)]; }
+
+Nesting nesting_of(const Pair& pair, const Relation& truth) {
+  const float *a = coordinates(pair), *b = a + 9;
+  Nesting nesting;
+  if (exact::detail::nesting_quickly(a, b, truth, nesting)) return nesting;
+  const exact::detail::Grid grid = exact::detail::grid_of(a, b);
+  return exact::detail::AllNumbers::visit(grid, [&](auto numbers) {
+    return exact::detail::nesting(exact::detail::triangles<decltype(numbers)>(a, b, grid.exponent), truth);
+  });
+}
+
+Signature signature(const Relation& truth, Nesting nesting, Bucket bucket, std::span<const Lane* const> lanes,
                     std::span<const Verdict> verdicts) {
-  Signature s{truth.contact, truth.hulls, bucket, std::string(lanes.front()->info->id), {}};
+  Signature s{truth.contact, truth.hulls, nesting, bucket, std::string(lanes.front()->info->id), {}};
   for (std::size_t l = 0; l < lanes.size(); ++l) {
     if (const char m = mark(verdicts[l], truth.verdict); m != '.')
       s.wrong_lanes.push_back({lanes[l]->lane_name().within_subject(), m});
@@ -76,8 +93,9 @@ Signature signature(const Relation& truth, Bucket bucket, std::span<const Lane* 
 }
 
 std::string key(const Signature& s) {
-  std::string text = fmt::format("{}/{}{}/{}/{}/{}:", name(s.contact), s.hulls.dimension_a, s.hulls.dimension_b,
-                                 s.hulls.coplanar ? "coplanar" : "skew", name_of_bucket(s.bucket), s.subject);
+  std::string text = fmt::format("{}/{}{}/{}{}{}/{}/{}:", name(s.contact), s.hulls.dimension_a, s.hulls.dimension_b,
+                                 s.hulls.coplanar ? "coplanar" : "skew", s.nesting == Nesting::none ? "" : "_",
+                                 name(s.nesting), name_of_bucket(s.bucket), s.subject);
   for (std::size_t l = 0; l < s.wrong_lanes.size(); ++l)
     text += fmt::format("{}{}{}", l > 0 ? ";" : "", s.wrong_lanes[l].mark, s.wrong_lanes[l].lane);
   return text;
@@ -98,12 +116,16 @@ std::optional<Signature> parse_signature(std::string_view key) {
   const std::optional<Contact> contact = contact_of(*contact_word);
   const std::optional<Bucket> bucket = bucket_of(*margin);
   const auto is_dimension = [](char c) { return c >= '0' && c <= '2'; };
+  const std::string_view planes = shape->substr(0, shape->find('_'));
+  const auto nesting =
+      std::find(std::begin(kNestings), std::end(kNestings), shape->substr(std::min(planes.size() + 1, shape->size())));
   const bool shaped = dimensions->size() == 2 && is_dimension((*dimensions)[0]) && is_dimension((*dimensions)[1]) &&
-                      (*shape == "coplanar" || *shape == "skew");
+                      (planes == "coplanar" || planes == "skew") && nesting != std::end(kNestings);
   auto wrong_lanes = wrong_lanes_of(rest);
   if (!contact || !bucket || !shaped || !wrong_lanes) return std::nullopt;
   Signature result{*contact,
-                   {(*dimensions)[0] - '0', (*dimensions)[1] - '0', *shape == "coplanar"},
+                   {(*dimensions)[0] - '0', (*dimensions)[1] - '0', planes == "coplanar"},
+                   static_cast<Nesting>(nesting - kNestings),
                    *bucket,
                    std::string(*subject),
                    std::move(*wrong_lanes)};

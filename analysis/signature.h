@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "analysis/tally.h"
+#include "core/exact/nesting.h"
 #include "core/lanes/lanes.h"
+#include "core/pair.h"
 #include "core/verdict.h"
 #include "oracle/truth.h"
 
@@ -32,6 +34,7 @@ struct WrongLane {
 struct Signature {
   Contact contact = Contact::none;
   Hulls hulls;
+  Nesting nesting = Nesting::none;
   Bucket bucket = 0;
   std::string subject;
   std::vector<WrongLane> wrong_lanes;  // in the order of the lane table
@@ -42,12 +45,19 @@ struct Signature {
   auto operator<=>(const Signature&) const = default;
 };
 
+// "a_in_b", "b_in_a" or "same"; empty for none.
+std::string_view name(Nesting nesting);
+
+// Requires: finite coordinates; the truth is the pair's.   Exact: always.
+Nesting nesting_of(const Pair& pair, const Relation& truth);
+
 // Requires: all lanes belong to one subject; verdicts[i] is that of lanes[i].
-Signature signature(const Relation& truth, Bucket bucket, std::span<const Lane* const> lanes,
+Signature signature(const Relation& truth, Nesting nesting, Bucket bucket, std::span<const Lane* const> lanes,
                     std::span<const Verdict> verdicts);
 
 // "point/22/skew/-2^-3/moller_1997:+f32/cpu;-f64/cuda-fma": contact, dimensions of the two hulls, coplanar or skew,
-// margin bucket, subject, and the wrong lanes, each after its mark.
+// margin bucket, subject, and the wrong lanes, each after its mark. If one triangle lies in the other, that follows:
+// "coplanar_b_in_a".
 std::string key(const Signature& signature);
 
 // The key with margin bucket 0. Signatures that differ only in their margin bucket share it.

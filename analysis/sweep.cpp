@@ -11,10 +11,12 @@
 #include <bit>
 #include <iterator>
 
+#include "analysis/convention.h"
 #include "backends/backends.h"
 #include "core/exact/exact.h"
 #include "core/judged_bits.h"
 #include "core/lanes/ladder.h"
+#include "core/relation_of.h"
 #include "cuda/engine/sweep.h"
 
 namespace graze::analysis {
@@ -26,11 +28,44 @@ constexpr std::size_t kBlock = 1024;  // pairs that are drawn and judged, then d
 struct Rows {
   std::size_t words;
   std::vector<std::uint64_t> intersects, declined;
+  std::vector<std::uint64_t> excused;  // pairs on which a user's code differs from the truth by its convention
+  std::vector<Counts> foreign;         // of these pairs, and of those on which the code failed
+  std::vector<bool> is_foreign;
 
   Rows(std::size_t rows, std::size_t pairs)
-      : words((pairs + 63) / 64), intersects(rows * words), declined(rows * words) {}
+      : words((pairs + 63) / 64),
+        intersects(rows * words),
+        declined(rows * words),
+        excused(rows * words),
+        foreign(rows),
+        is_foreign(rows) {}
   std::uint64_t yes(std::size_t row, std::size_t word) const { return intersects[row * words + word]; }
   std::uint64_t none(std::size_t row, std::size_t word) const { return declined[row * words + word]; }
+
+  JudgedBits<std::uint64_t> judged(std::size_t row, std::size_t word, const Rows& truth) const {
+    // A pair that is not finite is not counted.
+    const std::uint64_t count = ~truth.none(0, word) & ~excused[row * words + word];
+    return judge(yes(row, word), none(row, word), truth.yes(0, word), count, is_foreign[row]);
+  }
+
+  // Looks at the pairs on which a user's code is not right.
+  void look_at_foreign(std::size_t row, const LaneDecider& decider, const Rows& truth, const std::vector<Pair>& pairs) {
+    is_foreign[row] = true;
+    for (std::size_t w = 0; w < words; ++w) {
+      for (std::uint64_t bits = judged(row, w, truth).not_right(); bits != 0; bits &= bits - 1) {
+        const std::uint64_t bit = bits & ~(bits - 1);
+        const auto is_set = [&](std::uint64_t word) { return (word & bit) != 0; };
+        const Pair& pair = pairs[w * 64 + static_cast<std::size_t>(std::countr_zero(bits))];
+        const Verdict verdict = decider.block.verdict_of(is_set(yes(row, w)), is_set(none(row, w)), pair);
+        if (is_failure(verdict)) {
+          ++foreign[row].of(verdict);
+        } else if (decider.foreign->outside != 0 && by_convention(*decider.foreign, verdict, pair, relation_of(pair))) {
+          excused[row * words + w] |= bit;
+          ++foreign[row].by_convention;
+        }
+      }
+    }
+  }
 };
 
 void keep_first(std::optional<PairPlace>& kept, const std::optional<PairPlace>& found) {
@@ -53,14 +88,13 @@ void add(const JudgedBits<std::uint64_t>& bits, Counts& counts) {
 // Adds the errors of row `p`; row 0 is that of no policy.
 void add(const SourceBlock& block, const Rows& truth, const Rows& lane, std::size_t p, PolicyErrors& errors) {
   for (std::size_t w = 0; w < truth.words; ++w) {
-    const std::uint64_t judged = ~truth.none(0, w);  // a pair that is not finite is not counted
-    const JudgedBits now = judge(lane.yes(p, w), lane.none(p, w), truth.yes(0, w), judged);
-    const JudgedBits before = judge(lane.yes(0, w), lane.none(0, w), truth.yes(0, w), judged);
+    const JudgedBits now = lane.judged(p, w, truth), before = lane.judged(0, w, truth);
     add(now, errors);
     const PairPlace word{block.source, block.first + w * 64};
     add(before.not_right() & ~now.not_right(), word, errors.fixed, errors.first_fixed);
     add(now.not_right() & ~before.not_right(), word, errors.broken, errors.first_broken);
   }
+  errors.Counts::operator+=(lane.foreign[p]);
   errors.pairs += block.count;
 }
 
@@ -71,10 +105,9 @@ void add(const SourceBlock& block, const Rows& truth, const Rows& first, const R
   };
   const auto count = [](std::uint64_t bits) { return static_cast<std::uint64_t>(std::popcount(bits)); };
   for (std::size_t w = 0; w < truth.words; ++w) {
-    const std::uint64_t judged = ~truth.none(0, w), yes = truth.yes(0, w);
-    agreement.intersecting += count(yes);
-    add(judge(first.yes(p, w), first.none(p, w), yes, judged), agreement.of[0]);
-    add(judge(second.yes(p, w), second.none(p, w), yes, judged), agreement.of[1]);
+    agreement.intersecting += count(truth.yes(0, w));
+    add(first.judged(p, w, truth), agreement.of[0]);
+    add(second.judged(p, w, truth), agreement.of[1]);
     const std::uint64_t now = differing(p, w), before = differing(0, w);
     add(now, {block.source, block.first + w * 64}, agreement.differing, agreement.first);
     agreement.mended += count(before & ~now);
@@ -93,8 +126,7 @@ void add(const SourceBlock& block, const Rows& truth, const Rows& lane, NotRight
   const std::size_t policies = lane.intersects.size() / lane.words;
   for (std::size_t w = 0; w < truth.words; ++w) {
     std::uint64_t wrong = 0;
-    for (std::size_t p = 0; p < policies; ++p)
-      wrong |= judge(lane.yes(p, w), lane.none(p, w), truth.yes(0, w), ~truth.none(0, w)).not_right();
+    for (std::size_t p = 0; p < policies; ++p) wrong |= lane.judged(p, w, truth).not_right();
     found.count += static_cast<std::uint64_t>(std::popcount(wrong));
     for (; wrong != 0; wrong &= wrong - 1) {
       const auto bit = static_cast<std::uint64_t>(std::countr_zero(wrong));
@@ -110,7 +142,7 @@ void add(const SourceBlock& block, const Rows& truth, const Rows& lane, NotRight
 // Policies that are decided together, one after the other in the list of policies.
 struct Together {
   std::size_t first;
-  DecideBlock one;                // of a single policy
+  LaneDecider one;                // of a single policy
   DecideLadder ladder = nullptr;  // of several
   std::vector<Epsilons> rungs;
 };
@@ -140,7 +172,8 @@ std::vector<Result> run(const std::vector<std::vector<Together>>& lanes, std::si
         if (part.ladder) {
           part.ladder(part.rungs, pairs.data(), pairs.size(), intersects, declined);
         } else {
-          part.one(pairs.data(), pairs.size(), intersects, declined);
+          part.one.block(pairs.data(), pairs.size(), intersects, declined);
+          if (part.one.foreign) rows[l].look_at_foreign(part.first, part.one, truth, pairs);
         }
       }
     }
@@ -196,10 +229,23 @@ std::vector<Together> parts_of(const Lane& lane, Policies policies) {
     } else if (!parts.empty() && parts.back().ladder && rises(parts.back().rungs.back(), under.under->epsilons)) {
       parts.back().rungs.push_back(under.under->epsilons);
     } else {
-      parts.push_back({p, {}, ladder, {under.under->epsilons}});
+      parts.push_back({p, DecideBlock(), ladder, {under.under->epsilons}});
     }
   }
   return parts;
+}
+
+std::vector<Together> parts_of(const DecideUnder& decide, Policies policies) {
+  std::vector<Together> parts;
+  for (const std::string& policy : policies) parts.push_back({parts.size(), decide(policy), nullptr, {}});
+  return parts;
+}
+
+NotRightPairs not_right_in(const std::vector<Together>& parts, Policies policies, Sources sources, int threads) {
+  return run({parts}, policies.size(), std::vector<NotRightPairs>(1), sources, threads,
+             [](const SourceBlock& block, const Rows& truth, const std::vector<Rows>& rows, std::size_t,
+                NotRightPairs& found) { add(block, truth, rows[0], found); })
+      .front();
 }
 
 }  // namespace
@@ -243,9 +289,7 @@ NotRightPairs& NotRightPairs::operator+=(NotRightPairs other) {
 
 Sweep host_sweep(DecideUnder decide, int threads) {
   return [decide = std::move(decide), threads](Policies policies, Sources sources) {
-    std::vector<Together> parts;
-    for (const std::string& policy : with_zero(policies)) parts.push_back({parts.size(), decide(policy), nullptr, {}});
-    return errors_of(parts, policies, sources, threads);
+    return errors_of(parts_of(decide, with_zero(policies)), policies, sources, threads);
   };
 }
 
@@ -256,10 +300,11 @@ Sweep host_sweep(const Lane& lane, int threads) {
 }
 
 NotRightPairs not_right_pairs(const Lane& lane, Policies policies, Sources sources, int threads) {
-  return run({parts_of(lane, policies)}, policies.size(), std::vector<NotRightPairs>(1), sources, threads,
-             [](const SourceBlock& block, const Rows& truth, const std::vector<Rows>& rows, std::size_t,
-                NotRightPairs& found) { add(block, truth, rows[0], found); })
-      .front();
+  return not_right_in(parts_of(lane, policies), policies, sources, threads);
+}
+
+NotRightPairs not_right_pairs(const DecideUnder& decide, Policies policies, Sources sources, int threads) {
+  return not_right_in(parts_of(decide, policies), policies, sources, threads);
 }
 
 AgreementSweep agreement_sweep(const Lane& first, const Lane& second, int threads) {

@@ -64,8 +64,17 @@ std::vector<SourceBlock> blocks_of(Sources sources, std::uint64_t most);
 // The errors under each policy, on all pairs of the sources.
 using Sweep = std::function<std::vector<PolicyErrors>(Policies policies, Sources sources)>;
 
-// Returns the block function of a lane under a policy.
-using DecideUnder = std::function<DecideBlock(const std::string& policy)>;
+// What decides under a policy. foreign: the lane of a user's code that it belongs to, whose failures and whose
+// convention are counted; null for lanes of ours.
+struct LaneDecider {
+  DecideBlock block;
+  const Lane* foreign;
+
+  LaneDecider(DecideBlock of, const Lane* of_user = nullptr) : block(of), foreign(of_user) {}
+};
+inline LaneDecider decider_of(const Lane& lane) { return {lane.decide, lane.foreign ? &lane : nullptr}; }
+
+using DecideUnder = std::function<LaneDecider(const std::string& policy)>;
 
 // A sweep on the host: pairs are drawn and judged once, then decided under each policy. The result does not depend on
 // the number of threads (0: one on each core).
@@ -93,6 +102,8 @@ struct NotRightPairs {
 // Runs on the host; a CUDA lane runs as its twin. The result does not depend on the number of threads.
 // Requires: a lane with a host lane or a twin under each policy.
 NotRightPairs not_right_pairs(const Lane& lane, Policies policies, Sources sources, int threads = 0);
+// The same of any lane.   decide: as for host_sweep.
+NotRightPairs not_right_pairs(const DecideUnder& decide, Policies policies, Sources sources, int threads = 0);
 
 // How two published lanes compare under each policy, on all pairs of the sources.
 using AgreementSweep = std::function<std::vector<Agreement>(Policies policies, Sources sources)>;

@@ -178,6 +178,21 @@ TEST_P(EveryStratum, BucketsSideBySideAreRightWhereTheyAreSettled) {
   EXPECT_EQ(fewest, least);
 }
 
+// A block decides each pair as a call of that pair alone does, also where the block's code works on several at a time.
+TEST_P(EveryStratum, BlocksOfHostLanesAreDecidedAsEachPairAlone) {
+  constexpr std::size_t kPairs = 20'003;
+  const std::vector<Pair> pairs = drawn_and_decided(kSeed + 4, GetParam().stratum, kPairs).pairs;
+  std::vector<std::uint64_t> intersects(kPairs / 64 + 1), declined(intersects);
+  for (const Lane& row : lanes()) {
+    if (row.is_cuda() || row.exact || !runs_on_this_cpu(row)) continue;
+    row.decide(pairs.data(), kPairs, intersects.data(), declined.data());
+    for (std::size_t i = 0; i < kPairs; ++i) {
+      const Verdict in_block = row.decide.verdict_of(test_bit(intersects, i), test_bit(declined, i), pairs[i]);
+      ASSERT_EQ(in_block, decide_one(row.decide, pairs[i])) << row.id << ", pair " << i;
+    }
+  }
+}
+
 // Compares the margin's certified bucket, including its sign, with the exact margin.
 TEST_P(EveryStratum, BucketsHoldTheExactMargin) {
   for (std::uint64_t index = 0; index < 400; ++index) {

@@ -29,14 +29,21 @@ class Tuner {
 
   Tuned run() {
     result_.zero = sweep_all(std::vector<std::string>{""}).front();
-    std::vector<std::string> sites = {""};
-    sites.insert(sites.end(), spec_.sites.begin(), spec_.sites.end());
-    for (const std::string& site : sites) {
-      for (const bool relative : {true, false}) result_.curves.push_back({site, relative, {}});
+    const auto sweep = [&](Policies policies) { return sweep_all(policies); };
+    const auto best = [&](const Curve& curve) {
+      return &best_of(curve, spec_.forbid, spec_.max_rate) - curve.points.data();
+    };
+    if (spec_.by_value) {
+      result_.curves = {{"", false, {}}};
+      sweep_values(result_.curves, log2_cube(spec_.sources), sweep, best);
+    } else {
+      std::vector<std::string> sites = {""};
+      sites.insert(sites.end(), spec_.sites.begin(), spec_.sites.end());
+      for (const std::string& site : sites) {
+        for (const bool relative : {true, false}) result_.curves.push_back({site, relative, {}});
+      }
+      sweep_curves(result_.curves, log2_cube(spec_.sources), sweep, best);
     }
-    sweep_curves(
-        result_.curves, log2_cube(spec_.sources), [&](Policies policies) { return sweep_all(policies); },
-        [&](const Curve& curve) { return &best_of(curve, spec_.forbid, spec_.max_rate) - curve.points.data(); });
     choose();
     find_dead();
     find_scale_break();

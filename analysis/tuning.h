@@ -39,7 +39,8 @@ PolicyRank rank(const PolicyErrors& errors, Forbid forbid, double max_rate);
 
 struct TuneSpec {
   Sweep sweep;
-  std::vector<std::string> sites;           // sites that the lane asks about
+  bool by_value = false;                    // the tolerance is the value of an epsilon in a user's source
+  std::vector<std::string> sites;           // sites that the lane asks about; none by value
   std::vector<strata::PairSource> sources;  // pairs to choose on
   std::vector<strata::PairSource> others;   // pairs to verify the choice on
   Forbid forbid = Forbid::any;

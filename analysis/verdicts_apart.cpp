@@ -43,22 +43,34 @@ std::vector<VerdictsApart> verdicts_apart(const TwoDeciders& deciders, const std
       if (!is_finite(pairs[i])) continue;
       ++to.pairs;
       const Relation truth = relation_of(pairs[i]);
+      bool right[2];  // or permitted by the code's convention
       for (int lane = 0; lane < 2; ++lane) {
         const Verdict verdict = verdicts[lane][i];
-        if (verdict == truth.verdict) continue;
-        ++(by_convention(*deciders.lanes[lane], verdict, pairs[i], truth) ? to.of[lane].by_convention
-                                                                          : to.of[lane].of(verdict));
+        right[lane] = verdict == truth.verdict;
+        if (right[lane]) continue;
+        right[lane] = by_convention(*deciders.lanes[lane], verdict, pairs[i], truth);
+        ++(right[lane] ? to.of[lane].by_convention : to.of[lane].of(verdict));
       }
       if (verdicts[0][i] == verdicts[1][i]) continue;
+      const PairPlace place{block.source, block.first + i};
       ++to.differs;
-      keep_simplest(to.simplest, {block.source, block.first + i});
+      keep_simplest(to.simplest, place);
+      if (right[0] && !right[1]) {
+        ++to.broken;
+        keep_simplest(to.simplest_broken, place);
+      } else if (right[1] && !right[0]) {
+        ++to.mended;
+        keep_simplest(to.simplest_mended, place);
+      }
     }
   });
   std::vector<VerdictsApart> all(sources.size());
   for (const std::vector<VerdictsApart>& some : results) {
     for (std::size_t s = 0; s < all.size(); ++s) {
       all[s] += some[s];
-      if (some[s].simplest) keep_simplest(all[s].simplest, *some[s].simplest);
+      for (const auto simplest :
+           {&VerdictsApart::simplest, &VerdictsApart::simplest_broken, &VerdictsApart::simplest_mended})
+        if (some[s].*simplest) keep_simplest(all[s].*simplest, *(some[s].*simplest));
     }
   }
   return all;

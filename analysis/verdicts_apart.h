@@ -13,17 +13,21 @@
 namespace graze::analysis {
 
 struct VerdictsApart {
-  std::uint64_t pairs = 0;            // finite ones
-  std::uint64_t differs = 0;          // the two verdicts
-  Counts of[2];                       // each lane's errors
-  std::optional<PairPlace> simplest;  // of the pairs on which they differ
+  std::uint64_t pairs = 0;               // finite ones
+  std::uint64_t differs = 0;             // the two verdicts
+  Counts of[2];                          // each lane's errors
+  std::optional<PairPlace> simplest;     // of the pairs on which they differ
+  std::uint64_t broken = 0, mended = 0;  // of these, only the first lane's verdict is right, or only the second's
+  std::optional<PairPlace> simplest_broken, simplest_mended;
 
   bool operator==(const VerdictsApart&) const = default;
 
-  // Adds the counts; the simplest pair stays.
+  // Adds the counts; the simplest pairs stay.
   VerdictsApart& operator+=(const VerdictsApart& other) {
     pairs += other.pairs;
     differs += other.differs;
+    broken += other.broken;
+    mended += other.mended;
     for (int lane = 0; lane < 2; ++lane) of[lane] += other.of[lane];
     return *this;
   }

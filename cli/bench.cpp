@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include "cli/bench_rows.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/query_input.h"
 #include "cli/results.h"
 #include "cli/screen.h"
 #include "core/error.h"
@@ -26,7 +28,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> sizes = {"10000", "100000", "1000000", "5000000", "10000000", "20000000"};
-  std::vector<std::string> lanes;  // empty: common ones
+  LaneOptions lanes;  // without patterns: common ones
   std::string mesh, plot;
   bool json = false;
 };
@@ -60,6 +62,10 @@ nlohmann::ordered_json json_of(const Bench& bench) {
   if (!bench.machine.devices.empty()) {
     machine["copy_bytes_per_second"] = bench.machine.copy_bytes_per_second;
     machine["to_device_bytes_per_second"] = bench.machine.to_device_bytes_per_second;
+    const cuda::KernelNeeds& needs = bench.machine.exact_query;
+    machine["exact_query"] = {{"threads_of_a_block", needs.threads},
+                              {"registers", needs.registers},
+                              {"threads_of_a_multiprocessor", needs.active_threads}};
   }
   nlohmann::ordered_json crossover = nullptr;
   if (bench.crossover > 0) crossover = bench.crossover;
@@ -104,21 +110,13 @@ std::string shares(const Bench& bench) {
                         best->rate() / 1e9, best->rate() * 36 / 1e9, best->rate() * 3600 / limit,
                         resident ? "a copy within it" : "a copy from pinned memory");
   }
+  const cuda::KernelNeeds& needs = bench.machine.exact_query;
+  if (needs.threads > 0)
+    text += fmt::format(
+        "exact, on a device: blocks of {} threads, {} registers a thread, {} threads at once on a "
+        "multiprocessor\n",
+        needs.threads, needs.registers, reports::grouped(static_cast<std::uint64_t>(needs.active_threads)));
   return text;
-}
-
-// Leaves out lanes that run neither on a device nor by a twin, and says which if they were asked for.
-void leave_out(std::vector<std::string>& lanes, bool asked) {
-  std::vector<fuzz::LaneLeftOut> left_out;
-  std::erase_if(lanes, [&](const std::string& id) {
-    add_policy_lanes(id);
-    const Lane* lane = find_lane(id);
-    if (!lane || graze_devices() > 0) return false;
-    const std::string why_not = backends::why_not_on_host(*lane);
-    if (!why_not.empty()) left_out.push_back({id, why_not});
-    return !why_not.empty();
-  });
-  if (asked) say_left_out(left_out);
 }
 
 std::string not_timed(const Bench& bench) {
@@ -133,8 +131,8 @@ std::string not_timed(const Bench& bench) {
 void bench(const Options& options, int& status) {
   BenchOptions wanted;
   for (const std::string& size : options.sizes) wanted.sizes.push_back(std::stoull(size));
-  wanted.lanes = options.lanes.empty() ? kCommonLanes : options.lanes;
-  leave_out(wanted.lanes, !options.lanes.empty());
+  const QueryLanes lanes = query_lanes(options.lanes, kCommonLanes);
+  wanted.lanes = lanes.ids;
   query::on_cores = backends::on_host;  // with twins
   if (!options.mesh.empty()) {
     wanted.mesh_name = std::filesystem::path(options.mesh).filename().string();
@@ -171,10 +169,18 @@ void bench(const Options& options, int& status) {
   }
   if (!options.plot.empty()) write_result(options.plot, bench_plot(result, words(result.machine)), fuzz::NamedBy::user);
   if (options.json) {
-    fmt::print("{}\n", json_of(result).dump(1));
+    nlohmann::ordered_json json = json_of(result);
+    fuzz::add_left_out(json, lanes.under_test);
+    fmt::print("{}\n", json.dump(1));
     return;
   }
   fmt::print("{}{}", not_timed(result), shares(result));
+  if (std::any_of(lanes.under_test.lanes.begin(), lanes.under_test.lanes.end(),
+                  [](const Lane* lane) { return lane->foreign; }))
+    fmt::print("{}",
+               reports::wrapped("Times of your own code include the exchange with its process, which asks each pair "
+                                "twice; `graze pareto` measures the code alone.",
+                                output_screen().columns));
   if (!result.machine.devices.empty()) {
     fmt::print("crossover: {}\n", result.crossover == 0
                                       ? "none; with copies all cores are faster"
@@ -200,13 +206,11 @@ void add_bench(CLI::App& app, int& status) {
                    "Mesh to test as well: all its triangles against the middle one of the file")
       ->check(not_empty())
       ->option_text("FILE");
-  command
-      ->add_option(
-          "--lanes", options->lanes,
-          "Lanes to time besides the exact one: host lanes on cores, CUDA lanes on GPUs, or by twins without one")
-      ->delimiter(',')
-      ->default_str("six common ones")
-      ->option_text("LANE,…");
+  add_globs(*command, "--lanes", options->lanes.globs,
+            "Patterns of the lanes to time besides the exact one: host lanes on cores, CUDA lanes on GPUs, or by twins "
+            "without one")
+      ->default_str("six common ones, and those of --subject");
+  add_subject_options(*command, options->lanes);
   command->add_option("--plot", options->plot, "Picture to write: verdicts per second against array size")
       ->check(not_empty())
       ->option_text("FILE.svg");

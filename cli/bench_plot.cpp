@@ -34,7 +34,7 @@ std::string bench_plot(const Bench& bench, const std::string& machine) {
   for (const BenchRow& row : bench.rows) {
     const bool of_2012 = row.lane == "interval_overlap/f32/cpu" || row.lane == "interval_overlap/f32/cuda-fma";
     if (row.array != "thesis" || row.mode != "all" || !(row.lane == "exact" || of_2012)) continue;
-    if (row.executor.ends_with("twin")) continue;
+    if (row.executor.ends_with("twin") || row.data == "resident, split") continue;
     const double size = static_cast<double>(row.triangles);
     series[fmt::format("{}, {}", row.lane, row.by())][size] = row.rate();
     sizes.hold(size);

@@ -33,7 +33,13 @@ constexpr std::uint64_t kOnOneCore = 100'000'000;
 constexpr int kTimes = 3;
 constexpr Triangle kThesis = {2, -2, 4, 1, 5, -2, 1, -3, -3};
 
-bool is_cuda(const std::string& lane) { return lane.find("/cuda") != lane.npos; }
+bool is_foreign(const std::string& id) {
+  const Lane* lane = find_lane(id);
+  return lane && lane->foreign;
+}
+
+// A CUDA lane of ours; a user's runs in its own process.
+bool is_cuda(const std::string& lane) { return lane.find("/cuda") != lane.npos && !is_foreign(lane); }
 
 struct Array {
   std::string name;
@@ -76,6 +82,7 @@ class Measuring {
     const cuda::DeviceSpeeds speeds = cuda::measure_speeds(0, std::size_t{1} << 32);
     bench_.machine.copy_bytes_per_second = speeds.copy;
     bench_.machine.to_device_bytes_per_second = speeds.to_device;
+    bench_.machine.exact_query = cuda::needs_of_exact_query(0);
   }
 
   Bench operator()() {
@@ -122,7 +129,7 @@ class Measuring {
     const bool on_host = !is_cuda(lane) || by_twin, on_device = lane == "exact" || !on_host;
     query.lane = lane.c_str();
     if (on_host) {
-      const std::string twin = by_twin ? ", twin" : "";
+      const std::string twin = by_twin ? ", twin" : is_foreign(lane) ? ", its process" : "";
       if (host.count <= kOnOneCore) add(row, query, GRAZE_ONE_CORE, "one core" + twin, &bytes, exact);
       if (bench_.machine.cores > 1) add(row, query, GRAZE_ALL_CORES, "all cores" + twin, &bytes, exact);
     }
@@ -142,6 +149,13 @@ class Measuring {
     }
     query.parts = parts.data();
     add(row, query, GRAZE_ONE_GPU, "one GPU", nullptr, nullptr);
+    if (lane == "exact" && mode == "all") {
+      graze_query split = query;
+      split.launch_seconds = bench_.rows.back().seconds / 8;
+      row.data = "resident, split";
+      add(row, split, GRAZE_ONE_GPU, "one GPU", nullptr, nullptr);
+      row.data = "resident";
+    }
     if (devices_ == 1 || mode == "any") return;
     query.part_count = parts.size();  // each device holds the array once
     row.triangles = host.count * parts.size();

@@ -12,6 +12,8 @@
 
 #include <graze/query.h>
 
+#include "cuda/lanes/device_costs.h"
+
 namespace graze::cli {
 
 struct BenchOptions {
@@ -26,7 +28,7 @@ struct BenchRow {
   std::string array;  // "thesis", or the name of a mesh
   std::uint64_t triangles;
   std::string executor;               // "one core", "all cores", "one GPU", "2 GPUs"; "one core, twin"
-  std::string data;                   // "host", "resident"
+  std::string data;                   // "host", "resident"; "resident, split": in launches of an eighth of the time
   std::string mode;                   // "all", "any"
   std::string lane;                   // "exact"; "CGAL AABB tree"
   double seconds, build_seconds = 0;  // of building the tree
@@ -34,13 +36,15 @@ struct BenchRow {
   std::optional<std::uint64_t> mismatches;  // triangles on which this lane differs from the exact one
 
   double rate() const { return static_cast<double>(triangles) / seconds; }  // triangles a second
-  std::string by() const { return executor + (data == "resident" ? ", resident" : ""); }
+  std::string by() const { return data == "host" ? executor : executor + ", " + data; }
 };
 
 struct BenchMachine {
   int cores = 0;
   std::vector<std::string> devices;
-  double copy_bytes_per_second = 0, to_device_bytes_per_second = 0;  // of the first device
+  // Of the first device.
+  double copy_bytes_per_second = 0, to_device_bytes_per_second = 0;
+  cuda::KernelNeeds exact_query;
 };
 
 struct Bench {

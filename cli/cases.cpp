@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/signature.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/campaign_scene.h"
@@ -69,6 +70,35 @@ std::string written_note(const corpus::Entry& entry, const oracle::Truth& stored
   const bool alike = written->verdict == stored.verdict && written->contact == stored.contact &&
                      sign(written->margin) == sign(stored.margin);
   return alike ? "" : fmt::format("as written: {}; as stored in float32: {}", words(*written), words(stored));
+}
+
+std::vector<std::pair<std::string, Verdict>> stored_verdicts_of(const corpus::Entry& entry,
+                                                                const std::vector<fuzz::LaneLeftOut>& left_out,
+                                                                Verdict truth) {
+  const std::string* text = corpus::field(entry, "signature");
+  const std::optional<analysis::Signature> signature = text ? analysis::parse_signature(*text) : std::nullopt;
+  std::vector<std::pair<std::string, Verdict>> stored;
+  if (!signature || truth == Verdict::declined) return stored;
+  for (const fuzz::LaneLeftOut& row : left_out) {
+    const std::optional<LaneName> lane = parse_lane_name(row.id);
+    if (!lane || lane->subject != signature->subject || find_lane(row.id)) continue;
+    const char mark = signature->mark_of(lane->within_subject());
+    // A minimised case may be that of some lanes only.
+    if (mark == analysis::mark(truth, truth) && !corpus::text_of(entry, "kind").empty()) continue;
+    for (int v = 0; v <= static_cast<int>(Verdict::unstable); ++v) {
+      const auto verdict = static_cast<Verdict>(v);
+      if (analysis::mark(verdict, truth) == mark) stored.emplace_back(row.id, verdict);
+    }
+  }
+  return stored;
+}
+
+std::string stored_verdicts(const corpus::Entry& entry, const std::vector<fuzz::LaneLeftOut>& left_out, Verdict truth) {
+  std::string words;
+  for (const auto& [lane, verdict] : stored_verdicts_of(entry, left_out, truth))
+    words += fmt::format("{}{} {}{}", words.empty() ? "stored by the campaign: " : ", ", lane, name(verdict),
+                         is_wrong(verdict, truth) ? " !" : "");
+  return words;
 }
 
 CLI::Option* add_exact_input(CLI::App& command, bool& exact_input) {

@@ -5,9 +5,11 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "corpus/pair_format.h"
+#include "fuzz/selected_lanes.h"
 #include "oracle/truth.h"
 
 namespace graze::cli {
@@ -20,6 +22,15 @@ std::vector<corpus::Entry> read_cases(const std::string& name);
 // "as written: disjoint, 1e-11 apart; as stored in float32: they share an area", if rounding to float32 changes the
 // truth of the entry; otherwise empty.
 std::string written_note(const corpus::Entry& entry, const oracle::Truth& stored);
+
+// The verdicts that the entry's campaign stored of lanes of foreign code that are left out now. None without a
+// signature of their subject.
+std::vector<std::pair<std::string, Verdict>> stored_verdicts_of(const corpus::Entry& entry,
+                                                                const std::vector<fuzz::LaneLeftOut>& left_out,
+                                                                Verdict truth);
+
+// The same as a line: "stored by the campaign: mine/f32/cpu disjoint !". Empty if there are none.
+std::string stored_verdicts(const corpus::Entry& entry, const std::vector<fuzz::LaneLeftOut>& left_out, Verdict truth);
 
 // Adds --exact-input to a verb that reads pairs.
 CLI::Option* add_exact_input(CLI::App& command, bool& exact_input);

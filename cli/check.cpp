@@ -45,7 +45,7 @@ void check(const CheckOptions& options) {
   for (; const auto entry = reader.next(); ++number_of_pair) {
     if (options.exact_input) expect_exact_input(name_of_input, *entry);
     const oracle::Truth t = oracle::truth(entry->pair);
-    const std::string note = written_note(*entry, t);
+    const std::string note = written_note(*entry, t), stored = stored_verdicts(*entry, under_test.left_out, t.verdict);
     const std::vector<Verdict> verdicts = options.truth_only ? std::vector<Verdict>() : decide(under_test, entry->pair);
     wrong = wrong || (!verdicts.empty() &&
                       some_is_wrong(analysis::excused(under_test.lanes, verdicts, entry->pair, t), t.verdict));
@@ -59,6 +59,8 @@ void check(const CheckOptions& options) {
                                      {"lanes", nlohmann::ordered_json::object()}};
       for (std::size_t l = 0; l < verdicts.size(); ++l) line["lanes"][under_test.lanes[l]->id] = name(verdicts[l]);
       if (!evidence.empty()) line["cuda"] = evidence;
+      fuzz::add_left_out(line, under_test);
+      if (!stored.empty()) line["stored"] = stored;
       if (!note.empty()) line["note"] = note;
       fmt::print("{}\n", line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     } else {
@@ -67,7 +69,8 @@ void check(const CheckOptions& options) {
       std::fflush(stdout);
       reports::print_pair(std::cout, entry->pair, t, under_test.lanes, verdicts, output_screen());
       if (!evidence.empty()) std::cout << reports::wrapped("CUDA lanes: " + evidence, output_screen().columns, 2, 4);
-      if (!note.empty()) std::cout << reports::wrapped(note, output_screen().columns, 2, 4);
+      for (const std::string& text : {stored, note})
+        if (!text.empty()) std::cout << reports::wrapped(text, output_screen().columns, 2, 4);
       std::cout.flush();
     }
   }
@@ -83,6 +86,7 @@ void add_check(CLI::App& app, int&) {
   auto options = std::make_shared<CheckOptions>();
   command->add_option("FILE", options->file, "File of pairs, 18 numbers per line; - is standard input")->required();
   add_lane_options(*command, options->lanes);
+  add_resubject_option(*command, options->lanes);
   add_exact_input(*command, options->exact_input);
   command->add_flag("--json", options->json, "Print one JSON object per line, one line per pair");
   command->add_flag("--truth-only", options->truth_only, "Print the truth alone; run no lane")

@@ -27,6 +27,7 @@ struct LaneOptions {
   std::vector<std::string> subjects;  // NAME=WHAT
   std::vector<std::string> flags;     // for the compiler
   double timeout = 1;
+  bool resubject = false;  // run a campaign's subjects although their code has changed
   fuzz::Executor executor = fuzz::Executor::automatic;
 };
 enum class Executors { chosen, twins };
@@ -35,24 +36,39 @@ void add_lane_options(CLI::App& command, LaneOptions& options, Executors executo
 // Of these options, adds only those about subjects.
 void add_subject_options(CLI::App& command, LaneOptions& options);
 
+// Adds --resubject to a verb that reads campaigns and runs their subjects again.
+void add_resubject_option(CLI::App& command, LaneOptions& options);
+
 // Opens the subjects.   Throws: as subjects::open.
 void open_subjects(const LaneOptions& options);
+
+// The names of the subjects, and patterns with "NAME/*" added for each: for verbs whose default is not every lane.
+std::vector<std::string> subject_names(const LaneOptions& options);
+std::vector<std::string> with_subjects(std::vector<std::string> globs, const LaneOptions& options);
+
+// " --subject NAME=WHAT --flags=…", with which a command of ours can be run again; empty unless the subject is open.
+std::string subject_words(const std::string& subject);
+
+// Throws: UsageError if no lane of a subject is among these, so that no verb drops it. where: the option or argument.
+void expect_subjects_among(const LaneOptions& options, const std::vector<std::string>& ids, const char* where);
 
 // The spec that a campaign recorded. `name` is its directory or one of its case files; for other names an empty object.
 fuzz::Json recorded_spec_of(const std::filesystem::path& name);
 
-// Opens the subjects of that spec.
+// Opens the subjects of that spec.   resubject: also code that has changed.
 // Throws: as subjects::open_recorded.
-void open_subjects_of(const std::filesystem::path& name);
+void open_subjects_of(const std::filesystem::path& name, bool resubject = false);
 
 // Opens the subjects, including those recorded for `about`, then selects the lanes. Reports on standard error which
-// requested lanes do not run here, and why.
+// requested lanes do not run here, and why. Lanes of recorded code that has changed are among these.
 // Throws: as subjects::open, fuzz::select_lanes and fuzz::expect_each_runs.
 fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesystem::path& about = {},
                                    bool require_device = false);
 
 // Throws: UsageError unless the name is that of a published lane without a policy.
 const Lane& published_lane(const std::string& id);
+// The same, or a lane of a subject that is open.
+const Lane& named_lane(const std::string& id);
 
 // The pairs of a campaign: strata are drawn again, meshes read again.
 struct CampaignPairs {
@@ -72,8 +88,14 @@ void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out);
 // Adds an option for patterns, separated by commas in one argument.
 CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::string>& globs, const char* description);
 
+// Writes the report of the campaign, as `graze report DIR` does, and prints nothing.   Throws: as it.
+void write_report(const std::string& directory);
+
 // Adds --scene to a verb that draws pairs.
 void add_scene_option(CLI::App& command, std::string& file);
+
+// Measures the mesh and writes its scene to the file, as `graze scene MESH --out FILE` does.   Throws: as it.
+void write_scene_of(const std::string& mesh, const std::string& out);
 
 // Prints the sentences of `graze scene --sufficient RATE`: the cheapest published host lane that is wrong on at most
 // this share of the scene's pairs, what `exact` costs, and the strata that the scene leaves out.   Throws: as drawn.

@@ -86,7 +86,7 @@ void expect_same_code(const std::vector<std::string>& names) {
 
 void add(const CorpusOptions& options) {
   expect_same_code(options.names);
-  for (const std::string& name : options.names) open_subjects_of(name);
+  for (const std::string& name : options.names) open_subjects_of(name, options.lanes.resubject);
   const fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
   const fuzz::DecideLanes by_bench = decide_by(under_test);
   const Json build = fuzz::build_info(under_test);
@@ -194,6 +194,7 @@ void add_corpus(CLI::App& app, int& status) {
       ->default_str("all");
   add_exact_input(*command, options->exact_input);
   add_lane_options(*command, options->lanes);
+  add_resubject_option(*command, options->lanes);
   command->callback([options] { add(*options); });
 
   command = add_verb(*corpus, "list", "List the cases: state, count, name, signature, first and last failure",

@@ -2,8 +2,10 @@
 // `graze discrepancy`: by how much the values behind the verdicts of two lanes differ.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
+#include "backends/backends.h"
 #include "cli/commands.h"
 #include "cli/results.h"
 #include "cli/screen.h"
@@ -41,6 +43,7 @@ struct DiscrepancyOptions {
 struct Comparisons {
   std::vector<analysis::LanesCompared> values;
   std::vector<analysis::TwoDeciders> verdicts;
+  fuzz::SelectedLanes of_subjects;  // without named lanes: those of --subject, and those that do not run
 };
 
 // The function that runs a lane of a user's code here.   Throws: UsageError if there is none.
@@ -50,8 +53,35 @@ DecideBlock on_host(const Lane& lane) {
   return selected.on_host.at(0);
 }
 
-// The pairs of lanes that the user named; by default `cpu` with both CUDA builds, for each algorithm and scalar.
+// The first lane of each subject and scalar with every other.   Throws: UsageError for a subject with one lane.
+Comparisons comparisons_of_subjects(const LaneOptions& options) {
+  Comparisons comparisons;
+  for (const std::string& name : subject_names(options)) {
+    const std::size_t before = comparisons.verdicts.size();
+    fuzz::SelectedLanes found = fuzz::select_lanes({name + "/*"}, options.executor);
+    for (std::size_t l = 0; l < found.lanes.size(); ++l) {
+      const Lane& lane = *found.lanes[l];
+      const auto first = std::find_if(found.lanes.begin(), found.lanes.end(),
+                                      [&](const Lane* other) { return other->scalar == lane.scalar; });
+      if (*first != &lane) comparisons.verdicts.push_back({{*first, &lane}, {(*first)->decide, lane.decide}});
+    }
+    if (comparisons.verdicts.size() == before)
+      throw UsageError(
+          fmt::format("--subject {0}: only {1} of it runs here; name the lanes to compare, such as {1} {2}", name,
+                      found.lanes.front()->id, backends::exact_beside(*found.lanes.front()).id));
+    say_left_out(found.left_out);
+    auto& [lanes, on_host, device, asked, left_out] = comparisons.of_subjects;
+    asked.insert(asked.end(), found.asked.begin(), found.asked.end());
+    left_out.insert(left_out.end(), found.left_out.begin(), found.left_out.end());
+  }
+  return comparisons;
+}
+
+// The pairs of lanes that the user named; by default those of the subjects or, without any, `cpu` with both CUDA builds
+// for each algorithm and scalar.
 Comparisons comparisons_of(const DiscrepancyOptions& options) {
+  if (options.lanes.empty() && !options.subjects.subjects.empty()) return comparisons_of_subjects(options.subjects);
+  expect_subjects_among(options.subjects, options.lanes, "LANE LANE");
   Comparisons comparisons;
   std::vector<analysis::LanesCompared>& lanes = comparisons.values;
   std::set<std::set<const Lane*>> named;
@@ -116,12 +146,11 @@ int compare(const std::vector<std::string>& names) {
   return 0;
 }
 
-int discrepancy(const DiscrepancyOptions& options) {
+int discrepancy(DiscrepancyOptions options) {
+  options.subjects.executor = options.executor == kTwin ? fuzz::Executor::twin : fuzz::Executor::automatic;
   if (!options.compare.empty()) return compare(options.compare);
-  LaneOptions own_code = options.subjects;
-  own_code.executor = options.executor == kTwin ? fuzz::Executor::twin : fuzz::Executor::automatic;
-  open_subjects(own_code);
-  if (!options.campaign.empty()) open_subjects_of(options.campaign);
+  open_subjects(options.subjects);
+  if (!options.campaign.empty()) open_subjects_of(options.campaign, options.subjects.resubject);
   const Comparisons comparisons = comparisons_of(options);
   analysis::DiscrepancySpec spec;
   spec.lanes = comparisons.values;
@@ -183,6 +212,7 @@ int discrepancy(const DiscrepancyOptions& options) {
     csv += reports::verdicts_csv(of);
   }
   if (!verdicts.empty()) json["verdicts"] = verdicts;
+  fuzz::add_left_out(json, comparisons.of_subjects);
   std::vector<std::string> foreign;
   for (const analysis::TwoDeciders& deciders : comparisons.verdicts) {
     for (const Lane* lane : deciders.lanes) foreign.push_back(lane->id);
@@ -210,8 +240,8 @@ void add_discrepancy(CLI::App& app, int& status) {
       ->add_option(
           "lanes", options->lanes,
           "Lanes to compare, two by two; of your own code, only verdicts, and of cuda-nofma with cuda-fma of a CUDA "
-          "source also the operands of its comparisons (default: cpu with cuda-fma and with cuda-nofma, of all "
-          "algorithms)")
+          "source also the operands of its comparisons (default: the first lane of --subject with its others, else "
+          "cpu with cuda-fma and with cuda-nofma, of all algorithms)")
       ->option_text("LANE LANE");
   command
       ->add_option("--compare", options->compare,
@@ -220,6 +250,7 @@ void add_discrepancy(CLI::App& app, int& status) {
       ->excludes("lanes")
       ->option_text("DIR DIR");
   add_subject_options(*command, options->subjects);
+  add_resubject_option(*command, options->subjects);
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
   command

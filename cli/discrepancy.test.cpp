@@ -162,6 +162,26 @@ bool meet(const float a[9], const float b[9]) { return crosses(a, b) && crosses(
 }
 
 // Of a CUDA source also the operands of comparisons. This one compares in two lines, and only the first has products.
+// The example in subjects/examples is the lane interval_overlap, unless the x87 keeps what a store would round.
+TEST_F(DiscrepancyCommand, TheThesissAlgorithmDiffersOnTheX87) {
+#ifndef __x86_64__
+  GTEST_SKIP() << "this processor has no x87";
+#endif
+  const auto differs = [&](const std::string& flags, const std::string& with) -> std::uint64_t {
+    const Ran ran = shell("graze discrepancy x87/f32/cpu interval_overlap/f32/" + with +
+                          " --executor twin --strata thesis --pairs 20k --out x --subject x87=" GRAZE_SOURCE_DIR
+                          "/subjects/examples/interval_overlap.cpp --flags='-I" GRAZE_SOURCE_DIR +
+                          flags + "'");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    return nlohmann::json::parse(contents(shell.folder / "x/discrepancy.json"))["verdicts"][0]["total"]["differs"];
+  };
+  EXPECT_EQ(differs("", "cpu"), 0u);
+  EXPECT_EQ(differs(" -mfpmath=387 -ffloat-store", "cpu"), 0u);
+  const std::uint64_t fused = differs("", "cuda-fma"), x87 = differs(" -mfpmath=387", "cuda-fma");
+  EXPECT_GT(fused, 0u);
+  EXPECT_GT(x87, fused);
+}
+
 TEST_F(DiscrepancyCommand, ComparesTheOperandsOfYourOwnCudaSource) {
   std::ofstream(shell.folder / "mine.cu") << R"(
 __device__ bool meet(const float a[9], const float b[9]) {

@@ -82,7 +82,9 @@ void print_row(Format format, const corpus::Entry& entry) {
 
 void dump(const DumpOptions& options) {
   fuzz::SelectedLanes under_test;
-  if (!options.lanes.globs.empty()) under_test = selected_lanes(options.lanes);
+  LaneOptions lanes = options.lanes;
+  if (lanes.globs.empty()) lanes.globs = with_subjects({}, lanes);
+  if (!lanes.globs.empty()) under_test = selected_lanes(lanes, options.name);
   const CampaignPairs dumped = drawn_for(options);
   print_header(options.format, under_test.lanes);
   for (const strata::PairSource& source : dumped.sources) {
@@ -187,12 +189,15 @@ void add_dump(CLI::App& app, int&) {
       ->transform(whole_number(1, kMostWhole))
       ->option_text("N");
   add_lane_options(*command, options->lanes);
-  command->get_option("--lanes")->description("Patterns of the lanes whose verdicts are added")->default_str("none");
-  for (const char* of_lanes : {"--executor", "--subject"}) command->get_option(of_lanes)->needs("--lanes");
+  command->get_option("--lanes")
+      ->description("Patterns of the lanes whose verdicts are added")
+      ->default_str("those of --subject");
+  add_resubject_option(*command, options->lanes);
   add_globs(*command, "--values", options->values,
             "Two lanes of one algorithm and scalar: write every value that their comparisons see, and the exact ones")
       ->option_text("LANE,LANE")
       ->excludes("--lanes")
+      ->excludes("--subject")
       ->excludes("--format");
   command->callback([options] { options->values.empty() ? dump(*options) : dump_values(*options); });
 }

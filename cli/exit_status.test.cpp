@@ -16,7 +16,9 @@ constexpr const char* kMoller = " --lanes moller_1997/f32/cpu ";
 
 const std::vector<Verb>& verbs() {
   static const std::vector<Verb> all = {
+      {"try", "mine.c --pairs 60 --out t", "none.c --out x"},
       {"fuzz", "--pairs 60 --strata near_edge_edge --lanes 'moller_1997/f32/cpu' --out c", "--mesh none.off --out x"},
+      {"pack", "c", "none"},
       {"merge", "s1 s2 --out merged", "none --out x"},
       {"status", "s1 s2", "broken"},
       {"plan", "--pairs 1000 --lanes moller_1997/f32/cpu", "--pairs 1000 --scene none.toml"},

@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 class ExplainCommand : public CommandTest {};
 
 TEST_F(ExplainCommand, SaysWhyInOneSentenceAnAlgorithm) {
-  const Ran ran = shell("graze explain coplanar_rounded:1:3 --lanes '*/f32/cuda-*fma'");
+  const Ran ran = shell("graze explain coplanar_rounded:1:3 --all --lanes '*/f32/cuda-*fma'");
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_NE(ran.out.find("cause: contraction"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("interval_overlap/f32 (cuda-fma) says disjoint, but"), std::string::npos) << ran.out;
@@ -71,6 +71,44 @@ TEST_F(ExplainCommand, SaysWhenThereIsNothingToExplain) {
   const Ran nan = shell("echo 'nan 0 0 4 0 0 0 4 0  1 1 0 1 2 4 2 1 4' > nan.pairs; graze explain nan.pairs");
   EXPECT_EQ(nan.status, 0);
   EXPECT_NE(nan.out.find("not finite"), std::string::npos);
+}
+
+// However many cases and lanes, the conclusions come first, within 40 lines.
+TEST_F(ExplainCommand, PrintsAtMost40LinesUnlessAllAreAsked) {
+  expect_done(
+      "graze fuzz --pairs 3000 --strata coplanar_rounded,lattice --out c > /dev/null && cat c/cases/*.pairs | "
+      "grep -v '^graze-pairs' | head -n 30 > some.pairs");
+  for (const std::string of : {"some.pairs", "coplanar_rounded:1:3", "uniform:1:1"}) {
+    const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
+    const std::string some = shell("graze explain " + of).out, all = shell("graze explain " + of + " --all").out;
+    EXPECT_LE(lines(some), 40) << some;
+    EXPECT_TRUE(some.starts_with(all.substr(0, all.find('\n', all.find('\n') + 1)))) << some;
+    EXPECT_EQ(some.find("--all explains") != std::string::npos, lines(all) > 40) << some;
+    if (of == "some.pairs") {
+      EXPECT_GT(lines(all), 1000);
+    }
+  }
+  // Other cases' conclusions come before the details of the first.
+  const std::string of_one = shell("graze explain some.pairs --lanes 'projected_sat/f32/cpu'").out;
+  EXPECT_LE(std::count(of_one.begin(), of_one.end(), '\n'), 40) << of_one;
+  const std::size_t second = of_one.find("\nsome.pairs:");
+  EXPECT_NE(second, std::string::npos) << of_one;
+  EXPECT_LT(second, of_one.find("a[0]")) << of_one;
+}
+
+TEST_F(ExplainCommand, FailuresOfACampaignFit40LinesToo) {
+  expect_done("graze fuzz --pairs 3000 --strata coplanar_rounded,lattice --lanes '*/f32/cpu' --out c > /dev/null");
+  const std::string some = shell("graze failures c").out, all = shell("graze failures c --all").out;
+  const auto kinds = [](const std::string& text) {
+    int count = text.starts_with("kind-1  ");
+    for (std::size_t at = 0; (at = text.find("\nkind-", at)) != text.npos; ++at) ++count;
+    return count;
+  };
+  EXPECT_LE(std::count(some.begin(), some.end(), '\n'), 40) << some;
+  EXPECT_GE(kinds(some), 3) << some;
+  EXPECT_GT(kinds(all), kinds(some));
+  EXPECT_NE(some.find("and " + std::to_string(kinds(all) - kinds(some)) + " rarer kinds"), std::string::npos) << some;
+  EXPECT_NE(all.find("lanes audited"), std::string::npos);
 }
 
 TEST_F(ExplainCommand, WrongUseGetsOneLine) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <map>
 
 #include "cli/commands.h"
@@ -43,7 +44,8 @@ std::string shares(const Json& counts, std::size_t most) {
   return text + (rows.size() > most ? fmt::format(", {} more", rows.size() - most) : "");
 }
 
-void print(const Json& kind, std::size_t number, const reports::Screen& screen) {
+// A kind: its title and sentence, then how often it occurs and its simplest case; with `all`, where it occurs too.
+std::string kind_text(const Json& kind, std::size_t number, bool all, const reports::Screen& screen) {
   const auto line = [&](int indent, const std::string& text) {
     return reports::wrapped(text, screen.columns, indent, indent + 2);
   };
@@ -51,23 +53,22 @@ void print(const Json& kind, std::size_t number, const reports::Screen& screen) 
   const std::string title =
       fmt::format("kind-{}  {}: {}{}, {} pairs", number, subject, kind["cause"].get<std::string>(),
                   where.empty() ? "" : " at " + where, kind["shape"].get<std::string>());
-  fmt::print("{}", reports::bold(screen, line(0, title)));
-  fmt::print("{}",
-             line(2, fmt::format("{} of {}; wrong: {}", reports::counted(kind["pairs"].get<std::uint64_t>(), "pair"),
-                                 reports::counted(kind["signatures"].get<std::uint64_t>(), "signature"),
-                                 lanes_within(kind["lanes"], subject))));
-  const std::uint64_t settled = kind["settled"][0], of = kind["settled"][1];
-  if (settled < of)
-    fmt::print("{}", line(2, fmt::format("the cause is settled for {} of {} lanes looked at", settled, of)));
-  fmt::print("{}", line(2, "margins: " + shares(kind["margins"], 4)));
-  if (!kind["strata"].empty()) fmt::print("{}", line(2, "strata of the kept pairs: " + shares(kind["strata"], 4)));
-  fmt::print(
-      "{}", line(2, fmt::format("simplest: {}, worst: {} ({:.4g} ulps)", file, kind["worst"]["from"].get<std::string>(),
-                                kind["worst"]["margin_ulps"].get<double>())));
-  for (const Json& text : kind["simplest"]["sentences"]) {
-    fmt::print("{}", line(2, text.get<std::string>()));
+  std::string text = reports::bold(screen, line(0, title));
+  for (const Json& sentence : kind["simplest"]["sentences"]) {
+    text += line(2, sentence.get<std::string>());
     break;
   }
+  text += line(
+      2, fmt::format("{} of {}; wrong: {}; simplest: {}", reports::counted(kind["pairs"].get<std::uint64_t>(), "pair"),
+                     reports::counted(kind["signatures"].get<std::uint64_t>(), "signature"),
+                     lanes_within(kind["lanes"], subject), file));
+  if (!all) return text;
+  const std::uint64_t settled = kind["settled"][0], of = kind["settled"][1];
+  if (settled < of) text += line(2, fmt::format("the cause is settled for {} of {} lanes looked at", settled, of));
+  text += line(2, "margins: " + shares(kind["margins"], 4));
+  if (!kind["strata"].empty()) text += line(2, "strata of the kept pairs: " + shares(kind["strata"], 4));
+  return text + line(2, fmt::format("worst: {} ({:.4g} ulps)", kind["worst"]["from"].get<std::string>(),
+                                    kind["worst"]["margin_ulps"].get<double>()));
 }
 
 // For each cause, prints how many of the examined lanes passed the audit (analysis/audit.h).
@@ -99,24 +100,33 @@ int kinds_of(const std::string& directory, bool json, bool all) {
     return 0;
   }
   if (summary["signatures"].empty()) fmt::print("no failures\n");
-  const std::size_t shown = all ? kinds.size() : std::min(kinds.size(), fuzz::kMostShown);
+  constexpr int kLinesAtTheEnd = 5;
+  LimitedText limited(all ? std::numeric_limits<int>::max() : kMostLines - kLinesAtTheEnd);
   double told = 0, sum = 0;
+  std::size_t shown = 0;
   for (std::size_t i = 0; i < kinds.size(); ++i) {
-    if (i < shown) print(kinds.at(i), i + 1, screen);
-    sum += kinds.at(i).at("pairs").get<double>();
-    told += i < shown ? kinds.at(i).at("pairs").get<double>() : 0;
+    const double pairs = kinds.at(i).at("pairs").get<double>();
+    sum += pairs;
+    if (!limited.add(kind_text(kinds.at(i), i + 1, all, screen))) continue;
+    told += pairs;
+    ++shown;
   }
+  fmt::print("{}", limited.text());
   if (shown < kinds.size())
-    fmt::print("{}", reports::wrapped(fmt::format("and {} rarer kinds with {:.1f} % of the pairs; --all lists them",
-                                                  kinds.size() - shown, 100 * (1 - told / sum)),
-                                      screen.columns));
+    fmt::print("{}",
+               reports::wrapped(fmt::format("and {} rarer kinds with {:.1f} % of the pairs; --all lists them, and "
+                                            "where each kind occurs",
+                                            kinds.size() - shown, 100 * (1 - told / sum)),
+                                screen.columns));
   if (const std::size_t without = fuzz::signatures_without_kind(summary, kinds); without > 0)
     fmt::print("{}", reports::wrapped(fmt::format("{} of {} signatures belong to no kind: their lanes were not looked "
                                                   "at, run on a device alone, or did not fail again",
                                                   without, summary["signatures"].size()),
                                       screen.columns));
-  if (!kinds.empty()) fmt::print("\n");
-  print_audit(kinds, screen);
+  if (!kinds.empty() && all) {
+    fmt::print("\n");
+    print_audit(kinds, screen);
+  }
   return 0;
 }
 
@@ -129,7 +139,7 @@ void add_failures(CLI::App& app, int& status) {
   auto json = std::make_shared<bool>(false), all = std::make_shared<bool>(false);
   command->add_option("DIR", *directory, "Campaign directory, best after `graze minimize`")->required();
   command->add_flag("--json", *json, "Print one JSON object per line, described in docs/formats.md");
-  command->add_flag("--all", *all, "List rare kinds too");
+  command->add_flag("--all", *all, "List all kinds, where each occurs, and how many causes are settled");
   command->callback([directory, json, all, &status] { status = kinds_of(*directory, *json, *all); });
 }
 

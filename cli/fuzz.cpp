@@ -17,6 +17,7 @@
 #include "analysis/signature.h"
 #include "cli/campaign_end.h"
 #include "cli/commands.h"
+#include "cli/fuzz.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/results.h"
@@ -42,23 +43,6 @@ using fuzz::Json;
 namespace {
 
 constexpr std::size_t kMostShrunk = 8;  // signatures that are minimised to find a subject's smallest case
-
-struct FuzzOptions {
-  std::uint64_t pairs = 1'000'000;
-  std::uint64_t seed = 1;
-  int threads = 0;
-  std::string out = "campaign", scene;
-  std::vector<std::string> strata, mesh;
-  LaneOptions lanes;
-  fuzz::EngineChoice engine = fuzz::EngineChoice::automatic;
-  bool by_exact_lane = false;
-  bool json = false;
-  bool require_device = false;
-  bool discard_damaged = false;
-  std::optional<std::uint64_t> fail_above;
-  fuzz::Shard shard;
-  std::string scratch;
-};
 
 // Further parts of the live line, shown if there is room.
 std::vector<std::string> details(const fuzz::Progress& progress, const std::vector<strata::PairSource>& sources) {
@@ -94,10 +78,9 @@ std::pair<Pair, std::filesystem::path> smallest_case(const std::filesystem::path
   };
   for (const auto& [simplicity, file] : kept) {
     const std::vector<corpus::Entry> entries = corpus::read_pairs(file);
-    const std::vector<fuzz::MinimisedCase> results = fuzz::minimise_cases(under_test, entries);
+    const std::vector<fuzz::MinimisedCase> results = fuzz::minimise_file(under_test, file, entries);
     if (results.empty()) take(entries[0].pair, file);
     for (const fuzz::MinimisedCase& result : results) take(result.result.pair, file);
-    if (!results.empty()) fuzz::write_whole(file, fuzz::with_results(fuzz::read_whole(file), entries, results));
   }
   return smallest;
 }
@@ -141,8 +124,16 @@ int on_ranks(const FuzzOptions& options, fuzz::Campaign& campaign, const std::ve
   return complete ? 0 : kInterrupted;
 }
 
-int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
-  const fuzz::SelectedLanes under_test = selected_lanes(options.lanes, {}, options.require_device);
+}  // namespace
+
+fuzz::SelectedLanes lanes_of_campaign(const FuzzOptions& options) {
+  LaneOptions lanes = options.lanes;
+  if (!lanes.subjects.empty()) lanes.globs = fuzz::with_exact_lane(std::move(lanes.globs));
+  return selected_lanes(lanes, {}, options.require_device);
+}
+
+fuzz::Campaign campaign_of(const FuzzOptions& options, const fuzz::SelectedLanes& under_test,
+                           std::vector<strata::LeftOut>& left_out) {
   fuzz::Campaign campaign;
   campaign.seed = options.seed;
   campaign.under_test = &under_test;
@@ -151,10 +142,10 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
   campaign.shard = options.shard;
   if (!options.scratch.empty()) campaign.scratch = fuzz::scratch_of(options.scratch, options.out);
   Json scene_spec;
-  std::vector<strata::LeftOut> left_out;
   if (!options.scene.empty()) {
     strata::SceneSources drawn =
         drawn_from_scene(options.scene, options.seed, options.pairs, options.strata, scene_spec);
+    for (const std::string& note : drawn.notes) fmt::print(stderr, "graze: {}\n", note);
     campaign.sources = std::move(drawn.sources);
     left_out = std::move(drawn.left_out);
   } else if (options.mesh.empty() ||
@@ -178,12 +169,33 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
       !subjects.is_null())
     campaign.spec["subjects"] = subjects;
   campaign.build = fuzz::build_info(under_test);
-  expect_campaign_folder(options.out);
-
-  const std::atomic<bool>& interrupted = catch_interrupts();
-  const bool on_terminal = isatty(STDERR_FILENO);
   campaign.engines = fuzz::choose_engines(campaign, options.engine);
   if (options.by_exact_lane) campaign.exact = find_lane("exact/f32/cpu")->decide;
+  return campaign;
+}
+
+fuzz::Outcome run_with_progress(const fuzz::Campaign& campaign) {
+  const bool on_terminal = isatty(STDERR_FILENO);
+  std::optional<Progress> live;
+  fuzz::Outcome outcome = fuzz::run_campaign(campaign, catch_interrupts(), [&](const fuzz::Progress& progress) {
+    if (!on_terminal) return;
+    if (!live) live.emplace("pairs", progress.total, on_terminal, error_screen());
+    const auto line =
+        live->line(progress.done, progress.seconds, progress.seconds_left, details(progress, campaign.sources));
+    if (line) fmt::print(stderr, "{}", *line);
+  });
+  if (live) fmt::print(stderr, "{}", live->end());
+  return outcome;
+}
+
+namespace {
+
+int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
+  const fuzz::SelectedLanes under_test = lanes_of_campaign(options);
+  std::vector<strata::LeftOut> left_out;
+  fuzz::Campaign campaign = campaign_of(options, under_test, left_out);
+  expect_campaign_folder(options.out);
+  catch_interrupts();
   if (options.discard_damaged) {
     if (!campaign.scratch.empty()) fuzz::fetch_from_directory(campaign);
     if (const auto kept = fuzz::discard_damaged(fuzz::store_spec(campaign)))
@@ -192,16 +204,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
                  kept->damaged.string());
   }
   if (ranks) return on_ranks(options, campaign, left_out, *ranks);
-  const reports::Screen errors = error_screen();
-  std::optional<Progress> live;
-  const fuzz::Outcome outcome = fuzz::run_campaign(campaign, interrupted, [&](const fuzz::Progress& progress) {
-    if (!on_terminal) return;
-    if (!live) live.emplace("pairs", progress.total, on_terminal, errors);
-    const auto line =
-        live->line(progress.done, progress.seconds, progress.seconds_left, details(progress, campaign.sources));
-    if (line) fmt::print(stderr, "{}", *line);
-  });
-  if (live) fmt::print(stderr, "{}", live->end());
+  const fuzz::Outcome outcome = run_with_progress(campaign);
   if (!outcome.complete) {
     if (campaign.shard.whole())
       fuzz::write_whole(campaign.directory / "margins.svg", reports::margin_figure(outcome.summary));

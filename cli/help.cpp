@@ -13,8 +13,8 @@
 namespace graze::cli {
 namespace {
 
-constexpr int kWithoutTerminal = 100;  // columns; files and pipes get the same text everywhere
-constexpr int kNarrow = 64;            // columns; below this, a description starts on its own line
+constexpr int kWithoutTerminal = 80;  // columns; files and pipes get the same text everywhere
+constexpr int kNarrow = 64;           // columns; below this, a description starts on its own line
 
 int columns_of_help() { return isatty(STDOUT_FILENO) ? output_screen().columns : kWithoutTerminal; }
 

@@ -73,6 +73,13 @@ TEST_F(Inputs, WrongWordsAreNamedWithWhatIsNearest) {
   expect_error("echo | graze check - --truth-only --lanes '*'", 2, {"--lanes"});
 }
 
+TEST_F(Inputs, UnknownOptionsAreNamedWithWhatIsNearest) {
+  expect_error("graze fuzz --lane 'moller*'", 2, {"--lane", "did you mean '--lanes'"});
+  expect_error("graze fuzz --pairs 10 --stratum=uniform --out x", 2, {"--stratum", "did you mean '--strata'"});
+  expect_error("graze corpus add p --corpu r", 2, {"--corpu", "did you mean '--corpus'"});
+  expect_error("graze fuzz --quite-another-thing", 2, {"--quite-another-thing", "graze fuzz --help"});
+}
+
 TEST_F(Inputs, CountsAreWhatPeopleWrite) {
   for (const char* count : {"2000", "2_000", "2e3", "2k", "0.2e4", "0.002M"}) {
     const Ran ran =
@@ -132,7 +139,7 @@ TEST_F(Inputs, PastedPairsAreReadByEveryVerb) {
   for (const auto& [name, text] : pasted) {
     std::ofstream(shell.folder / name) << text;
     for (const std::string verb : {"check", "repro", "explain"}) {
-      const Ran ran = shell("graze " + verb + ' ' + name);
+      const Ran ran = shell("graze " + verb + (verb == "explain" ? " --all " : " ") + name);
       EXPECT_NE(ran.out.find("truth: intersects, contact point"), std::string::npos) << verb << name << ran.err;
     }
     const std::string file = name;

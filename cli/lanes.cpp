@@ -19,7 +19,7 @@ void print_lanes(bool json, const std::vector<std::string>& globs) {
   std::set<std::string> twins;
   const AlgorithmInfo* last = nullptr;
   const reports::Screen screen = output_screen();
-  for (const std::string& glob : globs) add_policy_lanes(glob);
+  fuzz::expect_each_matches(globs);
   for (const Lane& lane : lanes()) {
     if (!matches_any(globs, lane.id)) continue;
     const std::string here = fuzz::status(lane, device.get(), why_no_device);
@@ -77,6 +77,11 @@ void add_lanes(CLI::App& app, int&) {
   command->get_option("--lanes")->description("Patterns of the lanes to list");
   command->callback([json, lanes] {
     open_subjects(*lanes);
+    std::vector<std::string> ids;
+    for (const Lane& lane : graze::lanes()) {
+      if (matches_any(lanes->globs, lane.id)) ids.push_back(lane.id);
+    }
+    expect_subjects_among(*lanes, ids, "--lanes");
     print_lanes(*json, lanes->globs);
   });
 }

@@ -133,8 +133,9 @@ int league(const LeagueOptions& options) {
     fmt::print(stderr, "graze: interrupted; wrote nothing\n");
     return kInterrupted;
   }
-  const fuzz::Json json = reports::league_json(found, subjects, fuzz::league_costs(found), fuzz::machine_name(),
-                                               fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))));
+  fuzz::Json json = reports::league_json(found, subjects, fuzz::league_costs(found), fuzz::machine_name(),
+                                         fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))));
+  fuzz::add_left_out(json, lanes);
   std::string command = fmt::format("graze league --subjects {} --pairs {} --seed {}", path_word(options.subjects),
                                     options.pairs, options.seed);
   if (!options.scene.empty()) command += " --scene " + path_word(options.scene);

@@ -44,6 +44,29 @@ void expect_verb(const CLI::App& app, const std::string& word) {
                                              "'; `graze --help` lists them" + graze::did_you_mean(word, verbs));
 }
 
+// "; did you mean '--lanes'?" for the first option that the verb does not have; empty if none is near.
+std::string option_meant(const CLI::App& app, int argc, char** argv) {
+  const auto verb_of = [](const CLI::App& of, const std::string& name) {
+    const auto found = of.get_subcommands([&](const CLI::App* verb) { return verb->get_name() == name; });
+    return found.empty() ? nullptr : found.front();
+  };
+  const CLI::App* verb = argc > 1 ? verb_of(app, argv[1]) : nullptr;
+  for (int a = 2; verb && a < argc; ++a) {
+    if (const CLI::App* inner = verb_of(*verb, argv[a])) {
+      verb = inner;
+      continue;
+    }
+    const std::string_view word = argv[a], name = word.substr(0, word.find('='));
+    if (!name.starts_with("--")) continue;
+    std::vector<std::string> options;
+    for (const CLI::Option* option : verb->get_options()) {
+      for (const std::string& of_option : option->get_lnames()) options.push_back("--" + of_option);
+    }
+    if (std::find(options.begin(), options.end(), name) == options.end()) return graze::did_you_mean(name, options);
+  }
+  return "";
+}
+
 // Prints one line, even if the quoted names and texts contain control characters.
 int fail(std::string what, int status) {
   for (char& c : what) c = static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? ' ' : c;
@@ -80,9 +103,10 @@ int main(int argc, char** argv) {
     app.exit(help);
     return std::cout.flush() ? 0 : 1;
   } catch (const CLI::ParseError& error) {
-    return fail(fmt::format("{}; see `graze{} --help`", error.what(),
-                            argc > 1 && *argv[1] != '-' ? std::string(" ") + argv[1] : ""),
-                2);
+    return fail(
+        fmt::format("{}; see `graze{} --help`{}", error.what(),
+                    argc > 1 && *argv[1] != '-' ? std::string(" ") + argv[1] : "", option_meant(app, argc, argv)),
+        2);
   } catch (const graze::Stopped&) {
     return fail("interrupted", graze::cli::kInterrupted);
   } catch (const graze::UsageError& error) {

@@ -137,6 +137,7 @@ void add_map(CLI::App& app, int&) {
   command->add_option("CASE", options->name, "File of pairs, whose first pair is drawn, or STRATUM:SEED:INDEX")
       ->required();
   add_lane_options(*command, options->lanes, Executors::twins);
+  add_resubject_option(*command, options->lanes);
   command
       ->add_option("--out", options->out,
                    "Picture with a panel for the truth and one per lane, or a directory for one picture per panel")

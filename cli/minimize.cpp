@@ -163,10 +163,8 @@ Done minimize_file(const fuzz::SelectedLanes& under_test, const Json& spec, cons
   const fs::path file = fuzz::case_file(directory, row);
   const std::vector<corpus::Entry> entries = fuzz::checked_cases(under_test, spec, directory, row);
   if (!again && has_result(under_test, entries)) return {true, fuzz::nontrivial_magnitudes(entries.front().pair), 0};
-  const std::vector<fuzz::MinimisedCase> results = fuzz::minimise_cases(under_test, entries);
+  const std::vector<fuzz::MinimisedCase> results = fuzz::minimise_file(under_test, file, entries);
   if (results.empty()) return {};
-  const std::string text = fuzz::read_whole(file), after = fuzz::with_results(text, entries, results);
-  if (after != text) fuzz::write_whole(file, after);
   const auto cases =
       std::count_if(entries.begin(), entries.end(), [](const corpus::Entry& e) { return !corpus::field(e, "kind"); });
   const double seconds = seconds_since(start);
@@ -201,16 +199,19 @@ int minimize_directory(MinimizeOptions options) {
   const fs::path directory = options.name;
   if (!options.out.empty()) throw UsageError("--out is for cases alone; the results of a campaign go into its cases/");
   if (options.exact_input) throw UsageError("--exact-input is for cases alone; a campaign's pairs are stored exactly");
+  if (options.lanes.resubject)
+    throw UsageError("--resubject is for cases alone; a campaign's results must come from the code that it ran");
   const bool whole = options.shard.whole();
   // Reads the summary before the lock is taken, because reading the database of a killed run takes the lock itself.
   const std::string text = fuzz::read_whole(directory / "summary.json");
   const Json summary = fuzz::checked_summary(directory);
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
-  fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
+  open_subjects(options.lanes);
   if (!subjects::open_recorded(summary["spec"]).empty())
     throw UsageError(
         cannot("minimise", options.name,
                "the campaign ran other code than this, and its results must come from that code; leave out --subject"));
+  fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
   const auto ran = summary["spec"]["lanes"].get<std::set<std::string>>();
   leave_out(under_test, [&](const Lane& lane) { return ran.contains(lane.id) ? "" : "the campaign did not run it"; });
   const fuzz::FolderLock held(directory,
@@ -316,6 +317,7 @@ void add_minimize(CLI::App& app, int& status) {
       "Part of a campaign's signatures to minimise: the K-th of N. When all parts are done, run without it");
   add_lane_options(*command, options->lanes);
   command->get_option("--lanes")->default_str("those of the campaign, else all");
+  add_resubject_option(*command, options->lanes);
   command->callback([options, &status] {
     if (!fs::is_directory(options->name)) {
       if (!options->shard.whole())

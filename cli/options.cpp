@@ -11,8 +11,6 @@
 #include "cli/shard_option.h"
 #include "core/error.h"
 #include "core/text.h"
-#include "fuzz/campaign/checked_summary.h"
-#include "subjects/subjects.h"
 
 namespace graze::cli {
 
@@ -137,92 +135,6 @@ CLI::Validator not_empty() {
                         "");
 }
 
-void add_subject_options(CLI::App& command, LaneOptions& options) {
-  CLI::Option* subject =
-      command
-          .add_option(
-              "--subject", options.subjects,
-              "Your own code, as lanes NAME/…. WHAT is a shared object or a C, C++ or CUDA source with :FUNCTION, or "
-              "cmd:COMMAND; see docs/your_own_code.md. May be repeated")
-          ->allow_extra_args(false)
-          ->option_text("NAME=WHAT");
-  command
-      .add_option("--flags", options.flags,
-                  "Compiler flags for subjects that are sources, such as --flags='-O3 -Iinclude'")
-      ->needs(subject)
-      ->allow_extra_args(false)
-      ->option_text("TEXT");
-  command.add_option("--subject-timeout", options.timeout, "Time limit of a subject for one pair, in seconds")
-      ->needs(subject)
-      ->check(number(0.001, 86400.0))
-      ->capture_default_str()
-      ->option_text("SECONDS");
-}
-
-void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors) {
-  add_globs(command, "--lanes", options.globs, "Patterns of the lanes to run");
-  add_subject_options(command, options);
-  if (executors == Executors::twins) {
-    options.executor = fuzz::Executor::twin;
-    return;
-  }
-  static_assert(static_cast<int>(fuzz::Executor::automatic) == 0 && static_cast<int>(fuzz::Executor::device) == 1 &&
-                static_cast<int>(fuzz::Executor::twin) == 2 && static_cast<int>(fuzz::Executor::both) == 3);
-  command
-      .add_option("--executor", options.executor,
-                  "Executor of the CUDA lanes. auto: the device if there is one, else its twin; both: device and twin, "
-                  "compared")
-      ->transform(one_of({"auto", "device", "twin", "both"}, Chosen::place))
-      ->option_text("auto|device|twin|both")
-      ->default_str("auto");
-}
-
-fuzz::Json recorded_spec_of(const std::filesystem::path& name) {
-  for (const std::filesystem::path& directory : {name, name.parent_path().parent_path()}) {
-    if (!std::filesystem::is_regular_file(directory / "summary.json")) continue;
-    if (const fuzz::Json spec = fuzz::recorded_spec(directory); spec.is_object()) return spec;
-  }
-  return fuzz::Json::object();
-}
-
-void open_subjects_of(const std::filesystem::path& name) {
-  for (const std::string& line : subjects::open_recorded(recorded_spec_of(name)))
-    fmt::print(stderr, "graze: {}\n", printable(line));
-}
-
-void open_subjects(const LaneOptions& options) {
-  if (options.subjects.empty()) return;
-  std::string why_not;
-  const bool on_device = options.executor != fuzz::Executor::twin && cuda::open_device(why_not);
-  for (const std::string& text : options.subjects) {
-    subjects::Wanted wanted = subjects::parse_subject(text);
-    for (const std::string& flags : options.flags) {
-      std::istringstream words(flags);
-      for (std::string word; words >> word;) wanted.flags.push_back(word);
-    }
-    wanted.timeout = options.timeout;
-    subjects::open(wanted, on_device);
-  }
-}
-
-fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesystem::path& about,
-                                   bool require_device) {
-  open_subjects(options);
-  if (!about.empty()) open_subjects_of(about);
-  fuzz::SelectedLanes under_test = fuzz::select_lanes(options.globs, options.executor, require_device);
-  fuzz::expect_each_runs(under_test);
-  for (const std::string& text : options.subjects) {
-    const std::string subject = subjects::parse_subject(text).name + '/';
-    const auto is_of = [&](const std::string& lane) { return lane.starts_with(subject); };
-    if (std::none_of(under_test.lanes.begin(), under_test.lanes.end(), [&](auto* lane) { return is_of(lane->id); }) &&
-        std::none_of(under_test.left_out.begin(), under_test.left_out.end(), [&](auto& row) { return is_of(row.id); }))
-      throw UsageError(fmt::format("--subject {0}: --lanes has no lane of it; add '{0}/*' there",
-                                   subject.substr(0, subject.size() - 1)));
-  }
-  say_left_out(under_test.left_out);
-  return under_test;
-}
-
 const Lane& published_lane(const std::string& id) {
   const Lane* lane = find_lane(id);
   if (lane && lane->algorithm >= 0) return *lane;
@@ -230,10 +142,6 @@ const Lane& published_lane(const std::string& id) {
   for (const Lane& row : published_lanes()) ids.push_back(row.id);
   throw UsageError("there is no published lane '" + printable(id) + "'; `graze lanes` lists them" +
                    did_you_mean(id, ids));
-}
-
-void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out) {
-  for (const std::string& line : fuzz::left_out_in_words(left_out)) fmt::print(stderr, "graze: {}\n", line);
 }
 
 std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const Pair& pair) {

@@ -91,6 +91,28 @@ INSTANTIATE_TEST_SUITE_P(cli, Emitted, testing::ValuesIn(kCodes),
 
 class OwnCodeTest : public CommandTest {};
 
+TEST_F(OwnCodeTest, TheExactLaneRunsBesideItUnlessALaneOptionLeavesItOut) {
+  std::ofstream(shell.folder / "own.c") << "int intersects(const float a[9], const float b[9]) { return 1; }\n";
+  const std::string graze = "export XDG_CACHE_HOME=$PWD/cache; graze ",
+                    fuzz = graze + "fuzz --subject own=./own.c --pairs 40 --strata uniform --json ";
+  const auto lanes_of = [&](const std::string& options) {
+    const Ran ran = shell(fuzz + options);
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    return nlohmann::json::parse(ran.out)["spec"]["lanes"].get<std::vector<std::string>>();
+  };
+  using Lanes = std::vector<std::string>;
+  EXPECT_EQ(lanes_of("--out a --lanes own/f32/cpu"), (Lanes{"exact/f32/cpu", "own/f32/cpu"}));
+  EXPECT_EQ(lanes_of("--out b --lanes 'own/f32/cpu,!exact/*'"), Lanes{"own/f32/cpu"});
+  EXPECT_EQ(lanes_of("--out c --lanes 'own/f32/cpu*,!*fast,!*fma'"), (Lanes{"exact/f32/cpu", "own/f32/cpu"}));
+  expect_error(fuzz + "--out d --lanes 'own/*,!exakt/*'", 2, {"exakt/*"});
+  // The command that a shard's message has leaves it out as well.
+  expect_done(fuzz + "--out s1 --lanes 'own/f32/cpu,!exact/*' --shard 1/2");
+  const Ran gap = shell(graze + "merge s1 --out m");
+  const std::size_t at = gap.err.find("graze fuzz ");
+  ASSERT_NE(at, std::string::npos) << gap.err;
+  EXPECT_NE(gap.err.find("!exact/f32/cpu"), std::string::npos) << gap.err;
+}
+
 // Code that hangs, and code that crashes.
 TEST_F(OwnCodeTest, FailuresAreEmittedToo) {
   for (const char* does : {"for (;;) pause();", "abort();"}) {
@@ -203,12 +225,13 @@ TEST_F(OwnCodeTest, LanesThatDoNotRunAreNamedEverywhere) {
   const std::string lanes = " --lanes 'moller_1997/f32/c*' ";
   const Ran ran = shell("graze fuzz --executor twin --pairs 200 --strata uniform --out c" + lanes);
   ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_EQ(ran.err, "graze: left out (no twin): moller_1997/f32/cuda-fast\n");
+  EXPECT_EQ(ran.err, "graze: left out (no twin; a CUDA device runs it): moller_1997/f32/cuda-fast\n");
   EXPECT_NE(contents(shell.folder / "c/summary.json").find(R"("moller_1997/f32/cuda-fast": "no twin")"),
             std::string::npos);
   expect_done("graze report c");
   for (const char* file : {"c/report.json", "c/report.html"})
-    EXPECT_NE(contents(shell.folder / file).find("did not run: left out (no twin): moller_1997/f32/cuda-fast."),
+    EXPECT_NE(contents(shell.folder / file)
+                  .find("did not run: left out (no twin; a CUDA device runs it): moller_1997/f32/cuda-fast."),
               std::string::npos)
         << file;
   shell("echo '" + std::string(kPair) + "' > p");
@@ -296,7 +319,7 @@ TEST_F(OwnCodeTest, EveryVerbTakesWhatMisbehaves) {
     EXPECT_NE(contents(shell.folder / name / "report.json").find(way.cause), std::string::npos);
     const std::string found =
         "$(grep -l '" + name + ":" + std::string(way.mark) + "' " + name + "/cases/*.pairs | head -n 1)";
-    const Ran explained = shell("graze explain " + found);
+    const Ran explained = shell("graze explain --all " + found);
     EXPECT_NE(explained.out.find(std::string("cause: ") + way.cause + "\n"), std::string::npos)
         << explained.out << explained.err;
     expect_done("graze repro " + found);

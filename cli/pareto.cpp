@@ -14,6 +14,8 @@
 #include "fuzz/minimise/minimise.h"
 #include "fuzz/sealed.h"
 #include "reports/pareto.h"
+#include "reports/recorded_code.h"
+#include "subjects/subjects.h"
 
 namespace graze::cli {
 namespace {
@@ -21,7 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kPairsInCache = 256, kPairsFromMemory = std::size_t{1} << 19;  // 18 kB, 38 MB
-constexpr std::size_t kPairsOnDevice = std::size_t{1} << 22;                         // 302 MB
+// Of which none must be wrong to show that a lane errs on at most 0.1 %.
+constexpr std::uint64_t kFewestAtAnExtreme = 4000;
+constexpr std::size_t kPairsOnDevice = std::size_t{1} << 22;  // 302 MB
 
 struct ParetoOptions {
   LaneOptions lanes;
@@ -38,10 +42,11 @@ struct Measured {
   analysis::Sweep sweep;
 };
 
-// Why the lane's time cannot be measured: the time of a twin or a process is not the time of the code.
-std::string why_not_timed(const Lane& lane, bool device) {
-  if (device) return backends::backend_of(lane).has_device ? "" : "--device times only CUDA lanes";
-  return lane.decide ? "" : "only --device times CUDA lanes";
+// Why the lane is left out: the time of a twin is not the time of the code. A user's code is judged even without a
+// time.
+std::string why_left_out(const Lane& lane, bool device) {
+  if (!device) return lane.foreign ? "" : analysis::why_not_timed(lane);
+  return backends::backend_of(lane).has_device ? "" : "--device times only CUDA lanes of published algorithms";
 }
 
 Measured measured(const ParetoOptions& options, const fuzz::SelectedLanes& under_test) {
@@ -55,7 +60,7 @@ Measured measured(const ParetoOptions& options, const fuzz::SelectedLanes& under
   if (options.device) {
     result.sweep = analysis::device_sweep([=](const std::string& id) { return *lane_of(id); });
   } else {
-    result.sweep = analysis::host_sweep([=](const std::string& id) { return lane_of(id)->decide; });
+    result.sweep = analysis::host_sweep([=](const std::string& id) { return analysis::decider_of(*lane_of(id)); });
   }
   return result;
 }
@@ -74,7 +79,7 @@ analysis::Pareto offers_of(const ParetoOptions& options, const Measured& measure
                            const std::vector<strata::PairSource>& sources) {
   analysis::Pareto pareto{fuzz::machine_name(), options.device, 0, {}, {}};
   for (const analysis::PolicyErrors& errors : measured.sweep(measured.ids, sources)) {
-    pareto.offers.push_back({errors.policy, errors, {}, {}});
+    pareto.offers.push_back({errors.policy, errors});
     pareto.offers.back().failure = smallest_failure(*measured.lanes[pareto.offers.size() - 1], errors, sources);
   }
   if (options.device) {
@@ -88,16 +93,20 @@ analysis::Pareto offers_of(const ParetoOptions& options, const Measured& measure
       pareto.offers[l].needs = costs.of[l].needs;
     }
   } else {
-    std::vector<DecideBlock> timed;
-    for (const Lane* lane : measured.lanes) timed.push_back(lane->decide);
-    const auto in_cache = analysis::costs_of(timed, analysis::first_pairs(sources, kPairsInCache), 201);
-    const auto from_memory = analysis::costs_of(timed, analysis::first_pairs(sources, kPairsFromMemory), 3);
-    const auto alone =
-        analysis::costs_of(timed, analysis::first_pairs(sources, kPairsInCache), 201, analysis::Calls::of_one);
-    for (std::size_t l = 0; l < timed.size(); ++l) {
-      pareto.offers[l].alone = alone[l];
-      pareto.offers[l].near = in_cache[l];
-      pareto.offers[l].far = from_memory[l];
+    const auto costs = [&](std::size_t pairs, int passes, analysis::Calls calls = analysis::Calls::of_blocks) {
+      return analysis::costs_of(measured.lanes, analysis::first_pairs(sources, pairs), passes, calls);
+    };
+    const auto in_cache = costs(kPairsInCache, 201), from_memory = costs(kPairsFromMemory, 3),
+               alone = costs(kPairsInCache, 201, analysis::Calls::of_one);
+    for (std::size_t l = 0; l < measured.lanes.size(); ++l) {
+      analysis::Offer& offer = pareto.offers[l];
+      offer.why_not_timed = analysis::why_not_timed(*measured.lanes[l]);
+      if (offer.why_not_timed.empty() && !(in_cache[l] && from_memory[l]))
+        offer.why_not_timed = "it failed on some of the pairs";
+      if (!offer.why_not_timed.empty()) continue;
+      offer.near = in_cache[l];
+      offer.far = from_memory[l];
+      offer.alone = alone[l];
     }
   }
   analysis::mark_dominated(pareto.offers);
@@ -109,19 +118,20 @@ int pareto(ParetoOptions options) {
     options.lanes.globs = {"*/cuda-fma", "exact/f32/cuda", "moller_1997/*/cuda-fma/paper",
                            "guigue_devillers_2003/*/cuda-fma/filtered"};
   } else if (options.lanes.globs.empty()) {
-    options.lanes.globs = {"*/cpu", "exact/f32/cpu", "moller_1997/*/cpu/paper", "guigue_devillers_2003/*/cpu/filtered"};
+    options.lanes.globs = with_subjects(
+        {"*/cpu", "exact/f32/cpu", "moller_1997/*/cpu/paper", "guigue_devillers_2003/*/cpu/filtered"}, options.lanes);
   }
   options.lanes.executor = options.device ? fuzz::Executor::device : fuzz::Executor::twin;
   if (std::string why_not; options.device && !cuda::open_device(why_not))
     throw std::runtime_error("--device needs a CUDA device: " + why_not);
   fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
-  say_left_out(leave_out(under_test, [&](const Lane& lane) { return why_not_timed(lane, options.device); }));
+  say_left_out(leave_out(under_test, [&](const Lane& lane) { return why_left_out(lane, options.device); }));
   const Measured lanes = measured(options, under_test);
   const strata::SceneSources all = drawn(options.scene, options.seed, options.pairs, options.strata);
   const ResultFolder folder(options.out, "pareto.json");
   analysis::Pareto pareto = offers_of(options, lanes, all.sources);
-  const auto some =
-      drawn(options.scene, options.seed, std::max<std::uint64_t>(options.pairs / 50, 1000), options.strata).sources;
+  const std::uint64_t at_each = std::max(options.pairs / 10, std::min(options.pairs, kFewestAtAnExtreme));
+  const auto some = drawn(options.scene, options.seed, at_each, options.strata).sources;
   for (const analysis::Extreme extreme : analysis::kExtremes) {
     const std::size_t first = pareto.curves.size();
     for (const std::string& id : lanes.ids) pareto.curves.push_back({id, extreme, {}});
@@ -143,9 +153,11 @@ int pareto(ParetoOptions options) {
   }
   for (const std::string& sentence : reports::pareto_sentences(pareto))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
+  fmt::print("{}", reports::extremes_text(pareto, screen));
   fmt::print("{}", left_out_text(all.left_out));
   nlohmann::ordered_json json = {{"pairs", pareto.offers.front().errors.pairs}, {"seed", options.seed}};
   fuzz::add_left_out(json, under_test);
+  if (const fuzz::Json code = subjects::record(lanes.ids); !code.is_null()) json["subjects"] = reports::code_json(code);
   json.update(reports::pareto_json(pareto));
   std::vector<Result> results = {{"pareto.json", fuzz::sealed(json).dump(1) + "\n"},
                                  {"front.svg", reports::pareto_figure(pareto)}};
@@ -165,13 +177,16 @@ void add_pareto(CLI::App& app, int& status) {
   command->footer("Example: graze pareto --strata 'near_*' --pairs 20k");
   const auto options = std::make_shared<ParetoOptions>();
   add_globs(*command, "--lanes", options->lanes.globs, "Patterns of the lanes to run");
-  command->get_option("--lanes")->default_str("common CPU lanes, or CUDA lanes with --device");
+  command->get_option("--lanes")->default_str("common CPU lanes and those of --subject; with --device CUDA lanes");
+  add_subject_options(*command, options->lanes);
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
   add_count(*command, "--pairs", options->pairs, 1000, kMostWhole, "Number of pairs on which errors are counted");
   add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of the pairs");
-  command->add_flag("--device", options->device,
-                    "Measure the CUDA lanes on the first device, with pairs in its memory and with copies");
+  command
+      ->add_flag("--device", options->device,
+                 "Measure the CUDA lanes on the first device, with pairs in its memory and with copies")
+      ->excludes("--subject");
   command->add_option("--out", options->out, "Folder for pareto.json and the pictures")
       ->check(not_empty())
       ->capture_default_str()

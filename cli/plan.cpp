@@ -57,17 +57,17 @@ int plan(const PlanOptions& options) {
   const std::uint64_t workers = given.count;
   const fuzz::Plan found = fuzz::plan(campaign, sample, given);
   if (options.json) {
-    std::cout << Json{{"pairs", found.pairs},
-                      {gpu ? "gpus" : "cores", workers},
-                      {"rate", found.rate},
-                      {"measured", options.rate == 0},
-                      {"seconds", found.seconds},
-                      {"shards", found.shards},
-                      {"shard_seconds", found.shard_seconds},
-                      {"shard_bytes", found.shard_bytes},
-                      {"merged_bytes", found.merged_bytes}}
-                     .dump(1)
-              << '\n';
+    Json json = {{"pairs", found.pairs},
+                 {gpu ? "gpus" : "cores", workers},
+                 {"rate", found.rate},
+                 {"measured", options.rate == 0},
+                 {"seconds", found.seconds},
+                 {"shards", found.shards},
+                 {"shard_seconds", found.shard_seconds},
+                 {"shard_bytes", found.shard_bytes},
+                 {"merged_bytes", found.merged_bytes}};
+    fuzz::add_left_out(json, under_test);
+    std::cout << json.dump(1) << '\n';
     return 0;
   }
   const char* worker = gpu ? "GPU" : "core";

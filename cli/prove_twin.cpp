@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/results.h"
+#include "core/error.h"
 #include "cuda/twin/prove.h"
 #include "fuzz/campaign/result_files.h"
 #include "reports/terminal.h"
@@ -24,7 +25,11 @@ cuda::ProofRecord record_of(const cuda::ProofOptions& options, const LaneOptions
     return named.build->twin.empty() || !matches_any(options.lanes, named.lane);
   });
   if (lanes.subjects.empty()) return cuda::prove_twin(options);
-  if (builds.empty()) throw std::runtime_error("none of the subjects is a CUDA source with a twin");
+  if (builds.empty()) throw UsageError("none of the subjects is a CUDA source with a twin");
+  for (const std::string& name : subject_names(lanes)) {
+    if (std::none_of(builds.begin(), builds.end(), [&](auto& named) { return named.lane.starts_with(name + '/'); }))
+      throw UsageError(fmt::format("--subject {}: it is no CUDA source with a twin that --lanes selects", name));
+  }
   if (out.empty())
     out = subjects::proof_file(subjects::opened(parse_lane_name(builds[0].lane)->subject)->file).string();
   return cuda::prove_subjects(builds, options);

@@ -41,7 +41,8 @@ struct QueryOptions {
   std::vector<std::string> files;
   std::string self;
   bool any = false, all = false, json = false;
-  std::vector<std::string> lanes, executors;
+  LaneOptions lanes;
+  std::vector<std::string> executors;
   std::string obj, pairs, mismatches;
 };
 
@@ -50,36 +51,10 @@ struct Run {
   std::string lane, executor;
   query::Answer answer;
   std::vector<std::uint8_t> bytes;
+  std::uint64_t failed = 0;  // pairs on which a user's code crashed, timed out or was unstable
 };
 
 std::string name_of(int executor) { return kExecutors.at(static_cast<std::size_t>(executor)); }
-
-// The lanes that match the patterns; `exact` is the exact lane on any executor.
-std::vector<std::string> lanes_of(const std::vector<std::string>& globs) {
-  if (globs.empty()) return {"exact"};
-  std::vector<std::string> ids;
-  std::vector<fuzz::LaneLeftOut> left_out;
-  for (const std::string& glob : globs) {
-    if (glob == "exact") {
-      ids.push_back(glob);
-      continue;
-    }
-    add_policy_lanes(glob);
-    const std::size_t before = ids.size() + left_out.size();
-    for (const Lane& lane : graze::lanes()) {
-      if (!matches_any({glob}, lane.id) || std::find(ids.begin(), ids.end(), lane.id) != ids.end()) continue;
-      const std::string why_not = graze_devices() > 0 ? "" : backends::why_not_on_host(lane);
-      if (!why_not.empty() && glob == lane.id)
-        throw UsageError(fmt::format("cannot run {} here: {}", lane.id, why_not));
-      why_not.empty() ? ids.push_back(lane.id) : left_out.push_back({lane.id, why_not});
-    }
-    if (ids.size() + left_out.size() == before)
-      throw UsageError("no lane matches '" + printable(glob) + "'; `graze lanes` lists them");
-  }
-  say_left_out(left_out);
-  if (ids.empty()) throw UsageError("none of these lanes runs here");
-  return ids;
-}
 
 struct Told {
   const std::atomic<bool>& interrupted;
@@ -99,7 +74,6 @@ int tell(void* user, std::uint64_t done, std::uint64_t triangles) {
 // The triangles on which some run differs from the first one, with the verdict of each run.
 std::vector<corpus::Entry> mismatches_of(const std::vector<Run>& runs, const std::vector<query::Triangle>& references,
                                          const std::vector<query::Triangle>& triangles, std::uint64_t& count) {
-  constexpr const char* kWords[] = {"disjoint", "intersects", "declined"};
   std::vector<corpus::Entry> entries;
   for (std::size_t p = 0; p < runs[0].bytes.size(); ++p) {
     if (std::all_of(runs.begin(), runs.end(), [&](const Run& run) { return run.bytes[p] == runs[0].bytes[p]; }))
@@ -111,7 +85,7 @@ std::vector<corpus::Entry> mismatches_of(const std::vector<Run>& runs, const std
     for (const Run& run : runs) {
       std::string key = "said_by_" + run.lane + (run.executor == "auto" ? "" : "_" + run.executor);
       for (char& c : key) c = std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.' ? c : '_';
-      entry.fields.push_back({key, kWords[run.bytes[p]]});
+      entry.fields.push_back({key, std::string(name(static_cast<Verdict>(run.bytes[p])))});
     }
     entries.push_back(std::move(entry));
   }
@@ -148,12 +122,32 @@ std::string evidence_of(const Run& run) {
   return lane && on_cores ? backends::backend_of(*lane).evidence(*lane) : "";
 }
 
+// A query counts failures of a user's code as declined; this tells them apart.
+void find_failures(Run& run, const std::vector<query::Triangle>& references,
+                   const std::vector<query::Triangle>& triangles) {
+  const Lane* lane = find_lane(run.lane);
+  if (!lane || !lane->foreign) return;
+  for (std::size_t p = 0; p < run.bytes.size(); ++p) {
+    if (run.bytes[p] != static_cast<std::uint8_t>(Verdict::declined)) continue;
+    const Pair pair = pair_of(references[p / triangles.size()], triangles[p % triangles.size()]);
+    if (!is_finite(pair)) continue;
+    const Verdict verdict = decide_one(lane->decide, pair);
+    run.bytes[p] = static_cast<std::uint8_t>(verdict);
+    run.failed += is_failure(verdict);
+  }
+}
+
 Json json_of(const Run& run) {
   Json first = nullptr;
   if (run.answer.hits > 0) first = run.answer.first;
-  Json json = {{"triangles", run.answer.triangles},       {"hits", run.answer.hits},       {"first", first},
-               {"declined", run.answer.declined},         {"seconds", run.answer.seconds}, {"lane", run.lane},
+  Json json = {{"triangles", run.answer.triangles},
+               {"hits", run.answer.hits},
+               {"first", first},
+               {"declined", run.answer.declined - run.failed},
+               {"seconds", run.answer.seconds},
+               {"lane", run.lane},
                {"executor", name_of(run.answer.executor)}};
+  if (run.failed > 0) json["failed"] = run.failed;
   if (const std::string evidence = evidence_of(run); !evidence.empty()) json["evidence"] = evidence;
   return json;
 }
@@ -197,15 +191,18 @@ std::string words_of(const Run& run, bool any, std::size_t references) {
     text = fmt::format("{} hits among {} triangles and {} references", reports::grouped(answer.hits),
                        reports::grouped(answer.triangles), references);
   if (!any && answer.hits > 0) text += fmt::format(", the first is {}", answer.first);
-  if (answer.declined > 0) text += fmt::format("; {} declined", reports::grouped(answer.declined));
+  if (answer.declined > run.failed)
+    text += fmt::format("; {} declined", reports::grouped(answer.declined - run.failed));
+  if (run.failed > 0) text += fmt::format("; crashed, timed out or was unstable on {}", reports::grouped(run.failed));
   return text + fmt::format(" ({}, {}{})\n", run.lane, name_of(answer.executor),
                             evidence_of(run).empty() ? "" : ", by its twin");
 }
 
-std::vector<Run> runs_of(const QueryOptions& options, const std::vector<query::Triangle>& references,
-                         const std::vector<query::Triangle>& triangles, int& status) {
+std::vector<Run> runs_of(const QueryOptions& options, const QueryLanes& lanes,
+                         const std::vector<query::Triangle>& references, const std::vector<query::Triangle>& triangles,
+                         int& status) {
   std::vector<Run> runs;
-  for (const std::string& lane : lanes_of(options.lanes)) {
+  for (const std::string& lane : lanes.ids) {
     for (const std::string& executor : options.executors) runs.push_back({lane, executor, {}, {}});
   }
   if (runs.size() == 1 && !options.mismatches.empty())
@@ -237,6 +234,7 @@ std::vector<Run> runs_of(const QueryOptions& options, const std::vector<query::T
     }
     if (run.answer.status == GRAZE_BAD_ARGUMENT) throw UsageError(std::string(run.answer.what()));
     if (!run.answer) throw std::runtime_error(std::string(run.answer.what()));
+    find_failures(run, references, triangles);
   }
   return runs;
 }
@@ -255,7 +253,8 @@ void query_mesh(const QueryOptions& options, int& status) {
   }
   const std::vector<query::Triangle> references = read_references(options.files[0]),
                                      triangles = read_mesh(options.files[1]);
-  const std::vector<Run> runs = runs_of(options, references, triangles, status);
+  const QueryLanes lanes = query_lanes(options.lanes, {"exact"});
+  const std::vector<Run> runs = runs_of(options, lanes, references, triangles, status);
   if (runs.empty()) return;
   write_hits(options, runs[0], references, triangles);
   std::uint64_t count = 0;
@@ -273,6 +272,7 @@ void query_mesh(const QueryOptions& options, int& status) {
                                      {"triangles", row.count}});
       for (std::size_t r = 1; r < runs.size(); ++r) json["others"].push_back(json_of(runs[r]));
     }
+    fuzz::add_left_out(json, lanes.under_test);
     fmt::print("{}\n", json.dump());
     return;
   }
@@ -313,8 +313,9 @@ void add_query(CLI::App& app, int& status) {
       ->transform(one_of(kExecutors, Chosen::word))
       ->option_text("auto|one-core|all-cores|one-gpu|all-gpus,…")
       ->default_str("auto");
-  add_globs(*command, "--lanes", options->lanes, "Patterns of the lanes that decide; several are compared")
-      ->default_str("exact");
+  add_globs(*command, "--lanes", options->lanes.globs, "Patterns of the lanes that decide; several are compared")
+      ->default_str("exact, and those of --subject");
+  add_subject_options(*command, options->lanes);
   command->add_flag("--json", options->json, "Print one JSON object");
   command->add_option("--obj", options->obj, "OBJ file for the reference and the hits")
       ->check(not_empty())
@@ -326,9 +327,10 @@ void add_query(CLI::App& app, int& status) {
       ->option_text("FILE");
   command->callback([options, &status] {
     if (options->self.empty()) return query_mesh(*options, status);
-    if (options->any || !options->lanes.empty() || !options->mismatches.empty() ||
-        options->executors != std::vector<std::string>{"auto"})
-      throw UsageError("--self is exact and runs on all cores; leave out --any, --lanes, --executor and --mismatches");
+    if (options->any || !options->lanes.globs.empty() || !options->lanes.subjects.empty() ||
+        !options->mismatches.empty() || options->executors != std::vector<std::string>{"auto"})
+      throw UsageError(
+          "--self is exact and runs on all cores; leave out --any, --lanes, --subject, --executor and --mismatches");
     query_self({options->self, options->json, options->obj, options->pairs});
   });
 }

@@ -7,7 +7,9 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 
+#include "backends/backends.h"
 #include "core/cannot.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -37,6 +39,43 @@ std::vector<query::Triangle> read_numbers(const std::string& file) {
 }
 
 }  // namespace
+
+QueryLanes query_lanes(const LaneOptions& options, const std::vector<std::string>& common) {
+  open_subjects(options);
+  QueryLanes result;
+  fuzz::SelectedLanes& under_test = result.under_test;
+  const auto is_known = [&](const Lane& lane) {
+    return std::find(result.ids.begin(), result.ids.end(), lane.id) != result.ids.end();
+  };
+  std::vector<std::string> unwanted;
+  std::copy_if(options.globs.begin(), options.globs.end(), std::back_inserter(unwanted),
+               [](const std::string& glob) { return glob.starts_with(fuzz::kLeaveOut); });
+  const bool any_wanted = unwanted.size() < options.globs.size();
+  for (const std::string& glob : any_wanted ? options.globs : with_subjects(common, options)) {
+    if (glob.starts_with(fuzz::kLeaveOut)) continue;
+    if (glob == "exact") {
+      result.ids.push_back(glob);
+      continue;
+    }
+    fuzz::expect_each_matches({glob});
+    if (any_wanted) under_test.asked.push_back(glob);
+    for (const Lane& lane : lanes()) {
+      if (!matches_any({glob}, lane.id) || !matches_any(unwanted, lane.id) || is_known(lane)) continue;
+      const bool by_gpu = graze_devices() > 0 && backends::backend_of(lane).has_device;
+      const std::string why_not = by_gpu ? "" : backends::why_not_on_host(lane);
+      if (why_not.empty()) {
+        result.ids.push_back(lane.id);
+        under_test.lanes.push_back(&lane);
+      } else if (any_wanted || lane.foreign) {
+        under_test.left_out.push_back({lane.id, why_not});
+      }
+    }
+  }
+  fuzz::expect_each_runs(under_test);
+  expect_subjects_among(options, result.ids, "--lanes");
+  say_left_out(under_test.left_out);
+  return result;
+}
 
 std::vector<query::Triangle> read_references(const std::string& name) {
   const std::size_t hash = name.rfind('#');

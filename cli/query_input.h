@@ -7,9 +7,20 @@
 
 #include <graze/query.h>
 
+#include "cli/commands.h"
 #include "core/pair.h"
 
 namespace graze::cli {
+
+// The lanes of a query. `exact` is the exact lane on any executor; it is in no table.
+struct QueryLanes {
+  std::vector<std::string> ids;  // of lanes that run on cores, or on GPUs if there are any
+  fuzz::SelectedLanes under_test;
+};
+
+// Opens the subjects. Without patterns selects `common` and the subjects. Says which requested lanes do not run.
+// Throws: UsageError if no lane of a pattern or subject exists, or runs here.
+QueryLanes query_lanes(const LaneOptions& options, const std::vector<std::string>& common);
 
 // Reads a text file with nine numbers for each reference, or MESH#FACE, one triangle of a mesh; faces count from 0.
 // Throws: std::runtime_error that names the file and the line; UsageError if FACE is not a whole number.

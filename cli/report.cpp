@@ -7,6 +7,7 @@
 
 #include <memory>
 
+#include "cli/changed.h"
 #include "cli/commands.h"
 #include "cli/results.h"
 #include "core/cannot.h"
@@ -37,8 +38,8 @@ void say_what_the_page_is() {
     fmt::print("The page is plain: this build had no Node, or no npm packages (see reports/README.md)\n");
 }
 
-// Writes NAME.html, NAME.json, costs.json and tables to the directory.
-void write_report(const fs::path& directory, const Json& report, const char* name) {
+// Writes NAME.html, NAME.json, costs.json and tables to the directory.   Returns: their names, the page first.
+std::vector<std::string> write_report(const fs::path& directory, const Json& report, const char* name) {
   const Json costs = reports::make_costs(directory);
   const std::string html = reports::page(report, costs, reports::make_choices(directory));
   const fuzz::FolderLock alone(directory, fuzz::FolderLock::WhenTaken::refuse);
@@ -51,7 +52,11 @@ void write_report(const fs::path& directory, const Json& report, const char* nam
   if (costs.is_null()) remove_result(directory / "costs.json", R"({"machine": "", "passes": 0})");
   std::vector<std::string> names;
   for (const Result& result : results) names.push_back(result.name);
-  std::swap(names[0], names[1]);  // the page first
+  std::swap(names[0], names[1]);
+  return names;
+}
+
+void say_report(const fs::path& directory, const Json& report, const std::vector<std::string>& names) {
   fmt::print("Wrote {}/{}\n", directory.string(), fmt::join(names, ", "));
   for (const Json& sentence : report["missing"]) fmt::print("{}\n", sentence.get<std::string>());
   say_what_the_page_is();
@@ -102,18 +107,22 @@ void report(const ReportOptions& options) {
     // First, while no foreign code is open: only its counts are needed, and both may use one name for different code.
     const Json before = reports::make_report(options.compare[0]);
     Json after = make_report(options.compare[1]);
-    reports::add_comparison(after, before, fuzz::read_kinds(options.compare[1]), fuzz::read_kinds(options.compare[0]));
-    fmt::print("{}\n", after["compare"]["headline"].get<std::string>());
-    for (const Json& sentence : after["compare"]["differences"]) fmt::print("{}\n", sentence.get<std::string>());
-    write_report(options.compare[1], after, "compare");
+    const Json rows =
+        reports::same_pairs(before, after) ? changed_rows(options.compare[0], options.compare[1]) : Json();
+    reports::add_comparison(after, before, fuzz::read_kinds(options.compare[1]), fuzz::read_kinds(options.compare[0]),
+                            rows);
+    print_comparison(after["compare"]);
+    say_report(options.compare[1], after, write_report(options.compare[1], after, "compare"));
   } else {
     const Json made = make_report(options.directory);
-    write_report(options.directory, made, "report");
+    say_report(options.directory, made, write_report(options.directory, made, "report"));
     if (made["signature_count"] > 0) fmt::print("Next: graze corpus add {}\n", path_word(options.directory));
   }
 }
 
 }  // namespace
+
+void write_report(const std::string& directory) { write_report(directory, make_report(directory), "report"); }
 
 void add_report(CLI::App& app, int&) {
   CLI::App* command =

@@ -10,8 +10,11 @@
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/emit.h"
+#include "cli/repro_pack.h"
 #include "cli/screen.h"
+#include "core/error.h"
 #include "core/text.h"
+#include "fuzz/pack/archive.h"
 #include "oracle/truth.h"
 #include "reports/terminal.h"
 
@@ -45,10 +48,11 @@ bool compare_signatures(const corpus::Entry& entry, const oracle::Truth& t, std:
   const std::string* text = corpus::field(entry, "signature");
   const std::optional<analysis::Signature> recorded = text ? analysis::parse_signature(*text) : std::nullopt;
   const Bucket bucket = oracle::margin_bucket(entry.pair, t.verdict);
+  const Nesting nesting = analysis::nesting_of(entry.pair, t);
   Compared compared = Compared::nothing;
   analysis::for_each_subject(run, [&](std::size_t first, std::size_t count) {
     const analysis::Signature now =
-        analysis::signature(t, bucket, run.subspan(first, count), verdicts.subspan(first, count));
+        analysis::signature(t, nesting, bucket, run.subspan(first, count), verdicts.subspan(first, count));
     const bool is_recorded = recorded && recorded->subject == now.subject;
     if (is_recorded) compared = compare(*recorded, now, run.subspan(first, count));
     if (now.wrong()) {
@@ -64,6 +68,11 @@ bool compare_signatures(const corpus::Entry& entry, const oracle::Truth& t, std:
 }
 
 int repro(const std::string& name, const LaneOptions& lanes, const std::string& emitted) {
+  if (fuzz::is_archive(name)) {
+    if (!lanes.globs.empty() || !lanes.subjects.empty() || !emitted.empty())
+      throw UsageError("graze repro: a pack runs as its campaign did; leave out --lanes, --subject and --emit");
+    return repro_pack(name);
+  }
   const fuzz::SelectedLanes under_test = selected_lanes(lanes, name);
   const std::vector<corpus::Entry> entries = read_cases(name);
   if (!emitted.empty()) {
@@ -81,6 +90,8 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
     std::fflush(stdout);
     reports::print_pair(std::cout, entry.pair, t, under_test.lanes, verdicts, output_screen());
     if (!evidence.empty()) std::cout << reports::wrapped("CUDA lanes: " + evidence, output_screen().columns, 2, 4);
+    if (const std::string stored = stored_verdicts(entry, under_test.left_out, t.verdict); !stored.empty())
+      std::cout << reports::wrapped(stored, output_screen().columns, 2, 4);
     const std::vector<Verdict> counted = analysis::excused(under_test.lanes, verdicts, entry.pair, t);
     if (t.verdict != Verdict::declined) changed = compare_signatures(entry, t, under_test.lanes, counted) || changed;
     wrong = wrong || some_is_wrong(counted, t.verdict);
@@ -94,13 +105,18 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
 
 void add_repro(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "repro", "Run a stored case again, or print it as a program; exit with 1 if a verdict has changed");
+      "repro", "Run a stored case or a pack again, or print a case as a program; exit with 1 if a verdict has changed");
   command->footer("Example: graze repro near_edge_edge:1:42");
   auto name = std::make_shared<std::string>();
   auto lanes = std::make_shared<LaneOptions>();
-  command->add_option("CASE", *name, "File of pairs, such as one of a campaign's cases/, or STRATUM:SEED:INDEX")
+  command
+      ->add_option(
+          "CASE", *name,
+          "File of pairs, such as one of a campaign's cases/; STRATUM:SEED:INDEX; or a file of `graze pack`, whose "
+          "code is built and run here: use packs of people whose code you would run")
       ->required();
   add_lane_options(*command, *lanes);
+  add_resubject_option(*command, *lanes);
   auto emitted = std::make_shared<std::string>();
   command
       ->add_option(

@@ -40,7 +40,8 @@ analysis::SceneSample sample_of_pairs(const std::string& file) {
   return analysis::sample_of(pairs);
 }
 
-void scene(const SceneVerb& options) {
+// Measures, and writes the scene to the file of --out, or to standard output without one.
+analysis::SceneSample write_scene(const SceneVerb& options) {
   for (const std::string& file : options.files) expect_utf8("graze scene", file);
   expect_utf8("--poses", options.poses);
   const bool pairs = fs::path(options.files[0]).extension() == ".pairs";
@@ -78,9 +79,15 @@ void scene(const SceneVerb& options) {
   }
   if (options.out.empty()) {
     std::cout << text;
-    return;
+  } else {
+    write_result(options.out, text, fuzz::NamedBy::user);
   }
-  write_result(options.out, text, fuzz::NamedBy::user);
+  return sample;
+}
+
+void scene(const SceneVerb& options) {
+  const analysis::SceneSample sample = write_scene(options);
+  if (options.out.empty()) return;
   fmt::print("Wrote {}: {} triangles, {} pairs whose boxes overlap.\n", options.out,
              reports::grouped(sample.triangles.size()), reports::grouped(sample.pairs));
   if (options.sufficient > 0) print_sufficient(options.out, options.sufficient);
@@ -88,6 +95,13 @@ void scene(const SceneVerb& options) {
 }
 
 }  // namespace
+
+void write_scene_of(const std::string& mesh, const std::string& out) {
+  SceneVerb options;
+  options.files = {mesh};
+  options.out = out;
+  write_scene(options);
+}
 
 void add_scene(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand(
@@ -143,7 +157,6 @@ strata::SceneSources drawn_from_scene(const std::string& file, std::uint64_t see
   expect_utf8("--scene", file);
   const fuzz::NamedScene scene = fuzz::open_scene(file);
   strata::SceneSources drawn = fuzz::sources_of(scene, seed, pairs, globs);
-  for (const std::string& note : drawn.notes) fmt::print(stderr, "graze: {}\n", note);
   recorded = fuzz::scene_spec(scene, pairs, drawn);
   return drawn;
 }

@@ -91,16 +91,28 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
   // The verbs that use a campaign accept one in a scene.
   expect_done("graze minimize one > minimised && graze failures one > kinds && graze report one > report");
   EXPECT_NE(contents(shell.folder / "one/failures.json").find("@hills.toml#"), std::string::npos);
-  EXPECT_NE(contents(shell.folder / "one/report.json").find("--scene 'hills.toml' --pairs 20000"), std::string::npos);
+  EXPECT_NE(contents(shell.folder / "one/report.json").find("--scene hills.toml --pairs 20000"), std::string::npos);
   const Ran dumped = shell("graze dump one --pairs 40 --format pairs");
   EXPECT_NE(dumped.out.find("scene=" + of), std::string::npos) << dumped.err;
   // With only a comment added, the scene's campaign resumes. Another scene is another campaign, and case names do not
   // match.
   expect_done("sed -i '1i # mine' hills.toml && " + fuzz + "--out one");
   expect_done("sed -i 's/^units.*/units = \"m\"/' hills.toml");
-  expect_error(fuzz + "--out one", 2, {"one"});
+  const Ran other = shell(fuzz + "--out one");
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.err.find("cannot use one: it holds another campaign"), std::string::npos) << other.err;
   expect_error("graze explain '" + id + "@" + of + numbers + "'", 1, {"hills.toml", of});
   EXPECT_EQ(vertices_of(id + "@one" + numbers), vertices);
+}
+
+// A mesh has fewer pairs than its share: how many run, and why, is said.
+TEST_F(SceneVerb, FewerPairsThanAskedForAreExplained) {
+  expect_done("graze scene hills.off --out hills.toml");
+  const Ran ran = shell("graze fuzz --scene hills.toml --pairs 20000 --lanes 'moller_1997/f32/cpu' --out few");
+  const std::uint64_t pairs = json("few/summary.json")["spec"]["pairs"];
+  EXPECT_LT(pairs, 20'000u);
+  EXPECT_TRUE(names(ran.err.substr(0, ran.err.size() - 1), {std::to_string(pairs), "20000", "boxes overlap"}));
+  EXPECT_EQ(shell("graze fuzz --scene hills.toml --pairs 100 --lanes 'moller_1997/f32/cpu' --out all").err, "");
 }
 
 TEST_F(SceneVerb, ThreeLinesAreACampaign) {

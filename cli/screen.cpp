@@ -39,4 +39,13 @@ reports::Screen screen_of(int file_descriptor) {
 reports::Screen output_screen() { return screen_of(STDOUT_FILENO); }
 reports::Screen error_screen() { return screen_of(STDERR_FILENO); }
 
+bool LimitedText::add(const std::string& block) {
+  const int lines = static_cast<int>(std::count(block.begin(), block.end(), '\n'));
+  complete_ = complete_ && lines <= left_;
+  if (!complete_) return false;
+  left_ -= lines;
+  text_ += block;
+  return true;
+}
+
 }  // namespace graze::cli

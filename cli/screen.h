@@ -11,4 +11,24 @@ namespace graze::cli {
 reports::Screen output_screen();
 reports::Screen error_screen();
 
+// The most lines that a verb prints before --all is needed.
+inline constexpr int kMostLines = 40;
+
+// Collects blocks of whole lines up to a limit of lines. Leaves out the first block that does not fit, and all after
+// it.
+class LimitedText {
+ public:
+  explicit LimitedText(int most) : left_(most) {}
+
+  // Returns: whether the block is in the text.
+  bool add(const std::string& block);
+  bool complete() const { return complete_; }
+  const std::string& text() const { return text_; }
+
+ private:
+  int left_;
+  bool complete_ = true;
+  std::string text_;
+};
+
 }  // namespace graze::cli

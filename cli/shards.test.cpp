@@ -47,6 +47,19 @@ TEST_F(Shards, KilledAndResumedInAnyOrderLeaveTheBytesOfTheWhole) {
   expect_same("whole", "all");
 }
 
+// No name of a mesh or scene is taken for an option, or written in another way.
+TEST_F(Shards, AMissingShardOfAFileWhoseNameBeginsWithADashIsRunToo) {
+  std::ofstream(shell.folder / "-m.off") << "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 1 1\n3 0 1 2\n3 1 2 3\n";
+  expect_done("graze scene ./-m.off --out ./-s.toml");
+  for (const std::string of : {"--mesh=-m.off --mesh ./-m.off", "--scene=-s.toml --pairs 200"}) {
+    const std::string fuzz = "graze fuzz " + of + " --lanes 'moller*/f32/cpu' ";
+    for (const char* k : {"1", "3"}) ASSERT_EQ(shell(fuzz + "--shard " + k + "/3 --out q-" + k).status, 0) << of;
+    const std::string missing = command_in(shell("graze merge q-1 q-3 --out all").err, "to run it: ");
+    ASSERT_EQ(shell(missing).status, 0) << missing;
+    expect_done("graze merge q-1 q-3 shard-2 --out all && rm -r q-1 q-3 shard-2 all");
+  }
+}
+
 TEST_F(Shards, WhatIsMissingIsRunByTheCommandThatIsPrinted) {
   const std::string fuzz = "graze fuzz --seed 5 --pairs 900 --strata 'near_*' --lanes 'moller*/f32/cpu' ";
   ASSERT_EQ(shell(fuzz + "--out whole").status, 0);
@@ -57,6 +70,13 @@ TEST_F(Shards, WhatIsMissingIsRunByTheCommandThatIsPrinted) {
   EXPECT_EQ(shell("graze merge p-1 p-3 shard-2 --out all").status, 0);
   expect_same("whole", "all");
   expect_error("graze merge p-1 p-3 shard-2 --out all", 2, {"empty", "--out"});
+  // The place is neither the merge's own nor that of other files; a shard that was begun goes on.
+  const auto place = [&](const std::string& merge) { return command_in(shell(merge).err, "--out "); };
+  EXPECT_EQ(place("graze merge p-1 p-3 --out all-of-it"), "shard-2\n");
+  expect_done("mv shard-2 other && mkdir shard-2 && echo mine > shard-2/notes");
+  EXPECT_EQ(place("graze merge p-1 p-3 --out all-of-it"), "shard-2.1\n");
+  EXPECT_EQ(place("graze merge p-1 p-3 --out shard-2.1"), "shard-2.2\n");
+  expect_done("rm -r shard-2 && mv other shard-2");
 
   // A damaged shard can be merged as well; its rows with a right checksum are kept.
   expect_done(
@@ -230,6 +250,9 @@ TEST_F(Shards, StatusRefusesADamagedStatus) {
                                             {"disagreements", 401, "401 disagreements"},
                                             {"disagreements", 18446744073709551616.0, damaged},
                                             {"signatures", -1, damaged},
+                                            {"signatures", 0, "0 signatures"},
+                                            {"signatures", 9007199254740992, "9007199254740992 signatures"},
+                                            {"disagreements", whole["disagreements"].get<int>() - 1, "disagreements"},
                                             {"state", "unknown", "unknown"},
                                             {"state", nullptr, damaged},
                                             {"shard", "2/1", "2/1"},

@@ -17,6 +17,9 @@
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/rank_stores.h"
 #include "fuzz/campaign/run_status.h"
+#include "fuzz/campaign/store_file.h"
+#include "fuzz/files.h"
+#include "fuzz/sealed.h"
 #include "reports/terminal.h"
 
 namespace graze::cli {
@@ -46,6 +49,27 @@ std::string state_of(const Json& status, std::int64_t silent, std::uint64_t stal
   return silent > static_cast<std::int64_t>(stalled) ? "stalled" : "running";
 }
 
+// Throws: std::runtime_error if the campaign beside the status cannot have so many signatures: at most one for each
+// lane and disagreement, and those of its summary.
+void expect_own_signatures(const fs::path& directory, const Json& status) {
+  std::uint64_t most = status.at("disagreements"), disagreements = most;
+  try {
+    most *= fuzz::recorded_store(directory).lanes.size();
+    if (const fs::path file = directory / "summary.json"; status.at("state") == "done" && fs::exists(file)) {
+      const Json summary = fuzz::parse_shallow(fuzz::read_whole(file));
+      most = summary.at("signatures").size();
+      disagreements = summary.at("disagreements");
+    }
+  } catch (const std::exception&) {  // a damaged database or summary is told by the commands that read it
+  }
+  const std::uint64_t found = status.at("signatures");
+  if (found > most || status.at("disagreements") != disagreements)
+    throw std::runtime_error(cannot(
+        "use", directory / "status.json",
+        fmt::format("it has {} disagreements and {} signatures, but the campaign beside it has {} and at most {}",
+                    status.at("disagreements").get<std::uint64_t>(), found, disagreements, most)));
+}
+
 // known: the signatures, without margins, of the rows so far; this row's are added.
 Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::string>& known) {
   Json row = {{"directory", directory.string()},
@@ -65,6 +89,7 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
           cannot("open", directory / "status.json", "it is missing beside a database (`graze merge` writes none)"));
     return row;
   }
+  if (fuzz::has_database(directory)) expect_own_signatures(directory, status);
   const std::int64_t silent = std::time(nullptr) - status.at("updated").get<std::int64_t>();
   row["state"] = state_of(status, silent, stalled);
   for (const char* field : {"shard", "pairs", "done", "disagreements", "signatures"}) row[field] = status.at(field);

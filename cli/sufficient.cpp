@@ -10,6 +10,8 @@
 #include "backends/backends.h"
 #include "cli/commands.h"
 #include "cli/screen.h"
+#include "fuzz/campaign/campaign.h"
+#include "reports/cost_words.h"
 #include "reports/sufficient.h"
 #include "reports/terminal.h"
 
@@ -18,6 +20,9 @@ namespace graze::cli {
 namespace {
 
 using reports::Candidate;
+
+constexpr std::size_t kTimed = 8192;  // pairs
+constexpr int kPasses = 9;
 
 // Without an error, 3 / rate pairs show a rate; more leave room for some errors.
 std::uint64_t pairs_for(double rate) { return std::max<std::uint64_t>(100'000, std::llround(std::ceil(6 / rate))); }
@@ -55,7 +60,8 @@ void print_sufficient(const std::string& scene, double rate) {
   const Lane& exact = backends::exact_beside(lanes.front());
   std::vector<DecideBlock> timed{exact.decide};
   for (const Lane& lane : lanes) timed.push_back(lane.decide);
-  const std::vector<analysis::Cost> costs = analysis::costs_of(timed, analysis::first_pairs(spec.others, 8192), 9);
+  const std::vector<analysis::Cost> costs =
+      analysis::costs_of(timed, analysis::first_pairs(spec.others, kTimed), kPasses);
   for (std::size_t c = 0; c < candidates.size(); ++c) candidates[c].cost = costs[c + 1];
   const strata::SceneSources last = drawn(scene, 3, pairs, {});
   // The cheapest was chosen among lanes that passed by their errors on these pairs, so others confirm it.
@@ -68,8 +74,11 @@ void print_sufficient(const std::string& scene, double rate) {
     if (chosen.bound <= rate) break;
     chosen.result = analysis::TuneResult::not_confirmed;
   }
-  for (const std::string& sentence : reports::sufficient_sentences(rate, candidates, exact.id, costs[0]))
-    fmt::print("{}", reports::wrapped(sentence, output_screen().columns));
+  std::vector<std::string> sentences = reports::sufficient_sentences(rate, candidates, exact.id, costs[0]);
+  sentences.push_back(reports::costs_sentence(analysis::Calls::of_blocks,
+                                              fmt::format("{} of the scene's pairs", reports::grouped(kTimed)),
+                                              fuzz::machine_name(), kPasses));
+  for (const std::string& sentence : sentences) fmt::print("{}", reports::wrapped(sentence, output_screen().columns));
   fmt::print("{}", left_out_text(last.left_out));
 }
 

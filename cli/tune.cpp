@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 #include <sstream>
 #include <utility>
 
+#include "analysis/epsilon_sweep.h"
 #include "analysis/pareto.h"
 #include "backends/backends.h"
 #include "cli/screen.h"
@@ -18,14 +21,17 @@
 #include "corpus/pair_format.h"
 #include "cuda/lanes/device.h"
 #include "cuda/lanes/device_costs.h"
+#include "fuzz/campaign/campaign.h"
 #include "fuzz/campaign/recorded.h"
-#include "fuzz/counts_json.h"
 #include "fuzz/files.h"
 #include "fuzz/minimise/minimise.h"
 #include "fuzz/sealed.h"
+#include "reports/cost_words.h"
+#include "reports/recorded_code.h"
 #include "reports/snippet.h"
 #include "reports/terminal.h"
 #include "reports/tuning.h"
+#include "subjects/subjects.h"
 
 namespace graze::cli {
 
@@ -77,16 +83,20 @@ Pair pair_at(const std::vector<strata::PairSource>& sources, const analysis::Pai
   return sources[static_cast<std::size_t>(place.source)].pair(place.index);
 }
 
+std::string file_of_pair(const Pair& pair, const std::string& lanes) {
+  std::ostringstream text;
+  corpus::write_header(text);
+  corpus::write_entry(text, {pair, {{"lanes", lanes}}});
+  return text.str();
+}
+
 std::string smallest(const Lane& first, const Lane& second, const Pair& pair) {
   fuzz::SelectedLanes both;
   both.lanes = {&first, &second};
   both.on_host = {backends::on_host(first), backends::on_host(second)};
   Pair small = pair;
   if (both.on_host[0] && both.on_host[1]) small = fuzz::minimise(fuzz::failures_of(both, pair).at(0), pair).pair;
-  std::ostringstream text;
-  corpus::write_header(text);
-  corpus::write_entry(text, {small, {{"lanes", first.id + "," + second.id}}});
-  return text.str();
+  return file_of_pair(small, first.id + "," + second.id);
 }
 
 void write_listed(const fs::path& out, const std::vector<Result>& results, std::initializer_list<Result> optional) {
@@ -100,148 +110,165 @@ void write_listed(const fs::path& out, const std::vector<Result>& results, std::
 }
 
 std::string next_command(const fs::path& out, const Result& last, const std::string& lanes) {
-  if (!last.name.ends_with(".pairs")) return "Next: graze pareto\n";
-  return fmt::format("Next: graze check {} --lanes {}\n", path_word((out / last.name).string()), shell_word(lanes));
+  const std::string own_code = subject_words(lanes.substr(0, lanes.find('/')));
+  if (!last.name.ends_with(".pairs")) return fmt::format("Next: graze pareto{}\n", own_code);
+  return fmt::format("Next: graze check {} --lanes {}{}\n", path_word((out / last.name).string()), shell_word(lanes),
+                     own_code);
 }
 
 std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
                                         const std::vector<strata::PairSource>& sources) {
   std::vector<const Lane*> on_host, on_device;
   for (const Lane* lane : lanes) (backends::backend_of(*lane).has_device ? on_device : on_host).push_back(lane);
-  const auto sentence = [](const std::string& where, const std::vector<const Lane*>& of, const auto& nanoseconds) {
+  const auto sentence = [](const std::string& where, const std::vector<const Lane*>& of, const auto& cost) {
     std::vector<std::string> parts;
     for (std::size_t l = 0; l < of.size(); ++l)
-      parts.push_back(fmt::format("{} {} ns{}", of[l]->id, nanoseconds(l), of[l]->exact ? ", never wrong" : ""));
-    return fmt::format("Cost of a pair on {}: {}.", where, fmt::join(parts, "; "));
+      parts.push_back(
+          fmt::format("{} {}{}", of[l]->id, reports::cost_words(cost(l)), of[l]->exact ? ", never wrong" : ""));
+    return fmt::format("Cost of a pair{}: {}.", where, fmt::join(parts, "; "));
   };
   std::vector<std::string> sentences;
-  if (!on_host.empty()) {
-    std::vector<DecideBlock> blocks;
-    for (const Lane* lane : on_host) blocks.push_back(lane->decide);
-    const std::vector<analysis::Cost> costs = analysis::costs_of(blocks, analysis::first_pairs(sources, 8192), 9);
-    sentences.push_back(
-        sentence("one core here", on_host, [&](std::size_t l) { return fmt::format("{:.0f}", costs[l].middle); }));
+  constexpr std::size_t kTimed = 8192;
+  constexpr int kPasses = 9;
+  const std::vector<std::optional<analysis::Cost>> host_costs =
+      analysis::costs_of(on_host, analysis::first_pairs(sources, kTimed), kPasses);
+  std::vector<const Lane*> timed;
+  std::vector<analysis::Cost> costs;
+  for (std::size_t l = 0; l < on_host.size(); ++l) {
+    if (host_costs[l]) {
+      timed.push_back(on_host[l]);
+      costs.push_back(*host_costs[l]);
+    } else {
+      const std::string why = analysis::why_not_timed(*on_host[l]);
+      sentences.push_back(fmt::format("Cost of {}: not measured, because {}.", on_host[l]->id,
+                                      why.empty() ? "it failed on some pairs" : why));
+    }
+  }
+  if (!timed.empty()) {
+    sentences.push_back(sentence("", timed, [&](std::size_t l) { return costs[l]; }));
+    sentences.push_back(reports::costs_sentence(analysis::Calls::of_blocks,
+                                                fmt::format("{} of the fresh pairs", reports::grouped(kTimed)),
+                                                fuzz::machine_name(), kPasses));
   }
   std::string why_not;
   if (!on_device.empty() && !cuda::open_device(why_not)) {
     sentences.push_back("Cost of the CUDA lanes: not measured, because they run as twins here (" + why_not + ").");
   } else if (!on_device.empty()) {
-    const cuda::DeviceCosts costs =
+    const cuda::DeviceCosts there =
         cuda::measure_on_device(on_device, analysis::first_pairs(sources, std::size_t{1} << 20), 9);
-    sentences.push_back(sentence(costs.device + ", pairs there", on_device, [&](std::size_t l) {
-      return fmt::format("{:.4f}", analysis::quartiles(costs.of[l].resident).middle);
-    }));
+    sentences.push_back(sentence(" on " + there.device + ", 2^20 pairs a call that are there already", on_device,
+                                 [&](std::size_t l) { return analysis::quartiles(there.of[l].resident); }));
   }
   return sentences;
 }
 
 namespace {
 
-// Throws: UsageError if the campaign did not run the lane; std::runtime_error unless the lane's errors are those that
-// the campaign counted.
-void expect_errors_of(const std::string& directory, const fuzz::Json& campaign, const analysis::TuneSpec& spec,
-                      const std::string& lane) {
-  const fuzz::Json& strata = campaign.at("strata");
-  for (const strata::PairSource& source : spec.sources) {
-    const fuzz::Json& lanes = strata.at(source.id).at("lanes");
-    if (!lanes.contains(lane)) throw UsageError(cannot("tune on", directory, "it did not run " + lane));
-    const Counts counted = fuzz::counts_of(lanes[lane]),
-                 now = spec.sweep(std::vector<std::string>{""}, {&source, 1}).front();
-    if (!(counted == now))
-      throw std::runtime_error(cannot(
-          "tune on", directory,
-          fmt::format("it counted {} wrong verdicts of {} in {}, but these pairs now show {}; its code differs from "
-                      "this build's",
-                      reports::grouped(counted.wrong()), lane, source.id, reports::grouped(now.wrong()))));
-  }
+// The unit of the scene's coordinates; empty without a scene that names one.
+std::string units_of(const TuneOptions& options, const fuzz::Json& campaign) {
+  std::string units;
+  if (!options.scene.empty()) units = fuzz::open_scene(options.scene).scene.units;
+  if (campaign.is_object() && campaign["spec"].contains("scene"))
+    units = fuzz::recorded_scene(campaign["spec"]["scene"]).scene.units;
+  return units == strata::SceneFile().units ? "" : units;
 }
 
-constexpr const char* kChangesHeader = "stratum,seed,index,truth,tolerance,change\n";
-
-// A row for each pair of the choice on which the lane is wrong without a tolerance ("wrong"), and for each pair that
-// the best tolerance of a curve fixes or breaks.
-std::string changes_csv(const Lane& lane, const analysis::TuneSpec& spec, const analysis::Tuned& tuned,
-                        std::uint64_t seed, int threads) {
-  std::vector<std::string> policies = {""};
-  for (const analysis::PolicyErrors* best : analysis::best_of_curves(tuned.curves, spec.forbid, spec.max_rate)) {
-    if (!best->changes_nothing() && backends::on_host(lane_under(lane, best->policy))) policies.push_back(best->policy);
-  }
-  const analysis::NotRightPairs found = analysis::not_right_pairs(lane, policies, spec.sources, threads);
-  std::string csv = kChangesHeader;
-  for (const analysis::NotRightPair& pair : found.first) {
-    const Verdict truth = pair.intersects ? Verdict::intersects : Verdict::disjoint;
-    const std::string place = fmt::format("{},{},{},{}", spec.sources[static_cast<std::size_t>(pair.place.source)].id,
-                                          seed, pair.place.index, name(truth));
-    const bool was_right = pair.verdicts[0] == truth;
-    if (!was_right) csv += place + ",none,wrong\n";
-    for (std::size_t p = 1; p < policies.size(); ++p) {
-      const bool right = pair.verdicts[p] == truth;
-      if (right != was_right) csv += fmt::format("{},{},{}\n", place, policies[p], right ? "fixes" : "breaks");
-    }
-  }
-  if (found.first.size() < found.count)
-    fmt::print("changes.csv lists the first {} of {} such pairs.\n", reports::grouped(found.first.size()),
-               reports::grouped(found.count));
-  return csv;
+const Lane& lane_to_tune(const TuneOptions& options) {
+  open_subjects(options.own_code);
+  if (!options.from.empty()) open_subjects_of(options.from, options.own_code.resubject);
+  const Lane& lane = named_lane(options.lanes.front());
+  expect_subjects_among(options.own_code, {lane.id}, "LANE");
+  if (!lane.foreign && !options.epsilon.empty())
+    throw UsageError("--epsilon names a constant of your own code, and " + lane.id + " is a published lane");
+  return lane;
 }
 
 int tune(const TuneOptions& options) {
-  const Lane* const lane = &published_lane(options.lanes.front());
+  const Lane* const lane = &lane_to_tune(options);
   std::string why_not;
   const bool on_device = backends::backend_of(*lane).has_device && cuda::open_device(why_not);
-  if (!on_device && !backends::why_not_on_host(*lane).empty())
-    throw UsageError("cannot run " + lane->id + " here: there is no such processor or device, and it has no twin");
+  if (const std::string why = backends::why_not_on_host(*lane); !on_device && !why.empty())
+    throw UsageError(cannot("run", lane->id, why));
+  std::optional<subjects::TunableSource> source;  // of own code
+  std::optional<analysis::UnderEpsilon> under;
   analysis::TuneSpec spec;
-  spec.sweep = on_device ? analysis::device_sweep([lane](const std::string& policy) {
-    return policy.empty() ? *lane : lane_under(*lane, policy);
-  })
-                         : analysis::host_sweep(*lane, options.threads);
+  if (lane->foreign) {
+    source = subjects::tunable_source(*lane, options.epsilon);
+    under.emplace(*lane, *source);
+    spec.sweep = analysis::epsilon_sweep(*under, options.threads);
+  } else if (on_device) {
+    spec.sweep = analysis::device_sweep(
+        [lane](const std::string& policy) { return policy.empty() ? *lane : lane_under(*lane, policy); });
+  } else {
+    spec.sweep = analysis::host_sweep(*lane, options.threads);
+  }
   TunePairs pairs = tune_pairs(options);
   spec.sources = std::move(pairs.sources);
   spec.others = std::move(pairs.others);
-  spec.sites = analysis::sites_asked(*lane, spec.sources);
+  spec.by_value = source.has_value();
+  if (!source) spec.sites = analysis::sites_asked(*lane, spec.sources);
   spec.forbid = static_cast<analysis::Forbid>(options.forbid);
   spec.max_rate = options.max_rate;
   spec.max_other = options.max_other;
-  if (!options.from.empty()) expect_errors_of(options.from, pairs.campaign, spec, lane->id);
+  if (!options.from.empty() && !options.own_code.resubject)
+    expect_errors_of(options.from, pairs.campaign, spec, lane->id);
   const ResultFolder folder(options.out.empty() ? "tuned" : options.out, "tune.json");
   const analysis::Tuned tuned = analysis::tune(spec);
 
-  const reports::TuneQuestion question{lane->id, spec.forbid, spec.max_rate, spec.max_other};
+  const reports::TuneQuestion question{lane->id,
+                                       spec.forbid,
+                                       spec.max_rate,
+                                       spec.max_other,
+                                       source ? &*source : nullptr,
+                                       units_of(options, pairs.campaign)};
   const fs::path& out = folder.path;
   const reports::Screen screen = output_screen();
   for (const std::string& sentence : reports::tuning_sentences(question, tuned))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
   fmt::print("\n{}", reports::tuning_table(question, tuned, screen));
   std::string changes;
-  if (!options.from.empty() && backends::why_not_on_host(*lane).empty())
-    changes = changes_csv(*lane, spec, tuned, pairs.campaign["spec"]["seed"], options.threads);
+  if (!options.from.empty() && backends::why_not_on_host(*lane).empty()) {
+    std::optional<analysis::EpsilonDeciders> deciders;
+    if (under) deciders.emplace(*under);
+    changes = changes_csv(*lane, deciders ? analysis::DecideUnder(std::ref(*deciders)) : nullptr, spec, tuned,
+                          pairs.campaign["spec"]["seed"], options.threads);
+  }
   fmt::print("\n{}", pairs.left_out);
-  const Lane chosen = tuned.chosen.empty() ? *lane : lane_under(*lane, tuned.chosen);
+  const Lane chosen = tuned.chosen.empty() || source ? *lane : lane_under(*lane, tuned.chosen);
   const Lane* const costly[] = {&chosen, &backends::exact_beside(*lane)};
   for (const std::string& sentence : cost_sentences(costly, spec.others))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
-  std::vector<Result> results = {{"tune.json", fuzz::sealed(reports::tuning_json(question, tuned)).dump(1) + "\n"},
-                                 {"curves.svg", reports::tuning_figure(question, tuned)},
-                                 {"policy.h", reports::policy_header(chosen)}};
+  fuzz::Json json = reports::tuning_json(question, tuned);
+  if (source) json["subjects"] = reports::code_json(subjects::record({lane->id}));
+  std::vector<Result> results = {{"tune.json", fuzz::sealed(json).dump(1) + "\n"},
+                                 {"curves.svg", reports::tuning_figure(question, tuned)}};
+  if (!source) results.push_back({"policy.h", reports::policy_header(chosen)});
   if (!changes.empty()) results.push_back({"changes.csv", changes});
   for (const auto& [place, name] :
        {std::pair{tuned.confirmed.first_fixed, "fixed.pairs"}, {tuned.confirmed.first_broken, "broken.pairs"}}) {
     if (!place) continue;
-    results.push_back({name, smallest(*lane, chosen, pair_at(spec.others, *place))});
+    const Pair pair = pair_at(spec.others, *place);
+    results.push_back({name, source ? file_of_pair(pair, lane->id) : smallest(*lane, chosen, pair)});
   }
-  write_listed(out, results, {{"fixed.pairs", kPairs}, {"broken.pairs", kPairs}, {"changes.csv", kChangesHeader}});
-  fmt::print("{}", next_command(out, results.back(), lane->id + "," + chosen.id));
+  write_listed(out, results,
+               {{"fixed.pairs", kPairs},
+                {"broken.pairs", kPairs},
+                {"changes.csv", kChangesHeader},
+                {"policy.h", reports::policy_header(published_lanes().front())}});
+  fmt::print("{}", next_command(out, results.back(), source ? lane->id : lane->id + "," + chosen.id));
   return 0;
 }
 
 }  // namespace
 
 void add_tune(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand(
-      "tune", "Find the best tolerance for a lane: sweep tolerances on some pairs, and judge the best on others");
+  CLI::App* command = app.add_subcommand("tune",
+                                         "Find the best tolerance for a lane, or epsilon for your own code: sweep "
+                                         "values on some pairs, and judge the best "
+                                         "on others");
   command->footer(
       "Example: graze tune moller_1997/f32/cpu --forbid false-negative --pairs 20k\n"
+      "Example: graze tune mine/f32/cpu --subject mine=./mine.cpp --pairs 2k\n"
       "Example: graze tune moller_1997/f32/cpu moller_1997/f32/cuda-fma --agree");
   const auto options = std::make_shared<TuneOptions>();
   command->add_option("LANE", options->lanes, "Lane, without a policy; with --agree two of one algorithm and scalar")
@@ -249,6 +276,17 @@ void add_tune(CLI::App& app, int& status) {
       ->option_text("LANE [LANE]");
   command->add_flag("--agree", options->agree,
                     "Find the smallest tolerance under which two lanes give the same verdicts, right or wrong");
+  add_subject_options(*command, options->own_code);
+  add_resubject_option(*command, options->own_code);
+  command
+      ->add_option("--epsilon", options->epsilon,
+                   "Epsilon of your own C, C++ or CUDA source: the name of a constant, or a number as it is written "
+                   "there; the source is built again with values of it")
+      ->check(not_empty())
+      ->option_text("NAME")
+      ->default_str("the obvious one");
+  for (const char* of_own_code : {"--subject", "--resubject", "--epsilon"})
+    command->get_option("--agree")->excludes(of_own_code);
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
   command

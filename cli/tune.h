@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "analysis/sweep.h"
+#include "analysis/tuning.h"
 #include "cli/commands.h"
 #include "cli/results.h"
 
@@ -18,6 +19,8 @@ namespace graze::cli {
 
 struct TuneOptions {
   std::vector<std::string> lanes;
+  LaneOptions own_code;  // its subjects
+  std::string epsilon;   // of own code: the name of the constant; empty: the obvious one
   std::string scene, from, out;
   std::vector<std::string> strata;
   std::uint64_t pairs = 0;  // 0: a million, or as many as the campaign `from` has
@@ -44,6 +47,9 @@ TunePairs tune_pairs(const TuneOptions& options);
 
 Pair pair_at(const std::vector<strata::PairSource>& sources, const analysis::PairPlace& place);
 
+// The file for a pair, with these lanes.
+std::string file_of_pair(const Pair& pair, const std::string& lanes);
+
 // The file for a minimised pair on which both lanes keep their verdicts. Without twins, the pair is not minimised.
 // Requires: a lane is wrong on the pair.
 std::string smallest(const Lane& first, const Lane& second, const Pair& pair);
@@ -53,12 +59,25 @@ std::string smallest(const Lane& first, const Lane& second, const Pair& pair);
 void write_listed(const std::filesystem::path& out, const std::vector<Result>& results,
                   std::initializer_list<Result> optional);
 
-// The line with the next command, which checks the last result if that is a file of pairs.
+// The line with the next command, which checks the last result if that is a file of pairs. A lane of a user's code
+// needs its --subject, so that the command runs.
 std::string next_command(const std::filesystem::path& out, const Result& last, const std::string& lanes);
 
 // The cost of a pair for each lane: host lanes on one core, CUDA lanes on the device. A twin's time is not the time of
-// the code, so without a device a sentence says that it was not measured.
+// the code, so without a device a sentence says that it was not measured, and so it does of programs.
 std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
                                         const std::vector<strata::PairSource>& sources);
+
+// With --from: throws UsageError if the campaign did not run the lane; std::runtime_error unless the lane's errors are
+// those that the campaign counted.
+void expect_errors_of(const std::string& directory, const fuzz::Json& campaign, const analysis::TuneSpec& spec,
+                      const std::string& lane);
+
+// With --from: changes.csv, a row for each pair of the choice on which the lane is wrong without a tolerance ("wrong"),
+// and for each pair that the best tolerance of a curve fixes or breaks.
+// own_code: what decides under a policy if the lane is a user's code, else null.
+inline constexpr const char* kChangesHeader = "stratum,seed,index,truth,tolerance,change\n";
+std::string changes_csv(const Lane& lane, const analysis::DecideUnder& own_code, const analysis::TuneSpec& spec,
+                        const analysis::Tuned& tuned, std::uint64_t seed, int threads);
 
 }  // namespace graze::cli

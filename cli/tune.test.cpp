@@ -229,11 +229,13 @@ TEST_F(TuneCommand, BadInputGetsOneLine) {
 }
 
 TEST_F(TuneCommand, HelpHasExamplesThatRun) {
+  std::ofstream(shell.folder / "mine.cpp") << "constexpr float kEps = 1e-6f;\nbool intersects(const float a[9], const "
+                                              "float b[9]) { return a[0] > b[0] + kEps; }\n";
   const Ran help = shell("graze tune --help");
   int examples = 0;
   for (std::size_t at = 0; (at = help.out.find("Example: ", at)) != std::string::npos; at += 9, ++examples)
     expect_done(help.out.substr(at + 9, help.out.find('\n', at) - at - 9));
-  EXPECT_EQ(examples, 2);
+  EXPECT_EQ(examples, 3);
 }
 
 // Counts the differing verdicts again from `graze dump`, independently of agree.json. `policy`: "" or "/POLICY".
@@ -331,7 +333,7 @@ TEST_F(ParetoCommand, SetsErrorsAgainstCosts) {
       "graze pareto --strata 'near_*,extreme_scale' --pairs 3000 --lanes "
       "'*/f32/cpu,exact/f32/cpu,moller_1997/f32/cpu/paper' --out t");
   ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find("\nScaled by 2^k"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("\n  Scaled by 2^k"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("\nOne pair a call"), std::string::npos) << ran.out;
   const auto json = json_of(shell.folder / "t/pareto.json");
   ASSERT_EQ(json["lanes"].size(), 7u);

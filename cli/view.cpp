@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "analysis/convention.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/query_input.h"
@@ -37,15 +38,58 @@ std::string name_of(const std::string& file, const corpus::Entry& entry) {
   return printable(label ? *label : entry.line > 0 ? fmt::format("{}:{}", file, entry.line) : file);
 }
 
-void add_cases(const std::string& name, Viewed& viewed, std::size_t most = reports::kMostViewedPairs) {
+// The user's code: of --subject, and of the campaign that is shown.
+class OwnCode {
+ public:
+  // Throws: as selected_lanes.
+  OwnCode(LaneOptions options, const std::string& what) {
+    options.executor = fuzz::Executor::twin;
+    under_test_ = selected_lanes(options, what);
+    for (std::size_t l = under_test_.lanes.size(); l-- > 0;) {
+      if (under_test_.lanes[l]->foreign) continue;
+      under_test_.lanes.erase(under_test_.lanes.begin() + static_cast<std::ptrdiff_t>(l));
+      under_test_.on_host.erase(under_test_.on_host.begin() + static_cast<std::ptrdiff_t>(l));
+    }
+  }
+
+  // What lanes that cannot run now said in the campaign.
+  std::vector<reports::SaidOfPair> stored(const corpus::Entry& entry) const {
+    std::vector<reports::SaidOfPair> said;
+    if (under_test_.left_out.empty()) return said;
+    const Verdict truth = oracle::truth(entry.pair).verdict;
+    for (const auto& [lane, verdict] : stored_verdicts_of(entry, under_test_.left_out, truth))
+      said.push_back({lane, verdict, is_wrong(verdict, truth), true});
+    return said;
+  }
+
+  void add_verdicts(Viewed& viewed) const {
+    viewed.lanes_left_out = fuzz::left_out_json(under_test_);
+    if (under_test_.lanes.empty()) return;
+    for (reports::ViewedPair& one : viewed.pairs) {
+      const oracle::Truth truth = oracle::truth(one.pair);
+      const std::vector<Verdict> verdicts = decide(under_test_, one.pair),
+                                 counted = analysis::excused(under_test_.lanes, verdicts, one.pair, truth);
+      for (std::size_t l = 0; l < verdicts.size(); ++l) {
+        const bool wrong = truth.verdict != Verdict::declined && is_wrong(counted[l], truth.verdict);
+        one.said.push_back({under_test_.lanes[l]->id, verdicts[l], wrong});
+      }
+    }
+  }
+
+ private:
+  fuzz::SelectedLanes under_test_;
+};
+
+void add_cases(const std::string& name, const OwnCode& own, Viewed& viewed,
+               std::size_t most = reports::kMostViewedPairs) {
   for (const corpus::Entry& entry : read_cases(name)) {
     if (most-- == 0 || viewed.pairs.size() == reports::kMostViewedPairs) break;
-    viewed.pairs.push_back({name_of(fs::path(name).filename().string(), entry), entry.pair});
+    viewed.pairs.push_back({name_of(fs::path(name).filename().string(), entry), entry.pair, own.stored(entry)});
   }
 }
 
 // Adds the simplest case of each signature of a campaign, or all cases of another folder.
-void add_folder(const fs::path& folder, Viewed& viewed) {
+void add_folder(const fs::path& folder, const OwnCode& own, Viewed& viewed) {
   const bool campaign = fs::is_directory(folder / "cases");
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(campaign ? folder / "cases" : folder)) {
@@ -53,7 +97,7 @@ void add_folder(const fs::path& folder, Viewed& viewed) {
   }
   std::sort(files.begin(), files.end());
   if (files.empty()) throw std::runtime_error("there is no *.pairs in " + folder.string() + ", nor in its cases/");
-  for (const fs::path& file : files) add_cases(file.string(), viewed, campaign ? 1 : reports::kMostViewedPairs);
+  for (const fs::path& file : files) add_cases(file.string(), own, viewed, campaign ? 1 : reports::kMostViewedPairs);
 }
 
 // Adds the triangles, and the pairs whose boxes overlap, starting with those on which some lane is wrong.
@@ -125,7 +169,7 @@ void add_query(const std::string& reference, const std::string& file, Viewed& vi
   viewed.opens_with_triangles = true;
 }
 
-Viewed viewed_of(const std::string& what, const std::string& mesh) {
+Viewed viewed_of(const std::string& what, const std::string& mesh, const OwnCode& own) {
   Viewed viewed;
   viewed.title = printable(fs::path(what).filename().string());
   std::error_code ignored;
@@ -134,11 +178,11 @@ Viewed viewed_of(const std::string& what, const std::string& mesh) {
     add_query(what, mesh, viewed);
   } else if (fs::is_directory(what, ignored)) {
     viewed.title = printable(what);
-    add_folder(what, viewed);
+    add_folder(what, own, viewed);
   } else if (strata::is_mesh(what)) {
     add_mesh(what, viewed);
   } else {
-    add_cases(what, viewed);
+    add_cases(what, own, viewed);
     show_against_the_first(viewed);
   }
   return viewed;
@@ -157,13 +201,16 @@ void open_page(const std::string& page) {
   posix_spawn_file_actions_destroy(&quiet);
 }
 
-void view(const std::string& what, const std::string& mesh, std::size_t random, const std::string& out) {
+void view(const LaneOptions& options, const std::string& what, const std::string& mesh, std::size_t random,
+          const std::string& out) {
   if (!reports::has_viewer()) {
     throw std::runtime_error(
         "the viewer is not in this build: it needs Node with npm, clang and wasi-libc; run scripts/setup to install "
         "them and build");
   }
-  Viewed viewed = viewed_of(what, mesh);
+  const OwnCode own(options, what);
+  Viewed viewed = viewed_of(what, mesh, own);
+  own.add_verdicts(viewed);
   viewed.random = random;
   write_result(out, reports::viewer_page(viewed), fuzz::NamedBy::user);
   const std::size_t count = viewed.pairs.size();
@@ -201,11 +248,14 @@ void add_view(CLI::App& app, int&) {
       ->transform(whole_number(1, reports::kMostViewedTriangles))
       ->excludes(pairs)
       ->option_text("N");
+  const auto own_code = std::make_shared<LaneOptions>();
+  add_subject_options(*command, *own_code);
+  add_resubject_option(*command, *own_code);
   command->add_option("--out", *out, "File for the page")
       ->check(not_empty())
       ->capture_default_str()
       ->option_text("FILE");
-  command->callback([what, mesh, random, out] { view(*what, *mesh, *random, *out); });
+  command->callback([=] { view(*own_code, *what, *mesh, *random, *out); });
 }
 
 }  // namespace graze::cli

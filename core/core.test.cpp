@@ -133,6 +133,9 @@ TEST(LaneTable, IsTheProductOfAlgorithmsScalarsAndVariantsAndTheExactLanes) {
   EXPECT_TRUE(ids.contains("moller_1997/f32/cuda-fma"));
   EXPECT_TRUE(matches_any({"*/f32/*", "x"}, "moller_1997/f32/cpu"));
   EXPECT_FALSE(matches_any({"*/f64/*"}, "moller_1997/f32/cpu"));
+  EXPECT_FALSE(matches_any({"*/f32/*", "!moller*"}, "moller_1997/f32/cpu"));
+  EXPECT_FALSE(matches_any({"!*/cpu"}, "moller_1997/f32/cpu"));
+  EXPECT_TRUE(matches_any({"!*/cuda"}, "moller_1997/f32/cpu"));
 }
 
 TEST(LaneNames, AreReadBackWithTheirPolicies) {

@@ -67,4 +67,8 @@ DeviceSpeeds measure_speeds(int, std::size_t) {
   throw DeviceFailure("cannot measure the speeds of a device: built without CUDA", false);
 }
 
+KernelNeeds needs_of_exact_query(int) {
+  throw DeviceFailure("cannot ask a device for its kernels: built without CUDA", false);
+}
+
 }  // namespace graze::cuda

@@ -40,6 +40,15 @@ void sort_by_subject(SelectedLanes& under_test) {
   under_test.on_host = std::move(sorted.on_host);
 }
 
+bool wants_lanes(const std::string& pattern) { return !pattern.starts_with(kLeaveOut); }
+
+// What would run a lane, by the reason that it does not run.
+std::string_view remedy(std::string_view why) {
+  return why.find("no twin") != why.npos  ? "; a CUDA device runs it"
+         : why.ends_with(" instructions") ? "; a processor with them runs it"
+                                          : "";
+}
+
 }  // namespace
 
 std::vector<const Lane*> SelectedLanes::device_lanes() const {
@@ -65,8 +74,11 @@ std::string status(const Lane& lane, const cuda::Device* device, const std::stri
 
 void expect_each_runs(const SelectedLanes& under_test) {
   std::vector<std::string> patterns = under_test.asked;
+  std::erase_if(patterns, [](const std::string& pattern) { return !wants_lanes(pattern); });
   if (patterns.empty()) {
-    for (const LaneLeftOut& row : under_test.left_out) patterns.push_back(row.id.substr(0, row.id.find('/')) + "/*");
+    for (const LaneLeftOut& row : under_test.left_out) {
+      if (find_lane(row.id)) patterns.push_back(row.id.substr(0, row.id.find('/')) + "/*");
+    }
   }
   for (const std::string& pattern : patterns) {
     if (std::any_of(under_test.lanes.begin(), under_test.lanes.end(),
@@ -111,7 +123,7 @@ std::vector<std::string> left_out_in_words(const std::vector<LaneLeftOut>& left_
     }
   }
   std::vector<std::string> lines;
-  for (const auto& [why, ids] : by_reason) lines.push_back(fmt::format("left out ({}): {}", why, ids));
+  for (const auto& [why, ids] : by_reason) lines.push_back(fmt::format("left out ({}{}): {}", why, remedy(why), ids));
   return lines;
 }
 
@@ -132,15 +144,35 @@ std::vector<LaneLeftOut> left_out_of(const nlohmann::ordered_json& recorded) {
   return rows;
 }
 
-SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor executor, bool require_device) {
-  for (const std::string& glob : globs) {
-    add_policy_lanes(glob);
-    if (std::none_of(lanes().begin(), lanes().end(), [&](const Lane& lane) { return matches_any({glob}, lane.id); })) {
-      std::vector<std::string> ids;
-      for (const Lane& lane : lanes()) ids.push_back(lane.id);
-      throw UsageError("no lane matches '" + printable(glob) + "'; `graze lanes` lists them" + did_you_mean(glob, ids));
-    }
+std::vector<std::string> with_exact_lane(std::vector<std::string> patterns) {
+  const auto names_it = [](const std::string& pattern) {
+    return matches_any({pattern.starts_with(kLeaveOut) ? pattern.substr(1) : pattern}, kExactLane);
+  };
+  if (std::any_of(patterns.begin(), patterns.end(), wants_lanes) &&
+      std::none_of(patterns.begin(), patterns.end(), names_it))
+    patterns.push_back(kExactLane);
+  return patterns;
+}
+
+void expect_each_matches(const std::vector<std::string>& patterns, const std::vector<LaneLeftOut>& not_opened) {
+  for (const std::string& pattern : patterns) {
+    const bool leaves_out = pattern.starts_with(kLeaveOut);
+    const std::string glob = pattern.substr(leaves_out ? 1 : 0);
+    if (!leaves_out) add_policy_lanes(glob);
+    const auto matches = [&](const auto& row) { return matches_any({glob}, row.id); };
+    if (std::any_of(lanes().begin(), lanes().end(), matches) ||
+        std::any_of(not_opened.begin(), not_opened.end(), matches))
+      continue;
+    std::vector<std::string> ids;
+    for (const Lane& lane : lanes()) ids.push_back(lane.id);
+    throw UsageError("no lane matches '" + printable(glob) + "'; `graze lanes` lists them" + did_you_mean(glob, ids));
   }
+}
+
+SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor executor, bool require_device,
+                           const std::vector<LaneLeftOut>& not_opened) {
+  expect_each_matches(globs, not_opened);
+  const bool names_some = std::any_of(globs.begin(), globs.end(), wants_lanes);
   SelectedLanes under_test;
   under_test.asked = globs;
   std::string why_not;
@@ -156,9 +188,12 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
     if (why.empty()) {
       under_test.lanes.push_back(&lane);
       under_test.on_host.push_back(on_host);
-    } else if (!globs.empty() || lane.foreign) {
+    } else if (names_some || lane.foreign) {
       under_test.left_out.push_back({lane.id, why});
     }
+  }
+  for (const LaneLeftOut& row : not_opened) {
+    if (matches_any(globs, row.id)) under_test.left_out.push_back(row);
   }
   sort_by_subject(under_test);
   if (under_test.lanes.empty()) {

@@ -41,10 +41,23 @@ struct SelectedLanes {
   std::string evidence(std::size_t l) const;
 };
 
+// A pattern that begins with this leaves the lanes out that match the rest of it.
+inline constexpr char kLeaveOut = '!';
+
+// Adds the exact lane to the patterns, unless one of them selects it or leaves it out. If none selects lanes, all are
+// selected already.
+inline constexpr const char* kExactLane = "exact/f32/cpu";
+std::vector<std::string> with_exact_lane(std::vector<std::string> patterns);
+
+// not_opened: lanes of a campaign's subjects that are not in the table, because their code has changed.
 // Throws: UsageError when a pattern matches no lane, or no selected lane is available; std::runtime_error when a device
 // is asked for and there is none.
 SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor executor = Executor::automatic,
-                           bool require_device = false);
+                           bool require_device = false, const std::vector<LaneLeftOut>& not_opened = {});
+
+// Adds the lanes under policies that the patterns name.   Throws: UsageError when a pattern matches no lane of the
+// table, and none of `not_opened`.
+void expect_each_matches(const std::vector<std::string>& globs, const std::vector<LaneLeftOut>& not_opened = {});
 
 // Throws: UsageError, with the reasons, if no lane of a pattern runs here, or, without patterns, none of a subject.
 void expect_each_runs(const SelectedLanes& under_test);
@@ -52,7 +65,8 @@ void expect_each_runs(const SelectedLanes& under_test);
 // Removes the lanes for which `why` returns a reason.   Returns: these.   Throws: as expect_each_runs.
 std::vector<LaneLeftOut> leave_out(SelectedLanes& under_test, const std::function<std::string(const Lane&)>& why);
 
-// A line for each reason, with its lanes: "left out (no device, and no twin): moller_1997/f32/cuda-fast".
+// A line for each reason, with what would run the lanes: "left out (no twin; a CUDA device runs it):
+// moller_1997/f32/cuda-fast".
 std::vector<std::string> left_out_in_words(const std::vector<LaneLeftOut>& left_out);
 
 // {"patterns": the requested ones, "why": {lane: reason}}, as a campaign's spec records it. Null for none.

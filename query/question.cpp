@@ -92,6 +92,9 @@ cuda::TriangleArray array_of(const graze_triangles& part, const std::string& nam
   return array;
 }
 
+// A user's CUDA code runs in a process of its own, on a device or not; to a query it is a lane of the host.
+bool is_of_device(const Lane& lane) { return lane.is_cuda() && !lane.foreign; }
+
 // The exact host lane stands for the exact lane of both host and device.
 Lane lane_of(const char* id) {
   const std::string name = id ? id : "exact";
@@ -151,7 +154,7 @@ void choose_executor(const graze_query& query, bool any_lane, Question& question
   auto executor = static_cast<graze_executor>(query.executor);
   if (executor == GRAZE_AUTO) {
     const bool small = question.triangles * (question.references.size() / 9) < kWorthThreads;
-    const bool on_device = resident || (question.lane.is_cuda() && (!decide || has_device())) ||
+    const bool on_device = resident || (is_of_device(question.lane) && (!decide || has_device())) ||
                            (any_lane && device_is_faster(question, cores));
     executor = on_device ? GRAZE_ALL_GPUS : small ? GRAZE_ONE_CORE : GRAZE_ALL_CORES;
   }
@@ -163,7 +166,8 @@ void choose_executor(const graze_query& query, bool any_lane, Question& question
     question.threads = executor == GRAZE_ONE_CORE ? 1 : cores;
     return;
   }
-  expect(any_lane || question.lane.is_cuda(), "lane: expected a CUDA lane for GPUs, found '" + question.lane.id + "'");
+  expect(any_lane || is_of_device(question.lane),
+         "lane: expected a CUDA lane for GPUs, found '" + question.lane.id + "'");
   const int count = device_count("executor");
   if (any_lane) question.lane = *find_lane("exact/f32/cuda");
   if (!resident) {

@@ -7,11 +7,14 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "core/text.h"
 #include "fuzz/counts_json.h"
+#include "reports/changed_verdicts.h"
 #include "reports/recorded_code.h"
 #include "reports/tables.h"
 #include "reports/terminal.h"
@@ -95,13 +98,51 @@ bool apart(const Json& l, const Json& r) {
   return 2 * std::min(most, least) < kLeastChance;
 }
 
-// Whether both campaigns ran on the same pairs, so that every other count is another verdict. Not for a hunt, whose
-// pairs depend on the lanes.
-bool same_pairs(const Json& l, const Json& r) {
-  const Json &run_l = l.at("run"), &run_r = r.at("run");
-  const auto same = [&](const char* what) { return run_l.value(what, Json()) == run_r.value(what, Json()); };
-  return same("seed") && same("pairs") && same("complete") && same("scene") && l.at("strata") == r.at("strata") &&
-         !strata_of(l).contains("hunt");
+// The smallest difference from a rate before that counts as changed: a true difference below it may pass for chance.
+// Nothing if none of that many pairs would show.
+std::optional<double> unseen_of(const Json& before, const Json& after) {
+  const std::uint64_t of = after.at("of");
+  const double share = before.at("share");
+  if (of == 0 || before.at("of") == 0) return {};
+  const auto differs = [&](std::uint64_t count) { return apart(before, to_json(share_of(count, of))); };
+  const auto expected = std::min(of, static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(of))));
+  std::uint64_t low = expected, high = of;  // the smallest count above the expected one that differs
+  if (differs(high)) {
+    while (low < high) {
+      const std::uint64_t middle = low + (high - low) / 2;
+      differs(middle) ? high = middle : low = middle + 1;
+    }
+    return static_cast<double>(high) / static_cast<double>(of) - share;
+  }
+  low = 0, high = expected;  // the largest count below
+  if (!differs(low)) return {};
+  while (low + 1 < high) {
+    const std::uint64_t middle = low + (high - low) / 2;
+    differs(middle) ? low = middle : high = middle;
+  }
+  return share - static_cast<double>(low) / static_cast<double>(of);
+}
+
+// "differences below 0.02 % to 1.2 % of the pairs, by rate, may pass for chance and are not seen"
+std::string power_words(const Json& rates) {
+  std::optional<double> least, most;
+  std::size_t blind = 0;
+  for (const Json& row : rates) {
+    const Json& unseen = row.at("unseen");
+    if (unseen.is_null()) {
+      ++blind;
+      continue;
+    }
+    const double value = unseen;
+    least = std::min(least.value_or(value), value);
+    most = std::max(most.value_or(value), value);
+  }
+  const std::string none =
+      blind == 0 ? "" : fmt::format("; {} of the rates have too few pairs to show any", grouped(blind));
+  if (!least) return "the campaigns have too few pairs to show a difference";
+  const std::string from = rounded_up(100 * *least, 2), to = rounded_up(100 * *most, 2);
+  return fmt::format("differences under {} would not be seen{}",
+                     from == to ? to + " %" : fmt::format("{} % to {} % (by rate and pairs)", from, to), none);
 }
 
 // The kinds of error whose rates changed: [{"error": "false positives", "before", "after"}].
@@ -151,6 +192,13 @@ std::string list(const std::set<std::string>& l, const std::set<std::string>& r)
   return only.empty() ? "none" : fmt::format("{}", fmt::join(only, ", "));
 }
 
+std::string scene_of(const Json& run) {
+  return run.contains("scene") && !run["scene"].is_null() ? run["scene"].get<std::string>() : "none";
+}
+
+// The hash in a scene's name, which does not change with the file's place: arm.toml#0123456789abcdef.
+std::string content_of(const std::string& scene) { return scene.substr(scene.rfind('#') + 1); }
+
 // Describes how the campaigns differ, one sentence for each difference.
 Json differences_of(const Json& after, const Json& before) {
   Json rows = Json::array();
@@ -160,12 +208,9 @@ Json differences_of(const Json& after, const Json& before) {
       rows.push_back(
           fmt::format("They differ in {}: {} before, {} after.", what, grouped(then.at(what)), grouped(now.at(what))));
   }
-  const auto scene = [](const Json& run) {
-    return run.contains("scene") && !run["scene"].is_null() ? run["scene"].get<std::string>() : "none";
-  };
-  if (scene(now) != scene(then))
+  if (content_of(scene_of(now)) != content_of(scene_of(then)))
     rows.push_back(fmt::format("They differ in scene, so the same stratum draws other pairs: {} before, {} after.",
-                               scene(then), scene(now)));
+                               scene_of(then), scene_of(now)));
   for (const char* what : {"strata", "lanes"}) {
     const std::set<std::string> l = ids_of(before.at(what)), r = ids_of(after.at(what));
     if (l != r)
@@ -188,11 +233,20 @@ Json differences_of(const Json& after, const Json& before) {
 
 }  // namespace
 
-void add_comparison(Json& report, const Json& before, const Json& kinds, const Json& kinds_before) {
+bool same_pairs(const Json& before, const Json& after) {
+  const Json &run_l = before.at("run"), &run_r = after.at("run");
+  const auto same = [&](const char* what) { return run_l.value(what, Json()) == run_r.value(what, Json()); };
+  return same("seed") && same("pairs") && run_l.value("complete", true) && run_r.value("complete", true) &&
+         content_of(scene_of(run_l)) == content_of(scene_of(run_r)) && before.at("strata") == after.at("strata") &&
+         !strata_of(before).contains("hunt");
+}
+
+void add_comparison(Json& report, const Json& before, const Json& kinds, const Json& kinds_before,
+                    const Json& verdicts) {
   const auto then = rates_by_name(before);
   const std::map<Name, Json> by_name(then.begin(), then.end());
   const auto now_drawn = strata_of(report), then_drawn = strata_of(before);
-  const bool alike = mixed_alike(report, before), same = same_pairs(report, before);
+  const bool alike = mixed_alike(report, before), same = same_pairs(before, report);
   const auto is_changed = [same](const Json& l, const Json& r) {
     return same ? l.at("count") != r.at("count") : apart(l, r);
   };
@@ -214,24 +268,33 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
                     {"after", wrong},
                     {"changed", row_changed},
                     {"errors", errors}});
+    if (same) continue;
+    const std::optional<double> unseen = unseen_of(wrong_before, wrong);
+    rows.back()["unseen"] = unseen ? Json(*unseen) : Json();
   }
   const bool kinds_known = !kinds.is_null() && !kinds_before.is_null(), kinds_compared = kinds_known && alike;
   const Json gained = kinds_compared ? only_in(kinds, kinds_before, report, before) : Json::array();
   const Json lost = kinds_compared ? only_in(kinds_before, kinds, before, report) : Json::array();
+  const std::string of_kinds = !kinds_compared ? "kinds of failure are not compared"
+                               : gained.empty() && lost.empty()
+                                   ? "no kind of failure came or went"
+                                   : fmt::format("{} kinds of failure came, {} went", gained.size(), lost.size());
   std::string headline;
   if (rows.empty()) {
     headline = "Nothing to compare: the campaigns have no lane or no stratum in common.";
+  } else if (!verdicts.is_null()) {
+    headline = paired_headline(verdicts) + "; " + of_kinds + ".";
   } else if (changed == 0 && gained.empty() && lost.empty()) {
-    headline = fmt::format("Nothing changed: none of {} rates, and {}.", grouped(rows.size()),
-                           kinds_compared ? "no kind of failure came or went" : "kinds of failure are not compared");
+    headline = fmt::format(
+        "No rate changed, of {}, and {}; {}.", grouped(rows.size()), of_kinds,
+        same ? "single verdicts are not compared, because a campaign's database is missing" : power_words(rows));
   } else {
     std::vector<std::string> errors;
     for (const auto& [error, count] : changed_by_error)
       errors.push_back(fmt::format("{} in {}", error, grouped(count)));
-    headline = fmt::format("Changed: {} of {} rates{}; {}.", grouped(changed), grouped(rows.size()),
-                           errors.empty() ? "" : fmt::format(" ({})", fmt::join(errors, ", ")),
-                           kinds_compared ? fmt::format("{} kinds of failure came, {} went", gained.size(), lost.size())
-                                          : "kinds of failure are not compared");
+    headline = fmt::format("Changed: {} of {} rates{}; {}{}.", grouped(changed), grouped(rows.size()),
+                           errors.empty() ? "" : fmt::format(" ({})", fmt::join(errors, ", ")), of_kinds,
+                           same ? "" : "; " + power_words(rows));
   }
   Json differences = differences_of(report, before);
   if (!alike)
@@ -241,8 +304,8 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
   if (!kinds_known)
     differences.push_back("Kinds of failure are not compared: run `graze minimize` on both campaigns first.");
   report["compare"] = {
-      {"other", before.at("run")}, {"headline", headline}, {"differences", differences},      {"rates", rows},
-      {"gained", gained},          {"lost", lost},         {"kinds_compared", kinds_compared}};
+      {"other", before.at("run")}, {"headline", headline}, {"differences", differences},       {"rates", rows},
+      {"gained", gained},          {"lost", lost},         {"kinds_compared", kinds_compared}, {"verdicts", verdicts}};
 }
 
 }  // namespace graze::reports

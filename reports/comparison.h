@@ -14,11 +14,20 @@ inline constexpr double kLeastSignatures = 14;
 
 // Adds `compare` to the second campaign's report: {"other": run, "headline", "differences": [sentence], "rates":
 // [{"lane", "stratum", "before", "after", "changed", "errors"}], "gained", "lost": [{"key", "signatures", "count"}],
-// "kinds_compared"}. Rates are matched by lane and stratum; `errors` are the kinds of error whose own rate changed. If
-// both campaigns ran on the same pairs, every other count is a change. Rates
-// of all strata together, and kinds, are compared only if both campaigns have the same strata in the same shares, and
-// kinds only of subjects with the same lanes in both. Kinds are those of `graze failures`, or null if unknown.
+// "kinds_compared", "verdicts"}. Rates are matched by lane and stratum; `errors` are the kinds of error whose own rate
+// changed. If both campaigns ran on the same pairs, every other count is a change, and the headline is about
+// `verdicts`: a row for each lane and stratum, {"lane", "stratum", "pairs", "known": "same", "changed" or "unknown",
+// "least", "most"} (bounds of the number of changed verdicts), and where they were counted "broken" (that became
+// wrong), "mended", "smallest_broken", "smallest_mended". Else each rate has `unseen`, the difference below which a
+// change could pass for chance. Rates of all strata together, and kinds, are compared only if both campaigns have the
+// same strata in the same shares, and kinds only of subjects with the same lanes in both. Kinds are those of `graze
+// failures`, or null if unknown; `verdicts` is null if unknown.
 void add_comparison(nlohmann::ordered_json& report, const nlohmann::ordered_json& before,
-                    const nlohmann::ordered_json& kinds, const nlohmann::ordered_json& kinds_before);
+                    const nlohmann::ordered_json& kinds, const nlohmann::ordered_json& kinds_before,
+                    const nlohmann::ordered_json& verdicts = nullptr);
+
+// Whether two complete campaigns ran on the same pairs, so that every other count is another verdict. Not for hunts,
+// whose pairs depend on the lanes.   Requires: two reports.
+bool same_pairs(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after);
 
 }  // namespace graze::reports

@@ -5,7 +5,9 @@
 
 #include "fuzz/campaign/lane_costs.h"
 #include "fuzz/campaign/result_files.h"
+#include "reports/cost_words.h"
 #include "reports/findings.h"
+#include "reports/terminal.h"
 
 namespace graze::reports {
 
@@ -55,7 +57,7 @@ std::optional<Costs> read_costs(const std::filesystem::path& directory, const Ca
   return costs_of(fuzz::read_timings(directory), counts);
 }
 
-Json to_json(const Costs& costs, const CampaignCounts& counts) {
+Json to_json(const Costs& costs, const CampaignCounts& counts, const Json& kinds) {
   const auto rounded = [](double value) { return std::stod(fmt::format("{:.4g}", value)); };
   Json rows = Json::array();
   const auto add = [&](std::size_t l, const Json& group, const std::vector<std::size_t>& strata) {
@@ -72,7 +74,11 @@ Json to_json(const Costs& costs, const CampaignCounts& counts) {
     add(l, nullptr, counts.drawn());
     for (std::size_t g = 0; g < counts.groups.size(); ++g) add(l, g, counts.groups[g].strata);
   }
-  return {{"machine", costs.machine}, {"passes", costs.passes}, {"rows", rows}, {"answer", answer(counts, &costs)}};
+  Json said = answer(counts, &costs, kinds);
+  said.push_back(costs_sentence(analysis::Calls::of_blocks,
+                                fmt::format("the first {} pairs of each stratum", grouped(fuzz::kPairsTimed)),
+                                costs.machine, costs.passes));
+  return {{"machine", costs.machine}, {"passes", costs.passes}, {"rows", rows}, {"answer", said}};
 }
 
 }  // namespace graze::reports

@@ -33,7 +33,7 @@ std::optional<Costs> read_costs(const std::filesystem::path& directory, const Ca
 std::optional<Costs> costs_of(const nlohmann::ordered_json& runs, const CampaignCounts& counts);
 
 // The contents of costs.json: {"machine", "passes", "rows": [{"lane", "group", "pairs", "low", "middle", "high"}],
-// "answer"}, as reports/web/src/report.ts describes it. A null group means all strata together.
-nlohmann::ordered_json to_json(const Costs& costs, const CampaignCounts& counts);
+// "answer"}, as reports/web/src/report.ts describes it. A null group means all strata together. kinds: as for answer.
+nlohmann::ordered_json to_json(const Costs& costs, const CampaignCounts& counts, const nlohmann::ordered_json& kinds);
 
 }  // namespace graze::reports

@@ -19,11 +19,14 @@ ReportLane lane_of(const std::string& id) {
   return lane;
 }
 
-// Adds a row {"pairs", "wrong": {lane: count}}.
+// Adds a row {"pairs", "wrong": {lane: count}, "differs_from_cpu": {lane: count}}.
 void add(WrongCounts& counts, const Json& row, const std::map<std::string, std::size_t>& place) {
-  counts.wrong.resize(place.size());
   counts.pairs += row.at("pairs").get<std::uint64_t>();
-  for (const auto& [lane, wrong] : row.at("wrong").items()) counts.wrong[place.at(lane)] += wrong.get<std::uint64_t>();
+  for (const auto& [field, sums] :
+       {std::pair("wrong", &counts.wrong), std::pair("differs_from_cpu", &counts.differs_from_cpu)}) {
+    sums->resize(place.size());
+    for (const auto& [lane, count] : row.at(field).items()) (*sums)[place.at(lane)] += count.get<std::uint64_t>();
+  }
 }
 
 void add(StratumCounts& counts, const Json& row, const std::map<std::string, std::size_t>& place) {

@@ -23,7 +23,7 @@ struct ReportLane {
 
 struct WrongCounts {
   std::uint64_t pairs = 0;
-  std::vector<std::uint64_t> wrong;  // by lane: verdicts that are wrong
+  std::vector<std::uint64_t> wrong, differs_from_cpu;  // by lane: verdicts that are wrong, and that differ
 };
 
 struct StratumCounts {

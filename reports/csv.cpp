@@ -56,14 +56,16 @@ std::string rates_csv(const Json& report) {
   return table.text;
 }
 
-std::string margins_csv(const CampaignCounts& counts) {
+// A row for each lane, stratum and bucket. differs: of verdicts that differ from the cpu lane, where one ran.
+std::string margins_csv(const CampaignCounts& counts, bool differs) {
   Table table("lane,stratum,side,exponent,count,of,share,low,high");
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+    if (differs && counts.lanes[l].cpu < 0) continue;
     for (const StratumCounts& stratum : counts.strata) {
       for (const auto& [bucket, found] : stratum.margins) {
         std::vector<Json> cells{counts.lanes[l].id, stratum.id, side_of(bucket),
                                 bucket == 0 ? Json() : Json(exponent_of(bucket))};
-        append(cells, to_json(share_of(found.wrong[l], found.pairs)));
+        append(cells, to_json(share_of((differs ? found.differs_from_cpu : found.wrong)[l], found.pairs)));
         table.row(cells);
       }
     }
@@ -86,11 +88,13 @@ std::string thresholds_csv(const Json& report) {
 }
 
 std::string extremes_csv(const Json& report) {
-  Table table("kind,lane,exponent,step,count,of,share,low,high");
+  Table table("kind,lane,exponent,step,count,of,share,low,high,times,times_low,times_high");
   for (const Json& row : report["extremes"]) {
     for (const Json& found : row["cells"]) {
       std::vector<Json> cells{row["kind"], lane_id(report, row), found["exponent"], row["step"]};
       append(cells, found["wrong"]);
+      const Json times = found.value("times", Json::array({0, 0, nullptr}));
+      cells.insert(cells.end(), times.begin(), times.end());
       table.row(cells);
     }
   }
@@ -133,11 +137,10 @@ std::string compare_csv(const Json& compare) {
 std::vector<CsvTable> csv_tables(const std::filesystem::path& directory, const Json& report) {
   const Json summary = fuzz::checked_summary(directory);
   const CampaignCounts counts = counts_of(summary);
-  std::vector<CsvTable> tables{{"rates.csv", rates_csv(report)},
-                               {"margins.csv", margins_csv(counts)},
-                               {"thresholds.csv", thresholds_csv(report)},
-                               {"extremes.csv", extremes_csv(report)},
-                               {"signatures.csv", signatures_csv(signature_rows(counts, summary))}};
+  std::vector<CsvTable> tables{
+      {"rates.csv", rates_csv(report)},           {"margins.csv", margins_csv(counts, false)},
+      {"differs.csv", margins_csv(counts, true)}, {"thresholds.csv", thresholds_csv(report)},
+      {"extremes.csv", extremes_csv(report)},     {"signatures.csv", signatures_csv(signature_rows(counts, summary))}};
   if (!report["compare"].is_null()) tables.push_back({"compare.csv", compare_csv(report["compare"])});
   return tables;
 }

@@ -39,16 +39,18 @@ Json signature_row(const CampaignCounts& counts, const Json& found) {
   for (const ReportLane& lane : counts.lanes) {
     if (lane.name.subject == signature.subject) marks += signature.mark_of(lane.name.within_subject());
   }
-  return {{"key", key},
-          {"algorithm", signature.subject},
-          {"count", found.at("count")},
-          {"share", rounded_share(found.at("count"), counts.total.pairs)},
-          {"contact", name(signature.contact)},
-          {"dimensions", fmt::format("{}{}", signature.hulls.dimension_a, signature.hulls.dimension_b)},
-          {"coplanar", signature.hulls.coplanar},
-          {"margin", name_of_bucket(signature.bucket)},
-          {"marks", marks},
-          {"cards", Json::array()}};
+  Json row = {{"key", key},
+              {"algorithm", signature.subject},
+              {"count", found.at("count")},
+              {"share", rounded_share(found.at("count"), counts.total.pairs)},
+              {"contact", name(signature.contact)},
+              {"dimensions", fmt::format("{}{}", signature.hulls.dimension_a, signature.hulls.dimension_b)},
+              {"coplanar", signature.hulls.coplanar},
+              {"margin", name_of_bucket(signature.bucket)},
+              {"marks", marks},
+              {"cards", Json::array()}};
+  if (signature.nesting != Nesting::none) row["nesting"] = analysis::name(signature.nesting);
+  return row;
 }
 
 double number_in(const std::filesystem::path& file, const corpus::Entry& entry, std::string_view key) {

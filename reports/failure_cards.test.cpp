@@ -45,10 +45,11 @@ class FailureCards : public CampaignTest {
   static std::set<std::string> wrong_of_kind(const Json& kind, const Pair& pair) {
     const fuzz::SelectedLanes under_test = lanes();
     const std::string subject = kind["subject"];
-    const Verdict truth = oracle::cgal_verdict(pair);
+    const oracle::Truth truth = oracle::truth(pair);
+    const std::string_view shape = fuzz::shape_name(truth.hulls, analysis::nesting_of(pair, truth));
     std::set<std::string> found;
-    for (const fuzz::LaneReason& reason : fuzz::reasons_of(under_test, subject, pair, truth)) {
-      if (fuzz::kind_key(subject, reason, oracle::hulls(pair)) == kind["key"]) found.insert(reason.lane->id);
+    for (const fuzz::LaneReason& reason : fuzz::reasons_of(under_test, subject, pair, truth.verdict)) {
+      if (fuzz::kind_key(subject, reason, shape) == kind["key"]) found.insert(reason.lane->id);
     }
     return found;
   }
@@ -79,7 +80,7 @@ TEST_F(FailureCards, DoNotContradictThemselves) {
     const std::string subject = kind["subject"], line = kind["line"], key = kind["key"];
     const Pair pair = shown_pair(card);
     const oracle::Truth truth = oracle::truth(pair);
-    EXPECT_EQ(kind["shape"], fuzz::shape_name(oracle::hulls(pair))) << key;
+    EXPECT_EQ(kind["shape"], fuzz::shape_name(truth.hulls, analysis::nesting_of(pair, truth))) << key;
     EXPECT_EQ(card["truth"]["verdict"], name(truth.verdict)) << key;
     EXPECT_EQ(card["drawing"]["contact"].empty(), truth.verdict == Verdict::disjoint) << key;
 

@@ -81,10 +81,6 @@ bool returns_bool(const std::filesystem::path& source, const std::string& functi
   return std::regex_search(text.str(), std::regex("\\b(_Bool|bool)\\s+" + function + "\\s*\\("));
 }
 
-std::string function_of(const subjects::Opened& opened) {
-  return opened.function.empty() ? "intersects" : opened.function;
-}
-
 // The flags of the lane's variant and the user's flags, each with a leading space.
 std::string flags_of(const Lane& lane, const subjects::Opened& opened) {
   std::string text;

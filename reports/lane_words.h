@@ -7,10 +7,10 @@
 #include <algorithm>
 
 #include "core/lanes/lanes.h"
+#include "core/wilson.h"
 #include "reports/counts.h"
 #include "reports/findings.h"
 #include "reports/terminal.h"
-#include "reports/wilson.h"
 
 namespace graze::reports {
 
@@ -25,14 +25,21 @@ inline LaneIndices published(const CampaignCounts& counts) {
   return places;
 }
 
-// Whether all of them belong to published algorithms, and none to a user's own code.
+// Whether the subject is a published algorithm, and not a user's own code.
+inline bool is_published(const std::string& subject) {
+  return std::any_of(graze::published_lanes().begin(), graze::published_lanes().end(),
+                     [&](const Lane& lane) { return lane.info->id == subject; });
+}
 inline bool all_published(const CampaignCounts& counts) {
-  const auto of_ours = [](const std::string& subject) {
-    return std::any_of(graze::published_lanes().begin(), graze::published_lanes().end(),
-                       [&](const Lane& lane) { return lane.info->id == subject; });
-  };
   const LaneIndices lanes = published(counts);
-  return std::all_of(lanes.begin(), lanes.end(), [&](std::size_t l) { return of_ours(counts.lanes[l].name.subject); });
+  return std::all_of(lanes.begin(), lanes.end(),
+                     [&](std::size_t l) { return is_published(counts.lanes[l].name.subject); });
+}
+
+// Whether two lanes belong to one family: one algorithm in one precision. Variants do not count here.
+inline bool same_family(const CampaignCounts& counts, std::size_t l, std::size_t r) {
+  return counts.lanes[l].name.subject == counts.lanes[r].name.subject &&
+         counts.lanes[l].name.scalar == counts.lanes[r].name.scalar;
 }
 
 // "12 pairs (1.2 %, 95 % interval 0.7 % to 2.1 %)"

@@ -11,13 +11,13 @@
 #include "analysis/convention.h"
 #include "core/fnv1a.h"
 #include "core/text.h"
+#include "core/wilson.h"
 #include "corpus/pair_format.h"
 #include "fuzz/counts_json.h"
 #include "fuzz/minimise/kinds.h"
 #include "reports/plain_figures.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"
-#include "reports/wilson.h"
 
 namespace graze::reports {
 namespace {

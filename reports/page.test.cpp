@@ -26,7 +26,7 @@ class PageTest : public CampaignTest {};
 const Json kNone = {{"tuned", nullptr}, {"pareto", nullptr}, {"discrepancy", nullptr}};
 
 TEST(Page, KnowsTheOutermostBuckets) {
-  const std::string page = fuzz::read_whole(fs::path(GRAZE_SOURCE_DIR) / "reports/web/src/margins.ts");
+  const std::string page = fuzz::read_whole(fs::path(GRAZE_SOURCE_DIR) / "reports/web/src/margin_chart.ts");
   EXPECT_TRUE(contains(page, fmt::format("kOutermost = [{}, {}];", kBucketLowest, kBucketHighest)));
   EXPECT_TRUE(contains(page, fmt::format("kNearest = {};", kBucketLowest - 1)));
 }
@@ -99,7 +99,7 @@ TEST_F(PageTest, PlainPageIsWellFormedAndShowsEverything) {
   expect_well_formed(text);
   EXPECT_TRUE(contains(text, "a &lt;b&gt; &amp; &quot;c&quot;"));
   EXPECT_TRUE(contains(text, "had no Node"));
-  EXPECT_LT(text.find(" ns a general pair"), text.find("<h2>What was run"));
+  EXPECT_LT(text.find(") a general pair"), text.find("<h2>What was run"));
   EXPECT_EQ(text.find("<script"), std::string::npos);
   EXPECT_EQ(text.find("http"), std::string::npos);
   std::size_t drawings = 0;
@@ -136,12 +136,19 @@ TEST(Page, OfManySignaturesIsUnderTenMebibytes) {
   for (const std::string& lane : wrong_ids) stratum["lanes"][lane]["false_negative"] = (kBucketMost + 1) * kWrong;
   for (int b = -kBucketMost; b <= kBucketMost; ++b) {
     Json& row = stratum["margins"][name_of_bucket(static_cast<Bucket>(b))];
-    row = {{"pairs", kPairs}, {"wrong", Json::object()}};
+    row = {{"pairs", kPairs}, {"wrong", Json::object()}, {"differs_from_cpu", Json::object()}};
+    for (const std::string& lane : ids) {
+      if (b == 0 && fuzz::is_compared_with_cpu(lane, ids)) row["differs_from_cpu"][lane] = 1;
+    }
     for (const std::string& lane : wrong_ids) row["wrong"][lane] = b <= 0 ? kWrong : 0;
   }
   for (std::uint64_t e = 0; e < kExponents; ++e) {
     const auto share = [&](std::uint64_t all) { return all / kExponents + (e < all % kExponents); };
-    Json cell = {{"pairs", share(kBucketCount * kPairs)}, {"wrong", Json::object()}};
+    Json cell = {
+        {"pairs", share(kBucketCount * kPairs)}, {"wrong", Json::object()}, {"differs_from_cpu", Json::object()}};
+    for (const std::string& lane : ids) {
+      if (e == 0 && fuzz::is_compared_with_cpu(lane, ids)) cell["differs_from_cpu"][lane] = 1;
+    }
     for (const std::string& lane : wrong_ids) cell["wrong"][lane] = share((kBucketMost + 1) * kWrong);
     stratum["extremes"]["scale"][std::to_string(4 * static_cast<int>(e) - 152)] = cell;
     stratum["extremes"]["offset"][std::to_string(static_cast<int>(e) - 38)] = cell;

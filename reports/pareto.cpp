@@ -10,6 +10,8 @@
 #include "core/text.h"
 #include "corpus/pair_format.h"
 #include "fuzz/counts_json.h"
+#include "reports/cost_words.h"
+#include "reports/extremes.h"
 #include "reports/findings.h"
 #include "reports/svg.h"
 #include "reports/terminal.h"
@@ -58,16 +60,66 @@ Json cost_json(const Cost& cost) {
 
 Json errors_json(const PolicyErrors& e) {
   Json row = {{"pairs", e.pairs}};
-  row.update(fuzz::counts_json(e));
+  row.update(fuzz::counts_json(e, e.any_foreign()));
   return row;
 }
 
-std::string nanoseconds(double ns) { return fmt::format("{:.{}f}", ns, ns < 1 ? 4 : 1); }
+const char* changed_words(Extreme extreme) {
+  switch (extreme) {
+    case Extreme::scale:
+      return "Scaled by 2^k";
+    case Extreme::offset:
+      return "Moved by 2^k sizes";
+    case Extreme::flatness:
+      return "Flattened by 2^k";
+    case Extreme::aspect:
+      break;
+  }
+  return "Made needles by 2^k";
+}
 
-std::vector<Offer> cheapest_first(std::vector<Offer> offers, Cost Offer::*by = &Offer::near) {
-  std::stable_sort(offers.begin(), offers.end(),
-                   [by](const Offer& l, const Offer& r) { return (l.*by).middle < (r.*by).middle; });
+std::string nanoseconds(double ns) { return fmt::format("{:.{}f}", ns, ns < 1 ? 4 : 1); }
+std::string nanoseconds(const std::optional<Cost>& cost) { return cost ? nanoseconds(cost->middle) : "-"; }
+
+// Lanes without this cost come last.
+std::vector<Offer> cheapest_first(std::vector<Offer> offers, std::optional<Cost> Offer::*by = &Offer::near) {
+  const auto cost = [by](const Offer& offer) { return (offer.*by) ? (offer.*by)->middle : HUGE_VAL; };
+  std::stable_sort(offers.begin(), offers.end(), [&](const Offer& l, const Offer& r) { return cost(l) < cost(r); });
   return offers;
+}
+
+std::vector<Offer> timed(std::vector<Offer> offers) {
+  std::erase_if(offers, [](const Offer& offer) { return !offer.near; });
+  return offers;
+}
+
+// "12 false negatives, 3 crashes and 0 false positives": every kind of error of which there is one.
+std::string errors_in_words(const PolicyErrors& e) {
+  std::string words =
+      fmt::format("{} false negatives, {} false positives", grouped(e.false_negative), grouped(e.false_positive));
+  if (e.failed() > 0) words += fmt::format(", {} crashed, timed out or unstable", grouped(e.failed()));
+  if (e.declined > 0) words += fmt::format(", {} declined", grouped(e.declined));
+  return words + fmt::format(" of {} pairs", grouped(e.pairs));
+}
+
+Json offer_json(const Offer& offer) {
+  return {{"lane", offer.lane},
+          {"errors", errors_json(offer.errors)},
+          {"bound", analysis::upper_bound(offer.errors.not_right(), offer.errors.pairs)},
+          {"failure", offer.failure ? Json(numbers(*offer.failure)) : Json()}};
+}
+
+// Of what the columns of costs are.
+std::string costs_of_table(const Pareto& pareto) {
+  const char* const columns =
+      pareto.on_device ? "`ns a pair` of pairs that are on the device already, `with copies` of pairs in pinned memory"
+                       : "`ns a pair` of calls of 256 pairs in its cache, `from memory` of calls of 2^19 pairs, `one a "
+                         "call` of calls of one";
+  return fmt::format(
+      "Costs are times per pair on {}{}: {}. They are medians of passes over the pairs of this run; pareto.json has "
+      "their "
+      "quartiles.",
+      pareto.on_device ? "" : "one core of ", pareto.machine, columns);
 }
 
 }  // namespace
@@ -80,24 +132,29 @@ std::string pareto_table(const Pareto& pareto, const Screen& screen) {
                                  {"false positives"},
                                  {"declined"},
                                  {"", Align::left}};
+  const bool any_failed =
+      std::any_of(pareto.offers.begin(), pareto.offers.end(), [](const Offer& o) { return o.errors.failed() > 0; });
   const std::vector<Column> more = pareto.on_device ? std::vector<Column>{{"registers"}, {"local bytes"}, {"threads"}}
                                                     : std::vector<Column>{{"one a call", Align::point}};
   columns.insert(columns.begin() + 3, more.begin(), more.end());
+  if (any_failed) columns.insert(columns.end() - 2, {"crashed, timed out or unstable"});
   TextTable table(columns);
   for (const Offer& offer : cheapest_first(pareto.offers)) {
     const PolicyErrors& e = offer.errors;
-    const std::string words = offer.dominated ? "dominated"
+    const std::string words = !offer.near       ? "not timed"
+                              : offer.dominated ? "dominated"
                               : e.share_not_right() == 0
                                   ? "none: under " + rounded_up(analysis::upper_bound(0, e.pairs), 1)
                                   : "front";
     std::vector<Cell> cells = {{offer.lane},
-                               {nanoseconds(offer.near.middle)},
-                               {nanoseconds(offer.far.middle)},
+                               {nanoseconds(offer.near)},
+                               {nanoseconds(offer.far)},
                                {grouped(e.false_negative), e.false_negative > 0},
                                {grouped(e.false_positive), e.false_positive > 0},
                                {grouped(e.declined)},
                                {words}};
-    if (!pareto.on_device) cells.insert(cells.begin() + 3, {nanoseconds(offer.alone.middle)});
+    if (!pareto.on_device) cells.insert(cells.begin() + 3, {nanoseconds(offer.alone)});
+    if (any_failed) cells.insert(cells.end() - 2, {grouped(e.failed()), e.failed() > 0});
     if (offer.needs) {
       const auto cell = [](int n) { return Cell{std::to_string(n)}; };
       cells.insert(cells.begin() + 3,
@@ -111,57 +168,63 @@ std::string pareto_table(const Pareto& pareto, const Screen& screen) {
 std::vector<std::string> pareto_sentences(const Pareto& pareto) {
   std::vector<std::string> result, front;
   for (const Offer& offer : cheapest_first(pareto.offers, &Offer::alone)) {
-    if (!analysis::is_dominated(offer, pareto.offers, &Offer::alone))
-      front.push_back(fmt::format("{} ({} ns)", offer.lane, nanoseconds(offer.alone.middle)));
+    if (offer.alone && !analysis::is_dominated(offer, pareto.offers, &Offer::alone))
+      front.push_back(fmt::format("{} {}", offer.lane, cost_words(*offer.alone)));
   }
-  if (!pareto.on_device) {
+  if (!pareto.on_device && !front.empty()) {
     result.push_back(
         fmt::format("One pair a call, as most programs call such a test, the front is {}. A call of many pairs is "
                     "cheaper for exact lanes, which decide several at a time.",
                     fmt::join(front, ", ")));
   }
-  for (const Extreme extreme : analysis::kExtremes) {
-    std::vector<std::string> lanes;
-    for (const ExtremeCurve& curve : pareto.curves) {
-      if (curve.extreme != extreme) continue;
-      const auto up = curve.right_to(1), down = extreme == Extreme::scale ? curve.right_to(-1) : std::nullopt;
-      if (!up && !down) continue;
-      lanes.push_back(fmt::format("{} {}{}{}", curve.lane, down ? fmt::format("down to 2^{}", *down) : "",
-                                  up && down ? " and " : "", up ? fmt::format("up to 2^{}", *up) : ""));
-    }
-    const std::string_view what = extreme == Extreme::scale      ? "Scaled by 2^k"
-                                  : extreme == Extreme::offset   ? "Offset by 2^k sizes"
-                                  : extreme == Extreme::flatness ? "Flattened by 2^k"
-                                                                 : "Made needles by 2^k";
-    result.push_back(
-        lanes.empty()
-            ? fmt::format(
-                  "{}: in the measured range, no lane's share of errors exceeds both 0.1 % and twice that at 2^0.",
-                  what)
-            : fmt::format(
-                  "{}, before the share of errors exceeds both 0.1 % and twice that at 2^0: {}; the others over the "
-                  "whole measured range.",
-                  what, fmt::join(lanes, "; ")));
+  result.push_back(costs_of_table(pareto));
+  std::vector<std::string> names;
+  std::vector<analysis::Cost> near;
+  for (const Offer& offer : timed(pareto.offers)) {
+    names.push_back(offer.lane);
+    near.push_back(*offer.near);
+  }
+  if (const std::string noisy = noisy_sentence(names, near); !noisy.empty()) result.push_back(noisy);
+  for (const Offer& offer : pareto.offers) {
+    if (!offer.near)
+      result.push_back(fmt::format("{}: {}. Not timed, because {}.", offer.lane, errors_in_words(offer.errors),
+                                   offer.why_not_timed));
   }
   return result;
 }
 
-Json pareto_json(const Pareto& pareto) {
-  Json rows = Json::array(), extremes = Json::array();
-  for (const Offer& offer : cheapest_first(pareto.offers)) {
-    rows.push_back({{"lane", offer.lane},
-                    {"errors", errors_json(offer.errors)},
-                    {"bound", analysis::upper_bound(offer.errors.not_right(), offer.errors.pairs)},
-                    {pareto.on_device ? "resident" : "in_cache", cost_json(offer.near)},
-                    {pareto.on_device ? "with_copies" : "from_memory", cost_json(offer.far)},
-                    {"dominated", offer.dominated},
-                    {"failure", offer.failure ? Json(numbers(*offer.failure)) : Json()}});
-    if (!pareto.on_device) rows.back()["one_a_call"] = cost_json(offer.alone);
-    if (offer.needs) {
-      rows.back()["registers"] = offer.needs->registers;
-      rows.back()["local_bytes"] = offer.needs->local_bytes;
-      rows.back()["active_threads"] = offer.needs->active_threads;
+std::string extremes_text(const Pareto& pareto, const Screen& screen) {
+  std::string text = wrapped(kAsRightMeans, screen.columns);
+  for (const Offer& offer : pareto.offers) {
+    text += offer.lane + '\n';
+    for (const ExtremeCurve& curve : pareto.curves) {
+      if (curve.lane != offer.lane) continue;
+      text += wrapped(fmt::format("{}: {}.", changed_words(curve.extreme), right_words(curve.errors(), 0)),
+                      screen.columns, 2, 4);
     }
+  }
+  return text;
+}
+
+Json pareto_json(const Pareto& pareto) {
+  Json rows = Json::array(), not_timed = Json::array(), extremes = Json::array();
+  for (const Offer& offer : cheapest_first(pareto.offers)) {
+    Json row = offer_json(offer);
+    if (!offer.near) {
+      row["why"] = offer.why_not_timed;
+      not_timed.push_back(std::move(row));
+      continue;
+    }
+    row[pareto.on_device ? "resident" : "in_cache"] = cost_json(*offer.near);
+    row[pareto.on_device ? "with_copies" : "from_memory"] = cost_json(*offer.far);
+    if (offer.alone) row["one_a_call"] = cost_json(*offer.alone);
+    row["dominated"] = offer.dominated;
+    if (offer.needs) {
+      row["registers"] = offer.needs->registers;
+      row["local_bytes"] = offer.needs->local_bytes;
+      row["active_threads"] = offer.needs->active_threads;
+    }
+    rows.push_back(std::move(row));
   }
   for (const ExtremeCurve& curve : pareto.curves) {
     Json points = Json::array();
@@ -170,21 +233,25 @@ Json pareto_json(const Pareto& pareto) {
       point.update(errors_json(e));
       points.push_back(std::move(point));
     }
-    extremes.push_back({{"lane", curve.lane}, {"extreme", name(curve.extreme)}, {"points", std::move(points)}});
+    extremes.push_back({{"lane", curve.lane},
+                        {"extreme", name(curve.extreme)},
+                        {"says", right_words(curve.errors(), 0)},
+                        {"points", std::move(points)}});
   }
-  return {{"machine", pareto.machine},
-          {"lanes", std::move(rows)},
-          {"extremes", std::move(extremes)},
-          {"sentences", pareto_sentences(pareto)}};
+  Json json = {{"machine", pareto.machine}, {"lanes", std::move(rows)}};
+  if (!not_timed.empty()) json["not_timed"] = std::move(not_timed);
+  json["extremes"] = std::move(extremes);
+  json["sentences"] = pareto_sentences(pareto);
+  return json;
 }
 
 std::string pareto_figure(const Pareto& pareto) {
   std::string svg = begin("Share of pairs without a right verdict, against nanoseconds a pair on " +
                           (pareto.on_device ? pareto.machine : "one core"));
   double low = 1e300, high = 0;
-  for (const Offer& offer : pareto.offers) {
-    low = std::min(low, offer.near.middle);
-    high = std::max(high, offer.near.middle);
+  for (const Offer& offer : timed(pareto.offers)) {
+    low = std::min(low, offer.near->middle);
+    high = std::max(high, offer.near->middle);
   }
   low = std::log10(low) - 0.1;
   high = std::max(std::log10(high) + 0.35, low + 0.5);
@@ -199,14 +266,14 @@ std::string pareto_figure(const Pareto& pareto) {
   svg += svg_text((kLeft + kRight) / 2, 396, "middle",
                   fmt::format("nanoseconds a pair, pairs {}", pareto.on_device ? "on the device" : "in cache"));
   std::string front;
-  for (const Offer& offer : cheapest_first(pareto.offers)) {
-    const double x = x_of(offer.near.middle), y = y_of(offer.errors.share_not_right());
+  for (const Offer& offer : cheapest_first(timed(pareto.offers))) {
+    const double x = x_of(offer.near->middle), y = y_of(offer.errors.share_not_right());
     const char* colour = offer.dominated ? "#999" : "#d55e00";
     svg += fmt::format(
         "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"><title>{}: {} ns, {} of {} "
         "pairs</title></circle>\n",
-        x, y, offer.dominated ? 3 : 5, colour, offer.lane, nanoseconds(offer.near.middle),
-        grouped(offer.errors.not_right()), grouped(offer.errors.pairs));
+        x, y, offer.dominated ? 3 : 5, colour, offer.lane, nanoseconds(offer.near), grouped(offer.errors.not_right()),
+        grouped(offer.errors.pairs));
     if (offer.dominated) continue;
     front += fmt::format("{:.1f},{:.1f} ", x, y);
     svg += svg_text(x + 8, y - 6, "start", offer.lane, " fill=\"#d55e00\"");

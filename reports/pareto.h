@@ -14,9 +14,11 @@ namespace graze::reports {
 // Returns a row for each lane, the cheapest first; dominated lanes are marked.
 std::string pareto_table(const analysis::Pareto& pareto, const Screen& screen);
 
-// Says which lanes are on the front if each call decides one pair, then how far each lane stays right: one sentence for
-// each extreme.
+// Says which lanes are on the front if each call decides one pair. Nothing on a device.
 std::vector<std::string> pareto_sentences(const analysis::Pareto& pareto);
+
+// Says for each lane and extreme how far the lane stays as right as on ordinary pairs.
+std::string extremes_text(const analysis::Pareto& pareto, const Screen& screen);
 
 nlohmann::ordered_json pareto_json(const analysis::Pareto& pareto);
 

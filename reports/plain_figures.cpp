@@ -120,7 +120,7 @@ Json drawing_of(const Pair& pair) {
   return {{"contact", points(oracle::common_set(pair))}, {"planes_line", points(oracle::planes_line(pair))}};
 }
 
-std::string margin_chart(const Json& row) {
+std::string margin_chart(const Json& row, const char* what) {
   constexpr double kWidth = 320, kHeight = 110, kBase = 90, kTop = 8;
   constexpr int kMost = 1 - kBucketLowest;  // exponents on each side of zero
   static_assert(kBucketHighest < kMost);
@@ -130,11 +130,11 @@ std::string margin_chart(const Json& row) {
     return kWidth / 2 + (point.at("side") == "disjoint" ? from_zero : -from_zero);
   };
   std::string svg = fmt::format(
-      "<svg viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" aria-label=\"share wrong against the "
-      "margin\"><path d=\"M0 {2}H{0}M{3} {4}V{2}\" stroke=\"currentColor\" stroke-opacity=\"0.4\"/>",
+      "<svg viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" aria-label=\"share against the margin\">"
+      "<path d=\"M0 {2}H{0}M{3} {4}V{2}\" stroke=\"currentColor\" stroke-opacity=\"0.4\"/>",
       kWidth, kHeight, kBase, kWidth / 2, kTop);
   for (const Json& point : row.at("points")) {
-    const double share = point.at("wrong").at("share"), x = x_of(point), y = kBase - (kBase - kTop) * share;
+    const double share = point.at(what).at("share"), x = x_of(point), y = kBase - (kBase - kTop) * share;
     svg +=
         fmt::format("<path d=\"M{0:.1f} {1:.1f}V{2:.1f}\" stroke=\"{3}\" stroke-width=\"1.8\"/>", x, kBase,
                     share > 0 ? std::min(y, kBase - 1) : kBase, point.at("side") == "disjoint" ? "#0072b2" : "#d55e00");

@@ -21,8 +21,9 @@ std::string page_head(const std::string& title, const std::string& style);
 nlohmann::ordered_json coordinates_of(const Pair& pair);
 nlohmann::ordered_json drawing_of(const Pair& pair);
 
-// The share of wrong verdicts against the margin, for one row of the report's `margins`.
-std::string margin_chart(const nlohmann::ordered_json& row);
+// A share against the margin, for one row of the report's `margins`: that of verdicts that are "wrong", or that the
+// lane "differs" in from its cpu lane.
+std::string margin_chart(const nlohmann::ordered_json& row, const char* share);
 
 // An isometric drawing of one of the report's cards: both triangles, the contact and the line of both planes.
 std::string pair_drawing(const nlohmann::ordered_json& card);

@@ -2,10 +2,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <climits>
+#include <cmath>
+#include <optional>
 
+#include "reports/changed_verdicts.h"
+#include "reports/extremes.h"
 #include "reports/findings.h"
 #include "reports/page.h"
 #include "reports/plain_figures.h"
+#include "reports/recorded_code.h"
 #include "reports/terminal.h"
 
 namespace graze::reports {
@@ -37,7 +43,6 @@ std::string answer_section(const Json& report, const Json& costs) {
   for (const Json& sentence : costs.is_null() ? report.at("answer") : costs.at("answer"))
     text += "<li>" + html(sentence) + "</li>\n";
   text += "</ol>\n";
-  if (!costs.is_null()) text += paragraph("Costs were measured on " + costs.at("machine").get<std::string>() + ".");
   text += paragraph(
       "This build had no Node, or no npm packages, so the page lacks its interactive parts: sorting, filters, views "
       "that turn, "
@@ -56,6 +61,8 @@ std::string run_section(const Json& report) {
       run.at("build").at("cuda").is_null() ? "no nvcc" : run.at("build").at("cuda").get<std::string>(),
       run.at("build").at("device").is_null() ? "no device" : run.at("build").at("device").get<std::string>()));
   if (!run.at("machine").is_null()) text += paragraph("Machine: " + run.at("machine").get<std::string>());
+  for (const Json& subject : run.value("subjects", Json::array()))
+    text += paragraph("Code of " + subject.at("name").get<std::string>() + ": " + code_words(subject));
   return text + "<pre>" + html(run.at("command")) + "</pre>\n";
 }
 
@@ -103,27 +110,91 @@ std::string margin_section(const Json& report) {
     const auto lane = row.at("lane").get<std::size_t>();
     text += fmt::format(
         "<figure>{}<figcaption>{}<br/>no error seen, disjoint: {}<br/>intersecting: {}</figcaption></figure>\n",
-        margin_chart(row), html(report.at("lanes").at(lane).at("id")), threshold_words(report, lane, "disjoint"),
-        threshold_words(report, lane, "intersects"));
+        margin_chart(row, "wrong"), html(report.at("lanes").at(lane).at("id")),
+        threshold_words(report, lane, "disjoint"), threshold_words(report, lane, "intersects"));
   }
   return text;
 }
 
-std::string extremes_section(const Json& report) {
+// "up to 2^3 ulps apart", for the largest margin on that side at which verdicts differ; empty if none does.
+std::string farthest_words(const Json& row, const char* side, const char* words) {
+  std::optional<int> most;
+  for (const Json& point : row.at("points")) {
+    if (point.at("side") != side || point.at("differs").at("count") == 0) continue;
+    most = std::max(most.value_or(INT_MIN), point.at("exponent").get<int>() + 1);
+  }
+  return most ? fmt::format(", up to 2^{} ulps {}", *most, words) : "";
+}
+
+std::string differs_section(const Json& report) {
+  std::string figures, equal;
+  for (const Json& row : report.at("margins")) {
+    const std::string lane = html(report.at("lanes").at(row.at("lane").get<std::size_t>()).at("id"));
+    std::uint64_t differs = 0, compared = 0;
+    for (const Json& point : row.at("points")) {
+      if (!point.contains("differs")) continue;
+      differs += point.at("differs").at("count").get<std::uint64_t>();
+      ++compared;
+    }
+    if (compared == 0) continue;
+    if (differs == 0) {
+      equal += (equal.empty() ? "" : ", ") + lane;
+      continue;
+    }
+    figures += fmt::format("<figure>{}<figcaption>{}: {}{}{}</figcaption></figure>\n", margin_chart(row, "differs"),
+                           lane, counted(differs, "pair"), farthest_words(row, "disjoint", "apart"),
+                           farthest_words(row, "intersects", "deep"));
+  }
+  if (figures.empty() && equal.empty()) return "";
+  return "<h2>Share of verdicts unlike the cpu lane's, against the exact margin</h2>\n" + figures +
+         (equal.empty() ? "" : "<p>On every pair like the cpu lane: " + equal + ".</p>\n");
+}
+
+// A cell that is darker the more often the lane errs there than at the origin.
+std::string times_cell(const Json& cell) {
+  const Json& share = cell.at("wrong");
+  if (!cell.contains("times")) return fmt::format("<td class=\"number\">0</td>");
+  const Json& times = cell.at("times");
+  const bool at_least = times.at(0).is_null();
+  const double shown = times.at(at_least ? 1 : 0);
+  return fmt::format(
+      "<td class=\"number\" style=\"background: rgba(213, 94, 0, {:.3f})\" title=\"{} of {}, {}; {} to {} times\">{}"
+      "</td>",
+      0.75 * std::clamp(std::log2(std::max(shown, 1.0)) / 5, 0.0, 1.0), grouped(share.at("count")),
+      grouped(share.at("of")), rate_words(share.at("share")), times.at(1).dump(),
+      times.at(2).is_null() ? "?" : times.at(2).dump(), fmt::format("{}{:.3g}", at_least ? "≥ " : "", shown));
+}
+
+// How far lanes stay right by flatness and aspect: pareto.json has it.
+std::string shapes_section(const Json& pareto) {
+  if (pareto.is_null())
+    return "<p>How far lanes stay right on flat triangles and needles: <code>graze pareto --out DIR</code> with this "
+           "campaign's folder, then <code>graze report DIR</code>.</p>\n";
+  std::string text = "<ul>\n";
+  for (const Json& row : pareto.at("extremes")) {
+    text += fmt::format("<li>{}, {}: {}</li>\n", html(row.at("lane")), html(row.at("extreme")), html(row.at("says")));
+  }
+  return "<h2>Scale, offset, flatness and needles, by graze pareto</h2>\n" + text + "</ul>\n";
+}
+
+std::string extremes_section(const Json& report, const Json& pareto) {
   std::string text;
   for (const Json& row : report.at("extremes")) {
     const std::string kind = row.at("kind");
     if (text.find("<h2>Wrong verdicts over " + kind) == std::string::npos) {
-      text += (text.empty() ? "" : "</table></div>\n") + fmt::format("<h2>Wrong verdicts over {}</h2>\n", kind) +
-              "<div class=\"wide\"><table>\n<tr><th>lane</th>";
+      text += (text.empty() ? "" : "</table></div>\n") +
+              fmt::format("<h2>Wrong verdicts over {}, as multiples of those at {}</h2>\n<p>{}</p>\n", kind,
+                          row.at("origin").is_null() ? "2^0" : "2^" + row.at("origin").dump(), kAsRightMeans) +
+              "<div class=\"wide\"><table>\n<tr><th>lane</th><th>the lane is</th>";
       for (const Json& cell : row.at("cells")) text += "<th>2^" + cell.at("exponent").dump() + "</th>";
       text += "</tr>\n";
     }
     text += "<tr><th>" + html(report.at("lanes").at(row.at("lane").get<std::size_t>()).at("id")) + "</th>";
-    for (const Json& cell : row.at("cells")) text += share_cell(cell.at("wrong"));
+    text += "<td>" + html(row.at("says")) + "</td>";
+    for (const Json& cell : row.at("cells")) text += times_cell(cell);
     text += "</tr>\n";
   }
-  return text.empty() ? "" : text + "</table></div>\n";
+  return (text.empty() ? "" : text + "</table></div>\n") + shapes_section(pareto);
 }
 
 std::string card(const Json& report, const Json& found) {
@@ -169,9 +240,12 @@ std::string signature_section(const Json& report) {
 
 std::string compare_section(const Json& compare) {
   if (compare.is_null()) return "";
-  std::string text =
-      "<h2>What has changed</h2>\n<p>Since commit " + html(compare.at("other").at("build").at("commit")) + ": " +
-      html(compare.at("headline")) + " Rates that changed:</p>\n" +
+  std::string text = "<h2>What has changed</h2>\n<p>Since commit " +
+                     html(compare.at("other").at("build").at("commit")) + ": " + html(compare.at("headline")) +
+                     "</p>\n";
+  for (const std::string& sentence : changed_sentences(compare)) text += paragraph(sentence);
+  text +=
+      "<p>Rates that changed:</p>\n"
       "<div "
       "class=\"wide\"><table>\n<tr><th>lane</th><th>stratum</th><th>before</th><th>after</th><th>changed</th></tr>\n";
   for (const Json& row : compare.at("rates")) {
@@ -223,8 +297,8 @@ coplanar, margin, algorithm, and a mark for each of its lanes: + false positive,
 std::string plain_page(const Json& report, const Json& costs, const Json& choices) {
   return page_head("Graze: discrepancy report", kStyle) + answer_section(report, costs) +
          compare_section(report.at("compare")) + choices_section(choices) + league(report) + margin_section(report) +
-         extremes_section(report) + signature_section(report) + kDefinitions + run_section(report) +
-         "</body>\n</html>\n";
+         differs_section(report) + extremes_section(report, choices.at("pareto")) + signature_section(report) +
+         kDefinitions + run_section(report) + "</body>\n</html>\n";
 }
 
 }  // namespace graze::reports

@@ -18,13 +18,15 @@
 #include "core/margin/bucket.h"
 #include "core/pair.h"
 #include "core/text.h"
+#include "core/wilson.h"
 #include "fuzz/campaign/lane_costs.h"
 #include "fuzz/counts_json.h"
+#include "reports/changed_verdicts.h"
+#include "reports/extremes.h"
 #include "reports/failure_cards.h"
 #include "reports/shapes.h"
 #include "reports/tables.h"
 #include "reports/tuning.h"
-#include "reports/wilson.h"
 
 namespace graze::reports {
 namespace {
@@ -111,6 +113,29 @@ void expect_possible_rates(const Json& report) {
   }
 }
 
+// Checks that the lane's differences from cpu by margin are those of its rates.
+void expect_differences(const Json& report, const Json& row) {
+  for (const Json& rate : report.at("rates")) {
+    if (rate.at("lane") != row.at("lane") || rate.at("stratum") != row.at("stratum")) continue;
+    const Json& differs = rate.at("differs_from_cpu");
+    std::uint64_t sum = 0;
+    for (const Json& point : row.at("points")) {
+      expect(point.contains("differs") != differs.is_null(), "differences from cpu at all margins or at none", point);
+      if (differs.is_null()) continue;
+      expect(point["differs"].at("of") == point.at("wrong").at("of"), "differences of the pairs at this margin", point);
+      sum += point["differs"].at("count").get<std::uint64_t>();
+    }
+    expect(differs.is_null() || differs.at("count") == sum, fmt::format("{} verdicts that differ from cpu", sum), rate);
+  }
+}
+
+// Checks that the origin, the ratios and the words of an extreme follow from its cells.
+void expect_extremes(const Json& row) {
+  Json again = row;
+  add_right_range(again);
+  expect(again == row, "the ratios and words that follow from its cells", row);
+}
+
 // Checks the counts by margin, scale and offset.
 void expect_possible_curves(const Json& report) {
   const auto pairs_of = [](const Json& cells) {
@@ -121,10 +146,12 @@ void expect_possible_curves(const Json& report) {
   for (const Json& row : report.at("margins")) {
     const std::uint64_t pairs = drawn_of(report, row.at("stratum")).pairs;
     expect(pairs_of(row.at("points")) == pairs, fmt::format("points of {} pairs", pairs), row);
+    expect_differences(report, row);
   }
   for (const Json& row : report.at("extremes")) {
     const std::uint64_t pairs = drawn_of(report, nullptr).pairs;
     expect(pairs_of(row.at("cells")) <= pairs, fmt::format("cells of at most {} pairs", pairs), row);
+    expect_extremes(row);
   }
   for (const Json& row : report.at("thresholds")) {
     const Drawn of = drawn_of(report, row.at("stratum"), row.at("group"));
@@ -268,7 +295,8 @@ Enumeration among(const std::string_view (&names)[kCount], const Json& name) {
 void expect_choice(const Json& tuned) {
   const auto forbid = among<analysis::Forbid>(kTuneForbids, tuned.at("forbid"));
   const double max_rate = tuned.at("max_rate");
-  const std::string chosen = tuned.at("chosen") == "zero" ? "" : tuned["chosen"].get<std::string>();
+  const std::string without(tuned.contains("epsilon") ? kAsItIs : kZero);
+  const std::string chosen = tuned.at("chosen") == without ? "" : tuned["chosen"].get<std::string>();
   const analysis::PolicyErrors confirmed = errors_of(tuned.at("confirmed")), zero = errors_of(tuned.at("zero"));
   expect(confirmed.policy == chosen, "errors of the policy that was chosen", tuned["confirmed"]);
   std::optional<analysis::PolicyErrors> chosen_on;
@@ -307,8 +335,11 @@ void expect_choice(const Json& tuned) {
 void expect_costs_of_kind(const Json& row, bool on_device) {
   for (const char* field : {"resident", "with_copies", "registers", "local_bytes", "active_threads"})
     expect(row.contains(field) == on_device, fmt::format("{} for either all lanes or none", field), row);
-  for (const char* field : {"in_cache", "from_memory", "one_a_call"})
+  for (const char* field : {"in_cache", "from_memory"})
     expect(row.contains(field) != on_device, fmt::format("{} for either all lanes or none", field), row);
+  // A user's code may take only blocks of pairs.
+  const Lane* lane = find_lane(row.at("lane").get<std::string>());
+  expect(on_device || !lane || lane->foreign || row.contains("one_a_call"), "the cost of a call of one pair", row);
 }
 
 // Rounding of costs keeps their order but may make them equal.
@@ -340,6 +371,7 @@ void expect_possible_report(const Json& report) {
   expect_possible_rates(report);
   expect_possible_curves(report);
   expect_possible_failures(report);
+  if (!report.at("compare").is_null()) expect_possible_changes(report["compare"].value("verdicts", Json()), all);
 }
 
 void expect_possible_costs(const Json& costs, const Json& report) {
@@ -386,15 +418,19 @@ void expect_possible_pareto(const Json& pareto) {
   const Json& lanes = pareto.at("lanes");
   const std::uint64_t pairs = pareto.at("pairs");
   std::set<std::string> ids;
-  for (const Json& row : lanes) {
+  const auto expect_row = [&](const Json& row) {
     const std::string lane = row.at("lane");
     expect_lane(row["lane"]);
     expect(ids.insert(lane).second, "each lane once", row);
     const Json& errors = row.at("errors");
     expect(errors.at("pairs") == pairs, fmt::format("errors on {} pairs", pairs), row);
     expect_upper_bound(row.at("bound"), fuzz::counts_of(errors).not_right(), pairs);
+  };
+  for (const Json& row : lanes) {
+    expect_row(row);
     expect_costs_of_kind(row, lanes[0].contains("resident"));
   }
+  for (const Json& row : pareto.value("not_timed", Json::array())) expect_row(row);
   for (const Json& row : lanes) expect_domination(row, lanes);
   std::set<std::pair<std::string, std::string>> curves;
   for (const Json& row : pareto.at("extremes")) {
@@ -404,11 +440,14 @@ void expect_possible_pareto(const Json& pareto) {
                     [&](analysis::Extreme extreme) { return name(extreme) == row.at("extreme").get<std::string>(); }),
         "an extreme", row["extreme"]);
     expect(curves.emplace(row["lane"], row["extreme"]).second, "each extreme of a lane once", row["extreme"]);
-    std::set<int> exponents;
-    for (const Json& point : row.at("points"))
-      expect(exponents.insert(point.at("log2").get<int>()).second && point.at("pairs") <= pairs &&
+    std::vector<analysis::ErrorsAt> points;
+    for (const Json& point : row.at("points")) {
+      expect((points.empty() || point.at("log2") > points.back().exponent) && point.at("pairs") <= pairs &&
                  point["pairs"] == row["points"][0]["pairs"],
              fmt::format("one point for each exponent, each with the same number of pairs, at most {}", pairs), point);
+      points.push_back({point["log2"], fuzz::counts_of(point).not_right(), point["pairs"]});
+    }
+    expect(row.at("says") == right_words(points, 0), "the words that follow from its points", row["says"]);
   }
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "reports/cost_words.h"
+
 namespace graze::reports {
 namespace {
 
@@ -34,11 +36,7 @@ std::optional<Cost> cost_of(const Costs* costs, std::size_t lane, const std::vec
   return costs ? costs->of(lane, strata) : std::nullopt;
 }
 
-std::string nanoseconds(double value) { return fmt::format("{:.{}f}", value, value < 10 ? 1 : 0); }
-
-std::string with_spread(const Cost& cost) {
-  return fmt::format("{} ns ({} to {})", nanoseconds(cost.middle), nanoseconds(cost.low), nanoseconds(cost.high));
-}
+std::string words(const Cost& cost) { return cost_words({cost.low, cost.middle, cost.high}); }
 
 // The cheapest lane on these strata; -1 if none was timed.
 int cheapest(const Costs* costs, const LaneIndices& among, const std::vector<std::size_t>& strata) {
@@ -65,7 +63,7 @@ std::string over_all_strata(const CampaignCounts& counts, const Costs* costs, co
   const std::vector<std::size_t> all = counts.drawn();
   const std::optional<Cost> own = cost_of(costs, exact, all), others = cost_of(costs, other, all);
   if (ground.strata == all || !own || !others) return "";
-  return fmt::format("; over all strata {} ns against {}", nanoseconds(own->middle), nanoseconds(others->middle));
+  return fmt::format("; over all strata {} against {}", words(*own), words(*others));
 }
 
 // The cost of exactness, as the end of a sentence.
@@ -78,30 +76,24 @@ std::string price(const CampaignCounts& counts, const Costs* costs, const LaneIn
   const Cost cost = *costs->of(lane, ground.strata);
   const int fastest = cheapest(costs, published(counts), ground.strata);
   const std::string which = exact.size() > 1 ? counts.lanes[lane].id + " at" : "at";
-  if (fastest < 0) return fmt::format(", {} {} {}.", which, with_spread(cost), ground.pair);
+  if (fastest < 0) return fmt::format(", {} {} {}.", which, words(cost), ground.pair);
   const auto other = static_cast<std::size_t>(fastest);
   const Cost others = *costs->of(other, ground.strata);
   const std::string& id = counts.lanes[other].id;
   const std::string everywhere = over_all_strata(counts, costs, ground, lane, other);
   if (cost.below(others)) {
-    return fmt::format(", {} {} ns {} against {} for the fastest published lane, {}{}.", which,
-                       nanoseconds(cost.middle), ground.pair, nanoseconds(others.middle), id, everywhere);
+    return fmt::format(", {} {} {} against {} for the fastest published lane, {}{}.", which, words(cost), ground.pair,
+                       words(others), id, everywhere);
   }
   if (!others.below(cost)) {
     return fmt::format(
         ", {} {} {}. Whether the fastest published lane, {} at {}, is cheaper is not settled: their spreads "
         "overlap{}.",
-        which, with_spread(cost), ground.pair, id, with_spread(others), everywhere);
+        which, words(cost), ground.pair, id, words(others), everywhere);
   }
-  return fmt::format(", {} {} ns {}. The fastest published lane, {}, takes {}{}; it is wrong on {} of all pairs.",
-                     which, nanoseconds(cost.middle), ground.pair, id, nanoseconds(others.middle), everywhere,
+  return fmt::format(", {} {} {}. The fastest published lane, {}, takes {}{}; it is wrong on {} of all pairs.", which,
+                     words(cost), ground.pair, id, words(others), everywhere,
                      rate_words(wrong_share(counts, other).share));
-}
-
-// Whether two lanes belong to one family: one algorithm in one precision. Variants do not count here.
-bool same_family(const CampaignCounts& counts, std::size_t l, std::size_t r) {
-  return counts.lanes[l].name.subject == counts.lanes[r].name.subject &&
-         counts.lanes[l].name.scalar == counts.lanes[r].name.scalar;
 }
 
 // The best lane, by `better`, of the other families; -1 for none.
@@ -133,8 +125,8 @@ std::string at_cost(const CampaignCounts& counts, const Costs* costs, const Lane
   const int lane = cheapest(costs, lanes, ground.strata);
   if (lane < 0) return "";
   const auto place = static_cast<std::size_t>(lane);
-  return fmt::format(", {}at {} ns {}", lanes.size() == 1 ? "" : counts.lanes[place].id + " ",
-                     nanoseconds(costs->of(place, ground.strata)->middle), ground.pair);
+  return fmt::format(", {}at {} {}", lanes.size() == 1 ? "" : counts.lanes[place].id + " ",
+                     words(*costs->of(place, ground.strata)), ground.pair);
 }
 
 // "; bound declines 1,200 pairs", for each lane that declines some pairs.
@@ -194,8 +186,8 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
       *std::min_element(lanes.begin(), lanes.end(), [&](auto l, auto r) { return wrong(l) < wrong(r); });
   const std::optional<Cost> better = cost_of(costs, least, ground.strata);
   if (own && better && better->below(*own)) {
-    text += fmt::format(". {} is both less often wrong and cheaper, {} ns {} against {}", counts.lanes[least].id,
-                        nanoseconds(better->middle), ground.pair, nanoseconds(own->middle));
+    text += fmt::format(". {} is both less often wrong and cheaper, {} {} against {}", counts.lanes[least].id,
+                        words(*better), ground.pair, words(*own));
   }
   return {text + "."};
 }

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/message_testing.h"
+#include "reports/cost_words.h"
+
 namespace graze::reports {
 namespace {
 
@@ -47,18 +50,20 @@ TEST(Recommendations, TheExactLaneIsCheaperOnlyWhereSpreadsAreApart) {
   const Costs cheaper = costs_with({{38, 300}, {60, 62}, {80, 82}});
   EXPECT_EQ(
       lane_to_use(counts, &cheaper).text,
-      "Use exact/f32/cpu: right on all 20,000 pairs, at 38 ns a general pair against 60 for the fastest published "
-      "lane, moller_1997/f32/cpu; over all strata 169 ns against 61.");
+      "Use exact/f32/cpu: right on all 20,000 pairs, at 38 ns (37 to 39) a general pair against 60 ns (59 to 61) for "
+      "the fastest published lane, moller_1997/f32/cpu; over all strata 169 ns (168 to 170) against 61 ns (60 to 62).");
   const Costs dearer = costs_with({{100, 300}, {60, 62}, {80, 82}});
-  EXPECT_EQ(lane_to_use(counts, &dearer).text,
-            "Use exact/f32/cpu: right on all 20,000 pairs, at 100 ns a general pair. The fastest published lane, "
-            "moller_1997/f32/cpu, takes 60; over all strata 200 ns against 61; it is wrong on 9 % of all pairs.");
+  EXPECT_EQ(
+      lane_to_use(counts, &dearer).text,
+      "Use exact/f32/cpu: right on all 20,000 pairs, at 100 ns (99 to 101) a general pair. The fastest published "
+      "lane, moller_1997/f32/cpu, takes 60 ns (59 to 61); over all strata 200 ns (199 to 201) against 61 ns (60 to "
+      "62); it is wrong on 9 % of all pairs.");
   const Costs near = costs_with({{59, 300}, {60, 62}, {80, 82}});
   EXPECT_EQ(
       lane_to_use(counts, &near).text,
       "Use exact/f32/cpu: right on all 20,000 pairs, at 59 ns (58 to 60) a general pair. Whether the fastest "
       "published lane, moller_1997/f32/cpu at 60 ns (59 to 61), is cheaper is not settled: their spreads overlap; "
-      "over all strata 180 ns against 61.");
+      "over all strata 180 ns (178 to 180) against 61 ns (60 to 62).");
 }
 
 TEST(Recommendations, CostsThatAreNotMeasuredAreNotSettled) {
@@ -94,8 +99,8 @@ TEST(Recommendations, TheWorstLaneIsAvoidedWhereIntervalsAreApart) {
   const Costs dear = costs_with({{38, 300}, {90, 62}, {80, 82}});
   EXPECT_EQ(lane_to_avoid(counts, &dear).text,
             avoid +
-                ". separating_axes/f64/cpu is both less often wrong and cheaper, 80 ns a general "
-                "pair against 90.");
+                ". separating_axes/f64/cpu is both less often wrong and cheaper, 80 ns (79 to 81) a general "
+                "pair against 90 ns (89 to 91).");
   const Costs near = costs_with({{38, 300}, {81, 62}, {80, 82}});
   EXPECT_EQ(lane_to_avoid(counts, &near).text, avoid + ".");
   EXPECT_EQ(
@@ -116,11 +121,36 @@ TEST(Recommendations, TheLeastWrongLaneIsNamedWithItsCost) {
   EXPECT_EQ(
       least_wrong_lane(counts, &costs).text,
       "Of the 2 published lanes the least wrong is separating_axes/f64/cpu: on 200 (1 %, 95 % interval 0.871 % to "
-      "1.15 %) of 20,000 pairs, at 80 ns a general pair.");
+      "1.15 %) of 20,000 pairs, at 80 ns (79 to 81) a general pair.");
   EXPECT_TRUE(
       least_wrong_lane(counts_with({{"moller_1997/f32/cpu", 110}, {"separating_axes/f64/cpu", 100}}), nullptr)
           .text.starts_with(
               "Which published lane is least wrong is not settled: the 95 % intervals of separating_axes/f64/cpu"));
+}
+
+TEST(Costs, HaveOneFormWithTheirSpread) {
+  EXPECT_EQ(cost_words({20.9, 22.1, 24.4}), "22 ns (21 to 24)");
+  EXPECT_EQ(cost_words({4.0, 4.14, 4.96}), "4.1 ns (4.0 to 5.0)");
+  EXPECT_EQ(cost_words({0.0203, 0.0204, 0.0204}), "0.0204 ns (0.0203 to 0.0204)");
+  EXPECT_EQ(cost_words({205, 284, 1289}), "284 ns (205 to 1,289; noisy)");
+  const std::vector<std::string> of_calls = {"mine", "exact"};
+  const std::vector<analysis::Cost> calm = {{40, 41, 43}, {72, 73, 75}}, one_noisy = {{40, 41, 43}, {72, 73, 175}};
+  EXPECT_EQ(one_call_sentence(of_calls, calm, "256 pairs", "a machine", 101),
+            "A call of one pair takes 41 ns (40 to 43) in mine, 73 ns (72 to 75) in exact: median and quartiles "
+            "of 101 passes over 256 pairs, on one core of a machine.");
+  EXPECT_TRUE(names(one_call_sentence(of_calls, one_noisy, "256 pairs", "a machine", 101),
+                    {"73 ns (72 to 175; noisy)", "a machine."}));
+  EXPECT_FALSE(is_noisy({90, 100, 115}));
+  EXPECT_TRUE(is_noisy({90, 100, 115.1}));
+  const std::vector<std::string> lanes = {"a", "b", "c"};
+  const std::vector<analysis::Cost> costs = {{1, 2, 3}, {10, 10, 11}, {5, 8, 8}};
+  EXPECT_TRUE(
+      names(noisy_sentence(lanes, costs), {"a 2.0 ns (1.0 to 3.0; noisy)", "c 8.0 ns (5.0 to 8.0; noisy)", "idle"}));
+  EXPECT_EQ(noisy_sentence({&lanes[1], 1}, {&costs[1], 1}), "");
+  for (const auto calls : {analysis::Calls::of_blocks, analysis::Calls::of_one})
+    EXPECT_TRUE(names(costs_sentence(calls, "the first 1,024 pairs of each stratum", "a machine", 9),
+                      {"one core of a machine", "9 passes", "1,024 pairs of each stratum", "quartiles", "noisy",
+                       calls == analysis::Calls::of_one ? "one pair a call" : "many pairs a call"}));
 }
 
 TEST(Costs, AreThoseOfTheLastTimedRunAndCountPairs) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/text.h"
 #include "reports/discrepancy_reading.h"
 
 namespace graze::reports {
@@ -11,21 +12,32 @@ using Json = nlohmann::ordered_json;
 
 Json code_json(const Json& recorded) {
   Json code;
-  for (const Json& row : recorded)
+  for (const Json& row : recorded) {
     code.push_back({{"name", row.at("name")}, {"what", row.at("what")}, {"hash", row.at("hash")}});
+    for (const char* key : {"source_hash", "compiler", "flags", "environment"}) {
+      if (row.contains(key) && !row[key].empty()) code.back()[key] = row[key];
+    }
+  }
   return code;
+}
+
+std::string code_words(const Json& of) {
+  std::string text = fmt::format("{} (hash {}", text_at(of, "what"), text_at(of, "hash"));
+  if (of.contains("compiler")) text += ", by " + text_at(of, "compiler");
+  const Json flags = of.value("flags", Json::array()), environment = of.value("environment", Json::object());
+  for (const Json& flag : flags) text += ' ' + printable(flag.get<std::string>());
+  for (const auto& [name, value] : environment.items())
+    text += fmt::format(", {}={}", printable(name), printable(value.get<std::string>()));
+  return text + ')';
 }
 
 std::vector<std::string> code_differences(const Json& before, const Json& after) {
   std::vector<std::string> sentences;
-  const auto words = [](const Json& of) {
-    return fmt::format("{} (hash {})", text_at(of, "what"), text_at(of, "hash"));
-  };
   for (const Json& old : before.value("subjects", Json::array())) {
     for (const Json& now : after.value("subjects", Json::array())) {
       if (old.at("name") == now.at("name") && old.at("hash") != now.at("hash"))
         sentences.push_back(fmt::format("They differ in the code of {}: {} before, {} after.", text_at(old, "name"),
-                                        words(old), words(now)));
+                                        code_words(old), code_words(now)));
     }
   }
   return sentences;

@@ -12,7 +12,9 @@
 #include "core/error.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/checked_summary.h"
+#include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/minimise/kinds.h"
 #include "fuzz/sealed.h"
 #include "reports/costs.h"
 #include "reports/discrepancy_answer.h"
@@ -46,7 +48,7 @@ Json run_of(const std::filesystem::path& directory, const Json& summary, const C
   Json run = {{"seed", counts.seed},
               {"pairs", counts.pairs},
               {"complete", counts.complete},
-              {"command", campaign_command(summary)},
+              {"command", fuzz::command_of(summary.at("spec"), {}, "campaign", summary)},
               {"map_command", "graze report campaign"},
               {"build", build},
               {"scene", summary.at("spec").contains("scene") ? summary["spec"]["scene"].at("name") : Json()},
@@ -129,7 +131,7 @@ Json make_report(const std::filesystem::path& directory) {
                    {"run", run_of(directory, summary, counts)},
                    {"strata", strata_of(counts, summary.at("spec"))},
                    {"lanes", lanes_of(summary, counts)},
-                   {"answer", answer(counts, nullptr)},
+                   {"answer", answer(counts, nullptr, fuzz::read_kinds(directory))},
                    {"groups", groups(counts)},
                    {"rates", rates(counts)},
                    {"group_rates", group_rates(counts)},
@@ -174,7 +176,8 @@ Json make_costs(const std::filesystem::path& directory) {
   const CampaignCounts counts = counts_of(fuzz::checked_summary(directory));
   Json made;
   checked(directory / "timings.json", "a campaign's timings", [&] {
-    if (const std::optional<Costs> costs = read_costs(directory, counts)) made = to_json(*costs, counts);
+    if (const std::optional<Costs> costs = read_costs(directory, counts))
+      made = to_json(*costs, counts, fuzz::read_kinds(directory));
   });
   return made;
 }

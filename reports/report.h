@@ -20,9 +20,6 @@ nlohmann::ordered_json make_costs(const std::filesystem::path& directory);
 // Throws: FormatError for a file of another shape or with impossible counts.
 nlohmann::ordered_json make_choices(const std::filesystem::path& directory);
 
-// The command that runs the whole campaign again.   Requires: the contents of summary.json.
-std::string campaign_command(const nlohmann::ordered_json& summary);
-
 // The report as text with each row on its own line, so that two reports can be compared.
 std::string report_text(const nlohmann::ordered_json& report);
 

@@ -19,7 +19,7 @@ TEST(Snippet, HoldsTheAlgorithmsOwnSource) {
   for (const Lane& lane : published_lanes()) {
     const std::string id(lane.info->id), source = amalgamated_source(id);
     EXPECT_EQ(source.find("#include \""), source.npos) << id;
-    std::ifstream in(std::string(GRAZE_SOURCE_DIR) + "/core/algorithms/" + id + ".h", std::ios::binary);
+    std::ifstream in(std::filesystem::path(GRAZE_SOURCE_DIR) / "core/algorithms" / (id + ".h"), std::ios::binary);
     const std::string header{std::istreambuf_iterator<char>(in), {}};
     const std::size_t body = header.find("namespace graze {");
     ASSERT_NE(body, header.npos) << id;

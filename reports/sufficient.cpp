@@ -6,14 +6,13 @@
 #include <algorithm>
 
 #include "core/text.h"
+#include "reports/cost_words.h"
 #include "reports/terminal.h"
 
 namespace graze::reports {
 namespace {
 
 bool cheaper(const analysis::Cost& one, const analysis::Cost& other) { return one.high < other.low; }
-
-std::string cost_words(const analysis::Cost& cost) { return fmt::format("{:.0f} ns", cost.middle); }
 
 // "at 95 % confidence wrong on under 0.0004 of the pairs (3 of 100,000 fresh ones)"
 std::string errors_words(const Candidate& c) {
@@ -52,15 +51,14 @@ int cheapest_sufficient(std::span<const Candidate> candidates, std::optional<Sca
 std::vector<std::string> sufficient_sentences(double rate, std::span<const Candidate> candidates,
                                               const std::string& exact, const analysis::Cost& exact_cost) {
   const std::string asked = fmt::format("Wrong on at most {} of this scene's pairs: ", rate);
-  const std::string exact_words =
-      fmt::format("{}, never wrong, {} a pair on one core here", exact, cost_words(exact_cost));
+  const std::string exact_words = fmt::format("{}, never wrong, {} a pair", exact, cost_words(exact_cost));
   const int best = cheapest_sufficient(candidates);
   if (best < 0) return {fmt::format("{}use {}.", asked, exact_words), none_words(candidates, std::nullopt)};
   const Candidate& c = candidates[static_cast<std::size_t>(best)];
   const std::string lane_words = fmt::format("{}, {}, {}", c.lane, errors_words(c), cost_words(c.cost));
   std::vector<std::string> sentences;
   if (cheaper(c.cost, exact_cost)) {
-    sentences = {fmt::format("{}use {} a pair on one core here.", asked, lane_words),
+    sentences = {fmt::format("{}use {} a pair.", asked, lane_words),
                  fmt::format("{} is never wrong and takes {}.", exact, cost_words(exact_cost))};
   } else {
     sentences = {fmt::format("{}use {}.", asked, exact_words),

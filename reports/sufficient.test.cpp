@@ -36,19 +36,19 @@ TEST(Sufficient, ACheaperLaneIsRecommendedWithItsBound) {
       sufficient_sentences(1e-3, kThree, "exact/f32/cpu", {58, 60, 62}),
       (std::vector<std::string>{
           "Wrong on at most 0.001 of this scene's pairs: use c/f64/cpu, at 95 % confidence wrong on under 3e-05 of "
-          "the pairs (0 of 100,000 fresh ones), 30 ns a pair on one core here.",
-          "exact/f32/cpu is never wrong and takes 60 ns.",
+          "the pairs (0 of 100,000 fresh ones), 30 ns (29 to 31) a pair.",
+          "exact/f32/cpu is never wrong and takes 60 ns (58 to 62).",
           "In f32 the cheapest that suffices is b/f32/cpu/rel:1: at 95 % confidence wrong on under 6.3e-05 of the "
-          "pairs (2 of 100,000 fresh ones), 40 ns."}));
+          "pairs (2 of 100,000 fresh ones), 40 ns (39 to 41)."}));
 }
 
 TEST(Sufficient, ExactIsRecommendedWhereNothingIsCheaper) {
-  EXPECT_EQ(
-      sufficient_sentences(1e-3, kThree, "exact/f32/cpu", {17, 18, 19})[0],
-      "Wrong on at most 0.001 of this scene's pairs: use exact/f32/cpu, never wrong, 18 ns a pair on one core here.");
-  EXPECT_TRUE(sufficient_sentences(1e-3, kThree, "exact/f32/cpu", {17, 18, 19})[1].ends_with(", and dearer at 30 ns."));
+  EXPECT_EQ(sufficient_sentences(1e-3, kThree, "exact/f32/cpu", {17, 18, 19})[0],
+            "Wrong on at most 0.001 of this scene's pairs: use exact/f32/cpu, never wrong, 18 ns (17 to 19) a pair.");
+  EXPECT_TRUE(sufficient_sentences(1e-3, kThree, "exact/f32/cpu", {17, 18, 19})[1].ends_with(
+      ", and dearer at 30 ns (29 to 31)."));
   EXPECT_TRUE(sufficient_sentences(1e-3, kThree, "exact/f32/cpu", {20, 29.5, 31})[1].ends_with(
-      ", at 30 ns no cheaper beyond the spread of the measurements."));
+      ", at 30 ns (29 to 31) no cheaper beyond the spread of the measurements."));
 }
 
 TEST(Sufficient, TheLeastWrongIsNamedWhereNoneSuffices) {

@@ -5,6 +5,7 @@
 
 #include "core/text.h"
 #include "fuzz/counts_json.h"
+#include "reports/extremes.h"
 
 namespace graze::reports {
 
@@ -108,6 +109,8 @@ Json margins(const CampaignCounts& counts) {
       points.push_back({{"side", side_of(bucket)},
                         {"exponent", bucket == 0 ? Json() : Json(exponent_of(bucket))},
                         {"wrong", to_json(share_of(found.wrong[l], found.pairs))}});
+      if (counts.lanes[l].cpu >= 0)
+        points.back()["differs"] = to_json(share_of(found.differs_from_cpu[l], found.pairs));
     }
     rows.push_back({{"lane", l}, {"stratum", nullptr}, {"points", std::move(points)}});
   }
@@ -174,7 +177,9 @@ Json extremes(const CampaignCounts& counts) {
         if (found.pairs != 0)
           row["cells"].push_back({{"exponent", exponent}, {"wrong", to_json(share_of(found.wrong[l], found.pairs))}});
       }
-      if (!row["cells"].empty()) rows.push_back(std::move(row));
+      if (row["cells"].empty()) continue;
+      add_right_range(row);
+      rows.push_back(std::move(row));
     }
   }
   return rows;

@@ -5,8 +5,8 @@
 
 #include <optional>
 
+#include "core/wilson.h"
 #include "reports/counts.h"
-#include "reports/wilson.h"
 
 namespace graze::reports {
 

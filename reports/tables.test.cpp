@@ -5,11 +5,11 @@
 #include <random>
 #include <set>
 
+#include "core/wilson.h"
 #include "reports/agreement.h"
 #include "reports/findings.h"
 #include "reports/test_campaign.h"
 #include "reports/tuning.h"
-#include "reports/wilson.h"
 #include "strata/groups.h"
 
 namespace graze::reports {
@@ -124,7 +124,8 @@ Json threshold_of(const CampaignCounts& counts, const std::string& group, const 
 TEST(Tables, ThresholdIsWhereErrorsEnd) {
   Json summary = summary_of({"moller_1997/f32/cpu"}, {"uniform", "degenerate"}, {});
   const auto bucket = [&](const char* stratum, const char* name, int pairs, int wrong) {
-    summary["strata"][stratum]["margins"][name] = {{"pairs", pairs}, {"wrong", Json::object()}};
+    summary["strata"][stratum]["margins"][name] = {
+        {"pairs", pairs}, {"wrong", Json::object()}, {"differs_from_cpu", Json::object()}};
     if (wrong) summary["strata"][stratum]["margins"][name]["wrong"]["moller_1997/f32/cpu"] = wrong;
   };
   bucket("uniform", "+2^-3", 10, 0);
@@ -171,10 +172,29 @@ TEST(Tables, GroupsHoldEveryStratumOnceAndAddUp) {
   EXPECT_EQ(group_rates(counts).size(), 4u);
 }
 
+// A lane has its differences from cpu at each margin, as shares of the pairs there; the cpu lane itself has none.
+TEST(Tables, DifferencesFromCpuAreCountedByMargin) {
+  const std::string fused = "moller_1997/f32/cuda-fma";
+  Json summary = summary_of({"moller_1997/f32/cpu", fused}, {"uniform", "thesis"}, {0, 0, 0, 0, 0, 0, 0, 5});
+  for (const char* stratum : {"uniform", "thesis"}) {
+    summary["strata"][stratum]["margins"]["+2^3"] = {
+        {"pairs", 600}, {"wrong", Json::object()}, {"differs_from_cpu", {{fused, 1}}}};
+    summary["strata"][stratum]["margins"]["0"] = {
+        {"pairs", 400}, {"wrong", Json::object()}, {"differs_from_cpu", {{fused, 4}}}};
+  }
+  const Json rows = margins(counts_of(summary));
+  ASSERT_EQ(rows.size(), 2u);
+  for (const Json& point : rows[0]["points"]) EXPECT_FALSE(point.contains("differs"));
+  EXPECT_EQ(rows[1]["points"][0]["side"], "zero");
+  EXPECT_EQ(rows[1]["points"][0]["differs"], to_json(share_of(8, 800)));
+  EXPECT_EQ(rows[1]["points"][1]["differs"], to_json(share_of(2, 1200)));
+}
+
 TEST(Tables, ExtremesOfAllStrataAddUp) {
   Json summary = summary_of({"moller_1997/f32/cpu"}, {"extreme_scale", "mixed_scale"}, {});
   for (const char* stratum : {"extreme_scale", "mixed_scale"})
-    summary["strata"][stratum]["extremes"]["scale"]["-152"] = {{"pairs", 10}, {"wrong", {{"moller_1997/f32/cpu", 2}}}};
+    summary["strata"][stratum]["extremes"]["scale"]["-152"] = {
+        {"pairs", 10}, {"wrong", {{"moller_1997/f32/cpu", 2}}}, {"differs_from_cpu", Json::object()}};
   const Json rows = extremes(counts_of(summary));
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0]["cells"][0]["exponent"], -152);

@@ -45,11 +45,18 @@ std::string tolerance_figure(std::string_view title, std::string_view heading,
     svg += svg_level(64, 880, y);
     svg += svg_text(56, y + 4, "end", power == -7 ? "none" : power == 0 ? "all" : fmt::format("1e{}", power));
   }
-  for (const analysis::CurveOf<Point>& curve : curves) {
+  const auto of_all = [&](bool relative) {
+    return std::any_of(curves.begin(), curves.end(), [&](const analysis::CurveOf<Point>& curve) {
+      return curve.site.empty() && curve.relative == relative && !curve.points.empty();
+    });
+  };
+  const bool both = of_all(true) && of_all(false);
+  for (analysis::CurveOf<Point> curve : curves) {
+    std::erase_if(curve.points, [](const Point& p) { return analysis::tolerance_of(p.policy) == 0; });  // no logarithm
     if (!curve.site.empty() || curve.points.empty()) continue;
     const double low = std::log2(analysis::tolerance_of(curve.points.front().policy)),
                  high = std::log2(analysis::tolerance_of(curve.points.back().policy));
-    const Frame frame = curve.relative ? Frame{64, 460, low, high} : Frame{484, 880, low, high};
+    const Frame frame{both && !curve.relative ? 484.0 : 64.0, both && curve.relative ? 460.0 : 880.0, low, high};
     for (const ToleranceLine<Point>& line : lines) {
       std::string points;
       for (const Point& point : curve.points)
@@ -72,8 +79,9 @@ std::string tolerance_figure(std::string_view title, std::string_view heading,
                                    : "middle",
                       fmt::format("{}:{:.2g}", curve.relative ? "rel" : "abs", std::exp2(at)));
   }
-  svg += svg_text(262, 396, "middle", "K, in machine epsilons times the quantity’s size");
-  svg += svg_text(682, 396, "middle", "E, in the quantity’s own unit");
+  if (of_all(true))
+    svg += svg_text(both ? 262 : 472, 396, "middle", "K, in machine epsilons times the quantity’s size");
+  if (of_all(false)) svg += svg_text(both ? 682 : 472, 396, "middle", "E, in the quantity’s own unit");
   svg += svg_text(64, 18, "start", heading);
   double x = 64;
   for (const ToleranceLine<Point>& line : lines) {

@@ -32,7 +32,28 @@ std::string_view other_words(Forbid forbid) {
   return words(forbid == Forbid::false_negative ? Forbid::false_positive : Forbid::false_negative);
 }
 
-std::string policy_words(const std::string& policy) { return policy.empty() ? "no policy" : policy; }
+// "rel:24"; of a user's epsilon "kEps = 3.05e-05f" or, if it has no name, "3.05e-05f for 1e-6f".
+std::string policy_words(const TuneQuestion& q, const std::string& policy) {
+  if (!q.source) return policy.empty() ? "no policy" : policy;
+  const subjects::Epsilon& e = q.source->epsilon;
+  const bool named = e.name != e.written;
+  const std::string name = printable(e.name), written = printable(e.written);
+  if (policy.empty()) return named ? fmt::format("{} as it is, {}", name, written) : written + " as it is";
+  const std::string value = subjects::written_value(e, analysis::tolerance_of(policy));
+  return named ? fmt::format("{} = {}", name, value) : fmt::format("{} for {}", value, written);
+}
+
+// "kEps = 3.05e-05f at mine.cpp:9 (now 1e-6f)"
+std::string choice_words(const TuneQuestion& q, const std::string& policy) {
+  const std::string words = policy_words(q, policy);
+  if (!q.source) return words;
+  const subjects::Epsilon& e = q.source->epsilon;
+  return fmt::format("{} at {}{}", words, subjects::places_in_words(q.source->file, e),
+                     policy.empty() || e.name == e.written ? "" : fmt::format(" (now {})", printable(e.written)));
+}
+
+// The subject of "helps here": "No tolerance", "No value".
+std::string_view setting(const TuneQuestion& q) { return q.source ? "value" : "tolerance"; }
 
 std::string rate(std::uint64_t count, std::uint64_t of) {
   return rate_words(of == 0 ? 0 : static_cast<double>(count) / static_cast<double>(of));
@@ -43,13 +64,14 @@ std::string errors(const PolicyErrors& e) {
   const auto part = [&](std::uint64_t count, std::string_view what) {
     return fmt::format("{} {}{}", grouped(count), what, count == 0 ? "" : fmt::format(" ({})", rate(count, e.pairs)));
   };
-  return fmt::format("{} and {} of {} pairs", part(e.false_negative, "false negatives"),
+  const std::string failed = e.failed() == 0 ? "" : ", " + part(e.failed(), "crashed, timed out or unstable");
+  return fmt::format("{}{} and {} of {} pairs", part(e.false_negative, "false negatives"), failed,
                      part(e.false_positive, "false positives"), grouped(e.pairs));
 }
 
 std::string answer(const TuneQuestion& q, const Tuned& t) {
   const std::string of =
-      fmt::format("{}: on pairs other than those it was chosen on, {}", policy_words(t.chosen), errors(t.confirmed));
+      fmt::format("{}: on pairs other than those it was chosen on, {}", choice_words(q, t.chosen), errors(t.confirmed));
   std::string trust = fmt::format("at 95 % confidence {} are under {}", words(q.forbid), rounded_up(t.bound, 2));
   if (q.forbid != Forbid::any)
     trust += fmt::format(", {} under {}", other_words(q.forbid), rounded_up(t.other_bound, 2));
@@ -73,26 +95,43 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
           of, words(q.forbid), q.max_rate);
     case TuneResult::not_useful:
       return fmt::format(
-          "No tolerance helps here: of those that keep {0} at or under {1}, none has fewer {2} than {3}; {4}. The rate "
+          "No {6} helps here: of those that keep {0} at or under {1}, none has fewer {2} than {3}; {4}. The rate "
           "of {2} may be at most {5} (--max-other). The exact lane has no errors.",
-          words(q.forbid), q.max_rate, other_words(q.forbid), of, trust, q.max_other);
+          words(q.forbid), q.max_rate, other_words(q.forbid), of, trust, q.max_other, setting(q));
     case TuneResult::not_satisfiable:
       break;
   }
   return fmt::format(
-      "No tolerance helps here: none of {} keeps {} at or under {}. On the pairs of the choice none had fewer than {}. "
-      "The exact lane has no errors.",
-      q.lane, words(q.forbid), q.max_rate, of);
+      "No {} helps here: {} keeps {} at or under {}. On the pairs of the choice none had fewer than {}. The exact lane "
+      "has no errors.",
+      setting(q), q.source ? "no value of " + printable(q.source->epsilon.name) : "none of " + q.lane, words(q.forbid),
+      q.max_rate, of);
 }
 
 std::string power(int k) { return k > 0 ? fmt::format("grow by 2^{}", k) : fmt::format("shrink by 2^{}", -k); }
 
 Json errors_json(const PolicyErrors& e) {
   Json row = {{"policy", e.policy}, {"pairs", e.pairs}};
-  row.update(fuzz::counts_json(e));
+  row.update(fuzz::counts_json(e, e.any_foreign()));
   row["fixed"] = e.fixed;
   row["broken"] = e.broken;
   return row;
+}
+
+Json epsilon_json(const TuneQuestion& q, const Tuned& tuned) {
+  const subjects::Epsilon& e = q.source->epsilon;
+  Json lines = Json::array();
+  for (const subjects::SourcePlace& place : e.places) lines.push_back(place.line);
+  const auto text = [](const std::string& raw) { return printable(raw); };
+  Json json = {{"name", text(e.name)},
+               {"written", text(e.written)},
+               {"file", text(q.source->file.string())},
+               {"lines", lines},
+               {"chosen", tuned.chosen.empty() ? text(e.written)
+                                               : subjects::written_value(e, analysis::tolerance_of(tuned.chosen))}};
+  if (e.value) json["value"] = *e.value;
+  if (!q.units.empty()) json["units"] = text(q.units);
+  return json;
 }
 
 }  // namespace
@@ -100,11 +139,22 @@ Json errors_json(const PolicyErrors& e) {
 std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tuned& tuned) {
   std::vector<std::string> result = {answer(question, tuned)};
   if (!tuned.chosen.empty()) {
-    result.push_back(fmt::format("Without a policy the same pairs show {}.", errors(tuned.zero_confirmed)));
+    result.push_back(fmt::format("{} the same pairs show {}.",
+                                 question.source ? "With " + policy_words(question, "") + "," : "Without a policy",
+                                 errors(tuned.zero_confirmed)));
     const PolicyErrors& e = tuned.confirmed;
-    result.push_back(fmt::format("Relocation: {} fixes {} of these pairs and breaks {} others.", tuned.chosen,
-                                 grouped(e.fixed), grouped(e.broken)));
+    result.push_back(fmt::format("Relocation: {} fixes {} of these pairs and breaks {} others.",
+                                 policy_words(question, tuned.chosen), grouped(e.fixed), grouped(e.broken)));
+    if (question.source && !question.units.empty()) {
+      const double value = analysis::tolerance_of(tuned.chosen);
+      result.push_back(fmt::format("Units: if {0} bounds a distance, its value is {1:g} {2}; if an area, {1:g} {2}^2.",
+                                   printable(question.source->epsilon.name), value, printable(question.units)));
+    }
   }
+  const auto changes_nothing = [](const PolicyErrors& point) { return point.changes_nothing(); };
+  if (question.source && std::all_of(tuned.curves[0].points.begin(), tuned.curves[0].points.end(), changes_nothing))
+    result.push_back(
+        fmt::format("Dead knob: no value of {} changes any verdict here.", printable(question.source->epsilon.name)));
   for (const std::string& site : tuned.dead)
     result.push_back(fmt::format("Dead knob: at {} no tolerance changes any verdict here.", site));
   const analysis::ScaleBreak& scale = tuned.scale;
@@ -125,17 +175,20 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
 }
 
 std::string tuning_table(const TuneQuestion& question, const Tuned& tuned, const Screen& screen) {
-  TextTable table({{"tolerance", Align::left}, {"fixes"}, {"breaks"}, {"false negatives"}, {"false positives"}});
+  TextTable table(
+      {{std::string(setting(question)), Align::left}, {"fixes"}, {"breaks"}, {"false negatives"}, {"false positives"}});
   const auto add = [&](const PolicyErrors& e) {
-    table.add({e.policy.empty() ? "none" : e.policy, grouped(e.fixed), grouped(e.broken), grouped(e.false_negative),
-               grouped(e.false_positive)});
+    const bool none = e.policy.empty() && !question.source;
+    table.add({none ? "none" : policy_words(question, e.policy), grouped(e.fixed), grouped(e.broken),
+               grouped(e.false_negative), grouped(e.false_positive)});
   };
   add(tuned.zero);
   for (const PolicyErrors* best : analysis::best_of_curves(tuned.curves, question.forbid, question.max_rate)) {
     if (!best->changes_nothing()) add(*best);
   }
-  return fmt::format("The best tolerance of each kind and site, on the {} pairs of the choice:\n{}",
-                     grouped(tuned.zero.pairs), table.text(screen));
+  return fmt::format("The best {}, on the {} pairs of the choice:\n{}",
+                     question.source ? "value" : "tolerance of each kind and site", grouped(tuned.zero.pairs),
+                     table.text(screen));
 }
 
 Json tuning_json(const TuneQuestion& question, const Tuned& tuned) {
@@ -143,7 +196,7 @@ Json tuning_json(const TuneQuestion& question, const Tuned& tuned) {
                {"forbid", kTuneForbids[static_cast<int>(question.forbid)]},
                {"max_rate", question.max_rate},
                {"max_other", question.max_other},
-               {"chosen", tuned.chosen.empty() ? "zero" : tuned.chosen},
+               {"chosen", tuned.chosen.empty() ? std::string(question.source ? kAsItIs : kZero) : tuned.chosen},
                {"result", kTuneResults[static_cast<int>(tuned.result)]},
                {"bound", tuned.bound},
                {"other_bound", tuned.other_bound},
@@ -155,6 +208,7 @@ Json tuning_json(const TuneQuestion& question, const Tuned& tuned) {
                {"zero", errors_json(tuned.zero)},
                {"curves", Json::array()},
                {"sentences", tuning_sentences(question, tuned)}};
+  if (question.source) json["epsilon"] = epsilon_json(question, tuned);
   if (tuned.scale.up)
     json["scale_break"]["up"] = {{"log2", tuned.scale.up}, {"errors", errors_json(tuned.scale.at_up)}};
   if (tuned.scale.down)
@@ -176,7 +230,10 @@ Json tuning_json(const TuneQuestion& question, const Tuned& tuned) {
 std::string tuning_figure(const TuneQuestion& question, const Tuned& tuned) {
   return tolerance_figure(
       fmt::format("Errors of {} against its tolerance", question.lane),
-      fmt::format("Share of wrong verdicts of {} against its tolerance at all sites; dashed: chosen", question.lane),
+      question.source ? fmt::format("Share of wrong verdicts of {} against the value of {}; dashed: chosen",
+                                    question.lane, printable(question.source->epsilon.name))
+                      : fmt::format("Share of wrong verdicts of {} against its tolerance at all sites; dashed: chosen",
+                                    question.lane),
       tuned.curves, tuned.chosen,
       {{"#0072b2", "false negatives", [](const PolicyErrors& e) { return e.false_negative; }},
        {"#d55e00", "false positives", [](const PolicyErrors& e) { return e.false_positive; }}});

@@ -10,6 +10,7 @@
 
 #include "analysis/tuning.h"
 #include "reports/screen.h"
+#include "subjects/rebuilt.h"
 
 namespace graze::reports {
 
@@ -18,11 +19,16 @@ inline constexpr std::string_view kTuneForbids[] = {"false_negative", "false_pos
                                   kTuneResults[] = {"satisfied", "too few pairs", "not confirmed", "not satisfiable",
                                                     "not useful"};
 
+// How tune.json names the choice that changes nothing: no tolerance, or the epsilon of a user's source as it is.
+inline constexpr std::string_view kZero = "zero", kAsItIs = "as it is";
+
 // The tuned lane, and the goal of the tuning.
 struct TuneQuestion {
   std::string lane;
   analysis::Forbid forbid = analysis::Forbid::any;
   double max_rate = 0, max_other = 0;
+  const subjects::TunableSource* source = nullptr;  // of a user's code: what has the epsilon
+  std::string units = {};                           // of the scene's coordinates; empty without a scene
 };
 
 // Each sentence starts with its topic. Every number in it belongs to the pairs that the sentence names.

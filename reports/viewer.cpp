@@ -95,8 +95,12 @@ Json viewer_checks() { return has_viewer() ? Json({{"evidence", evidence()}, {"r
 
 std::string viewer_page(const Viewed& viewed) {
   Json pairs = Json::array(), triangles = Json::array();
-  for (const ViewedPair& one : viewed.pairs)
+  for (const ViewedPair& one : viewed.pairs) {
     pairs.push_back({{"name", one.name}, {"bits", bits_of(coordinates(one.pair), kCoordinates)}});
+    for (const SaidOfPair& said : one.said)
+      pairs.back()["said"].push_back(
+          {{"lane", said.lane}, {"verdict", name(said.verdict)}, {"wrong", said.wrong}, {"stored", said.stored}});
+  }
   for (const auto& triangle : viewed.triangles) triangles.push_back(bits_of(&triangle[0].x, 9));
   Json data = {{"format", 1},
                {"title", viewed.title},
@@ -106,6 +110,7 @@ std::string viewer_page(const Viewed& viewed) {
                          : viewed.opens_with_triangles ? "triangles"
                                                        : "pair"}};
   if (!viewed.ids.empty()) data["ids"] = viewed.ids;
+  if (!viewed.lanes_left_out.is_null()) data["lanes_left_out"] = viewed.lanes_left_out;
   if (viewed.random > 0) data["random"] = viewed.random;
   data.update(viewer_checks());
   return with_data(kTemplate, "view", data);

@@ -8,22 +8,33 @@
 #include <vector>
 
 #include "core/pair.h"
+#include "core/verdict.h"
 
 namespace graze::reports {
+
+// What a lane of a user's code says of a pair. The page cannot run such code, so it shows this.
+struct SaidOfPair {
+  std::string lane;
+  Verdict verdict;
+  bool wrong;
+  bool stored = false;  // by the campaign, whose code is not there any more
+};
 
 struct ViewedPair {
   std::string name;
   Pair pair;
+  std::vector<SaidOfPair> said = {};
 };
 
 struct Viewed {
   std::string title;              // of the list of pairs
   std::vector<ViewedPair> pairs;  // empty: the special cases of 2012
   std::vector<std::array<Vec3<float>, 3>>
-      triangles;                      // of a mesh or a query, to be seen against the first triangle of a pair
-  std::vector<std::size_t> ids;       // of these triangles; empty: they are numbered as they come
-  bool opens_with_triangles = false;  // show all triangles at once instead of a pair
-  std::size_t random = 0;             // not 0: show so many random triangles of 2012 first
+      triangles;                          // of a mesh or a query, to be seen against the first triangle of a pair
+  std::vector<std::size_t> ids;           // of these triangles; empty: they are numbered as they come
+  bool opens_with_triangles = false;      // show all triangles at once instead of a pair
+  nlohmann::ordered_json lanes_left_out;  // of a user's code, with the reasons; null for none
+  std::size_t random = 0;                 // not 0: show so many random triangles of 2012 first
 };
 
 // Limits of the page's size.

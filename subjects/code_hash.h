@@ -53,6 +53,7 @@ struct Built {
   std::filesystem::path file;                 // named by the hash of what it was made of
   std::string not_covered;                    // what else it was made of, in words
   std::shared_ptr<const SealedCopy> content;  // of the file, as it was built or verified
+  std::string compiler = {};                  // the first line of its --version
 };
 
 CodeHash hash_of_builds(const std::vector<Built>& built);

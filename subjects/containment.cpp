@@ -94,13 +94,13 @@ bool hide_terminals(const std::vector<std::string>& others) {
   });
 }
 
-// The mount points of control groups, from the system's list of mounts, which writes spaces and similar as \040.
-std::vector<std::string> control_groups() {
+// The mount points of file systems whose type begins with this, from the system's list of mounts, which writes spaces
+// and similar as \040.
+std::vector<std::string> mount_points(const std::string& type_begins) {
   std::vector<std::string> found;
   std::ifstream in("/proc/self/mountinfo");
   for (std::string line; std::getline(in, line);) {
-    const std::size_t type = line.find(" - cgroup");  // and cgroup2
-    if (type == line.npos) continue;
+    if (line.find(" - " + type_begins) == line.npos) continue;
     std::istringstream words(line);
     std::string skipped, written, place;
     words >> skipped >> skipped >> skipped >> skipped >> written;
@@ -117,7 +117,7 @@ std::vector<std::string> control_groups() {
 // In the new namespace: root, or a user who owns some of the groups, could use them to freeze the supervisor or take
 // its memory and processor.
 bool hide_control_groups() {
-  for (const std::string& place : control_groups()) {
+  for (const std::string& place : mount_points("cgroup")) {  // and cgroup2
     // A mount on top of a shared mount, as in a chroot, would be visible outside.
     if (mount("none", place.c_str(), nullptr, MS_PRIVATE, nullptr) != 0 &&
         (errno == ENOENT || errno == EINVAL || errno == EACCES))
@@ -128,24 +128,38 @@ bool hide_control_groups() {
   return true;
 }
 
+// Makes a mount of this namespace read-only. It keeps the mount's other flags, which a user may not remove.
+bool make_mount_read_only(const char* place) {
+  struct statvfs now {};
+  if (statvfs(place, &now) != 0) return false;
+  unsigned long flags = MS_BIND | MS_REMOUNT | MS_RDONLY;
+  if (now.f_flag & ST_NOSUID) flags |= MS_NOSUID;
+  if (now.f_flag & ST_NODEV) flags |= MS_NODEV;
+  if (now.f_flag & ST_NOEXEC) flags |= MS_NOEXEC;
+  return mount("none", place, nullptr, flags, nullptr) == 0;
+}
+
+// In the new namespace: files there would be memory that no limit counts. Devices stay as they are.
+void make_memory_of_the_system_read_only() {
+  for (const char* type : {"tmpfs", "devtmpfs", "ramfs"}) {
+    for (const std::string& place : mount_points(type)) {
+      if (place == "/dev" || place.starts_with("/sys/")) make_mount_read_only(place.c_str());
+    }
+  }
+}
+
 // In the new namespace: makes the folder read-only. Not in a chroot, where the mount would be visible outside.
 void make_read_only(const std::string& given) {
   std::error_code none;
   const std::string folder = fs::canonical(given, none), here = fs::current_path(none);
   const char* at = folder.c_str();
-  struct statvfs now {};
-  if (folder.empty() || statvfs(at, &now) != 0 || mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0)
-    return;
-  unsigned long flags = MS_BIND | MS_REMOUNT | MS_RDONLY;  // plus the mount's flags, which a user may not remove
-  if (now.f_flag & ST_NOSUID) flags |= MS_NOSUID;
-  if (now.f_flag & ST_NODEV) flags |= MS_NODEV;
-  if (now.f_flag & ST_NOEXEC) flags |= MS_NOEXEC;
+  if (folder.empty() || mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0) return;
   // Folders on which something is mounted can be neither renamed nor removed.
   for (std::size_t end = folder.find('/', 1); end != folder.npos; end = folder.find('/', end + 1)) {
     const std::string above = folder.substr(0, end);
     mount(above.c_str(), above.c_str(), nullptr, MS_BIND | MS_REC, nullptr);
   }
-  if (mount(at, at, nullptr, MS_BIND, nullptr) == 0) mount("none", at, nullptr, flags, nullptr);
+  if (mount(at, at, nullptr, MS_BIND, nullptr) == 0) make_mount_read_only(at);
   fs::current_path(here, none);  // otherwise it lies below these mounts
 }
 
@@ -238,6 +252,7 @@ bool enter_containment(bool namespaces, std::uint64_t shared_bytes, int control,
                          limit_shared_memory(shared_bytes) && hide_terminals(terminals) && hide_control_groups();
       if (!ready || write(answer[1], "y", 1) != 1) _exit(0);
       make_read_only(read_only);
+      make_memory_of_the_system_read_only();
       const bool limited = limit_system_v(shared_bytes);
       limit_tasks();
       close(answer[1]);
@@ -320,10 +335,11 @@ namespace {
 // The numbers of these calls in one table of system calls. A filter only sees numbers and arguments, so calls with
 // their arguments in memory are not listed.
 struct Calls {
-  std::uint32_t prlimit, clone, clone3;
-  // memfd_create, memfd_secret, io_uring_setup: memory that no limit counts. bpf, perf_event_open: these reach other
-  // processes. unshare, setns: new namespaces.
-  std::array<std::uint32_t, 7> forbidden;
+  std::uint32_t prlimit, clone, clone3, prctl;
+  // memfd_create, memfd_secret, io_uring_setup: memory that no limit counts. vmsplice: a page of 4 KiB in a pipe may
+  // keep 2 MiB. bpf, perf_event_open: these reach other processes. unshare, setns: new namespaces. add_key,
+  // request_key, keyctl: keys outlive the code.
+  std::array<std::uint32_t, 11> forbidden;
   std::vector<std::uint32_t> system_v;  // calls that make System V objects
 };
 
@@ -343,6 +359,9 @@ void append_rules(std::vector<sock_filter>& steps, const Calls& calls, bool syst
        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0, 1, 0), refuse, allow});
   add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.clone, 0, 4), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
        BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, kNamespaces, 0, 1), refuse, allow});
+  // Huge pages are off: a part of one in a buffer of a socket would keep all of it.
+  add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.prctl, 0, 4), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
+       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, PR_SET_THP_DISABLE, 0, 1), refuse, allow});
   // The C library then uses clone.
   add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.clone3, 0, 1), BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | ENOSYS),
        allow});
@@ -355,18 +374,22 @@ void forbid_calls(bool system_v) {
   constexpr std::uint32_t kMemfdSecret = 447;  // older headers lack it
   std::vector<sock_filter> i386, steps{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, arch))};
   // The last four: ipc, which makes all three objects, semget, shmget and msgget.
-  append_rules(i386, {340, 120, 435, {356, 447, 425, 357, 336, 310, 346}, {117, 393, 395, 399}}, system_v);
+  append_rules(i386,
+               {340, 120, 435, 172, {356, 447, 425, 316, 357, 336, 310, 346, 286, 287, 288}, {117, 393, 395, 399}},
+               system_v);
   steps.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, AUDIT_ARCH_I386, 0, static_cast<std::uint8_t>(i386.size())));
   steps.insert(steps.end(), i386.begin(), i386.end());
-  append_rules(
-      steps,
-      {SYS_prlimit64,
-       SYS_clone,
-       SYS_clone3,
-       {SYS_memfd_create, kMemfdSecret, SYS_io_uring_setup, SYS_bpf, SYS_perf_event_open, SYS_unshare, SYS_setns},
-       {SYS_shmget, SYS_semget, SYS_msgget}},
-      system_v);
+  append_rules(steps,
+               {SYS_prlimit64,
+                SYS_clone,
+                SYS_clone3,
+                SYS_prctl,
+                {SYS_memfd_create, kMemfdSecret, SYS_io_uring_setup, SYS_vmsplice, SYS_bpf, SYS_perf_event_open,
+                 SYS_unshare, SYS_setns, SYS_add_key, SYS_request_key, SYS_keyctl},
+                {SYS_shmget, SYS_semget, SYS_msgget}},
+               system_v);
   const sock_fprog program{static_cast<unsigned short>(steps.size()), steps.data()};
+  prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program);
 }

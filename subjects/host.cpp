@@ -364,7 +364,7 @@ int load_and_fork(char** argv, const std::string& kind, const std::string& what,
     loaded.outside = subject.outside;
     loaded.has_f32 = subject.f32 || subject.block_f32;
     loaded.has_f64 = subject.f64 || subject.block_f64;
-    loaded.of_blocks = scalar == "f64" ? !!subject.block_f64 : !!subject.block_f32;
+    loaded.of_blocks = (scalar != "f32" && subject.block_f64) || (scalar != "f64" && subject.block_f32);
   } else {
     loaded.has_f32 = loaded.of_blocks = 1;
     if (kind == "command" && describe) put(loaded.text, described_by(what).c_str());

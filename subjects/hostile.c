@@ -21,6 +21,7 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <sys/uio.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -304,6 +305,22 @@ static void call_the_kernel(void) {
   abort();
 }
 ATTACK(calls_the_kernel, call_the_kernel())
+// A page in a pipe that keeps a huge page, keys that stay, and files in memory.
+static void keep_memory(void) {
+  int ends[2];
+  char page[4096] = {0};
+  struct iovec part = {page, sizeof page};
+  if (pipe(ends) == 0 && vmsplice(ends[1], &part, 1, 0) >= 0)
+    return;  // then the pair has an answer, and the test fails
+  if (syscall(SYS_add_key, "user", "graze-hostile", page, 8, -4) >= 0 || syscall(SYS_keyctl, 0, -4, 1) >= 0) return;
+  if (prctl(PR_GET_THP_DISABLE, 0, 0, 0, 0) != 1 || prctl(PR_SET_THP_DISABLE, 0, 0, 0, 0) == 0) return;
+  const char* in_memory[] = {"/dev", "/sys/fs/cgroup"};
+  for (int i = 0; alone() && i < 2; ++i) {
+    if (open(in_memory[i], O_TMPFILE | O_RDWR, 0600) >= 0) return;
+  }
+  abort();
+}
+ATTACK(keeps_memory, keep_memory())
 // Shared memory that stays when nobody has it mapped.
 static void keep_mapping(void) {
   char name[100];

@@ -234,6 +234,7 @@ constexpr Attack kAttacks[] = {{"writes_zeros"},
                                {"makes_namespaces"},
                                {"raises_task_limit", false},
                                {"calls_the_kernel"},
+                               {"keeps_memory"},
                                {"keeps_mapping"},
                                {"eats_page_tables"},
                                {"kills_all", false}};

@@ -176,7 +176,7 @@ Description describe(const Code& code) {
   const StopSignals stops;
   const Loaded c = loaded_of(code);
   return {c.has_f32 != 0,    c.has_f64 != 0,          c.outside,     fit(c.version), fit(c.source),
-          fit(c.convention), c.describes_itself != 0, fit(c.symbol), c.text};
+          fit(c.convention), c.describes_itself != 0, fit(c.symbol), c.text,         c.of_blocks != 0};
 }
 
 ForeignProcesses::ForeignProcesses(Code code, Scalar scalar) : code_(loadable(std::move(code))), scalar_(scalar) {

@@ -37,6 +37,7 @@ struct Description {
   bool describes_itself = false;  // has a struct graze_subject
   std::string symbol;             // of a library: the symbol that was loaded
   std::string said;               // of a program: the first line of its answer to `describe`
+  bool of_blocks = false;         // decides many pairs in a call
 };
 
 // Throws: std::runtime_error with one line when the code cannot be loaded; Stopped.

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -207,7 +208,8 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   const Scratch scratch(folder);
   int status = 0;
   const std::string version = output_of(compiler + " --version", scratch, status);
-  std::string identity = version.substr(0, version.find('\n'));  // the lines below contain paths
+  const std::string first_line = version.substr(0, version.find('\n'));  // the lines below contain paths
+  std::string identity = first_line;
   if (status != 0)
     throw std::runtime_error(
         cannot("compile", name,
@@ -262,7 +264,7 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   // hashed.
   for (int builds = 0; builds < kMostBuilds; ++builds) {
     const Reading before = read();
-    Built built{folder / fmt::format("{:016x}.so", before.hash), before.not_covered, nullptr};
+    Built built{folder / fmt::format("{:016x}.so", before.hash), before.not_covered, nullptr, first_line};
     // An object is not cached under this name if the assembler read further files for it: which files it would read now
     // is not known before it runs.
     if (before.is_whole && before.not_covered.empty() && assembled.empty()) {
@@ -293,6 +295,24 @@ Built build_source(const fs::path& source, const std::string& function, const Va
       fmt::format("its code changed during each of {} builds; run the command again when nothing writes the files "
                   "that it includes",
                   kMostBuilds)));
+}
+
+Built kept_build(const std::string& name) {
+  const bool is_hash = name.size() == 16 && name.find_first_not_of("0123456789abcdef") == name.npos;
+  const fs::path file = cache_folder() / (name + ".so");
+  const std::optional<std::string> kept = is_hash ? kept_content(file) : std::nullopt;
+  if (!kept) throw std::runtime_error(fmt::format("the build {} is no longer in the cache", shown(name)));
+  return {file, "", std::make_shared<SealedCopy>(file.filename().string(), *kept)};
+}
+
+std::map<std::string, std::string> compiler_environment(const fs::path& source) {
+  const bool c = source.extension() == ".c";
+  std::map<std::string, std::string> set;
+  for (const char* name :
+       {c ? "CC" : "CXX", "CPATH", c ? "C_INCLUDE_PATH" : "CPLUS_INCLUDE_PATH", "SOURCE_DATE_EPOCH"}) {
+    if (const char* value = std::getenv(name); value && *value) set[name] = value;
+  }
+  return set;
 }
 
 }  // namespace graze::subjects

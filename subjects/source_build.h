@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,5 +32,12 @@ bool source_describes_itself(const std::filesystem::path& source);
 // Throws: std::runtime_error with the compiler's first error, or when the files keep changing; Stopped.
 Built build_source(const std::filesystem::path& source, const std::string& function, const VariantInfo& variant,
                    const std::vector<std::string>& flags);
+
+// The object that build_source has built and cached under this name, 16 hex digits.
+// Throws: std::runtime_error if it is not there any more.
+Built kept_build(const std::string& name);
+
+// The set variables that choose the compiler of a C or C++ source, or what it reads.
+std::map<std::string, std::string> compiler_environment(const std::filesystem::path& source);
 
 }  // namespace graze::subjects

@@ -12,13 +12,14 @@
 #include "core/error.h"
 #include "core/fnv1a.h"
 #include "core/lanes/lanes.h"
-#include "core/programs/kept_file.h"
 #include "core/stop.h"
 #include "core/text.h"
 #include "cuda/subject/cuda_subject.h"
 #include "cuda/twin/twin.h"
 #include "subjects/code_hash.h"
+#include "subjects/cuda_code.h"
 #include "subjects/process.h"
+#include "subjects/program_description.h"
 #include "subjects/source_build.h"
 
 namespace graze::subjects {
@@ -79,7 +80,7 @@ Opened parsed(const Wanted& wanted) {
   result.file = what.substr(0, end);
   if (end < what.size()) result.function = what.substr(end + 1);
   result.kind = kind_of(what.substr(0, end));
-  const std::string bytes = code_in(result.file);
+  const std::string bytes = wanted.builds.empty() ? code_in(result.file) : "";
   result.code = {fnv1a(bytes), "the libraries that it loads"};  // of a source, until it is built
   result.hash = result.code.hash;
   if (result.kind == "library") result.content = std::make_shared<SealedCopy>(result.file.filename().string(), bytes);
@@ -100,39 +101,6 @@ void describe_info(Entry& entry, const Description& description) {
   entry.degenerate = says(description, kOutsideDegenerate, "not said");
   entry.order = "not said";
   entry.info = {entry.opened.wanted.name, entry.source, entry.coplanar, entry.degenerate, entry.order, false};
-}
-
-// Reads a program's answer to the line `describe`: a JSON object {"version": "1.2", "source": "…", "convention": "…",
-// "outside": ["touching", …]}, in which every field is optional. Ignores any other answer, because a program need not
-// support `describe`.
-void add_description(Description& description, const std::string& subject) {
-  const std::string& said = description.said;
-  const Json json = Json::parse(said, nullptr, false);
-  if (!json.is_object()) return;
-  static const std::pair<std::string_view, unsigned> kOutside[] = {{"touching", kOutsideTouching},
-                                                                   {"coplanar", kOutsideCoplanar},
-                                                                   {"degenerate", kOutsideDegenerate},
-                                                                   {"shared", kOutsideShared}};
-  try {
-    description.version = json.value("version", "");
-    description.source = json.value("source", "");
-    description.convention = json.value("convention", "");
-    for (const std::string word : json.value("outside", Json::array())) {
-      const auto found =
-          std::find_if(std::begin(kOutside), std::end(kOutside), [&](auto& o) { return o.first == word; });
-      if (found == std::end(kOutside))
-        throw std::runtime_error(
-            fmt::format("--subject {}: expected touching, coplanar, degenerate or shared in \"outside\", "
-                        "found '{}'",
-                        subject, printable(word)));
-      description.outside |= found->second;
-    }
-  } catch (const Json::exception&) {
-    throw std::runtime_error(
-        fmt::format("--subject {}: expected texts in its description, and a list of them in \"outside\", "
-                    "found {}",
-                    subject, printable(said)));
-  }
 }
 
 void add_lane(Entry& entry, std::vector<Lane>& lanes, Code code, Scalar scalar, Variant variant, unsigned outside) {
@@ -168,38 +136,17 @@ std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
 // recorded: the hash of the code that a campaign ran; empty accepts any code.
 void expect_code(const Opened& subject, const std::string& recorded) {
   if (const std::string found = fmt::format("{:016x}", subject.code.hash); !recorded.empty() && found != recorded)
-    throw std::runtime_error(
-        fmt::format("{} has changed since the campaign ran: its hash is {}, not {}; restore it, or run the campaign "
-                    "again (a verb with "
-                    "--subject can use it as it is now: --subject {}=WHAT)",
-                    subject.wanted.what, found, recorded, subject.wanted.name));
-}
-
-// Throws: std::runtime_error where the file is not as it was kept.
-std::shared_ptr<const SealedCopy> kept_copy(const fs::path& file) {
-  const std::optional<std::string> bytes = kept_content(file);
-  if (!bytes)
-    throw std::runtime_error(fmt::format("{} changed after it was built; run the command again", file.string()));
-  return std::make_shared<SealedCopy>(file.filename().string(), *bytes);
+    throw std::runtime_error(fmt::format(
+        "{} has changed since the campaign ran: its hash is {}, not {}; restore it, or run the campaign again",
+        subject.wanted.what, found, recorded));
 }
 
 // The build for a device if there is one, else its twin. A build with neither is a lane that says why.
 void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   const Opened& o = entry.opened;
-  const fs::path cache = cache_folder();
   std::vector<Lane> made;
-  for (cuda::CudaBuild& build :
-       cuda::build_cuda_subject(o.file, o.function.empty() ? "intersects" : o.function, o.wanted.flags, cache)) {
-    Code code{"library", build.twin.string(), "", std::string(name(build.scalar)), o.wanted.timeout, o.wanted.memory};
-    const auto& twin = entry.twins.emplace_back(build.twin.empty() ? nullptr : kept_copy(build.twin));
-    if (on_device) {
-      code.kind = "device";
-      code.what = (cache / fmt::format("{:016x}.ptx", fnv1a(build.ptx))).string();
-      write_atomically(code.what, build.ptx);
-      code.content = std::make_shared<SealedCopy>(fs::path(code.what).filename().string(), build.ptx);
-    } else {
-      code.content = twin;
-    }
+  for (cuda::CudaBuild& build : cuda::build_cuda_subject(o.file, function_of(o), o.wanted.flags, cache_folder())) {
+    Code code = code_of(build, o.wanted, on_device, entry.twins.emplace_back(twin_of(build)));
     if (code.what.empty()) {
       made.push_back({"", &entry.info, build.scalar, build.variant, "", {}, -1, nullptr, false, false, true, 0, ""});
     } else {
@@ -211,6 +158,8 @@ void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   std::vector<std::string_view> variants;
   for (const cuda::CudaBuild& build : entry.builds) variants.push_back(build.ptx);
   entry.opened.code = hash_of_ptx(variants);
+  entry.opened.made = {{"source_hash", fmt::format("{:016x}", o.hash)},
+                       {"compiler", "NVRTC " + entry.builds.front().toolkit}};
   expect_code(entry.opened, recorded);
   describe_info(entry, {});
   add_lanes(std::move(made));
@@ -244,6 +193,14 @@ Wanted parse_subject(const std::string& text) {
 void open(const Wanted& wanted, bool on_device) { open_as(wanted, on_device, ""); }
 
 namespace {
+
+// How a C or C++ source was compiled, for record().
+Json how_made(const Opened& source, const std::vector<Built>& built) {
+  Json made = {{"source_hash", fmt::format("{:016x}", source.hash)}, {"compiler", built.front().compiler}};
+  made["environment"] = compiler_environment(source.file);
+  for (const Built& build : built) made["builds"].push_back(build.file.stem().string());
+  return made;
+}
 
 void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) {
   const Opened wish = parsed(wanted);
@@ -285,8 +242,8 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
         if (row.runs_on != RunsOn::host || row.arithmetic == Arithmetic::exact) continue;
         Code built = code;
         built.name.clear();
-        built_files.push_back(
-            build_source(wish.file, wish.function.empty() ? "intersects" : wish.function, row, wanted.flags));
+        built_files.push_back(wanted.builds.empty() ? build_source(wish.file, function_of(wish), row, wanted.flags)
+                                                    : kept_build(wanted.builds.at(built_files.size())));
         built.what = built_files.back().file;
         built.content = built_files.back().content;
         builds.emplace_back(row.variant, std::move(built));
@@ -313,7 +270,10 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
       throw std::runtime_error(
           fmt::format("--subject {}: the description of {} has neither a function of floats nor one of doubles",
                       wanted.name, shown(wanted.what)));
-    if (wish.kind == "source") entry.opened.code = hash_of_builds(built_files);
+    if (wish.kind == "source") {
+      entry.opened.code = hash_of_builds(built_files);
+      entry.opened.made = how_made(wish, built_files);
+    }
     if (wish.kind == "command") {
       entry.opened.code.hash = fnv1a(fmt::format("{}\n{}\n{}\n{}", description.version, description.source,
                                                  description.convention, description.outside),
@@ -331,6 +291,8 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
 }
 
 }  // namespace
+
+std::string function_of(const Opened& source) { return source.function.empty() ? "intersects" : source.function; }
 
 fs::path proof_file(const fs::path& source) { return source.string() + ".proof.json"; }
 
@@ -374,25 +336,49 @@ Json record(const std::vector<std::string>& lanes) {
                     {"timeout", o.wanted.timeout},
                     {"memory", o.wanted.memory},
                     {"hash", fmt::format("{:016x}", o.code.hash)}});
+    rows.back().update(o.made);
     if (!o.code.not_covered.empty()) rows.back()["not_covered"] = o.code.not_covered;
   }
   return rows;
 }
 
-std::vector<std::string> open_recorded(const Json& spec, bool on_device) {
-  std::vector<std::string> changed;
+std::vector<std::string> open_recorded(const Json& spec, bool on_device, Changed changed) {
+  std::vector<std::string> differs;
   for (const Json& row : spec.value("subjects", Json::array())) {
     const std::string name = row.at("name"), hash = row.at("hash");
-    if (const Opened* there = opened(name)) {
-      if (const std::string found = fmt::format("{:016x}", there->code.hash); found != hash)
-        changed.push_back(fmt::format("{}: its code is not what the campaign ran: {} then, {} now", name, hash, found));
-      continue;
+    if (!opened(name)) {
+      const Wanted wanted{name, row.at("what"), row.at("flags").get<std::vector<std::string>>(), row.at("timeout"),
+                          row.at("memory")};
+      open_as(wanted, on_device, changed == Changed::refused ? hash : "");
     }
-    const Wanted wanted{name, row.at("what"), row.at("flags").get<std::vector<std::string>>(), row.at("timeout"),
-                        row.at("memory")};
-    open_as(wanted, on_device, hash);
+    if (const std::string found = fmt::format("{:016x}", opened(name)->code.hash); found != hash)
+      differs.push_back(fmt::format("{}: its code is not what the campaign ran: {} then, {} now", name, hash, found));
   }
-  return changed;
+  return differs;
+}
+
+bool open_kept(const Json& row, const std::string& name) {
+  Wanted wanted{name,
+                row.at("what"),
+                row.at("flags").get<std::vector<std::string>>(),
+                row.at("timeout"),
+                row.at("memory"),
+                row.value("builds", std::vector<std::string>())};
+  for (const bool kept : {true, false}) {
+    if (!kept) wanted.builds.clear();
+    if (kept && wanted.builds.empty()) continue;
+    try {
+      open_as(wanted, false, row.at("hash"));
+      return true;
+    } catch (const UsageError&) {
+      throw;
+    } catch (const Json::exception&) {
+      throw;
+    } catch (const std::runtime_error&) {  // the code has changed, or is gone
+    } catch (const std::out_of_range&) {   // builds of other variants
+    }
+  }
+  return false;
 }
 
 }  // namespace graze::subjects

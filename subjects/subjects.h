@@ -22,9 +22,10 @@ namespace graze::subjects {
 //   cmd:COMMAND            a program that answers line by line
 struct Wanted {
   std::string name, what;
-  std::vector<std::string> flags;  // compiler flags, after ours
-  double timeout = 1;              // seconds
-  std::uint64_t memory = 1024;     // MiB
+  std::vector<std::string> flags;        // compiler flags, after ours
+  double timeout = 1;                    // seconds
+  std::uint64_t memory = 1024;           // MiB
+  std::vector<std::string> builds = {};  // of a C or C++ source: those to load (kept_build), instead of compiling it
 };
 
 // Splits NAME=WHAT; a file's path becomes absolute.   Throws: UsageError.
@@ -36,27 +37,39 @@ Wanted parse_subject(const std::string& text);
 void open(const Wanted& wanted, bool on_device = false);
 
 // What a campaign records of the subjects of these lanes, so that it can open them again: [{"name", "what", "flags",
-// "timeout", "memory", "hash", "not_covered"}, …]. "not_covered" describes the parts that the hash leaves out, and is
-// absent if there are none. Null when no lane has a subject.
+// "timeout", "memory", "hash", "source_hash", "compiler", "environment", "builds", "not_covered"}, …]. Only sources
+// have "source_hash" (of the file alone) and "compiler"; of C and C++ also "environment" (compiler_environment) and
+// "builds" (the cached objects). "not_covered" describes the parts that the hash leaves out, and is absent if there are
+// none. Null when no lane has a subject.
 nlohmann::ordered_json record(const std::vector<std::string>& lanes);
 
-// Opens the subjects that a campaign recorded and that are not open yet.
+// Opens the subjects that a campaign recorded and that are not open yet.   changed: what to do with code that changed.
 // Returns: a line for each open subject whose code differs from what the campaign ran.
-// Throws: std::runtime_error when the code of a newly opened subject has changed or is missing.
-std::vector<std::string> open_recorded(const nlohmann::ordered_json& spec, bool on_device = false);
+// Throws: std::runtime_error when the code of a newly opened subject is missing, or has changed and is refused.
+enum class Changed { refused, used };
+std::vector<std::string> open_recorded(const nlohmann::ordered_json& spec, bool on_device = false,
+                                       Changed changed = Changed::refused);
+
+// Opens the code of a row of record() under another name, if it is still there: the file as it was, or, of a C or C++
+// source, the builds that ran.   Returns: whether it is.   Throws: Stopped; UsageError for a name that is taken.
+bool open_kept(const nlohmann::ordered_json& row, const std::string& name);
 
 // How a lane's subject was opened, for showing a case again; empty for our own subjects.
 struct Opened {
   Wanted wanted;
   std::string kind;  // "library", "source", "cuda", "command"
   std::filesystem::path file;
-  std::string function;                       // empty: none named
-  std::uint64_t hash = 0;                     // of the file, or of the command
-  CodeHash code;                              // of all that is compiled or run
-  std::shared_ptr<const SealedCopy> content;  // of a library: what the hash is of
-  Description description;                    // of its first build
+  std::string function;                                            // empty: none named
+  std::uint64_t hash = 0;                                          // of the file, or of the command
+  CodeHash code;                                                   // of all that is compiled or run
+  std::shared_ptr<const SealedCopy> content;                       // of a library: what the hash is of
+  Description description;                                         // of its first build
+  nlohmann::ordered_json made = nlohmann::ordered_json::object();  // how a source was compiled; see record()
 };
 const Opened* opened(std::string_view subject);
+
+// The function that a source is built for.
+std::string function_of(const Opened& source);
 
 // The builds of all opened CUDA sources, with their lanes' names.
 std::vector<cuda::NamedBuild> cuda_builds();

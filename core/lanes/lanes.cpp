@@ -13,6 +13,7 @@
 #include "core/exact_blocks/decide.h"
 #include "core/lanes/host_blocks.h"
 #include "core/lanes/named_policies.h"
+#include "core/lanes/vector_blocks.h"
 
 namespace graze {
 namespace {
@@ -93,6 +94,8 @@ std::vector<Lane> make_lanes() {
         lane.algorithm = algorithm;
         lane.explainable = row.arithmetic != Arithmetic::fast;
         if (const HostBlocks* blocks = tables_of(row.variant).blocks) lane.decide = of_lane(*blocks, lane);
+        const DecideBlock::Function vectors = row.variant == Variant::cpu ? vector_block(info->id, scalar) : nullptr;
+        if (vectors) lane.decide = vectors;
       }
     }
     ++algorithm;
@@ -263,9 +266,15 @@ bool runs_on_this_cpu(const Lane& lane) {
 
 bool matches_any(const std::vector<std::string>& globs, std::string_view id) {
   const std::string text(id);
-  return globs.empty() || std::any_of(globs.begin(), globs.end(), [&](const std::string& glob) {
-           return fnmatch(glob.c_str(), text.c_str(), 0) == 0;
-         });
+  bool any_wanted = false, matches = false;
+  for (const std::string& glob : globs) {
+    const bool leaves_out = glob.starts_with('!');
+    const bool found = fnmatch(glob.c_str() + leaves_out, text.c_str(), 0) == 0;
+    if (leaves_out && found) return false;
+    any_wanted |= !leaves_out;
+    matches |= !leaves_out && found;
+  }
+  return matches || !any_wanted;
 }
 
 }  // namespace graze

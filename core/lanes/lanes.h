@@ -138,7 +138,7 @@ const Lane* counterpart(const Lane& lane, Variant variant);
 // Whether this processor can run the host lane (cpu-fma needs FMA instructions).
 bool runs_on_this_cpu(const Lane& lane);
 
-// Whether any of the shell patterns (fnmatch) matches; an empty list matches everything.
+// Whether any of the shell patterns (fnmatch) matches, or there is none, and no pattern after a `!` matches.
 bool matches_any(const std::vector<std::string>& globs, std::string_view id);
 
 }  // namespace graze

@@ -24,7 +24,7 @@ struct Buffers {
   DeviceArray<float> coordinates;
   DeviceArray<std::uint32_t> truth, wrong, lane_words, places, lengths;
   DeviceArray<std::int8_t> buckets;
-  DeviceArray<std::uint8_t> relations;
+  DeviceArray<std::uint16_t> relations;
   DeviceArray<LaneWords> lanes;
   std::vector<LaneWords> lanes_on_host;  // the same on the host
 

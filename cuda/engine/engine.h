@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "core/exact/nesting.h"
 #include "core/lanes/lanes.h"
 #include "core/margin/bucket.h"
 #include "core/verdict.h"
@@ -29,6 +30,7 @@ std::vector<LaneGroup> lane_groups(std::span<const Lane* const> lanes);
 // The signature of one subject's failures, and the pairs that have it.
 struct EngineSignature {
   Relation relation;
+  Nesting nesting = Nesting::none;
   Bucket bucket = 0;
   LaneGroup lanes{};
   std::vector<Verdict> verdicts;  // of each lane of the group

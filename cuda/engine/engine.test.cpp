@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "core/exact/exact.h"
+#include "core/exact/find_nesting.h"
 #include "core/relation_of.h"
 #include "cuda/engine/host_engine.h"
 #include "oracle/truth.h"
@@ -89,7 +90,7 @@ class EngineTest : public testing::Test {
   std::vector<DecideBlock> on_host_;
 };
 
-using Key = std::tuple<std::uint8_t, int, std::uint32_t, std::vector<Verdict>>;
+using Key = std::tuple<std::uint16_t, int, std::uint32_t, std::vector<Verdict>>;
 
 struct Found {
   std::uint64_t count = 0;
@@ -114,6 +115,8 @@ TEST_F(EngineTest, AnyNumberOfLanesCountsAsThePlainWay) {
       const Verdict truth = truth_of(pair);
       const Bucket bucket = oracle::margin_bucket(pair, truth);
       const Relation r = relation_of(pair);
+      const Nesting nesting = exact::detail::nesting(
+          exact::detail::triangles<exact::detail::WideNumbers>(coordinates(pair), coordinates(pair) + 9), r);
       std::vector<Verdict> verdicts;
       for (std::size_t l = 0; l + 1 < lanes_.size(); ++l) verdicts.push_back(wrong_at_times(pair, l));
       verdicts.push_back(truth);
@@ -134,7 +137,7 @@ TEST_F(EngineTest, AnyNumberOfLanesCountsAsThePlainWay) {
       for (const std::size_t group : kGroups) {
         const std::vector<Verdict> own(verdicts.begin() + first, verdicts.begin() + first + static_cast<int>(group));
         if (std::any_of(own.begin(), own.end(), [&](Verdict v) { return is_wrong(v, truth); })) {
-          Found& found = signatures[{packed(r), bucket, first, own}];
+          Found& found = signatures[{packed(r, nesting), bucket, first, own}];
           ++found.count;
           if (found.cases.size() < kEngineCases) found.cases.push_back(index);
           any = true;
@@ -148,7 +151,7 @@ TEST_F(EngineTest, AnyNumberOfLanesCountsAsThePlainWay) {
     EXPECT_EQ(result.disagreements, disagreements);
     std::map<Key, Found> found;
     for (const EngineSignature& s : result.signatures) {
-      const Key key{packed(s.relation), s.bucket, s.lanes.first, s.verdicts};
+      const Key key{packed(s.relation, s.nesting), s.bucket, s.lanes.first, s.verdicts};
       EXPECT_TRUE(found.insert({key, {s.count, s.cases}}).second) << "one signature in two rows";
     }
     EXPECT_EQ(found, signatures);

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "core/exact/relation.h"
+#include "core/exact/nesting.h"
 #include "core/margin/axis.h"
 #include "cuda/engine/engine.h"
 #include "cuda/engine/signature_table.h"
@@ -64,7 +64,7 @@ struct EngineBlock {
   const std::uint32_t* truth;
   std::uint32_t* wrong;  // pairs on which some lane is wrong
   std::int8_t* buckets;
-  std::uint8_t* relations;  // packed; in the end it has the relation of every pair on which some lane is wrong
+  std::uint16_t* relations;  // packed with nestings; in the end, those of every pair on which some lane is wrong
   LaneTable lanes;
   PairList lists[kEngineLists];
   SignatureTable signatures;
@@ -109,19 +109,22 @@ constexpr Verdict verdict_of(Mark mark, Verdict truth) {
 constexpr std::uint32_t mark_words(std::uint32_t lanes) { return (lanes + kMarksOfWord - 1) / kMarksOfWord; }
 
 // The first word of a signature's key: everything but the marks. `group` is the index of the lanes' group.
-GRAZE_HD constexpr std::uint64_t packed(std::uint32_t group, std::uint8_t relation, Bucket bucket) {
+GRAZE_HD constexpr std::uint64_t packed(std::uint32_t group, std::uint16_t relation, Bucket bucket) {
   return static_cast<std::uint64_t>(bucket + kBucketMost) | std::uint64_t{relation} << 8 | std::uint64_t{group} << 32;
 }
 
 struct SignatureHead {
   std::uint32_t group;
   Relation relation;
+  Nesting nesting;
   Bucket bucket;
 };
 
 constexpr SignatureHead unpacked(std::uint64_t word) {
   const auto bucket = static_cast<Bucket>(static_cast<int>(word & 255) - kBucketMost);
-  return {static_cast<std::uint32_t>(word >> 32), unpacked_relation(word >> 8 & 127, sign_of(bucket)), bucket};
+  const auto relation = static_cast<std::uint16_t>(word >> 8);
+  return {static_cast<std::uint32_t>(word >> 32), unpacked_relation(relation & 127, sign_of(bucket)),
+          unpacked_nesting(relation), bucket};
 }
 
 // The marks that up to 32 lanes of the group get for pair i, from lane 32 * word on.

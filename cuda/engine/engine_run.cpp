@@ -12,6 +12,7 @@ EngineSignature signature_of(std::uint64_t* row, const SignatureTable& table, st
   const SignatureHead head = unpacked(key[0]);
   EngineSignature s;
   s.relation = head.relation;
+  s.nesting = head.nesting;
   s.bucket = head.bucket;
   s.lanes = groups[head.group];
   for (std::uint32_t l = 0; l < s.lanes.count; ++l) {

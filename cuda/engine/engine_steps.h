@@ -6,6 +6,7 @@
 #pragma once
 
 #include "core/exact/exact.h"
+#include "core/exact/find_nesting.h"
 #include "core/judged_bits.h"
 #include "core/margin/axis.h"
 #include "core/margin/margin.h"
@@ -93,9 +94,17 @@ GRAZE_HD inline bool has_signatures(const EngineBlock& block, std::uint32_t i) {
   return bit(block.wrong, i) && block.buckets[i] != kUndecided;
 }
 
+// The nesting of a pair on which some lane is wrong; for others it is not needed.
+// Returns: false if rounding leaves it in doubt.
+GRAZE_HD inline bool nest_quickly(const EngineBlock& block, std::uint32_t i, const float* c, const Relation& r,
+                                  Nesting& nesting) {
+  nesting = Nesting::none;
+  return !bit(block.wrong, i) || exact::detail::nesting_quickly(c, c + 9, r, nesting);
+}
+
 // The relation is known: completes the bucket of an intersecting pair, or leaves that to the next step.
-GRAZE_HD inline void settle(const EngineBlock& block, std::uint32_t i, const Relation& r) {
-  block.relations[i] = packed(r);
+GRAZE_HD inline void settle(const EngineBlock& block, std::uint32_t i, const Relation& r, Nesting nesting) {
+  block.relations[i] = packed(r, nesting);
   if (block.buckets[i] != kUndecided || !r.intersects()) return;
   if (r.margin_sign != 0) return block.lists[kDepths].add(i);
   block.buckets[i] = 0;
@@ -115,7 +124,9 @@ struct Relate {
   static constexpr int kThreadBlocks = 2;
   GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
     Relation r;
-    if (exact::detail::relate_quickly(c, c + 9, r)) return settle(block, i, r);
+    Nesting nesting;
+    if (exact::detail::relate_quickly(c, c + 9, r) && nest_quickly(block, i, c, r, nesting))
+      return settle(block, i, r, nesting);
     const int list = list_by_numbers(c);
     block.lists[list < kByLong ? list : kByBounds].add(i);
   }
@@ -125,7 +136,9 @@ struct RelateByBounds {
   static constexpr int kThreadBlocks = 2;
   GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
     Relation r;
-    if (exact::detail::relate_by_bounds(c, c + 9, r)) return settle(block, i, r);
+    Nesting nesting;
+    if (exact::detail::relate_by_bounds(c, c + 9, r) && nest_quickly(block, i, c, r, nesting))
+      return settle(block, i, r, nesting);
     block.lists[list_by_numbers(c)].add(i);
   }
 };
@@ -135,7 +148,9 @@ struct RelateByAxes {
   static constexpr int kThreadBlocks = 1;
   GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
     const int exponent = exact::detail::grid_of(c, c + 9).exponent;
-    settle(block, i, by_axes(exact::detail::triangles<Numbers>(c, c + 9, exponent)));
+    const exact::detail::Triangles<Numbers> t = exact::detail::triangles<Numbers>(c, c + 9, exponent);
+    const Relation r = by_axes(t);
+    settle(block, i, r, bit(block.wrong, i) ? exact::detail::nesting(t, r) : Nesting::none);
   }
 };
 

@@ -163,7 +163,7 @@ class HostEngine final : public DeviceEngine {
   std::vector<std::uint64_t> bits_;  // truth, wrong, none, then each lane's two columns
   std::vector<float> coordinates_;
   std::vector<std::int8_t> buckets_;
-  std::vector<std::uint8_t> relations_;
+  std::vector<std::uint16_t> relations_;
   std::vector<std::uint32_t> places_;
   std::uint32_t lengths_[kEngineLists] = {};
   std::vector<LaneWords> lanes_;

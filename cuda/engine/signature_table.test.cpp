@@ -109,7 +109,9 @@ TEST(SignatureHead, EveryHeadComesBackFromItsWord) {
                        sign_of(static_cast<Bucket>(bucket)),
                        {rest / 4 % 3, rest / 12 % 3, rest / 36 != 0}};
       const std::uint32_t group = static_cast<std::uint32_t>(rest) * 0x1234567u;
-      const SignatureHead back = unpacked(packed(group, packed(r), static_cast<Bucket>(bucket)));
+      const auto nesting = static_cast<Nesting>(rest % 5 % 4);
+      const SignatureHead back = unpacked(packed(group, packed(r, nesting), static_cast<Bucket>(bucket)));
+      EXPECT_EQ(back.nesting, nesting);
       EXPECT_EQ(back.group, group);
       EXPECT_EQ(back.relation, r);
       EXPECT_EQ(back.bucket, bucket);

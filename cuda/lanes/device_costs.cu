@@ -89,7 +89,7 @@ KernelNeeds needs_of(const void* kernel) {
   check(cudaFuncGetAttributes(&attributes, kernel));
   int blocks = 0;
   check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, kThreads, 0));
-  return {attributes.numRegs, static_cast<int>(attributes.localSizeBytes), blocks * kThreads};
+  return {kThreads, attributes.numRegs, static_cast<int>(attributes.localSizeBytes), blocks * kThreads};
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ namespace graze::cuda {
 // Resources of a lane's kernel. For the exact lane and `filtered` this is the filter, the kernel that decides every
 // pair first.
 struct KernelNeeds {
+  int threads = 0;  // of a block
   int registers = 0;
   int local_bytes = 0;     // bytes of local memory for each thread: spilled registers and arrays
   int active_threads = 0;  // most threads that a multiprocessor runs at once

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Device memory for benchmarks and tests that do not include CUDA. Also measures the copy speeds that bound a query:
-// within the device, and from the host.
+// Device memory for benchmarks and tests that do not include CUDA. Also measures what bounds a query: copies within the
+// device, copies from the host, and the resources of its kernel.
 #pragma once
 
 #include <cstddef>
 #include <memory>
 
+#include "cuda/lanes/device_costs.h"
 #include "cuda/lanes/device_failure.h"
 
 namespace graze::cuda {
@@ -31,5 +32,8 @@ struct DeviceSpeeds {
 
 // The best of a few copies of `bytes` bytes.   Throws: DeviceFailure.
 DeviceSpeeds measure_speeds(int device, std::size_t bytes);
+
+// Of the kernel that sees every triangle of an exact query.   Throws: DeviceFailure.
+KernelNeeds needs_of_exact_query(int device);
 
 }  // namespace graze::cuda

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "cuda/lanes/device_memory.cuh"
+#include "cuda/query/device_rows.h"
 #include "cuda/query/query_kernels.cuh"
 
 namespace graze::cuda {
@@ -142,7 +143,20 @@ __global__ void __launch_bounds__(kWarps * 32, kBlocks)
   if (unsure > 0) list(warp, unsure, unsure, left);
 }
 
+constexpr int kMemory = kWarps * sizeof(WarpMemory);
+
 }  // namespace
+
+KernelNeeds needs_of_exact_query(int device) {
+  check(cudaSetDevice(device));
+  check(cudaFuncSetAttribute(decide_by_slabs, cudaFuncAttributeMaxDynamicSharedMemorySize, kMemory));
+  cudaFuncAttributes attributes;
+  check(cudaFuncGetAttributes(&attributes, decide_by_slabs));
+  int blocks = 0;
+  constexpr int kThreads = kWarps * 32;
+  check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, decide_by_slabs, kThreads, kMemory));
+  return {kThreads, attributes.numRegs, static_cast<int>(attributes.localSizeBytes), blocks * kThreads};
+}
 
 void launch_slabs(const exact::PreparedTriangle& reference, const QueryChunk& chunk, PairList left, std::uint32_t* hits,
                   cudaStream_t stream) {
@@ -155,7 +169,6 @@ void launch_slabs(const exact::PreparedTriangle& reference, const QueryChunk& ch
   const std::uint32_t blocks = std::min(wanted, static_cast<std::uint32_t>(processors) * kBlocks);
   if (const std::size_t behind = row_words(chunk.count) - tiles * kEach; behind > 0)
     check(cudaMemsetAsync(hits + tiles * kEach, 0, behind * sizeof *hits, stream));
-  constexpr int kMemory = kWarps * sizeof(WarpMemory);
   check(cudaFuncSetAttribute(decide_by_slabs, cudaFuncAttributeMaxDynamicSharedMemorySize, kMemory));
   decide_by_slabs<<<blocks, kWarps * 32, kMemory, stream>>>(reference, chunk, by_vectors, left, hits);
   check(cudaGetLastError());

@@ -90,7 +90,8 @@ std::string evidence(const CudaBuild& build) {
 }
 
 std::vector<CudaBuild> build_cuda_subject(const fs::path& source, const std::string& function,
-                                          const std::vector<std::string>& flags, const fs::path& cache) {
+                                          const std::vector<std::string>& flags, const fs::path& cache,
+                                          std::optional<Variant> only) {
   const std::string text = content(source);
   const Nvrtc& nvrtc = Nvrtc::get();
   const fs::path ptxas = find_ptxas(nvrtc.library());
@@ -103,6 +104,7 @@ std::vector<CudaBuild> build_cuda_subject(const fs::path& source, const std::str
   std::vector<CudaBuild> builds;
   twin::Lines by_hand;  // lines that have an fma even without contraction
   for (const Variant variant : {Variant::cuda_nofma, Variant::cuda_fma, Variant::cuda_fast, Variant::cuda_ftz}) {
+    if (only && variant != *only && variant != Variant::cuda_nofma) continue;
     CudaBuild& build = builds.emplace_back();
     build.variant = variant;
     build.scalar = scalar;
@@ -112,11 +114,12 @@ std::vector<CudaBuild> build_cuda_subject(const fs::path& source, const std::str
       build.toolkit = module.toolkit;
       if (variant == Variant::cuda_nofma) by_hand = twin::lines_with_fma(module);
       twin::mark_by_hand(module, by_hand);
-      add_twin(build, module, ptxas, cache);
+      if (!only || variant == *only) add_twin(build, module, ptxas, cache);
     } catch (const twin::PtxError& error) {
       build.why_no_twin = error.what();
     }
   }
+  if (only) std::erase_if(builds, [&](const CudaBuild& build) { return build.variant != *only; });
   return builds;
 }
 

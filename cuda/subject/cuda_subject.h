@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,11 +34,12 @@ struct CudaBuild {
 // "twin, machine code identical", "twin, not yet verified", or "no twin: …".
 std::string evidence(const CudaBuild& build);
 
-// The builds, in the order of the variants: cuda-nofma, cuda-fma, cuda-fast, cuda-ftz. `flags` are passed to NVRTC
-// unchanged. The folder `cache` keeps twins and results of ptxas by hash; incomplete files in it are never used.
-// Throws: UsageError, one line with the user's file and line, when the source cannot be read, does not compile, or has
-// no such function. Throws: std::runtime_error without NVRTC.
+// The builds, in the order of the variants: cuda-nofma, cuda-fma, cuda-fast, cuda-ftz; or `only` one of them. `flags`
+// are passed to NVRTC unchanged. The folder `cache` keeps twins and results of ptxas by hash; incomplete files in it
+// are never used. Throws: UsageError, one line with the user's file and line, when the source cannot be read, does not
+// compile, or has no such function. Throws: std::runtime_error without NVRTC.
 std::vector<CudaBuild> build_cuda_subject(const std::filesystem::path& source, const std::string& function,
-                                          const std::vector<std::string>& flags, const std::filesystem::path& cache);
+                                          const std::vector<std::string>& flags, const std::filesystem::path& cache,
+                                          std::optional<Variant> only = std::nullopt);
 
 }  // namespace graze::cuda

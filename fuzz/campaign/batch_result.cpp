@@ -21,11 +21,25 @@ void SignatureCount::add(const SignatureCount& other) {
   for (const CaseKey& found : other.cases) keep(found);
 }
 
+void VerdictDigests::add(std::size_t lane, std::uint64_t index, Verdict verdict) {
+  // splitmix64 of a number that no other pair and verdict has.   Reference: Steele, Lea and Flood 2014.
+  std::uint64_t z = (index * 8 + static_cast<std::uint64_t>(verdict) + 1) * 0x9e3779b97f4a7c15;
+  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
+  z = (z ^ z >> 27) * 0x94d049bb133111eb;
+  of_lane[lane] += z ^ z >> 31;
+}
+
+void VerdictDigests::add(const VerdictDigests& other) {
+  for (std::size_t l = 0; l < of_lane.size(); ++l) of_lane[l] += other.of_lane[l];
+  pairs += other.pairs;
+}
+
 void BatchResult::add(const BatchResult& other) {
   tally.add(other.tally);
   extremes.add(other.extremes);
   for (const auto& [signature, found] : other.signatures) signatures[signature].add(found);
   for (const auto& [lane, found] : other.executor_mismatches) executor_mismatches[lane].add(found);
+  digests.add(other.digests);
   disagreements += other.disagreements;
   cgal += other.cgal;
   gmp += other.gmp;

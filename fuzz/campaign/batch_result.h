@@ -34,17 +34,31 @@ struct SignatureCount {
   void keep(const CaseKey& found);
 };
 
+// A digest of each lane's verdicts on some pairs. Two runs on the same pairs with the same digests have the same
+// verdicts: the digest is a sum of hashes, one for each pair whose verdict is not the truth, so it can be added in any
+// order, and equal sums of other verdicts have a chance of 2^-64.
+struct VerdictDigests {
+  std::vector<std::uint64_t> of_lane;
+  std::uint64_t pairs = 0;  // that they cover: not those that a device's engine judged
+
+  void add(std::size_t lane, std::uint64_t index, Verdict verdict);
+  void add(const VerdictDigests& other);
+};
+
 struct BatchResult {
-  explicit BatchResult(const analysis::Tally& empty) : tally(empty), extremes(empty) {}
+  explicit BatchResult(const analysis::Tally& empty) : tally(empty), extremes(empty) {
+    digests.of_lane.resize(static_cast<std::size_t>(empty.lane_count()));
+  }
 
   analysis::Tally tally;
   analysis::Tally extremes;  // by place_on_axis; empty without an axis
   std::map<analysis::Signature, SignatureCount> signatures;
   std::map<std::string, SignatureCount> executor_mismatches;  // by lane: device and twin differ
-  std::uint64_t disagreements = 0;                            // pairs on which some lane is wrong
-  std::uint64_t cgal = 0;                                     // pairs decided by CGAL
-  std::uint64_t gmp = 0;                                      // pairs confirmed by GMP
-  std::uint64_t exact = 0;                                    // pairs decided by the exact lane, here or on a device
+  VerdictDigests digests;
+  std::uint64_t disagreements = 0;  // pairs on which some lane is wrong
+  std::uint64_t cgal = 0;           // pairs decided by CGAL
+  std::uint64_t gmp = 0;            // pairs confirmed by GMP
+  std::uint64_t exact = 0;          // pairs decided by the exact lane, here or on a device
 
   void add(const BatchResult& other);
 };

@@ -13,6 +13,8 @@
 #include "corpus/pair_format.h"
 #include "cuda/twin/twin.h"
 #include "fuzz/campaign/campaign_testing.h"
+#include "fuzz/campaign/changed_verdicts.h"
+#include "fuzz/campaign/checked_summary.h"
 #include "oracle/truth.h"
 #include "strata/strata.h"
 
@@ -37,6 +39,44 @@ TEST_F(CampaignTest, SameBytesForOneThreadAndMany) {
   run(campaign("one", 1));
   run(campaign("many", 4));
   EXPECT_EQ(lasting_files(root_ / "one"), lasting_files(root_ / "many"));
+}
+
+// A lane's code changes between two campaigns on the same pairs. Each stratum on which a verdict changed shows it, and
+// no other one does; the bounds hold, whatever the threads and the judge.
+TEST_F(CampaignTest, ChangedVerdictsShowInDigests) {
+  const SelectedLanes one = select_lanes({"moller_1997/f32/cpu", "exact/f32/cpu"}),
+                      other = select_lanes({"guigue_devillers_2003/f32/cpu"});
+  SelectedLanes changed_lanes = select_lanes({"moller_1997/f32/cpu", "exact/f32/cpu"});
+  Lane edited = *one.lanes[0];
+  edited.decide = other.lanes[0]->decide;
+  changed_lanes.lanes[0] = &edited;
+  changed_lanes.on_host[0] = other.on_host[0];
+  const std::vector<strata::PairSource> sources =
+      strata::stratum_sources(3, 9'000, {"uniform", "degenerate", "lattice"});
+  Campaign before = campaign_of(one, sources, 3, "before"), after = campaign_of(changed_lanes, sources, 3, "after"),
+           again = campaign_of(one, sources, 3, "again");
+  again.threads = 1;
+  again.exact = find_lane("exact/f32/cpu")->decide;
+  for (const Campaign* c : {&before, &after, &again}) run(*c);
+  for (const ChangedVerdicts& row : changed_verdicts(before.directory, again.directory)) {
+    EXPECT_EQ(row.known, ChangedVerdicts::Known::same);
+    EXPECT_EQ(row.pairs, 3'000u);
+  }
+  const std::vector<ChangedVerdicts> found = changed_verdicts(before.directory, after.directory);
+  ASSERT_EQ(found.size(), 2 * sources.size());
+  std::uint64_t all = 0;
+  for (std::size_t row = 0; row < found.size(); ++row) {
+    const strata::PairSource& source = sources[row % sources.size()];
+    std::uint64_t differs = 0;
+    for (std::uint64_t i = 0; i < source.pairs && row < sources.size(); ++i)
+      differs += decide_one(one.lanes[0]->decide, source.pair(i)) != decide_one(edited.decide, source.pair(i));
+    EXPECT_EQ(found[row].known == ChangedVerdicts::Known::changed, differs > 0)
+        << found[row].lane << found[row].stratum;
+    EXPECT_LE(found[row].least, differs);
+    EXPECT_GE(found[row].most, differs);
+    all += differs;
+  }
+  EXPECT_GT(all, 0u);
 }
 
 TEST_F(CampaignTest, SameBytesWhenInterruptedAfterEveryBatch) {
@@ -111,6 +151,68 @@ TEST_F(CampaignTest, CountsExtremesWhereAStratumVariesThem) {
     EXPECT_EQ(found, expected) << source.id;
     EXPECT_GT(found.size(), 15u) << source.id;
   }
+}
+
+// By margin, a lane's verdicts unlike its cpu lane's are those that a second look at each pair finds.
+TEST_F(CampaignTest, CountsDifferencesFromCpuByMargin) {
+  Campaign c = campaign("differ", 2);
+  c.sources = strata::stratum_sources(c.seed, 4000, {"near_edge_edge", "thesis"});
+  c.spec = campaign_spec(c);
+  const Json strata = run(c)["strata"];
+  const std::vector<int> twins = analysis::cpu_twins(under_test_.lanes);
+  std::uint64_t differ = 0;
+  for (const strata::PairSource& source : c.sources) {
+    std::map<std::string, std::map<std::string, std::uint64_t>> expected, found;
+    for (std::uint64_t index = 0; index < source.pairs; ++index) {
+      const Pair pair = source.pair(index);
+      std::vector<const Lane*> apart;
+      const std::vector<Verdict> verdicts = decide(under_test_, pair, apart);
+      const std::string bucket = name_of_bucket(oracle::margin_bucket(pair, oracle::cgal_verdict(pair)));
+      for (std::size_t l = 0; l < twins.size(); ++l) {
+        if (twins[l] < 0 || verdicts[l] == verdicts[static_cast<std::size_t>(twins[l])]) continue;
+        ++expected[bucket][under_test_.lanes[l]->id];
+        ++differ;
+      }
+    }
+    for (const auto& [bucket, row] : strata[source.id]["margins"].items()) {
+      for (const auto& [lane, count] : row["differs_from_cpu"].items()) found[bucket][lane] = count;
+    }
+    EXPECT_EQ(found, expected) << source.id;
+  }
+  EXPECT_GT(differ, 500u);
+}
+
+// Without the database, counts by margin that do not add up are refused.
+TEST_F(CampaignTest, RefusesDifferencesFromCpuThatDoNotAddUp) {
+  Campaign c = campaign("alone", 2, 3000);
+  const Json summary = run(c);
+  fs::remove(root_ / "alone" / "campaign.sqlite");
+  EXPECT_EQ(checked_summary(root_ / "alone"), summary);
+  const auto refused = [&](const Json& other) -> std::string {
+    write_whole(root_ / "alone" / "summary.json", other.dump(1) + "\n");
+    try {
+      checked_summary(root_ / "alone");
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  int tried = 0;
+  for (const auto& [part, by] : {std::pair("margins", "by margin"), {"extremes", "by scale"}}) {
+    Json other = summary;
+    Json& rows = part == std::string_view("margins") ? other["strata"]["near_edge_edge"][part]
+                                                     : other["strata"]["extreme_scale"][part]["scale"];
+    for (Json& row : rows) {
+      if (row["differs_from_cpu"].empty() || row["pairs"] == row["differs_from_cpu"].front()) continue;
+      row["differs_from_cpu"].front() = row["differs_from_cpu"].front().get<std::uint64_t>() + 1;
+      const std::string said = refused(other);
+      EXPECT_NE(said.find("verdicts that differ from cpu"), std::string::npos) << said;
+      EXPECT_NE(said.find(by), std::string::npos) << said;
+      ++tried;
+      break;
+    }
+  }
+  EXPECT_EQ(tried, 2);
 }
 
 TEST_F(CampaignTest, RefusesADirectoryOfAnotherCampaign) {

@@ -41,24 +41,33 @@ std::uint64_t count(const Json& row, const char* field) {
   return value.get<std::uint64_t>();
 }
 
-// Checks rows {"pairs", "wrong": {lane: count}} that split the stratum's pairs.
+// Checks rows {"pairs", "wrong": {lane: count}, "differs_from_cpu": {lane: count}} that split the stratum's pairs.
 void expect_split(const std::string& where, const Json& rows, const Json& stratum) {
   std::uint64_t pairs = 0;
-  std::map<std::string, std::uint64_t> wrong;
+  std::map<std::string, std::uint64_t> wrong, differ;
+  constexpr const char *kWrong = "wrong verdicts", *kDiffer = "verdicts that differ from cpu";
   for (const auto& [name, row] : rows.items()) {
     pairs += count(row, "pairs");
-    for (const auto& [lane, unused] : row.at("wrong").items()) {
-      const std::uint64_t of_lane = count(row["wrong"], lane.c_str());
-      expect(of_lane <= count(row, "pairs"),
-             fmt::format("at most {} wrong verdicts of {} at {} {}", count(row, "pairs"), lane, where, name), of_lane);
-      wrong[lane] += of_lane;
+    for (const auto& [field, what, sums] :
+         {std::tuple("wrong", kWrong, &wrong), {"differs_from_cpu", kDiffer, &differ}}) {
+      for (const auto& [lane, unused] : row.at(field).items()) {
+        const std::uint64_t of_lane = count(row[field], lane.c_str());
+        expect(of_lane <= count(row, "pairs"),
+               fmt::format("at most {} {} of {} at {} {}", count(row, "pairs"), what, lane, where, name), of_lane);
+        (*sums)[lane] += of_lane;
+      }
     }
   }
   expect(pairs == count(stratum, "pairs"), fmt::format("exactly {} pairs by {}", count(stratum, "pairs"), where),
          pairs);
-  for (const auto& [lane, row] : stratum.at("lanes").items())
-    expect(wrong[lane] == counts_of(row).wrong(),
-           fmt::format("exactly {} wrong verdicts of {} by {}", counts_of(row).wrong(), lane, where), wrong[lane]);
+  for (const auto& [lane, row] : stratum.at("lanes").items()) {
+    const std::uint64_t wrong_in_all = counts_of(row).wrong(),
+                        differ_in_all = row.at("differs_from_cpu").is_null() ? 0 : count(row, "differs_from_cpu");
+    expect(wrong[lane] == wrong_in_all, fmt::format("exactly {} {} of {} by {}", wrong_in_all, kWrong, lane, where),
+           wrong[lane]);
+    expect(differ[lane] == differ_in_all, fmt::format("exactly {} {} of {} by {}", differ_in_all, kDiffer, lane, where),
+           differ[lane]);
+  }
 }
 
 // Checks that the margins of pairs that intersect are not positive, and that wrong verdicts are on the right side.
@@ -181,8 +190,17 @@ void expect_possible_summary(const Json& summary) {
 
 // The summary that follows from the sums of the store's rows.
 Json summary_of_database(const fs::path& directory) {
-  StoreSpec store = recorded_store(directory);
-  std::vector<StoredCounts> of_source;
+  const auto [store, of_source, pairs] = counts_of_database(directory);
+  StoredCounts all(static_cast<int>(store.lanes.size()));
+  for (const StoredCounts& counts : of_source) all.add(counts);
+  return summary_of(store, of_source, all.signatures, all.executor_mismatches, pairs == store.spec.at("pairs"));
+}
+
+}  // namespace
+
+DatabaseCounts counts_of_database(const fs::path& directory) {
+  DatabaseCounts found{recorded_store(directory), {}};
+  StoreSpec& store = found.store;
   for (const std::string id : store.spec.at("strata")) {
     const auto row =
         std::find_if(std::begin(strata::kStrata), std::end(strata::kStrata), [&](auto& s) { return s.id == id; });
@@ -191,19 +209,14 @@ Json summary_of_database(const fs::path& directory) {
     strata::PairSource source{id, store.spec.at("pairs"), nullptr};
     if (row != std::end(strata::kStrata) && !store.spec.contains("scene")) source.axis = row->axis;
     store.sources.push_back(std::move(source));
-    of_source.emplace_back(static_cast<int>(store.lanes.size()));
+    found.of_source.emplace_back(static_cast<int>(store.lanes.size()));
   }
-  std::uint64_t done = 0;
   for_each_row(store, [&](const PairRange& range, const StoredCounts& counts) {
-    of_source[static_cast<std::size_t>(range.source)].add(counts);
-    done += range.pairs;
+    found.of_source[static_cast<std::size_t>(range.source)].add(counts);
+    found.pairs += range.pairs;
   });
-  StoredCounts all(static_cast<int>(store.lanes.size()));
-  for (const StoredCounts& counts : of_source) all.add(counts);
-  return summary_of(store, of_source, all.signatures, all.executor_mismatches, done == store.spec.at("pairs"));
+  return found;
 }
-
-}  // namespace
 
 bool has_database(const fs::path& directory) { return fs::exists(directory / kDatabase); }
 

@@ -18,6 +18,16 @@ Json checked_summary(const std::filesystem::path& directory);
 // Returns: null if there is neither.   Throws: as recorded_store.
 Json recorded_spec(const std::filesystem::path& directory);
 
+// What a campaign's database records, added up.
+struct DatabaseCounts {
+  StoreSpec store;
+  std::vector<StoredCounts> of_source;  // of spec.strata
+  std::uint64_t pairs = 0;              // judged
+};
+
+// Throws: as recorded_store.
+DatabaseCounts counts_of_database(const std::filesystem::path& directory);
+
 // Whether the campaign's database is in the directory.
 bool has_database(const std::filesystem::path& directory);
 

@@ -79,6 +79,7 @@ class BlockJudge {
     });
     const analysis::JudgedBlock block{pairs.size(), truth_, buckets_, views_};
     result.tally.add(block);
+    result.digests.pairs += pairs.size();
     if (const Axis axis = campaign_.sources[static_cast<std::size_t>(source_)].axis; axis != Axis::none) {
       extremes_.resize(pairs.size());
       for (std::size_t i = 0; i < pairs.size(); ++i) extremes_[i] = place_on_axis(pairs[i], axis);
@@ -159,6 +160,7 @@ class BlockJudge {
     for (std::size_t l = 0; l < views_.size(); ++l) {
       verdicts_[l] = views_[l].at(i);
       if (verdicts_[l] == truth(i)) continue;
+      result.digests.add(l, key.index, verdicts_[l]);
       if (under_test_.lanes[l]->exact)
         apart(key.index,
               fmt::format("{} ({}) and the truth ({})", under_test_.lanes[l]->id, name(verdicts_[l]), name(truth(i))));
@@ -173,11 +175,12 @@ class BlockJudge {
     }
     if (!any_wrong) return;
     ++result.disagreements;
-    signatures_.add(relation, buckets_[i], verdicts_, key);
+    const Nesting nesting = analysis::nesting_of(pair, relation);
+    signatures_.add(relation, nesting, buckets_[i], verdicts_, key);
     if (!found) return;
     analysis::for_each_subject(under_test_.lanes, [&](std::size_t first, std::size_t count) {
       analysis::Signature failure =
-          analysis::signature(relation, buckets_[i], std::span(under_test_.lanes).subspan(first, count),
+          analysis::signature(relation, nesting, buckets_[i], std::span(under_test_.lanes).subspan(first, count),
                               std::span(verdicts_).subspan(first, count));
       if (failure.wrong()) found->failures.push_back(std::move(failure));
     });

@@ -93,7 +93,7 @@ TEST(SignatureCounts, AreThoseOfEachFailureAlone) {
   for (const std::uint64_t index : {9, 3, 5}) {
     const Verdict f64 = index == 5 ? no : index == 9 ? Verdict::declined : yes;
     const Verdict verdicts[] = {yes, f64, Verdict::declined, no};  // a subject that only declines has no failure
-    counts.add(Relation{no, Contact::none, 1, {2, 1, true}}, 7, verdicts, {index, 2});
+    counts.add(Relation{no, Contact::none, 1, {2, 1, true}}, Nesting::none, 7, verdicts, {index, 2});
     if (index == 3) counts.move_to(found);
   }
   counts.move_to(found);

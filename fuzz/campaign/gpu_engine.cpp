@@ -14,7 +14,8 @@ namespace {
 static_assert(cuda::kEngineCases >= kKeptCases);
 
 analysis::Signature signature_of(const cuda::EngineSignature& row, std::span<const Lane* const> lanes) {
-  return analysis::signature(row.relation, row.bucket, lanes.subspan(row.lanes.first, row.lanes.count), row.verdicts);
+  return analysis::signature(row.relation, row.nesting, row.bucket, lanes.subspan(row.lanes.first, row.lanes.count),
+                             row.verdicts);
 }
 
 // Adds counts in the layout of EngineResult.

@@ -5,6 +5,7 @@
 
 #include "cuda/engine/host_engine.h"
 #include "fuzz/campaign/campaign_testing.h"
+#include "fuzz/campaign/changed_verdicts.h"
 #include "oracle/truth.h"
 
 namespace graze::fuzz {
@@ -34,6 +35,24 @@ TEST_F(GpuEngineTest, LeavesTheBytesOfTheCpuEngineOverAllStrata) {
     const Json timings = Json::parse(read_whole(root_ / engine / "timings.json"));
     EXPECT_GT(timings["oracle"]["exact"].get<std::uint64_t>(), 14'000u);  // the steps decided nearly all
   }
+}
+
+// A device's engine keeps no digests, so equal counts do not prove that its verdicts are those of the CPU engine.
+TEST_F(GpuEngineTest, ItsVerdictsAreNotProvedToBeTheSame) {
+  run(campaign(twins_, "cpu", 3'000, 0, 3, {"degenerate"}));
+  run(campaign(twins_, "again", 3'000, 0, 3, {"degenerate"}));
+  run(campaign(twins_, "engine", 3'000, 1, 3, {"degenerate"}));
+  using enum ChangedVerdicts::Known;
+  const auto found = [&](const char* name) { return changed_verdicts(root_ / "cpu", root_ / name); };
+  std::size_t not_known = 0;
+  for (const ChangedVerdicts& row : found("engine")) {
+    EXPECT_NE(row.known, changed) << row.lane;
+    EXPECT_EQ(row.least, 0u);
+    EXPECT_EQ(row.most > 0, row.known == ChangedVerdicts::Known::unknown);
+    not_known += row.known == ChangedVerdicts::Known::unknown;
+  }
+  EXPECT_GT(not_known, twins_.lanes.size() / 2);
+  for (const ChangedVerdicts& row : found("again")) EXPECT_EQ(row.known, same) << row.lane;
 }
 
 TEST_F(GpuEngineTest, LeavesTheBytesOfTheCpuEngineInScenes) {

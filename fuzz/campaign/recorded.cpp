@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -57,50 +58,95 @@ SelectedLanes recorded_lanes(const Json& spec) {
   return under_test;
 }
 
-std::string command_of(const Json& spec, const Shard& shard, const std::filesystem::path& out) {
+namespace {
+
+// The pairs of the mesh: from the summary, if it has them, else from the mesh itself.
+std::uint64_t mesh_pairs(const Json& spec, const Json& summary) {
+  const Json strata = summary.value("strata", Json::object());
+  if (summary.value("complete", false) && strata.contains("mesh")) return strata["mesh"].at("pairs");
+  std::uint64_t pairs = 0;
+  try {
+    for (const strata::PairSource& source : recorded_sources(spec)) pairs += source.stratum < 0 ? source.pairs : 0;
+  } catch (const std::runtime_error&) {  // the mesh is gone
+    return strata.contains("mesh") ? strata["mesh"].at("pairs").get<std::uint64_t>() : 0;
+  }
+  return pairs;
+}
+
+// The choice of --executor that the evidence of the CUDA lanes shows; empty for the default.
+std::string executor_of(const Json& spec, const Json& summary) {
+  // The reasons for lanes that were left out are shorter if no device was looked for (--executor twin).
+  const Json why = spec.value("lanes_left_out", Json::object()).value("why", Json::object());
+  bool both = false, twin = std::any_of(why.begin(), why.end(), [](const Json&reason) { return reason == "no twin"; });
+  for (const Json& by : summary.value("build", Json::object()).value("executors", Json::object())) {
+    both |= by.get_ref<const std::string&>().starts_with("device and ");
+    twin |= by.get_ref<const std::string&>().starts_with("twin");
+  }
+  return both ? "both" : twin ? "twin" : "";
+}
+
+}  // namespace
+
+std::vector<std::string> command_words(const Json& spec, const Shard& shard, const std::filesystem::path& out,
+                                       const Json& summary) {
   const bool scene = spec.contains("scene"), mesh = spec.contains("mesh"), hunt = spec.contains("hunt");
   std::vector<std::string> strata = (hunt ? spec["hunt"] : spec).at("strata"), lanes = spec.at("lanes"), all_strata,
-                           all_lanes;
+                           all_lanes, words = {"graze", hunt ? "hunt" : "fuzz"};
   std::uint64_t pairs = scene ? spec["scene"].at("pairs") : spec.at("pairs");
-  std::string command = hunt ? "graze hunt" : "graze fuzz";
-  const auto add = [&](const char* name, const std::string& value) {
-    command += fmt::format(" {} {}", name, path_word(value));
+  const auto add = [&](const std::string& name, const std::string& value) {
+    if (value.starts_with('-')) {  // in a word of its own it would be taken for an option
+      words.push_back(name + '=' + value);
+    } else {
+      words.insert(words.end(), {name, value});
+    }
   };
   if (scene) add("--scene", spec["scene"].at("file"));
   if (mesh) {
-    command += " --mesh";
-    for (const std::string file : spec["mesh"].at("files")) command += ' ' + path_word(file);
+    for (const std::string file : spec["mesh"].at("files")) add("--mesh", file);
     std::erase(strata, "mesh");
-    for (const strata::PairSource& source : recorded_sources(spec)) pairs -= source.stratum < 0 ? source.pairs : 0;
+    pairs -= std::min(pairs, mesh_pairs(spec, summary));
   }
   if (!mesh || !strata.empty()) add(hunt ? "--runs" : "--pairs", std::to_string(pairs));
   add("--seed", std::to_string(spec.at("seed").get<std::uint64_t>()));
   for (const strata::StratumInfo& row : strata::kStrata) all_strata.emplace_back(row.id);
   if (scene) {  // the user also asked for strata that the scene excludes
-    for (const auto& [id, why] : spec["scene"].at("left_out").items()) strata.push_back(id);
+    for (const auto& [id, unused] : spec["scene"].at("left_out").items()) strata.push_back(id);
     if (std::all_of(all_strata.begin(), all_strata.end(),
                     [&](const std::string& id) { return std::find(strata.begin(), strata.end(), id) != strata.end(); }))
       strata = all_strata;
   }
-  if (!strata.empty() && strata != all_strata) add("--strata", fmt::format("{}", fmt::join(strata, ",")));
+  if (!strata.empty() && (mesh || strata != all_strata)) add("--strata", fmt::format("{}", fmt::join(strata, ",")));
   for (const Json& row : spec.value("subjects", Json::array())) {
     add("--subject", row.at("name").get<std::string>() + '=' + row.at("what").get<std::string>());
   }
   if (spec.contains("subjects")) {  // flags and timeout are the same for all subjects
     const Json& first = spec["subjects"].at(0);
-    for (const std::string flag : first.at("flags")) command += ' ' + shell_word("--flags=" + flag);
+    for (const std::string flag : first.at("flags")) words.push_back("--flags=" + flag);
     if (first.at("timeout") != 1) add("--subject-timeout", fmt::format("{}", first["timeout"].get<double>()));
   }
   for (const Lane* lane : select_lanes({}, Executor::twin).lanes) all_lanes.push_back(lane->id);
   // The user also asked for the lanes that were left out, perhaps by a pattern that matched other lanes.
   if (spec.contains("lanes_left_out")) lanes = spec["lanes_left_out"].at("patterns");
+  if (spec.contains("subjects") && with_exact_lane(lanes) != lanes)
+    lanes.push_back(kLeaveOut + std::string(kExactLane));
   if (!lanes.empty() && lanes != all_lanes) add("--lanes", fmt::format("{}", fmt::join(lanes, ",")));
-  // The reasons are recorded as well; they are shorter if no device was looked for (--executor twin).
-  const Json why = spec.value("lanes_left_out", Json::object()).value("why", Json::object());
-  if (std::any_of(why.begin(), why.end(), [](const Json& reason) { return reason == "no twin"; }))
-    add("--executor", "twin");
+  if (const std::string executor = executor_of(spec, summary); !executor.empty()) add("--executor", executor);
   if (!shard.whole()) add("--shard", shard.name());
   add("--out", out.string());
+  return words;
+}
+
+std::string command_of(const Json& spec, const Shard& shard, const std::filesystem::path& out, const Json& summary) {
+  std::map<std::string, std::string> environment;  // that chose the compiler
+  for (const Json& row : spec.value("subjects", Json::array())) {
+    const Json set = row.value("environment", Json::object());
+    for (const auto& [name, value] : set.items()) environment[name] = value;
+  }
+  std::string command;
+  for (const auto& [name, value] : environment) command += fmt::format("{}={} ", name, shell_word(value));
+  const std::vector<std::string> words = command_words(spec, shard, out, summary);
+  for (std::size_t w = 0; w < words.size(); ++w)
+    command += fmt::format("{}{}", w == 0 ? "" : " ", shell_word(words[w]));
   return command;
 }
 

@@ -20,7 +20,13 @@ std::vector<strata::PairSource> recorded_sources(const Json& spec);
 // Throws: std::runtime_error for a lane that this build does not have.
 SelectedLanes recorded_lanes(const Json& spec);
 
-// The command that starts or resumes the shard in the directory `out`.
-std::string command_of(const Json& spec, const Shard& shard, const std::filesystem::path& out);
+// The command that starts or resumes the shard in the directory `out`, from "graze" on. With a campaign's summary it
+// also asks for the executor that ran, and reads no mesh.
+std::vector<std::string> command_words(const Json& spec, const Shard& shard, const std::filesystem::path& out,
+                                       const Json& summary = Json::object());
+
+// The same for a shell, after the variables that chose the compiler of a subject.
+std::string command_of(const Json& spec, const Shard& shard, const std::filesystem::path& out,
+                       const Json& summary = Json::object());
 
 }  // namespace graze::fuzz

@@ -38,6 +38,7 @@ bool has_its_truth(const corpus::Entry& entry, const analysis::Signature& signat
     if (corpus::text_of(entry, name) != value) return false;
   }
   return truth.verdict != Verdict::declined && signature.contact == truth.contact && signature.hulls == truth.hulls &&
+         signature.nesting == analysis::nesting_of(entry.pair, truth) &&
          signature.bucket == oracle::margin_bucket(entry.pair, truth.verdict);
 }
 
@@ -207,13 +208,30 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
 
 namespace {
 
-// The whole of timings.json, with runs that are objects.
+// Of timings.json: texts, numbers that are not negative, yes or no; `costs` is checked where it is used.
+bool is_run(const Json& run) {
+  if (!run.is_object()) return false;
+  for (const auto& [name, value] : run.items()) {
+    const bool is_text = name == "machine" || name == "engine";
+    const bool checked_later = name == "pairs" || name == "seconds";  // expect_possible_run tells the value
+    const bool fits = name == "costs"                          ? value.is_object()
+                      : is_text                                ? value.is_string()
+                      : name == "merged" && value.is_boolean() ? true
+                                                               : checked_later || (value.is_number() && value >= 0);
+    if (!fits) return false;
+  }
+  return true;
+}
+
+// The whole of timings.json.
 Json timings_in(const std::filesystem::path& file) {
   Json timings = read_sealed(file, "remove it; only times are lost");
   if (timings.is_null()) return {{"runs", Json::array()}};
-  const Json runs = timings.value("runs", Json());
-  if (!runs.is_array() || !std::all_of(runs.begin(), runs.end(), [](const Json& run) { return run.is_object(); }))
-    throw corpus::FormatError(cannot("use", file, "it does not hold the timings of a campaign; remove it"));
+  const Json runs = timings.value("runs", Json()), oracle = timings.value("oracle", Json::object());
+  const bool fits =
+      runs.is_array() && std::all_of(runs.begin(), runs.end(), is_run) && oracle.is_object() &&
+      std::all_of(oracle.begin(), oracle.end(), [](const Json& count) { return count.is_number_unsigned(); });
+  if (!fits) throw corpus::FormatError(cannot("use", file, "it does not hold the timings of a campaign; remove it"));
   return timings;
 }
 

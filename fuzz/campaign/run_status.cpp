@@ -55,7 +55,11 @@ void expect_possible_status(const Json& status) {
   if (status.at("rate").get<double>() < 0 || (!left.is_null() && left.get<double>() < 0))
     throw std::runtime_error(
         fmt::format("its rate or its time left is below 0: {}, {}", status["rate"].dump(), left.dump()));
-  status.at("ways").get<std::vector<std::string>>();
+  const std::vector<std::string> ways = status.at("ways");
+  const std::uint64_t signatures = status["signatures"];
+  if (ways.size() > signatures || (signatures > 0 && disagreements == 0))
+    throw std::runtime_error(fmt::format("its counts contradict each other: {} disagreements, {} signatures, {} ways",
+                                         disagreements, signatures, ways.size()));
   for (const char* whole : {"process", "updated"}) {
     if (!status.at(whole).is_number_integer())
       throw std::runtime_error(fmt::format("{} is not a whole number, but {}", whole, shown(status[whole].dump())));

@@ -19,7 +19,8 @@ class SignatureCounts {
   explicit SignatureCounts(std::vector<const Lane*> lanes) : lanes_(std::move(lanes)) {}
 
   // Counts the pair once for each subject that has a lane with a wrong verdict.
-  void add(const Relation& truth, Bucket bucket, std::span<const Verdict> verdicts, const CaseKey& pair);
+  void add(const Relation& truth, Nesting nesting, Bucket bucket, std::span<const Verdict> verdicts,
+           const CaseKey& pair);
 
   // Adds all counts to `signatures` and resets them.
   void move_to(std::map<analysis::Signature, SignatureCount>& signatures);
@@ -27,9 +28,9 @@ class SignatureCounts {
  private:
   // The signature without the lanes' verdicts. In a key, the verdicts follow it, one byte each.
   struct Head {
-    std::uint8_t relation;  // packed
-    Bucket bucket;
-    std::uint16_t first;  // index of the subject's first lane
+    std::uint16_t relation;  // packed with the nesting
+    std::uint16_t first;     // index of the subject's first lane
+    std::int16_t bucket;
   };
   static_assert(std::has_unique_object_representations_v<Head>);
 

@@ -39,10 +39,12 @@ Json source_results(const strata::PairSource& source, const StoreSpec& spec, con
     const auto bucket = static_cast<Bucket>(b);
     const auto add = [&](const analysis::Tally& tally, const std::string& name, Json& rows) {
       if (tally.pairs(bucket) == 0) return;
-      Json& row = rows[name] = {{"pairs", tally.pairs(bucket)}, {"wrong", Json::object()}};
+      Json& row = rows[name] = {
+          {"pairs", tally.pairs(bucket)}, {"wrong", Json::object()}, {"differs_from_cpu", Json::object()}};
       for (std::size_t l = 0; l < lanes.size(); ++l) {
         const analysis::LaneCounts& lane = tally.lane(static_cast<int>(l), bucket);
         if (lane.wrong() > 0) row["wrong"][lanes[l]] = lane.wrong();
+        if (lane.differs_from_cpu > 0) row["differs_from_cpu"][lanes[l]] = lane.differs_from_cpu;
       }
     };
     add(counts.tally, name_of_bucket(bucket), margins);
@@ -78,6 +80,7 @@ void Store::add(const PairRange& range, const StoredCounts& counts) {
   StoredCounts& total = of_source_[static_cast<std::size_t>(range.source)];
   total.tally.add(counts.tally);
   total.extremes.add(counts.extremes);
+  total.digests.add(counts.digests);
   total.disagreements += counts.disagreements;
   total.cgal += counts.cgal;
   total.gmp += counts.gmp;

@@ -291,7 +291,7 @@ TEST_F(StoreTest, OtherBuildsFormatsAndProcessesAreRefused) {
     EXPECT_TRUE(names(refusal(c), {c.directory.string(), "another process"}));
   }
   SQLite::Database(file(c).string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 3");
-  EXPECT_TRUE(names(refusal(c), {file(c).string(), "format 5", "format 3", "--out"}));
+  EXPECT_TRUE(names(refusal(c), {file(c).string(), "format 6", "format 3", "--out"}));
 }
 
 // Crashes and other failures are counted only for foreign lanes, even if these follow our own lanes.

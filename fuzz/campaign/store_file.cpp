@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kApplicationId = 0x67726173;  // "gras"
-constexpr int kFormat = 5;
+constexpr int kFormat = 6;
 
 constexpr const char* kTables[] = {
     "CREATE TABLE campaign(text TEXT NOT NULL, checksum INTEGER NOT NULL)",

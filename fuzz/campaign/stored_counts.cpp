@@ -130,12 +130,16 @@ Json parsed(const std::string& bytes) {
 
 }  // namespace
 
-StoredCounts::StoredCounts(int lanes) : tally(std::vector<int>(static_cast<std::size_t>(lanes), -1)), extremes(tally) {}
+StoredCounts::StoredCounts(int lanes)
+    : tally(std::vector<int>(static_cast<std::size_t>(lanes), -1)),
+      extremes(tally),
+      digests{std::vector<std::uint64_t>(static_cast<std::size_t>(lanes)), 0} {}
 
 StoredCounts::StoredCounts(const BatchResult& result)
     : tally(result.tally),
       extremes(result.extremes),
       executor_mismatches(result.executor_mismatches),
+      digests(result.digests),
       disagreements(result.disagreements),
       cgal(result.cgal),
       gmp(result.gmp),
@@ -148,6 +152,7 @@ void StoredCounts::add(const StoredCounts& other) {
   extremes.add(other.extremes);
   for (const auto& [key, found] : other.signatures) signatures[key].add(found);
   for (const auto& [lane, found] : other.executor_mismatches) executor_mismatches[lane].add(found);
+  digests.add(other.digests);
   disagreements += other.disagreements;
   cgal += other.cgal;
   gmp += other.gmp;
@@ -156,17 +161,23 @@ void StoredCounts::add(const StoredCounts& other) {
 
 std::string to_bytes(const StoredCounts& counts) {
   std::string bytes;
-  Json::to_cbor(
-      Json::array({to_json(counts.tally), to_json(counts.extremes), to_json(counts.signatures),
-                   to_json(counts.executor_mismatches), counts.disagreements, counts.cgal, counts.gmp, counts.exact}),
-      bytes);
+  Json::to_cbor(Json::array({to_json(counts.tally),
+                             to_json(counts.extremes),
+                             to_json(counts.signatures),
+                             to_json(counts.executor_mismatches),
+                             counts.disagreements,
+                             counts.cgal,
+                             counts.gmp,
+                             counts.exact,
+                             {counts.digests.pairs, counts.digests.of_lane}}),
+                bytes);
   return bytes;
 }
 
 StoredCounts from_bytes(const std::string& bytes, const PairRange& range, std::uint64_t pairs, Axis axis, int lanes) {
   const Json all = parsed(bytes);
   constexpr std::uint64_t kMost = ~std::uint64_t{0};
-  list(all, 8, 8, "a batch's parts");
+  list(all, 9, 9, "a batch's parts");
   StoredCounts counts(lanes);
   expect(read_tally(all[0], pairs, counts.tally, "the margins") == pairs, "the margins and the batch's pairs");
   expect(read_tally(all[1], pairs, counts.extremes, "the extremes") == (axis == Axis::none ? 0 : pairs),
@@ -178,6 +189,12 @@ StoredCounts from_bytes(const std::string& bytes, const PairRange& range, std::u
   counts.disagreements = whole(all[4], pairs, "the disagreements and the batch's pairs");
   counts.cgal = whole(all[5], kMost, "the pairs that CGAL decided");
   counts.gmp = whole(all[6], kMost, "the pairs that GMP confirmed");
+  constexpr const char* kDigests = "the digests and the batch's pairs";
+  list(all[8], 2, 2, kDigests);
+  counts.digests.pairs = whole(all[8][0], pairs, kDigests);
+  list(all[8][1], counts.digests.of_lane.size(), counts.digests.of_lane.size(), kDigests);
+  for (std::size_t l = 0; l < counts.digests.of_lane.size(); ++l)
+    counts.digests.of_lane[l] = whole(all[8][1][l], kMost, kDigests);
   counts.exact = whole(all[7], pairs, "the exact lane's pairs and the batch's pairs");
   return counts;
 }

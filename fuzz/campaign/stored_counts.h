@@ -31,8 +31,9 @@ struct StoredCounts {
   void add(const StoredCounts& other);
 
   analysis::Tally tally, extremes;
-  std::map<std::string, SignatureCount> signatures;               // by key
-  std::map<std::string, SignatureCount> executor_mismatches;      // by lane: device and twin differ
+  std::map<std::string, SignatureCount> signatures;           // by key
+  std::map<std::string, SignatureCount> executor_mismatches;  // by lane: device and twin differ
+  VerdictDigests digests;
   std::uint64_t disagreements = 0, cgal = 0, gmp = 0, exact = 0;  // see BatchResult
 };
 

@@ -23,7 +23,8 @@ Json good() {
           5,
           10,
           5,
-          0};
+          0,
+          {9, {~std::uint64_t{0}, 8}}};
 }
 
 // The error on reading; empty if all counts agree.
@@ -52,7 +53,8 @@ TEST(StoredCounts, AreReadBack) {
 
 TEST(StoredCounts, ThatDoNotAgreeAreDamage) {
   const std::string margins = "the margins do not agree", all = "the margins and the batch's pairs do not agree",
-                    signatures = "the signatures and the batch's pairs do not agree";
+                    signatures = "the signatures and the batch's pairs do not agree",
+                    digests = "the digests and the batch's pairs do not agree";
   struct Edit {
     const char* place;
     Json value;
@@ -99,7 +101,12 @@ TEST(StoredCounts, ThatDoNotAgreeAreDamage) {
            {"/5", -1, "the pairs that CGAL decided do not agree"},
            {"/6", "5", "the pairs that GMP confirmed do not agree"},
            {"/7", 11, "the exact lane's pairs and the batch's pairs do not agree"},
-           {"/8", 0, "a batch's parts do not agree"},
+           {"/8/0", 10, ""},
+           {"/8/0", 11, digests},
+           {"/8/1", Json{1}, digests},  // not one for each lane
+           {"/8/1/1", -1, digests},
+           {"/8", 0, digests},
+           {"/9", 0, "a batch's parts do not agree"},
        }) {
     Json edited = good();
     edited[Json::json_pointer(place)] = value;

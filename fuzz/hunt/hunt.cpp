@@ -221,7 +221,7 @@ class Hunter {
     std::set<std::string> known = found_->kinds;
     for (const New& of : fresh) {
       for (const LaneReason& reason : of.reasons) {
-        const std::string key = kind_key(of.signature.subject, reason, of.signature.hulls);
+        const std::string key = kind_key(of.signature.subject, reason, shape_name(of.signature));
         if (known.insert(key).second) kept.kinds.push_back({key, of.index, result.kept.at(of.index).mutation});
       }
     }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <ctime>
 #include <functional>
 #include <numeric>
 #include <span>
@@ -14,6 +13,7 @@
 #include "analysis/convention.h"
 #include "analysis/invariants.h"
 #include "analysis/neighbours.h"
+#include "analysis/pareto.h"
 #include "analysis/tally.h"
 #include "core/lanes/verdicts.h"
 #include "core/relation_of.h"
@@ -131,12 +131,6 @@ struct Counting {
   }
 };
 
-double processor_nanoseconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
-}
-
 std::vector<Relation> truths_of(const std::vector<Pair>& pairs) {
   std::vector<Relation> truths(pairs.size());
   tbb::parallel_for(std::size_t{0}, (pairs.size() + kBlockPairs - 1) / kBlockPairs, [&](std::size_t block) {
@@ -241,9 +235,9 @@ std::vector<std::optional<double>> league_costs(const League& league) {
   for (std::size_t repetition = 0; repetition < kLeagueRepetitions; ++repetition) {
     for (std::size_t r = 0; r < league.rows.size(); ++r) {
       const Lane& lane = *league.rows[r].lane;
-      const double start = processor_nanoseconds();
+      const double start = analysis::processor_nanoseconds();
       verdicts_of(lane.decide, pairs);
-      std::optional<double> nanoseconds = processor_nanoseconds() - start;
+      std::optional<double> nanoseconds = analysis::processor_nanoseconds() - start;
       if (lane.foreign) nanoseconds = subjects::processes_of(lane).nanoseconds();
       if (nanoseconds) taken[r].push_back(*nanoseconds / static_cast<double>(pairs.size()));
     }

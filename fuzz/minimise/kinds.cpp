@@ -61,12 +61,11 @@ std::vector<Kind> grouped(const std::vector<Case>& cases) {
   for (std::size_t place = 0; place < cases.size(); ++place) {
     const Case& c = cases[place];
     for (const LaneReason& reason : c.reasons) {
-      const std::string key = kind_key(c.signature.subject, reason, c.signature.hulls);
+      const std::string key = kind_key(c.signature.subject, reason, shape_name(c.signature));
       Kind& kind =
           kinds
               .try_emplace(
-                  key,
-                  Kind{key, c.signature.subject, reason.cause, reason.line, shape_name(c.signature.hulls), 0, {}, {}})
+                  key, Kind{key, c.signature.subject, reason.cause, reason.line, shape_name(c.signature), 0, {}, {}})
               .first->second;
       kind.settled[0] += reason.audited && reason.settled;
       kind.settled[1] += reason.audited;
@@ -82,7 +81,7 @@ std::vector<Kind> grouped(const std::vector<Case>& cases) {
 }
 
 bool is_of(const Kind& kind, const Case& c, const LaneReason& reason) {
-  return kind_key(c.signature.subject, reason, c.signature.hulls) == kind.key;
+  return kind_key(c.signature.subject, reason, shape_name(c.signature)) == kind.key;
 }
 
 // The index of the case whose pair shows the kind best. Prefers a pair on which no lane is wrong for another reason,
@@ -216,8 +215,9 @@ std::vector<LaneReason> reasons_of(const SelectedLanes& under_test, std::string_
       });
       if (found != accounts.end()) told = &*found;
     }
-    result.push_back({account.lane, std::string(analysis::name(told->cause)), told->told() ? told->told()->line : "",
-                      account.settled == analysis::Settled::yes, account.lane->explainable || account.lane->foreign});
+    result.push_back({account.lane, std::string(analysis::name(told->cause)),
+                      told->told() ? told->told()->line : account.line, account.settled == analysis::Settled::yes,
+                      account.lane->explainable || account.lane->foreign});
   }
   return result;
 }
@@ -229,15 +229,21 @@ std::string pair_text(const Pair& pair) {
   return line.substr(0, line.find('\n'));
 }
 
-std::string_view shape_name(const Hulls& hulls) {
-  return hulls.dimension_a < 2 || hulls.dimension_b < 2 ? "degenerate" : hulls.coplanar ? "coplanar" : "general";
+std::string_view shape_name(const Hulls& hulls, Nesting nesting) {
+  if (hulls.dimension_a < 2 || hulls.dimension_b < 2) return "degenerate";
+  if (!hulls.coplanar) return "general";
+  return nesting == Nesting::none ? "coplanar" : "contained";
 }
 
-std::string kind_key(std::string_view subject, const LaneReason& reason, const Hulls& hulls) {
+std::string_view shape_name(const analysis::Signature& signature) {
+  return shape_name(signature.hulls, signature.nesting);
+}
+
+std::string kind_key(std::string_view subject, const LaneReason& reason, std::string_view shape) {
   std::string cause = reason.cause;
   std::replace(cause.begin(), cause.end(), ' ', '_');
   const std::string file = reason.line.substr(reason.line.rfind('/') + 1);
-  return fmt::format("{}/{}/{}/{}", subject, cause, file.empty() ? "-" : file, shape_name(hulls));
+  return fmt::format("{}/{}/{}/{}", subject, cause, file.empty() ? "-" : file, shape);
 }
 
 Json find_kinds(const SelectedLanes& under_test, const std::filesystem::path& directory, const Json& summary,

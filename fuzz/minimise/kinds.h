@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Kinds of failure group a campaign's signatures. A kind is a subject, a cause, the source line of the deciding
-// comparison, and a shape: degenerate, coplanar or general. A signature whose lanes are wrong for different reasons
-// belongs to several kinds.
+// comparison, and a shape: degenerate, contained, coplanar or general. A signature whose lanes are wrong for different
+// reasons belongs to several kinds.
 #pragma once
 
 #include <filesystem>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/signature.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/store.h"
 #include "fuzz/selected_lanes.h"
@@ -39,11 +40,13 @@ Verdict truth_of(const corpus::Entry& entry);
 // The 18 hex floats in the format of a file of pairs.
 std::string pair_text(const Pair& pair);
 
-// "degenerate" if a triangle is a segment or a point; otherwise "coplanar" or "general".
-std::string_view shape_name(const Hulls& hulls);
+// "degenerate" if a triangle is a segment or a point; "contained" if one triangle lies in the other, in one plane;
+// otherwise "coplanar" or "general".
+std::string_view shape_name(const Hulls& hulls, Nesting nesting = Nesting::none);
+std::string_view shape_name(const analysis::Signature& signature);
 
 // "moller_1997/rounding/moller_1997.h:117/general"; an empty line becomes "-".
-std::string kind_key(std::string_view subject, const LaneReason& reason, const Hulls& hulls);
+std::string kind_key(std::string_view subject, const LaneReason& reason, std::string_view shape);
 
 // What a kind is, where it was seen, and its pairs:
 // {"key", "subject", "cause", "line", "shape", "pairs", "signatures", "lanes": [id], "settled": [yes, of],

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "analysis/explain.h"
+#include "core/relation_of.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/files.h"
@@ -81,12 +82,13 @@ TEST_F(Kinds, TheirPairsAreOfTheKind) {
   for (const Json& kind : kinds_) {
     for (const char* which : {"simplest", "worst"}) {
       const Pair pair = pair_of(kind[which]);
-      const Verdict truth = oracle::cgal_verdict(pair);
-      const Hulls hulls = oracle::hulls(pair);
-      EXPECT_EQ(shape_name(hulls), kind["shape"]) << kind["key"];
+      const Relation relation = relation_of(pair);
+      const Verdict truth = relation.verdict;
+      const std::string_view shape = shape_name(relation.hulls, analysis::nesting_of(pair, relation));
+      EXPECT_EQ(shape, kind["shape"]) << kind["key"];
       std::set<std::string> lanes;
       for (const LaneReason& reason : reasons_of(under_test_, kind["subject"].get<std::string>(), pair, truth)) {
-        if (kind_key(kind["subject"].get<std::string>(), reason, hulls) == kind["key"].get<std::string>())
+        if (kind_key(kind["subject"].get<std::string>(), reason, shape) == kind["key"].get<std::string>())
           lanes.insert(reason.lane->id);
       }
       EXPECT_FALSE(lanes.empty()) << kind["key"] << ' ' << which;
@@ -238,6 +240,9 @@ TEST_F(Kinds, StopWhenAsked) {
 TEST_F(Kinds, ShapesHaveNames) {
   EXPECT_EQ(shape_name({2, 2, false}), "general");
   EXPECT_EQ(shape_name({2, 2, true}), "coplanar");
+  EXPECT_EQ(shape_name({2, 2, true}, Nesting::b_in_a), "contained");
+  EXPECT_EQ(shape_name({2, 2, false}, Nesting::b_in_a), "general");
+  EXPECT_EQ(shape_name({1, 2, true}, Nesting::a_in_b), "degenerate");
   EXPECT_EQ(shape_name({1, 2, true}), "degenerate");
 }
 

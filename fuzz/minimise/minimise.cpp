@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "analysis/convention.h"
+#include "analysis/experiments.h"
 #include "backends/backends.h"
 #include "core/lanes/verdicts.h"
 #include "core/margin/margin.h"
@@ -56,11 +57,15 @@ void keep_worst(Minimised& result, const Pair& pair, Verdict verdict) {
   result.worst_ulps = ulps;
 }
 
+bool in_range(const Failure& failure, const Pair& pair) {
+  return !analysis::leaves_exponents(failure.first_wrong(pair), pair);
+}
+
 // A quick check before the cause is computed: false if the pair cannot have the reason.
 bool may_have_reason(const Failure& failure, const Reason& reason, const Pair& pair) {
   const bool by_range = reason.cause == analysis::Cause::overflow || reason.cause == analysis::Cause::underflow;
   if (!reason.in_range && !by_range) return true;
-  return analysis::leaves_exponents(failure.first_wrong(pair), pair) != reason.in_range;
+  return in_range(failure, pair) == reason.in_range;
 }
 
 // The pairs that moves of this kind make and that are simpler than the pair: each once, the simplest first. Adds the
@@ -134,21 +139,38 @@ std::size_t wrong_at(const Failure& failure, const Pair& pair) {
 
 bool counts(const Failure& failure, const Pair& pair) { return wrong_at(failure, pair) < failure.lanes.size(); }
 
+struct FoundCause {
+  analysis::Cause cause;
+  bool settled;  // only foreign code is asked
+};
+
+FoundCause found_cause(const Lane& lane, const Pair& pair, Verdict truth) {
+  if (!lane.foreign) return {analysis::cause_of(lane, pair, truth), false};
+  const analysis::Experiment found = analysis::experiment(lane, analysis::decide_lane(lane, pair), pair, truth);
+  return {found.cause, found.settled};
+}
+
 struct Walk {
   const Failure& failure;
   std::span<const Minimised> known;
   std::size_t most;
   Minimised result;
   std::vector<Pair> way;  // from the first pair to the current one
+  std::size_t sure = 0;   // the last pair of the way that is known to have the cause
   bool ask_all = false;   // every pair's cause, before it is taken
+  bool open;              // foreign code whose cause is not settled on the first pair
   int late = 0;           // verdicts of foreign code that took all of their time
 
   Walk(const Failure& of, const Pair& pair, std::span<const Minimised> results, std::size_t limit)
+      : Walk(of, pair, results, limit, found_cause(of.first_wrong(pair), pair, of.truth.verdict)) {}
+
+  Walk(const Failure& of, const Pair& pair, std::span<const Minimised> results, std::size_t limit, FoundCause first)
       : failure(of),
         known(results),
         most(limit),
-        result{.pair = pair, .reason = reason_of(of, pair), .worst = pair},
-        way{pair} {
+        result{.pair = pair, .reason = {first.cause, in_range(of, pair)}, .worst = pair},
+        way{pair},
+        open(of.first_wrong(pair).foreign && !first.settled) {
     result.worst_ulps = std::fabs(oracle::truth(pair).margin_ulps);
   }
 
@@ -156,19 +178,21 @@ struct Walk {
 
   bool has_cause(const Pair& pair) {
     result.moved += kMovedPerCause;
-    const analysis::Cause cause = analysis::cause_of(failure.first_wrong(pair), pair, failure.truth.verdict);
-    return cause == result.reason.cause ||
-           (cause == analysis::Cause::order_dependent && result.reason.cause == analysis::Cause::rounding);
+    const Lane& lane = failure.first_wrong(pair);
+    const FoundCause found = found_cause(lane, pair, failure.truth.verdict);
+    const bool is_order = found.cause == analysis::Cause::order_dependent;
+    return found.cause == result.reason.cause ||
+           (open && (found.settled || (is_order && result.reason.cause == analysis::Cause::rounding)));
   }
 
   // Makes the candidate the current pair if it fails in the same way for the same reason. Requires: its verdicts are
   // the failure's.
   bool take(const Pair& candidate) {
-    if (relation_of(candidate) != failure.truth || !counts(failure, candidate)) return false;
+    if (!failure.has_shape_of(candidate) || !counts(failure, candidate)) return false;
     if (!may_have_reason(failure, result.reason, candidate)) return false;
     if (ask_all && !has_cause(candidate)) return false;
     way.push_back(candidate);
-    result.reason.in_range = !analysis::leaves_exponents(failure.first_wrong(candidate), candidate);
+    result.reason.in_range = in_range(failure, candidate);
     keep_worst(result, candidate, failure.truth.verdict);
     return true;
   }
@@ -238,26 +262,47 @@ struct Walk {
     result.one_minimal = !spent();
   }
 
+  bool ends_with_cause() { return sure == way.size() - 1 || has_cause(way.back()); }
+
   // Goes back to a pair that has the cause while the next one lacks it.   Requires: the last pair lacks it.
   void go_back() {
-    std::size_t has = 0, lacks = way.size() - 1;
+    std::size_t has = sure, lacks = way.size() - 1;
     while (lacks - has > 1) {
       const std::size_t middle = has + (lacks - has) / 2;
       (has_cause(way[middle]) ? has : lacks) = middle;
     }
     way.resize(has + 1);
-    result.reason.in_range = !analysis::leaves_exponents(failure.first_wrong(way.back()), way.back());
-    ask_all = true;
+    result.reason.in_range = in_range(failure, way.back());
+  }
+
+  // Goes down without asking for causes, which are dear. Where that ends without the cause, goes back and down by pairs
+  // that have it, and tries once more from there: until nothing changes, so that to minimise the result again changes
+  // nothing.
+  void run() {
+    go_down();
+    while (!ends_with_cause()) {
+      const std::size_t before = sure;
+      go_back();
+      ask_all = true;
+      go_down();
+      sure = way.size() - 1;
+      if (spent() || sure == before) return;
+      ask_all = false;
+      go_down();
+    }
   }
 };
 
 }  // namespace
 
+bool Failure::has_shape_of(const Pair& pair) const {
+  return relation_of(pair) == truth && analysis::nesting_of(pair, truth) == nesting;
+}
+
 const Lane& Failure::first_wrong(const Pair& pair) const { return *lanes.at(wrong_at(*this, pair)); }
 
 Reason reason_of(const Failure& failure, const Pair& pair) {
-  const Lane& lane = failure.first_wrong(pair);
-  return {analysis::cause_of(lane, pair, failure.truth.verdict), !analysis::leaves_exponents(lane, pair)};
+  return {analysis::cause_of(failure.first_wrong(pair), pair, failure.truth.verdict), in_range(failure, pair)};
 }
 
 bool fails_for_reason(const Failure& failure, const Reason& reason, const Pair& pair) {
@@ -269,9 +314,10 @@ std::vector<Failure> failures_of(const SelectedLanes& under_test, const Pair& pa
   std::vector<Failure> failures;
   if (!is_finite(pair)) return failures;
   const Relation truth = relation_of(pair);
+  const Nesting nesting = analysis::nesting_of(pair, truth);
   const std::vector<Verdict> verdicts = decide_in_turn(under_test, pair);
   analysis::for_each_subject(under_test.lanes, [&](std::size_t first, std::size_t count) {
-    Failure failure{truth, {}, {}, {}};
+    Failure failure{truth, nesting, {}, {}, {}};
     for (std::size_t l = first; l < first + count; ++l) {
       const Lane& lane = *under_test.lanes[l];
       const DecideBlock on_host = backends::on_host(lane);
@@ -292,12 +338,12 @@ std::vector<Failure> failures_of(const SelectedLanes& under_test, const Pair& pa
 }
 
 bool fails_alike(const Failure& failure, const Pair& pair) {
-  return !decided_alike(failure, {pair}).empty() && relation_of(pair) == failure.truth;
+  return !decided_alike(failure, {pair}).empty() && failure.has_shape_of(pair);
 }
 
 analysis::Signature signature_of(const Failure& failure, const Pair& pair) {
-  return analysis::signature(failure.truth, oracle::margin_bucket(pair, failure.truth.verdict), failure.lanes,
-                             failure.verdicts);
+  return analysis::signature(failure.truth, failure.nesting, oracle::margin_bucket(pair, failure.truth.verdict),
+                             failure.lanes, failure.verdicts);
 }
 
 bool can_shrink(const Failure& failure) {
@@ -316,14 +362,11 @@ Minimised minimise(const Failure& failure, const Pair& pair, std::span<const Min
   Walk walk(failure, pair, known, most.value_or(most_moved(failure)));
   walk.result.one_minimal = false;
   if (!can_shrink(failure)) return walk.result;
-  walk.go_down();
-  if (!walk.has_cause(walk.way.back())) {
-    walk.go_back();
-    walk.go_down();
-  }
+  walk.run();
   walk.result.pair = walk.way.back();
   const Lane& lane = failure.first_wrong(walk.result.pair);
-  if (lane.foreign) walk.result.reason.cause = analysis::cause_of(lane, walk.result.pair, failure.truth.verdict);
+  if (lane.foreign && walk.way.size() > 1)
+    walk.result.reason.cause = analysis::cause_of(lane, walk.result.pair, failure.truth.verdict);
   return walk.result;
 }
 

@@ -14,16 +14,20 @@
 
 namespace graze::fuzz {
 
-// One algorithm's failure on a pair: the truth and the verdict of each lane. Another pair fails alike if it has the
-// same truth and verdicts.
+// One algorithm's failure on a pair: the truth, which triangle lies in the other, and the verdict of each lane. Another
+// pair fails alike if it has the same.
 struct Failure {
   // By the exact decision of core/exact/exact.h; the oracle confirms the results (see confirm). Only the margin's sign
   // is part of it: keeping its size would force the coordinates to keep many digits.
   Relation truth;
+  Nesting nesting;
   std::vector<const Lane*> lanes;    // of one algorithm, those among the lanes under test
   std::vector<DecideBlock> on_host;  // of each: the host lane or the twin
   std::vector<Verdict> verdicts;     // of each
   bool operator==(const Failure&) const = default;
+
+  // Whether the pair has this truth and nesting.
+  bool has_shape_of(const Pair& pair) const;
 
   // The first lane that is wrong on the pair, not counting lanes that differ only by their convention.   Requires: one
   // is.
@@ -41,8 +45,9 @@ analysis::Signature signature_of(const Failure& failure, const Pair& pair);
 
 // Why a failure happens. Its lanes may be wrong for different reasons; only that of the first wrong lane in table order
 // counts. A pair fails for the same reason if the cause is the same. If no result of the lane's run was out of the
-// exponents' range, none may become so, or a rounding error would shrink to numbers of 1e-30. On foreign code, a
-// simpler pair may show that a cause taken for rounding is the order; then that becomes the cause.
+// exponents' range, none may become so, or a rounding error would shrink to numbers of 1e-30. On foreign code whose
+// cause is not settled on the first pair, a simpler pair may settle it, or show that not rounding but the order
+// matters, settled or not; then that becomes the cause.
 struct Reason {
   analysis::Cause cause;
   bool in_range;  // no result of the lane's source, run without contraction, leaves the exponents

@@ -310,13 +310,16 @@ TEST(Minimise, TheFirstWrongLaneIsNotExcused) {
                kOutsideTouching,  ""};
   Lane crashes = excused;
   crashes.id = "excused/f64/cpu";
-  const Failure failure{relation_of(touching), {&excused, &crashes}, {}, {Verdict::disjoint, Verdict::crashed}};
+  const Failure failure{
+      relation_of(touching), Nesting::none, {&excused, &crashes}, {}, {Verdict::disjoint, Verdict::crashed}};
   EXPECT_EQ(failure.first_wrong(touching).id, "excused/f64/cpu");
-  const Failure both{relation_of(touching), {&crashes, &excused}, {}, {Verdict::crashed, Verdict::disjoint}};
+  const Failure both{
+      relation_of(touching), Nesting::none, {&crashes, &excused}, {}, {Verdict::crashed, Verdict::disjoint}};
   EXPECT_EQ(both.first_wrong(touching).id, "excused/f64/cpu");
   Lane strict = excused;
   strict.outside = 0;
-  const Failure wrong{relation_of(touching), {&strict, &crashes}, {}, {Verdict::disjoint, Verdict::crashed}};
+  const Failure wrong{
+      relation_of(touching), Nesting::none, {&strict, &crashes}, {}, {Verdict::disjoint, Verdict::crashed}};
   EXPECT_EQ(&wrong.first_wrong(touching), &strict);
 }
 

@@ -168,6 +168,15 @@ std::string with_results(const std::string& text, const std::vector<corpus::Entr
   return out.str();
 }
 
+std::vector<MinimisedCase> minimise_file(const SelectedLanes& under_test, const std::filesystem::path& file,
+                                         const std::vector<corpus::Entry>& entries) {
+  std::vector<MinimisedCase> results = minimise_cases(under_test, entries);
+  if (results.empty()) return results;
+  const std::string text = read_whole(file), after = with_results(text, entries, results);
+  if (after != text) write_whole(file, after);
+  return results;
+}
+
 bool has_result(const SelectedLanes& under_test, const std::vector<corpus::Entry>& entries) {
   const corpus::Entry &result = entries.front(), &first = *originals(entries).front();
   const std::string* recorded = corpus::field(result, "signature");

@@ -46,6 +46,11 @@ std::vector<MinimisedCase> minimise_cases(
 std::string with_results(const std::string& text, const std::vector<corpus::Entry>& entries,
                          const std::vector<MinimisedCase>& results);
 
+// Minimises the cases of that file and writes the results into it, before the cases.
+// Requires: `entries` are those of the file.   Returns, throws: as minimise_cases.
+std::vector<MinimisedCase> minimise_file(const SelectedLanes& under_test, const std::filesystem::path& file,
+                                         const std::vector<corpus::Entry>& entries);
+
 // Whether the file holds the result for its first case on these lanes.
 bool has_result(const SelectedLanes& under_test, const std::vector<corpus::Entry>& entries);
 

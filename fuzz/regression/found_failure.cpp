@@ -42,8 +42,12 @@ std::optional<analysis::Signature> without_lanes(const std::string& key) {
 
 // The pair's signatures, one for each subject, whether it is right or wrong.
 std::vector<analysis::Signature> signatures_of(const Pair& pair, const Replay& seen) {
-  const analysis::Signature blank{
-      seen.truth.contact, seen.truth.hulls, oracle::margin_bucket(pair, seen.truth.verdict), "", {}};
+  const analysis::Signature blank{seen.truth.contact,
+                                  seen.truth.hulls,
+                                  analysis::nesting_of(pair, seen.truth),
+                                  oracle::margin_bucket(pair, seen.truth.verdict),
+                                  "",
+                                  {}};
   std::vector<analysis::Signature> result;
   for (const Lane& lane : lanes()) {  // in table order
     if (lane.exact) continue;

@@ -56,6 +56,24 @@ std::string named(const StoreSpec& store) {
   return store.directory.string() + (store.shard.whole() ? "" : ", shard " + store.shard.name());
 }
 
+// A folder beside the others for a missing shard: a new one, or one where it was begun.
+fs::path place_for(const Shard& shard, const StoreSpec& beside, const fs::path& out) {
+  const auto fits = [&](const fs::path& place) {
+    if (place.lexically_normal() == out.lexically_normal()) return false;
+    if (!fs::exists(fs::symlink_status(place))) return true;
+    try {
+      const StoreSpec found = recorded_store(place);
+      return found.spec == beside.spec && found.shard == shard;
+    } catch (const std::exception&) {  // it holds something else
+      return false;
+    }
+  };
+  const std::string name = (beside.directory.parent_path() / fmt::format("shard-{}", shard.number)).string();
+  fs::path place = name;
+  for (int n = 1; !fits(place); ++n) place = fmt::format("{}.{}", name, n);
+  return place;
+}
+
 // Throws: std::runtime_error if pairs are missing; the message names the command to run.
 void expect_no_gaps(const std::vector<StoreSpec>& stores, const Sums& sums, const fs::path& out) {
   const std::vector<PairRange> gaps = sums.gaps();
@@ -94,8 +112,8 @@ void expect_no_gaps(const std::vector<StoreSpec>& stores, const Sums& sums, cons
       return share_of({k, of}, 0, source.pairs).pairs == 0;
     });
   });
-  const fs::path folder = stores.front().directory.parent_path();
-  std::string command = command_of(spec, {*lacking.begin(), of}, folder / fmt::format("shard-{}", *lacking.begin()));
+  const Shard first{*lacking.begin(), of};
+  const std::string command = command_of(spec, first, place_for(first, stores.front(), out));
   throw std::runtime_error(
       lacking.size() == 1
           ? fmt::format("cannot merge: shard {}/{} is missing; to run it: {}", *lacking.begin(), of, command)

@@ -19,7 +19,8 @@ class Audited:
         k = max(f.denominator for f in self.fractions)
         self.integers = [int(f * k) for f in self.fractions]  # every comparison is between numbers of the same degree
         self.runs, self.outcomes, self.sets = {}, {}, {}
-        self.contact, self.distance_squared = contact_and_distance(self.fractions)
+        self.contact, self.distance_squared, corners = contact_and_distance(self.fractions)
+        self.inside = inside(self.fractions, self.contact, corners)
         self.truth = "intersects" if self.contact else "disjoint"
 
     def run(self, name, scalar, rule, lead=()):
@@ -112,8 +113,8 @@ FACES = [[0], [1], [2], [0, 1], [1, 2], [0, 2], [0, 1, 2]]
 
 
 def contact_and_distance(c):
-    """The dimension of the common set as a word ('' for none) and the squared distance. The corners of the common set
-    are the points in which faces of both triangles meet. The distance is that of the affine hulls of two faces."""
+    """The dimension of the common set as a word ('' for none), the squared distance, and the corners of the common set:
+    the points in which faces of both triangles meet. The distance is that of the affine hulls of two faces."""
     v = [c[i : i + 3] for i in range(0, 18, 3)]
     points, least = [], None
     for f in FACES:
@@ -142,8 +143,41 @@ def contact_and_distance(c):
             if not square and at_a not in points:
                 points.append(at_a)
     if not points:
-        return "", least
+        return "", least, points
     edges = [sub(p, points[0]) for p in points[1:]]
     if not edges:
-        return "point", least
-    return "segment" if not any(any(cross(edges[0], e)) for e in edges) else "area", least
+        return "point", least, points
+    flat = not any(any(cross(edges[0], e)) for e in edges)
+    return "segment" if flat else "area", least, points
+
+
+def inside(c, contact, corners):
+    """How a sentence says that one triangle lies in the other; '' if none does. Then all ends of the inner one, in the
+    plane of the other, are corners of the common set."""
+    v = [c[i : i + 3] for i in range(0, 18, 3)]
+    triangles = {"a": v[:3], "b": v[3:]}
+    normals = {name: cross(sub(t[1], t[0]), sub(t[2], t[0])) for name, t in triangles.items()}
+    edges = [sub(p, v[0]) for p in v[1:]]
+    crosses = [cross(p, q) for p in edges for q in edges]
+    coplanar = not any(dot(n, e) for n in crosses for e in edges)
+    if not contact or not coplanar and (contact != "segment" or not all(any(n) for n in normals.values())):
+        return ""
+
+    def ends(inner, outer):
+        if coplanar:
+            return triangles[inner]
+        heights = [dot(normals[outer], sub(p, triangles[outer][0])) for p in triangles[inner]]
+        found = [p for p, h in zip(triangles[inner], heights) if not h]
+        for i, j in ((0, 1), (1, 2), (0, 2)):
+            if heights[i] * heights[j] < 0:
+                p, q = triangles[inner][i], triangles[inner][j]
+                found.append(add(p, times(sub(q, p), heights[i] / (heights[i] - heights[j]))))
+        return found
+
+    lies = {(p, q): all(end in corners for end in ends(p, q)) for p, q in (("a", "b"), ("b", "a"))}
+    if all(lies.values()):
+        return "a and b cover the same points" if coplanar else ""
+    for (inner, outer), yes in lies.items():
+        if yes:
+            return f"{inner} lies inside {outer}, coplanar" if coplanar else f"inside {outer}"
+    return ""

@@ -26,7 +26,7 @@ def close(text, value, digits):
     )
 
 
-SENTENCE = re.compile(r"(\w+)/(f32|f64) \(([^)]*)\) says (\w+), but the triangles (.*?): (.*)\.$", re.S)
+SENTENCE = re.compile(r"(\w+)/(f32|f64) \(([^)]*)\) says (\w+), but (.*?): (.*)\.$", re.S)
 TURNS = re.compile(
     r"(?:a signed distance|a component of the normals' cross product|an orientation|the gap between two interval ends|a number|"
     r"the difference of two numbers) of exactly (\S+) into (\S+?),? so that"
@@ -125,10 +125,14 @@ def check_sentence(pair, text, lanes, counts):
         expect(x["verdict"] == verdict, "each lane's verdict")
     if pair.contact:
         words = {"point": "meet in a point", "segment": "meet in a segment", "area": "overlap in their common plane"}
-        contact = "area" if phrase.startswith("overlap") else pair.contact
-        expect(phrase.split(",")[0] == words[contact] and (contact == pair.contact), f"the contact is a {pair.contact}")
+        expected = f"the triangles {words[pair.contact]}"
+        if pair.inside.startswith("inside"):
+            expected += " " + pair.inside
+        elif pair.inside:
+            expected = pair.inside
+        expect(re.sub(r", \S+ deep$", "", phrase) == expected, f"the contact is a {pair.contact}, {pair.inside}")
     else:
-        apart = re.match(r"are (\S+) apart", phrase)
+        apart = re.match(r"the triangles are (\S+) apart", phrase)
         expect(apart and close(str(Fraction(apart[1]) ** 2), pair.distance_squared, 2), "the distance")
     reason = rest[0]
     known = [x for x in told if x["evidence"] in ("source", "hash")] or [x for x in told if x["evidence"] != "none"]

@@ -60,8 +60,9 @@ GRAZE_HD inline Pair coplanar(Draws& draws, const Scene& scene, const Space& pla
   return finished(draws, scene, draft, {});
 }
 
-// A large triangle and a small one, in one plane. In half of the pairs the small one is inside; it pierces the face in
-// a quarter of these. In the other half it touches an edge from inside or outside, or nearly.
+// A large triangle and a small one, in one plane. In half of the pairs both share an inner point of the large one, and
+// the small one is usually inside; it pierces the face in a quarter of these. In the other half it touches an edge from
+// inside or outside, or nearly.
 GRAZE_HD inline Pair nested(Draws& draws, const Scene& scene) {
   const bool tilted = draws.coin();
   const int normal = draws.between(0, 2);

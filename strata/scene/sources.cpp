@@ -206,7 +206,12 @@ SceneSources scene_sources(const SceneFile& file, const std::filesystem::path& f
                                  result.left_out[0].why));
   share(result.sources, weights, pairs);
   for (PairSource& source : result.sources) {
-    if (source.id == "mesh") source.pairs = std::min<std::uint64_t>(source.pairs, meshes->pairs.size());
+    if (source.id != "mesh" || source.pairs <= meshes->pairs.size()) continue;
+    result.notes.push_back(
+        fmt::format("{} of the {} pairs run: the scene's meshes have only {} pairs of triangles whose boxes overlap, "
+                    "and their share is {}",
+                    pairs - source.pairs + meshes->pairs.size(), pairs, meshes->pairs.size(), source.pairs));
+    source.pairs = meshes->pairs.size();
   }
   return result;
 }

@@ -31,6 +31,15 @@ function lane_of(report: Report, { kind, verdicts }: Card) {
   return wrong.find((id) => lanes.includes(id)) ?? '';
 }
 
+// "In the campaign: mine/f32/cpu says disjoint, which is wrong; …", of the card's own lanes.
+function stored_verdicts(report: Report, { kind, verdicts }: Card) {
+  const own = verdicts.filter(({ lane }) => kind.lanes.includes(report.lanes[lane].id));
+  const said = own.map(
+    ({ lane, verdict, wrong }) => `${report.lanes[lane].id} says ${verdict}, which is ${wrong ? 'wrong' : 'right'}`,
+  );
+  return said.length ? `In the campaign: ${said.join('; ')}.` : `The lanes of this card: ${within(kind.lanes)}.`;
+}
+
 export const viewer_button = (report: Report, card: Card, id: string) =>
   has_viewer() &&
   h(
@@ -77,7 +86,7 @@ export function follow_viewer(report: Report, id_of: (place: number) => string) 
       name: names[place],
       note: lane_of(report, card)
         ? ''
-        : `The lanes of this card (${within(card.kind.lanes)}) are not in the viewer, which another compiler built; the card has what they say.`,
+        : `${stored_verdicts(report, card)} These lanes are not in the viewer, which another compiler built; it shows what the published lanes say.`,
     };
   }
   async function start(first: First) {

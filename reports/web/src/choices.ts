@@ -3,7 +3,7 @@
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named } from './chart';
 import { breakable, choice, code_block, copy_button, h, on_width, section, sentence } from './dom';
-import { count, figure, percent, percent_bound, power_of_two } from './format';
+import { count, figure, noisy_mark, percent, percent_bound, power_of_two, spread_words } from './format';
 import type { Discrepancy, Errors, PolicyErrors, Report, Pareto, Tuned } from './report';
 import { sortable_table } from './sortable_table';
 import { cell_text } from './pairs_of_cell';
@@ -160,11 +160,7 @@ export function pareto_section(report: Report, pareto: Pareto) {
         label: 'ns a pair',
         numeric: true,
         cell: (o) =>
-          h(
-            'td',
-            { class: 'number', title: `quartiles ${nanoseconds(cost(o).low)} to ${nanoseconds(cost(o).high)}` },
-            nanoseconds(cost(o).middle),
-          ),
+          h('td', { class: 'number', title: spread_words(cost(o)) }, nanoseconds(cost(o).middle) + noisy_mark(cost(o))),
         order: (o) => cost(o).middle,
       },
       {
@@ -234,7 +230,12 @@ export function pareto_section(report: Report, pareto: Pareto) {
   );
 }
 
-const policy_of = (tuned: Tuned, point: PolicyErrors) => (point.policy ? `${tuned.lane}/${point.policy}` : tuned.lane);
+const policy_of = (tuned: Tuned, point: PolicyErrors) =>
+  tuned.epsilon
+    ? `${tuned.epsilon.name} = ${point.policy.slice(point.policy.lastIndexOf(':') + 1)}`
+    : point.policy
+      ? `${tuned.lane}/${point.policy}`
+      : tuned.lane;
 
 export function tuned_section(tuned: Tuned) {
   const title = (curve: Tuned['curves'][number]) =>
@@ -260,14 +261,19 @@ export function tuned_section(tuned: Tuned) {
       redraw();
     },
   });
-  const curve = () => tuned.curves[shown];
+  const curve = () => {
+    const all = tuned.curves[shown];
+    return { ...all, points: all.points.filter((point) => tolerance(point) > 0) }; // the axis is logarithmic
+  };
 
   function tell() {
     const point = curve().points[at];
     const part = (n: number, what: string) => `${count(n)} ${what} (${percent(n / point.pairs)})`;
     readout.textContent = `${point.policy}: ${part(point.false_negative, 'false negatives')}, ${part(point.false_positive, 'false positives')} of ${count(point.pairs)} pairs; fixes ${count(point.fixed)} and breaks ${count(point.broken)}${point.policy === tuned.chosen ? '. This one is chosen' : ''}.`;
     slider.setAttribute('aria-valuetext', readout.textContent);
-    policy.replaceChildren(code_block(policy_of(tuned, point), 'the lane under this policy'));
+    policy.replaceChildren(
+      code_block(policy_of(tuned, point), tuned.epsilon ? 'this value of the epsilon' : 'the lane under this policy'),
+    );
   }
 
   function draw(width: number) {

@@ -9,6 +9,33 @@ import { sortable_table } from './sortable_table';
 type Change = Compare['rates'][number];
 type Seen = Compare['gained'][number];
 
+type Verdicts = NonNullable<Compare['verdicts']>[number];
+
+const range = (v: Verdicts) => (v.least === v.most ? count(v.most) : `${count(v.least)} to ${count(v.most)}`);
+const counted = (number: number | undefined) => (number === undefined ? 'not counted' : count(number));
+
+function verdicts_table(verdicts: Verdicts[]) {
+  const changed = verdicts.filter((v) => v.known !== 'same' && v.most > 0);
+  if (!changed.length) return h('p', {}, 'Every verdict is the same.');
+  const table = sortable_table<Verdicts>(
+    [
+      { label: 'Lane', cell: (v) => breakable(v.lane), order: (v) => v.lane },
+      { label: 'Stratum', cell: (v) => v.stratum, order: (v) => v.stratum },
+      { label: 'Changed', numeric: true, cell: range, order: (v) => v.most },
+      { label: 'Became wrong', numeric: true, cell: (v) => counted(v.broken), order: (v) => v.broken ?? -1 },
+      { label: 'Became right', numeric: true, cell: (v) => counted(v.mended), order: (v) => v.mended ?? -1 },
+      {
+        label: 'Smallest case that became wrong, or right',
+        cell: (v) => h('code', {}, v.smallest_broken ?? v.smallest_mended ?? ''),
+        order: (v) => v.smallest_broken ?? v.smallest_mended ?? '',
+      },
+    ],
+    { caption: 'Verdicts that changed', class: 'plain', page: 60 },
+  );
+  table.show(changed);
+  return table.element;
+}
+
 const cell = (share: Share) => h('td', { class: 'number', title: in_full(share) }, percent(share.share));
 
 const errors_in_full = (change: Change) =>
@@ -90,6 +117,7 @@ export function compare_section(report: Report) {
         compare.differences.map((text) => h('li', {}, sentence(text))),
       ),
     h('dl', { class: 'facts both' }, side('Before', compare.other), side('After', report.run)),
+    compare.verdicts ? [h('h3', {}, 'Verdicts'), verdicts_table(compare.verdicts)] : null,
     h('h3', {}, 'Rates'),
     rates_table(compare),
     compare.kinds_compared &&

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Heat maps of the error rate by the size of the coordinates, and by a pair's distance from the origin.
+// Heat maps over the size of the coordinates, and over a pair's distance from the origin: how many times as often a
+// lane errs as on the pairs nearest to 2^0. In words also over flatness and needles, which `graze pareto` measures.
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named } from './chart';
-import { h, lazy_details, on_width, section } from './dom';
-import { in_full, percent, power_of_two } from './format';
-import { heat_fill, heat_legend } from './heat';
+import { breakable, h, lazy_details, on_width, section } from './dom';
+import { figure, in_full, percent, power_of_two } from './format';
+import { times_fill, times_legend } from './heat';
 import { lane_picker, type Picker } from './lane_picker';
-import type { Report, Share } from './report';
+import type { Pareto, Report, Share, Times } from './report';
 import { sortable_table } from './sortable_table';
 
 type Kind = Report['extremes'][number]['kind'];
@@ -16,8 +17,15 @@ interface Cell {
   from: number;
   to: number;
   wrong: Share;
+  times: Times;
   words: string;
 }
+
+// Without errors at the origin only the lower bound of the ratio is known.
+const shown = ([share, low]: Times) => share ?? low;
+const ratio = ({ times }: Cell) => `${times[0] === null ? 'at least ' : ''}${figure(shown(times))} ×`;
+const bounds = ([, low, high]: Times) =>
+  high === null ? `95 %: ${figure(low)} and more` : `95 %: ${figure(low)} to ${figure(high)}`;
 
 // A cell with fewer pairs is drawn as a line, because its rate may be due to chance.
 const kFew = 100;
@@ -49,19 +57,46 @@ function cells_of(report: Report, kind: Kind, lanes: number[]): Cell[] {
     .flatMap((row) =>
       row.cells.map((cell) => {
         const [from, to] = [cell.exponent, cell.exponent + (row.step ?? 1)];
-        return {
+        const found = {
           lane: row.lane,
           name: report.lanes[row.lane].id,
           from,
           to,
           wrong: cell.wrong,
-          words: `${report.lanes[row.lane].id}\n${what} ${power_of_two(from)} to ${power_of_two(to)}\n${in_full(cell.wrong)}`,
-        };
+          times: cell.times ?? [0, 0, 0],
+        } as Cell;
+        found.words = `${found.name}\n${what} ${power_of_two(from)} to ${power_of_two(to)}\n${in_full(cell.wrong)}${cell.times ? `\n${ratio(found)} as often as at the origin (${bounds(cell.times)})` : ''}`;
+        return found;
       }),
     );
 }
 
-export function extremes_section(report: Report) {
+// The words of the campaign's extremes and of pareto's, a row for each lane.
+function words_table(report: Report, pareto: Pareto | null, lanes: number[]) {
+  const said = (lane: number, kind: Kind) =>
+    report.extremes.find((row) => row.lane === lane && row.kind === kind)?.says ?? 'no pairs';
+  const measured = (lane: number, extreme: string) =>
+    pareto?.extremes.find((row) => row.lane === report.lanes[lane].id && row.extreme === extreme)?.says ?? '–';
+  const column = (label: string, words: (lane: number) => string) => ({ label, cell: words, order: words });
+  const table = sortable_table<number>(
+    [
+      { label: 'Lane', cell: (lane) => breakable(report.lanes[lane].id), order: (lane) => lane },
+      column('Scaled', (lane) => said(lane, 'scale')),
+      column('Away from the origin', (lane) => said(lane, 'offset')),
+      ...(pareto
+        ? [
+            column('Flattened by 2^k', (lane) => measured(lane, 'flatness')),
+            column('Made needles by 2^k', (lane) => measured(lane, 'aspect')),
+          ]
+        : []),
+    ],
+    { caption: 'How far the lanes chosen are as right as on ordinary pairs', class: 'plain reach' },
+  );
+  table.show(lanes);
+  return table;
+}
+
+export function extremes_section(report: Report, pareto: Pareto | null) {
   const kinds = kKinds.filter(({ kind }) => report.extremes.some((row) => row.kind === kind && row.cells.length));
   if (!kinds.length) return null;
   const figures = kinds.map((kind) => ({
@@ -104,7 +139,7 @@ export function extremes_section(report: Report) {
               x1: 'from',
               x2: 'to',
               y: 'name',
-              fill: (c: Cell) => heat_fill(c.wrong.share),
+              fill: (c: Cell) => times_fill(shown(c.times)),
               insetTop: (small ? 15 : 0) + (thin ? 8 : 0),
               insetBottom: thin ? (small ? 2 : 8) : 0,
               shapeRendering: 'crispEdges',
@@ -131,19 +166,19 @@ export function extremes_section(report: Report) {
       ],
     });
     const lane_words = (name: string) => {
-      const worst = cells
-        .filter((c) => c.name === name && !few(c))
-        .reduce<Cell | null>((most, c) => (c.wrong.share > (most?.wrong.share ?? 0) ? c : most), null);
-      return worst
-        ? `${name}: at most ${percent(worst.wrong.share)}, from ${power_of_two(worst.from)} on`
-        : `${name}: none wrong`;
+      const row = report.extremes.find((one) => one.kind === kind && report.lanes[one.lane].id === name)!;
+      return `${name}: ${row.says}`;
     };
-    const label = `${title}: heat map of the share of wrong verdicts, cells of ${kFew} pairs and more. ${lanes.map(lane_words).join('. ')}. As a table below`;
+    const label = `${title}: heat map of how many times as often wrong as at the origin. ${lanes.map(lane_words).join('. ')}. As a table below`;
     element.replaceChildren(cells.length ? named(plot, label) : h('p', { class: 'empty' }, 'No lane is chosen.'));
   }
 
-  const redraw = () => figures.forEach((one) => one.element.clientWidth && draw(one, one.element.clientWidth));
+  const redraw = () => {
+    figures.forEach((one) => one.element.clientWidth && draw(one, one.element.clientWidth));
+    words.show(picker.lanes());
+  };
   const picker: Picker = lane_picker(report, 'extremes', { target: ['cpu'] }, redraw);
+  const words = words_table(report, pareto, picker.lanes());
   figures.forEach((one) => on_width(one.element, (width) => draw(one, width)));
   return section(
     'extremes',
@@ -151,12 +186,19 @@ export function extremes_section(report: Report) {
     h(
       'p',
       {},
-      'Where numbers are very large, very small, or far from the origin. Blank: no pair of the campaign lies there. ',
+      'How many times as often a lane is wrong where numbers are very large, very small, or far from the origin, as at the origin of the map: the pairs nearest to 2⁰. Near contacts are hard at every scale, so the share alone would tell little. Blank: no pair of the campaign lies there. ',
       h('b', {}, 'A thin cell'),
       ` has fewer than ${kFew} pairs, so chance may have coloured it.`,
     ),
     picker.element,
-    heat_legend(),
+    h(
+      'p',
+      {},
+      'As right: errors on at most twice the share of pairs, or on at most 0.1 %, with 95 % confidence.',
+      pareto ? '' : ' graze pareto --out with the campaign’s folder measures flatness and needles too.',
+    ),
+    words.element,
+    times_legend(),
     figures.map(({ kind, title, says, element }) => [
       h('div', { class: 'kept' }, h('h3', {}, title), h('p', {}, says), element),
       lazy_details(
@@ -167,6 +209,7 @@ export function extremes_section(report: Report) {
               { label: 'Lane', cell: (c) => c.name, order: (c) => c.lane },
               { label: 'From', numeric: true, cell: (c) => power_of_two(c.from), order: (c) => c.from },
               { label: 'Wrong', numeric: true, cell: (c) => percent(c.wrong.share), order: (c) => c.wrong.share },
+              { label: 'Times the origin', numeric: true, cell: ratio, order: (c) => shown(c.times) },
               { label: 'In full', cell: (c) => in_full(c.wrong), order: (c) => c.wrong.count },
             ],
             { caption: `${title}, of the lanes chosen when this was opened`, class: 'plain', page: 100 },

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Formats numbers for readers. Always English, so that a report reads the same everywhere.
-import type { Share } from './report';
+import type { Quartiles, Share } from './report';
 
 export const count = (n: number) => n.toLocaleString('en-US');
 
@@ -35,6 +35,15 @@ export function figure(value: number): string {
   const [digits, power] = value.toExponential(2).split('e');
   return `${Number(digits)}·10${raised(Number(power))}`;
 }
+
+// Whether a cost's quartiles are further apart than a quarter of its median, as reports/cost_words.h has it.
+export const is_noisy = (cost: Quartiles) => cost.high - cost.low > 0.25 * cost.middle;
+
+// "quartiles 8.4 to 8.9", for the title of a cost.
+export const spread_words = (cost: Quartiles) =>
+  `quartiles ${figure(cost.low)} to ${figure(cost.high)}${is_noisy(cost) ? '; noisy: measure again on an idle machine' : ''}`;
+
+export const noisy_mark = (cost: Quartiles) => (is_noisy(cost) ? ' (noisy)' : '');
 
 // "42 ns", "8.5 ns"
 export const nanoseconds = (value: number) => `${value.toFixed(value < 10 ? 1 : 0)} ns`;

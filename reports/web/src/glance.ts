@@ -3,7 +3,7 @@
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named } from './chart';
 import { h, on_width } from './dom';
-import { count, figure, in_full, nanoseconds, percent } from './format';
+import { count, figure, in_full, is_noisy, nanoseconds, percent } from './format';
 import type { Costs, Report, Share } from './report';
 
 interface Row {
@@ -45,7 +45,7 @@ export function glance_rows(report: Report, costs: Costs | null): Row[] {
         lane,
         name: report.lanes[lane].id,
         wrong: total.get(lane) ?? 0,
-        cost: cost ? nanoseconds(cost.middle) : '',
+        cost: cost ? (is_noisy(cost) ? '≈ ' : '') + nanoseconds(cost.middle) : '',
       };
     })
     .sort((a, b) => a.wrong - b.wrong || a.lane - b.lane);
@@ -64,8 +64,8 @@ export function glance(report: Report, costs: Costs | null) {
       return { name: row.name, group: id, x: x(share), words: `${row.name}\n${id} pairs: ${in_full(share)}` };
     }),
   );
-  const pair = cost_ground(report) === null ? 'a pair' : 'a general pair';
-  const title = `Wrong verdicts of each lane, by kind of pair${costs ? `, and its cost for ${pair}` : ''}`;
+  const pair = `${cost_ground(report) === null ? 'a pair' : 'a general pair'}, many pairs a call`;
+  const title = `Wrong verdicts of each lane, by kind of pair${rows.some((row) => row.cost) ? `, and its cost for ${pair}` : ''}`;
   const element = h('div', { class: 'chart' });
   const said = rows
     .map((row) => {

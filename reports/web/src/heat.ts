@@ -47,24 +47,36 @@ export function heat_styles() {
   return h('style', {}, `${rules(false)}@media screen and (prefers-color-scheme:dark){${rules(true)}}`);
 }
 
-export function heat_legend() {
+const kMostTimes = 32;
+// The colour for a share that is so many times another one: none up to 1, the darkest from kMostTimes on.
+export const times_fill = (times: number) => heat_fill(Math.min(1, Math.log2(times) / Math.log2(kMostTimes)) ** 3);
+
+function legend(describes: string, none: string, marks: [number, string][]) {
   const steps = Array.from({ length: kSteps }, (_, i) => h('i', { class: `h${i}` }));
   return h(
     'div',
-    {
-      class: 'heat-legend',
-      role: 'img',
-      'aria-label': 'Colour scale: share of wrong verdicts; no colour where none is wrong',
-    },
+    { class: 'heat-legend', role: 'img', 'aria-label': `Colour scale: ${describes}` },
     h('i', { class: 'none' }),
-    h('span', {}, 'none wrong'),
+    h('span', {}, none),
     h(
       'span',
       { class: 'ramp' },
       steps,
-      [0.001, 0.01, 0.1, 0.3, 1].map((share) =>
-        h('b', { style: `left:${100 * Math.cbrt(share)}%` }, share === 1 ? '100 %' : String(100 * share)),
-      ),
+      marks.map(([place, text]) => h('b', { style: `left:${100 * place}%` }, text)),
     ),
   );
 }
+
+export const heat_legend = () =>
+  legend(
+    'share of wrong verdicts; no colour where none is wrong',
+    'none wrong',
+    [0.001, 0.01, 0.1, 0.3, 1].map((share) => [Math.cbrt(share), share === 1 ? '100 %' : String(100 * share)]),
+  );
+
+export const times_legend = () =>
+  legend(
+    'how many times as often wrong as at the origin; no colour where not more often',
+    'not more often',
+    [2, 4, 8, 16, kMostTimes].map((times) => [Math.log2(times) / Math.log2(kMostTimes), `${times} ×`]),
+  );

@@ -29,7 +29,7 @@ function build(report: Report, costs: Costs | null, { tuned, pareto, discrepancy
     league_section(report),
     ...failures.sections,
     margins_section(report),
-    extremes_section(report),
+    extremes_section(report, pareto),
     discrepancy && discrepancy_section(discrepancy),
     side_by_side_section(report),
     method_section(),

@@ -80,6 +80,8 @@ const kTerms: [string, Child[]][] = [
       'What signatures have in common: the algorithm, why it is wrong (rounding, overflow, underflow, contraction, fast math, or its own logic), the source line of the comparison that decides, and the shape: ',
       h('i', {}, 'degenerate'),
       ' where a triangle is a segment or a point, else ',
+      h('i', {}, 'contained'),
+      ' where one lies in the other in one plane, ',
       h('i', {}, 'coplanar'),
       ' or ',
       h('i', {}, 'general'),
@@ -91,7 +93,7 @@ const kTerms: [string, Child[]][] = [
   [
     'Signature',
     [
-      'Failures of an algorithm that look alike: the contact, the dimensions of both triangles (2 is a proper triangle), coplanar or skew, the margin’s power of two, and the mark of each lane: ',
+      'Failures of an algorithm that look alike: the contact, the dimensions of both triangles (2 is a proper triangle), coplanar or skew, which triangle lies in the other, the margin’s power of two, and the mark of each lane: ',
       h('code', {}, '+'),
       ' false positive, ',
       h('code', {}, '-'),

@@ -11,6 +11,8 @@ export interface Share {
   high: number;
 } // Wilson, 95 %; six significant digits are enough; share, low and high are null if `of` is 0
 
+export type Times = [number | null, number, number | null];
+
 // The smallest margin (in ulps, a power of two) at or above which no error was seen; if there was no error, the
 // smallest margin seen. `bound`: 95 % upper bound of the error rate of the `above` pairs beyond it (1 - 0.05^(1/n)). If
 // exponent is null, errors were seen up to the largest margin, 2^largest. If largest is null, there is no pair on that
@@ -47,6 +49,7 @@ export interface PolicyErrors extends Errors {
 
 // tune.json and pareto.json, if they are in the campaign's folder; docs/formats.md describes them.
 export interface Tuned {
+  epsilon?: { name: string; written: string; file: string; lines: number[]; chosen: string }; // of a user's own code
   lane: string;
   forbid: 'false_negative' | 'false_positive' | 'any';
   max_rate: number;
@@ -91,7 +94,7 @@ export interface Pareto {
     active_threads?: number;
     failure: string | null;
   }[];
-  extremes: { lane: string; extreme: string; points: ({ log2: number } & Errors)[] }[];
+  extremes: { lane: string; extreme: string; says: string; points: ({ log2: number } & Errors)[] }[];
   sentences: string[];
 }
 export interface Choices {
@@ -116,7 +119,15 @@ export interface Report {
     build: { version: string; commit: string; compiler: string; cuda: string | null; device: string | null };
     scene: string | null; // "arm.toml#0123456789abcdef"
     machine: string | null; // from timings.json only if deterministic; else null
-    subjects?: { name: string; what: string; hash: string }[]; // foreign code, as the campaign recorded it
+    subjects?: {
+      name: string; // foreign code, as the campaign recorded it
+      what: string;
+      hash: string; // of all that was compiled or run
+      source_hash?: string; // of a source's file alone
+      compiler?: string;
+      flags?: string[];
+      environment?: { [variable: string]: string }; // that chose the compiler or what it reads
+    }[];
   };
   strata: { id: string; describes: string; pairs: number; intersects: number }[];
   lanes: {
@@ -151,11 +162,16 @@ export interface Report {
   }[];
   // Error against margin over all strata (stratum null; margins.csv has each stratum). side: disjoint or intersecting
   // pairs. exponent e stands for margins in [2^e, 2^(e+1)) ulps; zero margins have an entry with exponent null. Only
-  // buckets that have pairs.
+  // buckets that have pairs. differs: from the lane’s cpu lane, if there is one.
   margins: {
     lane: number;
     stratum: number | null;
-    points: { side: 'disjoint' | 'zero' | 'intersects'; exponent: number | null; wrong: Share }[];
+    points: {
+      side: 'disjoint' | 'zero' | 'intersects';
+      exponent: number | null;
+      wrong: Share;
+      differs?: Share;
+    }[];
   }[];
   // For a group of strata, a stratum, or all strata (both null).
   thresholds: {
@@ -167,7 +183,17 @@ export interface Report {
   }[];
   // kind scale: by the exponent of the largest coordinate; offset: by log2(largest coordinate / extent of the pair). A
   // cell stands for exponents [exponent, exponent + step); cells without pairs are absent.
-  extremes: { kind: 'scale' | 'offset'; step: number; lane: number; cells: { exponent: number; wrong: Share }[] }[];
+  // origin: the exponent nearest to 0 that has enough pairs to compare with; null if none has. says: how far the lane is
+  // as right as there. times, if the lane errs in the cell: the ratio of the cell's share and the origin's, and
+  // its lower and upper bound from both 95 % intervals; null where that would divide by 0.
+  extremes: {
+    kind: 'scale' | 'offset';
+    step: number;
+    lane: number;
+    cells: { exponent: number; wrong: Share; times?: Times }[];
+    origin: number | null;
+    says: string;
+  }[];
   signature_count: number; // of all; `signatures` has the most frequent ones
   signatures: {
     // one for each signature that fits, most frequent first
@@ -178,6 +204,7 @@ export interface Report {
     contact: string;
     dimensions: string;
     coplanar: boolean;
+    nesting?: 'a_in_b' | 'b_in_a' | 'same'; // which triangle lies in the other
     margin: string; // "-2^-3", "0", "2^4" ulps
     marks: string; // one character ('.' '+' '-' '?') for each lane of the algorithm, in the order of `lanes`
     cards: number[]; // indices in `cards` of its kinds, most frequent first
@@ -221,7 +248,7 @@ export interface FailureKind {
   subject: string;
   cause: string;
   line: string; // "core/algorithms/moller_1997.h:117"; empty if no comparison is to blame
-  shape: 'general' | 'coplanar' | 'degenerate';
+  shape: 'general' | 'coplanar' | 'contained' | 'degenerate';
   pairs: number;
   signatures: number;
   lanes: string[]; // ids of the lanes that fail in this way on some pair of the kind
@@ -229,6 +256,19 @@ export interface FailureKind {
   strata: { [id: string]: number }; // kept pairs by stratum; at most four for each signature
   margins: { [bucket: string]: number }; // all its pairs by margin; "-2^-3", "0", "+2^4" ulps
   worst: { case: string; pair: string; from: string; margin_ulps: number }; // pair: 18 hex floats
+}
+
+export interface ChangedVerdicts {
+  lane: string;
+  stratum: string;
+  pairs: number;
+  known: string; // same, changed, unknown
+  least: number; // changed verdicts, at least and at most
+  most: number;
+  broken?: number; // became wrong, where the pairs were decided again by both codes
+  mended?: number; // became right
+  smallest_broken?: string; // "STRATUM:SEED:INDEX 18 numbers"
+  smallest_mended?: string;
 }
 
 export interface Compare {
@@ -242,9 +282,11 @@ export interface Compare {
     before: Share; // wrong
     after: Share;
     changed: boolean; // beyond chance; on the same pairs, at all
+    unseen?: number | null; // a smaller difference could pass for chance; not on the same pairs
     errors: { error: string; before: Share; after: Share }[]; // kinds of error that changed: "false positives", …
   }[];
   gained: { key: string; signatures: number; count: number }[]; // kinds, with their signatures and pairs
   lost: { key: string; signatures: number; count: number }[];
   kinds_compared: boolean; // false unless `graze minimize` ran on both
+  verdicts?: ChangedVerdicts[] | null; // on the same pairs
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What was run, and the answer in sentences.
 import { breakable, code_block, h, lazy_details, section, sentence, type Child } from './dom';
-import { count, nanoseconds, percent } from './format';
+import { count, nanoseconds, noisy_mark, percent, spread_words } from './format';
 import { front } from './choices';
 import { glance } from './glance';
 import type { Costs, Report, Pareto } from './report';
@@ -65,8 +65,8 @@ function costs_table(report: Report, costs: Costs) {
       return cost
         ? h(
             'td',
-            { class: 'number', title: `quartiles ${cost.low} to ${cost.high}, of ${count(cost.pairs)} pairs` },
-            nanoseconds(cost.middle),
+            { class: 'number', title: `${spread_words(cost)}, of ${count(cost.pairs)} pairs` },
+            nanoseconds(cost.middle) + noisy_mark(cost),
           )
         : '–';
     },
@@ -78,7 +78,10 @@ function costs_table(report: Report, costs: Costs) {
       column('all strata', null),
       ...report.groups.map(({ id }, group) => column(id, group)),
     ],
-    { caption: 'Cost of a pair, in nanoseconds on one core', class: 'plain costs' },
+    {
+      caption: `Cost of a pair on one core, many pairs a call: medians of ${costs.passes} passes`,
+      class: 'plain costs',
+    },
   );
   table.show(lanes);
   return table.element;
@@ -91,6 +94,15 @@ export function build_words({ build }: Report['run']) {
     build.cuda ?? 'built without CUDA',
     build.device ?? 'no CUDA device',
   ];
+}
+
+type Subject = NonNullable<Report['run']['subjects']>[number];
+
+// "my.cpp, hash 0a…; by g++ …, flags -O3, CXX=…"
+function subject_words({ what, hash, compiler, flags, environment }: Subject) {
+  const set = Object.entries(environment ?? {}).map(([name, value]) => `${name}=${value}`);
+  const built = [compiler && `by ${compiler}`, flags?.length && `flags ${flags.join(' ')}`, ...set].filter(Boolean);
+  return `${what}, hash ${hash}${built.length ? `; ${built.join(', ')}` : ''}`;
 }
 
 export function run_section(report: Report, costs: Costs | null) {
@@ -107,6 +119,7 @@ export function run_section(report: Report, costs: Costs | null) {
     ['Machine', run.machine],
     ['Costs measured on', costs?.machine ?? 'not measured'],
     ['Executors', executors(report)],
+    ...(run.subjects ?? []).map((subject): [string, Child] => [`Code of ${subject.name}`, subject_words(subject)]),
   ];
   return section(
     'run',

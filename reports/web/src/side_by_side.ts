@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares two lanes of one algorithm: the effects of the compiler's contraction and of the precision.
-import { choice, h, section } from './dom';
+import { choice, h, on_width, section } from './dom';
 import { in_full, percent } from './format';
 import { heat_class } from './heat';
+import { lane_picker } from './lane_picker';
+import { margin_chart } from './margin_chart';
 import type { Report, Share } from './report';
+import { series_colour } from './series';
 import { sortable_table } from './sortable_table';
 
 type Side = Report['side_by_side'][number];
@@ -41,6 +44,45 @@ const common = (report: Report, side: Side) => {
   const [left, right] = [report.lanes[side.left], report.lanes[side.right]];
   return side.kind === 'f32-f64' ? `${left.algorithm}, ${left.target}` : `${left.algorithm}/${right.scalar}`;
 };
+
+// The curves of the lanes that the campaign compares with a cpu lane: how close are the calls on which they differ?
+function by_margin(report: Report) {
+  const compared = report.margins.filter((row) => row.points.some((p) => p.differs));
+  if (!compared.length) return null;
+  const differ = compared.filter((row) => row.points.some((p) => p.differs?.count));
+  const targets = [...new Set((differ.length ? differ : compared).map((row) => report.lanes[row.lane].target))];
+  const element = h('figure', { class: 'chart', id: 'differ-chart' });
+  const chart = margin_chart(
+    report,
+    element,
+    'differs',
+    {
+      title: 'Share of verdicts unlike the cpu lane’s, against the exact margin, all strata',
+      label: 'share that differs from cpu',
+      word: 'different',
+    },
+    () => picker.lanes(),
+    () => true,
+  );
+  const picker = lane_picker(
+    report,
+    'differ',
+    { scalar: ['f32'], target: targets.includes('cuda-fma') ? ['cuda-fma'] : targets },
+    () => element.clientWidth && chart.draw(element.clientWidth),
+    (algorithm) => series_colour(report, algorithm),
+  );
+  on_width(element, chart.draw);
+  return [
+    h('h3', {}, 'How close are the calls on which they differ?'),
+    h(
+      'p',
+      {},
+      'How often a lane gives another verdict than the cpu lane of its algorithm and precision, against the exact margin. CUDA without contraction is equal to cpu, so the curves of CUDA with contraction compare with both. f32 and f64 are not compared pair by pair.',
+    ),
+    picker.element,
+    element,
+  ];
+}
 
 export function side_by_side_section(report: Report) {
   let stratum: number | null = null;
@@ -111,5 +153,6 @@ export function side_by_side_section(report: Report) {
       { class: 'beside-all' },
       tables.map(({ element }) => element),
     ),
+    by_margin(report),
   );
 }

@@ -20,9 +20,12 @@ const kContacts: Record<string, string> = {
   area: 'meeting in an area',
 };
 
+const kNestings = { a_in_b: ', a in b', b_in_a: ', b in a', same: ', same' };
+const planes = (s: Signature) => `${s.coplanar ? 'coplanar' : 'skew'}${s.nesting ? kNestings[s.nesting] : ''}`;
+
 export function signature_words(signature: Signature): string {
-  const { contact, dimensions, coplanar, margin } = signature;
-  return `${hulls(dimensions, coplanar ? 'coplanar ' : '')} ${kContacts[contact] ?? contact}, margin ${margin_words(margin)}`;
+  const { contact, dimensions, coplanar, margin, nesting } = signature;
+  return `${hulls(dimensions, coplanar ? 'coplanar ' : '')} ${kContacts[contact] ?? contact}${nesting ? kNestings[nesting] : ''}, margin ${margin_words(margin)}`;
 }
 
 // pair_of: returns the pair to show for a signature.
@@ -57,7 +60,7 @@ export function signature_table(report: Report, pair_of: (signature: Signature) 
       { label: 'Algorithm', cell: (s) => s.algorithm, order: (s) => s.algorithm },
       { label: 'Contact', cell: (s) => s.contact, order: (s) => s.contact },
       { label: 'Hulls', cell: (s) => hulls(s.dimensions), order: (s) => s.dimensions },
-      { label: 'Planes', cell: (s) => (s.coplanar ? 'coplanar' : 'skew'), order: (s) => Number(s.coplanar) },
+      { label: 'Planes', cell: planes, order: planes },
       { label: 'Margin', numeric: true, cell: (s) => margin_words(s.margin), order: (s) => margin_order(s.margin) },
       {
         label: 'Lanes f32 · f64',

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { power_of_two } from '../src/format';
+import { times_fill } from '../src/heat';
 import type { Report, Threshold } from '../src/report';
 import { expect, pixels, test } from './page';
 
@@ -98,11 +99,44 @@ test('extremes: a cell for every exponent that has pairs, thin where they are fe
     expect(heights.filter((height) => height < 8)).toHaveLength(few);
     await expect(page.locator(`#extremes-${kind} svg`).first()).toHaveAttribute(
       'aria-label',
-      /(at most [0-9.]+ %|none wrong)/,
+      /(as right as at|errs on none|not settled)/,
     );
     const fills = await page
       .locator(`#extremes-${kind} g[data-mark="rect"] rect`)
       .evaluateAll((rects) => [...new Set(rects.map((rect) => getComputedStyle(rect).fill))]);
-    expect(fills.length).toBeGreaterThan(3);
+    const shades = rows.flatMap((row) => row.cells.map(({ times }) => times_fill(times?.[0] ?? times?.[1] ?? 0)));
+    expect(fills.length).toBe(new Set(shades).size);
   }
+});
+
+test('shades of extremes tell ratios apart, from once to 32 times as often', () => {
+  const shades = [1, 1.5, 2, 4, 8, 16, 32].map(times_fill);
+  expect(new Set(shades).size).toBe(shades.length);
+  expect([0, 0.5, 1].map(times_fill)).toEqual(Array(3).fill(times_fill(1)));
+  expect(times_fill(1000)).toBe(times_fill(32));
+});
+
+test('each lane has its words on scale, offset, flatness and needles', async ({ page, report }) => {
+  const rows = page.locator('#extremes .reach tbody tr');
+  const lanes = report.lanes.flatMap((lane, i) => (lane.target === 'cpu' ? [i] : []));
+  await expect(rows).toHaveCount(lanes.length);
+  for (const [place, lane] of lanes.entries()) {
+    for (const kind of ['scale', 'offset'] as const)
+      await expect(rows.nth(place)).toContainText(
+        report.extremes.find((row) => row.lane === lane && row.kind === kind)!.says,
+      );
+  }
+  // Pareto's first lanes are measured on flat pairs and needles too.
+  await expect(rows.first()).toContainText(/(as right as at 1|errs on none|not settled).*2\^/);
+});
+
+test('lanes that differ from cpu have a curve against the margin', async ({ page, report }) => {
+  await page.locator('#differ-chart').scrollIntoViewIfNeeded();
+  const drawn = report.margins
+    .filter((row) => report.lanes[row.lane].scalar === 'f32' && report.lanes[row.lane].target === 'cuda-fma')
+    .flatMap((row) =>
+      ['disjoint', 'intersects'].filter((side) => row.points.some((p) => p.side === side && p.differs?.count)),
+    );
+  expect(drawn.length).toBeGreaterThan(5);
+  await expect(page.locator('#differ-chart svg g[data-mark="line"] path')).toHaveCount(drawn.length);
 });

@@ -14,10 +14,18 @@ export interface Stored {
   evidence: string;
   replay: Replay;
 } // of the build; `graze report` writes only these
+// What a lane of the user's own code says of a pair; `stored`: in the campaign, whose code is not there any more.
+export interface Said {
+  lane: string;
+  verdict: string;
+  wrong: boolean;
+  stored: boolean;
+}
 export interface ViewData extends Stored {
   format: number;
   title: string;
-  pairs: { name: string; bits: string }[];
+  pairs: { name: string; bits: string; said?: Said[] }[];
+  lanes_left_out?: { why: Record<string, string> }; // of the user's own code
   triangles: string[]; // of a mesh or a query, 9 words each; may be empty
   ids?: number[]; // of these triangles; without it, they are numbered as they come
   opens?: 'pair' | 'triangles' | 'random'; // triangles: all at once, against the first triangle of the pair

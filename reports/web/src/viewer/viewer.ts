@@ -16,6 +16,7 @@ import { map } from './map';
 import { matrix } from './matrix';
 import { Model } from './model';
 import { on_a_line } from './on_a_line';
+import { own_code } from './own_code';
 import { policy } from './policy';
 import type { Ready } from './ready';
 import { sources } from './sources';
@@ -77,6 +78,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
     typed = coordinates(model, say),
     ulps = map(model, module),
     line = on_a_line(model),
+    own = own_code(model, data),
     from = sources(model, data, say),
     copied = copies(model, around.link);
   const tool = (text: string, action: () => void) => h('button', { type: 'button', onclick: action }, text);
@@ -139,6 +141,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
       ),
     );
     because.brief.hidden = apart.length === 0;
+    own.update();
     typed.update();
     from.update();
   }
@@ -209,6 +212,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
         'div',
         { class: 'column' },
         h('div', { class: 'said' }, truth, summary, because.brief),
+        own.element,
         verdicts.element,
         because.element,
         line.element,

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace graze::reports {
+namespace graze {
 
 struct Share {
   std::uint64_t count = 0, of = 0;
@@ -30,4 +30,4 @@ inline double bound_of_none(std::uint64_t n) {
   return n == 0 ? 1 : -std::expm1(std::log(0.05) / static_cast<double>(n));
 }
 
-}  // namespace graze::reports
+}  // namespace graze

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/changed_source.h"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "subjects/subjects.h"
+
+namespace graze::analysis {
+namespace {
+
+DecidingNumber told(const Lane& lane, const std::vector<subjects::Epsilon>& numbers, bool on_images) {
+  DecidingNumber result{"", "", on_images};
+  for (const subjects::Epsilon& number : numbers) {
+    const std::string place = places_in_words(subjects::opened(lane.info->id)->file, number);
+    if (result.line.empty()) result.line = place;
+    result.words += fmt::format("{}{} at {}", result.words.empty() ? "" : ", ", number.name, place);
+  }
+  result.words = fmt::format("with {:g} in place of {} it is right{}", subjects::kNegligible, result.words,
+                             on_images ? "" : ", but not in every order and mirror image in which it was wrong");
+  return result;
+}
+
+}  // namespace
+
+std::optional<DecidingNumber> deciding_number(const Lane& lane, const IsRight& is_right,
+                                              const IsRight& is_right_on_images) {
+  const std::vector<subjects::Epsilon> all = subjects::small_numbers(lane);
+  std::vector<std::vector<subjects::Epsilon>> tried;
+  for (const subjects::Epsilon& one : all) tried.push_back({one});
+  if (all.size() > 1) tried.push_back(all);
+  std::optional<DecidingNumber> on_pair;
+  for (const std::vector<subjects::Epsilon>& some : tried) {
+    const auto changed = subjects::changed(lane, {.negligible = some});
+    if (!changed || !is_right(*changed)) continue;
+    if (is_right_on_images(*changed)) return told(lane, some, true);
+    if (!on_pair) on_pair = told(lane, some, false);
+  }
+  return on_pair;
+}
+
+std::optional<InitialValues> by_initial_values(const Lane& lane, Verdict truth,
+                                               const std::function<Verdict(const DecideBlock& block)>& verdict_of) {
+  bool right[2];
+  for (const bool zero : {false, true}) {
+    const auto build =
+        subjects::changed(lane, {.flags = {fmt::format("-ftrivial-auto-var-init={}", zero ? "zero" : "pattern")}});
+    if (!build) return std::nullopt;
+    const Verdict verdict = verdict_of(*build);
+    if (verdict == Verdict::unstable) return std::nullopt;  // something else changes it
+    right[zero] = verdict == truth;
+  }
+  const auto word = [](bool is_right) { return is_right ? "right" : "wrong"; };
+  std::string words = fmt::format("with zero in variables without a value it is {}, with another pattern it is {}",
+                                  word(right[true]), word(right[false]));
+  if (right[false] != right[true]) return InitialValues{std::move(words), true};
+  const std::vector<std::string> warnings_are_errors = {"-Werror=uninitialized", "-Werror=maybe-uninitialized"};
+  if (!right[true] || subjects::changed(lane, {.flags = warnings_are_errors})) return std::nullopt;
+  return InitialValues{words + ", and the compiler warns of one", false};
+}
+
+subjects::ChangedCode in_doubles(const Lane& lane) { return subjects::changed(lane, {.doubles = true}); }
+
+}  // namespace graze::analysis

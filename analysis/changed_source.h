@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a foreign lane's source says about a pair when it is built with a change (subjects/rebuilt.h).
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/lanes/lanes.h"
+#include "subjects/rebuilt.h"
+
+namespace graze::analysis {
+
+struct DecidingNumber {
+  std::string line;   // "mine.cpp:9", of the first number
+  std::string words;  // "with 1e-36 in place of 1e-6f at mine.cpp:9 it is right"
+  bool on_images;     // it is right on the pair's images too
+};
+
+// A small number of the source that decides: with a negligible one in its place, the code is right. Prefers numbers
+// that decide on the pair's images too: on one pair any change may be right by luck. If no number alone decides, all
+// together may.
+// is_right, is_right_on_images: what the changed code says; the second is asked only where the first holds.
+using IsRight = std::function<bool(const DecideBlock& block)>;
+std::optional<DecidingNumber> deciding_number(const Lane& lane, const IsRight& is_right,
+                                              const IsRight& is_right_on_images);
+
+struct InitialValues {
+  std::string words;
+  bool differ;  // the verdict depends on the value; otherwise any value makes it right, and the compiler warns
+};
+
+// Whether the verdict depends on the values of variables that the source gives none: it becomes right if the compiler
+// sets them to zero, or to a pattern. Where both make it right, the other machine code may be the reason, as it rounds
+// in other places on an x87; so the compiler must warn of such a variable too.
+// verdict_of: what the changed code says.   Requires: the lane is wrong on the pair.
+std::optional<InitialValues> by_initial_values(const Lane& lane, Verdict truth,
+                                               const std::function<Verdict(const DecideBlock& block)>& verdict_of);
+
+// The source with double in place of float. Null if that does not compile, or if there is no source.
+subjects::ChangedCode in_doubles(const Lane& lane);
+
+}  // namespace graze::analysis

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// Causes found by building a user's source again with a change.
+#include "analysis/changed_source.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+#include "analysis/experiments.h"
+#include "core/relation_of.h"
+#include "strata/strata.h"
+#include "subjects/subjects.h"
+
+namespace graze::analysis {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kHead = "bool intersects(const float a[9], const float b[9]) {\n";
+
+class ExperimentsOnSources : public testing::Test {
+ protected:
+  ExperimentsOnSources() {
+    fs::create_directories(folder_);
+    setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
+  }
+  ~ExperimentsOnSources() override { fs::remove_all(folder_); }
+
+  const Lane& opened(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / (name + ".cpp")) << text;
+    subjects::open({name, folder_ / (name + ".cpp"), {}});
+    return *find_lane(name + "/f32/cpu");
+  }
+
+  // Of a lane that is wrong on the pair.
+  static Experiment found(const Lane& lane, const Pair& pair) {
+    const Verdict truth = relation_of(pair).verdict, verdict = decide_lane(lane, pair);
+    EXPECT_NE(verdict, truth);
+    const Experiment result = experiment(lane, verdict, pair, truth);
+    EXPECT_GT(result.asked, 0);
+    EXPECT_LE(result.asked, kMostAsked);
+    return result;
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("graze-changed-" + std::to_string(getpid()));
+};
+
+bool has(const std::string& text, std::string_view part) { return text.find(part) != text.npos; }
+
+// They intersect, with coordinates of more bits than small integers have.
+const Pair kFine{{{0.0117f, 0.0231f, 0.0119f}, {4.0177f, 0.0313f, 0.0171f}, {0.0239f, 4.0191f, 0.0113f}},
+                 {{1.0133f, 1.0171f, -1.0193f}, {1.0271f, 1.0131f, 1.0119f}, {3.0117f, 3.0213f, 1.0157f}}};
+
+Pair scaled(Pair pair, int k) {
+  for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = std::ldexp(coordinates(pair)[i], k);
+  return pair;
+}
+
+// Another weight makes it right on some pairs, by luck.
+TEST_F(ExperimentsOnSources, AWeightIsNoEpsilon) {
+  const Lane& lane =
+      opened("weighs", std::string(kHead) + "  return a[0] + 0.05f * 20 * a[4] < b[0] + 0.05f * 20 * b[7];\n}\n");
+  int by_luck = 0;
+  for (const strata::Stratum stratum : {strata::Stratum::uniform, strata::Stratum::near_vertex_face}) {
+    for (std::uint64_t i = 0; i < 80; ++i) {
+      const Pair pair = strata::generate(7, stratum, i);
+      if (decide_lane(lane, pair) == relation_of(pair).verdict) continue;
+      const Experiment one = found(lane, pair);
+      EXPECT_TRUE(one.line.empty()) << one.line;
+      if (!has(one.evidence, "in place of 0.05f at weighs.cpp:2 it is right")) continue;
+      ++by_luck;
+      EXPECT_FALSE(one.settled) << name(one.cause) << ' ' << one.evidence;
+      EXPECT_TRUE(has(one.evidence, "but not in every order and mirror image")) << one.evidence;
+    }
+  }
+  fmt::print("right by luck: {}\n", by_luck);
+  EXPECT_GT(by_luck, 5);
+}
+
+TEST_F(ExperimentsOnSources, ANumberThatDecidesAtEveryScaleIsARelativeEpsilon) {
+  const Lane& lane =
+      opened("relative", std::string(kHead) + "  volatile float eps = 1e-2f;\n  return eps < 1e-20f;\n}\n");
+  const Experiment one = found(lane, kFine);
+  EXPECT_EQ(one.cause, Cause::relative_epsilon) << one.evidence;
+  EXPECT_TRUE(one.settled) << one.evidence;
+  EXPECT_EQ(one.line, "relative.cpp:2");
+  EXPECT_TRUE(
+      has(one.evidence, "with 1e-36 in place of 1e-2f at relative.cpp:2 it is right; it is wrong at all larger"))
+      << one.evidence;
+  // No larger scale can be tried: the one pair is too large, and the other spans too many exponents.
+  Pair wide = scaled(kFine, 18);
+  wide.a[0].x = 0x1p-40f;
+  for (const Pair& pair : {scaled(kFine, 30), wide}) {
+    const Experiment open = found(lane, pair);
+    EXPECT_FALSE(open.settled) << open.evidence;
+    EXPECT_TRUE(has(open.evidence, "in place of 1e-2f")) << open.evidence;
+    EXPECT_FALSE(has(open.evidence, "larger scales")) << open.evidence;
+  }
+}
+
+// The function of doubles is right, so the verdict's change with the scale may be underflow.
+TEST_F(ExperimentsOnSources, ANumberBesideAnOpenUnderflowIsNotSettled) {
+  const Lane& lane = opened(
+      "small", std::string("bool intersects(const double*, const double*) { return true; }\n") + kHead +
+                   "  float most = 0;\n  for (int i = 0; i < 9; ++i) most = a[i] > most ? a[i] : most;\n  for (int i = "
+                   "0; i < 9; ++i) most = b[i] > most ? b[i] : most;\n  return !(most < 1e-4f);\n}\n");
+  ASSERT_TRUE(find_lane("small/f64/cpu"));
+  const Experiment one = found(lane, scaled(kFine, -18));
+  EXPECT_FALSE(one.settled) << name(one.cause) << ' ' << one.evidence;
+  EXPECT_TRUE(has(one.evidence, "in place of 1e-4f at small.cpp:6 it is right; scaled by 2^")) << one.evidence;
+  EXPECT_FALSE(has(one.evidence, "larger scales")) << one.evidence;
+}
+
+// Its machine code changes where the compiler gives arrays a value, as spills of an x87 do: it measures that code.
+TEST_F(ExperimentsOnSources, OtherMachineCodeIsNoVariableWithoutAValue) {
+  const Lane& lane = opened("measures", R"(
+extern "C" __attribute__((visibility("hidden"))) const char begin_here[], end_here[];
+static __attribute__((noipa)) float fifth(const float* from) {
+  asm volatile("begin_here:" ::: "memory");
+  float all[64];
+  asm volatile("" ::"r"(all) : "memory");
+  asm volatile("end_here:" ::: "memory");
+  for (int i = 0; i < 64; ++i) all[i] = from[i % 9];
+  asm volatile("" ::"r"(all) : "memory");
+  return all[5];
+}
+bool intersects(const float a[9], const float*) { return fifth(a) == a[5] && end_here - begin_here >= 8; }
+)");
+  const auto verdict_on_fine = [](const DecideBlock& block) { return decide_one(block, kFine); };
+  int right = 0;
+  EXPECT_FALSE(by_initial_values(lane, Verdict::intersects, [&](const DecideBlock& block) {
+    const Verdict verdict = verdict_on_fine(block);
+    right += verdict == Verdict::intersects;
+    return verdict;
+  }));
+  EXPECT_EQ(right, 2);
+  const Pair small{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, -1}, {1, 1, 1}, {3, 3, 1}}};
+  for (const Pair& pair : {kFine, small}) EXPECT_NE(found(lane, pair).cause, Cause::uninitialised);
+}
+
+// Where any value makes it right, the compiler's warning is what shows the variable, and rounding must be out.
+TEST_F(ExperimentsOnSources, AVariableThatTheCompilerWarnsOfIsSettledOnSmallIntegers) {
+  const Lane& lane = opened("unset", std::string(kHead) + R"(  int way;
+  if (a[0] > 100) way = 1; else if (a[0] > 50) way = 2;
+  float s = 0;
+  for (int i = 0; i < 9; ++i) s += way == 2 ? a[i] + 1e3f : way == 1 ? b[i] + 1e3f : -1;
+  return s < 0;
+}
+)");
+  const Pair small{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, -1}, {1, 1, 1}, {3, 3, 1}}};
+  for (const Pair* pair : {&small, &kFine}) {
+    const Experiment one = found(lane, *pair);
+    EXPECT_EQ(one.cause, Cause::uninitialised) << one.evidence;
+    EXPECT_EQ(one.settled, pair == &small) << one.evidence;
+    EXPECT_TRUE(has(one.evidence, "and the compiler warns of one")) << one.evidence;
+  }
+}
+
+TEST_F(ExperimentsOnSources, AnEditedSourceIsNamedAsAnExperimentThatWasNotMade) {
+  const std::string text =
+      "bool intersects(const double*, const double*) { return false; }\n" + std::string(kHead) + "  return false;\n}\n";
+  const Lane& lane = opened("edited", text);
+  constexpr std::string_view kNotMade = "its C++ source, in which Graze changes numbers";
+  const Experiment before = found(lane, kFine);
+  EXPECT_FALSE(before.settled);
+  EXPECT_TRUE(has(before.evidence, "to settle it, try")) << before.evidence;
+  EXPECT_FALSE(has(before.evidence, kNotMade)) << before.evidence;
+  std::ofstream(folder_ / "edited.cpp") << text << "// edited\n";
+  EXPECT_TRUE(has(found(lane, kFine).evidence, kNotMade));
+  fs::remove(folder_ / "edited.cpp");
+  EXPECT_TRUE(has(found(lane, kFine).evidence, kNotMade));
+}
+
+// Six numbers that all are right on the pair, and wrong on one image of it only.
+TEST_F(ExperimentsOnSources, VerdictsOfChangedBuildsCountToo) {
+  std::string text = std::string(kHead) + "  if (a[0] > 0 && a[2] < 0) return false;\n  float least = 1;\n";
+  for (int i = 1; i <= 6; ++i)
+    text += fmt::format("  {{ volatile float w = 0.0{}f; const float x = w; least = x < least ? x : least; }}\n", i);
+  const Lane& lane = opened("numbers", text + "  return least < 0x1p-80;\n}\n");
+  const Pair small{{{1, 1, 2}, {5, 1, 2}, {1, 5, 2}}, {{2, 2, 1}, {2, 2, 3}, {4, 4, 3}}};
+  const Experiment one = found(lane, small);
+  fmt::print("asked for {} verdicts: {}, {}\n", one.asked, name(one.cause), one.evidence);
+  EXPECT_GT(one.asked, 78 + 7 * (1 + kMostImages) + 3 * 72);
+}
+
+}  // namespace
+}  // namespace graze::analysis

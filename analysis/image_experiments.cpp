@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/image_experiments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/neighbours.h"
+#include "core/relation_of.h"
+
+namespace graze::analysis {
+namespace {
+
+int count_of(const std::vector<bool>& right) { return static_cast<int>(std::count(right.begin(), right.end(), true)); }
+
+// Whether no sum of 32 products of this many coordinates or differences rounds, for the pair times `scale`.
+bool holds_products(const Pair& pair, Scalar scalar, int factors, int scale) {
+  const Size size(pair);
+  const int digits = limits_of(scalar).digits;
+  if (size.high == -1000 || size.high - size.low > digits) return false;
+  float largest = 0;
+  for (int i = 0; i < kCoordinates; ++i) {
+    for (int j = i % 3; j <= i; j += 3) {
+      const float c = coordinates(pair)[i];
+      largest = std::max({largest, std::fabs(c), std::fabs(c - coordinates(pair)[j])});
+    }
+  }
+  return std::pow(scale * std::ldexp(double{largest}, -size.low), factors) <= std::ldexp(1.0, digits - 5);
+}
+
+bool is_degenerate(const Pair& pair) {
+  const Hulls hulls = relation_of(pair).hulls;
+  return hulls.dimension_a < 2 || hulls.dimension_b < 2;
+}
+
+// Multiplies all coordinates, then adds one axis to another if they differ. This changes neither the truth nor, if the
+// factor is 1, any determinant; but it changes longer products.
+struct Image {
+  int factor, from, to;
+};
+
+std::vector<Pair> changed(std::vector<Pair> pairs, const Image& image) {
+  for (Pair& pair : pairs) {
+    float* const c = coordinates(pair);
+    for (int i = 0; i < kCoordinates; ++i) c[i] *= static_cast<float>(image.factor);
+    for (int i = 0; i < kCoordinates && image.from != image.to; i += 3) c[i + image.to] += c[i + image.from];
+  }
+  return pairs;
+}
+
+// Translates each vertex to the origin, if that is exact.
+std::vector<Pair> to_vertices(const Pair& pair, const Size& size) {
+  std::vector<Pair> result;
+  if (size.high - size.low + 1 > 53) return result;  // differences are exact in doubles only up to this size
+  for (const Vec3<float>* vertex = pair.a; vertex != pair.a + 6; ++vertex) {
+    Pair moved;
+    bool exact = true;
+    for (int i = 0; i < kCoordinates; ++i) {
+      const double difference = double{coordinates(pair)[i]} - (&vertex->x)[i % 3];
+      coordinates(moved)[i] = static_cast<float>(difference);
+      exact = exact && coordinates(moved)[i] == difference;
+    }
+    if (exact) result.push_back(moved);
+  }
+  return result;
+}
+
+// Rounds the pair to fewer bits, if that keeps its truth and shape.
+std::vector<Pair> snapped(const Pair& pair, const Size& size) {
+  std::vector<Pair> result;
+  const Relation own = relation_of(pair);
+  for (const int bits : {1, 2, 3, 4, 6, 8, 10, 12, 16, 20}) {
+    if (bits >= size.high - size.low) break;
+    Pair rounded = pair;
+    const int unit = size.high - bits;
+    for (int i = 0; i < kCoordinates; ++i)
+      coordinates(rounded)[i] = std::ldexp(std::nearbyint(std::ldexp(coordinates(pair)[i], -unit)), unit);
+    if (!is_finite(rounded)) continue;
+    const Relation now = relation_of(rounded);
+    if (now.contact == own.contact && now.hulls == own.hulls) result.push_back(rounded);
+  }
+  return result;
+}
+
+}  // namespace
+
+bool has_small_integers(const Pair& pair, Scalar scalar) { return holds_products(pair, scalar, kUsualFactors, 1); }
+
+std::optional<Experiment> without_rounding(const Pair& pair, Scalar widest, const Ask& ask) {
+  const std::vector<Pair> in_order = orders(pair), mirror_images = mirrored(pair), in_axes = axes(pair);
+  const std::vector<bool> right = ask(in_order);
+  const bool nothing_rounds = holds_products(pair, widest, kMostFactors, 1);
+  std::vector<std::vector<Pair>> images;
+  for (const int factor : {3, 5}) {
+    if (holds_products(pair, widest, 3, factor)) images.push_back(changed(in_order, {factor, 0, 0}));
+  }
+  if (!nothing_rounds) {
+    for (const Image& image : {Image{1, 0, 1}, {1, 1, 2}, {1, 2, 0}, {1, 1, 0}, {1, 2, 1}, {1, 0, 2}})
+      images.push_back(changed(in_order, image));
+  }
+  for (const std::vector<Pair>& image : images) {
+    if (is_finite(image[0]) && ask(image) != right) return std::nullopt;
+  }
+  const int in_orders = count_of(right), in_mirrors = count_of(ask(mirror_images)), by_axes = count_of(ask(in_axes));
+  std::string text = fmt::format("no sum and no product of up to {} differences rounds in {} here, and it is wrong ",
+                                 nothing_rounds ? kMostFactors : kUsualFactors, limits_of(widest).name);
+  text += in_orders == 0 ? "in all 72 orders" : fmt::format("in {} of 72 orders", 72 - in_orders);
+  const auto add = [&](int count, std::size_t all, std::string_view what) {
+    text += count == 0 ? fmt::format(", in all {}", what)
+                       : fmt::format(", in {} of {} {}", all - static_cast<std::size_t>(count), all, what);
+  };
+  add(in_mirrors, mirror_images.size(), "mirror images");
+  add(by_axes, in_axes.size(), "orders of the axes");
+  const Cause cause = is_degenerate(pair) ? Cause::degenerate_input
+                      : in_orders > 0     ? Cause::order_dependent
+                                          : Cause::logic;
+  return Experiment{cause, true, text + " and at all larger scales"};
+}
+
+std::vector<Pair> wrong_images(const Pair& pair, const Ask& ask) {
+  std::vector<Pair> images = orders(pair), in_mirrors = mirrored(pair), wrong, chosen;
+  images.insert(images.end(), in_mirrors.begin() + 1, in_mirrors.end());
+  images.erase(images.begin());
+  const std::vector<bool> right = ask(images);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (!right[i]) wrong.push_back(images[i]);
+  }
+  const std::size_t most = std::min<std::size_t>(kMostImages, wrong.size());
+  for (std::size_t i = 0; i < most; ++i) chosen.push_back(wrong[i * wrong.size() / most]);
+  return chosen;
+}
+
+Experiment by_images(const Pair& pair, const Ask& ask) {
+  const Size size(pair);
+  struct Images {
+    std::string_view what;
+    std::vector<Pair> pairs;
+  };
+  const Images kinds[] = {{"orders", orders(pair)},
+                          {"mirror images", mirrored(pair)},
+                          {"exact translations to a vertex", to_vertices(pair, size)},
+                          {"roundings to fewer bits with the same truth", snapped(pair, size)}};
+  std::string right, wrong;
+  int right_in[std::size(kinds)];
+  for (std::size_t i = 0; i < std::size(kinds); ++i) {
+    right_in[i] = count_of(ask(kinds[i].pairs));
+    if (kinds[i].pairs.empty()) continue;
+    std::string& list = right_in[i] > 0 ? right : wrong;
+    list += fmt::format("{}{} of {} {}", list.empty() ? "" : ", ", right_in[i], kinds[i].pairs.size(), kinds[i].what);
+  }
+  if (right.empty()) return {is_degenerate(pair) ? Cause::degenerate_input : Cause::logic, false, "right in " + wrong};
+  const bool orders_alone = right_in[0] > 0 && right_in[1] + right_in[2] + right_in[3] == 0;
+  const bool tried_others = kinds[3].pairs.size() > 1;
+  return {orders_alone && tried_others ? Cause::order_dependent : Cause::rounding, false,
+          "right in " + right + (wrong.empty() ? "" : ", and in " + wrong)};
+}
+
+}  // namespace graze::analysis

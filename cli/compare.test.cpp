@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two campaigns on the same pairs are compared verdict by verdict; on other pairs by their rates. And the command that
+// a report names runs the campaign again.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run_graze.h"
+
+namespace graze::cli {
+namespace {
+
+class Compare : public CommandTest {
+ protected:
+  static std::string fuzz(const std::string& options) {
+    return "export XDG_CACHE_HOME=$PWD/cache; " + options + " > /dev/null; ";
+  }
+  nlohmann::json json(const std::string& file) { return nlohmann::json::parse(contents(shell.folder / file)); }
+
+  // Compares before with after, and checks the counts of each row with those of `graze discrepancy` on the same pairs,
+  // where the two builds that ran are two libraries.
+  void expect_counts(const std::string& strata, int pairs) {
+    const Ran said = shell("export XDG_CACHE_HOME=$PWD/cache; graze report --compare before after");
+    ASSERT_EQ(said.status, 0) << said.err;
+    EXPECT_TRUE(said.out.starts_with("Changed: ")) << said.out;
+    const auto build = [&](const char* campaign) -> std::string {
+      return json(std::string(campaign) + "/summary.json")["spec"]["subjects"][0]["builds"][0];
+    };
+    expect_done(fmt::format(
+        "export XDG_CACHE_HOME=$PWD/cache; cp cache/graze/{}.so libone.so; cp cache/graze/{}.so libother.so; "
+        "graze discrepancy one/f32/cpu other/f32/cpu --strata {} --pairs {} --subject one=./libone.so "
+        "--subject other=./libother.so --out d",
+        build("before"), build("after"), strata, pairs));
+    const nlohmann::json counted = json("d/discrepancy.json")["verdicts"][0]["strata"];
+    std::uint64_t all = 0;
+    const nlohmann::json rows = json("after/compare.json")["compare"]["verdicts"];
+    for (const nlohmann::json& row : rows) {
+      if (row["lane"] != "mine/f32/cpu") continue;
+      const std::uint64_t changed = counted[row["stratum"].get<std::string>()]["differs"];
+      EXPECT_EQ(row["known"], changed == 0 ? "same" : "changed");
+      EXPECT_EQ(row["least"], changed);
+      EXPECT_EQ(row["most"], changed);
+      all += changed;
+      if (changed == 0) continue;
+      EXPECT_LE(row["broken"].get<std::uint64_t>() + row["mended"].get<std::uint64_t>(), changed);
+      for (const char* way : {"broken", "mended"})
+        EXPECT_EQ(row[way] > 0, row.contains(std::string("smallest_") + way)) << row;
+    }
+    EXPECT_GT(all, 0u);
+  }
+
+  // A separating-axis test with an absolute epsilon.
+  static constexpr const char* kSource = R"(cat > mine.cpp <<'EOF'
+#include <algorithm>
+struct Vec { float x, y, z; };
+static Vec operator-(Vec p, Vec q) { return {p.x - q.x, p.y - q.y, p.z - q.z}; }
+static float dot(Vec p, Vec q) { return p.x * q.x + p.y * q.y + p.z * q.z; }
+static Vec cross(Vec p, Vec q) { return {p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x}; }
+static bool separates(Vec n, const Vec* a, const Vec* b) {
+  const auto [a0, a1] = std::minmax({dot(n, a[0]), dot(n, a[1]), dot(n, a[2])});
+  const auto [b0, b1] = std::minmax({dot(n, b[0]), dot(n, b[1]), dot(n, b[2])});
+  return b0 > a1 + EPSILON || a0 > b1 + EPSILON;
+}
+extern "C" int intersects(const float* p, const float* q) {
+  const Vec a[] = {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}, {p[6], p[7], p[8]}};
+  const Vec b[] = {{q[0], q[1], q[2]}, {q[3], q[4], q[5]}, {q[6], q[7], q[8]}};
+  const Vec e[] = {a[1] - a[0], a[2] - a[1], a[0] - a[2]}, f[] = {b[1] - b[0], b[2] - b[1], b[0] - b[2]};
+  if (separates(cross(e[0], e[1]), a, b) || separates(cross(f[0], f[1]), a, b)) return 0;
+  for (int i = 0; i < 9; ++i)
+    if (separates(cross(e[i / 3], f[i % 3]), a, b)) return 0;
+  return 1;
+}
+EOF
+)";
+};
+
+// The three cases of which an unpaired test said that nothing had changed.
+TEST_F(Compare, AnotherCompilerIsCountedPairByPair) {
+  const std::string run =
+      "graze fuzz --subject mine=./mine.cpp --lanes mine/f32/cpu --strata near_edge_edge,thesis --pairs 2000 --out ";
+  shell(kSource);
+  expect_done(fuzz("CXX='c++ -DEPSILON=1e-6f' " + run + "before") + "CXX='c++ -DEPSILON=2e-6f' " + run +
+              "after > /dev/null");
+  const nlohmann::json before = json("before/summary.json")["spec"]["subjects"][0],
+                       after = json("after/summary.json")["spec"]["subjects"][0];
+  EXPECT_EQ(before["source_hash"], after["source_hash"]);
+  EXPECT_NE(before["hash"], after["hash"]);
+  EXPECT_EQ(before["environment"]["CXX"], "c++ -DEPSILON=1e-6f");
+  EXPECT_EQ(after["environment"]["CXX"], "c++ -DEPSILON=2e-6f");
+  EXPECT_EQ(before["builds"].size(), 3u);
+  EXPECT_NE(before["compiler"].get<std::string>().find("++"), std::string::npos);
+  expect_counts("near_edge_edge,thesis", 2000);
+  const Ran said = shell("export XDG_CACHE_HOME=$PWD/cache; graze report --compare before after");
+  EXPECT_NE(said.out.find(", CXX=c++ -DEPSILON=2e-6f"), std::string::npos) << said.out;
+}
+
+// The source is edited in place: the code before is gone, but not what was built of it.
+TEST_F(Compare, AnotherEpsilonIsCountedPairByPair) {
+  const auto run = [](const std::string& epsilon, const std::string& out) {
+    return "sed s/EPSILON/" + epsilon +
+           "/g mine.cpp > e.cpp; graze fuzz --subject mine=./e.cpp --lanes mine/f32/cpu --strata near_edge_edge,thesis "
+           "--pairs 2000 --out " +
+           out;
+  };
+  shell(kSource);
+  expect_done(fuzz(run("1e-6f", "before")) + run("3e-6f", "after") + " > /dev/null");
+  expect_counts("near_edge_edge,thesis", 2000);
+}
+
+TEST_F(Compare, ContractionIsCountedPairByPair) {
+  shell(
+      "cat > mine.cpp <<'EOF'\n"
+      "#include \"core/algorithms/interval_overlap.h\"\n"
+      "extern \"C\" int intersects(const float* p, const float* q) {\n"
+      "  using V = graze::Vec3<float>;\n"
+      "  const V a[] = {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}, {p[6], p[7], p[8]}};\n"
+      "  const V b[] = {{q[0], q[1], q[2]}, {q[3], q[4], q[5]}, {q[6], q[7], q[8]}};\n"
+      "  return graze::IntervalOverlap::decide(a, b) == graze::Verdict::intersects;\n"
+      "}\nEOF\n");
+  const std::string
+      flags = "-I" GRAZE_SOURCE_DIR,
+      contracted = " -ffp-contract=fast -mfma",
+      run =
+          "graze fuzz --subject mine=./mine.cpp --lanes mine/f32/cpu --strata coplanar_wide,exact_contact "
+          "--pairs 2000 --flags='" +
+          flags;
+  expect_done(fuzz(run + "' --out before") + run + contracted + "' --out after > /dev/null");
+  expect_counts("coplanar_wide,exact_contact", 2000);
+}
+
+TEST_F(Compare, TheSameVerdictsAreProvedSoAndNothingElseIs) {
+  const std::string run =
+      "graze fuzz --lanes 'moller_1997/f32/c*,exact/f32/cpu' --executor twin --strata near_edge_edge,thesis --pairs "
+      "2000 ";
+  expect_done(fuzz(run + "--threads 1 --out a") + run + "--threads 2 --judge exact --out b > /dev/null");
+  const Ran same = shell("graze report --compare a b");
+  EXPECT_TRUE(same.out.starts_with("Nothing changed: all ")) << same.out << same.err;
+  EXPECT_TRUE(names(same.out.substr(0, same.out.find('\n')), {"pair by pair"})) << same.out;
+  // Without a database, equal counts prove nothing.
+  const Ran counts = shell("rm a/campaign.sqlite; graze report --compare a b");
+  EXPECT_TRUE(counts.out.starts_with("No rate changed")) << counts.out << counts.err;
+  EXPECT_TRUE(names(counts.out.substr(0, counts.out.find('\n')), {"database"})) << counts.out;
+}
+
+// A library that was built again over the old one: its old code is gone, so the counts bound what changed.
+TEST_F(Compare, CodeThatIsGoneIsBoundedByCounts) {
+  const auto build = [](const char* answer) {
+    return fmt::format(
+        "echo 'int intersects(const float* a, const float* b) {{ return a[0] > {}; }}' > l.c; "
+        "cc -shared -fPIC l.c -o libl.so; ",
+        answer);
+  };
+  const std::string run =
+      "graze fuzz --subject mine=./libl.so --lanes 'mine/f32/cpu,!exact/*' --strata uniform --pairs 500 --out ";
+  expect_done(build("0") + run + "before > /dev/null; " + build("0.25f") + run + "after > /dev/null");
+  const Ran said = shell("graze report --compare before after");
+  EXPECT_TRUE(said.out.starts_with("Changed: at least ")) << said.out << said.err;
+  const nlohmann::json row = json("after/compare.json")["compare"]["verdicts"][0];
+  EXPECT_EQ(row["known"], "changed");
+  EXPECT_FALSE(row.contains("broken"));
+  EXPECT_GE(row["least"], 1);
+  EXPECT_LT(row["least"], row["most"]);
+  EXPECT_LE(row["most"], 500);
+}
+
+TEST_F(Compare, AnotherSeedIsNoChangeAndTheBlindSpotIsSaid) {
+  const std::string run =
+      "graze fuzz --lanes 'moller_1997/f32/cpu,guigue*/f32/cpu' --strata uniform,near_edge_edge,lattice --pairs 3000 ";
+  for (int pair = 0; pair < 5; ++pair) {
+    for (const int side : {0, 1})
+      expect_done(fmt::format("{}--seed {} --out {}{} > /dev/null", run, 1 + 2 * pair + side, side, pair));
+    const Ran said = shell(fmt::format("graze report --compare 0{0} 1{0}", pair));
+    EXPECT_TRUE(said.out.starts_with("No rate changed, of ")) << said.out << said.err;
+    EXPECT_TRUE(names(said.out.substr(0, said.out.find('\n')), {"%", "would not be seen"})) << said.out;
+  }
+}
+
+// Each kind of campaign: the command of its report runs as it stands, and leaves the same bytes.
+TEST_F(Compare, TheCommandInTheReportRunsAsItStands) {
+  expect_done(
+      "printf 'OFF\\n4 4 0\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n3 0 1 2\\n3 0 1 3\\n3 0 2 3\\n3 1 2 3\\n' > 'a mesh.off'; "
+      "graze scene 'a mesh.off' --out s.toml > /dev/null; mkdir inc; echo 'static const float kE = 1e-6f;' > inc/e.h; "
+      "printf '#include \"e.h\"\\nint meet(const float a[9], const float b[9]) { return a[0] > b[0] + kE; }' > 'my "
+      "code.c'");
+  const std::string own =
+      "--subject 'mine=./my code.c:meet' --flags='-Iinc -O3' --subject-timeout 2 --lanes 'mine/*/cpu,exact/f32/cpu' ";
+  int number = 0;
+  for (const std::string& command : std::initializer_list<std::string>{
+           "graze fuzz --pairs 300 " + own, "CC='gcc -fno-math-errno' graze fuzz --pairs 300 --seed 7 " + own,
+           "graze fuzz --mesh 'a mesh.off' " + own,
+           "graze fuzz --mesh 'a mesh.off' --strata thesis,uniform --pairs 100 " + own,
+           "graze fuzz --scene s.toml --pairs 300 --lanes 'moller_1997/f32/cpu*' ",
+           std::string("graze fuzz --pairs 200 --strata 'near_*' --executor twin --lanes 'moller_1997/f32/c*' "),
+           std::string("graze fuzz --pairs 200 --strata lattice --subject 'cmd=cmd:sh -c \"while read x; do echo 1; "
+                       "done\"' --lanes 'cmd/f32/cpu' ")}) {
+    const std::string out = fmt::format("c{}", ++number);
+    expect_done("export XDG_CACHE_HOME=$PWD/cache; rm -rf campaign; " + command + "--out " + out +
+                " > /dev/null && graze report " + out + " > /dev/null");
+    expect_done("export XDG_CACHE_HOME=$PWD/cache; " + json(out + "/report.json")["run"]["command"].get<std::string>() +
+                " > /dev/null");
+    EXPECT_EQ(contents(shell.folder / out / "summary.json"), contents(shell.folder / "campaign/summary.json"))
+        << command;
+  }
+  EXPECT_EQ(number, 7);
+}
+
+}  // namespace
+}  // namespace graze::cli

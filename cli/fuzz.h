@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// The options of `graze fuzz`, and its steps, which `graze try` takes too. Defined in fuzz.cpp.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "fuzz/campaign/campaign.h"
+#include "strata/scene/sources.h"
+
+namespace graze::cli {
+
+struct FuzzOptions {
+  std::uint64_t pairs = 1'000'000;
+  std::uint64_t seed = 1;
+  int threads = 0;
+  std::string out = "campaign", scene;
+  std::vector<std::string> strata, mesh;
+  LaneOptions lanes;
+  fuzz::EngineChoice engine = fuzz::EngineChoice::automatic;
+  bool by_exact_lane = false;
+  bool json = false;
+  bool require_device = false;
+  bool discard_damaged = false;
+  std::optional<std::uint64_t> fail_above;
+  fuzz::Shard shard;
+  std::string scratch;
+};
+
+// The lanes of --lanes. Beside a subject of --subject, the exact lane runs as well, unless a pattern leaves it out.
+// Throws: as selected_lanes.
+fuzz::SelectedLanes lanes_of_campaign(const FuzzOptions& options);
+
+// The campaign of these options. `left_out`: receives the strata that the scene cannot contain.
+// Requires: `under_test` outlives the campaign.
+// Throws: as drawn_from_scene, strata::read_mesh_pairs and fuzz::choose_engines.
+fuzz::Campaign campaign_of(const FuzzOptions& options, const fuzz::SelectedLanes& under_test,
+                           std::vector<strata::LeftOut>& left_out);
+
+// Runs or resumes the campaign, with a live line on a terminal, until it is done or the user interrupts it.
+// Throws: as fuzz::run_campaign.
+fuzz::Outcome run_with_progress(const fuzz::Campaign& campaign);
+
+}  // namespace graze::cli

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// --lanes, --subject and --executor: the one way in which verbs select lanes, open a user's code, and say what does not
+// run.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "cli/commands.h"
+#include "core/error.h"
+#include "core/text.h"
+#include "fuzz/campaign/checked_summary.h"
+#include "subjects/subjects.h"
+
+namespace graze::cli {
+
+void add_subject_options(CLI::App& command, LaneOptions& options) {
+  CLI::Option* subject =
+      command
+          .add_option(
+              "--subject", options.subjects,
+              "Your own code, as lanes NAME/…. WHAT is a shared object or a C, C++ or CUDA source with :FUNCTION, or "
+              "cmd:COMMAND; see docs/your_own_code.md. May be repeated")
+          ->allow_extra_args(false)
+          ->option_text("NAME=WHAT");
+  command
+      .add_option("--flags", options.flags,
+                  "Compiler flags for subjects that are sources, such as --flags='-O3 -Iinclude'")
+      ->needs(subject)
+      ->allow_extra_args(false)
+      ->option_text("TEXT");
+  command.add_option("--subject-timeout", options.timeout, "Time limit of a subject for one pair, in seconds")
+      ->needs(subject)
+      ->check(number(0.001, 86400.0))
+      ->capture_default_str()
+      ->option_text("SECONDS");
+}
+
+void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors) {
+  add_globs(command, "--lanes", options.globs, "Patterns of the lanes to run; !PATTERN leaves lanes out");
+  add_subject_options(command, options);
+  if (executors == Executors::twins) {
+    options.executor = fuzz::Executor::twin;
+    return;
+  }
+  static_assert(static_cast<int>(fuzz::Executor::automatic) == 0 && static_cast<int>(fuzz::Executor::device) == 1 &&
+                static_cast<int>(fuzz::Executor::twin) == 2 && static_cast<int>(fuzz::Executor::both) == 3);
+  command
+      .add_option("--executor", options.executor,
+                  "Executor of the CUDA lanes. auto: the device if there is one, else its twin; both: device and twin, "
+                  "compared")
+      ->transform(one_of({"auto", "device", "twin", "both"}, Chosen::place))
+      ->option_text("auto|device|twin|both")
+      ->default_str("auto");
+}
+
+fuzz::Json recorded_spec_of(const std::filesystem::path& name) {
+  for (const std::filesystem::path& directory : {name, name.parent_path().parent_path()}) {
+    if (!std::filesystem::is_regular_file(directory / "summary.json")) continue;
+    if (const fuzz::Json spec = fuzz::recorded_spec(directory); spec.is_object()) return spec;
+  }
+  return fuzz::Json::object();
+}
+
+void add_resubject_option(CLI::App& command, LaneOptions& options) {
+  command.add_flag("--resubject", options.resubject,
+                   "Run your own code as it is now, although it has changed since the campaign ran");
+}
+
+void open_subjects(const LaneOptions& options) {
+  if (options.subjects.empty()) return;
+  std::string why_not;
+  const bool on_device = options.executor != fuzz::Executor::twin && cuda::open_device(why_not);
+  for (const std::string& text : options.subjects) {
+    subjects::Wanted wanted = subjects::parse_subject(text);
+    for (const std::string& flags : options.flags) {
+      std::istringstream words(flags);
+      for (std::string word; words >> word;) wanted.flags.push_back(word);
+    }
+    wanted.timeout = options.timeout;
+    subjects::open(wanted, on_device);
+  }
+}
+
+void open_subjects_of(const std::filesystem::path& name, bool resubject) {
+  const subjects::Changed changed = resubject ? subjects::Changed::used : subjects::Changed::refused;
+  for (const std::string& line : subjects::open_recorded(recorded_spec_of(name), false, changed))
+    fmt::print(stderr, "graze: {}\n", printable(line));
+}
+
+namespace {
+
+// The same, but code that has changed or is missing is left out, and the verb goes on without it.
+// Returns: its lanes.
+std::vector<fuzz::LaneLeftOut> open_unchanged_subjects_of(const std::filesystem::path& name, bool resubject) {
+  const fuzz::Json spec = recorded_spec_of(name);
+  const subjects::Changed changed = resubject ? subjects::Changed::used : subjects::Changed::refused;
+  std::vector<fuzz::LaneLeftOut> left_out;
+  for (const fuzz::Json& row : spec.value("subjects", fuzz::Json::array())) {
+    try {
+      for (const std::string& line : subjects::open_recorded({{"subjects", fuzz::Json::array({row})}}, false, changed))
+        fmt::print(stderr, "graze: {}\n", printable(line));
+    } catch (const UsageError&) {
+      throw;
+    } catch (const std::runtime_error& error) {
+      const std::string subject = row.at("name").get<std::string>() + '/',
+                        why = printable(error.what()) + (resubject ? "" : "; --resubject runs it as it is now");
+      for (const std::string id : spec.at("lanes")) {
+        if (id.starts_with(subject)) left_out.push_back({id, why});
+      }
+    }
+  }
+  return left_out;
+}
+
+}  // namespace
+
+std::vector<std::string> subject_names(const LaneOptions& options) {
+  std::vector<std::string> names;
+  for (const std::string& text : options.subjects) names.push_back(subjects::parse_subject(text).name);
+  return names;
+}
+
+std::vector<std::string> with_subjects(std::vector<std::string> globs, const LaneOptions& options) {
+  for (const std::string& name : subject_names(options)) globs.push_back(name + "/*");
+  return globs;
+}
+
+void expect_subjects_among(const LaneOptions& options, const std::vector<std::string>& ids, const char* where) {
+  for (const std::string& name : subject_names(options)) {
+    if (std::none_of(ids.begin(), ids.end(), [&](const std::string& id) { return id.starts_with(name + '/'); }))
+      throw UsageError(fmt::format("--subject {0}: {1} has no lane of it; add '{0}/*' there", name, where));
+  }
+}
+
+fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesystem::path& about,
+                                   bool require_device) {
+  open_subjects(options);
+  std::vector<fuzz::LaneLeftOut> not_opened;
+  if (!about.empty()) not_opened = open_unchanged_subjects_of(about, options.resubject);
+  fuzz::SelectedLanes under_test = fuzz::select_lanes(options.globs, options.executor, require_device, not_opened);
+  fuzz::expect_each_runs(under_test);
+  std::vector<std::string> ids;
+  for (const Lane* lane : under_test.lanes) ids.push_back(lane->id);
+  for (const fuzz::LaneLeftOut& row : under_test.left_out) ids.push_back(row.id);
+  expect_subjects_among(options, ids, "--lanes");
+  say_left_out(under_test.left_out);
+  return under_test;
+}
+
+const Lane& named_lane(const std::string& id) {
+  const Lane* lane = find_lane(id);
+  return lane && lane->foreign ? *lane : published_lane(id);
+}
+
+std::string subject_words(const std::string& subject) {
+  const subjects::Opened* opened = subjects::opened(subject);
+  if (!opened) return "";
+  std::string words = " --subject " + shell_word(opened->wanted.name + '=' + opened->wanted.what);
+  for (const std::string& flag : opened->wanted.flags) words += ' ' + shell_word("--flags=" + flag);
+  return words;
+}
+
+void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out) {
+  for (const std::string& line : fuzz::left_out_in_words(left_out)) fmt::print(stderr, "graze: {}\n", line);
+}
+
+}  // namespace graze::cli

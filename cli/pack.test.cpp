@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze pack` and `graze repro PACK`: a campaign runs again where nothing else of it is left.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run_graze.h"
+
+namespace graze::cli {
+namespace {
+
+class PackCommand : public CommandTest {
+ protected:
+  // Packs the campaign c of the folder `home`, removes that folder, and runs the pack elsewhere.
+  Ran elsewhere(const std::string& variables = "") const {
+    expect_done("export XDG_CACHE_HOME=$PWD/cache; cd home && graze pack c --out ../c.sqlar > ../packed");
+    return shell("rm -rf home cache; mkdir -p there; cd there; rm -rf c-unpacked; export XDG_CACHE_HOME=$PWD/cache; " +
+                 variables + " graze repro ../c.sqlar");
+  }
+  void run(const std::string& command) const {
+    expect_done("mkdir -p home; cd home; export XDG_CACHE_HOME=$PWD/../cache; " + command + " > /dev/null");
+  }
+  static void expect_reproduced(const Ran& ran) {
+    EXPECT_EQ(ran.status, 0) << ran.out << ran.err;
+    EXPECT_NE(ran.out.find("\nReproduced: "), std::string::npos) << ran.out << ran.err;
+    EXPECT_NE(ran.out.find("\nNothing changed: all "), std::string::npos) << ran.out;
+  }
+};
+
+TEST_F(PackCommand, ASourceWithItsHeadersRunsElsewhere) {
+  run("mkdir -p src include/deep; printf '#include \"near.h\"\\n#include <deep/far.h>\\nextern \"C\" bool meet(const "
+      "float* a, "
+      "const float* b) { return a[0] > b[0] + kNear + kFar; }' > src/mine.cpp; echo 'static const float kNear = "
+      "1e-3f;' > "
+      "src/near.h; printf '#pragma once\\n#include \"../farther.h\"\\n' > include/deep/far.h; echo 'static const float "
+      "kFar = "
+      "2e-3f;' > include/farther.h; graze fuzz --subject mine=src/mine.cpp:meet --flags='-I include -O1' --lanes "
+      "'mine/f32/cpu*,exact/f32/cpu' --pairs 400 --out c && graze minimize c 2> /dev/null");
+  expect_reproduced(elsewhere());
+  const std::string manifest = contents(shell.folder / "there/c-unpacked/pack.json");
+  for (const char* name :
+       {"subjects/mine/src/mine.cpp:meet", "files/subjects/mine/include/deep/far.h",
+        "files/subjects/mine/include/farther.h", "-Isubjects/mine/include", "campaign/failures.json"})
+    EXPECT_NE(manifest.find(std::string(name) == "-Isubjects/mine/include" ? "subjects/mine/include" : name),
+              std::string::npos)
+        << name << manifest;
+  EXPECT_EQ(manifest.find(shell.folder.string()), std::string::npos) << "a machine's path";
+  // The command in it runs by hand, too.
+  expect_done("cd there/c-unpacked/files && rm -rf ../again && export XDG_CACHE_HOME=$PWD/cache && " +
+              nlohmann::json::parse(manifest)["command"].get<std::string>() +
+              " > /dev/null && test -s ../again/summary.json");
+  // Unpacked once more it would mix with the first time.
+  expect_error("cd there; graze repro ../c.sqlar", 2, {"c-unpacked"});
+}
+
+TEST_F(PackCommand, LibrariesCommandsMeshesAndScenesRunElsewhere) {
+  const std::string mesh =
+      "printf 'OFF\\n4 4 0\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n3 0 1 2\\n3 0 1 3\\n3 0 2 3\\n3 1 2 3\\n' > 'a "
+      "mesh.off'; ";
+  run("echo 'int meet(const float* a, const float* b) { return a[1] > b[2]; }' > l.c; cc -shared -fPIC l.c -o liba.so; "
+      "graze fuzz "
+      "--subject lib=./liba.so:meet --lanes lib/f32/cpu --pairs 200 --out c");
+  expect_reproduced(elsewhere());
+  run("mkdir -p bin; printf '#!/bin/sh\\nwhile read x; do echo 1; done\\n' > bin/own.sh; chmod +x bin/own.sh; graze "
+      "fuzz --subject "
+      "'own=cmd:bin/own.sh' --subject \"two=cmd:sh $PWD/bin/own.sh\" --lanes 'own/f32/cpu,two/f32/cpu' --pairs 60 "
+      "--out c");
+  expect_reproduced(elsewhere());
+  EXPECT_NE(contents(shell.folder / "packed").find("two: not in the pack: sh; "), std::string::npos);
+  run(mesh + "graze fuzz --mesh 'a mesh.off' --lanes 'moller_1997/f32/cpu' --strata thesis --pairs 50 --out c");
+  expect_reproduced(elsewhere());
+  run(mesh +
+      "mkdir -p sub; graze scene 'a mesh.off' --out sub/s.toml; graze fuzz --scene sub/s.toml --strata mesh,uniform "
+      "--lanes 'moller_1997/f32/cpu' --pairs 100 --out c");
+  expect_reproduced(elsewhere());
+  run(mesh +
+      "graze scene 'a mesh.off' --out s.toml; graze fuzz --scene s.toml --lanes 'moller_1997/f32/cpu' --pairs 200 "
+      "--out c");
+  expect_reproduced(elsewhere());
+}
+
+TEST_F(PackCommand, ThePackHasNoTraceOfWhenItWasMade) {
+  run("graze fuzz --lanes moller_1997/f32/cpu --strata near_edge_edge --pairs 300 --out c");
+  expect_done("cd home; graze pack c; mv c.sqlar first; touch c/*; graze pack c; cmp c.sqlar first; graze pack c");
+}
+
+// Code that reads more than its pack holds: what differs is named, and the exit status is 1.
+TEST_F(PackCommand, WhatDiffersElsewhereIsSaid) {
+  run("printf 'while read x; do echo $ANSWER; done' > own.sh; export ANSWER=1; graze fuzz --subject 'own=cmd:sh "
+      "own.sh' --lanes "
+      "own/f32/cpu --strata uniform --pairs 80 --out c");
+  const Ran ran = elsewhere("ANSWER=0");
+  EXPECT_EQ(ran.status, 1) << ran.out << ran.err;
+  EXPECT_NE(ran.out.find("\nNot reproduced: "), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("\nChanged: "), std::string::npos) << ran.out;
+}
+
+TEST_F(PackCommand, WhatCannotBePackedIsRefusedInOneLine) {
+  expect_error("graze pack none", 1, {"none", "summary.json"});
+  run("echo 'int intersects(const float* a, const float* b) { return a[0] > b[0]; }' > m.c; graze fuzz --subject "
+      "mine=./m.c --lanes "
+      "mine/f32/cpu --pairs 100 --out c");
+  const std::string in = "export XDG_CACHE_HOME=$PWD/cache; cd home; ";
+  expect_error(in + "echo > foreign; graze pack c --out foreign", 2, {"foreign", "--force"});
+  expect_error(in + "cp c/campaign.sqlite d.sqlar; graze pack c --out d.sqlar", 2, {"d.sqlar"});
+  expect_error(in + "graze pack c > /dev/null && graze repro c.sqlar --lanes 'mine/*'", 2, {"--lanes"});
+  expect_error(in + "mkdir c-unpacked; graze repro c.sqlar", 2, {"c-unpacked"});
+  expect_error(in + "head -c 5000 c.sqlar > cut.sqlar; graze repro cut.sqlar", 1, {"cut.sqlar"});
+  expect_error(in + "cp m.c kept; sed -i s/0/1/ m.c; graze pack c; status=$?; mv kept m.c; exit $status", 1,
+               {"m.c", "changed"});
+  expect_error(in + "rm c/campaign.sqlite; graze pack c", 1, {"c", "campaign.sqlite"});
+}
+
+}  // namespace
+}  // namespace graze::cli

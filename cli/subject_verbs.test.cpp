@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every verb whose help offers --subject runs a subject, shows it and never drops it; every verb says which requested
+// lanes do not run, and why.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "cli/run_graze.h"
+
+namespace graze::cli {
+namespace {
+
+// No verb may see a device here, so that CUDA lanes without a twin do not run.
+constexpr const char* kWithoutDevice = "export CUDA_VISIBLE_DEVICES= XDG_CACHE_HOME=$PWD/cache; graze ";
+
+struct SubjectVerb {
+  const char* verb;
+  const char* arguments;  // with which the verb takes the subject
+  const char* shows;      // a file that shows the subject; empty: the output does
+};
+
+// The first words of verbs of two words are joined as in their help.
+const std::vector<SubjectVerb>& subject_verbs() {
+  static const std::vector<SubjectVerb> all = {
+      {"fuzz", "--lanes 'mine/*' --strata uniform --pairs 40 --out f", ""},
+      {"hunt", "--lanes 'mine/*' --runs 200 --strata uniform --out h", ""},
+      {"check", "p --lanes 'mine/*'", ""},
+      {"invariants", "--lanes 'mine/*' --strata uniform --pairs 20 --out i", ""},
+      {"repro", "p --lanes 'mine/*'", ""},
+      {"minimize", "p --lanes 'mine/*/cpu'", ""},
+      {"explain", "p --lanes 'mine/*/cpu'", ""},
+      {"map", "p --lanes 'mine/*/cpu' --out m.png", ""},
+      {"discrepancy", "--strata uniform --pairs 40 --out d", ""},
+      {"view", "p --out v.html", "v.html"},
+      {"lanes", "--lanes 'mine/*'", ""},
+      {"tune", "mine/f32/cpu --epsilon kGap --strata uniform --pairs 40 --out t", ""},
+      {"pareto", "--lanes 'mine/*/cpu,exact/f32/cpu' --strata uniform --pairs 1000 --out o", ""},
+      {"query", "'mesh.off#0' mesh.off", ""},
+      {"bench", "--triangles 1000 --lanes 'mine/*/cpu'", ""},
+      {"plan", "--pairs 1000 --lanes 'mine/*' --json", "plan"},
+      {"corpus add", "p --corpus r --lanes 'mine/*/cpu'", "r/cases.pairs"},
+      {"corpus verify", "--corpus r --lanes 'mine/*/cpu,exact/f32/cpu'", "r/cases.pairs"},
+      {"dump", "uniform --pairs 3", ""},
+      {"prove-twin", "", ""},  // only for CUDA sources, and on a device: WhatHasNoUseForASubjectSaysSo
+  };
+  return all;
+}
+
+class SubjectVerbs : public CommandTest {
+ protected:
+  void SetUp() override {
+    std::ofstream(shell.folder / "mine.c")
+        << "static const float kGap = 1e-3f;\nint intersects(const float a[9], const "
+           "float b[9]) { return a[0] > b[0] + kGap; }\n";
+    std::ofstream(shell.folder / "p") << "0 0 0 4 0 0 0 4 0  1 1 -1 1 1 1 3 3 1\n";
+    std::ofstream(shell.folder / "mesh.off")
+        << "OFF\n6 2 0\n0 0 0\n4 0 0\n0 4 0\n1 1 -1\n1 1 1\n3 3 1\n3 0 1 2\n3 3 4 5\n";
+  }
+
+  // Verbs with options of their own, such as "fuzz" or "corpus add", whose help has the text.
+  std::vector<std::string> verbs_whose_help_has(const std::string& text) const {
+    std::vector<std::string> found;
+    for (const std::string& verb : verbs_in_help(shell, "graze")) {
+      const std::vector<std::string> within = verbs_in_help(shell, "graze " + verb);
+      for (const std::string& part : within) {
+        if (shell("graze " + verb + ' ' + part + " --help | grep -q -e '" + text + "'").status == 0)
+          found.push_back(verb + ' ' + part);
+      }
+      if (within.empty() && shell("graze " + verb + " --help | grep -q -e '" + text + "'").status == 0)
+        found.push_back(verb);
+    }
+    return found;
+  }
+};
+
+TEST_F(SubjectVerbs, EveryVerbThatOffersSubjectsRunsAndShowsThem) {
+  const std::vector<std::string> offered = verbs_whose_help_has("--subject NAME=WHAT");
+  EXPECT_GE(offered.size(), 20u);
+  const bool can_hunt = shell("graze hunt --runs 1 --out one").status == 0;
+  std::map<std::string, const SubjectVerb*> known;
+  for (const SubjectVerb& row : subject_verbs()) known[row.verb] = &row;
+  for (const std::string& verb : offered) {
+    SCOPED_TRACE(verb);
+    ASSERT_TRUE(known.contains(verb)) << "add a row for it";
+    const SubjectVerb& row = *known[verb];
+    if (verb == "prove-twin" || (verb == "hunt" && !can_hunt)) continue;
+    const Ran ran = shell(kWithoutDevice + verb + ' ' + row.arguments + " --subject mine=./mine.c");
+    EXPECT_EQ(ran.status, 0) << ran.out << ran.err;
+    if (verb == "plan") continue;  // shows no lane; it refuses lanes that do not exist
+    const std::string shown = *row.shows ? contents(shell.folder / row.shows) : ran.out;
+    EXPECT_NE(shown.find("mine"), std::string::npos) << shown << ran.err;
+    known.erase(verb);
+  }
+  known.erase("prove-twin");
+  known.erase("plan");
+  if (!can_hunt) known.erase("hunt");
+  EXPECT_TRUE(known.empty()) << known.begin()->first << " does not offer --subject";
+}
+
+// A subject that no lane is selected of is an error everywhere, never dropped.
+TEST_F(SubjectVerbs, NoVerbDropsASubject) {
+  for (const std::string command :
+       {"fuzz --strata uniform --pairs 40 --out f", "hunt --runs 20 --out h", "check p",
+        "invariants --strata uniform --pairs 20 --out i", "repro p", "minimize p", "explain p", "map p --out m.png",
+        "lanes", "pareto --strata uniform --pairs 1000 --out o", "query 'mesh.off#0' mesh.off", "bench --triangles 100",
+        "plan --pairs 100", "corpus add p --corpus r", "dump uniform --pairs 3"}) {
+    if (command.starts_with("hunt") && shell("graze hunt --runs 1 --out one").status != 0) continue;
+    expect_error(kWithoutDevice + command + " --lanes moller_1997/f32/cpu --subject mine=./mine.c", 2,
+                 {"--subject mine", "--lanes"});
+  }
+  expect_error(std::string(kWithoutDevice) + "discrepancy moller_1997/f32/cpu exact/f32/cpu --subject mine=./mine.c", 2,
+               {"--subject mine", "LANE LANE"});
+  expect_error(std::string(kWithoutDevice) +
+                   "dump uniform --values moller_1997/f32/cpu,moller_1997/f32/cpu-fma "
+                   "--subject mine=./mine.c",
+               2, {"--subject", "--values"});
+  expect_error(std::string(kWithoutDevice) + "query --self mesh.off --subject mine=./mine.c", 2,
+               {"--self", "--subject"});
+  expect_error(std::string(kWithoutDevice) + "prove-twin --subject mine=./mine.c", 2, {"CUDA source"});
+}
+
+// Of code that crashes on some pairs, pareto, query and tune count the crashes, and not as declined.
+TEST_F(SubjectVerbs, CrashesAreCountedAsSuch) {
+  std::ofstream(shell.folder / "mine.c") << "#include <stdlib.h>\nstatic const float kGap = 1e-3f;\nint "
+                                            "intersects(const float a[9], const float b[9]) { if "
+                                            "(b[0] == 1) abort(); return a[0] > b[0] + kGap; }\n";
+  const Ran query = shell(std::string(kWithoutDevice) +
+                          "query 'mesh.off#0' mesh.off --lanes exact,mine/f32/cpu --subject mine=./mine.c --json");
+  ASSERT_EQ(query.status, 0) << query.err;
+  const auto other = nlohmann::json::parse(query.out)["others"][0];
+  EXPECT_EQ(other["lane"], "mine/f32/cpu");
+  EXPECT_EQ(other["failed"], 1) << query.out;
+  EXPECT_EQ(other["declined"], 0) << query.out;
+  EXPECT_NE(contents(shell.folder / "mismatches.pairs").find("said_by_mine_f32_cpu=crashed"), std::string::npos);
+  std::ofstream(shell.folder / "mine.c") << "#include <stdlib.h>\nint intersects(const float a[9], const float b[9]) { "
+                                            "if (a[0] > 0.9f && a[0] < 0.91f) abort(); return 1; }\n";
+  expect_done(
+      std::string(kWithoutDevice) +
+      "pareto --subject mine=./mine.c --lanes mine/f32/cpu,exact/f32/cpu --strata uniform --pairs 1000 --out o");
+  const auto pareto = nlohmann::json::parse(contents(shell.folder / "o/pareto.json"));
+  ASSERT_EQ(pareto["not_timed"].size(), 1u) << pareto;
+  EXPECT_GE(pareto["not_timed"][0]["errors"]["crashed"], 1);
+  EXPECT_EQ(pareto["subjects"][0]["name"], "mine");
+}
+
+// The cost of a user's function is its own, without the exchange with its process.
+TEST_F(SubjectVerbs, ParetoComparesTheCostOfOwnCode) {
+  expect_done(std::string(kWithoutDevice) +
+              "pareto --subject mine=./mine.c --subject 'line=cmd:sed -u s/.*/1/' --lanes "
+              "mine/f32/cpu,line/f32/cpu,exact/f32/cpu --strata uniform --pairs 1000 --out o > table");
+  const auto pareto = nlohmann::json::parse(contents(shell.folder / "o/pareto.json"));
+  ASSERT_EQ(pareto["lanes"].size(), 2u) << pareto;
+  for (const auto& row : pareto["lanes"]) EXPECT_GT(row["one_a_call"]["middle"], 0) << row;
+  ASSERT_EQ(pareto["not_timed"].size(), 1u);
+  EXPECT_EQ(pareto["not_timed"][0]["lane"], "line/f32/cpu");
+  EXPECT_NE(contents(shell.folder / "table").find("line/f32/cpu"), std::string::npos);
+}
+
+// A campaign knows its subjects. If their code has changed, verbs say so, leave it out, and show what was stored;
+// --resubject runs it as it is now.
+TEST_F(SubjectVerbs, ChangedCodeIsSaidAndStoredVerdictsAreShown) {
+  expect_done(
+      std::string(kWithoutDevice) +
+      "fuzz --subject mine=./mine.c --lanes 'mine/f32/cpu,moller_1997/f32/cpu' --strata uniform --pairs 60 --out "
+      "c > /dev/null && cp $(grep -l 'mine:' c/cases/*.pairs | head -n 1) c/cases/one.pairs");
+  const std::vector<std::string> verbs = {"check c/cases/one.pairs", "repro c/cases/one.pairs",
+                                          "explain c/cases/one.pairs", "map c/cases/one.pairs --out m.png",
+                                          "dump c --pairs 3 --lanes 'm*/f32/cpu'"};
+  for (const std::string& verb : verbs) {
+    const Ran ran = shell(kWithoutDevice + verb);
+    EXPECT_NE(ran.out.find("mine"), std::string::npos) << verb << ran.err;
+    EXPECT_EQ(ran.err, "") << verb;
+  }
+  expect_done("sed -i 's/ + kGap/ - kGap/' mine.c");
+  for (const std::string& verb : verbs) {
+    SCOPED_TRACE(verb);
+    const Ran ran = shell(kWithoutDevice + verb);
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    EXPECT_TRUE(
+        names(ran.err.substr(0, ran.err.find('\n')), {"left out", "mine.c", "changed", "--resubject", "mine/f32/cpu"}))
+        << ran.err;
+    const bool of_a_case = verb.find("one.pairs") != verb.npos && !verb.starts_with("map");
+    EXPECT_EQ(ran.out.find("stored by the campaign: mine/f32/cpu ") != std::string::npos, of_a_case) << ran.out;
+    const Ran again = shell(kWithoutDevice + verb + " --resubject");
+    EXPECT_TRUE(names(again.err.substr(0, again.err.find('\n')), {"mine: its code is not what the campaign ran"}))
+        << again.err;
+    EXPECT_NE(again.out.find("mine"), std::string::npos) << again.out;
+  }
+  // A pattern none of whose lanes runs is an error.
+  expect_error(std::string(kWithoutDevice) + "check c/cases/one.pairs --lanes 'mine/*'", 2,
+               {"mine/f32/cpu", "changed", "--resubject"});
+  expect_error(std::string(kWithoutDevice) + "minimize c", 1, {"mine.c", "changed"});
+  // What needs no code goes on.
+  expect_done(std::string(kWithoutDevice) + "report c && graze dump c > /dev/null && graze status c");
+  if (shell("graze view --out v.html").status == 0) {
+    const Ran viewed = shell(std::string(kWithoutDevice) + "view c/cases/one.pairs --out v.html");
+    EXPECT_EQ(viewed.status, 0) << viewed.err;
+    EXPECT_NE(contents(shell.folder / "v.html").find("\"stored\":true"), std::string::npos);
+  }
+}
+
+// Lanes without a twin do not run here: each verb that takes patterns says so, with the reason and what would run them,
+// in its output for people and in its JSON. A pattern of such lanes alone is an error.
+TEST_F(SubjectVerbs, LanesThatDoNotRunAreSaid) {
+  struct Row {
+    std::string command;  // without --lanes
+    std::string json;     // a file of JSON, or "out" for the output; empty: the verb has none
+  };
+  const std::string some = " --lanes 'moller_1997/f32/c*[ut]'",  // cpu, cpu-fast, cuda-fast
+      none = " --lanes moller_1997/f32/cuda-fast";
+  const std::vector<Row> rows = {{"fuzz --strata uniform --pairs 40 --executor twin --out f", "f/summary.json"},
+                                 {"check p --json", "out"},
+                                 {"check p", ""},
+                                 {"invariants --strata uniform --pairs 20 --out i", "i/invariants.json"},
+                                 {"repro p", ""},
+                                 {"minimize p", ""},
+                                 {"explain p --json", "out"},
+                                 {"map p --out m.png", ""},
+                                 {"pareto --strata uniform --pairs 1000 --out o", "o/pareto.json"},
+                                 {"query 'mesh.off#0' mesh.off --json", "out"},
+                                 {"bench --triangles 100 --json", "out"},
+                                 {"plan --pairs 1000 --json", "out"},
+                                 {"corpus verify --corpus r", ""},
+                                 {"corpus add near_edge_edge:1:42 --corpus s", ""},
+                                 {"dump uniform --pairs 3", ""}};
+  expect_done(std::string(kWithoutDevice) + "corpus add near_edge_edge:1:42 --corpus r --lanes '*/f32/cpu'");
+  for (const auto& [command, json] : rows) {
+    SCOPED_TRACE(command);
+    const Ran ran = shell(kWithoutDevice + command + some);
+    EXPECT_NE(ran.err.find("moller_1997/f32/cuda-fast"), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("left out ("), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("a CUDA device runs it"), std::string::npos) << ran.err;
+    if (!json.empty()) {
+      const std::string text = json == "out" ? ran.out : contents(shell.folder / json);
+      EXPECT_NE(text.find("lanes_left_out"), std::string::npos) << text;
+    }
+    const Ran nothing = shell(kWithoutDevice + command + none);
+    EXPECT_EQ(nothing.status, 2) << nothing.out << nothing.err;
+    EXPECT_NE(nothing.err.find("moller_1997/f32/cuda-fast"), std::string::npos) << nothing.err;
+  }
+  expect_error("graze lanes --lanes nosuch", 2, {"'nosuch'"});
+}
+
+}  // namespace
+}  // namespace graze::cli

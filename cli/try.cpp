@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze try`: from a source file to the answer. It builds the code as a subject, runs a campaign, minimises the
+// failures that matter most, and prints one screen. The directory is a campaign's, so every other verb works on it.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <set>
+#include <sstream>
+
+#include "cli/commands.h"
+#include "cli/emit.h"
+#include "cli/fuzz.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "cli/results.h"
+#include "cli/screen.h"
+#include "cli/try_answer.h"
+#include "core/cannot.h"
+#include "core/error.h"
+#include "core/text.h"
+#include "fuzz/campaign/checked_summary.h"
+#include "fuzz/campaign/result_files.h"
+#include "fuzz/minimise/kinds.h"
+#include "fuzz/minimise/minimised_cases.h"
+#include "fuzz/own_files.h"
+#include "reports/margin_figure.h"
+#include "reports/own_code.h"
+#include "strata/mesh.h"
+
+namespace graze::cli {
+
+using fuzz::Json;
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostTold = 3;            // failures on the screen
+constexpr std::size_t kMostOfKind = 4;          // signatures of a kind that are minimised, those of the simplest pairs
+constexpr std::uint64_t kPairsOfCode = 40'000;  // of compiled code
+constexpr std::uint64_t kPairsOfProgram = 2'000;  // of a program, which answers each pair by a line of text
+constexpr double kProgramsTimeout = 10;           // seconds; a program may take some to start
+constexpr const char* kOut = "try";
+
+struct TryOptions {
+  std::string source, where;
+  std::uint64_t pairs = 0;  // 0: the default of the kind of code
+  double timeout = 0;       // likewise
+  FuzzOptions fuzz;
+  bool json = false;
+};
+
+// "mine" for src/mine.cpp:meet. A name that a published algorithm has gets "my_" in front.
+std::string name_for(const fs::path& file) {
+  std::string name = file.stem().string();
+  while (!fs::path(name).extension().empty()) name = fs::path(name).stem().string();  // libmine.so.1
+  for (char& c : name) {
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-') c = '_';
+  }
+  if (name.empty()) return "mine";
+  const auto is_taken = [&](const Lane& lane) { return lane.info->id == name; };
+  return std::any_of(lanes().begin(), lanes().end(), is_taken) ? "my_" + name : name;
+}
+
+TriedCode code_of(const std::string& source) {
+  constexpr std::string_view kCommand = "cmd:";
+  if (source.starts_with(kCommand)) {  // named by its last word that is a file, such as mine.py in "python3 mine.py"
+    std::string file = "program";
+    std::istringstream words(source.substr(kCommand.size()));
+    for (std::string word; words >> word;) {
+      if (fs::is_regular_file(word)) file = word;
+    }
+    return {name_for(fs::path(file).filename()), source, true};
+  }
+  const std::string extension = fs::path(source).extension().string();
+  for (const auto& [ending, program] : {std::pair(".py", "python3"), std::pair(".js", "node")}) {
+    if (extension != ending) continue;
+    if (!fs::is_regular_file(source)) throw std::runtime_error(fmt::format("there is no file {}", shown_path(source)));
+    return {name_for(source), fmt::format("cmd:{} {}", program, path_word(source)), true};
+  }
+  const std::size_t slash = source.rfind('/') + 1, colon = source.find(':', slash);
+  return {name_for(source.substr(slash, colon - slash)), source, false};
+}
+
+// The folder's name without a / at its end, so that names can be made from it.
+std::string folder_named(const std::string& out) {
+  fs::path folder = fs::path(out).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();
+  if (folder == "." || folder.filename() == "..") folder = fs::weakly_canonical(folder);
+  return folder.string();
+}
+
+// The options of the campaign, but for the scene.
+FuzzOptions campaign_options(const TryOptions& options, const TriedCode& code) {
+  FuzzOptions fuzz = options.fuzz;
+  fuzz.out = folder_named(options.fuzz.out);
+  fuzz.pairs = options.pairs > 0 ? options.pairs : code.is_program ? kPairsOfProgram : kPairsOfCode;
+  fuzz.lanes.subjects = {code.name + '=' + code.what};
+  fuzz.lanes.globs = {code.name + "/*"};
+  fuzz.lanes.timeout = options.timeout > 0 ? options.timeout : code.is_program ? kProgramsTimeout : 1;
+  return fuzz;
+}
+
+// The command with ten times the pairs, as a shell reads it.
+std::string with_more_pairs(const TryOptions& options, const FuzzOptions& fuzz) {
+  std::string command =
+      fmt::format("graze try {}{} --pairs {}", path_word(options.source),
+                  options.where.empty() ? "" : ' ' + path_word(options.where), std::min(10 * fuzz.pairs, kMostWhole));
+  if (fuzz.seed != FuzzOptions().seed) command += fmt::format(" --seed {}", fuzz.seed);
+  for (const std::string& flags : fuzz.lanes.flags) command += ' ' + shell_word("--flags=" + flags);
+  if (options.timeout > 0) command += fmt::format(" --subject-timeout {}", options.timeout);
+  if (fuzz.out != kOut) command += " --out " + path_word(fuzz.out);
+  if (fuzz::may_replace_foreign) command += " --force";
+  return command;
+}
+
+bool is_scene(const std::string& file) { return fs::path(file).extension() == ".toml"; }
+
+void expect_mesh_or_scene(const std::string& where) {
+  if (where.empty() || strata::is_mesh(where) || is_scene(where)) return;
+  throw UsageError(fmt::format("graze try: expected a mesh ({}) or a scene (.toml), found {}", strata::mesh_formats(),
+                               shown_path(where)));
+}
+
+// Renames the directory if it holds an earlier run on the same code or file, so that a run after an edit needs no other
+// name.   Returns: the new name; empty if there was nothing to rename.
+std::string put_aside(const std::string& out, const Json& spec) {
+  if (!fuzz::has_database(out)) return "";
+  const Json earlier = fuzz::recorded_spec(out);
+  const auto source_of = [](const Json& of) {
+    const Json rows = of.value("subjects", Json::array());
+    return rows.size() == 1 ? rows[0].at("what") : Json();
+  };
+  if (!earlier.is_object() || earlier == spec || source_of(earlier) != source_of(spec)) return "";
+  const fuzz::FolderLock held(out, fuzz::FolderLock::WhenTaken::refuse);
+  for (int n = 1;; ++n) {
+    const std::string name = fmt::format("{}.{}", out, n);
+    if (fs::exists(fs::symlink_status(name))) continue;
+    fs::rename(out, name);
+    return name;
+  }
+}
+
+// Minimises the signatures of the kinds to be told until each is shown by a minimised pair.   Returns: the kinds; null
+// if the user interrupted it.
+Json minimised_kinds(const fuzz::SelectedLanes& under_test, const fs::path& directory, const Json& summary,
+                     const reports::ReportLane& lane) {
+  const std::atomic<bool>& interrupted = catch_interrupts();
+  const auto stop = [&] { return interrupted.load(); };
+  const Json& rows = summary["signatures"];
+  std::set<std::size_t> done;
+  const auto start = std::chrono::steady_clock::now();
+  for (;;) {
+    Json kinds = fuzz::find_kinds(under_test, directory, summary, stop);
+    if (interrupted) return nullptr;
+    std::vector<std::size_t> next;
+    for (const Json& kind : reports::first_kinds(kinds, lane, kMostTold)) {
+      std::vector<std::pair<fuzz::Simplicity, std::size_t>> of_kind;
+      std::size_t left = kMostOfKind;
+      for (const std::size_t place : kind.at("places").get<std::vector<std::size_t>>()) {
+        if (done.contains(place)) {
+          left -= left > 0;
+        } else {
+          of_kind.emplace_back(fuzz::simplicity(fuzz::read_cases(directory, rows[place]).front().pair), place);
+        }
+      }
+      std::sort(of_kind.begin(), of_kind.end());
+      for (std::size_t i = 0; i < std::min(left, of_kind.size()); ++i) next.push_back(of_kind[i].second);
+    }
+    if (next.empty()) return kinds;
+    const bool on_terminal = isatty(STDERR_FILENO);
+    Progress progress("failures", next.size(), on_terminal, error_screen());
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+      if (const auto line = progress.line(i, taken.count(), std::nullopt, {"minimising"}); line && on_terminal)
+        fmt::print(stderr, "{}", *line);
+      if (!done.insert(next[i]).second) continue;
+      const std::vector<corpus::Entry> entries =
+          fuzz::checked_cases(under_test, summary["spec"], directory, rows[next[i]]);
+      if (!fuzz::has_result(under_test, entries))
+        fuzz::minimise_file(under_test, fuzz::case_file(directory, rows[next[i]]), entries);
+      if (interrupted) break;
+    }
+    fmt::print(stderr, "{}", progress.end());
+    if (interrupted) return nullptr;
+  }
+}
+
+// The first failure as a test; empty if no program can show it.
+std::string write_test(const Answer& answer, const fuzz::SelectedLanes& under_test) {
+  if (answer.told.empty()) return "";
+  const std::string file = case_of(answer, answer.told[0]), test = answer.directory + "/case.cpp";
+  try {
+    write_result(test, emit(reports::SnippetKind::gtest, file, corpus::read_pairs(file), under_test));
+  } catch (const UsageError&) {  // another file is in the way
+    throw;
+  } catch (const std::runtime_error& error) {
+    fmt::print(stderr, "graze: no test of the first failure: {}\n", error.what());
+    return "";
+  }
+  return test;
+}
+
+int interrupted() {
+  fmt::print(stderr, "graze: interrupted; finished work is kept, and the same command resumes it\n");
+  return kInterrupted;
+}
+
+int try_source(const TryOptions& options) {
+  Answer answer;
+  answer.code = code_of(options.source);
+  FuzzOptions fuzz = campaign_options(options, answer.code);
+  expect_campaign_folder(fuzz.out);
+  expect_mesh_or_scene(options.where);
+  const fuzz::SelectedLanes under_test = lanes_of_campaign(fuzz);
+  if (is_scene(options.where)) {
+    fuzz.scene = options.where;
+  } else if (!options.where.empty()) {
+    fuzz.scene = answer.scene = fuzz.out + ".toml";
+    write_scene_of(options.where, fuzz.scene);
+  }
+  const fuzz::Campaign campaign = campaign_of(fuzz, under_test, answer.left_out);
+  answer.directory = fuzz.out;
+  answer.earlier = put_aside(fuzz.out, campaign.spec);
+  const fuzz::Outcome outcome = run_with_progress(campaign);
+  if (!outcome.complete) return interrupted();
+  answer.summary = outcome.summary;
+  const reports::CampaignCounts counts = reports::counts_of(outcome.summary);
+  const reports::ReportLane& lane = counts.lanes[reports::own_lanes(counts).front()];
+  const Lane& own = *find_lane(lane.id);
+  {
+    const fuzz::FolderLock held(campaign.directory, fuzz::FolderLock::WhenTaken::refuse);
+    if (fuzz::read_whole(campaign.directory / "summary.json") != outcome.summary.dump(1) + "\n")
+      throw std::runtime_error(
+          cannot("minimise", fuzz.out, "another process has just changed it; run the command again"));
+    fuzz::write_whole(campaign.directory / "margins.svg", reports::margin_figure(outcome.summary));
+    answer.kinds = minimised_kinds(under_test, campaign.directory, outcome.summary, lane);
+    if (answer.kinds.is_null()) return interrupted();
+    fuzz::write_kinds(campaign.directory, under_test, answer.kinds);
+    answer.told = reports::first_kinds(answer.kinds, lane, kMostTold);
+    answer.test = write_test(answer, under_test);
+  }
+  write_report(fuzz.out);
+  answer.costs = call_costs(own, campaign.sources);
+  answer.epsilon = epsilon_of_code(own, fuzz.out);
+  answer.again = with_more_pairs(options, fuzz);
+  fmt::print("{}", options.json ? to_json(answer, under_test).dump(1) + '\n' : text_of(answer, output_screen()));
+  return 0;
+}
+
+}  // namespace
+
+void add_try(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "try", "Test your own code: build it, find where it is wrong, and print the failures that matter most");
+  command->footer("Example: graze try mine.cpp:geometry::meet arm.off");
+  auto options = std::make_shared<TryOptions>();
+  options->fuzz.out = kOut;
+  command
+      ->add_option("SOURCE", options->source,
+                   "Your code: a C, C++ or CUDA source or a shared object, with :FUNCTION if it is not `intersects`, a "
+                   "Python or JavaScript program, or cmd:COMMAND; see docs/your_own_code.md")
+      ->required();
+  command->add_option("WHERE", options->where, "Mesh or scene to draw the pairs in (default: all strata)")
+      ->option_text("MESH|SCENE");
+  command->add_option("--pairs", options->pairs, "Number of pairs (default: 40000, or 2000 for a program)")
+      ->transform(whole_number(1, kMostWhole))
+      ->option_text("N");
+  add_count(*command, "--seed", options->fuzz.seed, 0, kMostWhole, "Seed of the pairs");
+  add_threads_option(*command, options->fuzz.threads);
+  command
+      ->add_option("--flags", options->fuzz.lanes.flags, "Compiler flags for a source, such as --flags='-O3 -Iinclude'")
+      ->allow_extra_args(false)
+      ->option_text("TEXT");
+  command
+      ->add_option("--subject-timeout", options->timeout,
+                   "Time limit for one pair, in seconds (default: 1, or 10 for a program)")
+      ->check(number(0.001, 86400.0))
+      ->option_text("SECONDS");
+  command
+      ->add_option("--out", options->fuzz.out,
+                   "Campaign directory; an earlier run on the same file is renamed to DIR.1, DIR.2, …")
+      ->check(not_empty())
+      ->capture_default_str()
+      ->option_text("DIR");
+  command->add_flag("--json", options->json, "Print the answer as JSON");
+  command->callback([options, &status] { status = try_source(*options); });
+}
+
+}  // namespace graze::cli

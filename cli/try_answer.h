@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `graze try` answers about a person's code, on one screen and as JSON.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/pareto.h"
+#include "fuzz/selected_lanes.h"
+#include "reports/screen.h"
+#include "strata/scene/sources.h"
+
+namespace graze::cli {
+
+// The code as --subject names it.
+struct TriedCode {
+  std::string name, what;
+  bool is_program = false;
+};
+
+// What a call that decides one pair costs.
+struct CallCosts {
+  struct Row {
+    const Lane* lane = nullptr;
+    std::optional<analysis::Cost> cost = {};
+    std::string why_not = {};  // without a cost
+  };
+  Row own, exact, cheapest;  // cheapest: of the published lanes
+  std::size_t pairs = 0;     // that were timed
+};
+
+// The lane of the code, the exact lane, and the published lane that costs least, on the first pairs of the sources.
+CallCosts call_costs(const Lane& own, const std::vector<strata::PairSource>& sources);
+
+// The epsilon in the code's source.
+struct OwnEpsilon {
+  std::string named;    // "1e-6f at mine.cpp:9", "kEps = 1e-6f at mine.cpp:3 or 1e-9f at mine.cpp:7"; empty: none found
+  std::string tune;     // the command that tunes it; empty if `graze tune` would refuse
+  std::string why_not;  // why Graze cannot change it, in a sentence; empty if it can, or if there is none
+};
+OwnEpsilon epsilon_of_code(const Lane& own, const std::string& directory);
+
+struct Answer {
+  TriedCode code;
+  std::string directory, earlier,
+      scene;  // earlier: what the run before is called now; scene: the file that was written
+  std::vector<strata::LeftOut> left_out;  // strata that the scene cannot contain
+  nlohmann::ordered_json summary, kinds;  // of all lanes
+  CallCosts costs;
+  OwnEpsilon epsilon;
+  std::vector<nlohmann::ordered_json> told;  // kinds
+  std::string test;                          // the file with the first failure as a test; empty if there is none
+  std::string again;                         // the command, with more pairs
+};
+
+// The file of the kind's simplest pair.
+std::string case_of(const Answer& answer, const nlohmann::ordered_json& kind);
+
+nlohmann::ordered_json to_json(const Answer& answer, const fuzz::SelectedLanes& under_test);
+std::string text_of(const Answer& answer, const reports::Screen& screen);
+
+}  // namespace graze::cli

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which triangle lies inside the other: in one plane, as a set; in space, as far as it reaches the other's plane. Code
+// that only looks for edges that cross misses the first. find_nesting.h finds it.
+#pragma once
+
+#include <cstdint>
+
+#include "core/exact/relation.h"
+
+namespace graze {
+
+// a_in_b: coplanar: all of a lies in b, which may touch a. Not coplanar: two proper triangles meet in a segment, the
+// part of a in b's plane lies in b, and the part of b in a's plane does not lie in a. same: coplanar, and one set.
+enum class Nesting : std::uint8_t { none, a_in_b, b_in_a, same };
+
+// Relation and nesting in nine bits.   Requires: a known contact.
+GRAZE_HD constexpr std::uint16_t packed(const Relation& r, Nesting nesting) {
+  return static_cast<std::uint16_t>(packed(r) | static_cast<int>(nesting) << 7);
+}
+GRAZE_HD constexpr Nesting unpacked_nesting(std::uint16_t bits) { return static_cast<Nesting>(bits >> 7 & 3); }
+
+}  // namespace graze

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/changed_verdicts.h"
+
+#include <fmt/format.h>
+
+#include <set>
+#include <stdexcept>
+
+#include "core/text.h"
+#include "reports/discrepancy_reading.h"
+#include "reports/terminal.h"
+
+namespace graze::reports {
+
+using Json = nlohmann::ordered_json;
+namespace {
+
+// The name of a case without its coordinates, which compare.json has.
+std::string place_of(const std::string& text) { return text.substr(0, text.find(' ')); }
+
+// How many verdicts changed, by lanes, for the headline.
+struct ChangedTotals {
+  std::uint64_t lanes = 0, verdicts = 0, least = 0, most = 0, wrong = 0, right = 0, unknown_most = 0;
+  std::set<std::string> changed, unknown;
+  bool counted = true;  // all changed ones
+};
+
+ChangedTotals totals_of(const Json& verdicts) {
+  ChangedTotals totals;
+  std::set<std::string> lanes;
+  for (const Json& row : verdicts) {
+    lanes.insert(row.at("lane"));
+    totals.verdicts += row.at("pairs").get<std::uint64_t>();
+    const std::uint64_t least = row.at("least"), most = row.at("most");
+    if (row.at("known") == "same" || most == 0) continue;
+    const bool counted = row.contains("broken");
+    if (row.at("known") == "unknown" && !counted) {
+      totals.unknown.insert(row.at("lane"));
+      totals.unknown_most += most;
+      continue;
+    }
+    totals.changed.insert(row.at("lane"));
+    totals.counted &= counted;
+    totals.least += least;
+    totals.most += most;
+    totals.wrong += row.value("broken", std::uint64_t{0});
+    totals.right += row.value("mended", std::uint64_t{0});
+  }
+  totals.lanes = lanes.size();
+  return totals;
+}
+
+}  // namespace
+
+std::string paired_headline(const Json& verdicts) {
+  const ChangedTotals totals = totals_of(verdicts);
+  const std::string unknown =
+      totals.unknown.empty()
+          ? ""
+          : fmt::format("; of {} it is not known, because a device's engine judged their pairs (at most {} changed)",
+                        counted(totals.unknown.size(), "lane"), counted(totals.unknown_most, "verdict"));
+  if (totals.changed.empty())
+    return unknown.empty() ? fmt::format("Nothing changed: all {} of {} are the same, pair by pair",
+                                         counted(totals.verdicts, "verdict"), counted(totals.lanes, "lane"))
+                           : "No change of a verdict shows" + unknown;
+  const std::string lanes = fmt::format("of {} of {}", grouped(totals.changed.size()), counted(totals.lanes, "lane"));
+  if (!totals.counted)
+    return fmt::format("Changed: at least {} {}, and at most {}{}", counted(totals.least, "verdict"), lanes,
+                       grouped(totals.most), unknown);
+  const std::uint64_t otherwise = totals.most - totals.wrong - totals.right;
+  return fmt::format("Changed: {} {}: {} became wrong, {} right{}{}", counted(totals.most, "verdict"), lanes,
+                     grouped(totals.wrong), grouped(totals.right),
+                     otherwise == 0 ? "" : fmt::format(", {} wrong in another way", grouped(otherwise)), unknown);
+}
+
+void expect_possible_changes(const Json& verdicts, std::uint64_t campaign) {
+  for (const Json& row : verdicts) {
+    const std::uint64_t pairs = row.at("pairs"), least = row.at("least"), most = row.at("most");
+    const std::uint64_t counted = row.value("broken", std::uint64_t{0}) + row.value("mended", std::uint64_t{0});
+    const Json& known = row.at("known");
+    if (pairs > campaign || least > most || most > pairs || counted > most ||
+        (known != "same" && known != "changed" && known != "unknown") || (known == "same" && most > 0))
+      throw std::runtime_error(fmt::format("it has impossible counts of changed verdicts: {}", shown(row.dump())));
+  }
+}
+
+std::vector<std::string> changed_sentences(const Json& compare) {
+  std::vector<std::string> sentences;
+  std::size_t more = 0;
+  const Json rows = compare.value("verdicts", Json());
+  for (const Json& row : rows) {
+    const std::uint64_t least = row.at("least"), most = row.at("most");
+    if (row.at("known") == "same" || most == 0) continue;
+    if (sentences.size() == kMostChanged) {
+      ++more;
+      continue;
+    }
+    std::string text = fmt::format("{}, {}: ", text_at(row, "lane"), text_at(row, "stratum"));
+    const std::string of = fmt::format("of {}", counted(row.at("pairs").get<std::uint64_t>(), "verdict"));
+    if (row.contains("broken")) {
+      text += fmt::format("{} {} changed", grouped(most), of);
+      for (const auto& [way, became] : {std::pair("broken", "wrong"), {"mended", "right"}}) {
+        const std::string smallest = std::string("smallest_") + way;
+        text += fmt::format(
+            "; {} became {}{}", grouped(row.at(way)), became,
+            row.contains(smallest) ? fmt::format(" (smallest: {})", place_of(text_at(row, smallest.c_str()))) : "");
+      }
+    } else if (row.at("known") == "changed") {
+      text +=
+          fmt::format("at least {} and at most {} {} changed, by their counts; the code of both campaigns is not there",
+                      grouped(least), grouped(most), of);
+    } else {
+      text +=
+          fmt::format("at most {} {} changed, perhaps none; a device's engine keeps only counts", grouped(most), of);
+    }
+    sentences.push_back(text + ".");
+  }
+  if (more > 0) sentences.push_back(fmt::format("And {} more lanes and strata; compare.json has all.", grouped(more)));
+  return sentences;
+}
+
+}  // namespace graze::reports

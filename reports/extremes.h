@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// How right a lane stays where pairs are extreme, in words and in ratios: of a campaign's counts and of `graze pareto`.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+#include "analysis/extremes.h"
+
+namespace graze::reports {
+
+// What the sentences mean by "as right".
+inline constexpr const char* kAsRightMeans =
+    "As right: errors on at most twice the share of pairs, or on at most 0.1 %, with 95 % confidence.";
+
+// "as right as at 1 (errs on 16.1 %) from 2^-40 to 2^44; errs more at 2^-44 and 2^44". A point stands for the
+// exponents [exponent, exponent + step), or for one exponent if the step is 0.   Requires: rising exponents.
+std::string right_words(std::span<const analysis::ErrorsAt> points, int step);
+
+// Adds to a row of a report's extremes what follows from its cells: "origin", the exponent of the cell to compare with;
+// "says", the words above; and for each cell with errors its "times": the ratio of its share and the origin's, and the
+// lower and the upper bound of the ratio. A value is null where the origin has no errors to divide by.
+void add_right_range(nlohmann::ordered_json& row);
+
+}  // namespace graze::reports

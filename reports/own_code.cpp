@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/own_code.h"
+
+#include <algorithm>
+#include <sstream>
+#include <tuple>
+
+#include "analysis/signature.h"
+#include "corpus/pair_format.h"
+#include "reports/tables.h"
+#include "reports/terminal.h"
+
+namespace graze::reports {
+
+using Json = nlohmann::ordered_json;
+namespace {
+
+// "1 false positive", "34 false negatives", "3 crashed"
+std::string errors_in_words(const analysis::LaneCounts& found) {
+  std::vector<std::string> parts;
+  if (found.false_positive > 0) parts.push_back(counted(found.false_positive, "false positive"));
+  if (found.false_negative > 0) parts.push_back(counted(found.false_negative, "false negative"));
+  for (const auto& [count, what] : {std::pair(found.crashed, "crashed"), std::pair(found.timed_out, "timed out"),
+                                    std::pair(found.unstable, "unstable")}) {
+    if (count > 0) parts.push_back(grouped(count) + ' ' + what);
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string not_counted(const analysis::LaneCounts& found) {
+  std::string text;
+  if (found.declined > 0) text += fmt::format(" It declines {}.", counted(found.declined, "pair"));
+  if (found.by_convention > 0)
+    text += fmt::format(" It differs on {} that its convention leaves open.", counted(found.by_convention, "pair"));
+  return text;
+}
+
+// "(2.4 %)", or nothing for none.
+std::string share_words(std::uint64_t count, std::uint64_t of) {
+  return count == 0 ? "" : fmt::format(" ({})", rate_words(share_of(count, of).share));
+}
+
+// Whether the sentence about its simplest pair names the cause only as a possible one.
+bool is_open(const Json& kind) { return kind_sentence(kind).find("not settled") != std::string::npos; }
+
+bool is_of_lane(const Json& kind, const std::string& lane) {
+  const Json& lanes = kind.at("lanes");
+  return std::find(lanes.begin(), lanes.end(), lane) != lanes.end();
+}
+
+// How much the kind matters; smaller is more.
+int rank_of(const Json& kind, const std::string& lane) {
+  if (!is_of_lane(kind, lane)) return 4;
+  const std::string cause = kind.at("cause"), shape = kind.at("shape");
+  if (cause == "crash" || cause == "no answer in time" || cause == "unstable") return 0;
+  if (shape == "degenerate") return 3;
+  const bool is_mistake = cause == "logic" || cause == "order-dependent" || cause == "absolute epsilon";
+  return is_mistake && !is_open(kind) ? 1 : 2;
+}
+
+// "2^3 ulps"
+std::string in_ulps(int exponent) { return fmt::format("2^{} ulps", exponent); }
+
+// From which margin on the lane is right on these pairs.
+std::string trusted_from(const StratumCounts& pairs, std::size_t lane, const std::string& which) {
+  const Threshold apart = threshold(pairs, lane, 1), deep = threshold(pairs, lane, -1);
+  std::vector<std::string> right, wrong;
+  if (apart.found) {
+    right.push_back(fmt::format("all {} at least {} apart", grouped(apart.above), in_ulps(apart.exponent)));
+  } else if (apart.largest) {
+    wrong.push_back(fmt::format("{} apart", in_ulps(*apart.largest)));
+  }
+  if (deep.found) {
+    right.push_back(fmt::format("all {} at least {} deep", grouped(deep.above), in_ulps(deep.exponent)));
+  } else if (deep.largest) {
+    wrong.push_back(fmt::format("{} deep", in_ulps(*deep.largest)));
+  }
+  std::string text;
+  if (!right.empty()) text += fmt::format(" Of {} it is right on {}.", which, fmt::join(right, " and "));
+  if (!wrong.empty()) text += fmt::format(" It is wrong on some that are {}.", fmt::join(wrong, " and on some "));
+  return text;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+LaneIndices own_lanes(const CampaignCounts& counts) {
+  LaneIndices found;
+  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+    const LaneName& lane = counts.lanes[l].name;
+    if (counts.lanes[l].exact || is_published(lane.subject)) continue;
+    const auto same = std::find_if(found.begin(), found.end(),
+                                   [&](std::size_t other) { return counts.lanes[other].name.subject == lane.subject; });
+    if (same == found.end()) {
+      found.push_back(l);
+    } else if (counts.lanes[*same].name.scalar == lane.scalar &&
+               (lane.variant == name(Variant::cpu) || lane.variant == name(Variant::cuda_fma))) {
+      *same = l;
+    }
+  }
+  return found;
+}
+
+std::string wrong_words(const CampaignCounts& counts, std::size_t lane) {
+  const analysis::LaneCounts& found = counts.total.lanes[lane];
+  const std::string &id = counts.lanes[lane].id, pairs = grouped(counts.total.pairs);
+  if (found.wrong() == 0) {
+    const std::uint64_t decided = counts.total.pairs - found.declined - found.by_convention;
+    if (decided == 0) return fmt::format("{} decides none of {} pairs.{}", id, pairs, not_counted(found));
+    return fmt::format(
+        "{} is wrong on none of the {} that it decides: with 95 % confidence it errs on fewer than {} of such pairs.{}",
+        id, counted(decided, "pair"), rate_words(bound_of_none(decided), Bound::upper), not_counted(found));
+  }
+  return fmt::format("{} is wrong on {} of {} pairs: {}.{}", id,
+                     with_interval(share_of(found.wrong(), counts.total.pairs)), pairs, errors_in_words(found),
+                     not_counted(found));
+}
+
+std::string wrong_by_kind(const CampaignCounts& counts, std::size_t lane) {
+  std::vector<std::string> parts;
+  for (const GroupCounts& group : counts.groups) {
+    const std::uint64_t wrong = group.counts.wrong(lane), of = group.counts.pairs;
+    parts.push_back(fmt::format("{} {} of {}{}", group.id, grouped(wrong), grouped(of), share_words(wrong, of)));
+  }
+  return fmt::format("By kind of pair: {}.", fmt::join(parts, ", "));
+}
+
+std::string other_builds(const CampaignCounts& counts, std::size_t lane) {
+  std::vector<std::string> parts;
+  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+    const LaneName& other = counts.lanes[l].name;
+    if (l == lane || other.subject != counts.lanes[lane].name.subject) continue;
+    const std::optional<std::uint64_t> apart = differs(counts, counts.total, lane, l);
+    parts.push_back(fmt::format("{} wrong on {}{}", other.within_subject(), grouped(counts.total.wrong(l)),
+                                apart ? fmt::format(", differs on {}", grouped(*apart)) : ""));
+  }
+  return parts.empty() ? "" : fmt::format("Other builds: {}.", fmt::join(parts, "; "));
+}
+
+std::vector<Json> first_kinds(const Json& kinds, const ReportLane& lane, std::size_t most) {
+  std::vector<Json> found;
+  for (const Json& kind : kinds) {
+    if (kind.at("subject").get_ref<const std::string&>() == lane.name.subject) found.push_back(kind);
+  }
+  // They are sorted by their numbers of pairs already.
+  std::stable_sort(found.begin(), found.end(),
+                   [&](const Json& l, const Json& r) { return rank_of(l, lane.id) < rank_of(r, lane.id); });
+  if (found.size() > most) found.resize(most);
+  return found;
+}
+
+std::string kind_sentence(const Json& kind) {
+  constexpr std::string_view kSays = ") says ";
+  std::string text = kind.at("simplest").at("sentences").at(0);
+  const std::size_t at = text.find(kSays);
+  return at == text.npos ? text : "It " + text.substr(at + 2);
+}
+
+std::string kind_title(const Json& kind, std::uint64_t failures) {
+  const std::uint64_t pairs = kind.at("pairs");
+  const std::string shape = kind.at("shape"), line = kind.at("line");
+  return fmt::format("{} ({} % of the failures): {}{}{}", counted(pairs, (shape + " pair").c_str()),
+                     bare_percent(pairs, failures), is_open(kind) ? "perhaps " : "",
+                     kind.at("cause").get<std::string>(), line.empty() ? "" : " at " + line);
+}
+
+std::uint64_t wrong_pairs(const Json& summary, std::string_view subject) {
+  std::uint64_t sum = 0;
+  for (const Json& row : summary.at("signatures")) {
+    if (analysis::subject_of(row.at("key").get<std::string>()) == subject) sum += row.at("count").get<std::uint64_t>();
+  }
+  return sum;
+}
+
+Pair pair_of_kind(const Json& kind) {
+  std::istringstream in(kind.at("simplest").at("pair").get<std::string>());
+  return corpus::PairReader(in, "failures.json").next().value().pair;
+}
+
+std::string pair_on_a_line(const Pair& pair) {
+  std::string text;
+  for (int c = 0; c < kCoordinates; ++c)
+    text += fmt::format("{}{}", c == 0 ? "" : c == 9 ? "   " : c % 3 == 0 ? "  " : " ", coordinates(pair)[c]);
+  return text;
+}
+
+std::string epsilon_words(const CampaignCounts& counts, std::size_t lane, const Json& kinds,
+                          const std::string& in_source) {
+  std::uint64_t pairs = 0, settled = 0, of = 0;
+  for (const Json& kind : kinds) {
+    if (!is_of_lane(kind, counts.lanes[lane].id) ||
+        kind.at("cause").get_ref<const std::string&>() != "absolute epsilon")
+      continue;
+    pairs += kind.at("pairs").get<std::uint64_t>();
+    settled += kind.at("settled").at(0).get<std::uint64_t>();
+    of += kind.at("settled").at(1).get<std::uint64_t>();
+  }
+  std::string text = "Epsilon: no failure shows an absolute epsilon";
+  if (pairs > 0) {
+    text = fmt::format("Epsilon: on {} an absolute epsilon {}", counted(pairs, "wrong pair"),
+                       settled == 0   ? "perhaps decides"
+                       : settled < of ? "decides, on some of them perhaps"
+                                      : "decides");
+  }
+  if (!in_source.empty()) text += fmt::format(" ({} your {})", pairs > 0 ? "perhaps" : "such as", in_source);
+  text += settled > 0 ? "; make it relative to the triangles' size." : ".";
+  const GroupCounts* general = counts.group("general");
+  return text + trusted_from(general ? general->counts : counts.total, lane, general ? "general pairs" : "all pairs");
+}
+
+std::vector<std::string> own_code_answer(const CampaignCounts& counts, const Json& kinds) {
+  std::vector<std::string> said;
+  for (const std::size_t lane : own_lanes(counts)) {
+    said.push_back(wrong_words(counts, lane));
+    if (counts.total.wrong(lane) == 0) continue;
+    said.push_back(wrong_by_kind(counts, lane));
+    const std::vector<Json> first = first_kinds(kinds, counts.lanes[lane], 1);
+    if (first.empty()) continue;
+    const Json& simplest = first[0].at("simplest");
+    said.push_back(fmt::format("Look first at {}: {}", simplest.at("case").get<std::string>(),
+                               simplest.at("sentences").at(0).get<std::string>()));
+    said.push_back(epsilon_words(counts, lane, kinds));
+  }
+  return said;
+}
+
+std::string one_screen(const std::vector<std::string>& before, const std::vector<ScreenFailure>& failures,
+                       const std::vector<std::string>& after, const Screen& screen, int most) {
+  constexpr int kMostOfSentence = 4;
+  std::string text;
+  for (int kept = kMostOfSentence; kept > 0; --kept) {
+    text.clear();
+    for (const std::string& paragraph : before) text += wrapped(paragraph, screen.columns, 0, 2);
+    for (std::size_t f = 0; f < failures.size(); ++f) {
+      text += bold(screen, wrapped(fmt::format("{}. {}", f + 1, failures[f].title), screen.columns, 0, 3));
+      text += wrapped(failures[f].pair, screen.columns, 3, 3);
+      std::vector<std::string> lines = lines_of(wrapped(failures[f].sentence, screen.columns - 2, 3, 3));
+      if (std::ssize(lines) > kept) {
+        lines.resize(static_cast<std::size_t>(kept));
+        lines.back() += " …";
+      }
+      for (const std::string& line : lines) text += line + '\n';
+    }
+    for (const std::string& paragraph : after) text += wrapped(paragraph, screen.columns, 0, 2);
+    if (std::count(text.begin(), text.end(), '\n') <= most) break;
+  }
+  return text;
+}
+
+}  // namespace graze::reports

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the user's own code says of the pair. The page cannot run it, so the verdicts are those of the pair as it was
+// written into the page.
+import { h } from '../dom';
+import { to_bits, type ViewData } from './data';
+import type { Model } from './model';
+
+export function own_code(model: Model, data: ViewData) {
+  const said = new Map(data.pairs.map((one) => [one.bits, one.said ?? []]));
+  const left_out = Object.entries(data.lanes_left_out?.why ?? {});
+  const list = h('ul', { class: 'plain' }),
+    told = h('p', { class: 'small' });
+  const element = h(
+    'section',
+    { id: 'own-code', 'aria-label': 'Your own code' },
+    h('h2', {}, 'Your own code'),
+    told,
+    list,
+  );
+  element.hidden = left_out.length === 0 && data.pairs.every((one) => !one.said?.length);
+  let before = '';
+
+  function update() {
+    const bits = to_bits(model.pair);
+    if (element.hidden || bits === before) return;
+    before = bits;
+    const lanes = said.get(bits);
+    const stored = lanes?.some((one) => one.stored);
+    told.textContent = !lanes
+      ? 'It ran only on the pairs of this page, not on this changed one.'
+      : stored
+        ? 'Its code has changed; these are the verdicts that the campaign stored.'
+        : 'Its verdicts on this pair, from when the page was written.';
+    list.replaceChildren(
+      ...(lanes ?? []).map(({ lane, verdict, wrong }) =>
+        h('li', { class: wrong ? 'bad' : '' }, `${lane}: ${wrong ? '✗ ' : ''}${verdict}`),
+      ),
+      ...left_out.map(([lane, why]) => h('li', { class: 'small' }, `${lane} did not run: ${why}`)),
+    );
+  }
+  return { element, update };
+}

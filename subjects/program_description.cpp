@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subjects/program_description.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "core/lanes/lanes.h"
+#include "core/text.h"
+
+namespace graze::subjects {
+
+using Json = nlohmann::ordered_json;
+
+void add_description(Description& description, const std::string& subject) {
+  const std::string& said = description.said;
+  const Json json = Json::parse(said, nullptr, false);
+  if (!json.is_object()) return;
+  static const std::pair<std::string_view, unsigned> kOutside[] = {{"touching", kOutsideTouching},
+                                                                   {"coplanar", kOutsideCoplanar},
+                                                                   {"degenerate", kOutsideDegenerate},
+                                                                   {"shared", kOutsideShared}};
+  try {
+    description.version = json.value("version", "");
+    description.source = json.value("source", "");
+    description.convention = json.value("convention", "");
+    for (const std::string word : json.value("outside", Json::array())) {
+      const auto found =
+          std::find_if(std::begin(kOutside), std::end(kOutside), [&](auto& o) { return o.first == word; });
+      if (found == std::end(kOutside))
+        throw std::runtime_error(
+            fmt::format("--subject {}: expected touching, coplanar, degenerate or shared in \"outside\", "
+                        "found '{}'",
+                        subject, printable(word)));
+      description.outside |= found->second;
+    }
+  } catch (const Json::exception&) {
+    throw std::runtime_error(
+        fmt::format("--subject {}: expected texts in its description, and a list of them in \"outside\", "
+                    "found {}",
+                    subject, printable(said)));
+  }
+}
+
+}  // namespace graze::subjects

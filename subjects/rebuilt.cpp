@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subjects/rebuilt.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <list>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "core/cannot.h"
+#include "core/error.h"
+#include "core/fnv1a.h"
+#include "core/stop.h"
+#include "core/text.h"
+#include "subjects/cuda_code.h"
+#include "subjects/source_build.h"
+#include "subjects/subjects.h"
+
+namespace graze::subjects {
+namespace {
+
+namespace fs = std::filesystem;
+
+const Opened& opened_of(const Lane& lane) {
+  const Opened* found = opened(lane.lane_name().subject);
+  if (!found) throw std::logic_error(lane.id + ": expected a lane of foreign code");
+  return *found;
+}
+
+// The build of the lane's variant and scalar, for the device if the lane runs there.
+Code cuda_code(const Lane& lane, const Opened& subject, const fs::path& copy, const std::vector<std::string>& flags) {
+  for (const cuda::CudaBuild& build :
+       cuda::build_cuda_subject(copy, function_of(subject), flags, cache_folder(), lane.variant)) {
+    if (build.scalar != lane.scalar) continue;
+    Code code = code_of(build, subject.wanted, lane.evidence == "device", twin_of(build));
+    if (code.what.empty()) throw std::runtime_error(cannot("run", lane.id + " as changed", build.why_no_twin));
+    return code;
+  }
+  throw std::runtime_error(cannot("run", lane.id + " as changed", "its function takes other numbers then"));
+}
+
+SourceLanguage language_of(const Opened& subject) {
+  return subject.file.extension() == ".c" ? SourceLanguage::c : SourceLanguage::cpp;
+}
+
+// The text of a C or C++ lane's source; empty if it has none, or if that has changed or gone since it was built.
+std::string source_as_built(const Lane& lane) {
+  const Opened* subject = opened(lane.lane_name().subject);
+  if (!subject || subject->kind != "source") return "";
+  try {
+    std::string text = code_in(subject->file);
+    return fnv1a(text) == subject->hash ? text : "";
+  } catch (const std::runtime_error&) {
+    return "";
+  }
+}
+
+// What changed() has built, by lane and change.
+struct Builds {
+  std::mutex mutex;
+  std::map<std::string, std::unique_ptr<ForeignProcesses>> built;  // none of them runs; null: it does not compile
+  std::list<std::pair<std::string, std::unique_ptr<ForeignProcesses>>> idle;  // handed back, the last one first
+};
+
+Builds& builds() {
+  static Builds all;
+  return all;
+}
+
+}  // namespace
+
+std::string why_not_rebuilt(const Lane& lane) {
+  const std::string& kind = opened_of(lane).kind;
+  return kind == "library"   ? "it is a shared object, and its source is not known; give the source as the subject"
+         : kind == "command" ? "it is a command, and only C, C++ and CUDA sources are built again"
+                             : "";
+}
+
+TunableSource tunable_source(const Lane& lane, const std::string& name) {
+  if (const std::string why = why_not_rebuilt(lane); !why.empty()) throw UsageError(cannot("tune", lane.id, why));
+  const Opened& subject = opened_of(lane);
+  TunableSource source{subject.file, code_in(subject.file), language_of(subject), {}};
+  source.epsilon = epsilon_of(source.file, source.text, name);
+  for (const std::string& flag : subject.wanted.flags) {
+    if (flag == "-D" + source.epsilon.name || flag.starts_with("-D" + source.epsilon.name + '='))
+      throw UsageError(cannot("tune", lane.id,
+                              fmt::format("--flags={} sets {}, so the value in {} has no effect; leave that flag out",
+                                          flag, source.epsilon.name, printable(source.file.filename().string()))));
+  }
+  return source;
+}
+
+std::unique_ptr<ForeignProcesses> rebuilt(const Lane& lane, const std::string& text, Scalar scalar,
+                                          const std::vector<std::string>& more_flags) {
+  const Opened& subject = opened_of(lane);
+  // The name of the folder depends on the text alone, so builds that name their source are cached too.
+  const fs::path copy = cache_folder() / fmt::format("changed-{:016x}", fnv1a(text, fnv1a(subject.file.string()))) /
+                        subject.file.filename();
+  write_atomically(copy, text);
+  std::vector<std::string> flags = subject.wanted.flags;
+  const std::string folder = subject.file.parent_path().string();  // of the files that the source includes
+  flags.push_back((subject.kind == "cuda" ? "-I" : "-iquote") + folder);
+  flags.insert(flags.end(), more_flags.begin(), more_flags.end());
+  if (subject.kind == "cuda") return std::make_unique<ForeignProcesses>(cuda_code(lane, subject, copy, flags), scalar);
+  const Built built = build_source(copy, function_of(subject), info_of(lane.variant), flags);
+  Code code{"library", built.file.string(), "", "any", subject.wanted.timeout, subject.wanted.memory};
+  code.content = built.content;
+  const Description description = describe(code);
+  if (!(scalar == Scalar::f32 ? description.f32 : description.f64))
+    throw std::runtime_error(cannot("run", lane.id + " as changed", "its function takes other numbers then"));
+  return std::make_unique<ForeignProcesses>(std::move(code), scalar);
+}
+
+bool has_source_as_built(const Lane& lane) { return !source_as_built(lane).empty(); }
+
+std::vector<Epsilon> small_numbers(const Lane& lane) {
+  try {
+    return small_numbers_in(source_as_built(lane));
+  } catch (const std::runtime_error&) {  // it is too large
+    return {};
+  }
+}
+
+void HandBack::operator()(ForeignProcesses* code) const {
+  std::unique_ptr<ForeignProcesses> ends;  // its destructor waits for processes, so it runs without the lock
+  Builds& all = builds();
+  const std::lock_guard lock(all.mutex);
+  all.idle.emplace_front(key, code);
+  if (all.idle.size() <= kMostIdle) return;
+  ends = std::move(all.idle.back().second);
+  all.idle.pop_back();
+}
+
+ChangedCode changed(const Lane& lane, const Change& change) {
+  std::string text = source_as_built(lane), key = lane.id + (change.doubles ? " in doubles" : "");
+  if (text.empty()) return nullptr;
+  const SourceLanguage language = language_of(opened_of(lane));
+  for (const Epsilon& number : change.negligible) key += '\n' + number.name;
+  for (const std::string& flag : change.flags) key += '\n' + flag;
+  Builds& all = builds();
+  const std::lock_guard lock(all.mutex);
+  const auto idle = std::find_if(all.idle.begin(), all.idle.end(), [&](const auto& code) { return code.first == key; });
+  if (idle != all.idle.end()) {
+    ChangedCode code(idle->second.release(), {key});
+    all.idle.erase(idle);
+    return code;
+  }
+  auto found = all.built.find(key);
+  if (found == all.built.end()) {
+    text = with_value(text, change.negligible, kNegligible, language);
+    if (change.doubles) text = in_doubles(text);
+    std::unique_ptr<ForeignProcesses> made;
+    const StopSignals stops;
+    try {
+      made = rebuilt(lane, text, change.doubles ? Scalar::f64 : lane.scalar, change.flags);
+    } catch (const std::runtime_error&) {  // it does not compile: the change shows nothing
+    }
+    found = all.built.emplace(key, std::move(made)).first;
+  }
+  return found->second ? ChangedCode(found->second->anew().release(), {key}) : nullptr;
+}
+
+std::string in_doubles(std::string_view source) {
+  std::size_t begin = 0;  // of the line after the last #include
+  for (std::size_t at = 0; at < source.size();) {
+    const std::size_t end = std::min(source.find('\n', at), source.size() - 1) + 1;
+    const std::size_t first = std::min(source.find_first_not_of(" \t", at), end);
+    if (source.substr(first).starts_with("#") && source.substr(at, end - at).find("include") != source.npos)
+      begin = end;
+    at = end;
+  }
+  return fmt::format("{}\n#define float double\n{}\n#undef float\n", source.substr(0, begin), source.substr(begin));
+}
+
+}  // namespace graze::subjects

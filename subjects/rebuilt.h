@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// A user's source built once more with a change, in processes of its own: to try another epsilon, or to find the cause
+// of a wrong verdict.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/lanes/lanes.h"
+#include "subjects/epsilon.h"
+#include "subjects/process.h"
+
+namespace graze::subjects {
+
+// Why the lane's code cannot be built from another text: "it is a shared object, whose source Graze does not have".
+// Empty if it can.
+std::string why_not_rebuilt(const Lane& lane);
+
+// A source of a user's lane, with the epsilon in it.
+struct TunableSource {
+  std::filesystem::path file;
+  std::string text;
+  SourceLanguage language;
+  Epsilon epsilon;
+};
+
+// name: as epsilon_of.
+// Throws: as epsilon_of; UsageError where the code cannot be built again, or where a compiler flag defines the epsilon.
+TunableSource tunable_source(const Lane& lane, const std::string& name);
+
+// The lane's code as built from the text: the same variant, flags and limits. The cache of builds keeps it.
+// Requires: a lane that can be built again.   Throws: as build_source and cuda::build_cuda_subject; std::runtime_error
+// if the function does not take these numbers, or if CUDA code has neither a device nor a twin.
+std::unique_ptr<ForeignProcesses> rebuilt(const Lane& lane, const std::string& text, Scalar scalar,
+                                          const std::vector<std::string>& more_flags = {});
+
+struct Change {
+  std::vector<Epsilon> negligible = {};  // numbers of which kNegligible takes the place
+  std::vector<std::string> flags = {};   // further compiler flags
+  bool doubles = false;                  // double takes the place of float
+};
+inline constexpr double kNegligible = 1e-36;  // a normal number in float32; comparisons with 0 keep their outcome
+
+// Whether the lane is built from a C or C++ source whose file is there and still as it was.
+bool has_source_as_built(const Lane& lane);
+
+// The small numbers in the source file of a lane; none unless it has its source as built, of at most 1 MiB.
+std::vector<Epsilon> small_numbers(const Lane& lane);
+
+// Processes of a changed build that nothing else uses. The last kMostIdle of all that were handed back wait to be used
+// again; others end.
+inline constexpr int kMostIdle = 12;  // all changes of one lane
+struct HandBack {
+  std::string key = {};  // of the lane and the change
+  void operator()(ForeignProcesses* code) const;
+};
+using ChangedCode = std::unique_ptr<ForeignProcesses, HandBack>;
+
+// The lane's code with this change, built once in the lifetime of this process. Null unless the lane has its source as
+// built and the changed source compiles.   Thread-safe.   Throws: Stopped.
+ChangedCode changed(const Lane& lane, const Change& change);
+
+// The source with double in place of float, from the line after its last #include on.
+std::string in_doubles(std::string_view source);
+
+}  // namespace graze::subjects

@@ -161,7 +161,6 @@ bool meet(const float a[9], const float b[9]) { return crosses(a, b) && crosses(
   EXPECT_EQ(shell("graze report c").status, 1);
 }
 
-// Of a CUDA source also the operands of comparisons. This one compares in two lines, and only the first has products.
 // The example in subjects/examples is the lane interval_overlap, unless the x87 keeps what a store would round.
 TEST_F(DiscrepancyCommand, TheThesissAlgorithmDiffersOnTheX87) {
 #ifndef __x86_64__
@@ -182,6 +181,7 @@ TEST_F(DiscrepancyCommand, TheThesissAlgorithmDiffersOnTheX87) {
   EXPECT_GT(x87, fused);
 }
 
+// Of a CUDA source also the operands of comparisons. This one compares in two lines, and only the first has products.
 TEST_F(DiscrepancyCommand, ComparesTheOperandsOfYourOwnCudaSource) {
   std::ofstream(shell.folder / "mine.cu") << R"(
 __device__ bool meet(const float a[9], const float b[9]) {

@@ -14,7 +14,8 @@ namespace graze::reports {
 // Returns a row for each lane, the cheapest first; dominated lanes are marked.
 std::string pareto_table(const analysis::Pareto& pareto, const Screen& screen);
 
-// Says which lanes are on the front if each call decides one pair. Nothing on a device.
+// Says which lanes are on the front if each call decides one pair (not on a device), of what the costs are, which are
+// noisy, and which lanes were not timed.
 std::vector<std::string> pareto_sentences(const analysis::Pareto& pareto);
 
 // Says for each lane and extreme how far the lane stays as right as on ordinary pairs.

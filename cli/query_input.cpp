@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <iterator>
 
 #include "backends/backends.h"
 #include "core/cannot.h"
@@ -47,12 +46,10 @@ QueryLanes query_lanes(const LaneOptions& options, const std::vector<std::string
   const auto is_known = [&](const Lane& lane) {
     return std::find(result.ids.begin(), result.ids.end(), lane.id) != result.ids.end();
   };
-  std::vector<std::string> unwanted;
-  std::copy_if(options.globs.begin(), options.globs.end(), std::back_inserter(unwanted),
-               [](const std::string& glob) { return glob.starts_with(fuzz::kLeaveOut); });
-  const bool any_wanted = unwanted.size() < options.globs.size();
+  const auto leaves_out = [](const std::string& glob) { return glob.starts_with(fuzz::kLeaveOut); };
+  const bool any_wanted = !std::all_of(options.globs.begin(), options.globs.end(), leaves_out);
   for (const std::string& glob : any_wanted ? options.globs : with_subjects(common, options)) {
-    if (glob.starts_with(fuzz::kLeaveOut)) continue;
+    if (leaves_out(glob)) continue;
     if (glob == "exact") {
       result.ids.push_back(glob);
       continue;
@@ -60,7 +57,7 @@ QueryLanes query_lanes(const LaneOptions& options, const std::vector<std::string
     fuzz::expect_each_matches({glob});
     if (any_wanted) under_test.asked.push_back(glob);
     for (const Lane& lane : lanes()) {
-      if (!matches_any({glob}, lane.id) || !matches_any(unwanted, lane.id) || is_known(lane)) continue;
+      if (!matches_any({glob}, lane.id) || !matches_any(options.globs, lane.id) || is_known(lane)) continue;
       const bool by_gpu = graze_devices() > 0 && backends::backend_of(lane).has_device;
       const std::string why_not = by_gpu ? "" : backends::why_not_on_host(lane);
       if (why_not.empty()) {

@@ -88,12 +88,14 @@ Portable of_source(const Opened& subject, const std::string& folder) {
     const bool is_input = flag.name == "-include" || (flag.name.empty() && !flag.value.starts_with('-'));
     if (is_input && is_file(flag.value)) add_includes(normal(flag.value), folders, files);
   }
+  const auto names_files = [&](const PathFlag& flag) {
+    return std::any_of(files.begin(), files.end(), [&](const fs::path& file) {
+      return file == normal(flag.value) || (!flag.name.empty() && is_within(file, normal(flag.value)));
+    });
+  };
   std::set<fs::path> rooted = files;  // flags name folders by their place beside the files
   for (const PathFlag& flag : flags) {
-    const fs::path place = normal(flag.value);
-    if (!flag.name.empty() && flag.name != "-include" &&
-        std::any_of(files.begin(), files.end(), [&](const fs::path& file) { return is_within(file, place); }))
-      rooted.insert(place / "any");
+    if (!flag.name.empty() && flag.name != "-include" && names_files(flag)) rooted.insert(normal(flag.value) / "any");
   }
   const fs::path common = common_folder(rooted);
   const auto packed = [&](const fs::path& file) { return (folder / normal(file).lexically_relative(common)).string(); };
@@ -101,10 +103,7 @@ Portable of_source(const Opened& subject, const std::string& folder) {
   for (const fs::path& file : files) made.files.emplace_back(packed(file), file);
   made.what = packed(subject.file) + (subject.function.empty() ? "" : ':' + subject.function);
   for (const PathFlag& flag : flags) {
-    const bool has_files = std::any_of(files.begin(), files.end(), [&](const fs::path& file) {
-      return file == normal(flag.value) || (!flag.name.empty() && is_within(file, normal(flag.value)));
-    });
-    const std::string value = has_files ? packed(flag.value) : flag.value;
+    const std::string value = names_files(flag) ? packed(flag.value) : flag.value;
     if (flag.is_joined) {
       made.flags.push_back(flag.name + value);
     } else {

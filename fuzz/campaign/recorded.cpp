@@ -63,14 +63,15 @@ namespace {
 // The pairs of the mesh: from the summary, if it has them, else from the mesh itself.
 std::uint64_t mesh_pairs(const Json& spec, const Json& summary) {
   const Json strata = summary.value("strata", Json::object());
-  if (summary.value("complete", false) && strata.contains("mesh")) return strata["mesh"].at("pairs");
-  std::uint64_t pairs = 0;
+  const std::uint64_t found = strata.contains("mesh") ? strata["mesh"].at("pairs").get<std::uint64_t>() : 0;
+  if (summary.value("complete", false) && found > 0) return found;
   try {
+    std::uint64_t pairs = 0;
     for (const strata::PairSource& source : recorded_sources(spec)) pairs += source.stratum < 0 ? source.pairs : 0;
+    return pairs;
   } catch (const std::runtime_error&) {  // the mesh is gone
-    return strata.contains("mesh") ? strata["mesh"].at("pairs").get<std::uint64_t>() : 0;
+    return found;
   }
-  return pairs;
 }
 
 // The choice of --executor that the evidence of the CUDA lanes shows; empty for the default.

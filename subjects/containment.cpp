@@ -187,6 +187,8 @@ bool limit_shared_memory(std::uint64_t bytes) {
 
 // Most tasks, threads included. Stops code that starts more tasks between two checks than the machine can hold.
 constexpr int kMostTasks = 1024;
+// Without one, each task is found and killed by itself, while the others compete for the processors.
+constexpr int kMostTasksWithoutNamespace = 256;
 
 // Since Linux 6.14 a process namespace has its own pid_max; before, it applied to the whole machine. Root has no other
 // limit of tasks. A user has a limit for all tasks in a user namespace.
@@ -266,7 +268,7 @@ bool enter_containment(bool namespaces, std::uint64_t shared_bytes, int control,
     if (supervisor > 0) waitpid(supervisor, nullptr, 0);
   }
   prctl(PR_SET_CHILD_SUBREAPER, 1);
-  const rlim_t tasks = kMostTasks + tasks_of(user);
+  const rlim_t tasks = kMostTasksWithoutNamespace + tasks_of(user);
   const rlimit most{tasks, tasks};
   if (user != 0) setrlimit(RLIMIT_NPROC, &most);
   return false;
@@ -306,16 +308,20 @@ bool kill_descendants(pid_t except) {
 
 }  // namespace
 
-bool end_children(pid_t except) {
+bool end_children(pid_t except, void (*tell_alive)()) {
   using Clock = std::chrono::steady_clock;
-  const auto deadline = Clock::now() + std::chrono::seconds(5);
+  const bool in_namespace = getpid() == 1;
+  const auto deadline = Clock::now() + std::chrono::seconds(in_namespace ? 5 : 60);
   for (;;) {
-    if (except < 0 && getpid() == 1) kill(-1, SIGKILL);  // all processes at once, even those started meanwhile
+    tell_alive();
+    if (except < 0 && in_namespace) kill(-1, SIGKILL);  // all processes at once, even those started meanwhile
     bool left = false;
     for (const pid_t child : own_children()) {
       if (child == except) continue;
       left = true;
-      kill(child, SIGKILL);  // its id stays valid until we wait for it, which only we can do
+      // Its id stays valid until we wait for it, which only we can do. Its group, if it leads one, ends at once.
+      kill(-child, SIGKILL);
+      kill(child, SIGKILL);
     }
     if (!left) return true;
     if (Clock::now() > deadline) return false;

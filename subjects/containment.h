@@ -25,8 +25,9 @@ int open_process(pid_t process);
 // Whether the process descends from the calling one. Unreliable for a process that may end; see open_process.
 bool is_descendant(pid_t process);
 
-// Kills all children except one, and their descendants.   Returns: whether none is left.
-bool end_children(pid_t except);
+// Kills all children except one, and their descendants. Calls `tell_alive` again and again meanwhile.
+// Returns: whether none is left.
+bool end_children(pid_t except, void (*tell_alive)());
 
 // From now on this process and its descendants cannot change the limits of other processes. (The supervisor runs as
 // the same user.) They also cannot allocate memory that no limit counts (memfd_create and the like), make namespaces,

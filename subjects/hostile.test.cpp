@@ -161,7 +161,7 @@ TEST_P(EveryAttack, IsAVerdictOfItsPairs) {
   const auto& [attack, namespaces] = GetParam();
   if (!attack.without_namespaces && !(namespaces && has_namespaces()))
     GTEST_SKIP() << "contained by a process namespace alone";
-  if (attack.name == std::string_view("forks_a_bomb") && !namespaces && geteuid() == 0)
+  if (std::string_view(attack.name).starts_with("forks_a_bomb") && !namespaces && geteuid() == 0)
     GTEST_SKIP() << "without a process namespace, root has no limit of tasks";
   if (attack.name == std::string_view("opens_terminals") && terminal < 0) GTEST_SKIP() << "no terminal can be had";
   if (attack.name == std::string_view("writes_to_cache") && !root_is_a_mount_point())
@@ -216,6 +216,7 @@ constexpr Attack kAttacks[] = {{"writes_zeros"},
                                {"leaves_children"},
                                {"forks_without_end"},
                                {"forks_a_bomb"},
+                               {"forks_a_bomb_of_sessions"},
                                {"children_eat"},
                                {"waits_uninterruptibly"},
                                {"eats_shared"},
@@ -248,29 +249,32 @@ INSTANTIATE_TEST_SUITE_P(Subjects, EveryAttack, testing::Combine(testing::Values
 TEST_F(Hostile, ABombOfAUserWithoutANamespaceEnds) {
   if (geteuid() != 0) GTEST_SKIP() << "EveryAttack tests it";
   fs::permissions(folder, fs::perms::all);
-  const pid_t asking = fork();
-  if (asking == 0) {
-    constexpr uid_t kNobody = 65534;
-    if (setgid(kNobody) != 0 || setuid(kNobody) != 0) _exit(2);
-    Code code{"library", (folder / "libhostile.so").string(), "forks_a_bomb", "f32", 0.1, 256};
-    code.namespaces = false;
-    try {
-      ForeignProcesses subject(code, Scalar::f32);
-      const std::vector<Verdict> found = verdicts(subject);
-      for (std::size_t i = 0; i < pairs.size(); ++i) {
-        if (found[i] != (is_bad(pairs[i]) ? Verdict::crashed : left_of(pairs[i]))) _exit(3);
+  for (const char* bomb : {"forks_a_bomb", "forks_a_bomb_of_sessions"}) {
+    SCOPED_TRACE(bomb);
+    const pid_t asking = fork();
+    if (asking == 0) {
+      constexpr uid_t kNobody = 65534;
+      if (setgid(kNobody) != 0 || setuid(kNobody) != 0) _exit(2);
+      Code code{"library", (folder / "libhostile.so").string(), bomb, "f32", 0.1, 256};
+      code.namespaces = false;
+      try {
+        ForeignProcesses subject(code, Scalar::f32);
+        const std::vector<Verdict> found = verdicts(subject);
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+          if (found[i] != (is_bad(pairs[i]) ? Verdict::crashed : left_of(pairs[i]))) _exit(3);
+        }
+      } catch (const std::exception&) {
+        _exit(access(folder.c_str(), X_OK) == 0 ? 4 : 2);
       }
-    } catch (const std::exception&) {
-      _exit(access(folder.c_str(), X_OK) == 0 ? 4 : 2);
+      _exit(0);
     }
-    _exit(0);
+    int status = 0;
+    ASSERT_EQ(waitpid(asking, &status, 0), asking);
+    expect_nothing_left();
+    ASSERT_TRUE(WIFEXITED(status));
+    if (WEXITSTATUS(status) == 2) GTEST_SKIP() << "another user cannot reach the test's files";
+    EXPECT_EQ(WEXITSTATUS(status), 0);
   }
-  int status = 0;
-  ASSERT_EQ(waitpid(asking, &status, 0), asking);
-  expect_nothing_left();
-  ASSERT_TRUE(WIFEXITED(status));
-  if (WEXITSTATUS(status) == 2) GTEST_SKIP() << "another user cannot reach the test's files";
-  EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 // The usage of a child that does `work` and then waits, counted up to `most`.

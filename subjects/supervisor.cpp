@@ -73,7 +73,7 @@ class Supervisor {
 
  private:
   [[noreturn]] void leave() {
-    end_children(-1);
+    end_children(-1, tell_alive);
     _exit(0);
   }
 
@@ -297,12 +297,13 @@ class Supervisor {
     tell_alive();
     close(worker_fd_);
     worker_ = worker_fd_ = -1;
-    if (!end_children(loader_) || has_ended(loader_fd_)) end_all();
+    if (!end_children(loader_, tell_alive) || has_ended(loader_fd_)) end_all();
   }
 
   void end_all() {
     tell_alive();
-    if (!end_children(-1)) _exit(1);  // it starts processes faster than they end; the namespace ends with this process
+    if (!end_children(-1, tell_alive))
+      _exit(1);  // it starts processes faster than they end; the namespace ends with this process
     for (int* fd : {&talk_, &loader_fd_, &worker_fd_}) {
       if (*fd >= 0) close(*fd);
       *fd = -1;
@@ -388,7 +389,7 @@ int supervise_program(double seconds, std::uint64_t bytes, const std::string& sc
   }
   if (ended && waitpid(program, &status, 0) == program)
     status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  end_children(-1);
+  end_children(-1, tell_alive);
   std::error_code ignored;
   if (wanted) wanted = send(kControlFd, &status, sizeof status, MSG_NOSIGNAL) == sizeof status;
   if (!wanted) std::filesystem::remove_all(scratch, ignored);

@@ -175,15 +175,17 @@ class Finder {
   // If a constant's name stands here, the first token of its value: NAME = VALUE, NAME{VALUE}, #define NAME VALUE.
   std::optional<std::size_t> value_after(std::size_t t) const {
     if (tokens_[t].kind != Kind::word) return std::nullopt;
+    const std::size_t first = t + 2;
     if (t >= 2 && is(t - 1, "define") && is(t - 2, "#")) {
       const bool has_parameters = is(t + 1, "(") && tokens_[t + 1].begin == tokens_[t].end;
       return has_parameters ? std::nullopt : std::optional(t + 1);
     }
-    // A declaration has a type before the name; "x = 1e-3;" changes a variable.
-    const bool declared = t >= 1 && tokens_[t - 1].kind == Kind::word && !is(t - 1, "return");
     const bool in_braces = is(t + 1, "{") && t + 2 < tokens_.size() && tokens_[t + 2].kind == Kind::number;
-    const bool has_value = in_braces || (is(t + 1, "=") && !is(t + 2, "="));
-    return declared && has_value ? std::optional(t + 2) : std::nullopt;
+    if (!in_braces && !(is(t + 1, "=") && !is(t + 2, "="))) return std::nullopt;
+    // A declaration has a type before its first name, and commas between names; "x = 1e-3;" changes a variable.
+    while (t != next_name_ && t >= 2 && is(t - 1, ",") && tokens_[t - 2].kind == Kind::word) t -= 2;
+    const bool declared = t == next_name_ || (t >= 1 && tokens_[t - 1].kind == Kind::word && !is(t - 1, "return"));
+    return declared ? std::optional(first) : std::nullopt;
   }
 
   // The end of the value that starts at the token: of a macro the end of its line, else , ; ) or } outside brackets.
@@ -205,6 +207,7 @@ class Finder {
   void add_constant(std::size_t t, std::size_t first) {
     const std::size_t end = end_of_value(first);
     if (end == first) return;
+    if (is(end, ",")) next_name_ = end + 1;
     const std::string name = of(t);
     std::size_t begin_number = first, end_number = end;
     while (end_number - begin_number > 2 && is(begin_number, "(") && is(end_number - 1, ")"))
@@ -233,6 +236,7 @@ class Finder {
   std::vector<Token> tokens_;
   std::vector<Epsilon> found_;
   std::map<std::string, std::size_t> index_;  // in found_, by name
+  std::size_t next_name_ = ~std::size_t{0};   // behind the value of a constant and a comma
   std::size_t constant_ends_ = 0;             // where the value of the last constant that was added ends
 };
 

@@ -25,7 +25,8 @@ std::string error_of(std::string_view text, const std::string& name = "") {
 TEST(Epsilon, IsTheConstantThatSoundsLikeOne) {
   for (const char* text :
        {"const float kEps = 1e-6f;", "static constexpr float kEps{1e-6f};", "#define kEps 1e-6f\n",
-        "#define kEps (1e-6f)", "bool f(const float* a, float kEps = 1e-6f);",
+        "#define kEps (1e-6f)", "bool f(const float* a, float kEps = 1e-6f);", "float a = 0.5f, kEps = 1e-6f;",
+        "float a, kEps = 1e-6f;", "float a = f(1, 2), b, kEps = 1e-6f;",
         "// kEps = 3;\nconst char* s = \"eps = 4.0\"; /* double eps = 5.0; */ float kEps = 1e-6f;"}) {
     const Epsilon e = found(text);
     EXPECT_EQ(e.name, "kEps") << text;
@@ -73,6 +74,7 @@ TEST(Epsilon, WhatIsNotObviousIsSaid) {
   } catch (const UsageError& error) {
     EXPECT_TRUE(names(error.what(), {"no epsilon in mi\\x1b[1mne.cpp"}));
   }
+  EXPECT_TRUE(names(error_of("f(a, gap = 1e-3); b, gap = 1e-3;", "gap"), {"gap", "no such constant", "1e-3"}));
   EXPECT_EQ(found("return x < 1e-6 && y < 1e-7;", "1e-7").value, 1e-7);
   EXPECT_EQ(found("float eps = 1e-6f; float gap = 0.5f;", "gap").value, 0.5);
 }

@@ -31,13 +31,13 @@ function lane_of(report: Report, { kind, verdicts }: Card) {
   return wrong.find((id) => lanes.includes(id)) ?? '';
 }
 
-// "In the campaign: mine/f32/cpu says disjoint, which is wrong; …", of the card's own lanes.
+// "Stored verdicts: mine/f32/cpu says disjoint, which is wrong; …", of the card's own lanes.
 function stored_verdicts(report: Report, { kind, verdicts }: Card) {
   const own = verdicts.filter(({ lane }) => kind.lanes.includes(report.lanes[lane].id));
   const said = own.map(
     ({ lane, verdict, wrong }) => `${report.lanes[lane].id} says ${verdict}, which is ${wrong ? 'wrong' : 'right'}`,
   );
-  return said.length ? `In the campaign: ${said.join('; ')}.` : `The lanes of this card: ${within(kind.lanes)}.`;
+  return said.length ? `Stored verdicts: ${said.join('; ')}.` : `The lanes of this card: ${within(kind.lanes)}.`;
 }
 
 export const viewer_button = (report: Report, card: Card, id: string) =>

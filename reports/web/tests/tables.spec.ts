@@ -133,3 +133,14 @@ test('signatures sort and filter, and lead to their kinds', async ({ page, repor
   await expect(page.locator(`#kind-${last}`)).toHaveAttribute('open', '');
   await expect(page.locator(`#kind-${last} .truth`).first()).toBeInViewport();
 });
+
+test('what goes on behind the right edge of the league table fades out there', async ({ page }) => {
+  const table = page.locator('#league .scroller');
+  const mask = () => table.evaluate((one) => getComputedStyle(one).maskImage);
+  await page.setViewportSize({ width: 390, height: 844 });
+  await expect.poll(mask).toContain('gradient');
+  await table.evaluate((one) => one.scrollTo({ left: one.scrollWidth }));
+  await expect.poll(mask).toBe('none');
+  await page.setViewportSize({ width: 2400, height: 844 }); // nothing is behind the edge
+  await expect.poll(mask).toBe('none');
+});

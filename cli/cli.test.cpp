@@ -247,6 +247,11 @@ TEST_F(Cli, ReproRunsStoredCasesAndNoticesChange) {
   const Ran changed = shell("sed 's|/22/|/21/|' c/" + first + " > changed.pairs; graze repro changed.pairs");
   EXPECT_EQ(changed.status, 1);
   EXPECT_NE(changed.out.find("CHANGED"), std::string::npos);
+  const Ran truth = shell("sed 's/truth=[a-z]*/truth=declined/; s/margin=/margin=1/' c/" + first +
+                          " > other.pairs; graze repro other.pairs");
+  EXPECT_EQ(truth.status, 1);
+  for (const char* field : {"CHANGED, recorded: truth=declined", "CHANGED, recorded: margin=1"})
+    EXPECT_NE(truth.out.find(field), std::string::npos) << truth.out;
   // Recorded lanes that do not run now make no difference.
   const std::string algorithm = Json::parse(contents(shell.folder / "c/summary.json"))["signatures"][0]["key"];
   const std::string other = algorithm.find("moller") == std::string::npos ? "moller_*" : "separating_*";

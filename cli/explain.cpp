@@ -85,7 +85,8 @@ std::string free_coordinates(const analysis::LaneExplanation& lane) {
     if (lane.matters[static_cast<std::size_t>(c)]) continue;
     names += fmt::format(" {}[{}].{}", c < 9 ? 'a' : 'b', c / 3 % 3, "xyz"[c % 3]);
   }
-  return names.empty() ? " none" : names;
+  const bool all = std::none_of(lane.matters.begin(), lane.matters.end(), [](bool matters) { return matters; });
+  return names.empty() ? " none" : all ? " each of them, alone" : names;
 }
 
 std::string lane_text(const analysis::LaneExplanation& lane, const analysis::LaneExplanation* before,

@@ -328,5 +328,18 @@ TEST_F(OwnCodeTest, EveryVerbTakesWhatMisbehaves) {
   }
 }
 
+// Code that fails when it is asked and not when it is asked again.
+TEST_F(OwnCodeTest, CodeThatChangesItsAnswersKeepsItsReport) {
+  std::ofstream(shell.folder / "alt.cpp")
+      << "static int n; bool intersects(const float* a, const float* b) { return n++ >> 3 & 1; }\n";
+  std::ofstream(shell.folder / "rnd.cpp")
+      << "#include <cstdlib>\nbool intersects(const float* a, const float* b) { return rand() & 1; }\n";
+  expect_done(
+      "export XDG_CACHE_HOME=$PWD/cache; for name in alt rnd; do graze fuzz --subject s=./$name.cpp --lanes 's/*' "
+      "--strata uniform,near_edge_edge --pairs 100 --threads 1 --out $name > /dev/null && graze minimize $name > "
+      "/dev/null && graze report $name > /dev/null && graze failures $name > $name.txt && grep -q kind-1 $name.txt && "
+      "graze try $name.cpp --pairs 100 --threads 1 --out try-$name > /dev/null || exit 1; done");
+}
+
 }  // namespace
 }  // namespace graze::cli

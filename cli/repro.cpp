@@ -14,6 +14,7 @@
 #include "cli/screen.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "fuzz/campaign/result_files.h"
 #include "fuzz/pack/archive.h"
 #include "oracle/truth.h"
 #include "reports/terminal.h"
@@ -67,6 +68,18 @@ bool compare_signatures(const corpus::Entry& entry, const oracle::Truth& t, std:
   return compared == Compared::changed;
 }
 
+// Prints what the case records of the truth and does not hold.   Returns: whether there is any.
+bool compare_truth(const corpus::Entry& entry, const oracle::Truth& t) {
+  bool changed = false;
+  for (const auto& [field, now] : fuzz::truth_fields(t)) {
+    const std::string* recorded = corpus::field(entry, field);
+    if (!recorded || *recorded == now) continue;
+    std::cout << "  CHANGED, recorded: " << field << '=' << printable(*recorded) << '\n';
+    changed = true;
+  }
+  return changed;
+}
+
 int repro(const std::string& name, const LaneOptions& lanes, const std::string& emitted) {
   if (fuzz::is_archive(name)) {
     if (!lanes.globs.empty() || !lanes.subjects.empty() || !emitted.empty())
@@ -93,6 +106,7 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
     if (const std::string stored = stored_verdicts(entry, under_test.left_out, t.verdict); !stored.empty())
       std::cout << reports::wrapped(stored, output_screen().columns, 2, 4);
     const std::vector<Verdict> counted = analysis::excused(under_test.lanes, verdicts, entry.pair, t);
+    changed = compare_truth(entry, t) || changed;
     if (t.verdict != Verdict::declined) changed = compare_signatures(entry, t, under_test.lanes, counted) || changed;
     wrong = wrong || some_is_wrong(counted, t.verdict);
     std::cout.flush();

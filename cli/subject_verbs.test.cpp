@@ -241,5 +241,20 @@ TEST_F(SubjectVerbs, LanesThatDoNotRunAreSaid) {
   expect_error("graze lanes --lanes nosuch", 2, {"'nosuch'"});
 }
 
+TEST_F(SubjectVerbs, AHuntSeesTheCodesVerdicts) {
+  if (shell("graze hunt --runs 1 --out h1").status != 0) GTEST_SKIP() << "this build has no libFuzzer";
+  expect_done("cc -shared -fPIC mine.c -o mine.so");
+  for (const std::string kind : {"c", "so"}) {
+    SCOPED_TRACE(kind);
+    expect_done("export XDG_CACHE_HOME=$PWD/cache; graze hunt --subject mine=./mine." + kind +
+                " --lanes 'mine/f32/cpu,exact/f32/cpu' --runs 400 --strata uniform --out " + kind + " > /dev/null");
+    const auto summary = nlohmann::json::parse(contents(shell.folder / kind / "summary.json"));
+    const auto& counts = summary["strata"]["hunt"]["lanes"]["mine/f32/cpu"];
+    EXPECT_EQ(counts["crashed"], 0);
+    EXPECT_GT(counts["false_positive"], 0);
+    EXPECT_GT(counts["false_negative"], 0);
+  }
+}
+
 }  // namespace
 }  // namespace graze::cli

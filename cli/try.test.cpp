@@ -40,7 +40,7 @@ TEST_F(TryCommand, AnswersOnOneScreen) {
   std::string in_one_line = ran.out;
   for (std::size_t at; (at = in_one_line.find("\n  ")) != std::string::npos;) in_one_line.replace(at, 3, " ");
   for (const char* part :
-       {" of 2,000 pairs: ", "\nBy kind of pair: general", "\nOther builds: f32/cpu-fma",
+       {" of 2,000 pairs: ", "\nBy group of strata: general", "\nOther builds: f32/cpu-fma",
         "\nEpsilon: ", "\nInstead: exact/f32/cpu is right on all 2,000 pairs.\n", "\nA call of one pair takes ",
         " in mine/f32/cpu, ", " in exact/f32/cpu, ", " passes over 256 pairs, on one core of ",
         "\nWrote try/report.html, try/cases/", ", try/case.cpp ", "\nNext: graze explain try/cases/"})
@@ -141,6 +141,11 @@ TEST_F(TryCommand, WorksOnEachKindOfCode) {
     EXPECT_TRUE(names(why, {"Graze cannot change its epsilon", is_source ? "none" : "it is a"})) << code.source;
     EXPECT_EQ(answer["tune"], "") << code.source;
     EXPECT_EQ(answer["nanoseconds_a_call"]["own"].contains("middle"), code.is_timed) << code.source;
+    if (needs == "NVRTC") {
+      const Ran text = shell("graze try own.cu:meet --pairs 60 --out text");
+      EXPECT_NE(text.out.find("CPU against GPU: graze discrepancy --campaign text\n"), std::string::npos) << text.out;
+      expect_done("graze discrepancy --campaign text > /dev/null");
+    }
     ++tried;
   }
   EXPECT_GE(tried, 4);

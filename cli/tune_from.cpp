@@ -22,8 +22,8 @@ void expect_errors_of(const std::string& directory, const fuzz::Json& campaign, 
     if (!(counted == now))
       throw std::runtime_error(cannot(
           "tune on", directory,
-          fmt::format("it counted {} wrong verdicts of {} in {}, but these pairs now show {}; its code differs from "
-                      "this build's",
+          fmt::format("it counted {} wrong verdicts of {} in {}, but these pairs now show {}; it ran other "
+                      "code, or its record was changed",
                       reports::grouped(counted.wrong()), lane, source.id, reports::grouped(now.wrong()))));
   }
 }

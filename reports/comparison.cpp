@@ -278,7 +278,7 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
   const std::string of_kinds = !kinds_compared ? "kinds of failure are not compared"
                                : gained.empty() && lost.empty()
                                    ? "no kind of failure came or went"
-                                   : fmt::format("{} kinds of failure came, {} went", gained.size(), lost.size());
+                                   : fmt::format("{} of failure came, {} went", counted(gained.size(), "kind"), lost.size());
   std::string headline;
   if (rows.empty()) {
     headline = "Nothing to compare: the campaigns have no lane or no stratum in common.";

@@ -128,7 +128,7 @@ std::string wrong_by_kind(const CampaignCounts& counts, std::size_t lane) {
     const std::uint64_t wrong = group.counts.wrong(lane), of = group.counts.pairs;
     parts.push_back(fmt::format("{} {} of {}{}", group.id, grouped(wrong), grouped(of), share_words(wrong, of)));
   }
-  return fmt::format("By kind of pair: {}.", fmt::join(parts, ", "));
+  return fmt::format("By group of strata: {}.", fmt::join(parts, ", "));
 }
 
 std::string other_builds(const CampaignCounts& counts, std::size_t lane) {
@@ -165,7 +165,7 @@ std::string kind_sentence(const Json& kind) {
 std::string kind_title(const Json& kind, std::uint64_t failures) {
   const std::uint64_t pairs = kind.at("pairs");
   const std::string shape = kind.at("shape"), line = kind.at("line");
-  return fmt::format("{} ({} % of the failures): {}{}{}", counted(pairs, (shape + " pair").c_str()),
+  return fmt::format("{} ({} % of the failures of all builds): {}{}{}", counted(pairs, (shape + " pair").c_str()),
                      bare_percent(pairs, failures), is_open(kind) ? "perhaps " : "",
                      kind.at("cause").get<std::string>(), line.empty() ? "" : " at " + line);
 }
@@ -209,9 +209,10 @@ std::string epsilon_words(const CampaignCounts& counts, std::size_t lane, const 
                                       : "decides");
   }
   if (!in_source.empty()) text += fmt::format(" ({} your {})", pairs > 0 ? "perhaps" : "such as", in_source);
-  text += settled > 0 ? "; make it relative to the triangles' size." : ".";
+  if (settled > 0) return text + "; make it relative to the triangles' size.";  // other sizes fail at other distances
   const GroupCounts* general = counts.group("general");
-  return text + trusted_from(general ? general->counts : counts.total, lane, general ? "general pairs" : "all pairs");
+  return text + '.' +
+         trusted_from(general ? general->counts : counts.total, lane, general ? "the general strata" : "all pairs");
 }
 
 std::vector<std::string> own_code_answer(const CampaignCounts& counts, const Json& kinds) {

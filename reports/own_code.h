@@ -22,7 +22,7 @@ LaneIndices own_lanes(const CampaignCounts& counts);
 // verdict: how much the pairs prove that it decides.
 std::string wrong_words(const CampaignCounts& counts, std::size_t lane);
 
-// "By kind of pair: general 12 of 500 (2.4 %), coplanar 0 of 500."
+// "By group of strata: general 12 of 500 (2.4 %), coplanar 0 of 500."
 std::string wrong_by_kind(const CampaignCounts& counts, std::size_t lane);
 
 // The subject's other builds, and on how many pairs their verdicts differ from the cpu lane's; empty without other

@@ -53,7 +53,7 @@ TEST(OwnCode, SaysHowOftenAndOnWhichKindsOfPairsItIsWrong) {
   EXPECT_EQ(wrong_words(counts, lane),
             "mine/f32/cpu is wrong on 34 (1.7 %, 95 % interval 1.21 % to 2.37 %) of 2,000 pairs: 2 false positives, 31 "
             "false negatives, 1 crashed.");
-  EXPECT_EQ(wrong_by_kind(counts, lane), "By kind of pair: general 2 of 1,000 (0.2 %), coplanar 32 of 1,000 (3.2 %).");
+  EXPECT_EQ(wrong_by_kind(counts, lane), "By group of strata: general 2 of 1,000 (0.2 %), coplanar 32 of 1,000 (3.2 %).");
   EXPECT_EQ(other_builds(counts, lane), "Other builds: f32/cpu-fma wrong on 40, differs on 9.");
 }
 
@@ -84,8 +84,8 @@ TEST(OwnCode, CrashesComeFirstThenItsOwnMistakesThenRoundingThenDegenerateInput)
   of_another_build[4]["lanes"] = {"mine/f32/cpu-fma"};
   EXPECT_EQ(first_kinds(of_another_build, lane, 1)[0]["cause"], "logic");
   EXPECT_TRUE(first_kinds(nullptr, lane, 3).empty());
-  EXPECT_EQ(kind_title(kinds[3], 1500), "30 coplanar pairs (2.00 % of the failures): logic");
-  EXPECT_EQ(kind_title(kinds[3], 45600), "30 coplanar pairs (0.066 % of the failures): logic");
+  EXPECT_EQ(kind_title(kinds[3], 1500), "30 coplanar pairs (2.00 % of the failures of all builds): logic");
+  EXPECT_EQ(kind_title(kinds[3], 45600), "30 coplanar pairs (0.066 % of the failures of all builds): logic");
 }
 
 Json made_open(Json kind) {
@@ -101,9 +101,9 @@ TEST(OwnCode, CausesThatAreNotSettledAreRankedWithRounding) {
                       kind_of("mine", "order-dependent", "general", 10)};
   const std::vector<Json> first = first_kinds(kinds, lane, 3);
   ASSERT_EQ(first.size(), 3u);
-  EXPECT_EQ(kind_title(first[0], 530), "10 general pairs (1.89 % of the failures): order-dependent");
-  EXPECT_EQ(kind_title(first[1], 530), "500 general pairs (94.3 % of the failures): rounding");
-  EXPECT_EQ(kind_title(first[2], 530), "20 contained pairs (3.77 % of the failures): perhaps logic");
+  EXPECT_EQ(kind_title(first[0], 530), "10 general pairs (1.89 % of the failures of all builds): order-dependent");
+  EXPECT_EQ(kind_title(first[1], 530), "500 general pairs (94.3 % of the failures of all builds): rounding");
+  EXPECT_EQ(kind_title(first[2], 530), "20 contained pairs (3.77 % of the failures of all builds): perhaps logic");
 }
 
 TEST(OwnCode, AKindsSentenceLeavesTheLanesOut) {
@@ -135,6 +135,7 @@ TEST(OwnCode, AnEpsilonIsNamedOnlyIfAFailureShowsIt) {
   const std::string some = epsilon_words(counts, lane, kinds, "1e-6f at mine.cpp:9");
   EXPECT_TRUE(names(some, {"7 wrong pairs an absolute epsilon decides", "your 1e-6f at mine.cpp:9", "relative"}))
       << some;
+  EXPECT_EQ(some.find("ulps apart"), some.npos) << "of other sizes it fails at other distances";
   Json partly = kinds;
   partly[1]["settled"] = {1, 3};
   const std::string for_some = epsilon_words(counts, lane, partly);

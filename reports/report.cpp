@@ -31,13 +31,16 @@ namespace graze::reports {
 using fuzz::Json;
 namespace {
 
-// The machines that the campaign ran on, if their names are known.
+// The machines that the campaign ran on, if their names are known. A run that was killed before it recorded its pairs
+// leaves only runs without pairs: those that went on.
 Json machines(const std::filesystem::path& directory) {
-  std::set<std::string> names;
+  std::set<std::string> names, without_pairs;
   for (const Json& run : fuzz::read_timings(directory)) {
     const Json machine = run.value("machine", Json());
-    if (machine.is_string() && run.value("pairs", Json()) > Json(0)) names.insert(machine.get<std::string>());
+    if (machine.is_string())
+      (run.value("pairs", Json()) > Json(0) ? names : without_pairs).insert(machine.get<std::string>());
   }
+  if (names.empty()) names = without_pairs;
   return names.empty() ? Json() : Json(fmt::format("{}", fmt::join(names, "; ")));
 }
 

@@ -129,22 +129,60 @@ bool hide_control_groups() {
 }
 
 // Makes a mount of this namespace read-only. It keeps the mount's other flags, which a user may not remove.
-bool make_mount_read_only(const char* place) {
+bool make_mount_read_only(const char* place, unsigned long more_flags = 0) {
   struct statvfs now {};
   if (statvfs(place, &now) != 0) return false;
-  unsigned long flags = MS_BIND | MS_REMOUNT | MS_RDONLY;
+  unsigned long flags = MS_BIND | MS_REMOUNT | MS_RDONLY | more_flags;
   if (now.f_flag & ST_NOSUID) flags |= MS_NOSUID;
   if (now.f_flag & ST_NODEV) flags |= MS_NODEV;
   if (now.f_flag & ST_NOEXEC) flags |= MS_NOEXEC;
   return mount("none", place, nullptr, flags, nullptr) == 0;
 }
 
-// In the new namespace: files there would be memory that no limit counts. Devices stay as they are.
-void make_memory_of_the_system_read_only() {
-  for (const char* type : {"tmpfs", "devtmpfs", "ramfs"}) {
-    for (const std::string& place : mount_points(type)) {
-      if (place == "/dev" || place.starts_with("/sys/")) make_mount_read_only(place.c_str());
+// Whether it is a device that holds nothing, or one that computes. Others make devices or memory that outlive the
+// namespace, or are terminals.
+bool is_harmless(const fs::path& device) {
+  const std::string name = device.filename(), folder = device.parent_path();
+  constexpr const char* kNames[] = {"null", "zero", "full", "random", "urandom", "kfd", "dxg"};
+  return folder == "/dev/dri" || folder == "/dev/nvidia-caps" || name.starts_with("nvidia") ||
+         std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
+}
+
+// In the new namespace: only harmless devices can be opened, because each of them becomes a mount of its own before
+// /dev loses its devices. No files can be made there, as they would be memory that no limit counts.
+void limit_devices() {
+  const std::vector<std::string> places = mount_points("");
+  // On a shared mount, as in a chroot, the mounts would be visible outside.
+  if (std::find(places.begin(), places.end(), "/dev") == places.end() ||
+      mount("none", "/dev", nullptr, MS_PRIVATE, nullptr) != 0)
+    return;
+  const auto put = [](const fs::path& device, const fs::path& at) {
+    std::error_code none;
+    if (fs::is_character_file(at, none)) mount(device.c_str(), at.c_str(), nullptr, MS_BIND, nullptr);
+  };
+  for (const std::string& place : places) {
+    if (place.starts_with("/dev/") && !is_harmless(place)) put("/dev/null", place);
+  }
+  for (const char* folder : {"/dev", "/dev/nvidia-caps", "/dev/dri"}) {
+    std::error_code none;
+    for (fs::directory_iterator file(folder, none), end; !none && file != end; file.increment(none)) {
+      if (is_harmless(file->path())) put(file->path(), file->path());
     }
+  }
+  make_mount_read_only("/dev", MS_NODEV);
+}
+
+// In the new namespace: settings of the system are read-only, and what makes a device by being read is hidden.
+void limit_settings() {
+  constexpr const char* kMakesDevices = "/sys/class/zram-control";
+  for (const std::string& place : mount_points("")) {
+    if (place != "/sys" && !place.starts_with("/sys/")) continue;
+    if (place == "/sys" && mount("none", "/sys", nullptr, MS_PRIVATE, nullptr) == 0)
+      mount("tmpfs", kMakesDevices, "tmpfs", MS_RDONLY | MS_NOSUID | MS_NODEV | MS_NOEXEC, "size=4k");
+    make_mount_read_only(place.c_str());
+  }
+  for (const char* place : {"/proc/sys", "/proc/sysrq-trigger", "/proc/irq", "/proc/bus", "/proc/fs"}) {
+    if (mount(place, place, nullptr, MS_BIND, nullptr) == 0) make_mount_read_only(place);
   }
 }
 
@@ -198,10 +236,6 @@ void limit_tasks() {
   if (uname(&system) == 0 && std::sscanf(system.release, "%d.%d", &major, &minor) == 2 &&
       (major > 6 || (major == 6 && minor >= 14)))
     std::ofstream("/proc/sys/kernel/pid_max") << kMostTasks;
-  // Root could raise it again.
-  constexpr const char* kSettings = "/proc/sys";
-  if (mount(kSettings, kSettings, nullptr, MS_BIND, nullptr) == 0)
-    mount("none", kSettings, nullptr, MS_BIND | MS_REMOUNT | MS_RDONLY | MS_NOSUID | MS_NODEV | MS_NOEXEC, nullptr);
   const rlimit most{kMostTasks, kMostTasks};
   if (geteuid() != 0) setrlimit(RLIMIT_NPROC, &most);
 }
@@ -254,9 +288,10 @@ bool enter_containment(bool namespaces, std::uint64_t shared_bytes, int control,
                          limit_shared_memory(shared_bytes) && hide_terminals(terminals) && hide_control_groups();
       if (!ready || write(answer[1], "y", 1) != 1) _exit(0);
       make_read_only(read_only);
-      make_memory_of_the_system_read_only();
+      limit_devices();
       const bool limited = limit_system_v(shared_bytes);
       limit_tasks();
+      limit_settings();  // last, as the limits are some of them
       close(answer[1]);
       return limited;
     }

@@ -322,6 +322,23 @@ static void keep_memory(void) {
   abort();
 }
 ATTACK(keeps_memory, keep_memory())
+// Devices that make others, hold memory or are terminals, and settings of the system.
+static void open_devices(void) {
+  const char* closed[] = {"/dev/loop-control", "/dev/kvm", "/dev/fuse",    "/dev/net/tun", "/dev/userfaultfd", "/dev/tty",
+                          "/dev/tty0",         "/dev/tty1", "/dev/console", "/dev/ttyS0",   "/dev/ptmx",        "/dev/kmsg",
+                          "/sys/class/zram-control/hot_add"};
+  const char* settings[] = {"/proc/sysrq-trigger", "/proc/sys/kernel/core_pattern",
+                            "/sys/kernel/mm/transparent_hugepage/enabled"};
+  for (unsigned i = 0; i < sizeof closed / sizeof *closed; ++i) {
+    if (open(closed[i], O_RDONLY | O_NOCTTY | O_NONBLOCK) >= 0) return;  // then the pair has an answer
+  }
+  for (int i = 0; i < 3; ++i) {
+    if (open(settings[i], O_WRONLY) >= 0) return;
+  }
+  if (open("/dev/null", O_RDWR) < 0 || open("/dev/urandom", O_RDONLY) < 0) return;  // what programs need
+  abort();
+}
+ATTACK(opens_devices, open_devices())
 // Shared memory that stays when nobody has it mapped.
 static void keep_mapping(void) {
   char name[100];

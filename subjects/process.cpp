@@ -263,6 +263,8 @@ std::unique_ptr<ForeignProcesses> ForeignProcesses::anew() const {
   return std::make_unique<ForeignProcesses>(code_, scalar_);
 }
 
+int ForeignProcesses::content() const { return code_.content ? code_.content->fd() : -1; }
+
 Verdict ForeignProcesses::failure(const Pair& pair) {
   const std::string key(reinterpret_cast<const char*>(&pair), sizeof(Pair));
   const auto kept = [&]() -> std::optional<Verdict> {

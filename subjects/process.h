@@ -60,6 +60,8 @@ class ForeignProcesses : public ForeignCode {
   std::optional<std::uint64_t> nanoseconds() const;
   // The same code in new processes that have seen no pair.
   std::unique_ptr<ForeignProcesses> anew() const;
+  // The descriptor of the code that new processes load; -1 for a command.
+  int content() const;
 
  private:
   std::unique_ptr<HostProcess> idle_or_new();

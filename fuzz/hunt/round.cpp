@@ -36,6 +36,22 @@ constexpr std::uint32_t kMutations = 0x301;  // stands in place of a stratum's n
 // Ends this process without the exit handlers of others, because it is a copy of a process that continues.
 [[noreturn]] void leave(int status) { _exit(status); }
 
+// Closes all descriptors but the streams and those of foreign code, which new processes load. An open one would keep
+// the folder's lock after the parent process has ended.
+void close_all_but_code(const SelectedLanes& under_test) {
+  std::vector<int> kept;
+  for (const Lane* lane : under_test.lanes) {
+    if (lane->foreign) kept.push_back(subjects::processes_of(*lane).content());
+  }
+  std::sort(kept.begin(), kept.end());
+  int first = 3;
+  for (const int fd : kept) {
+    if (fd > first) close_range(static_cast<unsigned>(first), static_cast<unsigned>(fd) - 1, 0);
+    first = std::max(first, fd + 1);
+  }
+  close_range(static_cast<unsigned>(first), ~0u, 0);
+}
+
 class Round {
  public:
   Round(const RoundTask& task, std::filesystem::path file)
@@ -193,8 +209,7 @@ pid_t start_round(const RoundTask& task, const std::filesystem::path& file) {
   if (child > 0) return child;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) leave(1);
-  // An open descriptor would keep the folder's lock after the parent process has ended.
-  close_range(3, ~0u, 0);
+  close_all_but_code(*task.campaign->under_test);
   const int nowhere = open("/dev/null", O_RDWR);
   for (const int stream : {0, 1, 2}) dup2(nowhere, stream);
   for (const int number : {SIGINT, SIGTERM}) std::signal(number, SIG_IGN);  // the parent ends this

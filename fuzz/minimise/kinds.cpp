@@ -121,9 +121,14 @@ Json simplest_pair(const SelectedLanes& under_test, const Kind& kind, const Case
   }
   for (std::size_t l = 0; l < under_test.lanes.size(); ++l)
     result["verdicts"][under_test.lanes[l]->id] = name(verdicts[l]);
-  for (const std::vector<const Lane*>& some : {own, others}) {
-    for (const std::string& text : analysis::sentences(analysis::explain(c.shown().pair, some)))
+  for (const std::vector<const Lane*>* some : {&own, &others}) {
+    for (const std::string& text : analysis::sentences(analysis::explain(c.shown().pair, *some)))
       result["sentences"].push_back(text);
+    if (some == &own && result["sentences"].empty())
+      result["sentences"].push_back(
+          fmt::format("{} failed on this pair, but not when it was asked again: its verdicts "
+                      "change from one call to the next.",
+                      kind.subject));
   }
   return result;
 }
@@ -144,17 +149,16 @@ Json worst_pair(const SelectedLanes& under_test, const Kind& kind, const std::ve
                    [](const Candidate& l, const Candidate& r) { return l.ulps > r.ulps; });
   candidates.resize(std::min(candidates.size(), kMostLookedAt));
   candidates.push_back({&simplest, &simplest.shown(), ulps_of(simplest.shown())});
-  for (const Candidate& candidate : candidates) {
+  // The simplest was of the kind before; code whose verdicts change may be right about it now.
+  const auto worst = std::find_if(candidates.begin(), candidates.end() - 1, [&](const Candidate& candidate) {
     const std::vector<LaneReason> reasons =
         reasons_of(under_test, kind.subject, candidate.entry->pair, truth_of(*candidate.entry));
-    if (std::none_of(reasons.begin(), reasons.end(), [&](const auto& r) { return is_of(kind, *candidate.of, r); }))
-      continue;
-    return {{"case", candidate.of->file},
-            {"pair", pair_text(candidate.entry->pair)},
-            {"from", corpus::origin_of(*candidate.entry)},
-            {"margin_ulps", std::strtod(corpus::text_of(*candidate.entry, "margin_ulps").c_str(), nullptr)}};
-  }
-  return nullptr;
+    return std::any_of(reasons.begin(), reasons.end(), [&](const auto& r) { return is_of(kind, *candidate.of, r); });
+  });
+  return {{"case", worst->of->file},
+          {"pair", pair_text(worst->entry->pair)},
+          {"from", corpus::origin_of(*worst->entry)},
+          {"margin_ulps", std::strtod(corpus::text_of(*worst->entry, "margin_ulps").c_str(), nullptr)}};
 }
 
 Json row_of(const SelectedLanes& under_test, const Kind& kind, const std::vector<Case>& cases, std::size_t simplest) {

@@ -208,6 +208,27 @@ int interrupted() {
   return kInterrupted;
 }
 
+// Asks the code about a few pairs first: of code that always fails, as a program that does not start, there is nothing
+// to find, and each pair would start it again.   Throws: std::runtime_error.
+void expect_answers(const TriedCode& code, const fuzz::SelectedLanes& under_test, const strata::PairSource& source) {
+  constexpr std::uint64_t kAsked = 3;
+  const auto own = std::find_if(under_test.lanes.begin(), under_test.lanes.end(),
+                                [&](const Lane* lane) { return lane->lane_name().subject == code.name; });
+  if (own == under_test.lanes.end()) return;
+  const DecideBlock& decide = under_test.on_host[static_cast<std::size_t>(own - under_test.lanes.begin())];
+  if (!decide) return;
+  std::string failed;
+  for (std::uint64_t i = 0; i < std::min(kAsked, source.pairs); ++i) {
+    const Verdict verdict = decide_one(decide, source.pair(i));
+    if (!is_failure(verdict)) return;
+    failed += fmt::format("{}{}", failed.empty() ? "" : ", ", name(verdict));
+  }
+  throw std::runtime_error(cannot(
+      "try", code.what,
+      fmt::format("it fails on each of the first pairs ({}); {}", failed,
+                  code.is_program ? "start it by hand and type 18 numbers to see why" : "call it by hand to see why")));
+}
+
 int try_source(const TryOptions& options) {
   Answer answer;
   answer.code = code_of(options.source);
@@ -222,6 +243,7 @@ int try_source(const TryOptions& options) {
     write_scene_of(options.where, fuzz.scene);
   }
   const fuzz::Campaign campaign = campaign_of(fuzz, under_test, answer.left_out);
+  expect_answers(answer.code, under_test, campaign.sources.front());
   answer.directory = fuzz.out;
   answer.earlier = put_aside(fuzz.out, campaign.spec);
   const fuzz::Outcome outcome = run_with_progress(campaign);

@@ -103,6 +103,15 @@ TEST_F(TryCommand, AgainGivesTheSameAndAfterAnEditKeepsTheRunBefore) {
   EXPECT_TRUE(names(refused.err.substr(0, refused.err.find('\n')), {"try"})) << refused.err;
 }
 
+TEST_F(TryCommand, CodeThatAlwaysFailsIsSaidAtOnce) {
+  write("dead.sh", "exit 1\n");
+  write("dead.c", "#include <stdlib.h>\nint meet(const float a[9], const float b[9]) { abort(); }\n");
+  for (const char* what : {"'cmd:sh dead.sh'", "dead.c:meet"}) {
+    expect_error(std::string("graze try ") + what + " --out d", 1, {"dead", "crashed, crashed, crashed", "by hand"});
+    EXPECT_FALSE(std::filesystem::exists(shell.folder / "d"));
+  }
+}
+
 TEST_F(TryCommand, WorksOnEachKindOfCode) {
   const std::string by_x = "int meet(const float a[9], const float b[9]) { return a[0] < b[0]; }\n";
   write("own.c", by_x);

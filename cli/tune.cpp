@@ -271,7 +271,9 @@ void add_tune(CLI::App& app, int& status) {
       "Example: graze tune mine/f32/cpu --subject mine=./mine.cpp --pairs 2k\n"
       "Example: graze tune moller_1997/f32/cpu moller_1997/f32/cuda-fma --agree");
   const auto options = std::make_shared<TuneOptions>();
-  command->add_option("LANE", options->lanes, "Lane, without a policy; with --agree two published ones of one algorithm and scalar")
+  command
+      ->add_option("LANE", options->lanes,
+                   "Lane, without a policy; with --agree two published ones of one algorithm and scalar")
       ->required()
       ->option_text("LANE [LANE]");
   command->add_flag("--agree", options->agree,

@@ -20,11 +20,11 @@ void expect_errors_of(const std::string& directory, const fuzz::Json& campaign, 
     const Counts counted = fuzz::counts_of(lanes[lane]),
                  now = spec.sweep(std::vector<std::string>{""}, {&source, 1}).front();
     if (!(counted == now))
-      throw std::runtime_error(cannot(
-          "tune on", directory,
-          fmt::format("it counted {} wrong verdicts of {} in {}, but these pairs now show {}; it ran other "
-                      "code, or its record was changed",
-                      reports::grouped(counted.wrong()), lane, source.id, reports::grouped(now.wrong()))));
+      throw std::runtime_error(
+          cannot("tune on", directory,
+                 fmt::format("it counted {} wrong verdicts of {} in {}, but these pairs now show {}; it ran other "
+                             "code, or its record was changed",
+                             reports::grouped(counted.wrong()), lane, source.id, reports::grouped(now.wrong()))));
   }
 }
 

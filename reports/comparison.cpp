@@ -275,10 +275,11 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
   const bool kinds_known = !kinds.is_null() && !kinds_before.is_null(), kinds_compared = kinds_known && alike;
   const Json gained = kinds_compared ? only_in(kinds, kinds_before, report, before) : Json::array();
   const Json lost = kinds_compared ? only_in(kinds_before, kinds, before, report) : Json::array();
-  const std::string of_kinds = !kinds_compared ? "kinds of failure are not compared"
-                               : gained.empty() && lost.empty()
-                                   ? "no kind of failure came or went"
-                                   : fmt::format("{} of failure came, {} went", counted(gained.size(), "kind"), lost.size());
+  const std::string of_kinds =
+      !kinds_compared ? "kinds of failure are not compared"
+      : gained.empty() && lost.empty()
+          ? "no kind of failure came or went"
+          : fmt::format("{} of failure came, {} went", counted(gained.size(), "kind"), lost.size());
   std::string headline;
   if (rows.empty()) {
     headline = "Nothing to compare: the campaigns have no lane or no stratum in common.";

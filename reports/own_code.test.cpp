@@ -53,7 +53,8 @@ TEST(OwnCode, SaysHowOftenAndOnWhichKindsOfPairsItIsWrong) {
   EXPECT_EQ(wrong_words(counts, lane),
             "mine/f32/cpu is wrong on 34 (1.7 %, 95 % interval 1.21 % to 2.37 %) of 2,000 pairs: 2 false positives, 31 "
             "false negatives, 1 crashed.");
-  EXPECT_EQ(wrong_by_kind(counts, lane), "By group of strata: general 2 of 1,000 (0.2 %), coplanar 32 of 1,000 (3.2 %).");
+  EXPECT_EQ(wrong_by_kind(counts, lane),
+            "By group of strata: general 2 of 1,000 (0.2 %), coplanar 32 of 1,000 (3.2 %).");
   EXPECT_EQ(other_builds(counts, lane), "Other builds: f32/cpu-fma wrong on 40, differs on 9.");
 }
 

@@ -324,8 +324,18 @@ static void keep_memory(void) {
 ATTACK(keeps_memory, keep_memory())
 // Devices that make others, hold memory or are terminals, and settings of the system.
 static void open_devices(void) {
-  const char* closed[] = {"/dev/loop-control", "/dev/kvm", "/dev/fuse",    "/dev/net/tun", "/dev/userfaultfd", "/dev/tty",
-                          "/dev/tty0",         "/dev/tty1", "/dev/console", "/dev/ttyS0",   "/dev/ptmx",        "/dev/kmsg",
+  const char* closed[] = {"/dev/loop-control",
+                          "/dev/kvm",
+                          "/dev/fuse",
+                          "/dev/net/tun",
+                          "/dev/userfaultfd",
+                          "/dev/tty",
+                          "/dev/tty0",
+                          "/dev/tty1",
+                          "/dev/console",
+                          "/dev/ttyS0",
+                          "/dev/ptmx",
+                          "/dev/kmsg",
                           "/sys/class/zram-control/hot_add"};
   const char* settings[] = {"/proc/sysrq-trigger", "/proc/sys/kernel/core_pattern",
                             "/sys/kernel/mm/transparent_hugepage/enabled"};

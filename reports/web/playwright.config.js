@@ -14,8 +14,8 @@ export default defineConfig({
   globalSetup: './tests/make_report.ts',
   workers: 1,
   // The limit is long, because a busy machine is slow.
-  timeout: 180_000,
-  expect: { timeout: 30_000 },
+  timeout: 300_000,
+  expect: { timeout: 60_000 },
   reporter: 'list',
   use: {
     // A low window: parts out of view need no painting, which costs most processor time here, and their maps are not

@@ -151,7 +151,9 @@ def full_disk(turn):
             with open(turn.folder / "disk" / "filler", "wb") as filler:
                 filler.write(bytes(max(0, free - room)))
         else:
-            limit = turn.random.randrange(0, largest + 1)
+            limit = turn.random.randrange(
+                1024, largest + 1
+            )  # a smaller one would cut the message, which is kept in a file
         ran = turn.run(*command, file_bytes=limit)
         refused = turn.is_refused(ran, "campaign", "cases")
         (turn.folder / "disk" / "filler").unlink(missing_ok=True)

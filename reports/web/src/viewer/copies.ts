@@ -25,13 +25,16 @@ const kCopies: Record<string, (model: Model) => string> = {
 // link: the address that leads back to the pair.
 export function copies(model: Model, link: (model: Model) => string) {
   const shown = h('div', { class: 'copied' });
+  let text = '',
+    text_now: ((model: Model) => string) | null = null;
   const buttons = Object.entries({ ...kCopies, link }).map(([name, text_of]) =>
     h(
       'button',
       {
         type: 'button',
         onclick: () => {
-          const text = text_of(model);
+          text = text_of(model);
+          text_now = text_of;
           shown.replaceChildren(
             h(
               'div',
@@ -53,6 +56,11 @@ export function copies(model: Model, link: (model: Model) => string) {
       h('div', { class: 'chips' }, buttons),
       shown,
     ),
-    update: () => shown.replaceChildren(),
+    // A text that no longer holds goes; one that does stays.
+    update: () => {
+      if (!text_now || text_now(model) === text) return;
+      shown.replaceChildren();
+      text_now = null;
+    },
   };
 }

@@ -225,7 +225,7 @@ bool limit_shared_memory(std::uint64_t bytes) {
 
 // Most tasks, threads included. Stops code that starts more tasks between two checks than the machine can hold.
 constexpr int kMostTasks = 1024;
-// Without one, each task is found and killed by itself, while the others compete for the processors.
+// Without a process namespace each task is found and killed by itself, while the others compete for the processors.
 constexpr int kMostTasksWithoutNamespace = 256;
 
 // Since Linux 6.14 a process namespace has its own pid_max; before, it applied to the whole machine. Root has no other

@@ -221,7 +221,7 @@ std::string text_of(const Answer& answer, const reports::Screen& screen) {
   if (!answer.earlier.empty())
     after.push_back(fmt::format("The run before is now {0}; compare: graze report --compare {0} {1}",
                                 path_word(answer.earlier), path_word(dir)));
-  if (counts.lanes[lane].id.find("/cuda-") != std::string::npos)
+  if (counts.lanes[lane].name.variant.starts_with("cuda"))
     after.push_back(fmt::format("CPU against GPU: graze discrepancy --campaign {}", path_word(dir)));
   std::vector<std::string> written = {dir + "/report.html"};
   if (!answer.told.empty()) written.push_back(case_of(answer, answer.told[0]));

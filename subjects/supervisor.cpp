@@ -294,14 +294,12 @@ class Supervisor {
     syscall(SYS_pidfd_send_signal, worker_fd_, SIGKILL, nullptr, 0);
     const Time until = after(5);
     while (!has_ended(worker_fd_) && Clock::now() < until) poll(nullptr, 0, 1);
-    tell_alive();
     close(worker_fd_);
     worker_ = worker_fd_ = -1;
     if (!end_children(loader_, tell_alive) || has_ended(loader_fd_)) end_all();
   }
 
   void end_all() {
-    tell_alive();
     if (!end_children(-1, tell_alive))
       _exit(1);  // it starts processes faster than they end; the namespace ends with this process
     for (int* fd : {&talk_, &loader_fd_, &worker_fd_}) {

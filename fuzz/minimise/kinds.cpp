@@ -121,15 +121,17 @@ Json simplest_pair(const SelectedLanes& under_test, const Kind& kind, const Case
   }
   for (std::size_t l = 0; l < under_test.lanes.size(); ++l)
     result["verdicts"][under_test.lanes[l]->id] = name(verdicts[l]);
-  for (const std::vector<const Lane*>* some : {&own, &others}) {
-    for (const std::string& text : analysis::sentences(analysis::explain(c.shown().pair, *some)))
-      result["sentences"].push_back(text);
-    if (some == &own && result["sentences"].empty())
-      result["sentences"].push_back(
-          fmt::format("{} failed on this pair, but not when it was asked again: its verdicts "
-                      "change from one call to the next.",
-                      kind.subject));
-  }
+  Json& sentences = result["sentences"];
+  const auto tell = [&](const std::vector<const Lane*>& some) {
+    for (const std::string& text : analysis::sentences(analysis::explain(c.shown().pair, some)))
+      sentences.push_back(text);
+  };
+  tell(own);
+  if (sentences.empty())
+    sentences.push_back(fmt::format(
+        "{} failed on this pair, but not when it was asked again: its verdicts change from one call to the next.",
+        kind.subject));
+  tell(others);
   return result;
 }
 

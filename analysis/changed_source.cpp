@@ -10,14 +10,15 @@
 namespace graze::analysis {
 namespace {
 
-DecidingNumber told(const Lane& lane, const std::vector<subjects::Epsilon>& numbers, bool on_images) {
+DecidingNumber told(const Lane& lane, const std::vector<subjects::Epsilon>& numbers, bool on_images, bool doubles) {
   DecidingNumber result{"", "", on_images};
   for (const subjects::Epsilon& number : numbers) {
     const std::string place = places_in_words(subjects::opened(lane.info->id)->file, number);
     if (result.line.empty()) result.line = place;
     result.words += fmt::format("{}{} at {}", result.words.empty() ? "" : ", ", number.name, place);
   }
-  result.words = fmt::format("with {:g} in place of {} it is right{}", subjects::kNegligible, result.words,
+  result.words = fmt::format("with {:g} in place of {}{} it is right{}", subjects::kNegligible, result.words,
+                             doubles ? " and double in place of float" : "",
                              on_images ? "" : ", but not in every order and mirror image in which it was wrong");
   return result;
 }
@@ -25,17 +26,19 @@ DecidingNumber told(const Lane& lane, const std::vector<subjects::Epsilon>& numb
 }  // namespace
 
 std::optional<DecidingNumber> deciding_number(const Lane& lane, const IsRight& is_right,
-                                              const IsRight& is_right_on_images) {
+                                              const IsRight& is_right_on_images, bool doubles) {
   const std::vector<subjects::Epsilon> all = subjects::small_numbers(lane);
   std::vector<std::vector<subjects::Epsilon>> tried;
-  for (const subjects::Epsilon& one : all) tried.push_back({one});
-  if (all.size() > 1) tried.push_back(all);
+  for (const subjects::Epsilon& one : all) {
+    if (!doubles) tried.push_back({one});
+  }
+  if (all.size() > 1 || (doubles && !all.empty())) tried.push_back(all);
   std::optional<DecidingNumber> on_pair;
   for (const std::vector<subjects::Epsilon>& some : tried) {
-    const auto changed = subjects::changed(lane, {.negligible = some});
+    const auto changed = subjects::changed(lane, {.negligible = some, .doubles = doubles});
     if (!changed || !is_right(*changed)) continue;
-    if (is_right_on_images(*changed)) return told(lane, some, true);
-    if (!on_pair) on_pair = told(lane, some, false);
+    if (is_right_on_images(*changed)) return told(lane, some, true, doubles);
+    if (!on_pair) on_pair = told(lane, some, false, doubles);
   }
   return on_pair;
 }

@@ -21,9 +21,10 @@ struct DecidingNumber {
 // that decide on the pair's images too: on one pair any change may be right by luck. If no number alone decides, all
 // together may.
 // is_right, is_right_on_images: what the changed code says; the second is asked only where the first holds.
+// doubles: double takes the place of float too, and all numbers change together.
 using IsRight = std::function<bool(const DecideBlock& block)>;
 std::optional<DecidingNumber> deciding_number(const Lane& lane, const IsRight& is_right,
-                                              const IsRight& is_right_on_images);
+                                              const IsRight& is_right_on_images, bool doubles = false);
 
 struct InitialValues {
   std::string words;

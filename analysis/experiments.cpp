@@ -81,16 +81,34 @@ class Trial {
     for (std::optional<Experiment>* found : {&values, &number, &scale, &precision}) {
       if (*found) return open(std::move(**found));
     }
-    return open(by_images(pair_, asking()));
+    if (auto both = by_number_in_doubles()) return open(std::move(*both));
+    Experiment images = by_images(pair_, asking());
+    if (in_float64()) {
+      images.evidence += "; " + in_float64_words() + "it is wrong too";
+      if (images.cause == Cause::rounding && holds_determinants(pair_, Scalar::f64)) images.cause = Cause::logic;
+    }
+    return open(std::move(images));
+  }
+
+  // Code with an epsilon that also rounds too much: neither doubles nor a negligible number alone makes it right.
+  std::optional<Experiment> by_number_in_doubles() const {
+    const auto number = deciding_number(
+        *source_, [this](const DecideBlock& block) -> bool { return asked(block, {pair_})[0]; },
+        [](const DecideBlock&) { return true; }, true);
+    if (!number) return std::nullopt;
+    const bool relative = wrong_at_larger_scales(in_float64()) == true;
+    return Experiment{relative ? Cause::relative_epsilon : Cause::absolute_epsilon, false,
+                      number->words + ", with either alone wrong", number->line};
   }
 
   // Nothing if no larger scale can be tried.
   std::optional<bool> wrong_at_larger_scales() const {
+    return scale_is_no_matter_ ? true : wrong_at_larger_scales(block_of(lane_));
+  }
+  std::optional<bool> wrong_at_larger_scales(const DecideBlock& block) const {
     const Scales usual = scales_in_range(size_, lane_.scalar, kUsualFactors);
-    if (size_.high == -1000 || usual.last < 1) return std::nullopt;
-    if (scale_is_no_matter_) return true;
-    if (!usual.has(0)) return std::nullopt;
-    const auto larger = tried(lane_, {1, usual.last}, 12);
+    if (size_.high == -1000 || usual.last < 1 || !usual.has(0)) return std::nullopt;
+    const auto larger = tried(block, {1, usual.last}, 12);
     return std::none_of(larger.begin(), larger.end(), [](const auto& one) { return one.second; });
   }
 

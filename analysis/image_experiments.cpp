@@ -87,6 +87,8 @@ std::vector<Pair> snapped(const Pair& pair, const Size& size) {
 
 bool has_small_integers(const Pair& pair, Scalar scalar) { return holds_products(pair, scalar, kUsualFactors, 1); }
 
+bool holds_determinants(const Pair& pair, Scalar scalar) { return holds_products(pair, scalar, 3, 1); }
+
 std::optional<Experiment> without_rounding(const Pair& pair, Scalar widest, const Ask& ask) {
   const std::vector<Pair> in_order = orders(pair), mirror_images = mirrored(pair), in_axes = axes(pair);
   const std::vector<bool> right = ask(in_order);

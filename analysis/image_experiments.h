@@ -19,6 +19,9 @@ using Ask = std::function<std::vector<bool>(const std::vector<Pair>&)>;
 // kUsualFactors coordinates or differences rounds: up to 8 in float32, up to 256 in float64.
 bool has_small_integers(const Pair& pair, Scalar scalar);
 
+// Whether no sum of 32 products of up to three coordinates or differences rounds, such as a determinant's.
+bool holds_determinants(const Pair& pair, Scalar scalar);
+
 // The cause where these do not round in the widest arithmetic in which the code is known to be wrong. Nothing if the
 // lane is wrong in other orders of the pair when it is scaled by 3 and 5, because then quotients or roots may decide;
 // or when an axis is added to another, unless products of kMostFactors do not round either. Rounded

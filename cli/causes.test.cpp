@@ -175,6 +175,48 @@ TEST_P(PlantedBugs, HasItsCauseAndItsWords) {
   if (HasFailure()) printf("%s\n%s\n", sentence.c_str(), told.out.c_str());
 }
 
+class TwoExperiments : public CommandTest {
+ protected:
+  // What `explain` says of the code, given the number that it compares the gap along x with; its size is that of the
+  // largest coordinate.
+  std::string explained(const std::string& gap, const std::string& limit, const std::string& pair) const {
+    std::ofstream(shell.folder / "gap.cpp") << "#include <algorithm>\n#include <cmath>\n"
+        "bool intersects(const float a[9], const float b[9]) {\n"
+        "  float s = 0;\n"
+        "  for (int i = 0; i < 9; ++i) s = std::max({s, std::fabs(a[i]), std::fabs(b[i])});\n"
+        "  const float m = std::max({a[0], a[3], a[6]}), n = std::min({b[0], b[3], b[6]});\n"
+        "  const float k = std::max({b[0], b[3], b[6]}), l = std::min({a[0], a[3], a[6]});\n"
+        "  return std::max(" + gap + ") <= " + limit + ";\n}\n";
+    const Ran ran = shell("export XDG_CACHE_HOME=$PWD/cache; echo '" + pair +
+                          "' > gap.pairs && graze explain gap.pairs --subject gap=./gap.cpp --lanes gap/f32/cpu --json");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    const json lanes = json::parse(ran.out)["lanes"];
+    EXPECT_EQ(lanes.size(), 1u) << ran.out;
+    return lanes[0].value("cause", "") + ": " + lanes[0].value("settled", "") + ": " + lanes[0].value("experiment", "");
+  }
+};
+
+// In float the gap is lost at every scale, in double the epsilon hides it.
+TEST_F(TwoExperiments, AnEpsilonAndRoundingTogetherAreNamed) {
+  const std::string gap = "(n + 1024 * s) - (m + 1024 * s), (l + 1024 * s) - (k + 1024 * s)";
+  const char* const pair = "0 0 0 -1 0 0 0 1 0  0x1p-21 0 0 1 0 0 1 1 0";
+  for (const auto& [limit, cause] : {std::pair("1e-6f", "absolute epsilon"), {"1e-6f * s", "relative epsilon"}}) {
+    const std::string found = explained(gap, limit, pair);
+    EXPECT_TRUE(found.starts_with(std::string(cause) + ": ")) << found;
+    EXPECT_NE(found.find("with 1e-36 in place of 1e-6f at gap.cpp:8 and double in place of float it is right, with "
+                         "either alone wrong"),
+              found.npos)
+        << found;
+  }
+}
+
+// Its limit grows with the distance from the origin, so that some images are right; but doubles do not help.
+TEST_F(TwoExperiments, WhatIsWrongInDoublesTooIsNotCalledRounding) {
+  const std::string found = explained("n - m, l - k", "s / 16", "3 0 0 2 0 0 3 1 0  3.1240234375 0 0 4 0 0 4 1 0");
+  EXPECT_TRUE(found.starts_with("logic: ")) << found;
+  EXPECT_NE(found.find("with double in place of float it is wrong too"), found.npos) << found;
+}
+
 INSTANTIATE_TEST_SUITE_P(Causes, PlantedBugs, testing::ValuesIn(kBugs),
                          [](const testing::TestParamInfo<Bug>& row) { return row.param.name; });
 

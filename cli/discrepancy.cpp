@@ -185,14 +185,25 @@ int discrepancy(DiscrepancyOptions options) {
   const reports::DiscrepancyResults found{spec, analysis::discrepancies(spec), origins_of(spec)};
 
   fuzz::Json verdicts = fuzz::Json::array();
+  std::optional<Pair> simplest;
+  std::string next;
   for (const analysis::TwoDeciders& deciders : comparisons.verdicts) {
     const Lane &first = *deciders.lanes[0], &second = *deciders.lanes[1];
     std::optional<analysis::OperandsApart> operands;
     if (analysis::shows_operands(first, second))
       operands = analysis::operands_apart(second, spec.sources, kOriginPairs / spec.sources.size());
-    verdicts.push_back(reports::verdicts_json(
-        deciders, spec.sources, analysis::verdicts_apart(deciders, spec.sources, options.threads, is_simpler),
-        operands ? &*operands : nullptr));
+    const auto apart = analysis::verdicts_apart(deciders, spec.sources, options.threads, is_simpler);
+    verdicts.push_back(reports::verdicts_json(deciders, spec.sources, apart, operands ? &*operands : nullptr));
+    for (std::size_t s = 0; s < apart.size() && scene.empty(); ++s) {
+      if (!apart[s].simplest) continue;
+      const strata::PairSource& source = spec.sources[s];
+      const Pair pair = source.pair(apart[s].simplest->index);
+      if (simplest && !is_simpler(pair, *simplest)) continue;
+      simplest = pair;
+      next = fmt::format("Next: graze explain {}:{}:{} --lanes {},{}{}{}\n", source.id, source.seed,
+                         apart[s].simplest->index, first.id, second.id, subject_words(first.lane_name().subject),
+                         first.info == second.info ? "" : subject_words(second.lane_name().subject));
+    }
   }
 
   const reports::Screen screen = output_screen();
@@ -225,7 +236,8 @@ int discrepancy(DiscrepancyOptions options) {
                               {"discrepancy.html", reports::discrepancy_page(json)}});
   fmt::print("Wrote {0}/discrepancy.html, {0}/discrepancy.json, {0}/discrepancy.csv\n", folder.path.string());
   if (!options.campaign.empty() && options.out.empty())
-    fmt::print("Next: graze report {}\n", path_word(options.campaign));
+    next = fmt::format("Next: graze report {}\n", path_word(options.campaign));
+  fmt::print("{}", next);
   return 0;
 }
 

@@ -196,7 +196,10 @@ void print_json(const ExplainOptions& options, const fuzz::SelectedLanes& under_
 }
 
 void explain_cases(const ExplainOptions& options) {
-  const fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
+  fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
+  // The user's own code comes first.
+  std::stable_partition(under_test.lanes.begin(), under_test.lanes.end(),
+                        [](const Lane* lane) { return lane->foreign; });
   const reports::Screen screen = output_screen();
   const std::vector<corpus::Entry> entries = read_cases(options.name);
   for (const corpus::Entry& entry : entries) {

@@ -15,6 +15,7 @@
 #include "core/cannot.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "fuzz/campaign/campaign.h"
 
 namespace {
 
@@ -83,7 +84,9 @@ int main(int argc, char** argv) {
       "graze"};
   graze::cli::format_help(app);
   app.set_help_flag("-h,--help", "Print this help");
-  app.set_version_flag("--version", GRAZE_VERSION, "Print the version");
+  app.set_version_flag(
+      "--version", [] { return fmt::format("{} (commit {})", GRAZE_VERSION, graze::fuzz::commit_of_build()); },
+      "Print the version and the commit");
   app.require_subcommand(1);
   std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file-size limit then fails a write, like a full disk
   int status = 0;

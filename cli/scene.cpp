@@ -138,7 +138,7 @@ void add_scene(CLI::App& app, int&) {
   command->callback([options] {
     const bool is_scene = fs::path(options->files[0]).extension() == ".toml";
     if (options->sufficient > 0 && options->out.empty() != is_scene)
-      throw UsageError("--sufficient needs a scene: one that exists alone, or measured ones with --out");
+      throw UsageError("--sufficient needs one scene: `graze scene SCENE.toml --sufficient RATE`, or `graze scene MESH… --out SCENE.toml --sufficient RATE`");
     if (!is_scene) return scene(*options);
     if (options->files.size() > 1 || options->sufficient == 0)
       throw UsageError("graze scene measures meshes or pairs; a scene that exists needs --sufficient");

@@ -42,7 +42,7 @@ TEST_F(TryCommand, AnswersOnOneScreen) {
   for (const char* part :
        {" of 2,000 pairs: ", "\nBy group of strata: general", "\nOther builds: f32/cpu-fma",
         "\nEpsilon: ", "\nInstead: exact/f32/cpu is right on all 2,000 pairs.\n", "\nA call of one pair takes ",
-        " in mine/f32/cpu, ", " in exact/f32/cpu, ", " passes over 256 pairs, on one core of ",
+        " in mine/f32/cpu, ", " in exact/f32/cpu, ", " passes over 2,000 pairs, on one core of ",
         "\nWrote try/report.html, try/cases/", ", try/case.cpp ", "\nNext: graze explain try/cases/"})
     EXPECT_NE(in_one_line.find(part), std::string::npos) << part << '\n' << ran.out;
   std::istringstream lines(ran.out);

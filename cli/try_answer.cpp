@@ -23,7 +23,7 @@ namespace graze::cli {
 using fuzz::Json;
 namespace {
 
-constexpr std::size_t kPairsCalled = 256;  // 18 kB, within a core's cache
+constexpr std::size_t kPairsCalled = 4096;  // too many to learn their branches, but within a core's cache
 constexpr int kPassesOfCalls = 101;
 constexpr int kLinesOfScreen = 30, kLinesOfCosts = 4;
 constexpr std::size_t kMostNamed = 3;        // numbers that may be the epsilon

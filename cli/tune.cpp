@@ -287,7 +287,7 @@ void add_tune(CLI::App& app, int& status) {
       ->check(not_empty())
       ->option_text("NAME")
       ->default_str("the obvious one");
-  for (const char* of_own_code : {"--subject", "--resubject", "--epsilon"})
+  for (const char* of_own_code : {"--resubject", "--epsilon"})
     command->get_option("--agree")->excludes(of_own_code);
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);

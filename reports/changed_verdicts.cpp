@@ -88,10 +88,19 @@ std::vector<std::string> changed_sentences(const Json& compare) {
   std::vector<std::string> sentences;
   std::size_t more = 0;
   const Json rows = compare.value("verdicts", Json());
+  const std::set<std::string> lanes = totals_of(rows).changed;
+  for (const Json& rate : compare.value("rates", Json::array())) {
+    if (rate.at("stratum") == kAllStrata && lanes.contains(text_at(rate, "lane")))
+      sentences.push_back(fmt::format("{}: wrong on {} of {} before, on {} after.", text_at(rate, "lane"),
+                                      grouped(number_at(rate.at("before"), "count")),
+                                      counted(number_at(rate.at("before"), "of"), "pair"),
+                                      grouped(number_at(rate.at("after"), "count"))));
+  }
+  const std::size_t most_sentences = sentences.size() + kMostChanged;
   for (const Json& row : rows) {
     const std::uint64_t least = row.at("least"), most = row.at("most");
     if (row.at("known") == "same" || most == 0) continue;
-    if (sentences.size() == kMostChanged) {
+    if (sentences.size() == most_sentences) {
       ++more;
       continue;
     }

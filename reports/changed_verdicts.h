@@ -9,6 +9,8 @@
 
 namespace graze::reports {
 
+inline constexpr const char* kAllStrata = "all strata";  // the stratum of rates over all of them
+
 // The headline of a comparison, without its end: whether verdicts changed, how many and of how many lanes.
 std::string paired_headline(const nlohmann::ordered_json& verdicts);
 

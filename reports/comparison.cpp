@@ -25,8 +25,6 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 using Name = std::pair<std::string, std::string>;  // lane and stratum
-constexpr const char* kAllStrata = "all strata";
-
 // A report's rates by lane and stratum, in its order.
 std::vector<std::pair<Name, Json>> rates_by_name(const Json& report) {
   std::vector<std::pair<Name, Json>> rates;

@@ -7,6 +7,7 @@
 #include "reports/failure_cards.h"
 #include "reports/report.h"
 #include "reports/tables.h"
+#include "strata/groups.h"
 
 namespace graze::reports {
 namespace {
@@ -41,17 +42,30 @@ void append(std::vector<Json>& cells, const Json& share) {
 
 Json lane_id(const Json& report, const Json& row) { return report["lanes"][row["lane"].get<std::size_t>()]["id"]; }
 
+// The group of a stratum; empty for a stratum that this build does not know.
+Json group_id(const std::string& stratum) {
+  const auto group = strata::group_of_name(stratum);
+  return group ? Json(strata::kGroups[static_cast<std::size_t>(*group)].id) : Json();
+}
+
 std::string rates_csv(const Json& report) {
-  Table table("lane,stratum,kind,count,of,share,low,high");  // empty stratum: all strata together
+  Table table("lane,group,stratum,kind,count,of,share,low,high");  // empty group and stratum: all strata together
   for (const Json& row : report["rates"]) {
     const Json stratum = row["stratum"].is_null() ? Json() : report["strata"][row["stratum"].get<std::size_t>()]["id"];
+    const Json group = stratum.is_null() ? Json() : group_id(stratum);
     for (const char* kind : {"false_positive", "false_negative", "wrong", "differs_from_cpu"}) {
       if (row[kind].is_null()) continue;
-      std::vector<Json> cells{lane_id(report, row), stratum, kind};
+      std::vector<Json> cells{lane_id(report, row), group, stratum, kind};
       append(cells, row[kind]);
       table.row(cells);
     }
-    table.row({lane_id(report, row), stratum, "declined", row["declined"], nullptr, nullptr, nullptr, nullptr});
+    table.row({lane_id(report, row), group, stratum, "declined", row["declined"], nullptr, nullptr, nullptr, nullptr});
+  }
+  for (const Json& row : report["group_rates"]) {
+    std::vector<Json> cells{lane_id(report, row), report["groups"][row["group"].get<std::size_t>()]["id"], nullptr,
+                            "wrong"};
+    append(cells, row["wrong"]);
+    table.row(cells);
   }
   return table.text;
 }

@@ -113,9 +113,8 @@ Json offer_json(const Offer& offer) {
 std::string costs_of_table(const Pareto& pareto) {
   const char* const columns =
       pareto.on_device ? "`ns a pair` of pairs that are on the device already, `with copies` of pairs in pinned memory"
-                       : "`ns a pair` of calls of 256 pairs in its cache, `from memory` of calls of 2^19 pairs, `one a "
-                         "call` of calls of one. The first and the last repeat 256 pairs, whose branches a processor "
-                         "learns: between different pairs a lane with branches takes as long as from memory";
+                       : "`ns a pair` of calls of 4,096 pairs in its cache, `from memory` of calls of 2^19 pairs, `one "
+                         "a call` of calls of one";
   return fmt::format(
       "Costs are times per pair on {}{}: {}. They are medians of passes over the pairs of this run; pareto.json has "
       "their quartiles.",

@@ -21,7 +21,10 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kOf[] = {"of_first", "of_second"};
 
 Json row_of(const analysis::VerdictsApart& found) {
-  Json row = {{"pairs", found.pairs}, {"differs", found.differs}};
+  Json row = {{"pairs", found.pairs},
+              {"differs", found.differs},
+              {"only_first_right", found.broken},
+              {"only_second_right", found.mended}};
   for (int lane = 0; lane < 2; ++lane) row[kOf[lane]] = fuzz::counts_json(found.of[lane], true);
   return row;
 }
@@ -151,10 +154,14 @@ std::string verdicts_sentence(const Json& of) {
   const Json& total = of.at("total");
   const std::uint64_t pairs = number_at(total, "pairs");
   const auto rate = [&](std::uint64_t count) { return rate_words(part_of(count, pairs)); };
-  const std::string verdicts =
+  std::string verdicts =
       fmt::format("{0} and {1} give different verdicts on {2} of {3} pairs; {0} is wrong on {4}, {1} on {5}. ",
                   text_at(of, "first"), text_at(of, "second"), rate(number_at(total, "differs")), grouped(pairs),
                   rate(wrong(total, 0)), rate(wrong(total, 1)));
+  const auto count = [&](const char* key) { return grouped(number_at(total, key)); };
+  if (number_at(total, "differs") > 0)
+    verdicts += fmt::format("Where they differ, {} alone is right on {} pairs, {} alone on {}. ", text_at(of, "first"),
+                            count("only_first_right"), text_at(of, "second"), count("only_second_right"));
   if (of.contains("operands")) return verdicts + operands_sentence(of.at("operands"));
   return verdicts + "Only verdicts are compared: " +
          (of.contains("why_no_operands") ? text_at(of, "why_no_operands") + "."
@@ -238,6 +245,7 @@ std::string verdicts_csv(const Json& of) {
     };
     add("", "pairs", counts.at("pairs"));
     add("", "verdict", counts.at("differs"));
+    for (const char* key : {"only_first_right", "only_second_right"}) add("", key, counts.at(key));
     for (const char* lane : kOf) {
       for (const auto& [name, count] : counts.at(lane).items()) add(lane, name, count);
     }
@@ -264,6 +272,8 @@ void expect_possible_verdicts(const Json& of) {
     analysis::VerdictsApart counts;
     counts.pairs = number_at(row, "pairs");
     counts.differs = number_at(row, "differs");
+    counts.broken = number_at(row, "only_first_right");
+    counts.mended = number_at(row, "only_second_right");
     std::uint64_t not_true = 0;
     for (int lane = 0; lane < 2; ++lane) {
       counts.of[lane] = fuzz::counts_of(row.at(kOf[lane]));
@@ -272,6 +282,9 @@ void expect_possible_verdicts(const Json& of) {
       not_true += others;
     }
     expect(counts.differs <= counts.pairs && counts.differs <= not_true, what + ": more differences than errors");
+    expect(counts.broken <= counts.differs && counts.mended <= counts.differs - counts.broken &&
+               counts.broken <= counts.of[1].not_right() && counts.mended <= counts.of[0].not_right(),
+           what + ": more right verdicts than differences");
     return counts;
   };
   for (const auto& [stratum, row] : of.at("strata").items()) {

@@ -82,6 +82,8 @@ Json campaign_spec(const Campaign& campaign) {
   return spec;
 }
 
+std::string commit_of_build() { return GRAZE_COMMIT; }
+
 Json build_info(const SelectedLanes& under_test) {
   Json info = {{"version", GRAZE_VERSION}, {"commit", GRAZE_COMMIT}, {"compiler", GRAZE_COMPILER},
                {"type", GRAZE_BUILD_TYPE}, {"flags", GRAZE_FLAGS},   {"cuda", nullptr},

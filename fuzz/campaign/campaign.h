@@ -52,6 +52,9 @@ struct Progress {
 // {"seed", "pairs", "strata", "lanes"}: recorded with the results, and compared when the campaign resumes.
 Json campaign_spec(const Campaign& campaign);
 
+// The commit of the sources of this build, with "-dirty" if they were changed, or "unknown".
+std::string commit_of_build();
+
 // Version, commit, compiler, type and flags of the build, CUDA toolkit, device, and the executor of each CUDA lane.
 Json build_info(const SelectedLanes& under_test);
 

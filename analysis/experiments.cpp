@@ -74,7 +74,10 @@ class Trial {
     if (values && values->settled) return *values;
     const Scalar widest = in_float64() ? Scalar::f64 : lane_.scalar;
     if (has_small_integers(pair_, widest) && wrong_at_larger_scales() == true && !right_in_float64()) {
-      if (auto found = without_rounding(pair_, widest, asking())) return *found;
+      if (auto found = without_rounding(pair_, widest, asking())) {
+        found->evidence += " and at " + larger_scales_words();
+        return *found;
+      }
     }
     std::optional<Experiment> precision = scale ? std::nullopt : by_precision();
     if (precision && precision->settled) return *precision;
@@ -103,13 +106,22 @@ class Trial {
 
   // Nothing if no larger scale can be tried.
   std::optional<bool> wrong_at_larger_scales() const {
-    return scale_is_no_matter_ ? true : wrong_at_larger_scales(block_of(lane_));
+    if (scale_is_no_matter_ && wrong_to_ >= 1) {
+      largest_tried_ = wrong_to_;
+      return true;
+    }
+    return wrong_at_larger_scales(block_of(lane_));
   }
   std::optional<bool> wrong_at_larger_scales(const DecideBlock& block) const {
     const Scales usual = scales_in_range(size_, lane_.scalar, kUsualFactors);
     if (size_.high == -1000 || usual.last < 1 || !usual.has(0)) return std::nullopt;
     const auto larger = tried(block, {1, usual.last}, 12);
+    largest_tried_ = larger.back().first;
     return std::none_of(larger.begin(), larger.end(), [](const auto& one) { return one.second; });
+  }
+
+  std::string larger_scales_words() const {
+    return fmt::format("all larger scales that were tried, up to 2^{}", largest_tried_);
   }
 
   bool right_in_float64() const {
@@ -148,7 +160,7 @@ class Trial {
     const bool settled = number->on_images && (scale ? scale->cause == Cause::absolute_epsilon : wrong.has_value());
     std::string text = number->words;
     if (scale) text += "; " + scale->evidence;
-    if (relative) text += "; it is wrong at all larger scales";
+    if (relative) text += "; it is wrong at " + larger_scales_words();
     return Experiment{relative ? Cause::relative_epsilon : Cause::absolute_epsilon, settled, std::move(text),
                       settled ? number->line : ""};
   }
@@ -278,6 +290,8 @@ class Trial {
     const std::pair own{0, false};
     if (in_range.has(0)) inside.insert(std::lower_bound(inside.begin(), inside.end(), own), own);
     all = inside[0].second;
+    smallest_tried_ = inside.front().first;
+    largest_tried_ = inside.back().first;
     for (const bool upwards : {true, false}) {
       for (std::size_t i = inside.size() - 1; i > 0; --i) {
         const auto [k, right] = inside[i];
@@ -321,6 +335,7 @@ class Trial {
     }
     if (right) return outside(bisected(0, in_range.first > 0 ? in_range.first : in_range.last));
     scale_is_no_matter_ = true;
+    wrong_from_ = smallest_tried_, wrong_to_ = largest_tried_;
     return beyond(in_range);
   }
 
@@ -328,7 +343,8 @@ class Trial {
   // the pair.
   Experiment outside(Turn turn) const {
     const bool by_float64 = right_in_float64_at_every_scale();
-    const std::string text = turn.text(), doubles = by_float64 ? ", and in float64 it is right at every scale" : "";
+    const std::string text = turn.text(),
+                      doubles = by_float64 ? ", and in float64 it is right at all scales that were tried" : "";
     if (turn.right > turn.wrong) {
       if (!by_float64 && kUsualFactors * (size_.smallest_difference + turn.wrong) >= limits().least)
         return {Cause::absolute_epsilon, false,
@@ -383,7 +399,10 @@ class Trial {
     if (!scale_is_no_matter_ || !has_usual_exponents() || has_small_integers(pair_, lane_.scalar) || !as_written ||
         !right_in_float64_at_every_scale())
       return Experiment{Cause::rounding, false, in_float64_words() + "it is right"};
-    return Experiment{Cause::rounding, true, in_float64_words() + "it is right, in float32 wrong at every scale"};
+    return Experiment{Cause::rounding, true,
+                      in_float64_words() + fmt::format("it is right, in float32 wrong at all scales that were tried, "
+                                                       "2^{} to 2^{}",
+                                                       wrong_from_, wrong_to_)};
   }
 
   const Lane& lane_;
@@ -394,7 +413,9 @@ class Trial {
   mutable int asked_ = 0, late_ = 0;                       // verdicts; those that took all of their time
   mutable std::optional<std::vector<Pair>> wrong_images_;  // once asked for
   mutable std::optional<subjects::ChangedCode> doubles_;
-  Scales strictly_{1, 0};            // scales at which even the longest products stay within the exponents
+  Scales strictly_{1, 0};  // scales at which even the longest products stay within the exponents
+  mutable int smallest_tried_ = 0, largest_tried_ = 0;  // exponents of the scales that were tried last
+  int wrong_from_ = 0, wrong_to_ = 0;                   // of those at which scale is no matter
   bool scale_is_no_matter_ = false;  // wrong at all scales at which the usual products stay within the exponents
 };
 

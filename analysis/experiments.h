@@ -30,10 +30,10 @@ namespace graze::analysis {
 //   rounding     right in float64 at every scale, and wrong in float32 at every scale within the exponents. Where the
 //                code has no function of doubles, its source with double in place of float is that
 // If no cause can be shown, the result is not settled. It is an epsilon if negligible numbers and double in place of
-// float, together, make it right; a relative one if in doubles it is wrong at all larger scales. Else it is order-dependent if only other orders are right, rounding if some other
-// image of the pair is right, and degenerate input or logic otherwise; not rounding where the code is wrong in doubles
-// too, which hold products of three differences. The evidence then names two
-// experiments that would settle it.
+// float, together, make it right; a relative one if in doubles it is wrong at all larger scales. Else it is
+// order-dependent if only other orders are right, rounding if some other image of the pair is right, and degenerate
+// input or logic otherwise; not rounding where the code is wrong in doubles too, which hold products of three
+// differences. The evidence then names two experiments that would settle it.
 inline constexpr int kUsualFactors = 6;  // the product of two determinants
 inline constexpr int kMostFactors = 14;  // Moller 1997 without division has 13
 

@@ -117,7 +117,7 @@ std::optional<Experiment> without_rounding(const Pair& pair, Scalar widest, cons
   const Cause cause = is_degenerate(pair) ? Cause::degenerate_input
                       : in_orders > 0     ? Cause::order_dependent
                                           : Cause::logic;
-  return Experiment{cause, true, text + " and at all larger scales"};
+  return Experiment{cause, true, std::move(text)};
 }
 
 std::vector<Pair> wrong_images(const Pair& pair, const Ask& ask) {

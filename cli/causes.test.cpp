@@ -180,15 +180,18 @@ class TwoExperiments : public CommandTest {
   // What `explain` says of the code, given the number that it compares the gap along x with; its size is that of the
   // largest coordinate.
   std::string explained(const std::string& gap, const std::string& limit, const std::string& pair) const {
-    std::ofstream(shell.folder / "gap.cpp") << "#include <algorithm>\n#include <cmath>\n"
-        "bool intersects(const float a[9], const float b[9]) {\n"
-        "  float s = 0;\n"
-        "  for (int i = 0; i < 9; ++i) s = std::max({s, std::fabs(a[i]), std::fabs(b[i])});\n"
-        "  const float m = std::max({a[0], a[3], a[6]}), n = std::min({b[0], b[3], b[6]});\n"
-        "  const float k = std::max({b[0], b[3], b[6]}), l = std::min({a[0], a[3], a[6]});\n"
-        "  return std::max(" + gap + ") <= " + limit + ";\n}\n";
-    const Ran ran = shell("export XDG_CACHE_HOME=$PWD/cache; echo '" + pair +
-                          "' > gap.pairs && graze explain gap.pairs --subject gap=./gap.cpp --lanes gap/f32/cpu --json");
+    std::ofstream(shell.folder / "gap.cpp")
+        << "#include <algorithm>\n#include <cmath>\n"
+           "bool intersects(const float a[9], const float b[9]) {\n"
+           "  float s = 0;\n"
+           "  for (int i = 0; i < 9; ++i) s = std::max({s, std::fabs(a[i]), std::fabs(b[i])});\n"
+           "  const float m = std::max({a[0], a[3], a[6]}), n = std::min({b[0], b[3], b[6]});\n"
+           "  const float k = std::max({b[0], b[3], b[6]}), l = std::min({a[0], a[3], a[6]});\n"
+           "  return std::max(" +
+               gap + ") <= " + limit + ";\n}\n";
+    const Ran ran =
+        shell("export XDG_CACHE_HOME=$PWD/cache; echo '" + pair +
+              "' > gap.pairs && graze explain gap.pairs --subject gap=./gap.cpp --lanes gap/f32/cpu --json");
     EXPECT_EQ(ran.status, 0) << ran.err;
     const json lanes = json::parse(ran.out)["lanes"];
     EXPECT_EQ(lanes.size(), 1u) << ran.out;

@@ -80,7 +80,8 @@ TEST_F(Cli, NothingComparedIsSaidEverywhere) {
   EXPECT_TRUE(std::regex_search(none.out, std::regex("\nthesis +0 +- +-\n"))) << none.out;
   expect_done("graze report c && graze report d && graze report e");
   EXPECT_TRUE(Json::parse(contents(shell.folder / "c/report.json"))["rates"][0]["differs_from_cpu"].is_null());
-  expect_done("grep -q '^moller_1997/f32/cuda-fma,general,uniform,wrong,' c/rates.csv && ! grep differs_from_cpu c/rates.csv");
+  expect_done(
+      "grep -q '^moller_1997/f32/cuda-fma,general,uniform,wrong,' c/rates.csv && ! grep differs_from_cpu c/rates.csv");
   expect_done("! grep '^moller_1997/f32/cpu,general,uniform,differs_from_cpu' d/rates.csv");
   expect_done("grep -q '^moller_1997/f32/cuda-nofma,general,uniform,differs_from_cpu,0,30,0' d/rates.csv");
 }

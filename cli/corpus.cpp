@@ -58,7 +58,7 @@ std::vector<corpus::Entry> cases_to_add(const std::string& name, bool exact_inpu
   for (const corpus::Entry& entry : entries) {
     if (exact_input) expect_exact_input(name, entry);
     const std::string note = written_note(entry, oracle::truth(entry.pair));
-    if (!note.empty()) fmt::print("{}:{}: {}\n", name, entry.line, note);
+    if (!note.empty()) fmt::print("{}:{}: {}\n", printable(name), entry.line, note);
   }
   return entries;
 }
@@ -120,7 +120,7 @@ void add(const CorpusOptions& options) {
   }
   write_corpus(options, corpus);
   fmt::print("{} new, {} seen again, {} known already; {} holds {}\n", reports::grouped(count[0]),
-             reports::grouped(count[1]), reports::grouped(count[2]), options.file().string(),
+             reports::grouped(count[1]), reports::grouped(count[2]), printable(options.file().string()),
              reports::grouped(corpus.size()));
   print_next(options, "verify");
 }

@@ -234,7 +234,8 @@ int discrepancy(DiscrepancyOptions options) {
   write_results(folder.path, {{"discrepancy.json", fuzz::sealed(json).dump(1) + "\n"},
                               {"discrepancy.csv", csv},
                               {"discrepancy.html", reports::discrepancy_page(json)}});
-  fmt::print("Wrote {0}/discrepancy.html, {0}/discrepancy.json, {0}/discrepancy.csv\n", folder.path.string());
+  fmt::print("Wrote {0}/discrepancy.html, {0}/discrepancy.json, {0}/discrepancy.csv\n",
+             printable(folder.path.string()));
   if (!options.campaign.empty() && options.out.empty())
     next = fmt::format("Next: graze report {}\n", path_word(options.campaign));
   fmt::print("{}", next);

@@ -128,7 +128,7 @@ std::string lane_text(const analysis::LaneExplanation& lane, const analysis::Lan
     text += steps_text(lane, screen);
   }
   contractions();
-  line(4, fmt::format("mantissa bits it would have needed: {}",
+  line(4, fmt::format("mantissa bits from which on it is right: {}",
                       lane.cause == analysis::Cause::logic ? "no number of bits helps"
                       : lane.bits_needed == 0              ? fmt::format("more than {}", oracle::kMostBits)
                                                            : fmt::format("{}", lane.bits_needed)));
@@ -155,7 +155,7 @@ std::vector<std::string> answer_of(const ExplainOptions& options, const fuzz::Se
                                    const corpus::Entry& entry, const analysis::Explanation& explanation,
                                    const reports::Screen& screen) {
   std::vector<std::string> blocks = {
-      fmt::format("{}{}\n", options.name, entry.line > 0 ? fmt::format(":{}", entry.line) : "")};
+      fmt::format("{}{}\n", printable(options.name), entry.line > 0 ? fmt::format(":{}", entry.line) : "")};
   for (const std::string& sentence : analysis::sentences(explanation))
     blocks.push_back(reports::bold(screen, reports::wrapped(sentence, screen.columns, 2, 4)));
   for (const std::string& text :

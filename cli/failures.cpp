@@ -58,10 +58,10 @@ std::string kind_text(const Json& kind, std::size_t number, bool all, const repo
     text += line(2, sentence.get<std::string>());
     break;
   }
-  text += line(
-      2, fmt::format("{} of {}; wrong: {}; simplest: {}", reports::counted(kind["pairs"].get<std::uint64_t>(), "pair"),
-                     reports::counted(kind["signatures"].get<std::uint64_t>(), "signature"),
-                     lanes_within(kind["lanes"], subject), file));
+  text += line(2, fmt::format("{} of {}, by one pair of each; wrong: {}; simplest: {}",
+                              reports::counted(kind["pairs"].get<std::uint64_t>(), "pair"),
+                              reports::counted(kind["signatures"].get<std::uint64_t>(), "signature"),
+                              lanes_within(kind["lanes"], subject), file));
   if (!all) return text;
   const std::uint64_t settled = kind["settled"][0], of = kind["settled"][1];
   if (settled < of) text += line(2, fmt::format("the cause is settled for {} of {} lanes looked at", settled, of));

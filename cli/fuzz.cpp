@@ -201,7 +201,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
     if (const auto kept = fuzz::discard_damaged(fuzz::store_spec(campaign)))
       fmt::print(stderr, "graze: kept {} in {} batch{} whose checksum is right; the damaged database is now {}\n",
                  reports::counted(kept->pairs, "pair"), reports::grouped(kept->batches), kept->batches == 1 ? "" : "es",
-                 kept->damaged.string());
+                 printable(kept->damaged.string()));
   }
   if (ranks) return on_ranks(options, campaign, left_out, *ranks);
   const fuzz::Outcome outcome = run_with_progress(campaign);
@@ -252,7 +252,7 @@ void print_shard(const std::string& out, const Json& spec, const Json& summary, 
       "Next, when all shards are done: graze merge DIR… --out campaign\n",
       summary["shard"].get<std::string>(), reports::counted(summary["pairs"], "pair"),
       reports::counted(summary["disagreements"], "disagreement"), reports::counted(summary["signatures"], "signature"),
-      out);
+      printable(out));
   std::cout << not_covered_text(spec);
 }
 
@@ -277,7 +277,7 @@ void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool j
   reports::print_summary(std::cout, summary, outcome.oracle, output_screen());
   std::cout << left_out_text(left_out) << not_covered_text(summary["spec"]);
   std::cout << fmt::format(
-      "\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", out);
+      "\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", printable(out));
   if (summary["signatures"].empty()) return;
   const std::string first = out + '/' + summary["signatures"][0]["case"].get<std::string>();
   std::cout << fmt::format("The commonest disagreement again: graze repro {}\nNext: graze minimize {}\n",

@@ -128,7 +128,7 @@ int hunt(const HuntOptions& options) {
   std::cout << left_out_text(left_out) << not_covered_text(hunt.campaign.spec) << std::flush;
   print_mutations(options.out);
   fmt::print("\nWrote {0}/summary.json, {0}/hunt.json, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite, {0}/hunt/\n",
-             options.out);
+             printable(options.out));
   if (!summary["signatures"].empty()) fmt::print("Next: graze minimize {}\n", path_word(options.out));
   return 0;
 }

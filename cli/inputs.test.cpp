@@ -49,6 +49,9 @@ TEST_F(Inputs, FoldersAndDevicesInAFilesPlaceAreNamed) {
   expect_error("mkdir d; graze check d", 1, {"d", "Is a directory"});
   expect_error("graze fuzz --mesh d", 1, {"d", "Is a directory"});
   expect_error("graze report --from d --out r.html", 1, {"d", "Is a directory"});
+  // Some devices never end.
+  expect_error("graze report --out r.html --from /dev/zero", 1, {"/dev/zero", "64 MiB"});
+  expect_error("graze league --subjects /dev/zero --out l", 1, {"/dev/zero", "64 MiB"});
   for (const char* verb : {"check", "explain", "fuzz --mesh", "report --out r.html --from"}) {
     const Ran ran = shell(std::string("graze ") + verb + " /proc/self/mem");  // opens, but cannot be read
     EXPECT_EQ(ran.status, 1) << verb;
@@ -103,6 +106,31 @@ TEST_F(Inputs, ForeignTextDoesNotReachTheTerminal) {
 }
 
 // If float32 rounds decimals to another pair, both truths are reported.
+// Names of folders and files too.
+TEST_F(Inputs, NoNameReachesTheTerminalAsItIs) {
+  shell("mkdir x");
+  const std::string name = "x/$'\\e[31m'";
+  const std::string lanes = " --lanes '*/f32/cpu' --pairs 1000 --out " + name;
+  const std::string script =
+      "graze fuzz --strata lattice" + lanes + "c && graze minimize " + name + "c && graze report " + name +
+      "c && graze status " + name + "c && graze status --prometheus p.prom " + name +
+      "c && cat p.prom && graze pareto" + lanes + "p && graze invariants" + lanes +
+      "i && graze hunt --runs 1000 --lanes '*/f32/cpu' --out " + name +
+      "h && graze discrepancy moller_1997/f32/cpu moller_1997/f64/cpu --pairs 100 --out " + name +
+      "d; graze tune moller_1997/f32/cpu --pairs 1000 --out " + name + "t; cp " + name + "c/cases/$(ls " + name +
+      "c/cases | head -1) " + name + ".pairs && graze explain " + name + ".pairs && graze map " + name +
+      ".pairs --out " + name + "m && graze check " + name + ".pairs && graze corpus add " + name + ".pairs --corpus " +
+      name + "k && graze pack " + name + "c";
+  std::ofstream(shell.folder / "all.sh") << script;
+  const Ran ran = shell("bash all.sh");
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_GT(std::count(ran.out.begin(), ran.out.end(), '\n'), 100);
+  for (const std::string& text : {ran.out, ran.err}) {
+    const std::size_t at = text.find('\x1b');
+    EXPECT_EQ(at, text.npos) << text.substr(at > 200 && at != text.npos ? at - 200 : 0, 300);
+  }
+}
+
 TEST_F(Inputs, WhatFloat32MakesOfDecimalsIsSaid) {
   std::ofstream(shell.folder / "near.pairs")
       << "0 0 1 1 0 1 0 1 1  0 0 1.00000000001 1 0 1.00000000001 0 1 1.00000000001\n";

@@ -54,8 +54,8 @@ int invariants(const InvariantsOptions& options) {
     if (const std::string file = std::string(invariant.id) + ".pairs"; !cases.contains(file))
       remove_result(out / "cases" / file, kPairs);
   }
-  fmt::print("Wrote {0}/invariants.json{1}\n", out.string(),
-             cases.empty() ? "" : fmt::format(", {}/cases/", out.string()));
+  fmt::print("Wrote {0}/invariants.json{1}\n", printable(out.string()),
+             cases.empty() ? "" : fmt::format(", {}/cases/", printable(out.string())));
   if (cases.empty()) return 0;
   const std::string first = (out / "cases" / cases.begin()->first).string();
   fmt::print("Next: graze explain {}\n", path_word(first));

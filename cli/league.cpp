@@ -148,7 +148,7 @@ int league(const LeagueOptions& options) {
   for (const auto& [file, svg] : drawings) write_result(out / "league" / file, svg);
   remove_other_drawings(out / "league", drawings);
   std::cout << reports::league_table(json, output_screen());
-  fmt::print("\nWrote {0}/league.json, {0}/league.md, {0}/league/\n", options.out);
+  fmt::print("\nWrote {0}/league.json, {0}/league.md, {0}/league/\n", printable(options.out));
   return 0;
 }
 

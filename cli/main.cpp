@@ -104,7 +104,8 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& help) {
     std::cout.exceptions(std::ios_base::goodbit);
     app.exit(help);
-    return std::cout.flush() ? 0 : 1;
+    if (std::cout.flush()) return 0;
+    return fail(graze::cannot("write", "standard output", errno != 0 ? errno : EIO), 1);
   } catch (const CLI::ParseError& error) {
     return fail(
         fmt::format("{}; see `graze{} --help`{}", error.what(),

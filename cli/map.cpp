@@ -102,7 +102,7 @@ void write_pictures(const analysis::UlpMap& map, const fs::path& out) {
       write_result(out / (name + ".png"), reports::panel_png(panel));
     }
   }
-  fmt::print("Wrote {}\n", out.string());
+  fmt::print("Wrote {}\n", printable(out.string()));
 }
 
 void draw_map(const MapOptions& options) {
@@ -115,7 +115,7 @@ void draw_map(const MapOptions& options) {
       asked ? *asked : analysis::liveliest_coordinates(entry.pair, under_test.lanes);
   const analysis::UlpMap map = analysis::ulp_map(entry.pair, under_test.lanes, moved);
   const std::string what =
-      fmt::format("{}{}: {} x {} cells, {} to the right and {} upwards by an ulp each{}", options.name,
+      fmt::format("{}{}: {} x {} cells, {} to the right and {} upwards by an ulp each{}", printable(options.name),
                   entry.line > 0 ? fmt::format(":{}", entry.line) : "", analysis::kMapSize, analysis::kMapSize,
                   analysis::name_of_coordinate(moved.x), analysis::name_of_coordinate(moved.y),
                   asked           ? ""

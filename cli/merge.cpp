@@ -4,6 +4,7 @@
 
 #include "cli/campaign_end.h"
 #include "cli/commands.h"
+#include "core/text.h"
 #include "fuzz/shards/merge.h"
 #include "reports/terminal.h"
 
@@ -28,7 +29,8 @@ int merge(const MergeOptions& options) {
   print_campaign(std::filesystem::exists(out) ? options.out : out.lexically_normal().string(), outcome, options.json);
   if (!outcome.complete) {
     std::fflush(stdout);
-    fmt::print(stderr, "graze: the campaign is not complete; `graze fuzz` with --out {} resumes it\n", options.out);
+    fmt::print(stderr, "graze: the campaign is not complete; `graze fuzz` with --out {} resumes it\n",
+               path_word(options.out));
   }
   return 0;
 }

@@ -102,7 +102,7 @@ int minimize_case(const MinimizeOptions& options) {
   for (const corpus::Entry& entry : entries) {
     if (options.exact_input) expect_exact_input(options.name, entry);
     const std::string note = written_note(entry, oracle::truth(entry.pair));
-    if (!note.empty()) fmt::print("{}:{}: {}\n", options.name, entry.line, note);
+    if (!note.empty()) fmt::print("{}:{}: {}\n", printable(options.name), entry.line, note);
   }
   std::string text;
   if (std::all_of(entries.begin(), entries.end(), [](auto& entry) { return entry.line != 0 && entry.lines == 1; })) {
@@ -192,7 +192,7 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
   fmt::print(
       "Wrote {}/cases/: the minimised pair first, then the worst one met, then the originals\n"
       "and, of each kind of failure, an explanation and the ulp maps of its simplest case\n",
-      directory);
+      printable(directory));
 }
 
 int minimize_directory(MinimizeOptions options) {

@@ -79,10 +79,11 @@ void pack(const std::string& directory, std::string out) {
   if (const fs::path file = out; !fuzz::may_replace_foreign && fs::exists(file) && !fuzz::is_archive(file))
     throw UsageError(cannot("replace", file, fuzz::kForeign));
   open_subjects_of(directory);
+  reports::make_report(directory);  // throws for a damaged record
   const fuzz::Pack pack = fuzz::pack_campaign(directory);
   expect_subjects_open(pack, recorded_spec_of(directory).value("subjects", Json::array()));
   fuzz::write_whole(out, fuzz::archive_of(pack.files), fuzz::NamedBy::user);
-  fmt::print("Wrote {}: {}\n", out, reports::counted(pack.files.size(), "file"));
+  fmt::print("Wrote {}: {}\n", printable(out), reports::counted(pack.files.size(), "file"));
   for (const Json& sentence : pack.manifest["not_packed"]) fmt::print("{}\n", sentence.get<std::string>());
   fmt::print("Next, on any machine with graze: graze repro {}\n", path_word(out));
 }
@@ -105,6 +106,7 @@ bool is_reproduced(const fs::path& packed, const fs::path& again, const Json& ro
   for (const char* part : {"strata", "disagreements", "signatures"}) {
     if (before.at(part) != after.at(part)) return false;
   }
+  if (fuzz::read_whole(packed / "hunt.json") != fuzz::read_whole(again / "hunt.json")) return false;
   return rows.is_null() || std::none_of(rows.begin(), rows.end(), [](const Json& row) {
            return row.at("known") == "changed" && row.at("most") > 0;
          });

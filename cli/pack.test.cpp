@@ -54,6 +54,22 @@ TEST_F(PackCommand, ASourceWithItsHeadersRunsElsewhere) {
   expect_error("cd there; graze repro ../c.sqlar", 2, {"c-unpacked"});
 }
 
+// A pack would give damaged records to others.
+TEST_F(PackCommand, DamagedRecordsAreNotPacked) {
+  run("graze hunt --runs 2000 --lanes '*/f32/cpu' --threads 1 --out c && graze minimize c 2> /dev/null");
+  expect_done("cd home && graze pack c --out ../c.sqlar && cp -r c whole");
+  for (const auto& [damage, named] : {std::pair("sed -i 's/\"pairs\": 2000/\"pairs\": 9999/' c/hunt.json", "hunt.json"),
+                                      {"rm c/hunt.json", "hunt.json"},
+                                      {"printf x >> c/hunt/000001.round", "c/hunt"},
+                                      {"rm c/hunt/000001.round", "c/hunt"},
+                                      {"sed -i 's/\"seconds\": /\"seconds\": 1/' c/timings.json", "timings.json"},
+                                      {"sed -i 's/\"pairs\": /\"pairs\": 1/' c/failures.json", "failures.json"}})
+    expect_error(std::string("cd home; rm -rf c; cp -r whole c; ") + damage + "; graze pack c --force", 1, {named});
+  const Ran again = shell("mkdir there && cd there && graze repro ../c.sqlar");
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_NE(again.out.find("\nReproduced: "), std::string::npos) << again.out;
+}
+
 TEST_F(PackCommand, LibrariesCommandsMeshesAndScenesRunElsewhere) {
   const std::string mesh =
       "printf 'OFF\\n4 4 0\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n3 0 1 2\\n3 0 1 3\\n3 0 2 3\\n3 1 2 3\\n' > 'a "

@@ -165,7 +165,8 @@ int pareto(ParetoOptions options) {
   for (const analysis::Extreme extreme : analysis::kExtremes)
     results.push_back({std::string(name(extreme)) + ".svg", reports::extreme_figure(pareto.curves, extreme)});
   write_results(out, results);
-  fmt::print("Wrote {}/{{pareto.json,front.svg,scale.svg,offset.svg,flatness.svg,aspect.svg}}\n", out.string());
+  fmt::print("Wrote {}/{{pareto.json,front.svg,scale.svg,offset.svg,flatness.svg,aspect.svg}}\n",
+             printable(out.string()));
   if (fs::exists(out / "campaign.sqlite")) fmt::print("Next: graze report {}\n", path_word(out.string()));
   return 0;
 }

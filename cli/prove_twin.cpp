@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/results.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "cuda/twin/prove.h"
 #include "fuzz/campaign/result_files.h"
 #include "reports/terminal.h"
@@ -46,7 +47,7 @@ int prove(const cuda::ProofOptions& options, const LaneOptions& lanes, std::stri
                reports::grouped(lane.twin_differences()));
   }
   fmt::print("\n{}, driver {}, nvcc {}: {} in {:.0f} s. Wrote {}\n", record.device, record.driver, record.toolkit,
-             record.verified() ? "verified" : "NOT verified", record.seconds, out);
+             record.verified() ? "verified" : "NOT verified", record.seconds, printable(out));
   return record.verified() ? 0 : 1;
 }
 

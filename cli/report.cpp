@@ -57,7 +57,7 @@ std::vector<std::string> write_report(const fs::path& directory, const Json& rep
 }
 
 void say_report(const fs::path& directory, const Json& report, const std::vector<std::string>& names) {
-  fmt::print("Wrote {}/{}\n", directory.string(), fmt::join(names, ", "));
+  fmt::print("Wrote {}/{}\n", printable(directory.string()), fmt::join(names, ", "));
   for (const Json& sentence : report["missing"]) fmt::print("{}\n", sentence.get<std::string>());
   say_what_the_page_is();
 }
@@ -101,7 +101,7 @@ void report(const ReportOptions& options) {
     throw UsageError("--from and --out need each other; add the other one");
   if (!options.from.empty()) {
     write_result(options.out, page_of(options.from), fuzz::NamedBy::user);
-    fmt::print("Wrote {}\n", options.out);
+    fmt::print("Wrote {}\n", printable(options.out));
     say_what_the_page_is();
   } else if (!options.compare.empty()) {
     // First, while no foreign code is open: only its counts are needed, and both may use one name for different code.

@@ -88,7 +88,7 @@ analysis::SceneSample write_scene(const SceneVerb& options) {
 void scene(const SceneVerb& options) {
   const analysis::SceneSample sample = write_scene(options);
   if (options.out.empty()) return;
-  fmt::print("Wrote {}: {} triangles, {} pairs whose boxes overlap.\n", options.out,
+  fmt::print("Wrote {}: {} triangles, {} pairs whose boxes overlap.\n", printable(options.out),
              reports::grouped(sample.triangles.size()), reports::grouped(sample.pairs));
   if (options.sufficient > 0) print_sufficient(options.out, options.sufficient);
   fmt::print("Next: graze fuzz --scene {}\n", path_word(options.out));
@@ -138,7 +138,9 @@ void add_scene(CLI::App& app, int&) {
   command->callback([options] {
     const bool is_scene = fs::path(options->files[0]).extension() == ".toml";
     if (options->sufficient > 0 && options->out.empty() != is_scene)
-      throw UsageError("--sufficient needs one scene: `graze scene SCENE.toml --sufficient RATE`, or `graze scene MESH… --out SCENE.toml --sufficient RATE`");
+      throw UsageError(
+          "--sufficient needs one scene: `graze scene SCENE.toml --sufficient RATE`, or `graze scene MESH… --out "
+          "SCENE.toml --sufficient RATE`");
     if (!is_scene) return scene(*options);
     if (options->files.size() > 1 || options->sufficient == 0)
       throw UsageError("graze scene measures meshes or pairs; a scene that exists needs --sufficient");

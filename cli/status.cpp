@@ -14,6 +14,7 @@
 #include "cli/progress.h"
 #include "cli/results.h"
 #include "core/cannot.h"
+#include "core/text.h"
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/rank_stores.h"
 #include "fuzz/campaign/run_status.h"
@@ -149,7 +150,7 @@ std::string table(const Json& all) {
   for (const Json& row : all["shards"]) {
     const std::uint64_t pairs = row["pairs"], done = row["done"];
     text += fmt::format(
-        "{:<24} {:>12} {:<9} {:>22} {:>11} {:>9} {:>13} {:>10} {:>6}\n", row["directory"].get<std::string>(),
+        "{:<24} {:>12} {:<9} {:>22} {:>11} {:>9} {:>13} {:>10} {:>6}\n", printable(row["directory"].get<std::string>()),
         row["shard"].is_null() ? "-" : row["shard"].get<std::string>(), row["state"].get<std::string>(),
         fmt::format("{} ({}%)", reports::grouped(done), pairs == 0 ? 0 : 100 * done / pairs),
         reports::grouped(static_cast<std::uint64_t>(row["rate"].get<double>())),
@@ -185,7 +186,8 @@ std::string prometheus(const Json& all) {
                                    {"new", "Signatures, ignoring margins, that no earlier shard in the list has."}}) {
     text += fmt::format("# HELP graze_{0} {1}\n# TYPE graze_{0} gauge\n", name, help);
     for (const Json& row : all["shards"]) {
-      text += fmt::format("graze_{}{{directory=\"{}\",shard=\"{}\",state=\"{}\"}} {}\n", name, label(row["directory"]),
+      text += fmt::format("graze_{}{{directory=\"{}\",shard=\"{}\",state=\"{}\"}} {}\n", name,
+                          label(printable(row["directory"].get<std::string>())),
                           row["shard"].is_null() ? "" : row["shard"].get<std::string>(),
                           row["state"].get<std::string>(), row[name].dump());
     }

@@ -200,6 +200,7 @@ std::string text_of(const Answer& answer, const reports::Screen& screen) {
     before.push_back(fmt::format("A program answers slowly, so it got {} pairs; --pairs sets another number.",
                                  reports::grouped(counts.total.pairs)));
   if (!answer.left_out.empty()) before.push_back(left_out_in_words(answer.left_out));
+  if (!answer.told.empty()) before.push_back("Kinds of failure; one pair of each signature stands for all of them:");
   std::vector<reports::ScreenFailure> failures;
   const std::uint64_t wrong = reports::wrong_pairs(answer.summary, answer.code.name);
   for (const Json& kind : answer.told) {
@@ -227,7 +228,7 @@ std::string text_of(const Answer& answer, const reports::Screen& screen) {
   if (!answer.told.empty()) written.push_back(case_of(answer, answer.told[0]));
   if (!answer.test.empty()) written.push_back(answer.test + " (a test)");
   if (!answer.scene.empty()) written.push_back(answer.scene);
-  after.push_back(fmt::format("Wrote {}", fmt::join(written, ", ")));
+  after.push_back(fmt::format("Wrote {}", printable(fmt::format("{}", fmt::join(written, ", ")))));
   after.push_back(answer.told.empty()
                       ? fmt::format("Next, with more pairs: {}", answer.again)
                       : fmt::format("Next: graze explain {}", path_word(case_of(answer, answer.told[0]))));

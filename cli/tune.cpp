@@ -106,7 +106,7 @@ void write_listed(const fs::path& out, const std::vector<Result>& results, std::
   for (const auto& [name, kind] : optional) {
     if (std::find(written.begin(), written.end(), name) == written.end()) remove_result(out / name, kind);
   }
-  fmt::print("Wrote {}/{{{}}}\n", out.string(), fmt::join(written, ","));
+  fmt::print("Wrote {}/{{{}}}\n", printable(out.string()), fmt::join(written, ","));
 }
 
 std::string next_command(const fs::path& out, const Result& last, const std::string& lanes) {
@@ -287,8 +287,7 @@ void add_tune(CLI::App& app, int& status) {
       ->check(not_empty())
       ->option_text("NAME")
       ->default_str("the obvious one");
-  for (const char* of_own_code : {"--resubject", "--epsilon"})
-    command->get_option("--agree")->excludes(of_own_code);
+  for (const char* of_own_code : {"--resubject", "--epsilon"}) command->get_option("--agree")->excludes(of_own_code);
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
   command

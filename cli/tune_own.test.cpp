@@ -122,7 +122,8 @@ TEST_F(TuneOwnCode, WhatCannotBeTunedGetsOneLine) {
   expect_refused("py/f32/cpu --subject 'py=cmd:while read l; do echo 1; done'", {"py/f32/cpu", "command"});
   expect_refused("moller_1997/f32/cpu --subject mine=./mine.cpp", {"--subject mine", "LANE"});
   expect_refused("moller_1997/f32/cpu --epsilon kEps", {"--epsilon", "moller_1997/f32/cpu"});
-  expect_refused("mine/f32/cpu mine/f32/cpu-fma --agree --subject mine=./mine.cpp", {"--agree", "graze discrepancy", "graze tune LANE"});
+  expect_refused("mine/f32/cpu mine/f32/cpu-fma --agree --subject mine=./mine.cpp",
+                 {"--agree", "graze discrepancy", "graze tune LANE"});
   std::ofstream(shell.folder / "flag.c") << "#ifndef EPS\n#define EPS 1e-6f\n#endif\nint intersects(const float a[9], "
                                             "const float b[9]) { return a[0] > b[0] + EPS; }\n";
   expect_refused("flag/f32/cpu --subject flag=./flag.c --flags=-DEPS=3", {"-DEPS=3", "flag.c"});

@@ -17,7 +17,8 @@ inline constexpr const char* kPart = ".graze.part";
 // Throws: std::runtime_error for a pipe, a device or a folder of this name, seen through symbolic links.
 void expect_file(const std::filesystem::path& file);
 
-// The file's bytes; empty if there is no file.   Throws: std::runtime_error for one that cannot be read.
+// The file's bytes; empty if there is no file.   Throws: std::runtime_error for one that cannot be read, and for a pipe
+// or a device that gives more than 64 MiB.
 std::string read_whole(const std::filesystem::path& file, NamedBy named_by = NamedBy::graze);
 
 // Writes the file, through symbolic links, or into a device or a pipe that the user named. Leaves no partial file if it

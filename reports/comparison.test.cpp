@@ -121,12 +121,14 @@ TEST(Comparison, TheHeadlineOnTheSamePairsIsAboutVerdicts) {
   EXPECT_EQ(
       said(Json::array({counted})),
       "Changed: 5 verdicts of 1 of 1 lane: 3 became wrong, 1 right, 1 wrong in another way; kinds of failure are not "
-      "compared.\nlane/0: wrong on 0 of 100 pairs before, on 0 after.\nlane/0, uniform: 5 of 100 verdicts changed; 3 became wrong (smallest: uniform:1:2); 1 became "
+      "compared.\nlane/0: wrong on 0 of 100 pairs before, on 0 after.\nlane/0, uniform: 5 of 100 verdicts changed; 3 "
+      "became wrong (smallest: uniform:1:2); 1 became "
       "right (smallest: uniform:1:3).");
   const std::string bounded = said(Json::array({verdicts_row("changed", 2, 9)})),
                     unknown = said(Json::array({verdicts_row("unknown", 0, 9)}));
   EXPECT_TRUE(names(bounded.substr(0, bounded.find('\n')), {"at least 2 verdicts", "at most 9"}));
-  EXPECT_TRUE(names(bounded.substr(bounded.rfind('\n') + 1), {"lane/0, uniform", "at least 2", "at most 9", "not there"}));
+  EXPECT_TRUE(
+      names(bounded.substr(bounded.rfind('\n') + 1), {"lane/0, uniform", "at least 2", "at most 9", "not there"}));
   EXPECT_TRUE(names(unknown.substr(0, unknown.find('\n')), {"No change", "not known", "at most 9"}));
   Json many = Json::array();
   for (std::size_t i = 0; i < kMostChanged + 7; ++i) many.push_back(counted);

@@ -201,9 +201,9 @@ std::string epsilon_words(const CampaignCounts& counts, std::size_t lane, const 
     settled += kind.at("settled").at(0).get<std::uint64_t>();
     of += kind.at("settled").at(1).get<std::uint64_t>();
   }
-  std::string text = "Epsilon: no failure shows an absolute epsilon";
+  std::string text = "Epsilon: no failure that was looked at shows an absolute epsilon";
   if (pairs > 0) {
-    text = fmt::format("Epsilon: on {} an absolute epsilon {}", counted(pairs, "wrong pair"),
+    text = fmt::format("Epsilon: on {}, by one of each signature, an absolute epsilon {}", counted(pairs, "wrong pair"),
                        settled == 0   ? "perhaps decides"
                        : settled < of ? "decides, on some of them perhaps"
                                       : "decides");

@@ -206,8 +206,8 @@ std::string card(const Json& report, const Json& found) {
     text += fmt::format(" {} ({}){}", coordinate("decimal"), coordinate("hex"), i % 3 == 2 ? "\n" : "");
   }
   text +=
-      "</pre>\n" + paragraph(fmt::format("{} pairs; truth: {}, contact {}, margin {} ulps.", grouped(kind.at("pairs")),
-                                         found.at("truth").at("verdict").get<std::string>(),
+      "</pre>\n" + paragraph(fmt::format("{} pairs, by one of each signature; truth: {}, contact {}, margin {} ulps.",
+                                         grouped(kind.at("pairs")), found.at("truth").at("verdict").get<std::string>(),
                                          found.at("truth").at("contact").get<std::string>(),
                                          found.at("truth").at("margin_ulps").dump()));
   std::string wrong;

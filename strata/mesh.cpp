@@ -16,6 +16,7 @@
 
 #include "core/cannot.h"
 #include "core/fnv1a.h"
+#include "core/text.h"
 #include "strata/mesh_readers/lines.h"
 
 namespace graze::strata {
@@ -92,7 +93,7 @@ void add_mesh(MeshPairs& pairs, const std::filesystem::path& file) {
   for (const auto& [what, count] : soup.skipped)
     skipped += (skipped.empty() ? "" : ", ") + std::to_string(count) + ' ' + what;
   if (!skipped.empty())
-    pairs.notes.push_back(file.string() + ": " + std::to_string(soup.triangles.size()) +
+    pairs.notes.push_back(printable(file.string()) + ": " + std::to_string(soup.triangles.size()) +
                           " triangles; not used: " + skipped);
 }
 

@@ -19,6 +19,8 @@ const std::filesystem::path& with_folders(const StoreSpec& spec) {
   std::error_code error;
   std::filesystem::create_directories(spec.shard.whole() ? directory / "cases" : directory, error);
   if (error) throw std::runtime_error(cannot("make the directory", directory, error.message()));
+  if (std::filesystem::is_symlink(std::filesystem::symlink_status(directory / "cases")))
+    throw std::runtime_error(cannot("use", directory / "cases", "it is a link to another folder; remove it"));
   return directory;
 }
 

@@ -57,7 +57,8 @@ int last_errno(const SQLite::Database& database) {
 // Calls body() and turns its errors into one line that names the file. database: knows the system's reason, if any.
 template <class Body>
 auto in_one_line(const fs::path& file, const Body& body, const std::optional<SQLite::Database>& database = {}) {
-  constexpr const char* kGoOn = "add --discard-damaged to keep the batches whose checksum is right";
+  constexpr const char* kGoOn =
+      "run `graze fuzz` again with --discard-damaged to keep the batches whose checksum is right";
   try {
     return body();
   } catch (const Damaged& error) {
@@ -66,7 +67,9 @@ auto in_one_line(const fs::path& file, const Body& body, const std::optional<SQL
     const int code = error.getErrorCode(), system = database ? last_errno(*database) : 0;
     if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
       throw std::runtime_error(cannot("use", file, "another process is using this campaign; wait until it has ended"));
-    if (code == SQLITE_FULL) throw std::runtime_error(cannot("write", file, ENOSPC));
+    std::error_code unknown;
+    if (code == SQLITE_FULL || (code == SQLITE_IOERR && fs::space(file.parent_path(), unknown).available < 65536))
+      throw std::runtime_error(cannot("write", file, ENOSPC));
     if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY || code == SQLITE_PERM || code == SQLITE_IOERR)
       throw std::runtime_error(system != 0 ? cannot("read and write", file, system)
                                            : cannot("read and write", file, one_line(error.what())));
@@ -253,8 +256,8 @@ std::vector<fs::path> unusable_files_of(const fs::path& database) {
 void expect_usable_files_of(const fs::path& database) {
   for (const fs::path& file : unusable_files_of(database))
     throw DamagedStore(cannot("use", file,
-                              "it is damaged, a link, or not of graze; move it away, or add --discard-damaged, which "
-                              "renames it"));
+                              "it is damaged, a link, or not of graze; move it away, or run `graze fuzz` again with "
+                              "--discard-damaged, which renames it"));
 }
 
 SQLite::Database opened(const fs::path& file, int how = SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE) {

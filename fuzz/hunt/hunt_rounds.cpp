@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/cannot.h"
 #include "core/fnv1a.h"
 #include "fuzz/campaign/shard.h"
 #include "fuzz/files.h"
@@ -72,6 +73,18 @@ std::vector<KeptRound> read_rounds(const StoreSpec& hunt) {
   }
   std::sort(rounds.begin(), rounds.end(), [](const KeptRound& l, const KeptRound& r) { return l.first < r.first; });
   return rounds;
+}
+
+void expect_rounds_told(const StoreSpec& hunt) {
+  HuntRounds found;
+  for (const KeptRound& round : read_rounds(hunt)) found.add(round);
+  const char* const again = "; remove it, and run the hunt's command again";
+  if (found.all.pairs != hunt.spec.at("pairs").get<std::uint64_t>())
+    throw std::runtime_error(
+        cannot("use", rounds_folder(hunt.directory), std::string("a round is missing or damaged") + again));
+  if (read_whole(hunt.directory / "hunt.json") != found.told().dump(1) + "\n")
+    throw std::runtime_error(
+        cannot("use", hunt.directory / "hunt.json", std::string("it does not tell of the rounds beside it") + again));
 }
 
 }  // namespace graze::fuzz

@@ -41,4 +41,8 @@ std::uint64_t hunt_checksum(const Json& spec, const Json& build);
 // round's.
 std::vector<KeptRound> read_rounds(const StoreSpec& hunt);
 
+// Throws: std::runtime_error if a round of the finished hunt is missing or damaged, or if hunt.json does not tell of
+// these rounds.
+void expect_rounds_told(const StoreSpec& hunt);
+
 }  // namespace graze::fuzz

@@ -15,6 +15,7 @@
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/hunt/hunt_rounds.h"
 #include "fuzz/sealed.h"
 #include "subjects/portable.h"
 
@@ -56,7 +57,8 @@ class Collected {
 void add_results(const fs::path& directory, const Json& summary, Collected& to) {
   const auto add = [&](const std::string& name) { to.add_file("campaign/" + name, directory / name); };
   for (const char* name : {"summary.json", kDatabase}) add(name);
-  for (const char* name : {"timings.json", "failures.json", "hunt.json", "margins.svg"}) {
+  if (summary.at("spec").contains("hunt")) expect_rounds_told(recorded_store(directory));
+  for (const char* name : {"timings.json", "failures.json", "hunt.json"}) {
     if (fs::exists(directory / name)) add(name);
   }
   for (const char* list : {"signatures", "executor_mismatches"}) {

@@ -157,7 +157,7 @@ export function failure_sections(report: Report) {
       h(
         'p',
         {},
-        'Failures with one reason: an algorithm, the cause, the source line of the comparison that decides, and whether the triangles are degenerate, contained (one in the other, in one plane), coplanar or neither. A pair on which lanes are wrong for different reasons is of several kinds.',
+        'Failures with one reason: an algorithm, the cause, the source line of the comparison that decides, and whether the triangles are degenerate, contained (one in the other, in one plane), coplanar or neither. A pair on which lanes are wrong for different reasons is of several kinds. Graze looks at one pair of each signature; it stands for all of them in these counts.',
         !has_viewer() &&
           ' No card opens in the viewer: graze was built without the compiler for WebAssembly that it takes.',
       ),

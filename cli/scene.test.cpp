@@ -186,7 +186,7 @@ TEST_F(SceneVerb, WrongUseIsOneLine) {
   expect_error("graze scene hills.off --sufficient 0.1", 2, {"--sufficient", "--out"});
   expect_error("graze scene mm.toml --sufficient 1", 2, {"--sufficient", "1"});
   expect_error("graze fuzz --scene missing.toml", 1, {"missing.toml", "No such file or directory"});
-  expect_error("graze fuzz --scene .", 1, {".", "not a regular file"});
+  expect_error("graze fuzz --scene .", 1, {".", "Is a directory"});
   expect_error("printf 'extent = [0, 1]\\nedges = [1, nan]\\n' > bad.toml; graze fuzz --scene bad.toml", 1,
                {"bad.toml:2"});
   expect_error("printf 'extnt = [0, 1]\\n' > bad.toml; graze fuzz --scene bad.toml", 1, {"'extent'"});

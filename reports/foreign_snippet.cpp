@@ -4,11 +4,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <regex>
-#include <sstream>
 
 #include "backends/backends.h"
+#include "core/plain_file.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
 #include "subjects/source_build.h"
@@ -75,10 +74,9 @@ std::string calling(std::string_view real, std::string_view function) {
 
 // Whether the C function returns bool; its caller must declare it so.
 bool returns_bool(const std::filesystem::path& source, const std::string& function) {
-  std::ifstream in(source);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return std::regex_search(text.str(), std::regex("\\b(_Bool|bool)\\s+" + function + "\\s*\\("));
+  std::string why;
+  const std::string text = plain_file(source, why).value_or("");
+  return std::regex_search(text, std::regex("\\b(_Bool|bool)\\s+" + function + "\\s*\\("));
 }
 
 // The flags of the lane's variant and the user's flags, each with a leading space.

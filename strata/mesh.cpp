@@ -7,15 +7,14 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <string>
 
 #include "core/cannot.h"
 #include "core/fnv1a.h"
+#include "core/plain_file.h"
 #include "core/text.h"
 #include "strata/mesh_readers/lines.h"
 
@@ -29,16 +28,9 @@ using Box = CGAL::Box_intersection_d::Box_with_info_d<float, 3, std::uint32_t>; 
 constexpr std::size_t kMostCandidates = std::size_t{1} << 28;  // 2 GiB of indices
 
 std::string read_bytes(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) throw std::runtime_error(cannot("read", file, EISDIR));
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error(cannot("read", file, errno));
-  if (!std::filesystem::is_regular_file(file))
-    throw std::runtime_error(cannot("read", file, "it is not a regular file"));
-  std::string bytes(std::filesystem::file_size(file), '\0');
-  if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
-    throw std::runtime_error(cannot("read", file, errno != 0 ? errno : EIO));
-  return bytes;
+  std::string why;
+  if (auto bytes = plain_file(file, why, std::size_t{1} << 40)) return std::move(*bytes);
+  throw std::runtime_error(cannot("read", file, why));
 }
 
 struct MeshFormat {

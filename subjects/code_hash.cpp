@@ -6,15 +6,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 
 #include "core/fnv1a.h"
+#include "core/plain_file.h"
 #include "core/stop.h"
 #include "core/text.h"
 
@@ -103,24 +102,10 @@ FileState state_of(const fs::path& file) {
 }
 
 std::string code_in(const fs::path& file) {
-  constexpr std::size_t kMost = std::size_t{1} << 30, kPart = std::size_t{1} << 20;
   const StopSignals stops;
-  std::error_code why;
-  std::string text, reason = "not a file";
-  if (fs::is_regular_file(file, why)) {  // opening a pipe without a writer would block
-    std::ifstream in(file, std::ios::binary);
-    const bool fits = fs::file_size(file, why) <= kMost;
-    while (fits && in && text.size() <= kMost) {
-      if (stop_requested) throw Stopped();
-      const std::size_t before = text.size();
-      text.resize(before + kPart);
-      text.resize(before + static_cast<std::size_t>(in.read(text.data() + before, kPart).gcount()));
-    }
-    if (in.eof() && text.size() <= kMost) return text;
-    reason = in ? "it is larger than 1 GiB" : std::strerror(errno);
-  }
-  throw std::runtime_error(fmt::format("--subject: cannot read the code in {}: {}", shown_path(file.string()),
-                                       why ? why.message() : reason));
+  std::string why;
+  if (auto text = plain_file(file, why)) return *text;
+  throw std::runtime_error(fmt::format("--subject: cannot read the code in {}: {}", shown_path(file.string()), why));
 }
 
 std::uint64_t hash_of_file(const fs::path& file) { return fnv1a(code_in(file)); }
@@ -200,11 +185,8 @@ bool starts_with_any(std::string_view text, std::initializer_list<std::string_vi
 // Whether the file is a relocatable object or an archive, which name no other file, unlike a linker script or a list of
 // files.
 bool is_object(const fs::path& file) {
-  if (!is_file(file)) return false;
-  std::ifstream in(file, std::ios::binary);
-  char head[18] = {};
-  in.read(head, sizeof head);
-  const std::string_view bytes(head, sizeof head);
+  std::string why;
+  const std::string bytes = plain_file(file, why).value_or("") + std::string(18, '\0');
   return bytes.starts_with("!<arch>\n") || (bytes.starts_with("\x7f"
                                                               "ELF") &&
                                             bytes[16] + bytes[17] == 1);  // ET_REL

@@ -4,14 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <deque>
-#include <fstream>
 #include <optional>
-#include <sstream>
 
 #include "core/error.h"
 #include "core/fnv1a.h"
 #include "core/lanes/lanes.h"
+#include "core/plain_file.h"
 #include "core/stop.h"
 #include "core/text.h"
 #include "cuda/subject/cuda_subject.h"
@@ -48,6 +48,7 @@ std::deque<Entry>& entries() {
 }
 
 constexpr std::string_view kCommand = "cmd:";
+constexpr std::size_t kLongestFunction = 4096;
 
 // "library", "cuda" or "source", by the file's extension; empty for others.
 std::string kind_of(std::string_view file) {
@@ -79,6 +80,10 @@ Opened parsed(const Wanted& wanted) {
   }
   result.file = what.substr(0, end);
   if (end < what.size()) result.function = what.substr(end + 1);
+  const auto fits = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_:/$.<>, ", c); };
+  if (result.function.size() > kLongestFunction || !std::all_of(result.function.begin(), result.function.end(), fits))
+    throw UsageError(
+        fmt::format("--subject {}: expected the name of a function, found {}", wanted.name, shown(result.function)));
   result.kind = kind_of(what.substr(0, end));
   const std::string bytes = wanted.builds.empty() ? code_in(result.file) : "";
   result.code = {fnv1a(bytes), "the libraries that it loads"};  // of a source, until it is built
@@ -116,8 +121,8 @@ LaneName lane_name(const std::string& subject, const cuda::CudaBuild& build) {
 // The evidence for this build in the proof record beside the source. Without such a record, the evidence of the build
 // itself.
 std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
-  std::ifstream in(proof_file(source));
-  const Json record = Json::parse(in, nullptr, false);
+  std::string why;
+  const Json record = Json::parse(plain_file(proof_file(source), why).value_or(""), nullptr, false);
   try {
     for (const Json& lane : record.at("lanes")) {
       const auto count = [&](const char* field) { return lane.at(field).get<std::uint64_t>(); };
@@ -180,7 +185,7 @@ Wanted parse_subject(const std::string& text) {
   const auto fits = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == '.';
   };
-  if (equals == text.npos || name.empty() || !std::all_of(name.begin(), name.end(), fits) ||
+  if (equals == text.npos || name.find_first_not_of('.') == name.npos || !std::all_of(name.begin(), name.end(), fits) ||
       equals + 1 == text.size()) {
     throw UsageError("--subject: expected NAME=WHAT with a name of letters, digits, '_', '-' and '.', found '" +
                      printable(text) + "'");

@@ -431,6 +431,10 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
   expect_error("x", "expected NAME=WHAT .* found 'x'");
   expect_error("a/b=" + so, "expected NAME=WHAT");
   expect_error("x=", "expected NAME=WHAT");
+  for (const char* name : {".", "..", "..."}) expect_error(std::string(name) + '=' + so, "expected NAME=WHAT");
+  for (const char* function : {"good\n", "g\"", "};int z={0", "good;system(\"id\")", "\x1b[31m"})
+    expect_error("x=" + so + ':' + function, "expected the name of a function, found ");
+  expect_error("x=" + so + ':' + std::string(100'000, 'a'), "expected the name of a function, found ");
   expect_error("x=cmd: ", "expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found .*cmd:");
   expect_error("x=mine.txt", "expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found .*mine.txt");
   expect_error("x=nothere.so", "cannot read the code in .*nothere.so.: No such file");
@@ -447,11 +451,11 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
   expect_error("x=" + (folder / "loads.so").string(), "loads.so: crashed while it was loaded");
   for (const char* name : {"pipe.so", "pipe.c"}) {
     ASSERT_EQ(mkfifo((folder / name).c_str(), 0600), 0);
-    expect_error("x=" + (folder / name).string() + ":f", "cannot read the code in .*: not a file");
+    expect_error("x=" + (folder / name).string() + ":f", "cannot read the code in .*: it is not a regular file");
   }
   std::ofstream(folder / "large.so").close();
   fs::resize_file(folder / "large.so", (std::uintmax_t{1} << 30) + 1);
-  expect_error("x=" + (folder / "large.so").string(), "cannot read the code in .*: it is larger than 1 GiB");
+  expect_error("x=" + (folder / "large.so").string(), "cannot read the code in .*: it is larger than 1024 MiB");
   stop_requested = true;
   EXPECT_THROW(open_one("x=" + so + ":good"), Stopped);
   stop_requested = false;

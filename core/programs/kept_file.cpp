@@ -5,21 +5,16 @@
 #include <cinttypes>
 #include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 #include "core/cannot.h"
 #include "core/fnv1a.h"
+#include "core/plain_file.h"
 
 namespace graze {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string content(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 std::string line_of(std::string_view bytes, const fs::path& kept) {
   char line[40];
@@ -40,14 +35,18 @@ void move_over(const fs::path& made, const fs::path& kept) {
 
 void keep_file(const fs::path& made, const fs::path& kept) {
   std::ofstream out(made, std::ios::binary | std::ios::app);
-  if (!(out << line_of(content(made), kept)).flush()) throw std::runtime_error(cannot("write", made, errno));
+  std::string why;
+  const std::optional<std::string> bytes = plain_file(made, why);
+  if (!bytes) throw std::runtime_error(cannot("read", made, why));
+  if (!(out << line_of(*bytes, kept)).flush()) throw std::runtime_error(cannot("write", made, errno));
   move_over(made, kept);
 }
 
 std::optional<std::string> kept_content(const fs::path& kept) {
-  std::error_code none;
-  if (!fs::is_regular_file(kept, none)) return std::nullopt;
-  std::string bytes = content(kept);
+  std::string why;
+  std::optional<std::string> content = plain_file(kept, why);
+  if (!content) return std::nullopt;
+  std::string& bytes = *content;
   const std::size_t line = bytes.rfind("\ngraze ");
   if (line == bytes.npos) return std::nullopt;
   const std::string found = bytes.substr(line);

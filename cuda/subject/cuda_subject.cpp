@@ -5,12 +5,13 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <sstream>
 
+#include "core/cannot.h"
 #include "core/error.h"
 #include "core/fnv1a.h"
+#include "core/plain_file.h"
 #include "core/programs/kept_file.h"
 #include "core/programs/run_program.h"
 #include "cuda/subject/machine_code.h"
@@ -26,9 +27,9 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string content(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in || fs::is_directory(path)) throw UsageError(path.string() + ": cannot be read");
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::string why;
+  if (auto text = plain_file(path, why)) return *text;
+  throw UsageError(cannot("read", path, why));
 }
 
 std::vector<std::string> options(Variant variant, const fs::path& source, const std::vector<std::string>& flags) {

@@ -4,13 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "core/cannot.h"
 #include "core/fnv1a.h"
+#include "core/plain_file.h"
 #include "core/text.h"
 #include "strata/mesh_readers/soup.h"
 #include "strata/scene/envelope.h"
@@ -289,15 +288,9 @@ SceneFile parse_scene(const std::string& name, std::string_view text) {
 }
 
 SceneFile read_scene(const std::filesystem::path& file) {
-  std::error_code ignored;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error(cannot("read", file, errno));
-  if (!std::filesystem::is_regular_file(file, ignored))
-    throw std::runtime_error(cannot("read", file, "it is not a regular file"));
-  std::string text(static_cast<std::size_t>(kMostBytes) + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return parse_scene(file.string(), text);
+  std::string why;
+  if (const auto text = plain_file(file, why)) return parse_scene(file.string(), *text);
+  throw std::runtime_error(cannot("read", file, why));
 }
 
 std::string scene_text(const SceneFile& scene) {

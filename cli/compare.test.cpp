@@ -20,12 +20,13 @@ class Compare : public CommandTest {
 
   // Compares before with after, and checks the counts of each row with those of `graze discrepancy` on the same pairs,
   // where the two builds that ran are two libraries.
-  void expect_counts(const std::string& strata, int pairs) {
+  // build: of the builds cpu, cpu-fma and cpu-fast.
+  void expect_counts(const std::string& strata, int pairs, std::size_t build_of_lane = 0) {
     const Ran said = shell("export XDG_CACHE_HOME=$PWD/cache; graze report --compare before after");
     ASSERT_EQ(said.status, 0) << said.err;
     EXPECT_TRUE(said.out.starts_with("Changed: ")) << said.out;
     const auto build = [&](const char* campaign) -> std::string {
-      return json(std::string(campaign) + "/summary.json")["spec"]["subjects"][0]["builds"][0];
+      return json(std::string(campaign) + "/summary.json")["spec"]["subjects"][0]["builds"][build_of_lane];
     };
     expect_done(fmt::format(
         "export XDG_CACHE_HOME=$PWD/cache; cp cache/graze/{}.so libone.so; cp cache/graze/{}.so libother.so; "
@@ -36,7 +37,7 @@ class Compare : public CommandTest {
     std::uint64_t all = 0;
     const nlohmann::json rows = json("after/compare.json")["compare"]["verdicts"];
     for (const nlohmann::json& row : rows) {
-      if (row["lane"] != "mine/f32/cpu") continue;
+      if (row["lane"] != (build_of_lane == 0 ? "mine/f32/cpu" : "mine/f32/cpu-fma")) continue;
       const std::uint64_t changed = counted[row["stratum"].get<std::string>()]["differs"];
       EXPECT_EQ(row["known"], changed == 0 ? "same" : "changed");
       EXPECT_EQ(row["least"], changed);
@@ -69,6 +70,20 @@ TEST_F(Compare, AnotherCompilerIsCountedPairByPair) {
   expect_counts("near_edge_edge,thesis", 2000);
   const Ran said = shell("export XDG_CACHE_HOME=$PWD/cache; graze report --compare before after");
   EXPECT_NE(said.out.find(", CXX=c++ -DEPSILON=2e-6f"), std::string::npos) << said.out;
+}
+
+// Clang contracts within an expression, GCC across statements too.
+TEST_F(Compare, ClangAgainstGccIsCountedPairByPair) {
+  if (shell("command -v clang++-14 && command -v g++").status != 0)
+    GTEST_SKIP() << "needs clang++-14 and g++, of the packages clang-14 and g++";
+  std::filesystem::copy_file(GRAZE_SOURCE_DIR "/cli/planted/axes.cpp", shell.folder / "mine.cpp");
+  const std::string run =
+      "graze fuzz --subject mine=./mine.cpp --flags=-DEPSILON=1e-6f --lanes mine/f32/cpu-fma --strata "
+      "coplanar_wide,exact_contact --pairs 2000 --out ";
+  expect_done(fuzz("CXX=g++ " + run + "before") + "CXX=clang++-14 " + run + "after > /dev/null");
+  const std::string compiler = json("after/summary.json")["spec"]["subjects"][0]["compiler"];
+  EXPECT_NE(compiler.find("clang"), compiler.npos) << compiler;
+  expect_counts("coplanar_wide,exact_contact", 2000, 1);
 }
 
 // The source is edited in place: the code before is gone, but not what was built of it.

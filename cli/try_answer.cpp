@@ -200,12 +200,11 @@ std::string text_of(const Answer& answer, const reports::Screen& screen) {
     before.push_back(fmt::format("A program answers slowly, so it got {} pairs; --pairs sets another number.",
                                  reports::grouped(counts.total.pairs)));
   if (!answer.left_out.empty()) before.push_back(left_out_in_words(answer.left_out));
-  if (!answer.told.empty()) before.push_back("Kinds of failure; one pair of each signature stands for all of them:");
   std::vector<reports::ScreenFailure> failures;
   const std::uint64_t wrong = reports::wrong_pairs(answer.summary, answer.code.name);
   for (const Json& kind : answer.told) {
-    failures.push_back({reports::kind_title(kind, wrong), reports::pair_on_a_line(reports::pair_of_kind(kind)),
-                        reports::kind_sentence(kind)});
+    failures.push_back({reports::kind_title(kind, wrong, failures.empty()),
+                        reports::pair_on_a_line(reports::pair_of_kind(kind)), reports::kind_sentence(kind)});
   }
   std::vector<std::string> after = {reports::epsilon_words(counts, lane, answer.kinds, answer.epsilon.named)};
   if (counts.total.wrong(lane) > 0) {

@@ -162,12 +162,13 @@ std::string kind_sentence(const Json& kind) {
   return at == text.npos ? text : "It " + text.substr(at + 2);
 }
 
-std::string kind_title(const Json& kind, std::uint64_t failures) {
+std::string kind_title(const Json& kind, std::uint64_t failures, bool says_how) {
   const std::uint64_t pairs = kind.at("pairs");
   const std::string shape = kind.at("shape"), line = kind.at("line");
-  return fmt::format("{} ({} % of the failures of all builds): {}{}{}", counted(pairs, (shape + " pair").c_str()),
-                     bare_percent(pairs, failures), is_open(kind) ? "perhaps " : "",
-                     kind.at("cause").get<std::string>(), line.empty() ? "" : " at " + line);
+  return fmt::format("{} ({} % of the failures of all builds{}): {}{}{}", counted(pairs, (shape + " pair").c_str()),
+                     bare_percent(pairs, failures), says_how ? ", by one pair of each signature" : "",
+                     is_open(kind) ? "perhaps " : "", kind.at("cause").get<std::string>(),
+                     line.empty() ? "" : " at " + line);
 }
 
 std::uint64_t wrong_pairs(const Json& summary, std::string_view subject) {

@@ -40,8 +40,9 @@ std::vector<nlohmann::ordered_json> first_kinds(const nlohmann::ordered_json& ki
 std::string kind_sentence(const nlohmann::ordered_json& kind);
 
 // A kind in words, with "perhaps" where the sentence says that the cause is not settled: "812 coplanar pairs (66 % of
-// the failures): logic".   failures: wrong_pairs of the subject.
-std::string kind_title(const nlohmann::ordered_json& kind, std::uint64_t failures);
+// the failures): logic".   failures: wrong_pairs of the subject.   says_how: also that one pair of each signature was
+// looked at.
+std::string kind_title(const nlohmann::ordered_json& kind, std::uint64_t failures, bool says_how = false);
 
 // The number of pairs on which some lane of the subject is wrong.   summary: of the campaign.
 std::uint64_t wrong_pairs(const nlohmann::ordered_json& summary, std::string_view subject);

@@ -108,7 +108,7 @@ export function compare_section(report: Report) {
     );
   return section(
     'compare',
-    'Compared with another campaign',
+    'Comparison',
     h('p', { class: 'headline' }, h('b', {}, compare.headline)),
     compare.differences.length > 0 &&
       h(

@@ -150,7 +150,7 @@ export function glance(report: Report, costs: Costs | null) {
       'figcaption',
       {},
       costs
-        ? `Cost: median of ${costs.passes} passes${timed ? ` over ${count(timed.pairs)} of the campaign’s pairs` : ''}, one core, ${costs.machine}.`
+        ? `Cost: median of ${costs.passes} passes${timed ? ` over ${count(timed.pairs)} of the campaign’s pairs` : ''}, one core, ${costs.machine}.${rows.some((row) => !row.cost) ? ' Lanes without a cost were not timed: your own code, and CUDA lanes without a device.' : ''}`
         : 'This page has no costs of the lanes.',
     ),
   );

@@ -13,6 +13,8 @@ test('two campaigns compared: what changed on top, rates, kinds gained and lost'
   await page.goto(compare_url());
   const { compare } = JSON.parse((await page.locator('#report').textContent())!) as Report;
   const section = page.locator('#compare');
+  await page.setViewportSize({ width: 1280, height: 900 });
+  expect(await page.locator('nav').evaluate((nav) => nav.scrollWidth - nav.clientWidth)).toBeLessThanOrEqual(0);
   await expect(section).toContainText(`seed ${compare!.other.seed}`);
   await expect(section.locator('.headline')).toHaveText(compare!.headline);
   expect(compare!.differences[0]).toContain('They differ in seed');

@@ -81,15 +81,19 @@ class Trial {
     }
     std::optional<Experiment> precision = scale ? std::nullopt : by_precision();
     if (precision && precision->settled) return *precision;
+    if (scale && scale->cause == Cause::absolute_epsilon && subjects::may_have_epsilon(*source_) == false)
+      scale->cause = right_above_ ? Cause::underflow : Cause::overflow;
     for (std::optional<Experiment>* found : {&values, &number, &scale, &precision}) {
       if (*found) return open(std::move(**found));
     }
     if (auto both = by_number_in_doubles()) return open(std::move(*both));
     Experiment images = by_images(pair_, asking());
-    if (in_float64()) {
+    if (in_float64() && (analysis::in_float64(lane_) || subjects::is_all_in_doubles(*source_))) {
       images.evidence += "; " + in_float64_words() + "it is wrong too";
       if (images.cause == Cause::rounding && holds_determinants(pair_, Scalar::f64)) images.cause = Cause::logic;
     }
+    if (images.cause == Cause::logic && !in_float64() && !holds_determinants(pair_, lane_.scalar))
+      images.cause = Cause::rounding;  // nothing speaks for either, and determinants of these numbers round
     return open(std::move(images));
   }
 
@@ -157,7 +161,8 @@ class Trial {
     if (!number) return std::nullopt;
     const std::optional<bool> wrong = wrong_at_larger_scales();
     const bool relative = !scale && wrong == true;
-    const bool settled = number->on_images && (scale ? scale->cause == Cause::absolute_epsilon : wrong.has_value());
+    const bool settled =
+        number->on_images && (scale ? scale->cause == Cause::absolute_epsilon && turns_in_range_ : wrong.has_value());
     std::string text = number->words;
     if (scale) text += "; " + scale->evidence;
     if (relative) text += "; it is wrong at " + larger_scales_words();
@@ -271,6 +276,7 @@ class Trial {
       const int middle = wrong + (right - wrong) / 2;
       (asked(lane_, {scaled(pair_, middle)})[0] ? right : wrong) = middle;
     }
+    right_above_ = right > wrong;
     return {wrong, right};
   }
 
@@ -318,6 +324,7 @@ class Trial {
     strictly_ = scales_in_range(size_, lane_.scalar, kMostFactors);
     if (!strictly_.empty()) {
       if (const auto turn = turn_within(strictly_, 16, right)) {
+        turns_in_range_ = true;
         std::string text = fmt::format(
             "{}, and no product of up to {} coordinates leaves the exponents of {} at these "
             "scales",
@@ -330,6 +337,7 @@ class Trial {
     const Scales in_range = scales_in_range(size_, lane_.scalar, kUsualFactors);
     if (in_range.empty()) return by_any_scale();
     if (const auto turn = turn_within(in_range, 32, right)) {
+      turns_in_range_ = true;
       if (!right_in_float64_at_every_scale()) return Experiment{Cause::absolute_epsilon, false, turn->text()};
       return Experiment{turn->right > turn->wrong ? Cause::underflow : Cause::overflow, false, turn->text()};
     }
@@ -415,7 +423,9 @@ class Trial {
   mutable std::optional<subjects::ChangedCode> doubles_;
   Scales strictly_{1, 0};  // scales at which even the longest products stay within the exponents
   mutable int smallest_tried_ = 0, largest_tried_ = 0;  // exponents of the scales that were tried last
+  mutable bool right_above_ = false;                    // of the two scales that were found last
   int wrong_from_ = 0, wrong_to_ = 0;                   // of those at which scale is no matter
+  bool turns_in_range_ = false;                         // the verdict turns between two of these
   bool scale_is_no_matter_ = false;  // wrong at all scales at which the usual products stay within the exponents
 };
 

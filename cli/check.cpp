@@ -75,7 +75,8 @@ void check(const CheckOptions& options) {
     }
   }
   if (number_of_pair == 0) throw std::runtime_error("there is no pair in " + name_of_input);
-  if (wrong && !from_stdin && !options.json) fmt::print("Next: graze explain {}\n", path_word(options.file));
+  if (wrong && !from_stdin && !options.json)
+    fmt::print("Next: graze explain {}{}\n", path_word(options.file), own_words(options.lanes));
 }
 
 }  // namespace

@@ -49,6 +49,9 @@ std::vector<std::string> with_subjects(std::vector<std::string> globs, const Lan
 // " --subject NAME=WHAT --flags=…", with which a command of ours can be run again; empty unless the subject is open.
 std::string subject_words(const std::string& subject);
 
+// The same for all subjects of the options.
+std::string own_words(const LaneOptions& options);
+
 // Throws: UsageError if no lane of a subject is among these, so that no verb drops it. where: the option or argument.
 void expect_subjects_among(const LaneOptions& options, const std::vector<std::string>& ids, const char* where);
 

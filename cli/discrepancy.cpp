@@ -54,9 +54,16 @@ DecideBlock on_host(const Lane& lane) {
 }
 
 // The first lane of each subject and scalar with every other.   Throws: UsageError for a subject with one lane.
-Comparisons comparisons_of_subjects(const LaneOptions& options) {
+Comparisons comparisons_of_subjects(const DiscrepancyOptions& options_of_all) {
+  const LaneOptions& options = options_of_all.subjects;
+  std::vector<std::string> names = subject_names(options);
+  if (!options_of_all.campaign.empty()) {
+    for (const fuzz::Json& row : recorded_spec_of(options_of_all.campaign).value("subjects", fuzz::Json::array())) {
+      if (subjects::opened(row.at("name").get<std::string>())) names.push_back(row.at("name"));
+    }
+  }
   Comparisons comparisons;
-  for (const std::string& name : subject_names(options)) {
+  for (const std::string& name : names) {
     const std::size_t before = comparisons.verdicts.size();
     fuzz::SelectedLanes found = fuzz::select_lanes({name + "/*"}, options.executor);
     for (std::size_t l = 0; l < found.lanes.size(); ++l) {
@@ -80,7 +87,10 @@ Comparisons comparisons_of_subjects(const LaneOptions& options) {
 // The pairs of lanes that the user named; by default those of the subjects or, without any, `cpu` with both CUDA builds
 // for each algorithm and scalar.
 Comparisons comparisons_of(const DiscrepancyOptions& options) {
-  if (options.lanes.empty() && !options.subjects.subjects.empty()) return comparisons_of_subjects(options.subjects);
+  if (options.lanes.empty()) {
+    Comparisons of_subjects = comparisons_of_subjects(options);
+    if (!of_subjects.verdicts.empty()) return of_subjects;
+  }
   expect_subjects_among(options.subjects, options.lanes, "LANE LANE");
   Comparisons comparisons;
   std::vector<analysis::LanesCompared>& lanes = comparisons.values;

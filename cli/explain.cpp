@@ -234,7 +234,7 @@ void explain_cases(const ExplainOptions& options) {
   fmt::print("{}", limited.text());
   if (!options.all && (!limited.complete() || entries.size() > 1))
     fmt::print("--all explains {} in full\n", reports::counted(entries.size(), "case"));
-  if (wrong) fmt::print("Next: graze map {}\n", path_word(options.name));
+  if (wrong) fmt::print("Next: graze map {}{}\n", path_word(options.name), own_words(options.lanes));
 }
 
 }  // namespace

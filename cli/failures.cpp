@@ -67,8 +67,9 @@ std::string kind_text(const Json& kind, std::size_t number, bool all, const repo
   if (settled < of) text += line(2, fmt::format("the cause is settled for {} of {} lanes looked at", settled, of));
   text += line(2, "margins: " + shares(kind["margins"], 4));
   if (!kind["strata"].empty()) text += line(2, "strata of the kept pairs: " + shares(kind["strata"], 4));
-  return text + line(2, fmt::format("worst: {} ({:.4g} ulps)", kind["worst"]["from"].get<std::string>(),
-                                    kind["worst"]["margin_ulps"].get<double>()));
+  return text +
+         line(2, fmt::format("worst: {:.4g} ulps, in {} (from {})", kind["worst"]["margin_ulps"].get<double>(),
+                             kind["worst"]["case"].get<std::string>(), kind["worst"]["from"].get<std::string>()));
 }
 
 // For each cause, prints how many of the examined lanes passed the audit (analysis/audit.h).

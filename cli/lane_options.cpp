@@ -161,6 +161,12 @@ std::string subject_words(const std::string& subject) {
   return words;
 }
 
+std::string own_words(const LaneOptions& options) {
+  std::string words;
+  for (const std::string& name : subject_names(options)) words += subject_words(name);
+  return words;
+}
+
 void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out) {
   for (const std::string& line : fuzz::left_out_in_words(left_out)) fmt::print(stderr, "graze: {}\n", line);
 }

@@ -124,7 +124,7 @@ void draw_map(const MapOptions& options) {
   fmt::print("{}", reports::wrapped(what, output_screen().columns));
   print_counts(map);
   write_pictures(map, options.out);
-  fmt::print("Next: graze repro {} --emit cpp\n", path_word(options.name));
+  fmt::print("Next: graze repro {} --emit cpp{}\n", path_word(options.name), own_words(options.lanes));
 }
 
 }  // namespace

@@ -143,7 +143,8 @@ int minimize_case(const MinimizeOptions& options) {
     write_result(options.out, with_header(fuzz::with_results(text, entries, results)), fuzz::NamedBy::user);
   // A pipe or a device cannot be read again, and a link may lead to standard output.
   if (options.out.empty() || fs::is_regular_file(fs::symlink_status(options.out)))
-    fmt::print("Next: graze explain {}\n", path_word(options.out.empty() ? options.name : options.out));
+    fmt::print("Next: graze explain {}{}\n", path_word(options.out.empty() ? options.name : options.out),
+               own_words(options.lanes));
   return 0;
 }
 

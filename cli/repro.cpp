@@ -111,7 +111,7 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
     wrong = wrong || some_is_wrong(counted, t.verdict);
     std::cout.flush();
   }
-  if (wrong) fmt::print("Next: graze minimize {}\n", path_word(name));
+  if (wrong) fmt::print("Next: graze minimize {}{}\n", path_word(name), own_words(lanes));
   return changed ? 1 : 0;
 }
 

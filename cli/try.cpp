@@ -267,6 +267,7 @@ int try_source(const TryOptions& options) {
   write_report(fuzz.out);
   answer.costs = call_costs(own, campaign.sources);
   answer.epsilon = epsilon_of_code(own, fuzz.out);
+  answer.effect = epsilon_effect(own, campaign.sources);
   answer.again = with_more_pairs(options, fuzz);
   fmt::print("{}", options.json ? to_json(answer, under_test).dump(1) + '\n' : text_of(answer, output_screen()));
   return 0;

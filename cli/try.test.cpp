@@ -223,19 +223,34 @@ TEST_F(TryCommand, TheCommandForMorePairsRunsAsItStands) {
   EXPECT_EQ(more["earlier"], "my try.1");
 }
 
+// The counts of "1 of the 146 wrong pairs become right, and 2 right ones wrong."
+std::vector<int> counts_in(const std::string& sentence) {
+  std::vector<int> counts;
+  std::smatch found;
+  if (std::regex_search(sentence, found, std::regex(", (\\d+) of the (\\d+) wrong pairs? become right, and (\\d+) ")))
+    counts = {std::stoi(found[1]), std::stoi(found[2]), std::stoi(found[3])};
+  return counts;
+}
+
 TEST_F(TryCommand, NamesTheEpsilonAndTheCommandThatTunesIt) {
   const std::string by_x = "bool meet(const float p[9], const float q[9]) { return p[0] - q[0] < ";
   write("one.cpp", by_x + "1e-6f; }\n");
   const Json one = answer_of("one.cpp:meet --pairs 300");
-  EXPECT_TRUE(names(one["epsilon"].get<std::string>(), {"your 1e-6f at one.cpp:1"})) << one["epsilon"];
+  EXPECT_TRUE(names(one["epsilon"].get<std::string>(), {"in place of 1e-6f at one.cpp:1, "})) << one["epsilon"];
   EXPECT_EQ(one["tune"], "graze tune one/f32/cpu --from try");
   EXPECT_EQ(one["why_not_tuned"], "");
+  // The effect is that of the code with such a number.
+  write("tiny.cpp", by_x + "1e-36f; }\n");
+  const auto changed = counts_in(one["epsilon"]);
+  ASSERT_EQ(changed.size(), 3u) << one["epsilon"];
+  EXPECT_EQ(changed[1], one["wrong"]["count"]);
+  EXPECT_EQ(answer_of("tiny.cpp:meet --pairs 300 --out tiny")["wrong"]["count"], changed[1] - changed[0] + changed[2]);
   const Ran screen = shell("graze try one.cpp:meet --pairs 300");
   EXPECT_NE(screen.out.find("\nTune it: graze tune one/f32/cpu --from try\n"), std::string::npos) << screen.out;
   expect_done("export XDG_CACHE_HOME=$PWD/cache; " + one["tune"].get<std::string>());
   write("two.cpp", "const float kEps = 1e-6f;\nconst float kTol = 1e-4f;\n" + by_x + "kEps * kTol; }\n");
   const Json two = answer_of("two.cpp:meet --pairs 300 --out two");
-  EXPECT_TRUE(names(two["epsilon"].get<std::string>(), {"kEps = 1e-6f at two.cpp:1 or kTol = 1e-4f at two.cpp:2"}))
+  EXPECT_TRUE(names(two["epsilon"].get<std::string>(), {"1e-6f at two.cpp:1 and 1e-4f at two.cpp:2"}))
       << two["epsilon"];
   EXPECT_EQ(two["tune"], "graze tune two/f32/cpu --from two --epsilon kEps");
   EXPECT_EQ(shell("graze tune two/f32/cpu --from two").status, 2);  // it would ask for --epsilon

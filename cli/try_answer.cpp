@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "analysis/verdicts_apart.h"
 #include "cli/campaign_end.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -136,6 +137,27 @@ OwnEpsilon epsilon_of_code(const Lane& own, const std::string& directory) {
   return found;
 }
 
+std::optional<reports::EpsilonEffect> epsilon_effect(const Lane& own, const std::vector<strata::PairSource>& sources) {
+  std::vector<subjects::Epsilon> numbers = subjects::small_numbers(own);
+  try {
+    if (!numbers.empty()) numbers = {subjects::tunable_source(own, "").epsilon};
+  } catch (const UsageError&) {  // none is obvious
+  }
+  const auto changed = numbers.empty() ? nullptr : subjects::changed(own, {.negligible = numbers});
+  if (!changed) return std::nullopt;
+  reports::EpsilonEffect effect;
+  const std::filesystem::path& file = subjects::opened(own.lane_name().subject)->file;
+  for (const subjects::Epsilon& number : numbers)
+    effect.named += (effect.named.empty() ? "" : " and ") + epsilon_in_words(file, number);
+  const auto found = analysis::verdicts_apart({{&own, &own}, {own.decide, *changed}}, sources, 0,
+                                              [](const Pair&, const Pair&) { return false; });
+  for (const analysis::VerdictsApart& of_source : found) {
+    effect.mended += of_source.mended;
+    effect.broken += of_source.broken;
+  }
+  return effect;
+}
+
 std::string case_of(const Answer& answer, const Json& kind) {
   return answer.directory + '/' + kind.at("simplest").at("case").get<std::string>();
 }
@@ -171,7 +193,7 @@ Json to_json(const Answer& answer, const fuzz::SelectedLanes& under_test) {
                {"wrong_by_kind_of_pair", groups},
                {"wrong_by_build", builds},
                {"failures", failures},
-               {"epsilon", reports::epsilon_words(counts, lane, answer.kinds, answer.epsilon.named)},
+               {"epsilon", reports::epsilon_words(counts, lane, answer.kinds, answer.epsilon.named, answer.effect)},
                {"tune", answer.epsilon.tune},
                {"why_not_tuned", answer.epsilon.why_not},
                {"nanoseconds_a_call",
@@ -206,7 +228,8 @@ std::string text_of(const Answer& answer, const reports::Screen& screen) {
     failures.push_back({reports::kind_title(kind, wrong, failures.empty()),
                         reports::pair_on_a_line(reports::pair_of_kind(kind)), reports::kind_sentence(kind)});
   }
-  std::vector<std::string> after = {reports::epsilon_words(counts, lane, answer.kinds, answer.epsilon.named)};
+  std::vector<std::string> after = {
+      reports::epsilon_words(counts, lane, answer.kinds, answer.epsilon.named, answer.effect)};
   if (counts.total.wrong(lane) > 0) {
     if (!answer.epsilon.why_not.empty()) after.push_back(answer.epsilon.why_not);
     if (!answer.epsilon.tune.empty()) after.push_back("Tune it: " + answer.epsilon.tune);

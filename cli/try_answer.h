@@ -9,6 +9,7 @@
 
 #include "analysis/pareto.h"
 #include "fuzz/selected_lanes.h"
+#include "reports/own_code.h"
 #include "reports/screen.h"
 #include "strata/scene/sources.h"
 
@@ -42,6 +43,10 @@ struct OwnEpsilon {
 };
 OwnEpsilon epsilon_of_code(const Lane& own, const std::string& directory);
 
+// Builds the code again with a negligible number in place of its obvious epsilon, or of all small numbers, and runs it
+// on the pairs. Nothing without such numbers or without a C or C++ source.   Throws: Stopped.
+std::optional<reports::EpsilonEffect> epsilon_effect(const Lane& own, const std::vector<strata::PairSource>& sources);
+
 struct Answer {
   TriedCode code;
   std::string directory, earlier,
@@ -50,6 +55,7 @@ struct Answer {
   nlohmann::ordered_json summary, kinds;  // of all lanes
   CallCosts costs;
   OwnEpsilon epsilon;
+  std::optional<reports::EpsilonEffect> effect;
   std::vector<nlohmann::ordered_json> told;  // kinds
   std::string test;                          // the file with the first failure as a test; empty if there is none
   std::string again;                         // the command, with more pairs

@@ -155,7 +155,7 @@ ForeignCall foreign_call(const Lane& lane, const Pair& pair, std::string_view co
   if (opened.kind == "command") {
     call.command = plain + end;
     call.decide =
-        fmt::format(R"(// The program is asked about this pair alone, by its line.
+        fmt::format(R"(// The program is asked about this pair alone, by its line, in the folder in which it was tested.
 static int decide(const {}*, const {}*) {{
   FILE* program = popen({},
                         "r");
@@ -170,7 +170,9 @@ static int decide(const {}*, const {}*) {{
   return said == '?' ? -1 : said - '0';
 }}
 )",
-                    real, real, cpp_string("echo '" + hex_line(pair) + "' | (" + opened.wanted.what.substr(4) + ")"));
+                    real, real,
+                    cpp_string("cd " + shell_word(std::filesystem::current_path().string()) + " && echo '" +
+                               hex_line(pair) + "' | (" + opened.wanted.what.substr(4) + ")"));
     return call;
   }
   const std::string file = opened.file.string();

@@ -62,6 +62,8 @@ std::string axes() {
 
 }  // namespace
 
+constexpr std::size_t kInLegendRow = 5;
+
 std::string margin_figure(const Json& summary) {
   std::map<std::string, int> place_of;
   for (int b = -kBucketMost; b <= kBucketMost; ++b) place_of[name_of_bucket(static_cast<Bucket>(b))] = place(b);
@@ -88,10 +90,11 @@ std::string margin_figure(const Json& summary) {
                             y_of(static_cast<double>(counts.wrong[id]) / static_cast<double>(counts.pairs)));
     }
     svg += fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"2\" points=\"{}\"/>\n", colour, points);
-    const double x = kLeft + 168.0 * static_cast<double>(row);
-    svg += fmt::format("<line x1=\"{0:.1f}\" x2=\"{1:.1f}\" y1=\"36\" y2=\"36\" stroke=\"{2}\" stroke-width=\"4\"/>\n",
-                       x, x + 16, colour);
-    svg += svg_text(x + 21, 40, "start", id.substr(0, id.find('/')));
+    const double x = kLeft + 168.0 * static_cast<double>(row % kInLegendRow), y = row < kInLegendRow ? 36 : 52;
+    svg +=
+        fmt::format("<line x1=\"{0:.1f}\" x2=\"{1:.1f}\" y1=\"{3}\" y2=\"{3}\" stroke=\"{2}\" stroke-width=\"4\"/>\n",
+                    x, x + 16, colour, y);
+    svg += svg_text(x + 21, y + 4, "start", id.substr(0, id.find('/')));
     ++row;
   }
   svg += svg_text(kLeft, 18, "start",

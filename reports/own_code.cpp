@@ -125,6 +125,14 @@ std::string wrong_words(const CampaignCounts& counts, std::size_t lane) {
 std::string wrong_by_kind(const CampaignCounts& counts, std::size_t lane) {
   std::vector<std::string> parts;
   for (const GroupCounts& group : counts.groups) {
+    if (group.id == "mesh") {  // the mesh's own pairs apart from moved ones
+      for (const std::size_t s : group.strata) {
+        const StratumCounts& stratum = counts.strata[s];
+        parts.push_back(fmt::format("{} {} of {}{}", stratum.id, grouped(stratum.wrong(lane)), grouped(stratum.pairs),
+                                    share_words(stratum.wrong(lane), stratum.pairs)));
+      }
+      continue;
+    }
     const std::uint64_t wrong = group.counts.wrong(lane), of = group.counts.pairs;
     parts.push_back(fmt::format("{} {} of {}{}", group.id, grouped(wrong), grouped(of), share_words(wrong, of)));
   }
@@ -192,7 +200,11 @@ std::string pair_on_a_line(const Pair& pair) {
 }
 
 std::string epsilon_words(const CampaignCounts& counts, std::size_t lane, const Json& kinds,
-                          const std::string& in_source) {
+                          const std::string& in_source, const std::optional<EpsilonEffect>& effect) {
+  if (effect)
+    return fmt::format("Epsilon: with a negligible number in place of {}, {} of the {} become right, and {} wrong.",
+                       effect->named, grouped(effect->mended), counted(counts.total.wrong(lane), "wrong pair"),
+                       counted(effect->broken, "right one"));
   std::uint64_t pairs = 0, settled = 0, of = 0;
   for (const Json& kind : kinds) {
     if (!is_of_lane(kind, counts.lanes[lane].id) ||

@@ -53,10 +53,17 @@ Pair pair_of_kind(const nlohmann::ordered_json& kind);
 // The 18 coordinates as the shortest decimals that give the same bits. `graze check` reads them.
 std::string pair_on_a_line(const Pair& pair);
 
-// Whether failures of the lane show an absolute epsilon, and from which margin on the lane is right.
-// in_source: the epsilon of its source, "1e-6f at mine.cpp:9"; empty if none is known.
+// What a negligible number in place of the epsilon does to the campaign's pairs.
+struct EpsilonEffect {
+  std::string named;                     // "1e-6f at mine.cpp:9"
+  std::uint64_t mended = 0, broken = 0;  // wrong pairs that become right, and right ones that become wrong
+};
+
+// Whether failures of the lane show an absolute epsilon, and from which margin on the lane is right. With an effect,
+// what it counts, in place of what the kinds say. in_source: the epsilon of its source, "1e-6f at mine.cpp:9"; empty if
+// none is known.
 std::string epsilon_words(const CampaignCounts& counts, std::size_t lane, const nlohmann::ordered_json& kinds,
-                          const std::string& in_source = "");
+                          const std::string& in_source = "", const std::optional<EpsilonEffect>& effect = {});
 
 // The sentences of a report about all own subjects: right or not, where, the first case, the epsilon. Empty for a
 // campaign of published lanes.   kinds: null if they are not known.

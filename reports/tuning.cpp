@@ -164,8 +164,8 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
           fmt::format("Scale break: if the scene should {}, errors more than double: {}.", power(k), errors(at)));
   }
   if (!tuned.chosen.empty() && scale.up == 0 && scale.down == 0)
-    result.push_back(
-        fmt::format("Scale: from 2^-{0} to 2^{0} times the scene's size errors do not double.", analysis::kMostScale));
+    result.push_back(fmt::format("Scale: with {1}, errors do not double from 2^-{0} to 2^{0} times the scene's size.",
+                                 analysis::kMostScale, choice_words(question, tuned.chosen)));
   for (const analysis::Interaction& i : tuned.interactions) {
     result.push_back(fmt::format("Two sites: {} alone has {} wrong, {} alone {}, both {}.", i.first,
                                  grouped(i.of_first.wrong()), i.second, grouped(i.of_second.wrong()),

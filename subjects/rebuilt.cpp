@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <regex>
 #include <stdexcept>
 #include <utility>
 
@@ -117,6 +118,18 @@ std::unique_ptr<ForeignProcesses> rebuilt(const Lane& lane, const std::string& t
 
 bool has_source_as_built(const Lane& lane) { return !source_as_built(lane).empty(); }
 
+std::optional<bool> may_have_epsilon(const Lane& lane) {
+  const Opened* subject = lane.foreign ? opened(lane.lane_name().subject) : nullptr;
+  if (!subject || (subject->kind != "source" && subject->kind != "cuda")) return std::nullopt;
+  try {
+    const std::string text = code_in(subject->file);
+    return std::regex_search(text, std::regex("#[ \t]*include[ \t]*\"|epsilon", std::regex::icase)) ||
+           !small_numbers_in(text).empty();
+  } catch (const std::runtime_error&) {  // it is gone, or too large
+    return std::nullopt;
+  }
+}
+
 std::vector<Epsilon> small_numbers(const Lane& lane) {
   try {
     return small_numbers_in(source_as_built(lane));
@@ -173,7 +186,19 @@ std::string in_doubles(std::string_view source) {
       begin = end;
     at = end;
   }
-  return fmt::format("{}\n#define float double\n{}\n#undef float\n", source.substr(0, begin), source.substr(begin));
+  std::string functions;  // of floats, which would round
+  for (const char* name :
+       {"acos",      "asin",  "atan",      "atan2", "cbrt",  "ceil", "copysign", "cos",   "exp",  "exp2", "fabs",
+        "fdim",      "floor", "fma",       "fmax",  "fmin",  "fmod", "hypot",    "ldexp", "log",  "log2", "nearbyint",
+        "nextafter", "pow",   "remainder", "rint",  "round", "sin",  "sqrt",     "tan",   "trunc"})
+    functions += fmt::format("#define {0}f {0}\n", name);
+  return fmt::format("{}\n#define float double\n{}{}\n#undef float\n", source.substr(0, begin), functions,
+                     source.substr(begin));
+}
+
+bool is_all_in_doubles(const Lane& lane) {
+  const std::string text = source_as_built(lane);
+  return !text.empty() && !std::regex_search(text, std::regex("#[ \t]*include[ \t]*\"|\\b_mm|\\bvector_size\\b"));
 }
 
 }  // namespace graze::subjects

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,9 @@ inline constexpr double kNegligible = 1e-36;  // a normal number in float32; com
 // Whether the lane is built from a C or C++ source whose file is there and still as it was.
 bool has_source_as_built(const Lane& lane);
 
+// Whether the lane's source may have a small number or another epsilon. Nothing if there is no source.
+std::optional<bool> may_have_epsilon(const Lane& lane);
+
 // The small numbers in the source file of a lane; none unless it has its source as built, of at most 1 MiB.
 std::vector<Epsilon> small_numbers(const Lane& lane);
 
@@ -62,7 +66,11 @@ using ChangedCode = std::unique_ptr<ForeignProcesses, HandBack>;
 // built and the changed source compiles.   Thread-safe.   Throws: Stopped.
 ChangedCode changed(const Lane& lane, const Change& change);
 
-// The source with double in place of float, from the line after its last #include on.
+// The source with double in place of float, and functions of doubles in place of those of floats, from the line after
+// its last #include on.
 std::string in_doubles(std::string_view source);
+
+// Whether that changes all of the lane's arithmetic: no file of its own is included, and no vector intrinsic is used.
+bool is_all_in_doubles(const Lane& lane);
 
 }  // namespace graze::subjects

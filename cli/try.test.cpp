@@ -236,7 +236,7 @@ TEST_F(TryCommand, NamesTheEpsilonAndTheCommandThatTunesIt) {
   const std::string by_x = "bool meet(const float p[9], const float q[9]) { return p[0] - q[0] < ";
   write("one.cpp", by_x + "1e-6f; }\n");
   const Json one = answer_of("one.cpp:meet --pairs 300");
-  EXPECT_TRUE(names(one["epsilon"].get<std::string>(), {"in place of 1e-6f at one.cpp:1, "})) << one["epsilon"];
+  EXPECT_TRUE(names(one["epsilon"].get<std::string>(), {"in place of 1e-6f at one.cpp:1"})) << one["epsilon"];
   EXPECT_EQ(one["tune"], "graze tune one/f32/cpu --from try");
   EXPECT_EQ(one["why_not_tuned"], "");
   // The effect is that of the code with such a number.

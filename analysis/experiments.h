@@ -16,7 +16,8 @@ namespace graze::analysis {
 //                power of two changes nothing else in an algorithm whose units are consistent; code that adds lengths
 //                and areas changes its verdict more often. Or: with another number in place of small ones in its
 //                source it is right (subjects/rebuilt.h), also on those of up to kMostImages orders and mirror images
-//                of the pair on which it was wrong; and it is right at some larger scale
+//                of the pair on which it was wrong; and it is right at some larger scale at which no product of
+//                kUsualFactors leaves the exponents
 //   relative epsilon   the same, but it is wrong at every larger scale
 //   uninitialised   its verdict depends on the value that the compiler gives to variables without a value; or any such
 //                value makes it right, the compiler warns of such a variable, and the coordinates are small integers,
@@ -32,8 +33,10 @@ namespace graze::analysis {
 // If no cause can be shown, the result is not settled. It is an epsilon if negligible numbers and double in place of
 // float, together, make it right; a relative one if in doubles it is wrong at all larger scales. Else it is
 // order-dependent if only other orders are right, rounding if some other image of the pair is right, and degenerate
-// input or logic otherwise; not rounding where the code is wrong in doubles too, which hold products of three
-// differences. The evidence then names two experiments that would settle it.
+// input or logic otherwise. But where products of three differences round, it is not logic unless the code is wrong in
+// doubles too; and it is not rounding where it is wrong in doubles that hold such products. Where the source has no
+// small number, a verdict that changes with the scale is underflow or overflow. The evidence then names two experiments
+// that would settle it.
 inline constexpr int kUsualFactors = 6;  // the product of two determinants
 inline constexpr int kMostFactors = 14;  // Moller 1997 without division has 13
 

@@ -29,10 +29,8 @@ std::optional<DecidingNumber> deciding_number(const Lane& lane, const IsRight& i
                                               const IsRight& is_right_on_images, bool doubles) {
   const std::vector<subjects::Epsilon> all = subjects::small_numbers(lane);
   std::vector<std::vector<subjects::Epsilon>> tried;
-  for (const subjects::Epsilon& one : all) {
-    if (!doubles) tried.push_back({one});
-  }
-  if (all.size() > 1 || (doubles && !all.empty())) tried.push_back(all);
+  for (std::size_t n = 0; n < all.size() && !doubles; ++n) tried.push_back({all[n]});
+  if (all.size() > (doubles ? 0 : 1)) tried.push_back(all);
   std::optional<DecidingNumber> on_pair;
   for (const std::vector<subjects::Epsilon>& some : tried) {
     const auto changed = subjects::changed(lane, {.negligible = some, .doubles = doubles});

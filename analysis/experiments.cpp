@@ -35,6 +35,20 @@ struct Turn {
   std::string text() const { return fmt::format("scaled by 2^{} it is right, by 2^{} wrong", right, wrong); }
 };
 
+// What scales in range show. right: whether the lane is right at the first one, and so at all if there is no turn.
+struct ScaleSearch {
+  std::optional<Turn> turn;
+  bool right;
+  Scales tried;  // the least and the greatest
+};
+
+// Whether the code is wrong at all larger scales that were tried, up to 2^most.
+struct LargerScales {
+  bool wrong;
+  int most;
+  std::string text() const { return fmt::format("all larger scales that were tried, up to 2^{}", most); }
+};
+
 class Trial {
  public:
   Trial(const Lane& lane, const Pair& pair, Verdict truth) : lane_(lane), pair_(pair), truth_(truth), size_(pair) {}
@@ -73,10 +87,13 @@ class Trial {
     std::optional<Experiment> values = by_values();
     if (values && values->settled) return *values;
     const Scalar widest = in_float64() ? Scalar::f64 : lane_.scalar;
-    if (has_small_integers(pair_, widest) && wrong_at_larger_scales() == true && !right_in_float64()) {
-      if (auto found = without_rounding(pair_, widest, asking())) {
-        found->evidence += " and at " + larger_scales_words();
-        return *found;
+    if (has_small_integers(pair_, widest)) {
+      const std::optional<LargerScales> larger = at_larger_scales();
+      if (larger && larger->wrong && !right_in_float64()) {
+        if (auto found = without_rounding(pair_, widest, asking())) {
+          found->evidence += " and at " + larger->text();
+          return *found;
+        }
       }
     }
     std::optional<Experiment> precision = scale ? std::nullopt : by_precision();
@@ -103,29 +120,22 @@ class Trial {
         *source_, [this](const DecideBlock& block) -> bool { return asked(block, {pair_})[0]; },
         [](const DecideBlock&) { return true; }, true);
     if (!number) return std::nullopt;
-    const bool relative = wrong_at_larger_scales(in_float64()) == true;
-    return Experiment{relative ? Cause::relative_epsilon : Cause::absolute_epsilon, false,
+    const std::optional<LargerScales> larger = at_larger_scales(in_float64());
+    return Experiment{larger && larger->wrong ? Cause::relative_epsilon : Cause::absolute_epsilon, false,
                       number->words + ", with either alone wrong", number->line};
   }
 
   // Nothing if no larger scale can be tried.
-  std::optional<bool> wrong_at_larger_scales() const {
-    if (scale_is_no_matter_ && wrong_to_ >= 1) {
-      largest_tried_ = wrong_to_;
-      return true;
-    }
-    return wrong_at_larger_scales(block_of(lane_));
+  std::optional<LargerScales> at_larger_scales() const {
+    if (wrong_at_.last >= 1) return LargerScales{true, wrong_at_.last};
+    return at_larger_scales(block_of(lane_));
   }
-  std::optional<bool> wrong_at_larger_scales(const DecideBlock& block) const {
+  std::optional<LargerScales> at_larger_scales(const DecideBlock& block) const {
     const Scales usual = scales_in_range(size_, lane_.scalar, kUsualFactors);
     if (size_.high == -1000 || usual.last < 1 || !usual.has(0)) return std::nullopt;
     const auto larger = tried(block, {1, usual.last}, 12);
-    largest_tried_ = larger.back().first;
-    return std::none_of(larger.begin(), larger.end(), [](const auto& one) { return one.second; });
-  }
-
-  std::string larger_scales_words() const {
-    return fmt::format("all larger scales that were tried, up to 2^{}", largest_tried_);
+    return LargerScales{std::none_of(larger.begin(), larger.end(), [](const auto& one) { return one.second; }),
+                        larger.back().first};
   }
 
   bool right_in_float64() const {
@@ -159,13 +169,13 @@ class Trial {
   std::optional<Experiment> by_number(const std::optional<Experiment>& scale) const {
     const auto number = number_that_decides();
     if (!number) return std::nullopt;
-    const std::optional<bool> wrong = wrong_at_larger_scales();
-    const bool relative = !scale && wrong == true;
+    const std::optional<LargerScales> larger = at_larger_scales();
+    const bool relative = !scale && larger && larger->wrong;
     const bool settled =
-        number->on_images && (scale ? scale->cause == Cause::absolute_epsilon && turns_in_range_ : wrong.has_value());
+        number->on_images && (scale ? scale->cause == Cause::absolute_epsilon && turns_in_range_ : larger.has_value());
     std::string text = number->words;
     if (scale) text += "; " + scale->evidence;
-    if (relative) text += "; it is wrong at " + larger_scales_words();
+    if (relative) text += "; it is wrong at " + larger->text();
     return Experiment{relative ? Cause::relative_epsilon : Cause::absolute_epsilon, settled, std::move(text),
                       settled ? number->line : ""};
   }
@@ -290,22 +300,21 @@ class Trial {
   }
 
   // Finds two neighbouring scales in range such that the lane is right at one of them only. Prefers a turn at which the
-  // larger scale is right. Sets `all` to whether the lane is right at every scale tried.
-  std::optional<Turn> turn_within(Scales in_range, int most, bool& all) const {
+  // larger scale is right.
+  ScaleSearch turn_within(Scales in_range, int most) const {
     auto inside = tried(lane_, in_range, most);
     const std::pair own{0, false};
     if (in_range.has(0)) inside.insert(std::lower_bound(inside.begin(), inside.end(), own), own);
-    all = inside[0].second;
-    smallest_tried_ = inside.front().first;
-    largest_tried_ = inside.back().first;
+    ScaleSearch search{std::nullopt, inside[0].second, {inside.front().first, inside.back().first}};
     for (const bool upwards : {true, false}) {
       for (std::size_t i = inside.size() - 1; i > 0; --i) {
         const auto [k, right] = inside[i];
         if (right != upwards || inside[i - 1].second == upwards) continue;
-        return upwards ? bisected(inside[i - 1].first, k) : bisected(k, inside[i - 1].first);
+        search.turn = upwards ? bisected(inside[i - 1].first, k) : bisected(k, inside[i - 1].first);
+        return search;
       }
     }
-    return std::nullopt;
+    return search;
   }
 
   // Whether the lane is right at all scales above the turn and wrong at all below. Code that adds numbers of different
@@ -320,10 +329,9 @@ class Trial {
   }
 
   std::optional<Experiment> by_scale() {
-    bool right = false;
     strictly_ = scales_in_range(size_, lane_.scalar, kMostFactors);
     if (!strictly_.empty()) {
-      if (const auto turn = turn_within(strictly_, 16, right)) {
+      if (const auto turn = turn_within(strictly_, 16).turn) {
         turns_in_range_ = true;
         std::string text = fmt::format(
             "{}, and no product of up to {} coordinates leaves the exponents of {} at these "
@@ -336,14 +344,14 @@ class Trial {
     }
     const Scales in_range = scales_in_range(size_, lane_.scalar, kUsualFactors);
     if (in_range.empty()) return by_any_scale();
-    if (const auto turn = turn_within(in_range, 32, right)) {
+    const auto [turn, right, tried] = turn_within(in_range, 32);
+    if (turn) {
       turns_in_range_ = true;
       if (!right_in_float64_at_every_scale()) return Experiment{Cause::absolute_epsilon, false, turn->text()};
       return Experiment{turn->right > turn->wrong ? Cause::underflow : Cause::overflow, false, turn->text()};
     }
     if (right) return outside(bisected(0, in_range.first > 0 ? in_range.first : in_range.last));
-    scale_is_no_matter_ = true;
-    wrong_from_ = smallest_tried_, wrong_to_ = largest_tried_;
+    wrong_at_ = tried;
     return beyond(in_range);
   }
 
@@ -404,13 +412,13 @@ class Trial {
     const Lane* f64 = analysis::in_float64(lane_);
     const Lane* rounded = f64 ? counterpart(*f64, rounded_variant(f64->variant)) : nullptr;
     const bool as_written = !rounded || !backends::on_host(*rounded) || asked(*rounded, {pair_})[0];
-    if (!scale_is_no_matter_ || !has_usual_exponents() || has_small_integers(pair_, lane_.scalar) || !as_written ||
+    if (wrong_at_.empty() || !has_usual_exponents() || has_small_integers(pair_, lane_.scalar) || !as_written ||
         !right_in_float64_at_every_scale())
       return Experiment{Cause::rounding, false, in_float64_words() + "it is right"};
     return Experiment{Cause::rounding, true,
                       in_float64_words() + fmt::format("it is right, in float32 wrong at all scales that were tried, "
                                                        "2^{} to 2^{}",
-                                                       wrong_from_, wrong_to_)};
+                                                       wrong_at_.first, wrong_at_.last)};
   }
 
   const Lane& lane_;
@@ -421,12 +429,11 @@ class Trial {
   mutable int asked_ = 0, late_ = 0;                       // verdicts; those that took all of their time
   mutable std::optional<std::vector<Pair>> wrong_images_;  // once asked for
   mutable std::optional<subjects::ChangedCode> doubles_;
-  Scales strictly_{1, 0};  // scales at which even the longest products stay within the exponents
-  mutable int smallest_tried_ = 0, largest_tried_ = 0;  // exponents of the scales that were tried last
-  mutable bool right_above_ = false;                    // of the two scales that were found last
-  int wrong_from_ = 0, wrong_to_ = 0;                   // of those at which scale is no matter
-  bool turns_in_range_ = false;                         // the verdict turns between two of these
-  bool scale_is_no_matter_ = false;  // wrong at all scales at which the usual products stay within the exponents
+  Scales strictly_{1, 0};             // scales at which even the longest products stay within the exponents
+  mutable bool right_above_ = false;  // of the two scales that were found last
+  bool turns_in_range_ = false;       // the verdict turns between two of these
+  Scales wrong_at_{1, 0};  // wrong at all scales tried from first to last, those at which the usual products stay
+                           // within the exponents; none if it is right at some
 };
 
 }  // namespace

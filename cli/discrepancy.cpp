@@ -53,19 +53,25 @@ DecideBlock on_host(const Lane& lane) {
   return selected.on_host.at(0);
 }
 
-// The first lane of each subject and scalar with every other.   Throws: UsageError for a subject with one lane.
-Comparisons comparisons_of_subjects(const DiscrepancyOptions& options_of_all) {
-  const LaneOptions& options = options_of_all.subjects;
-  std::vector<std::string> names = subject_names(options);
-  if (!options_of_all.campaign.empty()) {
-    for (const fuzz::Json& row : recorded_spec_of(options_of_all.campaign).value("subjects", fuzz::Json::array())) {
-      if (subjects::opened(row.at("name").get<std::string>())) names.push_back(row.at("name"));
-    }
+// The subjects that the user named, and those of the campaign of which several lanes run here.
+std::vector<std::string> names_of_subjects(const DiscrepancyOptions& options) {
+  std::vector<std::string> names = subject_names(options.subjects);
+  if (options.campaign.empty()) return names;
+  for (const fuzz::Json& row : recorded_spec_of(options.campaign).value("subjects", fuzz::Json::array())) {
+    const std::string name = row.at("name");
+    if (std::find(names.begin(), names.end(), name) == names.end() && subjects::opened(name) &&
+        fuzz::select_lanes({name + "/*"}, options.subjects.executor).lanes.size() > 1)
+      names.push_back(name);
   }
+  return names;
+}
+
+// The first lane of each subject and scalar with every other.   Throws: UsageError for a subject with one lane.
+Comparisons comparisons_of_subjects(const std::vector<std::string>& names, fuzz::Executor executor) {
   Comparisons comparisons;
   for (const std::string& name : names) {
     const std::size_t before = comparisons.verdicts.size();
-    fuzz::SelectedLanes found = fuzz::select_lanes({name + "/*"}, options.executor);
+    fuzz::SelectedLanes found = fuzz::select_lanes({name + "/*"}, executor);
     for (std::size_t l = 0; l < found.lanes.size(); ++l) {
       const Lane& lane = *found.lanes[l];
       const auto first = std::find_if(found.lanes.begin(), found.lanes.end(),
@@ -87,10 +93,8 @@ Comparisons comparisons_of_subjects(const DiscrepancyOptions& options_of_all) {
 // The pairs of lanes that the user named; by default those of the subjects or, without any, `cpu` with both CUDA builds
 // for each algorithm and scalar.
 Comparisons comparisons_of(const DiscrepancyOptions& options) {
-  if (options.lanes.empty()) {
-    Comparisons of_subjects = comparisons_of_subjects(options);
-    if (!of_subjects.verdicts.empty()) return of_subjects;
-  }
+  if (const auto names = names_of_subjects(options); options.lanes.empty() && !names.empty())
+    return comparisons_of_subjects(names, options.subjects.executor);
   expect_subjects_among(options.subjects, options.lanes, "LANE LANE");
   Comparisons comparisons;
   std::vector<analysis::LanesCompared>& lanes = comparisons.values;

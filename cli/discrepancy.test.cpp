@@ -289,6 +289,26 @@ TEST_F(DiscrepancyCommand, ExplainShowsTwoLanesSideBySide) {
   EXPECT_NE(ran.out.find("plane_distance.b[0]"), std::string::npos) << ran.out;
 }
 
+// A campaign's own code comes first; where just one of its lanes runs, there is nothing to compare it with.
+TEST_F(DiscrepancyCommand, ComparesTheCodeOfACampaign) {
+  expect_done(
+      "echo 'int intersects(const float* a, const float* b) { return a[0] * b[1] > a[1] * b[0]; }' > own.c; "
+      "printf 'import sys\nfor line in sys.stdin: print(1, flush=True)\n' > own.py; "
+      "graze fuzz --subject own=./own.c --lanes 'own/*' --strata uniform --pairs 40 --out c; "
+      "graze fuzz --subject 'py=cmd:python3 own.py' --lanes 'py/*' --strata uniform --pairs 40 --out p");
+  const std::string compare = "graze discrepancy --executor twin --pairs 40 --campaign ";
+  for (const char* more : {"", " --subject own=./own.c"}) {
+    const Ran own = shell(compare + "c --out d" + more);
+    EXPECT_EQ(own.status, 0) << own.err;
+    const auto found = nlohmann::json::parse(contents(shell.folder / "d/discrepancy.json"));
+    EXPECT_EQ(found["verdicts"].size(), 2u) << own.out;  // cpu-fma and cpu-fast with cpu
+    EXPECT_TRUE(found["lanes"].empty());
+  }
+  const Ran published = shell(compare + "p");
+  EXPECT_EQ(published.status, 0) << published.err;
+  EXPECT_NE(published.out.find("moller_1997/f32/cpu"), std::string::npos) << published.out;
+}
+
 TEST_F(DiscrepancyCommand, ComparesTwoResults) {
   const std::string run = "graze discrepancy --executor twin --strata thesis --pairs 2000 moller_1997/f32/cpu ";
   expect_done(run + "moller_1997/f32/cuda-fma --out a");

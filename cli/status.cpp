@@ -173,8 +173,7 @@ std::string table(const Json& all) {
 std::string prometheus(const Json& all) {
   const auto label = [](const std::string& text) {
     std::string escaped;
-    for (const char c : text)
-      escaped += c == '\n' ? "\\n" : c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+    for (const char c : printable(text)) escaped += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
     return escaped;
   };
   std::string text;
@@ -186,8 +185,7 @@ std::string prometheus(const Json& all) {
                                    {"new", "Signatures, ignoring margins, that no earlier shard in the list has."}}) {
     text += fmt::format("# HELP graze_{0} {1}\n# TYPE graze_{0} gauge\n", name, help);
     for (const Json& row : all["shards"]) {
-      text += fmt::format("graze_{}{{directory=\"{}\",shard=\"{}\",state=\"{}\"}} {}\n", name,
-                          label(printable(row["directory"].get<std::string>())),
+      text += fmt::format("graze_{}{{directory=\"{}\",shard=\"{}\",state=\"{}\"}} {}\n", name, label(row["directory"]),
                           row["shard"].is_null() ? "" : row["shard"].get<std::string>(),
                           row["state"].get<std::string>(), row[name].dump());
     }

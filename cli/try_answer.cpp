@@ -43,6 +43,15 @@ std::string epsilon_in_words(const std::filesystem::path& source, const subjects
                                epsilon.written, subjects::places_in_words(source, epsilon)));
 }
 
+// Asks as `graze tune` does, so that it accepts the command.
+std::optional<subjects::TunableSource> tunable(const Lane& own, const std::string& name) {
+  try {
+    return subjects::tunable_source(own, name);
+  } catch (const UsageError&) {
+    return std::nullopt;
+  }
+}
+
 Json cost_json(const CallCosts::Row& row) {
   if (!row.cost) return {{"lane", row.lane->id}, {"why_not", row.why_not}};
   return {{"lane", row.lane->id}, {"low", row.cost->low}, {"middle", row.cost->middle}, {"high", row.cost->high}};
@@ -106,21 +115,13 @@ CallCosts call_costs(const Lane& own, const std::vector<strata::PairSource>& sou
 OwnEpsilon epsilon_of_code(const Lane& own, const std::string& directory) {
   if (const std::string why = subjects::why_not_rebuilt(own); !why.empty())
     return {"", "", fmt::format("Graze cannot change its epsilon: {}.", why)};
-  // Asks as `graze tune` does, so that it accepts the command.
-  const auto tunable = [&](const std::string& name) -> std::optional<subjects::TunableSource> {
-    try {
-      return subjects::tunable_source(own, name);
-    } catch (const UsageError&) {
-      return std::nullopt;
-    }
-  };
   const std::string tune = fmt::format("graze tune {} --from {}", own.id, path_word(directory));
-  if (const auto source = tunable("")) return {epsilon_in_words(source->file, source->epsilon), tune, ""};
+  if (const auto source = tunable(own, "")) return {epsilon_in_words(source->file, source->epsilon), tune, ""};
   const std::filesystem::path& file = subjects::opened(own.lane_name().subject)->file;
   const std::string text = fuzz::read_whole(file);
   std::vector<subjects::Epsilon> candidates = subjects::epsilons_in(text);
   std::erase_if(candidates, [&](const subjects::Epsilon& e) {
-    return (e.value && (*e.value <= 0 || *e.value > kLargestEpsilon)) || !tunable(e.name);
+    return (e.value && (*e.value <= 0 || *e.value > kLargestEpsilon)) || !tunable(own, e.name);
   });
   OwnEpsilon found;
   if (!candidates.empty()) found.tune = fmt::format("{} --epsilon {}", tune, shell_word(candidates[0].name));
@@ -139,10 +140,7 @@ OwnEpsilon epsilon_of_code(const Lane& own, const std::string& directory) {
 
 std::optional<reports::EpsilonEffect> epsilon_effect(const Lane& own, const std::vector<strata::PairSource>& sources) {
   std::vector<subjects::Epsilon> numbers = subjects::small_numbers(own);
-  try {
-    if (!numbers.empty()) numbers = {subjects::tunable_source(own, "").epsilon};
-  } catch (const UsageError&) {  // none is obvious
-  }
+  if (const auto obvious = numbers.empty() ? std::nullopt : tunable(own, "")) numbers = {obvious->epsilon};
   const auto changed = numbers.empty() ? nullptr : subjects::changed(own, {.negligible = numbers});
   if (!changed) return std::nullopt;
   reports::EpsilonEffect effect;

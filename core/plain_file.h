@@ -15,4 +15,7 @@ namespace graze {
 std::optional<std::string> plain_file(const std::filesystem::path& file, std::string& why,
                                       std::size_t most = std::size_t{1} << 30);
 
+// The first bytes of such a file, at most `most`; none of one that cannot be read.
+std::string beginning_of(const std::filesystem::path& file, std::size_t most);
+
 }  // namespace graze

@@ -35,7 +35,9 @@ TEST_F(PlainFile, HasItsBytes) {
     fs::create_symlink("file", folder_ / "link");
     EXPECT_EQ(plain_file(folder_ / "link", why, size), bytes);
     fs::remove(folder_ / "link");
+    EXPECT_EQ(beginning_of(folder_ / "file", 18), bytes.substr(0, 18));
   }
+  EXPECT_EQ(beginning_of(folder_, 18), "");
 }
 
 // None of these makes it wait.

@@ -27,6 +27,8 @@ constexpr int kLockAttempts = 10;  // a second
   throw std::runtime_error(cannot(act, file, error));
 }
 
+constexpr std::size_t kMostOfDevice = 64;  // MiB
+
 struct Handle {
   int number;
   ~Handle() {
@@ -156,8 +158,6 @@ fs::path behind_links(fs::path file) {
   return file;
 }
 
-constexpr std::size_t kMostOfDevice = std::size_t{1} << 26;
-
 std::string read_whole(const fs::path& file, NamedBy named_by) {
   const Handle in{open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)};
   if (in.number < 0 && (errno == ENOENT || errno == ENOTDIR)) return {};
@@ -172,8 +172,9 @@ std::string read_whole(const fs::path& file, NamedBy named_by) {
     if (count == 0) return text;
     if (count > 0) {
       text.append(bytes, static_cast<std::size_t>(count));
-      if (!S_ISREG(state.st_mode) && text.size() > kMostOfDevice)
-        throw std::runtime_error(cannot("read", file, "it is a pipe or a device that gives more than 64 MiB"));
+      if (!S_ISREG(state.st_mode) && text.size() > kMostOfDevice << 20)
+        throw std::runtime_error(cannot(
+            "read", file, "it is a pipe or a device that gives more than " + std::to_string(kMostOfDevice) + " MiB"));
     } else if (errno == EAGAIN) {
       wait_for(in.number, POLLIN);
     } else if (errno != EINTR) {

@@ -25,6 +25,7 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 using Name = std::pair<std::string, std::string>;  // lane and stratum
+
 // A report's rates by lane and stratum, in its order.
 std::vector<std::pair<Name, Json>> rates_by_name(const Json& report) {
   std::vector<std::pair<Name, Json>> rates;

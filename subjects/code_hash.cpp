@@ -185,8 +185,8 @@ bool starts_with_any(std::string_view text, std::initializer_list<std::string_vi
 // Whether the file is a relocatable object or an archive, which name no other file, unlike a linker script or a list of
 // files.
 bool is_object(const fs::path& file) {
-  std::string why;
-  const std::string bytes = plain_file(file, why).value_or("") + std::string(18, '\0');
+  std::string bytes = beginning_of(file, 18);
+  bytes.resize(18);
   return bytes.starts_with("!<arch>\n") || (bytes.starts_with("\x7f"
                                                               "ELF") &&
                                             bytes[16] + bytes[17] == 1);  // ET_REL

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <deque>
 #include <optional>
 
@@ -80,7 +79,9 @@ Opened parsed(const Wanted& wanted) {
   }
   result.file = what.substr(0, end);
   if (end < what.size()) result.function = what.substr(end + 1);
-  const auto fits = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_:/$.<>, ", c); };
+  const auto fits = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || std::string_view("_:/$.<>, ").find(c) != std::string::npos;
+  };
   if (result.function.size() > kLongestFunction || !std::all_of(result.function.begin(), result.function.end(), fits))
     throw UsageError(
         fmt::format("--subject {}: expected the name of a function, found {}", wanted.name, shown(result.function)));

@@ -374,6 +374,9 @@ class Trial {
       return factors * (size_.largest_difference + turn.wrong) >= limits().most;
     };
     const bool lost = too_large(3);
+    if (!by_float64 && !too_large(4))
+      return {Cause::absolute_epsilon, false,
+              text + fmt::format(", though products of four differences are not too large for {}", limits().name)};
     return {Cause::overflow, lost || (by_float64 && too_large(4)),
             lost ? text + fmt::format(", where products of three differences are too large for {}", limits().name)
                  : text + doubles};
@@ -389,11 +392,11 @@ class Trial {
     if (above == up.end() && below == down.rend()) return std::nullopt;
     const bool upwards = below == down.rend() || (above != up.end() && above->first <= -below->first);
     const Turn turn = bisected(0, upwards ? above->first : below->first);
-    const bool small = kUsualFactors * (size_.smallest_difference + turn.wrong) < limits().least;
-    return Experiment{!upwards                                     ? Cause::overflow
-                      : small || right_in_float64_at_every_scale() ? Cause::underflow
-                                                                   : Cause::absolute_epsilon,
-                      false, turn.text()};
+    const bool leaves = upwards ? kUsualFactors * (size_.smallest_difference + turn.wrong) < limits().least
+                                : 4 * (size_.largest_difference + turn.wrong) >= limits().most;
+    const Cause by_exponents = upwards ? Cause::underflow : Cause::overflow;
+    return Experiment{leaves || right_in_float64_at_every_scale() ? by_exponents : Cause::absolute_epsilon, false,
+                      turn.text()};
   }
 
   // The lane is wrong at all scales in range. It may turn right some way above, where only longer products can

@@ -11,7 +11,7 @@
 
 #include "analysis/audit.h"
 #include "analysis/convention.h"
-#include "analysis/experiments.h"
+#include "analysis/known_experiments.h"
 #include "core/relation_of.h"
 
 namespace graze::analysis {
@@ -163,7 +163,7 @@ LaneExplanation account_of(const Lane& lane, Verdict verdict, const Pair& pair, 
 }
 
 LaneExplanation account_of_foreign(const Lane& lane, Verdict verdict, const Pair& pair, Verdict truth) {
-  Experiment found = experiment(lane, verdict, pair, truth);
+  Experiment found = known_experiment(lane, verdict, pair, truth);
   LaneExplanation result{};
   result.lane = &lane;
   result.verdict = verdict;
@@ -236,7 +236,7 @@ void add_surroundings(LaneExplanation& result, Verdict truth, int bits_needed, c
 }  // namespace
 
 Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth) {
-  if (lane.foreign) return experiment(lane, decide_lane(lane, pair), pair, truth).cause;
+  if (lane.foreign) return known_experiment(lane, decide_lane(lane, pair), pair, truth).cause;
   if (lane.under) return account_of_policy(lane, decide_lane(lane, pair), pair, truth).cause;
   LaneExplanation result{};
   result.lane = &lane;

@@ -89,14 +89,18 @@ class Tuner {
     const auto at = [&](int k) {
       return spec_.sweep(std::vector<std::string>{result_.chosen}, scaled(some, k)).front();
     };
-    const std::uint64_t most = 2 * std::max<std::uint64_t>(at(0).wrong(), 5);
+    const PolicyErrors& here = result_.scale.here = at(0);
+    const auto breaks = [&](const PolicyErrors& there) {
+      return doubles(here.wrong(), there.wrong()) ||
+             doubles(forbidden(here, spec_.forbid), forbidden(there, spec_.forbid));
+    };
     const auto find = [&](int sign, int& exponent, PolicyErrors& errors) {
       int good = 0, bad = 0;
-      for (int k = 1; k <= kMostScale && bad == 0; k *= 2) (at(sign * k).wrong() > most ? bad : good) = k;
+      for (int k = 1; k <= kMostScale && bad == 0; k *= 2) (breaks(at(sign * k)) ? bad : good) = k;
       if (bad == 0) return;
       while (bad - good > 1) {
         const int middle = (good + bad) / 2;
-        (at(sign * middle).wrong() > most ? bad : good) = middle;
+        (breaks(at(sign * middle)) ? bad : good) = middle;
       }
       exponent = sign * bad;
       errors = at(exponent);

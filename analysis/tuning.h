@@ -3,6 +3,7 @@
 // reports problems with epsilons that an error count alone does not show.
 #pragma once
 
+#include <algorithm>
 #include <compare>
 #include <cstdint>
 #include <string>
@@ -49,11 +50,16 @@ struct TuneSpec {
 
 using Curve = CurveOf<PolicyErrors>;
 
-// How far pairs may grow or shrink before the errors under a policy double; 0: they do not double within kMostScale.
+// How far pairs may grow or shrink before the errors under a policy, or the forbidden ones alone, double; 0: they do
+// not double within kMostScale.
 struct ScaleBreak {
   int up = 0, down = 0;  // exponents of two
-  PolicyErrors at_up, at_down;
+  PolicyErrors here, at_up, at_down;
 };
+// Whether a number of errors counts as more than doubled; few errors may double by chance.
+inline bool doubles(std::uint64_t before, std::uint64_t after) {
+  return after > 2 * std::max<std::uint64_t>(before, 5);
+}
 inline constexpr int kMostScale = 32;
 
 // Errors with the chosen tolerance at each of two sites alone, and at both together.

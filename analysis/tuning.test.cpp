@@ -191,17 +191,39 @@ TEST(Tune, FindsDeadKnobs) {
 // Exact, except for pairs whose coordinates are all smaller than 1/1000: it says that those intersect.
 class WrongWhenSmall : public ForeignCode {
  public:
+  bool misses = false;  // also says that pairs with a first coordinate above 0 do not intersect
   void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) override {
     for (std::size_t i = 0; i < count; ++i) {
       float largest = 0;
       for (int c = 0; c < kCoordinates; ++c) largest = std::max(largest, std::fabs(coordinates(pairs[i])[c]));
       if (i % 64 == 0) intersects[i / 64] = declined[i / 64] = 0;
-      const bool yes = largest < 1e-3f || exact::intersects(&pairs[i].a[0].x, &pairs[i].b[0].x);
+      const bool missed = misses && pairs[i].a[0].x > 0;
+      const bool yes = largest < 1e-3f || (!missed && exact::intersects(&pairs[i].a[0].x, &pairs[i].b[0].x));
       intersects[i / 64] |= std::uint64_t{yes} << i % 64;
     }
   }
   Verdict failure(const Pair&) override { return Verdict::crashed; }
 };
+
+// The false positives alone double first: all errors are too many for that.
+TEST(Tune, FindsWhereTheForbiddenErrorsDouble) {
+  TuneSpec spec;
+  WrongWhenSmall small;
+  small.misses = true;
+  const DecideBlock policy(small);
+  spec.sweep = host_sweep([&](const std::string& of) { return of.empty() ? moller().decide : policy; });
+  spec.forbid = Forbid::false_positive;
+  spec.sources = drawn(5, 4000, {"near_vertex_face"});
+  spec.others = drawn(6, 4000, {"near_vertex_face"});
+  const Tuned tuned = tune(spec);
+  ASSERT_NE(tuned.chosen, "");
+  EXPECT_EQ(tuned.confirmed.false_positive, 0u);
+  EXPECT_GT(tuned.confirmed.false_negative, 100u);
+  EXPECT_GE(tuned.scale.down, -12);
+  EXPECT_LE(tuned.scale.down, -9);
+  EXPECT_GT(tuned.scale.at_down.false_positive, 10u);
+  EXPECT_LT(tuned.scale.at_down.wrong(), 2 * tuned.confirmed.wrong());
+}
 
 TEST(Tune, FindsWhereTheScaleBreaksAPolicy) {
   TuneSpec spec;

@@ -179,7 +179,7 @@ void bench(const Options& options, int& status) {
                   [](const Lane* lane) { return lane->foreign; }))
     fmt::print("{}",
                reports::wrapped("Times of your own code include the exchange with its process, which asks each pair "
-                                "twice; `graze pareto` measures the code alone.",
+                                "twice; `graze pareto` measures the code alone, of host lanes.",
                                 output_screen().columns));
   if (!result.machine.devices.empty()) {
     fmt::print("crossover: {}\n", result.crossover == 0

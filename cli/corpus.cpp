@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "cli/cases.h"
 #include "cli/commands.h"
@@ -133,6 +134,17 @@ void list(const CorpusOptions& options) {
   print_next(options, "verify");
 }
 
+// "mine, yours": subjects with recorded verdicts that need --subject to run.
+std::string subjects_not_run(const fuzz::RegressionCorpus& corpus) {
+  std::set<std::string> subjects;
+  for (const auto& [signature, c] : corpus) {
+    for (const auto& [id, mark] : c.marks) {
+      if (!find_lane(id)) subjects.insert(parse_lane_name(id).value().subject);
+    }
+  }
+  return fmt::format("{}", fmt::join(subjects, ", "));
+}
+
 int verify(const CorpusOptions& options) {
   const fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
   std::optional<fuzz::FolderLock> lock;
@@ -149,6 +161,8 @@ int verify(const CorpusOptions& options) {
              reports::grouped(result.compared), result.changes.size(), options.update ? ", recorded" : "");
   if (const std::string evidence = cuda_evidence(under_test); !evidence.empty())
     fmt::print("CUDA lanes: {}\n", evidence);
+  if (const std::string subjects = subjects_not_run(corpus); !subjects.empty())
+    fmt::print("Not run: {}. Give your own code by --subject NAME=WHAT.\n", printable(subjects));
   if (options.update) {
     write_corpus(options, corpus);
     return 0;

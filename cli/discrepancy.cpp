@@ -11,6 +11,7 @@
 #include "cli/screen.h"
 #include "core/cannot.h"
 #include "core/error.h"
+#include "core/relation_of.h"
 #include "core/text.h"
 #include "cuda/lanes/device.h"
 #include "fuzz/campaign/campaign.h"
@@ -124,6 +125,16 @@ Comparisons comparisons_of(const DiscrepancyOptions& options) {
 
 bool is_simpler(const Pair& l, const Pair& r) { return fuzz::simplicity(l) < fuzz::simplicity(r); }
 
+// The simplest pair to show: of two triangles, if possible, for one may well see no fault in a segment or a point.
+bool shows_better(const Pair& l, const Pair& r) {
+  const auto is_degenerate = [](const Pair& pair) {
+    const Hulls hulls = relation_of(pair).hulls;
+    return hulls.dimension_a < 2 || hulls.dimension_b < 2;
+  };
+  const bool of_l = is_degenerate(l), of_r = is_degenerate(r);
+  return of_l != of_r ? of_r : is_simpler(l, r);
+}
+
 constexpr std::uint64_t kOriginPairs = 40'000;  // shared by the sources
 
 // Finds where the values start to differ, for each comparison of a contracted CUDA lane with a lane that rounds every
@@ -206,13 +217,13 @@ int discrepancy(DiscrepancyOptions options) {
     std::optional<analysis::OperandsApart> operands;
     if (analysis::shows_operands(first, second))
       operands = analysis::operands_apart(second, spec.sources, kOriginPairs / spec.sources.size());
-    const auto apart = analysis::verdicts_apart(deciders, spec.sources, options.threads, is_simpler);
+    const auto apart = analysis::verdicts_apart(deciders, spec.sources, options.threads, shows_better);
     verdicts.push_back(reports::verdicts_json(deciders, spec.sources, apart, operands ? &*operands : nullptr));
     for (std::size_t s = 0; s < apart.size() && scene.empty(); ++s) {
       if (!apart[s].simplest) continue;
       const strata::PairSource& source = spec.sources[s];
       const Pair pair = source.pair(apart[s].simplest->index);
-      if (simplest && !is_simpler(pair, *simplest)) continue;
+      if (simplest && !shows_better(pair, *simplest)) continue;
       simplest = pair;
       next = fmt::format("Next: graze explain {}:{}:{} --lanes {},{}{}{}\n", source.id, source.seed,
                          apart[s].simplest->index, first.id, second.id, subject_words(first.lane_name().subject),

@@ -96,7 +96,7 @@ std::string lane_text(const analysis::LaneExplanation& lane, const analysis::Lan
     text += reports::wrapped(words, screen.columns, indent, indent + 2);
   };
   const auto surroundings = [&] {
-    line(4, "coordinates that do not matter:" + free_coordinates(lane));
+    line(4, "coordinates whose changes by some ulps do not matter:" + free_coordinates(lane));
     line(4, fmt::format("wrong in {} of {} orders, {} of {} mirror images, {} of {} scalings by 2^-{}…2^{}",
                         lane.orders.wrong, lane.orders.of, lane.mirrored.wrong, lane.mirrored.of, lane.scalings.wrong,
                         lane.scalings.of, analysis::kMostScaling, analysis::kMostScaling));

@@ -13,6 +13,7 @@
 #include "cli/screen.h"
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/minimise/kinds.h"
+#include "reports/own_code.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"
 
@@ -49,19 +50,18 @@ std::string kind_text(const Json& kind, std::size_t number, bool all, const repo
   const auto line = [&](int indent, const std::string& text) {
     return reports::wrapped(text, screen.columns, indent, indent + 2);
   };
-  const std::string subject = kind["subject"], where = kind["line"], file = kind["simplest"]["case"];
-  const std::string title =
-      fmt::format("kind-{}  {}: {}{}, {} pairs", number, subject, kind["cause"].get<std::string>(),
-                  where.empty() ? "" : " at " + where, kind["shape"].get<std::string>());
+  const std::string subject = kind["subject"], file = kind["simplest"]["case"], errors = reports::errors_words(kind);
+  const std::string title = fmt::format("kind-{}  {}: {}, {} pairs", number, subject, reports::cause_words(kind),
+                                        kind["shape"].get<std::string>());
   std::string text = reports::bold(screen, line(0, title));
   for (const Json& sentence : kind["simplest"]["sentences"]) {
     text += line(2, sentence.get<std::string>());
     break;
   }
-  text += line(2, fmt::format("{} of {}, by one pair of each; wrong: {}; simplest: {}",
+  text += line(2, fmt::format("{} of {}, by one pair of each{}; wrong: {}; simplest: {}",
                               reports::counted(kind["pairs"].get<std::uint64_t>(), "pair"),
                               reports::counted(kind["signatures"].get<std::uint64_t>(), "signature"),
-                              lanes_within(kind["lanes"], subject), file));
+                              errors.empty() ? "" : ", " + errors, lanes_within(kind["lanes"], subject), file));
   if (!all) return text;
   const std::uint64_t settled = kind["settled"][0], of = kind["settled"][1];
   if (settled < of) text += line(2, fmt::format("the cause is settled for {} of {} lanes looked at", settled, of));

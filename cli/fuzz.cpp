@@ -342,10 +342,11 @@ void add_fuzz(CLI::App& app, int& status) {
   command->add_flag("--discard-damaged", options->discard_damaged,
                     "Resume a damaged campaign; batches whose checksum fails are run again");
   command
-      ->add_option("--fail-above", options->fail_above,
-                   "Number of wrong pairs above which the exit status is 1. Counts each subject of --subject, or each "
-                   "algorithm if "
-                   "there is none. Standard error then has its simplest minimised case")
+      ->add_option(
+          "--fail-above", options->fail_above,
+          "Number of wrong pairs above which the exit status is 1. Counts, for each subject of --subject or else for "
+          "each algorithm, the pairs on which some build of it is wrong. Standard error then has its simplest "
+          "minimised case")
       ->transform(whole_number(0, kMostWhole))
       ->excludes("--shard")
       ->option_text("N");

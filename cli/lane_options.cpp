@@ -72,6 +72,7 @@ void open_subjects(const LaneOptions& options) {
   std::string why_not;
   const bool on_device = options.executor != fuzz::Executor::twin && cuda::open_device(why_not);
   for (const std::string& text : options.subjects) {
+    expect_utf8("--subject", text);
     subjects::Wanted wanted = subjects::parse_subject(text);
     for (const std::string& flags : options.flags) {
       std::istringstream words(flags);

@@ -13,11 +13,13 @@
 #include "core/cannot.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/sealed.h"
 #include "reports/comparison.h"
 #include "reports/csv.h"
+#include "reports/margin_figure.h"
 #include "reports/page.h"
 #include "subjects/subjects.h"
 
@@ -48,6 +50,8 @@ std::vector<std::string> write_report(const fs::path& directory, const Json& rep
   if (!costs.is_null()) results.push_back({"costs.json", reports::report_text(fuzz::sealed(costs))});
   for (const reports::CsvTable& table : reports::csv_tables(directory, report))
     results.push_back({table.name, table.text});
+  if (!fs::exists(directory / "margins.svg"))  // a merge that was killed at its end left none
+    results.push_back({"margins.svg", reports::margin_figure(fuzz::checked_summary(directory))});
   write_results(directory, results);
   if (costs.is_null()) remove_result(directory / "costs.json", R"({"machine": "", "passes": 0})");
   std::vector<std::string> names;

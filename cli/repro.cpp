@@ -135,7 +135,8 @@ void add_repro(CLI::App& app, int& status) {
   command
       ->add_option(
           "--emit", *emitted,
-          "Language of a self-contained program to print instead, for the first case on which a lane of --lanes is "
+          "Language of a program to print instead (of your own code, it includes or calls that), for the first case on "
+          "which a lane of --lanes is "
           "wrong. "
           "cpp and gtest show a CPU lane, cuda a CUDA lane, gtest also your own CUDA code, python and cgal the truth")
       ->transform(one_of(std::vector<std::string>(std::begin(reports::kSnippetKinds), std::end(reports::kSnippetKinds)),

@@ -196,7 +196,7 @@ std::string prometheus(const Json& all) {
 int status_command(const StatusOptions& options) {
   const Json all = status_of(options);
   if (!options.prometheus.empty()) write_result(options.prometheus, prometheus(all), fuzz::NamedBy::user);
-  std::cout << (options.json ? all.dump(1) + '\n' : table(all));
+  std::cout << (options.json ? all.dump(1, ' ', false, Json::error_handler_t::replace) + '\n' : table(all));
   for (const char* bad : {"failed", "killed", "stalled"}) {
     if (all["states"].contains(bad)) return 1;
   }

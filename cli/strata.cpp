@@ -9,17 +9,23 @@
 
 #include "cli/commands.h"
 #include "cli/screen.h"
+#include "strata/groups.h"
 
 namespace graze::cli {
 
 void add_strata(CLI::App& app, int&) {
-  CLI::App* command = app.add_subcommand("strata", "List the strata: the named generators of pairs");
+  CLI::App* command =
+      app.add_subcommand("strata", "List the strata, the named generators of pairs, each with its group");
   command->footer("Example: graze strata");
   command->callback([] {
     // One line each, for programs that read the list.
     const int columns = isatty(STDOUT_FILENO) ? output_screen().columns : std::numeric_limits<int>::max();
-    for (const strata::StratumInfo& row : strata::kStrata)
-      fmt::print("{}", reports::wrapped(fmt::format("{:<20} {}", row.id, row.what), columns, 0, 21));
+    for (const strata::StratumInfo& row : strata::kStrata) {
+      const strata::Group group = strata::group_of(row.stratum);
+      fmt::print("{}", reports::wrapped(fmt::format("{:<20} {:<11} {}", row.id,
+                                                    strata::kGroups[static_cast<int>(group)].id, row.what),
+                                        columns, 0, 33));
+    }
     fmt::print("\nNext: graze fuzz --strata 'near_*'\n");
   });
 }

@@ -2,11 +2,13 @@
 // `graze try`: from a source file to the answer. It builds the code as a subject, runs a campaign, minimises the
 // failures that matter most, and prints one screen. The directory is a campaign's, so every other verb works on it.
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <mutex>
 #include <set>
 #include <sstream>
 
@@ -29,6 +31,7 @@
 #include "reports/margin_figure.h"
 #include "reports/own_code.h"
 #include "strata/mesh.h"
+#include "subjects/subjects.h"
 
 namespace graze::cli {
 
@@ -37,12 +40,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostTold = 3;            // failures on the screen
-constexpr std::size_t kMostOfKind = 4;          // signatures of a kind that are minimised, those of the simplest pairs
-constexpr std::uint64_t kPairsOfCode = 40'000;  // of compiled code
+constexpr std::size_t kMostTold = 3;  // failures on the screen
+// Signatures of a kind that are minimised, those of the simplest pairs: of compiled code, and of a program.
+constexpr std::size_t kMostOfKind = 4, kMostOfProgram = 1;
+constexpr std::uint64_t kPairsOfCode = 40'000;    // of compiled code
 constexpr std::uint64_t kPairsOfProgram = 2'000;  // of a program, which answers each pair by a line of text
 constexpr double kProgramsTimeout = 10;           // seconds; a program may take some to start
 constexpr const char* kOut = "try";
+constexpr std::string_view kCommand = "cmd:";
 
 struct TryOptions {
   std::string source, where;
@@ -64,8 +69,64 @@ std::string name_for(const fs::path& file) {
   return std::any_of(lanes().begin(), lanes().end(), is_taken) ? "my_" + name : name;
 }
 
-TriedCode code_of(const std::string& source) {
-  constexpr std::string_view kCommand = "cmd:";
+constexpr const char* kCallsPython =
+    R"(# Written by graze try: answers lines of 18 numbers by a function of two triangles of three points each.
+# python3 THIS_FILE FILE FUNCTION
+import importlib.util, operator, os, sys
+
+file, function = sys.argv[1:3]
+answers, sys.stdout = sys.stdout, sys.stderr  # what the function prints is no answer
+sys.path.insert(0, os.path.dirname(os.path.abspath(file)))
+found = importlib.util.spec_from_file_location(os.path.splitext(os.path.basename(file))[0], file)
+module = importlib.util.module_from_spec(found)
+found.loader.exec_module(module)
+meet = operator.attrgetter(function)(module)
+try:
+    import numpy
+
+    def triangle(x):
+        return numpy.array(x).reshape(3, 3)
+except ImportError:
+
+    def triangle(x):
+        return [x[0:3], x[3:6], x[6:9]]
+
+for line in sys.stdin:
+    if line.startswith("describe"):
+        break
+    x = [float.fromhex(word) for word in line.split()]
+    answer = meet(triangle(x[:9]), triangle(x[9:]))
+    print("?" if answer is None else int(bool(answer)), file=answers, flush=True)
+)";
+
+void expect_program(const std::string& file) {
+  if (fs::is_regular_file(file)) return;
+  throw std::runtime_error(
+      cannot("read", file, fs::exists(file) ? "it is not a regular file" : "there is no such file"));
+}
+
+// A Python function, "mine.py:meet": a program that calls it is written beside the folder `out`.
+TriedCode code_of_python(const std::string& file, const std::string& function, const std::string& out) {
+  const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '.' || c >= 0x80; };
+  if (function.empty() || !std::all_of(function.begin(), function.end(), fits))
+    throw UsageError(fmt::format("expected FILE.py:FUNCTION, found {}", shown(file + ':' + function)));
+  const std::string wrapper = out + ".py";
+  write_result(wrapper, kCallsPython);
+  return {name_for(file), fmt::format("cmd:python3 {} {} {}", path_word(wrapper), path_word(file), function), true,
+          wrapper};
+}
+
+// out: the folder of the results.
+TriedCode code_of(const std::string& source, const std::string& out) {
+  // NAME=SOURCE, as --subject has it.
+  const std::size_t equals = source.find('=');
+  const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
+  if (equals != source.npos && equals > 0 &&
+      std::all_of(source.begin(), source.begin() + static_cast<std::ptrdiff_t>(equals), fits)) {
+    TriedCode code = code_of(source.substr(equals + 1), out);
+    code.name = source.substr(0, equals);
+    return code;
+  }
   if (source.starts_with(kCommand)) {  // named by its last word that is a file, such as mine.py in "python3 mine.py"
     std::string file = "program";
     std::istringstream words(source.substr(kCommand.size()));
@@ -74,10 +135,17 @@ TriedCode code_of(const std::string& source) {
     }
     return {name_for(fs::path(file).filename()), source, true};
   }
+  constexpr std::string_view kPython = ".py:";
+  if (const std::size_t at = source.rfind(kPython); at != source.npos) {
+    const std::size_t colon = at + kPython.size() - 1;
+    const std::string file = source.substr(0, colon);
+    expect_program(file);
+    return code_of_python(file, source.substr(colon + 1), out);
+  }
   const std::string extension = fs::path(source).extension().string();
   for (const auto& [ending, program] : {std::pair(".py", "python3"), std::pair(".js", "node")}) {
     if (extension != ending) continue;
-    if (!fs::is_regular_file(source)) throw std::runtime_error(fmt::format("there is no file {}", shown_path(source)));
+    expect_program(source);
     return {name_for(source), fmt::format("cmd:{} {}", program, path_word(source)), true};
   }
   const std::size_t slash = source.rfind('/') + 1, colon = source.find(':', slash);
@@ -146,7 +214,7 @@ std::string put_aside(const std::string& out, const Json& spec) {
 // Minimises the signatures of the kinds to be told until each is shown by a minimised pair.   Returns: the kinds; null
 // if the user interrupted it.
 Json minimised_kinds(const fuzz::SelectedLanes& under_test, const fs::path& directory, const Json& summary,
-                     const reports::ReportLane& lane) {
+                     const reports::ReportLane& lane, std::size_t most_of_kind) {
   const std::atomic<bool>& interrupted = catch_interrupts();
   const auto stop = [&] { return interrupted.load(); };
   const Json& rows = summary["signatures"];
@@ -155,10 +223,10 @@ Json minimised_kinds(const fuzz::SelectedLanes& under_test, const fs::path& dire
   for (;;) {
     Json kinds = fuzz::find_kinds(under_test, directory, summary, stop);
     if (interrupted) return nullptr;
-    std::vector<std::size_t> next;
+    std::set<std::size_t> next;
     for (const Json& kind : reports::first_kinds(kinds, lane, kMostTold)) {
       std::vector<std::pair<fuzz::Simplicity, std::size_t>> of_kind;
-      std::size_t left = kMostOfKind;
+      std::size_t left = most_of_kind;
       for (const std::size_t place : kind.at("places").get<std::vector<std::size_t>>()) {
         if (done.contains(place)) {
           left -= left > 0;
@@ -167,33 +235,43 @@ Json minimised_kinds(const fuzz::SelectedLanes& under_test, const fs::path& dire
         }
       }
       std::sort(of_kind.begin(), of_kind.end());
-      for (std::size_t i = 0; i < std::min(left, of_kind.size()); ++i) next.push_back(of_kind[i].second);
+      for (std::size_t i = 0; i < std::min(left, of_kind.size()); ++i) next.insert(of_kind[i].second);
     }
     if (next.empty()) return kinds;
     const bool on_terminal = isatty(STDERR_FILENO);
     Progress progress("failures", next.size(), on_terminal, error_screen());
-    for (std::size_t i = 0; i < next.size(); ++i) {
-      const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-      if (const auto line = progress.line(i, taken.count(), std::nullopt, {"minimising"}); line && on_terminal)
-        fmt::print(stderr, "{}", *line);
-      if (!done.insert(next[i]).second) continue;
-      const std::vector<corpus::Entry> entries =
-          fuzz::checked_cases(under_test, summary["spec"], directory, rows[next[i]]);
+    const std::vector<std::size_t> places(next.begin(), next.end());
+    std::mutex telling;
+    std::size_t minimised = 0;
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+      if (interrupted) return;
+      const Json& row = rows[places[i]];
+      const std::vector<corpus::Entry> entries = fuzz::checked_cases(under_test, summary["spec"], directory, row);
       if (!fuzz::has_result(under_test, entries))
-        fuzz::minimise_file(under_test, fuzz::case_file(directory, rows[next[i]]), entries);
-      if (interrupted) break;
-    }
+        fuzz::minimise_file(under_test, fuzz::case_file(directory, row), entries);
+      const std::lock_guard lock(telling);
+      const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+      if (const auto line = progress.line(++minimised, taken.count(), std::nullopt, {"minimising"});
+          line && on_terminal)
+        fmt::print(stderr, "{}", *line);
+    });
+    done.insert(places.begin(), places.end());
     fmt::print(stderr, "{}", progress.end());
     if (interrupted) return nullptr;
   }
 }
 
-// The first failure as a test; empty if no program can show it.
+// The first failure as a test, which includes a source by its place beside the folder; empty if no program can show it.
 std::string write_test(const Answer& answer, const fuzz::SelectedLanes& under_test) {
   if (answer.told.empty()) return "";
   const std::string file = case_of(answer, answer.told[0]), test = answer.directory + "/case.cpp";
   try {
-    write_result(test, emit(reports::SnippetKind::gtest, file, corpus::read_pairs(file), under_test));
+    std::string program = emit(reports::SnippetKind::gtest, file, corpus::read_pairs(file), under_test);
+    const fs::path source = subjects::opened(answer.code.name)->file;
+    const std::string absolute = "#include \"" + source.string();
+    if (const std::size_t at = program.find(absolute); at != program.npos)
+      program.replace(at, absolute.size(), "#include \"" + fs::proximate(source, answer.directory).string());
+    write_result(test, program);
   } catch (const UsageError&) {  // another file is in the way
     throw;
   } catch (const std::runtime_error& error) {
@@ -223,18 +301,24 @@ void expect_answers(const TriedCode& code, const fuzz::SelectedLanes& under_test
     if (!is_failure(verdict)) return;
     failed += fmt::format("{}{}", failed.empty() ? "" : ", ", name(verdict));
   }
-  throw std::runtime_error(cannot(
-      "try", code.what,
-      fmt::format("it fails on each of the first pairs ({}); {}", failed,
-                  code.is_program ? "start it by hand and type 18 numbers to see why" : "call it by hand to see why")));
+  const std::string by_hand =
+      code.is_program ? fmt::format(
+                            "a program must answer each line of 18 numbers by a line 1, 0 or ?, and a Python "
+                            "function is named as mine.py:meet (docs/your_own_code.md); to see why: echo {} | "
+                            "{}",
+                            fuzz::pair_text(source.pair(0)), code.what.substr(kCommand.size()))
+                      : "call it by hand to see why";
+  throw std::runtime_error(
+      cannot("try", code.what, fmt::format("it fails on each of the first pairs ({}); {}", failed, by_hand)));
 }
 
 int try_source(const TryOptions& options) {
-  Answer answer;
-  answer.code = code_of(options.source);
-  FuzzOptions fuzz = campaign_options(options, answer.code);
-  expect_campaign_folder(fuzz.out);
+  const std::string out = folder_named(options.fuzz.out);
+  expect_campaign_folder(out);
   expect_mesh_or_scene(options.where);
+  Answer answer;
+  answer.code = code_of(options.source, out);
+  FuzzOptions fuzz = campaign_options(options, answer.code);
   const fuzz::SelectedLanes under_test = lanes_of_campaign(fuzz);
   if (is_scene(options.where)) {
     fuzz.scene = options.where;
@@ -258,7 +342,8 @@ int try_source(const TryOptions& options) {
       throw std::runtime_error(
           cannot("minimise", fuzz.out, "another process has just changed it; run the command again"));
     fuzz::write_whole(campaign.directory / "margins.svg", reports::margin_figure(outcome.summary));
-    answer.kinds = minimised_kinds(under_test, campaign.directory, outcome.summary, lane);
+    answer.kinds = minimised_kinds(under_test, campaign.directory, outcome.summary, lane,
+                                   answer.code.is_program ? kMostOfProgram : kMostOfKind);
     if (answer.kinds.is_null()) return interrupted();
     fuzz::write_kinds(campaign.directory, under_test, answer.kinds);
     answer.told = reports::first_kinds(answer.kinds, lane, kMostTold);
@@ -283,8 +368,10 @@ void add_try(CLI::App& app, int& status) {
   options->fuzz.out = kOut;
   command
       ->add_option("SOURCE", options->source,
-                   "Your code: a C, C++ or CUDA source or a shared object, with :FUNCTION if it is not `intersects`, a "
-                   "Python or JavaScript program, or cmd:COMMAND; see docs/your_own_code.md")
+                   "Your code, as FILE or NAME=FILE: a C, C++ or CUDA source or a shared object, with :FUNCTION if it "
+                   "is not `intersects`, a "
+                   "Python function (mine.py:meet), a Python or JavaScript program, or cmd:COMMAND; see "
+                   "docs/your_own_code.md")
       ->required();
   command->add_option("WHERE", options->where, "Mesh or scene to draw the pairs in (default: all strata)")
       ->option_text("MESH|SCENE");

@@ -80,6 +80,7 @@ TEST_F(TryCommand, TheFolderIsACampaigns) {
     EXPECT_GT(answer["nanoseconds_a_call"][lane]["middle"], 0) << lane;
   const Ran test = shell("cd try && head -n 1 case.cpp | cut -c 4- > run.sh && bash run.sh");
   EXPECT_NE(test.out.find(" 1 FAILED TEST"), std::string::npos) << test.out << test.err;
+  EXPECT_NE(contents(shell.folder / "try/case.cpp").find("#include \"../mine.cpp\"\n"), std::string::npos);
   expect_done("graze failures try && graze report try && graze minimize try && graze status try");
 }
 
@@ -91,6 +92,7 @@ TEST_F(TryCommand, AgainGivesTheSameAndAfterAnEditKeepsTheRunBefore) {
   };
   const Json first = answer_of("mine.cpp:meet --pairs 1000 --threads 1");
   EXPECT_EQ(without_times(answer_of("mine.cpp:meet --pairs 1000 --threads 2")), without_times(first));
+  EXPECT_EQ(answer_of("other=mine.cpp:meet --pairs 100 --out o")["lane"], "other/f32/cpu");
   write("mine.cpp", "bool meet(const float*, const float*) { return true; }\n");
   const Json edited = answer_of("mine.cpp:meet --pairs 1000");
   EXPECT_EQ(edited["earlier"], "try.1");
@@ -107,7 +109,9 @@ TEST_F(TryCommand, CodeThatAlwaysFailsIsSaidAtOnce) {
   write("dead.sh", "exit 1\n");
   write("dead.c", "#include <stdlib.h>\nint meet(const float a[9], const float b[9]) { abort(); }\n");
   for (const char* what : {"'cmd:sh dead.sh'", "dead.c:meet"}) {
-    expect_error(std::string("graze try ") + what + " --out d", 1, {"dead", "crashed, crashed, crashed", "by hand"});
+    const bool is_program = std::string(what).find("cmd:") != std::string::npos;
+    expect_error(std::string("graze try ") + what + " --out d", 1,
+                 {"dead", "crashed, crashed, crashed", is_program ? "echo" : "by hand"});
     EXPECT_FALSE(std::filesystem::exists(shell.folder / "d"));
   }
 }
@@ -117,6 +121,9 @@ TEST_F(TryCommand, WorksOnEachKindOfCode) {
   write("own.c", by_x);
   expect_done("cc -shared -fPIC own.c -o libown.so");
   write("own.py", "import sys\nfor line in sys.stdin:\n    print(1, flush=True)\n");
+  write("shapes.py",
+        "class Shapes:\n    @staticmethod\n    def meet(a, b):\n        print('asked')\n        return a[0][0] < "
+        "b[2][1]\n");
   write("own.sh", "while read line; do echo 0; done\n");
   write("own.js", "require('readline').createInterface({input: process.stdin}).on('line', () => console.log(1));\n");
   write("own.cu", "__device__ bool meet(const float a[9], const float b[9]) { return a[0] * a[1] > b[0] * b[1]; }\n");
@@ -128,6 +135,7 @@ TEST_F(TryCommand, WorksOnEachKindOfCode) {
   const Code codes[] = {{"./own.c:meet", "own/f32/cpu", "", true},
                         {"./libown.so:meet", "libown/f32/cpu", "", true},
                         {"own.py", "own/f32/cpu", "python3", false},
+                        {"shapes.py:Shapes.meet", "shapes/f32/cpu", "python3", false},
                         {"'cmd:bash own.sh'", "own/f32/cpu", "", false},
                         {"own.js", "own/f32/cpu", "node", false},
                         {"own.cu:meet", "own/f32/cuda-fma", "NVRTC", false},
@@ -154,6 +162,15 @@ TEST_F(TryCommand, WorksOnEachKindOfCode) {
       const Ran text = shell("graze try own.cu:meet --pairs 60 --out text");
       EXPECT_NE(text.out.find("CPU against GPU: graze discrepancy --campaign text\n"), std::string::npos) << text.out;
       expect_done("graze discrepancy --campaign text > /dev/null");
+    }
+    if (std::string(code.source).find(".py:") != std::string::npos) {
+      EXPECT_EQ(answer["wrapper"], out + ".py");
+      // The recorded command runs, and an edit of the function is noticed.
+      const Json report = Json::parse(contents(shell.folder / out / "report.json"));
+      expect_done(report["run"]["command"].get<std::string>() + " > /dev/null");
+      expect_done("sed -i 's/</>/' shapes.py");
+      EXPECT_NE(answer_of(std::string(code.source) + " --pairs 60 --out " + out)["earlier"], "");
+      expect_error("graze try shapes.py:none --pairs 60 --out none", 1, {"shapes.py", "crashed"});
     }
     ++tried;
   }

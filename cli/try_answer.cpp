@@ -173,6 +173,7 @@ Json to_json(const Answer& answer, const fuzz::SelectedLanes& under_test) {
   for (const Json& kind : answer.told) {
     const Json& simplest = kind.at("simplest");
     failures.push_back({{"pairs", kind.at("pairs")},
+                        {"intersecting", kind.at("intersecting")},
                         {"shape", kind.at("shape")},
                         {"cause", kind.at("cause")},
                         {"settled", kind.at("settled")},
@@ -203,6 +204,7 @@ Json to_json(const Answer& answer, const fuzz::SelectedLanes& under_test) {
                  {"cheapest", cost_json(answer.costs.cheapest)}}},
                {"directory", answer.directory},
                {"scene", answer.scene},
+               {"wrapper", answer.code.wrapper},
                {"strata_left_out", left_out},
                {"test", answer.test},
                {"earlier", answer.earlier},
@@ -222,9 +224,13 @@ std::string text_of(const Answer& answer, const reports::Screen& screen) {
   if (!answer.left_out.empty()) before.push_back(left_out_in_words(answer.left_out));
   std::vector<reports::ScreenFailure> failures;
   const std::uint64_t wrong = reports::wrong_pairs(answer.summary, answer.code.name);
+  const std::size_t kinds_of_subject =
+      reports::first_kinds(answer.kinds, counts.lanes[lane], answer.kinds.size()).size();
+  if (!answer.told.empty())
+    before.push_back(reports::kinds_heading(counts, lane, answer.told.size(), kinds_of_subject, wrong));
   for (const Json& kind : answer.told) {
-    failures.push_back({reports::kind_title(kind, wrong, failures.empty()),
-                        reports::pair_on_a_line(reports::pair_of_kind(kind)), reports::kind_sentence(kind)});
+    failures.push_back({reports::kind_title(kind, wrong), reports::pair_on_a_line(reports::pair_of_kind(kind)),
+                        reports::kind_sentence(kind, counts.lanes[lane].id)});
   }
   std::vector<std::string> after = {
       reports::epsilon_words(counts, lane, answer.kinds, answer.epsilon.named, answer.effect)};
@@ -247,7 +253,9 @@ std::string text_of(const Answer& answer, const reports::Screen& screen) {
   std::vector<std::string> written = {dir + "/report.html"};
   if (!answer.told.empty()) written.push_back(case_of(answer, answer.told[0]));
   if (!answer.test.empty()) written.push_back(answer.test + " (a test)");
-  if (!answer.scene.empty()) written.push_back(answer.scene);
+  for (const std::string& file : {answer.scene, answer.code.wrapper}) {
+    if (!file.empty()) written.push_back(file);
+  }
   after.push_back(fmt::format("Wrote {}", printable(fmt::format("{}", fmt::join(written, ", ")))));
   after.push_back(answer.told.empty()
                       ? fmt::format("Next, with more pairs: {}", answer.again)

@@ -19,6 +19,7 @@ namespace graze::cli {
 struct TriedCode {
   std::string name, what;
   bool is_program = false;
+  std::string wrapper = {};  // the file that was written to call a Python function
 };
 
 // What a call that decides one pair costs.

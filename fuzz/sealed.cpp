@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <set>
+#include <vector>
+
 #include "core/cannot.h"
 #include "core/fnv1a.h"
 #include "corpus/pair_format.h"
@@ -36,7 +39,19 @@ std::string checksum_of(const Json& json) {
 }  // namespace
 
 Json parse_shallow(const std::string& text) {
-  return is_too_deep(text) ? Json(Json::value_t::discarded) : Json::parse(text, nullptr, false);
+  if (is_too_deep(text)) return Json(Json::value_t::discarded);
+  std::vector<std::set<std::string>> keys;  // of the objects around
+  bool twice = false;
+  Json json = Json::parse(
+      text,
+      [&](int, Json::parse_event_t event, const Json& parsed) {
+        if (event == Json::parse_event_t::object_start) keys.emplace_back();
+        if (event == Json::parse_event_t::key) twice |= !keys.back().insert(parsed.get<std::string>()).second;
+        if (event == Json::parse_event_t::object_end) keys.pop_back();
+        return true;
+      },
+      false);
+  return twice ? Json(Json::value_t::discarded) : json;
 }
 
 Json sealed(Json json) {
@@ -53,7 +68,7 @@ Json read_sealed(const std::filesystem::path& file, const std::string& remedy, N
     return corpus::FormatError(
         cannot("use", file, fmt::format("it has been changed or damaged since graze wrote it: {}; {}", found, remedy)));
   };
-  if (!json.is_object()) throw refused("it is no JSON object");
+  if (!json.is_object()) throw refused("it is no JSON object, or one with a key twice");
   if (!json.contains(kChecksum)) throw refused("its checksum is missing");
   const Json checksum = std::move(json[kChecksum]);
   json.erase(kChecksum);

@@ -11,7 +11,8 @@
 
 namespace graze::fuzz {
 
-// Parses the text as JSON. Returns a discarded value if it is not JSON, or nested more than 64 levels deep. Copying,
+// Parses the text as JSON. Returns a discarded value if it is not JSON, nested more than 64 levels deep, or has a key
+// twice in one object. Copying,
 // comparing and writing deeper JSON could exhaust the stack.
 nlohmann::ordered_json parse_shallow(const std::string& text);
 

@@ -162,18 +162,35 @@ Json changed_errors(const Json& before, const Json& after, Changed changed) {
   return rows;
 }
 
-// Kinds that are missing in `others` although enough of their signatures were expected there. A signature names all
-// wrong lanes of its subject, so only subjects with the same lanes in both reports count.
-Json only_in(const Json& kinds, const Json& others, const Json& report, const Json& other_report) {
+// Kinds that are missing in `others` although at least `least` of their signatures were expected there. A signature
+// names all wrong lanes of its subject, so only subjects with the same lanes in both reports count.
+Json only_in(const Json& kinds, const Json& others, const Json& report, const Json& other_report, double least) {
   const double pairs = pairs_of(report), pairs_of_others = pairs_of(other_report);
   std::set<std::string> known;
   for (const Json& kind : others) known.insert(kind.at("key"));
   Json rows = Json::array();
   for (const Json& kind : kinds) {
     const double expected = kind.at("signatures").get<double>() * std::min(1.0, pairs_of_others / pairs);
-    if (known.contains(kind.at("key")) || expected < kLeastSignatures) continue;
+    if (known.contains(kind.at("key")) || expected < least) continue;
     if (lanes_of(report, kind.at("subject")) != lanes_of(other_report, kind["subject"])) continue;
     rows.push_back({{"key", kind.at("key")}, {"signatures", kind.at("signatures")}, {"count", kind.at("pairs")}});
+  }
+  return rows;
+}
+
+// Those of the kinds whose subject changed a verdict. The cause of a failure is looked for on one pair of a signature,
+// which may be another one in the same campaign after `graze minimize`.   verdicts: null if unknown.
+Json of_changed(const Json& kinds, const Json& verdicts) {
+  if (verdicts.is_null()) return kinds;
+  std::set<std::string> subjects;
+  for (const Json& row : verdicts) {
+    const std::string lane = row.at("lane");
+    if (row.at("known") != "same") subjects.insert(lane.substr(0, lane.find('/')));
+  }
+  Json rows = Json::array();
+  for (const Json& kind : kinds) {
+    const std::string key = kind.at("key");
+    if (subjects.contains(key.substr(0, key.find('/')))) rows.push_back(kind);
   }
   return rows;
 }
@@ -189,6 +206,24 @@ std::string list(const std::set<std::string>& l, const std::set<std::string>& r)
   std::set_difference(l.begin(), l.end(), r.begin(), r.end(), std::back_inserter(only));
   if (only.size() > 3) return fmt::format("{}, {} and {} more", only[0], only[1], only.size() - 2);
   return only.empty() ? "none" : fmt::format("{}", fmt::join(only, ", "));
+}
+
+// "Not compared: …" for lanes that one campaign has alone; empty without such lanes.
+std::string one_sided_lanes(const Json& before, const Json& after) {
+  const std::set<std::string> l = ids_of(before.at("lanes")), r = ids_of(after.at("lanes"));
+  std::set<std::string> subjects;
+  const auto add = [&](const std::set<std::string>& some, const std::set<std::string>& others) {
+    for (const std::string& id : some) {
+      if (!others.contains(id)) subjects.insert(id.substr(0, id.find('/')));
+    }
+  };
+  add(l, r);
+  add(r, l);
+  if (subjects.empty()) return "";
+  return fmt::format(
+      "Not compared: lanes of {}, which one campaign has alone; two versions of one code are compared if "
+      "they have one name.",
+      fmt::join(subjects, ", "));
 }
 
 std::string scene_of(const Json& run) {
@@ -272,12 +307,16 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
     rows.back()["unseen"] = unseen ? Json(*unseen) : Json();
   }
   const bool kinds_known = !kinds.is_null() && !kinds_before.is_null(), kinds_compared = kinds_known && alike;
-  const Json gained = kinds_compared ? only_in(kinds, kinds_before, report, before) : Json::array();
-  const Json lost = kinds_compared ? only_in(kinds_before, kinds, before, report) : Json::array();
+  const double least = same ? 1 : kLeastSignatures;  // on the same pairs nothing is left to chance
+  const auto only = [&](const Json& some, const Json& others, const Json& of, const Json& of_others) {
+    return kinds_compared ? of_changed(only_in(some, others, of, of_others, least), verdicts) : Json::array();
+  };
+  const Json gained = only(kinds, kinds_before, report, before), lost = only(kinds_before, kinds, before, report);
   const std::string of_kinds =
       !kinds_compared ? "kinds of failure are not compared"
       : gained.empty() && lost.empty()
-          ? "no kind of failure came or went"
+          ? fmt::format("no kind of failure{} came or went",
+                        same ? "" : fmt::format(" with at least {} expected signatures", kLeastSignatures))
           : fmt::format("{} of failure came, {} went", counted(gained.size(), "kind"), lost.size());
   std::string headline;
   if (rows.empty()) {
@@ -296,6 +335,7 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
                            errors.empty() ? "" : fmt::format(" ({})", fmt::join(errors, ", ")), of_kinds,
                            same ? "" : "; " + power_words(rows));
   }
+  if (const std::string one_sided = one_sided_lanes(before, report); !one_sided.empty()) headline += ' ' + one_sided;
   Json differences = differences_of(report, before);
   if (!alike)
     differences.push_back(

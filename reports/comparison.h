@@ -8,7 +8,8 @@ namespace graze::reports {
 
 // A rate counts as changed if so large a difference arises by chance in less than one of a million comparisons. A kind
 // of failure counts as gained or lost if one campaign has none of it. At least kLeastSignatures of its signatures must
-// have been expected there, which makes its absence by chance as unlikely.
+// have been expected there, which makes its absence by chance as unlikely. On the same pairs one signature is enough,
+// if some verdict of the subject changed.
 inline constexpr double kLeastChance = 1e-6;
 inline constexpr double kLeastSignatures = 14;
 

@@ -51,7 +51,9 @@ TEST(Comparison, SeedAndSizeAloneChangeNothing) {
   const Json before = report_of(1, 50'000);
   for (std::uint64_t seed = 2; seed < 22; ++seed) {
     const std::string text = headline(report_of(seed, seed % 2 == 0 ? 50'000 : 5'000), before, fewer, kinds);
-    EXPECT_TRUE(text.starts_with("No rate changed, of 1,000, and no kind of failure came or went; differences under "))
+    EXPECT_TRUE(text.starts_with(
+        "No rate changed, of 1,000, and no kind of failure with at least 14 expected signatures came or went; "
+        "differences under "))
         << text;
     EXPECT_TRUE(text.ends_with(" would not be seen.")) << text;
   }
@@ -61,8 +63,10 @@ TEST(Comparison, WhatIsSmallButSureIsAChange) {
   const Json before = report_of(1, 1'000'000);
   Json after = report_of(2, 1'000'000);
   after["rates"][0]["wrong"] = to_json(share_of(40, 1'000'000));  // never wrong before
-  EXPECT_TRUE(headline(after, before, Json::array(), Json::array())
-                  .starts_with("Changed: 1 of 1,000 rates; no kind of failure came or went; differences under "));
+  EXPECT_TRUE(
+      headline(after, before, Json::array(), Json::array())
+          .starts_with("Changed: 1 of 1,000 rates; no kind of failure with at least 14 expected signatures came "
+                       "or went; differences under "));
 }
 
 // The sums of wrong verdicts are equal, so only the directions show the change.
@@ -180,6 +184,21 @@ TEST(Comparison, AKindThatWasToBeExpectedHasGone) {
   Json smaller = report_of(2, 5'000);
   add_comparison(smaller, before, some, many);
   EXPECT_TRUE(smaller["compare"]["lost"].empty());
+}
+
+// On the same pairs one signature shows a change, but not if every verdict of its subject is what it was.
+TEST(Comparison, OnTheSamePairsEveryOtherKindIsAChange) {
+  const Json few = {kind("lane/rounding/x.h:1/general", 1)}, none = Json::array();
+  const Json before = report_of(1, 50'000, 10);
+  const auto gained = [&](const Json& verdicts) {
+    Json after = before;
+    add_comparison(after, before, few, none, verdicts);
+    return after["compare"]["gained"].size();
+  };
+  EXPECT_EQ(gained(nullptr), 1u);
+  EXPECT_EQ(gained(Json::array({verdicts_row("changed", 1, 1)})), 1u);
+  EXPECT_EQ(gained(Json::array({verdicts_row("unknown", 0, 1)})), 1u);
+  EXPECT_EQ(gained(Json::array({verdicts_row("same", 0, 0)})), 0u);
 }
 
 // Adds a stratum on which every lane is wrong on half of the pairs, and the rates of all strata together.

@@ -62,10 +62,13 @@ std::string rates_csv(const Json& report) {
     table.row({lane_id(report, row), group, stratum, "declined", row["declined"], nullptr, nullptr, nullptr, nullptr});
   }
   for (const Json& row : report["group_rates"]) {
-    std::vector<Json> cells{lane_id(report, row), report["groups"][row["group"].get<std::size_t>()]["id"], nullptr,
-                            "wrong"};
-    append(cells, row["wrong"]);
-    table.row(cells);
+    for (const char* kind : {"false_positive", "false_negative", "wrong"}) {
+      if (!row.contains(kind)) continue;
+      std::vector<Json> cells{lane_id(report, row), report["groups"][row["group"].get<std::size_t>()]["id"], nullptr,
+                              kind};
+      append(cells, row[kind]);
+      table.row(cells);
+    }
   }
   return table.text;
 }

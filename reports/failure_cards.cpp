@@ -187,8 +187,8 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
   const std::string from = corpus::origin_of(entry);
   const Json verdicts = verdicts_of(counts, truth, simplest.at("verdicts"));
   Json card = {{"file", simplest.at("case")}};
-  for (const char* field : {"key", "subject", "cause", "line", "shape", "pairs", "signatures", "lanes", "settled",
-                            "strata", "margins", "worst"})
+  for (const char* field : {"key", "subject", "cause", "line", "shape", "pairs", "intersecting", "signatures", "lanes",
+                            "settled", "strata", "margins", "worst"})
     card["kind"][field] = kind.at(field);
   card.update({{"minimised", minimised},
                {"from", from},

@@ -41,18 +41,25 @@ std::string share_words(std::uint64_t count, std::uint64_t of) {
 }
 
 // Whether the sentence about its simplest pair names the cause only as a possible one.
-bool is_open(const Json& kind) { return kind_sentence(kind).find("not settled") != std::string::npos; }
+bool is_open(const Json& kind) {
+  return kind.at("simplest").at("sentences").at(0).get_ref<const std::string&>().find("not settled") !=
+         std::string::npos;
+}
 
 bool is_of_lane(const Json& kind, const std::string& lane) {
   const Json& lanes = kind.at("lanes");
   return std::find(lanes.begin(), lanes.end(), lane) != lanes.end();
 }
 
+bool has_no_verdict(const std::string& cause) {
+  return cause == "crash" || cause == "no answer in time" || cause == "unstable";
+}
+
 // How much the kind matters; smaller is more.
 int rank_of(const Json& kind, const std::string& lane) {
   if (!is_of_lane(kind, lane)) return 4;
   const std::string cause = kind.at("cause"), shape = kind.at("shape");
-  if (cause == "crash" || cause == "no answer in time" || cause == "unstable") return 0;
+  if (has_no_verdict(cause)) return 0;
   if (shape == "degenerate") return 3;
   const bool is_mistake = cause == "logic" || cause == "order-dependent" || cause == "absolute epsilon";
   return is_mistake && !is_open(kind) ? 1 : 2;
@@ -163,20 +170,49 @@ std::vector<Json> first_kinds(const Json& kinds, const ReportLane& lane, std::si
   return found;
 }
 
-std::string kind_sentence(const Json& kind) {
+std::string kind_sentence(const Json& kind, const std::string& lane) {
   constexpr std::string_view kSays = ") says ";
   std::string text = kind.at("simplest").at("sentences").at(0);
+  constexpr std::string_view kUnit = " of the largest coordinate";  // the glossary says so too
+  if (const std::size_t unit = text.find(kUnit); unit != text.npos) text.erase(unit, kUnit.size());
+  const Json& wrong = kind.at("simplest").at("lanes");
   const std::size_t at = text.find(kSays);
-  return at == text.npos ? text : "It " + text.substr(at + 2);
+  return at == text.npos || std::find(wrong.begin(), wrong.end(), lane) == wrong.end() ? text
+                                                                                       : "It " + text.substr(at + 2);
 }
 
-std::string kind_title(const Json& kind, std::uint64_t failures, bool says_how) {
-  const std::uint64_t pairs = kind.at("pairs");
-  const std::string shape = kind.at("shape"), line = kind.at("line");
-  return fmt::format("{} ({} % of the failures of all builds{}): {}{}{}", counted(pairs, (shape + " pair").c_str()),
-                     bare_percent(pairs, failures), says_how ? ", by one pair of each signature" : "",
-                     is_open(kind) ? "perhaps " : "", kind.at("cause").get<std::string>(),
+std::string cause_words(const Json& kind) {
+  const std::string line = kind.at("line");
+  return fmt::format("{}{}{}", is_open(kind) ? "perhaps " : "", kind.at("cause").get<std::string>(),
                      line.empty() ? "" : " at " + line);
+}
+
+std::string errors_words(const Json& kind) {
+  const std::string cause = kind.at("cause");
+  if (has_no_verdict(cause)) return "";
+  const std::uint64_t pairs = kind.at("pairs"), negative = kind.at("intersecting"), positive = pairs - negative;
+  if (pairs == 1) return negative == 0 ? "a false positive" : "a false negative";
+  if (negative == 0) return "all false positives";
+  if (positive == 0) return "all false negatives";
+  return fmt::format("{}, {}", counted(positive, "false positive"), counted(negative, "false negative"));
+}
+
+std::string kind_title(const Json& kind, std::uint64_t failures) {
+  const std::uint64_t pairs = kind.at("pairs");
+  const std::string shape = kind.at("shape"), errors = errors_words(kind);
+  return fmt::format("{} ({} %){}: {}", counted(pairs, (shape + " pair").c_str()), bare_percent(pairs, failures),
+                     errors.empty() ? "" : ", " + errors, cause_words(kind));
+}
+
+std::string kinds_heading(const CampaignCounts& counts, std::size_t lane, std::size_t told, std::size_t kinds,
+                          std::uint64_t failures) {
+  const std::string& subject = counts.lanes[lane].name.subject;
+  const auto builds = std::count_if(counts.lanes.begin(), counts.lanes.end(),
+                                    [&](const ReportLane& other) { return other.name.subject == subject; });
+  return fmt::format(
+      "{} of {} of failure, the code's own mistakes first (shares of the {} that {} gets wrong, by one pair of each "
+      "signature):",
+      told, counted(kinds, "kind"), counted(failures, "pair"), builds > 1 ? "some build" : "it");
 }
 
 std::uint64_t wrong_pairs(const Json& summary, std::string_view subject) {
@@ -246,25 +282,39 @@ std::vector<std::string> own_code_answer(const CampaignCounts& counts, const Jso
 
 std::string one_screen(const std::vector<std::string>& before, const std::vector<ScreenFailure>& failures,
                        const std::vector<std::string>& after, const Screen& screen, int most) {
-  constexpr int kMostOfSentence = 4;
-  std::string text;
-  for (int kept = kMostOfSentence; kept > 0; --kept) {
-    text.clear();
-    for (const std::string& paragraph : before) text += wrapped(paragraph, screen.columns, 0, 2);
-    for (std::size_t f = 0; f < failures.size(); ++f) {
-      text += bold(screen, wrapped(fmt::format("{}. {}", f + 1, failures[f].title), screen.columns, 0, 3));
-      text += wrapped(failures[f].pair, screen.columns, 3, 3);
-      std::vector<std::string> lines = lines_of(wrapped(failures[f].sentence, screen.columns - 2, 3, 3));
-      if (std::ssize(lines) > kept) {
-        lines.resize(static_cast<std::size_t>(kept));
-        lines.back() += " …";
-      }
-      for (const std::string& line : lines) text += line + '\n';
-    }
-    for (const std::string& paragraph : after) text += wrapped(paragraph, screen.columns, 0, 2);
-    if (std::count(text.begin(), text.end(), '\n') <= most) break;
+  constexpr std::size_t kMostOfSentence = 4;
+  const auto paragraphs = [&](const std::vector<std::string>& texts) {
+    std::string text;
+    for (const std::string& paragraph : texts) text += wrapped(paragraph, screen.columns, 0, 2);
+    return text;
+  };
+  std::vector<std::string> heads;
+  std::vector<std::vector<std::string>> sentences;
+  for (std::size_t f = 0; f < failures.size(); ++f) {
+    heads.push_back(bold(screen, wrapped(fmt::format("{}. {}", f + 1, failures[f].title), screen.columns, 0, 3)) +
+                    wrapped(failures[f].pair, screen.columns, 3, 3));
+    sentences.push_back(lines_of(wrapped(failures[f].sentence, screen.columns - 2, 3, 3)));
   }
-  return text;
+  std::vector<std::size_t> kept(failures.size(), 1);
+  const auto text = [&] {
+    std::string all = paragraphs(before);
+    for (std::size_t f = 0; f < failures.size(); ++f) {
+      all += heads[f];
+      for (std::size_t l = 0; l < std::min(kept[f], sentences[f].size()); ++l)
+        all += sentences[f][l] + (l + 1 == kept[f] && kept[f] < sentences[f].size() ? " …\n" : "\n");
+    }
+    return all + paragraphs(after);
+  };
+  const std::string least = text();
+  auto left = most - std::count(least.begin(), least.end(), '\n');
+  for (std::size_t lines = 2; lines <= kMostOfSentence; ++lines) {
+    for (std::size_t f = 0; f < failures.size() && left > 0; ++f) {
+      if (sentences[f].size() < lines) continue;
+      kept[f] = lines;
+      --left;
+    }
+  }
+  return text();
 }
 
 }  // namespace graze::reports

@@ -36,13 +36,25 @@ std::string other_builds(const CampaignCounts& counts, std::size_t lane);
 std::vector<nlohmann::ordered_json> first_kinds(const nlohmann::ordered_json& kinds, const ReportLane& lane,
                                                 std::size_t most);
 
-// What happens on the kind's simplest pair, without the names of the lanes: "It says disjoint, but …".
-std::string kind_sentence(const nlohmann::ordered_json& kind);
+// What happens on the kind's simplest pair: "It says disjoint, but …" if the lane is wrong there; of other lanes alone
+// with their names.
+std::string kind_sentence(const nlohmann::ordered_json& kind, const std::string& lane);
 
-// A kind in words, with "perhaps" where the sentence says that the cause is not settled: "812 coplanar pairs (66 % of
-// the failures): logic".   failures: wrong_pairs of the subject.   says_how: also that one pair of each signature was
-// looked at.
-std::string kind_title(const nlohmann::ordered_json& kind, std::uint64_t failures, bool says_how = false);
+// A kind's cause and line, with "perhaps" where the sentence says that the cause is not settled: "perhaps logic at
+// mine.cpp:14".
+std::string cause_words(const nlohmann::ordered_json& kind);
+
+// The errors of a kind's pairs: "all false negatives", "10 false positives, 2 false negatives". Empty where the code
+// gives no verdict or changes it.
+std::string errors_words(const nlohmann::ordered_json& kind);
+
+// A kind in words: "812 coplanar pairs (66 %), all false negatives: logic".   failures: wrong_pairs of the subject.
+std::string kind_title(const nlohmann::ordered_json& kind, std::uint64_t failures);
+
+// What the list of the first kinds is: of how many, in which order, what the shares are of, and that one pair of each
+// signature was looked at.   told, kinds: numbers of kinds of the subject; failures: its wrong_pairs.
+std::string kinds_heading(const CampaignCounts& counts, std::size_t lane, std::size_t told, std::size_t kinds,
+                          std::uint64_t failures);
 
 // The number of pairs on which some lane of the subject is wrong.   summary: of the campaign.
 std::uint64_t wrong_pairs(const nlohmann::ordered_json& summary, std::string_view subject);
@@ -74,7 +86,8 @@ struct ScreenFailure {
   std::string title, pair, sentence;
 };
 
-// Lays the paragraphs out. Sentences of failures are cut, all at the same number of lines, to keep to `most` lines.
+// Lays the paragraphs out. Sentences of failures are cut to keep to `most` lines: each gets a line, then each in turn
+// another one while there is room.
 std::string one_screen(const std::vector<std::string>& before, const std::vector<ScreenFailure>& failures,
                        const std::vector<std::string>& after, const Screen& screen, int most);
 

@@ -26,10 +26,12 @@ Json kind_of(const std::string& subject, const std::string& cause, const std::st
           {"line", ""},
           {"shape", shape},
           {"pairs", pairs},
+          {"intersecting", pairs},
           {"settled", {3, 3}},
           {"lanes", {subject + "/f32/cpu"}},
           {"simplest",
            {{"case", "cases/" + cause + ".pairs"},
+            {"lanes", {subject + "/f32/cpu"}},
             {"pair",
              "0x0p+0 0x0p+0 0x0p+0 0x1p+0 0x0p+0 0x0p+0 0x0p+0 0x1p+0 0x0p+0 0x1.99999ap-4 0x0p+0 0x0p+0 0x1p+0 "
              "0x0p+0 0x0p+0 0x0p+0 0x1p+0 -0x1p-3"},
@@ -85,8 +87,26 @@ TEST(OwnCode, CrashesComeFirstThenItsOwnMistakesThenRoundingThenDegenerateInput)
   of_another_build[4]["lanes"] = {"mine/f32/cpu-fma"};
   EXPECT_EQ(first_kinds(of_another_build, lane, 1)[0]["cause"], "logic");
   EXPECT_TRUE(first_kinds(nullptr, lane, 3).empty());
-  EXPECT_EQ(kind_title(kinds[3], 1500), "30 coplanar pairs (2.00 % of the failures of all builds): logic");
-  EXPECT_EQ(kind_title(kinds[3], 45600), "30 coplanar pairs (0.066 % of the failures of all builds): logic");
+  EXPECT_EQ(kind_title(kinds[3], 1500), "30 coplanar pairs (2.00 %), all false negatives: logic");
+  EXPECT_EQ(kind_title(kinds[3], 45600), "30 coplanar pairs (0.066 %), all false negatives: logic");
+  EXPECT_EQ(kind_title(kinds[4], 100), "2 degenerate pairs (2.00 %): crash");
+  EXPECT_TRUE(names(kinds_heading(counts, own_lanes(counts).at(0), 3, 7, 1500),
+                    {"3 of 7 kinds", "1,500 pairs", "some build", "signature"}));
+  const CampaignCounts alone = counts_of(summary_of({"mine/f32/cpu"}, {"uniform"}, {1, 0, 0, 0}));
+  EXPECT_FALSE(names(kinds_heading(alone, 0, 1, 1, 1), {"some build"}));
+}
+
+TEST(OwnCode, TheErrorsOfAKindAreThoseOfItsPairs) {
+  Json kind = kind_of("mine", "logic", "general", 1200);
+  EXPECT_EQ(errors_words(kind), "all false negatives");
+  kind["intersecting"] = 1;
+  EXPECT_EQ(errors_words(kind), "1,199 false positives, 1 false negative");
+  kind["intersecting"] = 0;
+  EXPECT_EQ(errors_words(kind), "all false positives");
+  kind["pairs"] = 1;
+  EXPECT_EQ(errors_words(kind), "a false positive");
+  kind["cause"] = "unstable";
+  EXPECT_EQ(errors_words(kind), "");
 }
 
 Json made_open(Json kind) {
@@ -102,16 +122,20 @@ TEST(OwnCode, CausesThatAreNotSettledAreRankedWithRounding) {
                       kind_of("mine", "order-dependent", "general", 10)};
   const std::vector<Json> first = first_kinds(kinds, lane, 3);
   ASSERT_EQ(first.size(), 3u);
-  EXPECT_EQ(kind_title(first[0], 530), "10 general pairs (1.89 % of the failures of all builds): order-dependent");
-  EXPECT_EQ(kind_title(first[1], 530), "500 general pairs (94.3 % of the failures of all builds): rounding");
-  EXPECT_EQ(kind_title(first[2], 530), "20 contained pairs (3.77 % of the failures of all builds): perhaps logic");
+  EXPECT_EQ(kind_title(first[0], 530), "10 general pairs (1.89 %), all false negatives: order-dependent");
+  EXPECT_EQ(kind_title(first[1], 530), "500 general pairs (94.3 %), all false negatives: rounding");
+  EXPECT_EQ(kind_title(first[2], 530), "20 contained pairs (3.77 %), all false negatives: perhaps logic");
 }
 
 TEST(OwnCode, AKindsSentenceLeavesTheLanesOut) {
   Json kind = kind_of("mine", "logic", "general", 1);
-  EXPECT_EQ(kind_sentence(kind), "mine says disjoint.");
+  EXPECT_EQ(kind_sentence(kind, "mine/f32/cpu"), "mine says disjoint.");
   kind["simplest"]["sentences"] = {"mine/f32 (cpu, cpu-fma) says disjoint, but (so) says nobody."};
-  EXPECT_EQ(kind_sentence(kind), "It says disjoint, but (so) says nobody.");
+  EXPECT_EQ(kind_sentence(kind, "mine/f32/cpu"), "It says disjoint, but (so) says nobody.");
+  EXPECT_EQ(kind_sentence(kind, "mine/f64/cpu"), "mine/f32 (cpu, cpu-fma) says disjoint, but (so) says nobody.");
+  kind["simplest"]["sentences"] = {
+      "mine/f32 (cpu) says intersects, but they are (8 ulps of the largest coordinate) apart."};
+  EXPECT_EQ(kind_sentence(kind, "mine/f32/cpu"), "It says intersects, but they are (8 ulps) apart.");
 }
 
 TEST(OwnCode, APairOnALineHasTheSameBits) {

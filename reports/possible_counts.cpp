@@ -100,9 +100,18 @@ void expect_possible_rates(const Json& report) {
   }
   for (const auto& [lane, counts] : of_lanes)
     expect(counts.first == counts.second, "rates of all strata together that are the sums of the strata's rates", lane);
-  for (const Json& row : report.at("group_rates"))
+  for (const Json& row : report.at("group_rates")) {
     expect(row.at("wrong").at("of") == drawn_of(report, nullptr, row.at("group")).pairs,
            "as many pairs as its group has", row);
+    if (!row.contains("false_positive")) continue;
+    expect(
+        row["false_positive"].at("of").get<std::uint64_t>() + row.at("false_negative").at("of").get<std::uint64_t>() ==
+                row["wrong"]["of"] &&
+            row["false_positive"].at("count").get<std::uint64_t>() +
+                    row["false_negative"].at("count").get<std::uint64_t>() <=
+                row["wrong"].at("count"),
+        "errors and pairs that add up", row);
+  }
   for (const Json& rows : report.at("side_by_side")) {
     for (const Json& row : rows.at("strata")) {
       for (const char* field : {"left_wrong", "right_wrong", "differs"}) {
@@ -185,8 +194,8 @@ void expect_possible_failures(const Json& report) {
     const Json& kind = card.at("kind");
     const std::uint64_t of_kind = kind.at("pairs");
     std::uint64_t by_margin = 0;
-    bool possible = of_kind <= pairs && kind.at("signatures") <= signatures && kind.at("settled").size() == 2 &&
-                    kind["settled"][0] <= kind["settled"][1] &&
+    bool possible = of_kind <= pairs && kind.at("intersecting") <= of_kind && kind.at("signatures") <= signatures &&
+                    kind.at("settled").size() == 2 && kind["settled"][0] <= kind["settled"][1] &&
                     kind["settled"][1] <= kind["signatures"].get<std::uint64_t>() * kind.at("lanes").size();
     for (const Json& count : kind.at("margins")) by_margin += count.get<std::uint64_t>();
     for (const auto& [name, count] : kind["margins"].items()) possible = possible && buckets.contains(name);

@@ -162,8 +162,14 @@ Json groups(const CampaignCounts& counts) {
 Json group_rates(const CampaignCounts& counts) {
   Json rows = Json::array();
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
-    for (std::size_t g = 0; g < counts.groups.size(); ++g)
-      rows.push_back({{"lane", l}, {"group", g}, {"wrong", wrong_of(counts.groups[g].counts, l)}});
+    for (std::size_t g = 0; g < counts.groups.size(); ++g) {
+      const StratumCounts& of = counts.groups[g].counts;
+      rows.push_back({{"lane", l},
+                      {"group", g},
+                      {"wrong", wrong_of(of, l)},
+                      {"false_positive", to_json(share_of(of.lanes[l].false_positive, of.pairs - of.intersects))},
+                      {"false_negative", to_json(share_of(of.lanes[l].false_negative, of.intersects))}});
+    }
   }
   return rows;
 }

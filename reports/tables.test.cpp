@@ -5,6 +5,7 @@
 #include <random>
 #include <set>
 
+#include "core/message_testing.h"
 #include "core/wilson.h"
 #include "reports/agreement.h"
 #include "reports/findings.h"
@@ -53,6 +54,29 @@ TEST(Bounds, ATunedPolicysBoundIsNotRoundedToWhatWasAsked) {
   tuned.result = analysis::TuneResult::too_few_pairs;
   const std::string said = tuning_sentences(question, tuned)[0];
   EXPECT_NE(said.find("are under 0.021, and 0.02 was asked for"), said.npos) << said;
+}
+
+// A comparison with 0 decides what is exactly 0 otherwise than one with any small number.
+TEST(Tuning, ZeroIsNotSoldAsASmallValue) {
+  const subjects::TunableSource source{"mine.cpp", "", {}, {"kEps", "1e-6f", 1e-6, {{0, 0, 3}}}};
+  const TuneQuestion question{"mine/f32/cpu", analysis::Forbid::any, 0.02, 0.1, &source};
+  analysis::Tuned tuned;
+  tuned.curves = {{"", false, std::vector<analysis::PolicyErrors>(2)}};
+  std::vector<analysis::PolicyErrors>& points = tuned.curves[0].points;
+  points[0].policy = tuned.chosen = "abs:0";
+  points[1].policy = "abs:1e-20";
+  const auto warns = [&] {
+    for (const std::string& sentence : tuning_sentences(question, tuned)) {
+      if (sentence.starts_with("Zero "))
+        return bool(names(sentence, {"kEps = 0.0f", "kEps = 1e-20f", "7 false negatives"}));
+    }
+    return false;
+  };
+  EXPECT_FALSE(warns());
+  points[1].false_negative = 7;
+  EXPECT_TRUE(warns());
+  tuned.chosen = points[1].policy;
+  EXPECT_FALSE(warns());
 }
 
 // The lower and the upper bound of the rate at which two lanes differ are also rounded outward.

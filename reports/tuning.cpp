@@ -69,6 +69,11 @@ std::string errors(const PolicyErrors& e) {
                      part(e.false_positive, "false positives"), grouped(e.pairs));
 }
 
+// The errors that double from one scale to another: all, or the forbidden ones alone.
+std::string_view doubled_words(const TuneQuestion& q, const PolicyErrors& here, const PolicyErrors& there) {
+  return analysis::doubles(here.wrong(), there.wrong()) ? "errors" : words(q.forbid);
+}
+
 std::string answer(const TuneQuestion& q, const Tuned& t) {
   const std::string of =
       fmt::format("{}: on pairs other than those it was chosen on, {}", choice_words(q, t.chosen), errors(t.confirmed));
@@ -95,17 +100,30 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
           of, words(q.forbid), q.max_rate);
     case TuneResult::not_useful:
       return fmt::format(
-          "No {6} helps here: of those that keep {0} at or under {1}, none has fewer {2} than {3}; {4}. The rate "
+          "No {6} helps here: of those that keep {0} at or under {1}, the fewest {2} are those of {3}; {4}. The rate "
           "of {2} may be at most {5} (--max-other). The exact lane has no errors.",
           words(q.forbid), q.max_rate, other_words(q.forbid), of, trust, q.max_other, setting(q));
     case TuneResult::not_satisfiable:
       break;
   }
   return fmt::format(
-      "No {} helps here: {} keeps {} at or under {}. On the pairs of the choice none had fewer than {}. The exact lane "
-      "has no errors.",
+      "No {} helps here: {} keeps {} at or under {}. On the pairs of the choice the fewest are those of {}. The exact "
+      "lane has no errors.",
       setting(q), q.source ? "no value of " + printable(q.source->epsilon.name) : "none of " + q.lane, words(q.forbid),
       q.max_rate, of);
+}
+
+// Says that the choice 0 does not err like the smallest value beside it: a comparison with 0 also decides what is
+// exactly 0, as where triangles touch. Empty if it does, or for another choice.
+std::string zero_words(const TuneQuestion& q, const Tuned& t) {
+  if (t.curves.empty()) return "";
+  const std::vector<PolicyErrors>& points = t.curves[0].points;
+  if (analysis::tolerance_of(t.chosen) != 0 || points.size() < 2 || points[0].policy != t.chosen) return "";
+  const PolicyErrors &zero = points[0], &least = points[1];
+  if (zero.false_negative == least.false_negative && zero.false_positive == least.false_positive) return "";
+  return fmt::format(
+      "Zero is no small value here: on the pairs of the choice, {} has {}, but {}, the smallest other one, {}.",
+      policy_words(q, zero.policy), errors(zero), policy_words(q, least.policy), errors(least));
 }
 
 std::string power(int k) { return k > 0 ? fmt::format("grow by 2^{}", k) : fmt::format("shrink by 2^{}", -k); }
@@ -151,6 +169,9 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
                                    printable(question.source->epsilon.name), value, printable(question.units)));
     }
   }
+  if (question.source && !tuned.chosen.empty()) {
+    if (const std::string text = zero_words(question, tuned); !text.empty()) result.push_back(text);
+  }
   const auto changes_nothing = [](const PolicyErrors& point) { return point.changes_nothing(); };
   if (question.source && std::all_of(tuned.curves[0].points.begin(), tuned.curves[0].points.end(), changes_nothing))
     result.push_back(
@@ -160,12 +181,15 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
   const analysis::ScaleBreak& scale = tuned.scale;
   for (const auto& [k, at] : {std::pair{scale.up, scale.at_up}, {scale.down, scale.at_down}}) {
     if (k != 0)
-      result.push_back(
-          fmt::format("Scale break: if the scene should {}, errors more than double: {}.", power(k), errors(at)));
+      result.push_back(fmt::format("Scale break: if the scene should {}, {} more than double: {}.", power(k),
+                                   doubled_words(question, scale.here, at), errors(at)));
   }
   if (!tuned.chosen.empty() && scale.up == 0 && scale.down == 0)
-    result.push_back(fmt::format("Scale: with {1}, errors do not double from 2^-{0} to 2^{0} times the scene's size.",
-                                 analysis::kMostScale, choice_words(question, tuned.chosen)));
+    result.push_back(fmt::format("Scale: with {1}, {2} double from 2^-{0} to 2^{0} times the scene's size.",
+                                 analysis::kMostScale, choice_words(question, tuned.chosen),
+                                 question.forbid == Forbid::any
+                                     ? "errors do not"
+                                     : fmt::format("neither errors nor {} alone", words(question.forbid))));
   for (const analysis::Interaction& i : tuned.interactions) {
     result.push_back(fmt::format("Two sites: {} alone has {} wrong, {} alone {}, both {}.", i.first,
                                  grouped(i.of_first.wrong()), i.second, grouped(i.of_second.wrong()),

@@ -63,7 +63,9 @@ std::string place_of(const Json& line) {
   const auto short_name = [&](const char* key) {
     return std::filesystem::path(text_at(line, key)).filename().string();
   };
-  return short_name("line") + (text_at(line, "within").empty() ? "" : " in " + short_name("within"));
+  const std::string within = short_name("within");
+  const bool is_own = !within.empty() && !within.starts_with("graze:");  // Graze's call of the function
+  return short_name("line") + (is_own ? " in " + within : "");
 }
 
 // The differences of a line's operands in ulps, whatever their sign.
@@ -162,6 +164,8 @@ std::string verdicts_sentence(const Json& of) {
   if (number_at(total, "differs") > 0)
     verdicts += fmt::format("Where they differ, {} alone is right on {} pairs, {} alone on {}. ", text_at(of, "first"),
                             count("only_first_right"), text_at(of, "second"), count("only_second_right"));
+  if (text_at(of, "first").ends_with("/cuda-nofma") && text_at(of, "second").ends_with("/cuda-fma"))
+    verdicts += "Built with -fmad=false, your code gives the verdicts of cuda-nofma. ";
   if (of.contains("operands")) return verdicts + operands_sentence(of.at("operands"));
   return verdicts + "Only verdicts are compared: " +
          (of.contains("why_no_operands") ? text_at(of, "why_no_operands") + "."
@@ -182,7 +186,9 @@ std::string verdicts_table(const Json& of, const Screen& screen) {
     table.add({stratum, grouped(number_at(counts, "pairs")), number(number_at(counts, "differs")),
                number(wrong(counts, 0)), number(wrong(counts, 1)), simplest.empty() ? "-" : simplest});
   }
-  std::string text = table.text(screen);
+  std::string text =
+      wrapped(fmt::format("First: {}. Second: {}.", text_at(of, "first"), text_at(of, "second")), screen.columns) +
+      table.text(screen);
   if (const std::vector<const Json*> differing = differing_lines(of); !differing.empty()) {
     TextTable lines({{"line", Align::left},
                      {"comparisons"},

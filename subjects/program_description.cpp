@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "core/lanes/lanes.h"
 #include "core/text.h"
@@ -22,11 +24,18 @@ void add_description(Description& description, const std::string& subject) {
                                                                    {"coplanar", kOutsideCoplanar},
                                                                    {"degenerate", kOutsideDegenerate},
                                                                    {"shared", kOutsideShared}};
+  for (const auto& [key, unused] : json.items()) {
+    constexpr std::string_view kKeys[] = {"version", "source", "convention", "outside"};
+    if (std::find(std::begin(kKeys), std::end(kKeys), key) == std::end(kKeys))
+      throw std::runtime_error(
+          fmt::format("--subject {}: expected version, source, convention and \"outside\" in its description, found {}",
+                      subject, shown(key)));
+  }
   try {
     description.version = json.value("version", "");
     description.source = json.value("source", "");
     description.convention = json.value("convention", "");
-    for (const std::string word : json.value("outside", Json::array())) {
+    for (const std::string& word : json.value("outside", Json::array()).get<std::vector<std::string>>()) {
       const auto found =
           std::find_if(std::begin(kOutside), std::end(kOutside), [&](auto& o) { return o.first == word; });
       if (found == std::end(kOutside))

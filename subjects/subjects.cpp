@@ -74,8 +74,12 @@ Opened parsed(const Wanted& wanted) {
   while (end != what.npos && kind_of(what.substr(0, end)).empty())
     end = end == 0 ? what.npos : what.rfind(':', end - 1);
   if (end == what.npos || end + 1 == what.size()) {
-    throw UsageError(fmt::format("--subject {}: expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found {}",
-                                 wanted.name, shown(what)));
+    throw UsageError(fmt::format("--subject {}: expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found {}{}",
+                                 wanted.name, shown(what),
+                                 what.find(".py") == what.npos
+                                     ? ""
+                                     : "; `graze try FILE.py:FUNCTION` writes a program that calls the function, "
+                                       "and names its command"));
   }
   result.file = what.substr(0, end);
   if (end < what.size()) result.function = what.substr(end + 1);
@@ -86,6 +90,13 @@ Opened parsed(const Wanted& wanted) {
     throw UsageError(
         fmt::format("--subject {}: expected the name of a function, found {}", wanted.name, shown(result.function)));
   result.kind = kind_of(what.substr(0, end));
+  const auto is_written = [](unsigned char c) { return c >= ' ' && c != '"' && c != '\\' && c != 0x7f; };
+  if (const std::string name = result.file;
+      result.kind != "library" && !std::all_of(name.begin(), name.end(), is_written))
+    throw UsageError(
+        fmt::format("--subject {}: no compiler reads a file named {}; rename it, without quotes, "
+                    "backslashes and control characters",
+                    wanted.name, shown_path(name)));
   const std::string bytes = wanted.builds.empty() ? code_in(result.file) : "";
   result.code = {fnv1a(bytes), "the libraries that it loads"};  // of a source, until it is built
   result.hash = result.code.hash;

@@ -266,7 +266,13 @@ TEST_F(Subjects, AProgramMayDescribeItself) {
               open_program("odd", "read line; echo '{\"outside\": [\"nearly\"]}'");
             }).find("expected touching, coplanar, degenerate or shared in \"outside\", found 'nearly'"),
             std::string::npos);
-  EXPECT_NE(error_of([&] { open_program("odd", "read line; echo '{\"version\": 12}'"); }).find("expected texts"),
+  for (const char* other : {R"({"version": 12})", R"({"outside": "touching"})", R"({"outside": {"x": "touching"}})"})
+    EXPECT_NE(error_of([&] { open_program("odd", fmt::format("read line; echo '{}'", other)); }).find("expected texts"),
+              std::string::npos)
+        << other;
+  EXPECT_NE(error_of([&] {
+              open_program("odd", R"(read line; echo '{"outsied": ["touching"]}')");
+            }).find("in its description, found \"outsied\""),
             std::string::npos);
 }
 
@@ -437,6 +443,9 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
   expect_error("x=" + so + ':' + std::string(100'000, 'a'), "expected the name of a function, found ");
   expect_error("x=cmd: ", "expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found .*cmd:");
   expect_error("x=mine.txt", "expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found .*mine.txt");
+  for (const char* name : {"a\"b.c", "a\nb.cpp", "a\\b.cu"})
+    expect_error("x=" + write(name, "int intersects(const float*, const float*) { return 1; }").string(),
+                 "no compiler reads a file named .*rename it");
   expect_error("x=nothere.so", "cannot read the code in .*nothere.so.: No such file");
   expect_error("x=" + std::string(100'000, 'y') + ".so", "cannot read the code in .*: File name too long");
   expect_error("x=" + std::string(100'000, ':'), "expected FILE.so");

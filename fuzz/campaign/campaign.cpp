@@ -193,6 +193,7 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
     if (complete) store.compact();  // keeps merges of thousands of shards small
     outcome.summary = shard_summary(campaign.shard, store, complete, progress.done);
   }
+  store.finish();
   Json run = {{"pairs", progress.done_here},
               {"seconds", seconds()},
               {"threads", threads},

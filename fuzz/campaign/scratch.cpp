@@ -2,6 +2,10 @@
 #include "fuzz/campaign/scratch.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
 
 #include "core/cannot.h"
 #include "core/fnv1a.h"
@@ -10,6 +14,20 @@
 namespace graze::fuzz {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+// The folder's name is known to everyone who may write to the disk, such as /tmp.
+// Throws: std::runtime_error if it is a link, or belongs to another user.
+void expect_own_folder(const fs::path& folder) {
+  struct stat there {};
+  if (lstat(folder.c_str(), &there) != 0) throw std::runtime_error(cannot("use", folder, errno));
+  if (!S_ISDIR(there.st_mode) || there.st_uid != geteuid())
+    throw std::runtime_error(
+        cannot("use", folder, "it is a link, or another user's; remove it, or choose another --scratch"));
+}
+
+}  // namespace
 
 fs::path scratch_of(const fs::path& disk, const fs::path& directory) {
   return disk / fmt::format("graze-{:016x}", fnv1a(fs::absolute(directory).lexically_normal().string()));
@@ -22,9 +40,11 @@ void fetch_from_directory(const Campaign& campaign) {
     if (error) throw std::runtime_error(cannot("make the directory", folder, error.message()));
   };
   make(campaign.scratch);
+  expect_own_folder(campaign.scratch);
   make(campaign.directory);
   const FolderLock alone(campaign.scratch, FolderLock::WhenTaken::refuse);
   make(campaign.scratch);  // a process that ended while this one waited has removed it
+  expect_own_folder(campaign.scratch);
   if (fs::exists(campaign.scratch / kDatabase) || !fs::exists(campaign.directory / kDatabase)) return;
   copy_whole(campaign.directory / kDatabase, campaign.scratch / kDatabase);
 }

@@ -45,6 +45,8 @@ class Store {
   // Leaves one row for each source, and shrinks the file.   Requires: no pairs are missing.
   void compact();
 
+  void finish() { file_.finish(); }
+
   // How many committed pairs each exact decision saw.
   Json oracle() const;
 

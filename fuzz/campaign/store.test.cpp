@@ -3,10 +3,12 @@
 #include "fuzz/campaign/store.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <functional>
 #include <map>
 
@@ -239,6 +241,23 @@ TEST_F(StoreTest, ADamagedDatabaseBehindALinkIsMendedThere) {
   EXPECT_TRUE(fs::is_symlink(file(c)));
 }
 
+// Cases would be written to, and removed from, somebody's folder.
+TEST_F(StoreTest, ALinkInPlaceOfTheFolderOfCasesIsRefused) {
+  const Campaign c = campaign("cases_elsewhere");
+  fs::create_directories(root_ / "theirs_too");
+  write_whole(root_ / "theirs_too/precious", "precious");
+  fs::create_directory(c.directory);
+  fs::create_directory_symlink("../theirs_too", c.directory / "cases");
+  try {
+    run(c);
+    FAIL() << "the link was followed";
+  } catch (const std::runtime_error& error) {
+    EXPECT_TRUE(names(error.what(), {"cases", "link"})) << error.what();
+  }
+  EXPECT_EQ(read_whole(root_ / "theirs_too/precious"), "precious");
+  EXPECT_EQ(std::distance(fs::directory_iterator(root_ / "theirs_too"), {}), 1);
+}
+
 // A reader that may not write leaves an index and an empty log.
 TEST_F(StoreTest, ReadingRemovesWhatOtherReadersOfTheDatabaseLeft) {
   const Campaign c = campaign("read");
@@ -259,9 +278,71 @@ TEST_F(StoreTest, RemovingAStoreLeavesWhatOthersPutBesideIt) {
   EXPECT_FALSE(fs::exists(left));
   EXPECT_FALSE(fs::exists(file(c)));
   fs::create_directory(left);
+  write_whole(c.directory / "status.json", "{\"mine\": 1}");
   remove_store(c.directory);
+  EXPECT_TRUE(fs::exists(c.directory / "status.json"));
   EXPECT_TRUE(fs::exists(left));
   EXPECT_EQ(read_whole(file(c).string() + ".part"), "precious");
+}
+
+// Writing the log back fails as on a full disk; the rows stay in the log.
+TEST_F(StoreTest, AStoreThatCannotBeFinishedSaysSo) {
+  const Campaign c = campaign("full");
+  Store store(store_spec(c));
+  commit(store, c, {0, 0, 400});
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handled = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit small = before;
+  small.rlim_cur = 4096;
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  EXPECT_THROW(store.finish(), std::runtime_error);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, handled);
+  store.finish();
+  const fs::path copy = root_ / "copy";
+  fs::create_directory(copy);
+  fs::copy_file(file(c), copy / "campaign.sqlite");  // the file alone is the store
+  std::uint64_t pairs = 0;
+  StoreSpec spec = store_spec(c);
+  spec.directory = copy;
+  for_each_row(spec, [&](const PairRange& range, const StoredCounts&) { pairs += range.pairs; });
+  EXPECT_EQ(pairs, 400u);
+}
+
+// SQLite would replace the pages of a whole database by those of the other one's log.
+TEST_F(StoreTest, TheLogOfAnotherDatabaseIsRefused) {
+  const Campaign c = campaign("whole");
+  const std::string whole = run(c);
+  {
+    const Campaign other = campaign("other");
+    Store store(store_spec(other));
+    commit(store, other, {0, 0, 400});
+    fs::copy_file(file(other).string() + "-wal", file(c).string() + "-wal");
+  }
+  const std::string bytes = read_whole(file(c));
+  EXPECT_THROW(recorded_store(c.directory), DamagedStore);
+  EXPECT_THROW(run(c), DamagedStore);
+  EXPECT_EQ(read_whole(file(c)), bytes);
+  const auto salvage = discard_damaged(store_spec(c));
+  ASSERT_TRUE(salvage);
+  EXPECT_EQ(salvage->pairs, 1200u);
+  EXPECT_EQ(run(c), whole);
+}
+
+// Anyone who may write to the disk knows the folder's name.
+TEST_F(StoreTest, AScratchThatIsALinkIsRefused) {
+  Campaign c = campaign("shard");
+  c.shard = {1, 2};
+  c.scratch = root_ / "scratch";
+  fs::create_directories(root_ / "theirs_as_well");
+  write_whole(root_ / "theirs_as_well/timings.json", "precious");
+  fs::create_directory_symlink("theirs_as_well", c.scratch);
+  EXPECT_THROW(run(c), std::runtime_error);
+  EXPECT_EQ(read_whole(root_ / "theirs_as_well/timings.json"), "precious");
+  fs::remove(c.scratch);
+  run(c);
+  EXPECT_FALSE(fs::exists(c.scratch));
 }
 
 TEST_F(StoreTest, DamageOfAnotherCampaignIsNoReasonToDiscardIt) {

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <memory>
@@ -19,6 +18,9 @@
 #include "core/cannot.h"
 #include "core/error.h"
 #include "core/fnv1a.h"
+#include "core/plain_file.h"
+#include "core/text.h"
+#include "fuzz/campaign/run_status.h"
 #include "fuzz/files.h"
 #include "fuzz/own_files.h"
 #include "fuzz/sealed.h"
@@ -233,8 +235,18 @@ std::int64_t insert(SQLite::Database& database, std::uint64_t campaign, const Pa
   return database.getLastInsertRowid();
 }
 
-// The files beside the database that SQLite would read although it did not write them: damaged files, files of other
-// programs, and links. Throws: std::runtime_error for a pipe or a device.
+// Whether the database is as a run sealed it that ended. Then no log belongs to it.
+bool is_closed(const fs::path& database) {
+  try {
+    const Json status = read_status(database.parent_path());
+    return status.is_object() && status.contains("hash") && status["hash"] == file_hash(database);
+  } catch (const std::exception&) {  // a status that says nothing
+    return false;
+  }
+}
+
+// The files beside the database that SQLite would read although it did not write them for it: damaged files, files of
+// other programs or databases, and links. Throws: std::runtime_error for a pipe or a device.
 std::vector<fs::path> unusable_files_of(const fs::path& database) {
   constexpr std::string_view kJournal = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", kLog = "\x37\x7f\x06",
                              kIndex = "\x18\xe2\x2d";
@@ -244,10 +256,12 @@ std::vector<fs::path> unusable_files_of(const fs::path& database) {
     struct stat there {};
     if (lstat(file.c_str(), &there) != 0) continue;
     expect_file(file);
-    std::string begin(begins.size(), '\0');
-    std::ifstream(file, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+    std::string begin = beginning_of(file, begins.size());
+    begin.resize(begins.size());
     const bool is_empty = begin.find_first_not_of('\0') == begin.npos;  // SQLite clears the beginning of an old one
-    if (!S_ISREG(there.st_mode) || there.st_nlink != 1 || (begin != begins && !is_empty)) found.push_back(file);
+    if (!S_ISREG(there.st_mode) || there.st_nlink != 1 || (begin != begins && !is_empty) ||
+        (begins == kLog && there.st_size > 0 && is_closed(database)))
+      found.push_back(file);
   }
   return found;
 }
@@ -255,9 +269,10 @@ std::vector<fs::path> unusable_files_of(const fs::path& database) {
 // Throws: DamagedStore if there are any.
 void expect_usable_files_of(const fs::path& database) {
   for (const fs::path& file : unusable_files_of(database))
-    throw DamagedStore(cannot("use", file,
-                              "it is damaged, a link, or not of graze; move it away, or run `graze fuzz` again with "
-                              "--discard-damaged, which renames it"));
+    throw DamagedStore(
+        cannot("use", file,
+               "it is damaged, a link, or not of this database; move it away, or run `graze fuzz` again with "
+               "--discard-damaged, which renames it"));
 }
 
 SQLite::Database opened(const fs::path& file, int how = SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE) {
@@ -416,6 +431,13 @@ void StoreFile::shrink() {
   checked([&] { database_->exec("VACUUM"); });
 }
 
+void StoreFile::finish() {
+  checked([&] {
+    if (database_->execAndGet("PRAGMA wal_checkpoint(TRUNCATE)").getInt() != 0)
+      throw std::runtime_error(cannot("write", file_, "its log cannot be written back; run the same command again"));
+  });
+}
+
 StoredCounts StoreFile::counts(std::int64_t id) {
   return checked([&] {
     SQLite::Statement query(*database_, std::string(kColumns) + "WHERE id = ?");
@@ -444,9 +466,16 @@ StoreSpec recorded_store(const fs::path& directory) {
     if (is_fresh(store.database, file)) throw Damaged("it is empty");
     const Json text = parse_shallow(recorded_text(store.database));
     if (!text.is_object()) throw Damaged("its campaign is not a JSON object");
-    StoreSpec spec{directory, text.at("spec"), text.at("build"), {}, text["spec"].at("lanes"), {}};
-    if (text.contains("shard")) spec.shard = parse_shard(text["shard"].get<std::string>()).value();
-    return spec;
+    try {
+      StoreSpec spec{directory, text.at("spec"), text.at("build"), {}, text["spec"].at("lanes"), {}};
+      if (!text.contains("shard")) return spec;
+      const auto shard = parse_shard(text["shard"].get<std::string>());
+      if (!shard) throw Damaged("its shard is " + shown(text["shard"].get<std::string>()));
+      spec.shard = *shard;
+      return spec;
+    } catch (const Json::exception& error) {
+      throw Damaged(one_line(error.what()));
+    }
   });
 }
 
@@ -482,7 +511,12 @@ void remove_store(const fs::path& directory) {
   const std::string database = directory / kDatabase;
   for (const char* behind : {"", "-wal", "-shm", "-journal"}) fs::remove(database + behind);
   if (const std::string part = database + kPart; is_left_over(part)) fs::remove(part);
-  for (const char* file : {"status.json", "timings.json"}) fs::remove(directory / file);
+  for (const char* file : {"status.json", "timings.json"}) {
+    try {
+      if (!read_sealed(directory / file, "").is_null()) fs::remove(directory / file);
+    } catch (const std::runtime_error&) {  // not written by the run
+    }
+  }
   std::error_code not_empty;
   fs::remove(directory / "cases", not_empty);
   fs::remove(directory, not_empty);

@@ -54,6 +54,9 @@ class StoreFile {
   // Shrinks the file after rows were removed.
   void shrink();
 
+  // Writes the log back, so that the file alone is the store. Closing does that too, but cannot say that it failed.
+  void finish();
+
   // Replaces the rows `replaced` by a new one in one transaction.   Returns: the new row's id.
   std::int64_t put(const PairRange& range, const StoredCounts& counts, const std::vector<std::int64_t>& replaced);
 

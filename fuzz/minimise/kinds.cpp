@@ -33,6 +33,7 @@ struct Case {
   std::vector<LaneReason> reasons;
 
   const corpus::Entry& shown() const { return entries.front(); }
+  bool intersects() const { return signature.contact != Contact::none; }
 };
 
 Case read_case(const SelectedLanes& under_test, const Json& spec, const std::filesystem::path& directory,
@@ -51,8 +52,12 @@ Case read_case(const SelectedLanes& under_test, const Json& spec, const std::fil
 struct Kind {
   std::string key, subject, cause, line;
   std::string_view shape;
-  std::uint64_t pairs = 0;
-  std::array<std::uint64_t, 2> settled{};  // yes, of
+  std::uint64_t pairs = 0, intersecting = 0;  // intersecting: those on which a wrong verdict is a false negative
+  std::array<std::uint64_t, 2> settled{};     // yes, of
+
+  bool is_rarer(const Case& c) const {  // whether fewer of its pairs have the case's truth than the other one
+    return c.intersects() ? 2 * intersecting < pairs : 2 * intersecting > pairs;
+  }
   std::vector<std::size_t> places;
 };
 
@@ -65,13 +70,14 @@ std::vector<Kind> grouped(const std::vector<Case>& cases) {
       Kind& kind =
           kinds
               .try_emplace(
-                  key, Kind{key, c.signature.subject, reason.cause, reason.line, shape_name(c.signature), 0, {}, {}})
+                  key, Kind{key, c.signature.subject, reason.cause, reason.line, shape_name(c.signature), 0, 0, {}, {}})
               .first->second;
       kind.settled[0] += reason.audited && reason.settled;
       kind.settled[1] += reason.audited;
       if (!kind.places.empty() && kind.places.back() == place) continue;
       kind.places.push_back(place);
       kind.pairs += c.pairs;
+      if (c.intersects()) kind.intersecting += c.pairs;
     }
   }
   std::vector<Kind> result;
@@ -85,7 +91,8 @@ bool is_of(const Kind& kind, const Case& c, const LaneReason& reason) {
 }
 
 // The index of the case whose pair shows the kind best. Prefers a pair on which no lane is wrong for another reason,
-// then one with settled reasons, then one that no earlier kind shows, and then the simplest.
+// then one with the kind's commoner error, then one with settled reasons, then one that no earlier kind shows, and then
+// the simplest.
 std::size_t simplest_of(const Kind& kind, const std::vector<Case>& cases, std::set<std::string>& shown) {
   const auto rank = [&](std::size_t place) {
     const Case& c = cases[place];
@@ -93,7 +100,8 @@ std::size_t simplest_of(const Kind& kind, const std::vector<Case>& cases, std::s
                                     [&](const LaneReason& reason) { return is_of(kind, c, reason); });
     const bool open = std::any_of(c.reasons.begin(), c.reasons.end(),
                                   [&](const LaneReason& reason) { return is_of(kind, c, reason) && !reason.settled; });
-    return std::tuple(mixed, open, shown.contains(pair_text(c.shown().pair)), simplicity(c.shown().pair));
+    return std::tuple(mixed, kind.is_rarer(c), open, shown.contains(pair_text(c.shown().pair)),
+                      simplicity(c.shown().pair));
   };
   const std::size_t best = *std::min_element(kind.places.begin(), kind.places.end(),
                                              [&](std::size_t l, std::size_t r) { return rank(l) < rank(r); });
@@ -188,6 +196,7 @@ Json row_of(const SelectedLanes& under_test, const Kind& kind, const std::vector
           {"line", kind.line},
           {"shape", kind.shape},
           {"pairs", kind.pairs},
+          {"intersecting", kind.intersecting},
           {"signatures", kind.places.size()},
           {"lanes", ids},
           {"settled", kind.settled},

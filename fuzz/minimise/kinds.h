@@ -49,16 +49,16 @@ std::string_view shape_name(const analysis::Signature& signature);
 std::string kind_key(std::string_view subject, const LaneReason& reason, std::string_view shape);
 
 // What a kind is, where it was seen, and its pairs:
-// {"key", "subject", "cause", "line", "shape", "pairs", "signatures", "lanes": [id], "settled": [yes, of],
-//  "strata": {id: kept pairs}, "margins": {bucket: pairs}, "places": [in summary["signatures"]],
+// {"key", "subject", "cause", "line", "shape", "pairs", "intersecting", "signatures", "lanes": [id],
+//  "settled": [yes, of], "strata": {id: kept pairs}, "margins": {bucket: pairs}, "places": [in summary["signatures"]],
 //  "simplest": {"case", "pair", "from", "lanes": [id], "verdicts": {id: verdict}, "sentences": [text]},
 //  "worst": {"case", "pair", "from", "margin_ulps"}}
 // `pairs` counts the pairs of its signatures; one pair stands for each signature: the minimised one, or else the first
-// kept one. If possible, every lane that is wrong on the simplest pair belongs to the kind. The worst pair has the
-// largest margin among the kept pairs of the kind that were examined (at most kMostLookedAt).
-// Returns: the kinds, most frequent first, ties by key. Nothing once `stop`, which is called now and then, returns
-// true. Deterministic for any number of threads.
-// Throws: FormatError; std::runtime_error if a device and its twin differ.
+// kept one. `intersecting` counts those that intersect: their wrong verdicts are false negatives. The simplest pair is
+// of the commoner error. If possible, every lane that is wrong on the simplest pair belongs to the kind. The worst pair
+// has the largest margin among the kept pairs of the kind that were examined (at most kMostLookedAt). Returns: the
+// kinds, most frequent first, ties by key. Nothing once `stop`, which is called now and then, returns true.
+// Deterministic for any number of threads. Throws: FormatError; std::runtime_error if a device and its twin differ.
 inline constexpr std::size_t kMostLookedAt = 40;
 Json find_kinds(
     const SelectedLanes& under_test, const std::filesystem::path& directory, const Json& summary,

@@ -82,7 +82,8 @@ Known known_of(const fs::path& directory, const Json& summary, const Json& lanes
 void expect_shape(const Json& kind) {
   using Texts = std::map<std::string, std::string>;
   for (const char* field : {"key", "subject", "cause", "line", "shape"}) kind.at(field).get_ref<const std::string&>();
-  for (const char* field : {"pairs", "signatures"}) kind.at(field).get_ref<const Json::number_unsigned_t&>();
+  for (const char* field : {"pairs", "intersecting", "signatures"})
+    kind.at(field).get_ref<const Json::number_unsigned_t&>();
   for (const char* field : {"strata", "margins"}) {
     for (const auto& [name, count] : kind.at(field).get_ref<const Json::object_t&>())
       count.get_ref<const Json::number_unsigned_t&>();
@@ -109,19 +110,22 @@ void expect_places(const Known& known, const Json& kind) {
              std::adjacent_find(places.begin(), places.end(), std::greater_equal<>()) == places.end(),
          "places that are not the ascending indices of signatures");
   const std::string subject = kind.at("subject"), shape = kind.at("shape");
-  std::uint64_t pairs = 0;
+  std::uint64_t pairs = 0, intersecting = 0;
   Counts margins, strata;
   for (const std::uint64_t place : places) {
     const Case& c = known.cases[place];
     expect(c.signature.subject == subject && shape_name(c.signature) == shape,
            "a kind with a signature of another subject or shape: " + c.key);
     pairs += c.pairs;
+    if (c.signature.contact != Contact::none) intersecting += c.pairs;
     margins[name_of_bucket(c.signature.bucket)] += c.pairs;
     for (const corpus::Entry& entry : c.entries) {
       if (const std::string* stratum = corpus::field(entry, "stratum")) ++strata[*stratum];
     }
   }
   expect(kind.at("pairs") == pairs, fmt::format("a kind with {} pairs instead of {}", kind["pairs"].dump(), pairs));
+  expect(kind.at("intersecting") == intersecting,
+         fmt::format("a kind with {} pairs that intersect instead of {}", kind["intersecting"].dump(), intersecting));
   expect(kind.at("signatures") == places.size(),
          fmt::format("a kind with {} signatures instead of {}", kind["signatures"].dump(), places.size()));
   expect(kind.at("margins").get<Counts>() == margins, "a kind whose margins are not those of its signatures");

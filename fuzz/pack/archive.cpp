@@ -9,11 +9,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <memory>
 
 #include "core/cannot.h"
 #include "core/error.h"
+#include "core/plain_file.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
 #include "fuzz/files.h"
@@ -128,13 +128,11 @@ std::string archive_of(std::vector<PackedFile> files) {
 }
 
 bool is_archive(const fs::path& file) {
-  std::error_code none;
-  if (!fs::is_regular_file(file, none)) return false;
-  char head[kApplicationAt + 4] = {};
-  std::ifstream(file, std::ios::binary).read(head, sizeof head);
+  std::string head = beginning_of(file, kApplicationAt + 4);
+  head.resize(kApplicationAt + 4);
   std::uint32_t id = 0;
-  for (std::size_t i = kApplicationAt; i < sizeof head; ++i) id = id << 8 | static_cast<unsigned char>(head[i]);
-  return std::string_view(head, kMagic.size()) == kMagic && id == kPackId;
+  for (std::size_t i = kApplicationAt; i < head.size(); ++i) id = id << 8 | static_cast<unsigned char>(head[i]);
+  return head.starts_with(kMagic) && id == kPackId;
 }
 
 std::vector<PackedFile> read_archive(const fs::path& file) {

@@ -123,7 +123,7 @@ Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const
   const CaseState state = state_after(CaseState::failing, failure.signature, now.marks);
   if (known != corpus.end()) {
     RegressionCase& c = known->second;
-    c.count += failure.count;
+    c.count = std::min(c.count + failure.count, kMostCount);
     c.last = failure.seen;
     if (c.state != CaseState::fixed || state == CaseState::fixed) return Added::seen_again;
   }

@@ -7,9 +7,11 @@
 #include <sstream>
 
 #include "analysis/signature.h"
+#include "core/cannot.h"
 #include "core/fnv1a.h"
 #include "core/text.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/files.h"
 
 namespace graze::fuzz {
 namespace {
@@ -18,7 +20,7 @@ constexpr CaseState kStates[] = {CaseState::failing, CaseState::fixed, CaseState
 constexpr std::string_view kOwnFields[] = {"name",      "truth", "contact", "state", "count",
                                            "signature", "lanes", "first",   "last"};
 
-constexpr std::string_view kMarks = ".+-?~";
+constexpr std::string_view kMarks = ".+-?!@%~";
 
 // "moller_1997:-f32/cpu.f64/cpu;projected_sat:.f32/cpu": each subject with its lanes, a mark before each lane.
 std::string text_of(const Marks& marks) {
@@ -58,7 +60,7 @@ struct Line {
   std::uint64_t count() const {
     const std::string& word = text("count");
     const std::optional<std::uint64_t> value = parse_whole(word);
-    if (!value) fail("a whole number as count", '\'' + word + '\'');
+    if (!value || *value == 0 || *value > kMostCount) fail("a whole number above 0 as count", '\'' + word + '\'');
     return *value;
   }
 
@@ -77,7 +79,7 @@ struct Line {
         const std::string lane = id + '/' + std::string(rest.substr(1, end == rest.npos ? end : end - 1));
         if (kMarks.find(rest.front()) == kMarks.npos || end == rest.npos || !parse_lane_name(lane))
           fail("a mark and a lane of " + id + " in lanes", '\'' + std::string(rest) + '\'');
-        marks.emplace(lane, rest.front());
+        if (!marks.emplace(lane, rest.front()).second) fail("every lane once in lanes", "a second " + lane);
         rest.remove_prefix(end + 1);
       }
     }
@@ -127,6 +129,8 @@ std::string case_name(const std::string& signature) {
 }
 
 RegressionCorpus read_regressions(const std::filesystem::path& file) {
+  if (const std::string text = read_whole(file); !text.empty() && text.back() != '\n')
+    throw corpus::FormatError(cannot("use", file, "it is cut off: its last line has no end"));
   RegressionCorpus corpus;
   for (const corpus::Entry& entry : corpus::read_pairs(file)) {
     const Line line{entry, fmt::format("{}:{}", file.string(), entry.line)};

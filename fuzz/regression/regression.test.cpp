@@ -95,6 +95,12 @@ TEST_F(Regression, AFileReadsAsItWasWritten) {
   EXPECT_EQ(c.other, (std::vector<std::pair<std::string, std::string>>{{"stratum", "lattice"}}));
 }
 
+TEST_F(Regression, EveryMarkIsReadAgain) {
+  only().marks = {{"mine/f32/cpu", '!'}, {"mine/f32/cpu-fma", '@'}, {"mine/f64/cpu", '%'}, {"mine/f64/cpu-fma", '~'}};
+  write_regressions(file, corpus);
+  EXPECT_EQ(read_regressions(file).at(kSignature).marks, only().marks);
+}
+
 TEST_F(Regression, BadLinesAreNamed) {
   EXPECT_TRUE(names(read_error("state=failing", "state=broken"), {":3", "failing", "fixed", "flaky", "'broken'"}));
   EXPECT_TRUE(names(read_error("count=7", "count=-7"), {":3", "count", "'-7'"}));
@@ -106,6 +112,10 @@ TEST_F(Regression, BadLinesAreNamed) {
   EXPECT_TRUE(names(read_error("signature=" + kSignature, "signature=point"), {":3", "signature", "'point'"}));
   EXPECT_TRUE(names(read_error("name=moller_1997_", "name=other_"), {":3", "signature", "'other_984a73f8aa2b1c68'"}));
   EXPECT_TRUE(names(read_error("skew/0/moller_1997:-f32/cpu", "skew/-2^-3/moller_1997:-f32/cpu"), {":3", "signature"}));
+  EXPECT_TRUE(names(read_error("count=7", "count=0"), {":3", "count", "'0'"}));
+  EXPECT_TRUE(names(read_error("count=7", "count=18446744073709551615"), {":3", "count"}));
+  EXPECT_TRUE(names(read_error("moller_1997:-f32/cpu,", "moller_1997:-f32/cpu,.f32/cpu,"), {":3", "second"}));
+  EXPECT_TRUE(names(read_error("stratum=lattice\n", "stratum=lat"), {"cut off"}));
   write_regressions(file, corpus);
   const corpus::Entry twice = corpus::read_pairs(file).front();
   std::ofstream again(file, std::ios::app);

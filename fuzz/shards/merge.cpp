@@ -250,8 +250,10 @@ void join_rounds(const std::vector<StoreSpec>& stores, const std::vector<std::ui
   campaign.sources[0].pair = [found](std::uint64_t index) { return found->all.kept.at(index).pair; };
 }
 
-Outcome write_results(const Campaign& campaign, const Store& store, bool complete) {
-  return {complete, write_summary(campaign, store, complete), store.oracle()};
+Outcome write_results(const Campaign& campaign, Store& store, bool complete) {
+  Outcome outcome{complete, write_summary(campaign, store, complete), store.oracle()};
+  store.finish();
+  return outcome;
 }
 
 }  // namespace

@@ -250,6 +250,7 @@ export interface FailureKind {
   line: string; // "core/algorithms/moller_1997.h:117"; empty if no comparison is to blame
   shape: 'general' | 'coplanar' | 'contained' | 'degenerate';
   pairs: number;
+  intersecting: number; // of these; their wrong verdicts are false negatives
   signatures: number;
   lanes: string[]; // ids of the lanes that fail in this way on some pair of the kind
   settled: [number, number]; // lanes whose cause passed the audit, and lanes that it could check

@@ -12,6 +12,7 @@
 #include <map>
 
 #include "analysis/convention.h"
+#include "analysis/known_experiments.h"
 #include "analysis/neighbours.h"
 #include "analysis/signature.h"
 #include "core/algorithms/moller_1997.h"

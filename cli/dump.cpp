@@ -178,8 +178,10 @@ void add_dump(CLI::App& app, int&) {
       ->required();
   static_assert(static_cast<int>(Format::pairs) == 0 && static_cast<int>(Format::csv) == 1);
   command
-      ->add_option("--format", options->format,
-                   "Format of the output. csv: a table with a header line; pairs: the format that `graze check` reads")
+      ->add_option(
+          "--format", options->format,
+          "Format of the output. csv: a table with a header line, and coordinates as decimals that a reader of doubles "
+          "turns into the exact numbers; pairs: the format that `graze check` reads")
       ->transform(one_of({"pairs", "csv"}, Chosen::place))
       ->option_text("pairs|csv")
       ->default_str("csv");

@@ -291,7 +291,8 @@ void query_mesh(const QueryOptions& options, int& status) {
 }  // namespace
 
 void add_query(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("query", "Find the triangles of a mesh that meet a reference triangle");
+  CLI::App* command = app.add_subcommand(
+      "query", "Find the triangles of a mesh that meet a reference triangle, or where a mesh intersects itself");
   command->footer("Example: graze query arm.off#0 arm.off --json");
   auto options = std::make_shared<QueryOptions>();
   command

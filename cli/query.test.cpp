@@ -64,6 +64,7 @@ TEST_F(QueryCommand, FindsAllOrAny) {
             "5 of 6 triangles meet the reference, the first is 0 (exact, one-core)\n");
   EXPECT_EQ(out("graze query mesh.obj#3 mesh.obj --executor all-cores"),
             "2 of 6 triangles meet the reference, the first is 0 (exact, all-cores)\n");
+  expect_error("graze query mesh.obj mesh.obj", 2, {"mesh.obj#0", "--self mesh.obj"});
   EXPECT_EQ(out("graze query mesh.obj#5 mesh.obj --any"), "triangle 5 meets the reference (exact, one-core)\n");
   EXPECT_EQ(out("echo 99 99 99 98 99 99 99 98 99 > far; graze query far mesh.obj --any"),
             "no triangle of 6 meets the reference (exact, one-core)\n");

@@ -80,7 +80,7 @@ std::vector<query::Triangle> read_references(const std::string& name) {
     throw UsageError(
         fmt::format("REFERENCE {0} is a mesh: name one of its faces, such as {0}#0; --self {0} finds the "
                     "pairs of its faces that intersect",
-                    shown_path(name)));
+                    path_word(name)));
   if (hash == name.npos || std::filesystem::exists(name)) return read_numbers(name);
   const std::optional<std::uint64_t> face = parse_whole(name.substr(hash + 1));
   if (!face) throw UsageError(name + ": expected MESH#FACE with a whole number, found '" + name.substr(hash + 1) + "'");

@@ -2,7 +2,10 @@
 // `graze try`: from a source file to the answer. It builds the code as a subject, runs a campaign, minimises the
 // failures that matter most, and prints one screen. The directory is a campaign's, so every other verb works on it.
 #include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -43,6 +46,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostTold = 3;  // failures on the screen
 // Signatures of a kind that are minimised, those of the simplest pairs: of compiled code, and of a program.
 constexpr std::size_t kMostOfKind = 4, kMostOfProgram = 1;
+constexpr int kThreadsForPrograms = 4;            // for each core, because Graze mostly waits for the answers
 constexpr std::uint64_t kPairsOfCode = 40'000;    // of compiled code
 constexpr std::uint64_t kPairsOfProgram = 2'000;  // of a program, which answers each pair by a line of text
 constexpr double kProgramsTimeout = 10;           // seconds; a program may take some to start
@@ -342,8 +346,13 @@ int try_source(const TryOptions& options) {
       throw std::runtime_error(
           cannot("minimise", fuzz.out, "another process has just changed it; run the command again"));
     fuzz::write_whole(campaign.directory / "margins.svg", reports::margin_figure(outcome.summary));
-    answer.kinds = minimised_kinds(under_test, campaign.directory, outcome.summary, lane,
-                                   answer.code.is_program ? kMostOfProgram : kMostOfKind);
+    const bool is_program = answer.code.is_program;
+    const int threads = (is_program ? kThreadsForPrograms : 1) * tbb::info::default_concurrency();
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    tbb::task_arena(threads).execute([&] {
+      answer.kinds = minimised_kinds(under_test, campaign.directory, outcome.summary, lane,
+                                     is_program ? kMostOfProgram : kMostOfKind);
+    });
     if (answer.kinds.is_null()) return interrupted();
     fuzz::write_kinds(campaign.directory, under_test, answer.kinds);
     answer.told = reports::first_kinds(answer.kinds, lane, kMostTold);

@@ -55,14 +55,15 @@ bool has_no_verdict(const std::string& cause) {
   return cause == "crash" || cause == "no answer in time" || cause == "unstable";
 }
 
-// How much the kind matters; smaller is more.
-int rank_of(const Json& kind, const std::string& lane) {
+// How much the kind matters; smaller is more.   all: pairs of all kinds of the subject.
+int rank_of(const Json& kind, const std::string& lane, std::uint64_t all) {
   if (!is_of_lane(kind, lane)) return 4;
   const std::string cause = kind.at("cause"), shape = kind.at("shape");
   if (has_no_verdict(cause)) return 0;
   if (shape == "degenerate") return 3;
   const bool is_mistake = cause == "logic" || cause == "order-dependent" || cause == "absolute epsilon";
-  return is_mistake && !is_open(kind) ? 1 : 2;
+  const bool is_common = 100 * kind.at("pairs").get<std::uint64_t>() >= all;
+  return is_mistake && is_common && !is_open(kind) ? 1 : 2;
 }
 
 // "2^3 ulps"
@@ -163,9 +164,11 @@ std::vector<Json> first_kinds(const Json& kinds, const ReportLane& lane, std::si
   for (const Json& kind : kinds) {
     if (kind.at("subject").get_ref<const std::string&>() == lane.name.subject) found.push_back(kind);
   }
+  std::uint64_t all = 0;
+  for (const Json& kind : found) all += kind.at("pairs").get<std::uint64_t>();
   // They are sorted by their numbers of pairs already.
   std::stable_sort(found.begin(), found.end(),
-                   [&](const Json& l, const Json& r) { return rank_of(l, lane.id) < rank_of(r, lane.id); });
+                   [&](const Json& l, const Json& r) { return rank_of(l, lane.id, all) < rank_of(r, lane.id, all); });
   if (found.size() > most) found.resize(most);
   return found;
 }
@@ -210,7 +213,8 @@ std::string kinds_heading(const CampaignCounts& counts, std::size_t lane, std::s
   const auto builds = std::count_if(counts.lanes.begin(), counts.lanes.end(),
                                     [&](const ReportLane& other) { return other.name.subject == subject; });
   return fmt::format(
-      "{} of {} of failure, the code's own mistakes first (shares of the {} that {} gets wrong, by one pair of each "
+      "{} of {} of failure, the code's own mistakes of at least 1 % first (shares of the {} that {} gets wrong, by one "
+      "pair of each "
       "signature):",
       told, counted(kinds, "kind"), counted(failures, "pair"), builds > 1 ? "some build" : "it");
 }

@@ -31,8 +31,9 @@ std::string other_builds(const CampaignCounts& counts, std::size_t lane);
 
 // The kinds of failure (fuzz/minimise/kinds.h) of the lane's subject that matter most, at most `most`. First those of
 // this lane, then those of other builds alone. Among them first those without an answer (crash, time-out, changing
-// verdict), then those of triangles that are no segments or points, and among these the mistakes of the code itself
-// before rounding and before causes that are not settled. Equals: the commonest first.   kinds: may be null.
+// verdict), then those of triangles that are no segments or points, and among these the mistakes of the code itself, if
+// they are at least 1 % of all, before rounding and before causes that are not settled. Equals: the commonest first.
+// kinds: may be null.
 std::vector<nlohmann::ordered_json> first_kinds(const nlohmann::ordered_json& kinds, const ReportLane& lane,
                                                 std::size_t most);
 

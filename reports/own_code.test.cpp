@@ -125,6 +125,8 @@ TEST(OwnCode, CausesThatAreNotSettledAreRankedWithRounding) {
   EXPECT_EQ(kind_title(first[0], 530), "10 general pairs (1.89 %), all false negatives: order-dependent");
   EXPECT_EQ(kind_title(first[1], 530), "500 general pairs (94.3 %), all false negatives: rounding");
   EXPECT_EQ(kind_title(first[2], 530), "20 contained pairs (3.77 %), all false negatives: perhaps logic");
+  const Json rare = {kind_of("mine", "rounding", "general", 5000), kind_of("mine", "logic", "general", 10)};
+  EXPECT_EQ(first_kinds(rare, lane, 1)[0]["cause"], "rounding");
 }
 
 TEST(OwnCode, AKindsSentenceLeavesTheLanesOut) {

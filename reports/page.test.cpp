@@ -210,6 +210,7 @@ TEST(Page, OfManySignaturesIsUnderTenMebibytes) {
     kind["strata"] = strata;
     kind["signatures"] = places;
     kind["pairs"] = places * kOfSignature;
+    kind["intersecting"] = truth.verdict == Verdict::intersects ? places * kOfSignature : 0;
     kind["margins"] = {{bucket, places * kOfSignature}};
     kind["settled"] = {1, places * kind["lanes"].size()};
     for (const char* which : {"simplest", "worst"}) {

@@ -52,7 +52,7 @@ std::string choice_words(const TuneQuestion& q, const std::string& policy) {
                      policy.empty() || e.name == e.written ? "" : fmt::format(" (now {})", printable(e.written)));
 }
 
-// The subject of "helps here": "No tolerance", "No value".
+// The subject of "is good enough here": "No tolerance", "No value".
 std::string_view setting(const TuneQuestion& q) { return q.source ? "value" : "tolerance"; }
 
 std::string rate(std::uint64_t count, std::uint64_t of) {
@@ -100,17 +100,19 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
           of, words(q.forbid), q.max_rate);
     case TuneResult::not_useful:
       return fmt::format(
-          "No {6} helps here: of those that keep {0} at or under {1}, the fewest {2} are those of {3}; {4}. The rate "
+          "No {6} is good enough here: of those that keep {0} at or under {1}, the fewest {2} are those of {3}; {4}. "
+          "The rate "
           "of {2} may be at most {5} (--max-other). The exact lane has no errors.",
           words(q.forbid), q.max_rate, other_words(q.forbid), of, trust, q.max_other, setting(q));
     case TuneResult::not_satisfiable:
       break;
   }
   return fmt::format(
-      "No {} helps here: {} keeps {} at or under {}. On the pairs of the choice the fewest are those of {}. The exact "
+      "No {} is good enough here: {} keeps {} at or under {}. On the pairs of the choice the fewest are those of {}. "
+      "The exact "
       "lane has no errors.",
-      setting(q), q.source ? "no value of " + printable(q.source->epsilon.name) : "none of " + q.lane, words(q.forbid),
-      q.max_rate, of);
+      setting(q), q.source ? "no value of " + printable(q.source->epsilon.name) : "no tolerance of " + q.lane,
+      words(q.forbid), q.max_rate, of);
 }
 
 // Says that the choice 0 does not err like the smallest value beside it: a comparison with 0 also decides what is
@@ -181,11 +183,11 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
   const analysis::ScaleBreak& scale = tuned.scale;
   for (const auto& [k, at] : {std::pair{scale.up, scale.at_up}, {scale.down, scale.at_down}}) {
     if (k != 0)
-      result.push_back(fmt::format("Scale break: if the scene should {}, {} more than double: {}.", power(k),
+      result.push_back(fmt::format("Scale break: if the pairs should {}, {} more than double: {}.", power(k),
                                    doubled_words(question, scale.here, at), errors(at)));
   }
   if (!tuned.chosen.empty() && scale.up == 0 && scale.down == 0)
-    result.push_back(fmt::format("Scale: with {1}, {2} double from 2^-{0} to 2^{0} times the scene's size.",
+    result.push_back(fmt::format("Scale: with {1}, {2} double from 2^-{0} to 2^{0} times the pairs' size.",
                                  analysis::kMostScale, choice_words(question, tuned.chosen),
                                  question.forbid == Forbid::any
                                      ? "errors do not"

@@ -151,7 +151,7 @@ export interface Report {
     declined: number;
     differs_from_cpu: Share | null;
   }[];
-  group_rates: { lane: number; group: number; wrong: Share }[];
+  group_rates: { lane: number; group: number; wrong: Share; false_positive?: Share; false_negative?: Share }[];
   // Pairs of lanes of one algorithm. `differs` counts pair by pair if known, otherwise it is null. A null stratum means
   // all strata together, as in `rates`.
   side_by_side: {

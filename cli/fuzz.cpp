@@ -190,24 +190,6 @@ fuzz::Outcome run_with_progress(const fuzz::Campaign& campaign) {
 
 namespace {
 
-// Says at once that a program crashes on each of the first pairs: often it does not start, and the campaign would take
-// long, because each pair starts it again.
-void tell_programs_that_crash(const fuzz::SelectedLanes& under_test, const std::vector<strata::PairSource>& sources) {
-  constexpr std::uint64_t kAsked = 3;
-  if (sources.empty()) return;
-  for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
-    const std::string& id = under_test.lanes[l]->id;
-    const subjects::Opened* subject = subjects::opened(under_test.lanes[l]->lane_name().subject);
-    if (!subject || subject->kind != "command" || !under_test.on_host[l]) continue;
-    std::uint64_t crashed = 0;
-    while (crashed < std::min(kAsked, sources.front().pairs) &&
-           decide_one(under_test.on_host[l], sources.front().pair(crashed)) == Verdict::crashed)
-      ++crashed;
-    if (crashed == kAsked)
-      fmt::print(stderr, "graze: {} crashed on each of the first {} pairs; try its command by hand\n", id, kAsked);
-  }
-}
-
 int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
   const fuzz::SelectedLanes under_test = lanes_of_campaign(options);
   std::vector<strata::LeftOut> left_out;
@@ -221,7 +203,6 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
                  reports::counted(kept->pairs, "pair"), reports::grouped(kept->batches), kept->batches == 1 ? "" : "es",
                  printable(kept->damaged.string()));
   }
-  tell_programs_that_crash(under_test, campaign.sources);
   if (ranks) return on_ranks(options, campaign, left_out, *ranks);
   const fuzz::Outcome outcome = run_with_progress(campaign);
   if (!outcome.complete) {

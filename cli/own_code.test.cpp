@@ -114,13 +114,6 @@ TEST_F(OwnCodeTest, TheExactLaneRunsBesideItUnlessALaneOptionLeavesItOut) {
 }
 
 // Code that hangs, and code that crashes.
-TEST_F(OwnCodeTest, AProgramThatDoesNotStartIsToldAtOnce) {
-  const Ran ran =
-      shell("graze fuzz --subject 'p=cmd:sh nosuch.sh' --lanes 'p/*' --strata uniform --pairs 20 --out p > /dev/null");
-  EXPECT_EQ(ran.status, 0) << ran.err;
-  EXPECT_TRUE(names(ran.err.substr(0, ran.err.find('\n')), {"p/f32/cpu", "first 3 pairs", "by hand"})) << ran.err;
-}
-
 TEST_F(OwnCodeTest, FailuresAreEmittedToo) {
   for (const char* does : {"for (;;) pause();", "abort();"}) {
     shell(

@@ -15,6 +15,7 @@
 #include "core/text.h"
 #include "cuda/lanes/device.h"
 #include "fuzz/campaign/campaign.h"
+#include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/simplicity.h"
 #include "fuzz/sealed.h"
 #include "reports/discrepancy.h"
@@ -127,10 +128,7 @@ bool is_simpler(const Pair& l, const Pair& r) { return fuzz::simplicity(l) < fuz
 
 // The simplest pair to show: of two triangles, if possible, for one may well see no fault in a segment or a point.
 bool shows_better(const Pair& l, const Pair& r) {
-  const auto is_degenerate = [](const Pair& pair) {
-    const Hulls hulls = relation_of(pair).hulls;
-    return hulls.dimension_a < 2 || hulls.dimension_b < 2;
-  };
+  const auto is_degenerate = [](const Pair& pair) { return fuzz::shape_name(relation_of(pair).hulls) == "degenerate"; };
   const bool of_l = is_degenerate(l), of_r = is_degenerate(r);
   return of_l != of_r ? of_r : is_simpler(l, r);
 }

@@ -224,10 +224,8 @@ std::string text_of(const Answer& answer, const reports::Screen& screen) {
   if (!answer.left_out.empty()) before.push_back(left_out_in_words(answer.left_out));
   std::vector<reports::ScreenFailure> failures;
   const std::uint64_t wrong = reports::wrong_pairs(answer.summary, answer.code.name);
-  const std::size_t kinds_of_subject =
-      reports::first_kinds(answer.kinds, counts.lanes[lane], answer.kinds.size()).size();
   if (!answer.told.empty())
-    before.push_back(reports::kinds_heading(counts, lane, answer.told.size(), kinds_of_subject, wrong));
+    before.push_back(reports::kinds_heading(counts, lane, answer.told.size(), answer.kinds.size(), wrong));
   for (const Json& kind : answer.told) {
     failures.push_back({reports::kind_title(kind, wrong), reports::pair_on_a_line(reports::pair_of_kind(kind)),
                         reports::kind_sentence(kind, counts.lanes[lane].id)});

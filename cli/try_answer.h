@@ -8,19 +8,13 @@
 #include <vector>
 
 #include "analysis/pareto.h"
+#include "cli/tried_code.h"
 #include "fuzz/selected_lanes.h"
 #include "reports/own_code.h"
 #include "reports/screen.h"
 #include "strata/scene/sources.h"
 
 namespace graze::cli {
-
-// The code as --subject names it.
-struct TriedCode {
-  std::string name, what;
-  bool is_program = false;
-  std::string wrapper = {};  // the file that was written to call a Python function
-};
 
 // What a call that decides one pair costs.
 struct CallCosts {

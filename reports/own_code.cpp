@@ -178,10 +178,8 @@ std::string kind_sentence(const Json& kind, const std::string& lane) {
   std::string text = kind.at("simplest").at("sentences").at(0);
   constexpr std::string_view kUnit = " of the largest coordinate";  // the glossary says so too
   if (const std::size_t unit = text.find(kUnit); unit != text.npos) text.erase(unit, kUnit.size());
-  const Json& wrong = kind.at("simplest").at("lanes");
   const std::size_t at = text.find(kSays);
-  return at == text.npos || std::find(wrong.begin(), wrong.end(), lane) == wrong.end() ? text
-                                                                                       : "It " + text.substr(at + 2);
+  return at == text.npos || !is_of_lane(kind.at("simplest"), lane) ? text : "It " + text.substr(at + 2);
 }
 
 std::string cause_words(const Json& kind) {
@@ -197,7 +195,7 @@ std::string errors_words(const Json& kind) {
   if (pairs == 1) return negative == 0 ? "a false positive" : "a false negative";
   if (negative == 0) return "all false positives";
   if (positive == 0) return "all false negatives";
-  return fmt::format("{}, {}", counted(positive, "false positive"), counted(negative, "false negative"));
+  return errors_in_words({positive, negative});
 }
 
 std::string kind_title(const Json& kind, std::uint64_t failures) {

@@ -30,6 +30,15 @@ Json wrong_of(const StratumCounts& stratum, std::size_t lane) {
   return to_json(share_of(stratum.wrong(lane), stratum.pairs));
 }
 
+// The shares of a lane's errors: false positives of the disjoint pairs, false negatives of the others, and all wrong
+// verdicts.
+Json errors_of(const StratumCounts& pairs, std::size_t lane) {
+  const analysis::LaneCounts& found = pairs.lanes[lane];
+  return {{"false_positive", to_json(share_of(found.false_positive, pairs.pairs - pairs.intersects))},
+          {"false_negative", to_json(share_of(found.false_negative, pairs.intersects))},
+          {"wrong", wrong_of(pairs, lane)}};
+}
+
 }  // namespace
 
 Json to_json(const Share& share) {
@@ -47,13 +56,9 @@ Json rates(const CampaignCounts& counts) {
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
     for_each_stratum(counts, [&](const Json& place, const StratumCounts& stratum) {
       const analysis::LaneCounts& lane = stratum.lanes[l];
-      rows.push_back({{"lane", l},
-                      {"stratum", place},
-                      {"false_positive", to_json(share_of(lane.false_positive, stratum.pairs - stratum.intersects))},
-                      {"false_negative", to_json(share_of(lane.false_negative, stratum.intersects))},
-                      {"wrong", wrong_of(stratum, l)},
-                      {"declined", lane.declined},
-                      {"differs_from_cpu", nullptr}});
+      rows.push_back({{"lane", l}, {"stratum", place}});
+      rows.back().update(errors_of(stratum, l));
+      rows.back().update({{"declined", lane.declined}, {"differs_from_cpu", nullptr}});
       if (counts.lanes[l].cpu >= 0)
         rows.back()["differs_from_cpu"] = to_json(share_of(lane.differs_from_cpu, stratum.pairs));
       if (!lane.any_foreign()) return;
@@ -163,12 +168,8 @@ Json group_rates(const CampaignCounts& counts) {
   Json rows = Json::array();
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
     for (std::size_t g = 0; g < counts.groups.size(); ++g) {
-      const StratumCounts& of = counts.groups[g].counts;
-      rows.push_back({{"lane", l},
-                      {"group", g},
-                      {"wrong", wrong_of(of, l)},
-                      {"false_positive", to_json(share_of(of.lanes[l].false_positive, of.pairs - of.intersects))},
-                      {"false_negative", to_json(share_of(of.lanes[l].false_negative, of.intersects))}});
+      rows.push_back({{"lane", l}, {"group", g}});
+      rows.back().update(errors_of(counts.groups[g].counts, l));
     }
   }
   return rows;

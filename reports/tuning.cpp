@@ -101,16 +101,14 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
     case TuneResult::not_useful:
       return fmt::format(
           "No {6} is good enough here: of those that keep {0} at or under {1}, the fewest {2} are those of {3}; {4}. "
-          "The rate "
-          "of {2} may be at most {5} (--max-other). The exact lane has no errors.",
+          "The rate of {2} may be at most {5} (--max-other). The exact lane has no errors.",
           words(q.forbid), q.max_rate, other_words(q.forbid), of, trust, q.max_other, setting(q));
     case TuneResult::not_satisfiable:
       break;
   }
   return fmt::format(
       "No {} is good enough here: {} keeps {} at or under {}. On the pairs of the choice the fewest are those of {}. "
-      "The exact "
-      "lane has no errors.",
+      "The exact lane has no errors.",
       setting(q), q.source ? "no value of " + printable(q.source->epsilon.name) : "no tolerance of " + q.lane,
       words(q.forbid), q.max_rate, of);
 }

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// The code that `graze try` is given, as --subject names it.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace graze::cli {
+
+inline constexpr std::string_view kCommand = "cmd:";
+
+struct TriedCode {
+  std::string name, what;
+  bool is_program = false;
+  std::string wrapper = {};  // the file that was written to call a Python function
+};
+
+// source: FILE, FILE:FUNCTION or cmd:COMMAND, after NAME= or without. Of a Python function, "mine.py:meet", writes the
+// program that calls it beside the folder `out`.
+// Throws: UsageError for a name that no function has, or a foreign file in the program's place; std::runtime_error for
+// a program that cannot be read.
+TriedCode code_of(const std::string& source, const std::string& out);
+
+}  // namespace graze::cli

@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <optional>
+#include <string_view>
 
 namespace graze::analysis {
 namespace {
@@ -38,6 +39,19 @@ class Fusing {
   Verdict verdict(const Set& fused) const {
     if (asked_) asked_();
     return cuda::decide_fusing(lane_, pair_, fused.bits);
+  }
+  // All sites but those at the lines of the set.
+  Set on_other_lines(const Set& set) const {
+    Set result = all();
+    for (std::size_t i = 0; i < set.sites; ++i) {
+      for (std::size_t j = 0; j < set.sites; ++j) {
+        const cuda::SourceLine &of_set = sites_[j].at, &at = sites_[i].at;
+        if (!set.has(j) || of_set.line != at.line || std::string_view(of_set.file) != at.file) continue;
+        result.flip(i);
+        break;
+      }
+    }
+    return result;
   }
   std::vector<cuda::ContractionSite> named(const Set& set) const {
     std::vector<cuda::ContractionSite> result;
@@ -104,8 +118,12 @@ Blame blame(const Lane& lane, const Pair& pair, const std::function<void()>& ask
     const Set more = reduced(kernel, others(needed), verdict);
     for (std::size_t i = 0; i < needed.bits.size(); ++i) needed.bits[i] |= more.bits[i];
   }
-  if (needed != set && kernel.verdict(needed) == verdict) return {kernel.named(needed), false, {}};
-  return {kernel.named(set), few || set.size() <= 3, {}};
+  const auto made_of = [&](const Set& sites, bool smallest) {
+    const bool lines_decide = kernel.verdict(kernel.on_other_lines(sites)) == kernel.verdict(kernel.none());
+    return Blame{kernel.named(sites), smallest, lines_decide, {}};
+  };
+  if (needed != set && kernel.verdict(needed) == verdict) return made_of(needed, false);
+  return made_of(set, few || set.size() <= 3);
 }
 
 }  // namespace graze::analysis

@@ -14,6 +14,8 @@ namespace graze::analysis {
 struct Blame {
   std::vector<cuda::ContractionSite> sites;  // if only these are fused, the lane gives its verdict; in program order
   bool smallest = true;                      // no smaller set does so
+  bool lines_decide = false;                 // with the products of these lines rounded and all others fused, the
+                                             // verdict is that of the source without contraction
   std::string why_not;                       // "…", if the search did not finish
 };
 

@@ -7,14 +7,14 @@
 namespace graze::analysis {
 
 Blame blame_apart(const Lane& lane, const Pair& pair, double seconds) {
-  // The result: whether the set is the smallest, then its sites as raw memory. The sites' pointers to text are valid in
-  // both processes.
+  // The result: whether the set is the smallest, whether its lines decide, then its sites as raw memory. The sites'
+  // pointers to text are valid in both processes.
   std::string bytes;
   const Ended ended = run_apart(
       lane, seconds,
       [&](const ApartFrom& apart) {
         const Blame found = blame(lane, pair, [&] { apart.alive(); });
-        std::string result(1, static_cast<char>(found.smallest));
+        std::string result{static_cast<char>(found.smallest), static_cast<char>(found.lines_decide)};
         result.append(reinterpret_cast<const char*>(found.sites.data()),
                       found.sites.size() * sizeof(cuda::ContractionSite));
         apart.finish(result.data(), result.size());
@@ -27,8 +27,9 @@ Blame blame_apart(const Lane& lane, const Pair& pair, double seconds) {
     result.why_not = "with some of its products fused it crashes";
   } else {
     result.smallest = bytes.at(0) != 0;
-    result.sites.resize((bytes.size() - 1) / sizeof(cuda::ContractionSite));
-    std::memcpy(result.sites.data(), bytes.data() + 1, result.sites.size() * sizeof(cuda::ContractionSite));
+    result.lines_decide = bytes.at(1) != 0;
+    result.sites.resize((bytes.size() - 2) / sizeof(cuda::ContractionSite));
+    std::memcpy(result.sites.data(), bytes.data() + 2, result.sites.size() * sizeof(cuda::ContractionSite));
   }
   return result;
 }

@@ -1,26 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/convention.h"
 
+#include "core/lanes/convention.h"
+
 namespace graze::analysis {
-namespace {
-
-bool share_a_vertex(const Pair& pair) {
-  for (const Vec3<float>& a : pair.a) {
-    for (const Vec3<float>& b : pair.b) {
-      if (a.x == b.x && a.y == b.y && a.z == b.z) return true;
-    }
-  }
-  return false;
-}
-
-}  // namespace
-
 bool is_outside(const Lane& lane, const Pair& pair, const Relation& truth) {
-  const Hulls& hulls = truth.hulls;
-  return (lane.outside & kOutsideTouching && truth.touches() && truth.contact != Contact::area) ||
-         (lane.outside & kOutsideCoplanar && hulls.coplanar) ||
-         (lane.outside & kOutsideDegenerate && (hulls.dimension_a < 2 || hulls.dimension_b < 2)) ||
-         (lane.outside & kOutsideShared && share_a_vertex(pair));
+  return graze::is_outside(lane.outside, pair, truth);
 }
 
 bool by_convention(const Lane& lane, Verdict verdict, const Pair& pair, const Relation& truth) {

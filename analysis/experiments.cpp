@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
+#include <iterator>
 #include <optional>
+#include <sstream>
 
 #include "analysis/changed_source.h"
 #include "analysis/image_experiments.h"
@@ -14,6 +16,7 @@
 #include "backends/backends.h"
 #include "core/lanes/verdicts.h"
 #include "subjects/rebuilt.h"
+#include "subjects/subjects.h"
 
 namespace graze::analysis {
 namespace {
@@ -66,13 +69,17 @@ class Trial {
  private:
   Experiment cause_of_unstable() const {
     if (auto found = by_values(); found && found->settled) return *found;
-    return {Cause::unstable, true, "it gives another answer when it is asked about the same pair again"};
+    return {Cause::unstable, true,
+            "it gives another answer when it is asked about the same pair again, or changes the rounding mode"};
   }
 
   Experiment cause() {
+    if (const subjects::Toolchain* toolchain = subjects::toolchain_of(lane_)) {
+      if (auto found = by_strict_build(*toolchain)) return *found;
+    }
     if (const Lane* rounded = counterpart(lane_, rounded_variant(lane_.variant));
         rounded && rounded != &lane_ && backends::on_host(*rounded)) {
-      if (asked(*rounded, {pair_})[0]) {
+      if (lane_.variant != Variant::toolchain && asked(*rounded, {pair_})[0]) {
         if (info_of(lane_.variant).arithmetic == Arithmetic::fast)
           return by_build(*rounded, Cause::fast_math, "built so that every operation rounds as written it is right");
         return by_build(*rounded, Cause::contraction, "built without contraction it is right");
@@ -208,8 +215,48 @@ class Trial {
   }
 
   // Code that is wrong in exact arithmetic may be right on this pair by luck. Float64 or another scale reveals that.
+  // The lane of the same code and compiler in which every operation rounds, as OpenCL has one; null if there is none.
+  const Lane* rounded_sibling(const subjects::Toolchain& toolchain) const {
+    for (const Lane& lane : lanes()) {
+      if (lane.info != lane_.info || lane.scalar != lane_.scalar || !lane.decide) continue;
+      const subjects::Toolchain* other = subjects::toolchain_of(lane);
+      if (other && other->cxx == toolchain.cxx && other->rounding == subjects::Rounding::rounded) return &lane;
+    }
+    return nullptr;
+  }
+
+  // The toolchain's build with its strict flags; nothing if there is none, or if that is wrong too.
+  std::optional<Experiment> by_strict_build(const subjects::Toolchain& toolchain) const {
+    constexpr Cause kCauses[] = {Cause::contraction, Cause::contraction, Cause::excess_precision, Cause::fast_math};
+    const Cause cause = kCauses[static_cast<int>(toolchain.rounding)];
+    if (toolchain.strict.empty()) {
+      const Lane* rounded = rounded_sibling(toolchain);
+      if (!rounded || !asked(*rounded, {pair_})[0]) return std::nullopt;
+      const bool opencl = rounded->toolchain == "opencl-nofma";
+      return by_build(*rounded, cause,
+                      fmt::format("built as {} it is right{}", rounded->toolchain,
+                                  opencl ? ": #pragma OPENCL FP_CONTRACT OFF" : ""));
+    }
+    std::istringstream words(toolchain.strict);
+    const std::vector<std::string> flags{std::istream_iterator<std::string>(words), {}};
+    const subjects::ChangedCode strict = subjects::changed(lane_, {{}, flags, false, {}});
+    if (!strict || !asked(*strict, {pair_})[0]) return std::nullopt;
+    Experiment found = by_build(*strict, analysis::in_float64(lane_), cause,
+                                fmt::format("compiled with {} it is right", toolchain.strict));
+    if (cause != Cause::contraction) return found;
+    for (const subjects::FusedLine& line : subjects::fused_lines_of(lane_)) {
+      const subjects::ChangedCode rounded = subjects::changed(lane_, {{}, {}, false, line});
+      if (!rounded || !asked(*rounded, {pair_})[0]) continue;
+      found.line = line.place();
+      break;
+    }
+    return found;
+  }
+
   Experiment by_build(const Lane& rounded, Cause cause, std::string evidence) const {
-    const Lane* f64 = analysis::in_float64(rounded);
+    return by_build(block_of(rounded), analysis::in_float64(rounded), cause, std::move(evidence));
+  }
+  Experiment by_build(const DecideBlock& rounded, const Lane* f64, Cause cause, std::string evidence) const {
     if (f64 && !asked(*f64, {pair_})[0]) return {cause, false, evidence + ", but that build is wrong in float64"};
     if (size_.high == -1000 || has_small_integers(pair_, lane_.scalar))
       return {cause, false, evidence + ", though only roots and quotients round here"};

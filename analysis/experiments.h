@@ -11,6 +11,10 @@ namespace graze::analysis {
 //   crash, no answer in time, unstable   the verdict itself says so
 //   contraction, fast math   the same code with every operation rounded as written is right, at all scales and in
 //                float64 too. This rules out code that is wrong in exact arithmetic and right here by luck.
+//   contraction, excess precision, fast math, of a toolchain's lane   the same code compiled with the toolchain's
+//   strict
+//                flags is right, likewise. If one line of fused products, rounded alone, makes it right, that is its
+//                line
 //   absolute epsilon   the verdict changes with the pair's scale: once, and from wrong to right as the scale grows. No
 //                product of up to kMostFactors coordinates leaves the scalar's exponents at these scales. Scaling by a
 //                power of two changes nothing else in an algorithm whose units are consistent; code that adds lengths

@@ -177,6 +177,8 @@ LaneExplanation account_of_foreign(const Lane& lane, Verdict verdict, const Pair
     result.contractions = blame_apart(lane, pair, cuda::most_seconds(lane));
     if (!result.contractions.why_not.empty())
       result.experiment += "; which products matter is not known, for " + result.contractions.why_not;
+    const Lane* cpu = counterpart(lane, Variant::cpu);
+    result.cpu_is_right = cpu && cpu->decide && decide_one(cpu->decide, pair) == truth;
   }
   result.slow = found.slow || is_failure(verdict);
   return result;
@@ -264,9 +266,9 @@ std::string_view name(Settled settled) {
 
 std::string_view name(Cause cause) {
   constexpr std::string_view kNames[] = {
-      "rounding",         "contraction",      "fast math",        "overflow", "underflow",         "logic",
-      "absolute epsilon", "order-dependent",  "degenerate input", "crash",    "no answer in time", "unstable",
-      "policy",           "relative epsilon", "uninitialised"};
+      "rounding",         "contraction",      "fast math",        "overflow",        "underflow",         "logic",
+      "absolute epsilon", "order-dependent",  "degenerate input", "crash",           "no answer in time", "unstable",
+      "policy",           "relative epsilon", "uninitialised",    "excess precision"};
   return kNames[static_cast<int>(cause)];
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/blame.h"
@@ -48,7 +49,8 @@ enum class Cause {
   unstable,
   policy,
   relative_epsilon,
-  uninitialised
+  uninitialised,
+  excess_precision
 };
 std::string_view name(Cause cause);
 
@@ -90,6 +92,7 @@ struct LaneExplanation {
   int decisive = -1;              // index in `steps` of the first deciding comparison; -1 if none is known
   std::vector<Step> then;         // the others: each goes wrong once those before it are corrected
   Blame contractions;             // only for a cuda-fma lane whose verdict contraction changes
+  bool cpu_is_right = false;      // of users' CUDA code with contractions: the cpu lane of the same source is right
   Settled settled;
   int bits_needed;  // the shortest mantissa, at least the lane's own, that gives the right verdict, as does every
                     // longer one up to kMostBits; 0 if there is none, or if it would be chance (see explain.cpp)
@@ -132,8 +135,12 @@ bool leaves_exponents(const Lane& lane, const Pair& pair);
 // the lanes that are wrong in the same way, with the numbers of one of them.
 std::string sentence(const Explanation& explanation, const AlgorithmInfo* subject);
 
-// Returns one sentence for each wrong algorithm.
+// Returns one sentence for each wrong algorithm. A second one says what makes a user's CUDA code differ from cpu, where
+// rounding the products of the lines that it names, and no others, gives the verdict of cpu.
 std::vector<std::string> sentences(const Explanation& explanation);
+
+// Whether this is such a second sentence.
+bool tells_difference_from_cpu(std::string_view sentence);
 
 nlohmann::ordered_json to_json(const LaneExplanation& lane);
 nlohmann::ordered_json to_json(const Explanation& explanation);

@@ -127,6 +127,8 @@ std::string list(const std::vector<cuda::ContractionSite>& sites) {
 
 std::string fused(const LaneExplanation& lane) {
   const std::vector<cuda::ContractionSite>& sites = lane.contractions.sites;
+  if (sites.empty() && lane.lane->variant == Variant::toolchain && !lane.line.empty())
+    return fmt::format("{} fuses products into additions at {}", lane.lane->toolchain, lane.line);
   if (sites.empty()) return "the compiler fuses products into additions";
   const std::string_view plural = sites.size() > 1 ? "s" : "";
   return fmt::format("nvcc fuses the product{} into the addition{} at {}", plural, plural, list(sites));
@@ -172,7 +174,7 @@ std::string remedy(const LaneExplanation& lane) {
   if (lane.cause == Cause::contraction) return "without contraction it is right";
   if (lane.cause == Cause::fast_math) return "with every operation rounded as written it is right";
   const std::string bits = lane.bits_needed == 0
-                               ? fmt::format("no mantissa of up to {} bits would be enough", oracle::kMostBits)
+                               ? fmt::format("with a mantissa of {} bits it is still wrong", oracle::kMostBits)
                                : fmt::format("{} mantissa bits would be enough", lane.bits_needed);
   if (lane.cause == Cause::rounding) return bits;
   if (lane.settled != Settled::not_without) return "with exponents without limits it is right";
@@ -187,7 +189,7 @@ bool by_experiment(const Lane& lane) { return lane.foreign || lane.under; }
 
 // "cuda-fma", "cpu/rel:8".
 std::string variant_of(const Lane& lane) {
-  return std::string(name(lane.variant)) + (lane.policy.empty() ? "" : "/" + lane.policy);
+  return std::string(lane.variant_name()) + (lane.policy.empty() ? "" : "/" + lane.policy);
 }
 
 // The result of the experiments, and which experiments these were.
@@ -210,6 +212,9 @@ std::string reason_by_experiment(const LaneExplanation& lane) {
         return "a relative epsilon decides";
       case Cause::uninitialised:
         return "it reads a variable that has no value";
+      case Cause::excess_precision:
+        return fmt::format("{} keeps results with more digits than {} has", lane.lane->toolchain,
+                           lane.lane->scalar == Scalar::f32 ? "float" : "double");
       case Cause::order_dependent:
         return "the code itself is wrong here: its verdict depends on the order of the vertices or triangles";
       case Cause::degenerate_input:
@@ -236,6 +241,19 @@ bool alike(const LaneExplanation& l, const LaneExplanation& r) {
   return l.lane->scalar == r.lane->scalar && l.lane->policy == r.lane->policy && l.verdict == r.verdict &&
          l.cause == r.cause && l.settled == r.settled && line(l) == line(r) &&
          l.contractions.sites.empty() == r.contractions.sites.empty();
+}
+
+// The lane that the sentence about a subject is about: preferably one whose values are known to be its own, else one of
+// a toolchain whose contraction is at a known line. Null if no lane of the subject is wrong.
+const LaneExplanation* representative(const Explanation& explanation, const AlgorithmInfo* subject) {
+  const auto rank = [](const LaneExplanation& lane) {
+    return lane.evidence <= Evidence::hash ? 2 : lane.line.empty() ? 0 : 1;
+  };
+  const LaneExplanation* first = nullptr;
+  for (const LaneExplanation& lane : explanation.lanes) {
+    if (lane.lane->info == subject && (!first || rank(lane) > rank(*first))) first = &lane;
+  }
+  return first;
 }
 
 nlohmann::ordered_json number(double x) {
@@ -271,12 +289,7 @@ nlohmann::ordered_json to_json(const WrongOf& count) { return {{"wrong", count.w
 }  // namespace
 
 std::string sentence(const Explanation& explanation, const AlgorithmInfo* subject) {
-  const LaneExplanation* first = nullptr;  // lane to report; preferably one whose values are known to be its own
-  const auto known = [](const LaneExplanation& lane) { return lane.evidence <= Evidence::hash; };
-  for (const LaneExplanation& lane : explanation.lanes) {
-    if (lane.lane->info != subject) continue;
-    if (!first || (!known(*first) && known(lane))) first = &lane;
-  }
+  const LaneExplanation* first = representative(explanation, subject);
   if (!first) return "";
   std::string same, others;
   for (const LaneExplanation& lane : explanation.lanes) {
@@ -300,11 +313,66 @@ std::string sentence(const Explanation& explanation, const AlgorithmInfo* subjec
                      remedy(*first), also);
 }
 
+namespace {
+
+// What the sentence about a subject leaves out: other lines that toolchains fuse at, and other flags that undo it. One
+// sentence for each scalar, line and flag.
+std::vector<std::string> by_toolchain(const Explanation& explanation, const AlgorithmInfo* subject) {
+  using Account = std::tuple<Scalar, std::string, std::string>;
+  const auto account = [](const LaneExplanation& lane) {
+    return Account(lane.lane->scalar, lane.line, lane.experiment);
+  };
+  const LaneExplanation* first = representative(explanation, subject);
+  std::vector<std::pair<const LaneExplanation*, std::string>> accounts;  // the first lane, and the names of all
+  for (const LaneExplanation& lane : explanation.lanes) {
+    if (lane.lane->info != subject || lane.lane->toolchain.empty() || lane.cause != Cause::contraction ||
+        account(lane) == account(*first))
+      continue;
+    const auto same = std::find_if(accounts.begin(), accounts.end(),
+                                   [&](const auto& other) { return account(*other.first) == account(lane); });
+    if (same == accounts.end())
+      accounts.emplace_back(&lane, variant_of(*lane.lane));
+    else
+      same->second += ", " + variant_of(*lane.lane);
+  }
+  std::vector<std::string> result;
+  for (const auto& [lane, names] : accounts)
+    result.push_back(
+        fmt::format("{}/{} ({}): {}.", subject->id, name(lane->lane->scalar), names, reason_by_experiment(*lane)));
+  return result;
+}
+
+constexpr std::string_view kDiffersFromCpu = " differs from cpu by contraction at ";
+
+// What makes a user's CUDA code differ from the same code on the CPU, if the products of some lines are known to.
+std::string difference_from_cpu(const LaneExplanation& lane, Verdict of_cpu) {
+  const std::vector<cuda::ContractionSite>& sites = lane.contractions.sites;
+  if (!lane.cpu_is_right || !lane.contractions.lines_decide || sites.empty()) return "";
+  const std::string lines = list(sites);
+  if (lines.ends_with(" more")) return "";  // not all lines can be named
+  return fmt::format("{}{}{}: with the products there rounded it says {}, as cpu does. Build with -fmad=false.",
+                     lane.lane->id, kDiffersFromCpu, lines, name(of_cpu));
+}
+
+}  // namespace
+
+bool tells_difference_from_cpu(std::string_view sentence) { return sentence.find(kDiffersFromCpu) != sentence.npos; }
+
 std::vector<std::string> sentences(const Explanation& explanation) {
   std::vector<std::string> result;
+  const AlgorithmInfo* last = nullptr;
   for (const LaneExplanation& lane : explanation.lanes) {
-    const std::string text = sentence(explanation, lane.lane->info);
-    if (result.empty() || result.back() != text) result.push_back(text);
+    if (lane.lane->info == last) continue;
+    last = lane.lane->info;
+    result.push_back(sentence(explanation, last));
+    for (std::string& text : by_toolchain(explanation, last)) result.push_back(std::move(text));
+    for (const LaneExplanation& other : explanation.lanes) {
+      if (other.lane->info != last) continue;
+      if (const std::string text = difference_from_cpu(other, explanation.truth.verdict); !text.empty()) {
+        result.push_back(text);
+        break;  // one lane of the source is enough
+      }
+    }
   }
   std::map<std::string, std::string> lanes_outside;  // by subject: its lanes, named within it
   for (const Lane* lane : explanation.outside) {

@@ -99,6 +99,7 @@ std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const std::vector
 std::string why_not_timed(const Lane& lane) {
   if (backends::language_of(lane) == backends::Language::cuda)
     return lane.foreign ? "a CUDA source is not timed" : "only --device times CUDA lanes";
+  if (!lane.toolchain.empty()) return "the time of a toolchain's program includes the pipes to it";
   const subjects::Opened* subject = lane.foreign ? subjects::opened(lane.lane_name().subject) : nullptr;
   return subject && subject->kind == "command" ? "the time of a program includes reading and writing lines" : "";
 }

@@ -84,15 +84,15 @@ class Tuner {
 
   void find_scale_break() {
     if (result_.chosen.empty()) return;
-    std::vector<strata::PairSource> some = spec_.sources;
+    std::vector<strata::PairSource> some = spec_.others;
     for (strata::PairSource& source : some) source.pairs = std::min(source.pairs, kPairsForScale / some.size() + 1);
     const auto at = [&](int k) {
       return spec_.sweep(std::vector<std::string>{result_.chosen}, scaled(some, k)).front();
     };
     const PolicyErrors& here = result_.scale.here = at(0);
     const auto breaks = [&](const PolicyErrors& there) {
-      return doubles(here.wrong(), there.wrong()) ||
-             doubles(forbidden(here, spec_.forbid), forbidden(there, spec_.forbid));
+      return doubles(here.wrong(), there.wrong(), here.pairs) ||
+             doubles(forbidden(here, spec_.forbid), forbidden(there, spec_.forbid), here.pairs);
     };
     const auto find = [&](int sign, int& exponent, PolicyErrors& errors) {
       int good = 0, bad = 0;

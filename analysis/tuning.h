@@ -11,6 +11,7 @@
 
 #include "analysis/curves.h"
 #include "analysis/sweep.h"
+#include "core/wilson.h"
 
 namespace graze::analysis {
 
@@ -50,15 +51,15 @@ struct TuneSpec {
 
 using Curve = CurveOf<PolicyErrors>;
 
-// How far pairs may grow or shrink before the errors under a policy, or the forbidden ones alone, double; 0: they do
-// not double within kMostScale.
+// How far pairs may grow or shrink before the errors under a policy, or the forbidden ones alone, double; 0: no
+// doubling shows within kMostScale. On pairs other than those that the policy was chosen on.
 struct ScaleBreak {
   int up = 0, down = 0;  // exponents of two
   PolicyErrors here, at_up, at_down;
 };
-// Whether a number of errors counts as more than doubled; few errors may double by chance.
-inline bool doubles(std::uint64_t before, std::uint64_t after) {
-  return after > 2 * std::max<std::uint64_t>(before, 5);
+// Whether the rate of errors more than doubled: both bounds at 95 % confidence say so.
+inline bool doubles(std::uint64_t before, std::uint64_t after, std::uint64_t pairs) {
+  return share_of(after, pairs).low > 2 * share_of(before, pairs).high;
 }
 inline constexpr int kMostScale = 32;
 

@@ -13,10 +13,11 @@ std::string why_not_on_processor(const Lane& lane, const std::string&) {
   return runs_on_this_cpu(lane) ? "" : "no " + std::string(info_of(lane.variant).needs) + " instructions";
 }
 
-// Foreign CUDA code uses the device, or its twin, in its own process: to Graze it is a process like any other.
+// Foreign CUDA code uses the device, or its twin, in its own process: to Graze it is a process like any other. So is a
+// toolchain's program.
 std::string why_not_in_process(const Lane& lane, const std::string& why_no_device) {
-  if (!lane.is_cuda()) return why_not_on_processor(lane, why_no_device);
-  return lane.decide ? "" : lane.evidence;
+  if (!lane.decide) return lane.evidence;
+  return lane.is_cuda() ? "" : why_not_on_processor(lane, why_no_device);
 }
 
 std::string why_no_twin(const Lane& lane, const std::string& why_no_device) {

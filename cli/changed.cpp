@@ -9,11 +9,11 @@
 
 #include "analysis/verdicts_apart.h"
 #include "cli/commands.h"
+#include "core/simplify/simplicity.h"
 #include "fuzz/campaign/changed_verdicts.h"
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/recorded.h"
 #include "fuzz/minimise/kinds.h"
-#include "fuzz/minimise/simplicity.h"
 #include "reports/changed_verdicts.h"
 #include "subjects/subjects.h"
 
@@ -66,7 +66,7 @@ void count_on_pairs(const Lane& before, const Lane& after, const std::vector<str
   for (const Json* row : rows)
     of_rows.push_back(*std::find_if(sources.begin(), sources.end(),
                                     [&](const strata::PairSource& source) { return source.id == row->at("stratum"); }));
-  const auto simpler = [](const Pair& l, const Pair& r) { return fuzz::simplicity(l) < fuzz::simplicity(r); };
+  const auto simpler = [](const Pair& l, const Pair& r) { return simplicity(l) < simplicity(r); };
   const std::vector<analysis::VerdictsApart> found =
       analysis::verdicts_apart({{&before, &after}, {before.decide, after.decide}}, of_rows, 0, simpler);
   for (std::size_t s = 0; s < rows.size(); ++s) {

@@ -74,6 +74,9 @@ void check(const CheckOptions& options) {
       std::cout.flush();
     }
   }
+  if (from_stdin && std::ferror(stdin))
+    throw std::runtime_error(
+        fmt::format("cannot read standard input after {}: an input error", reports::counted(number_of_pair, "pair")));
   if (number_of_pair == 0) throw std::runtime_error("there is no pair in " + name_of_input);
   if (wrong && !from_stdin && !options.json)
     fmt::print("Next: graze explain {}{}\n", path_word(options.file), own_words(options.lanes));

@@ -26,6 +26,7 @@ struct LaneOptions {
   std::vector<std::string> globs;
   std::vector<std::string> subjects;  // NAME=WHAT
   std::vector<std::string> flags;     // for the compiler
+  std::string toolchains;             // subjects::selected_toolchains
   double timeout = 1;
   bool resubject = false;  // run a campaign's subjects although their code has changed
   fuzz::Executor executor = fuzz::Executor::automatic;
@@ -35,6 +36,9 @@ void add_lane_options(CLI::App& command, LaneOptions& options, Executors executo
 
 // Of these options, adds only those about subjects.
 void add_subject_options(CLI::App& command, LaneOptions& options);
+
+// The words of all values of --flags.
+std::vector<std::string> compiler_flags(const std::vector<std::string>& texts);
 
 // Adds --resubject to a verb that reads campaigns and runs their subjects again.
 void add_resubject_option(CLI::App& command, LaneOptions& options);
@@ -51,6 +55,8 @@ std::string subject_words(const std::string& subject);
 
 // The same for all subjects of the options.
 std::string own_words(const LaneOptions& options);
+// " --toolchains arm64-gcc": those of the options, or else of the lanes; empty for none.
+std::string toolchain_words(const LaneOptions& options, std::initializer_list<const Lane*> lanes);
 
 // Throws: UsageError if no lane of a subject is among these, so that no verb drops it. where: the option or argument.
 void expect_subjects_among(const LaneOptions& options, const std::vector<std::string>& ids, const char* where);

@@ -12,11 +12,13 @@
 
 #include "cli/cases.h"
 #include "cli/commands.h"
+#include "cli/results.h"
 #include "core/cannot.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/files.h"
 #include "fuzz/regression/found_failure.h"
+#include "reports/junit.h"
 #include "reports/terminal.h"
 
 namespace graze::cli {
@@ -32,6 +34,7 @@ struct CorpusOptions {
   LaneOptions lanes;
   bool update = false;
   bool exact_input = false;
+  std::string junit;
 
   std::filesystem::path file() const { return std::filesystem::path(folder) / "cases.pairs"; }
 };
@@ -103,8 +106,7 @@ void add(const CorpusOptions& options) {
           (std::filesystem::is_directory(name) ? ": no signature matches" : ": no lane is wrong on any of its cases"));
   }
 
-  std::error_code failed;
-  std::filesystem::create_directories(options.folder, failed);
+  made_folder(options.folder, "cases.pairs");
   // The lock is held from reading the corpus until writing it, so that two commands at once lose nothing.
   const fuzz::FolderLock lock(options.folder, fuzz::FolderLock::WhenTaken::wait);
   fuzz::RegressionCorpus corpus;
@@ -145,6 +147,20 @@ std::string subjects_not_run(const fuzz::RegressionCorpus& corpus) {
   return fmt::format("{}", fmt::join(subjects, ", "));
 }
 
+// One test a case: it fails if a verdict differs from the record.
+std::vector<reports::JunitCase> tests_of(const std::string& file, const fuzz::RegressionCorpus& corpus,
+                                         const fuzz::Verified& result) {
+  std::vector<reports::JunitCase> tests;
+  for (const auto& [signature, c] : corpus) {
+    reports::JunitCase& test = tests.emplace_back(reports::JunitCase{file, c.name, "", ""});
+    for (const fuzz::Change& change : result.changes) {
+      if (change.name == c.name) test.failure += (test.failure.empty() ? "" : "\n") + change.what;
+    }
+    if (!test.failure.empty()) test.failure += "\n" + fuzz::pair_text(c.pair);
+  }
+  return tests;
+}
+
 int verify(const CorpusOptions& options) {
   const fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
   std::optional<fuzz::FolderLock> lock;
@@ -170,6 +186,8 @@ int verify(const CorpusOptions& options) {
   if (result.compared == 0)
     throw std::runtime_error(options.file().string() +
                              " has no verdict of these lanes to compare with; choose other --lanes");
+  if (!options.junit.empty())
+    write_result(options.junit, reports::junit(tests_of(options.file().string(), corpus, result)), fuzz::NamedBy::user);
   if (!result.changes.empty()) print_next(options, "verify --update");
   return result.changes.empty() ? 0 : 1;
 }
@@ -209,6 +227,7 @@ void add_corpus(CLI::App& app, int& status) {
   add_exact_input(*command, options->exact_input);
   add_lane_options(*command, options->lanes);
   add_resubject_option(*command, options->lanes);
+  add_force_flag(*command);
   command->callback([options] { add(*options); });
 
   command = add_verb(*corpus, "list", "List the cases: state, count, name, signature, first and last failure",
@@ -221,6 +240,7 @@ void add_corpus(CLI::App& app, int& status) {
   add_lane_options(*command, options->lanes);
   command->add_flag("--update", options->update,
                     "Record this run in the corpus: verdicts, and whether a case is failing, fixed or flaky");
+  add_junit(*command, options->junit, "one test for each case");
   command->callback([options, &status] { status = verify(*options); });
 }
 

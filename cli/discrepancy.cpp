@@ -12,11 +12,11 @@
 #include "core/cannot.h"
 #include "core/error.h"
 #include "core/relation_of.h"
+#include "core/simplify/simplicity.h"
 #include "core/text.h"
 #include "cuda/lanes/device.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/minimise/kinds.h"
-#include "fuzz/minimise/simplicity.h"
 #include "fuzz/sealed.h"
 #include "reports/discrepancy.h"
 #include "reports/discrepancy_answer.h"
@@ -124,7 +124,7 @@ Comparisons comparisons_of(const DiscrepancyOptions& options) {
   return comparisons;
 }
 
-bool is_simpler(const Pair& l, const Pair& r) { return fuzz::simplicity(l) < fuzz::simplicity(r); }
+bool is_simpler(const Pair& l, const Pair& r) { return simplicity(l) < simplicity(r); }
 
 // The simplest pair to show: of two triangles, if possible, for one may well see no fault in a segment or a point.
 bool shows_better(const Pair& l, const Pair& r) {
@@ -223,9 +223,10 @@ int discrepancy(DiscrepancyOptions options) {
       const Pair pair = source.pair(apart[s].simplest->index);
       if (simplest && !shows_better(pair, *simplest)) continue;
       simplest = pair;
-      next = fmt::format("Next: graze explain {}:{}:{} --lanes {},{}{}{}\n", source.id, source.seed,
+      next = fmt::format("Next: graze explain {}:{}:{} --lanes {},{}{}{}{}\n", source.id, source.seed,
                          apart[s].simplest->index, first.id, second.id, subject_words(first.lane_name().subject),
-                         first.info == second.info ? "" : subject_words(second.lane_name().subject));
+                         first.info == second.info ? "" : subject_words(second.lane_name().subject),
+                         toolchain_words(options.subjects, {&first, &second}));
     }
   }
 

@@ -111,6 +111,18 @@ TEST(Docs, TourPrintsWhatItSays) { expect_true_commands("docs/tour.md", 20); }
 
 TEST(Docs, YourOwnCodePrintsWhatItSays) { expect_true_commands("docs/your_own_code.md", 15); }
 
+TEST(Docs, ToolchainsPrintsWhatItSays) { expect_true_commands("docs/toolchains.md", 4); }
+
+TEST(Docs, TestingPrintsWhatItSays) {
+  setenv("BUILD", fs::path(GRAZE_BINARY_DIR).parent_path().c_str(), 1);
+  expect_true_commands("docs/testing.md", 3);
+}
+
+TEST(Docs, Result2012PrintsWhatItSays) {
+  setenv("GRAZE", kRoot.c_str(), 1);
+  expect_true_commands("docs/results/2012.md", 2);
+}
+
 TEST(Docs, ViewerPrintsWhatItSays) {
   if (!reports::has_viewer()) GTEST_SKIP() << "this build has no viewer";
   expect_true_commands("docs/viewer.md", 4);

@@ -50,6 +50,7 @@ const std::vector<Verb>& verbs() {
       {"prove-twin", "", ""},
       {"query", "'mesh.off#0' mesh.off", "none.txt mesh.off"},
       {"bench", "", "--mesh none.off"},
+      {"toolchain", "'cc -O2 -ffp-contract=off' --json toolchain.json", "--toolchains none.toml"},
   };
   return all;
 }

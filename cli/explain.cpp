@@ -10,14 +10,17 @@
 #include <span>
 #include <sstream>
 
+#include "analysis/pareto.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/screen.h"
 #include "core/text.h"
 #include "cuda/twin/twin.h"
 #include "fuzz/minimise/kinds.h"
+#include "reports/cost_words.h"
 #include "reports/side_by_side.h"
 #include "reports/terminal.h"
+#include "subjects/cuda_code.h"
 
 namespace graze::cli {
 namespace {
@@ -142,6 +145,25 @@ std::string side_by_side(const std::vector<const Lane*>& lanes, const Pair& pair
   return '\n' + reports::side_by_side({*lanes[0], *lanes[1]}, pair, screen);
 }
 
+// What two kernels of the user's code cost: the lane's, and the one that -fmad=false makes.
+std::string cost_of_rounding(const std::string& lane) {
+  const std::string rounded = fmt::format("{}/{}", lane.substr(0, lane.rfind('/')), name(Variant::cuda_nofma));
+  std::vector<const cuda::CudaBuild*> builds;
+  for (const std::string& id : {rounded, lane}) {
+    for (const cuda::NamedBuild& named : subjects::cuda_builds())
+      if (named.lane == id) builds.push_back(named.build);
+  }
+  try {
+    const subjects::KernelCosts costs = subjects::kernel_costs(builds);
+    return fmt::format("Cost of a pair on {}, of {} of the stratum uniform that are there already: {} {}, {} {}.",
+                       printable(costs.device), reports::counted(subjects::kPairsOfKernelCosts, "pair"), rounded,
+                       reports::cost_words(analysis::quartiles(costs.nanoseconds.at(0))), lane,
+                       reports::cost_words(analysis::quartiles(costs.nanoseconds.at(1))));
+  } catch (const std::runtime_error& error) {
+    return fmt::format("Cost of -fmad=false: not measured, because {}.", printable(error.what()));
+  }
+}
+
 struct ExplainOptions {
   std::string name;
   LaneOptions lanes;
@@ -156,8 +178,12 @@ std::vector<std::string> answer_of(const ExplainOptions& options, const fuzz::Se
                                    const reports::Screen& screen) {
   std::vector<std::string> blocks = {
       fmt::format("{}{}\n", printable(options.name), entry.line > 0 ? fmt::format(":{}", entry.line) : "")};
-  for (const std::string& sentence : analysis::sentences(explanation))
+  const std::vector<std::string> sentences = analysis::sentences(explanation);
+  for (const std::string& sentence : sentences)
     blocks.push_back(reports::bold(screen, reports::wrapped(sentence, screen.columns, 2, 4)));
+  const auto tells = std::find_if(sentences.begin(), sentences.end(), analysis::tells_difference_from_cpu);
+  if (tells != sentences.end())
+    blocks.push_back(reports::wrapped(cost_of_rounding(tells->substr(0, tells->find(' '))), screen.columns, 2, 4));
   for (const std::string& text :
        {written_note(entry, explanation.truth), stored_verdicts(entry, under_test.left_out, explanation.truth.verdict)})
     if (!text.empty()) blocks.push_back(reports::wrapped(text, screen.columns, 2, 4));

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include "analysis/explain.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/screen.h"
@@ -54,9 +55,10 @@ std::string kind_text(const Json& kind, std::size_t number, bool all, const repo
   const std::string title = fmt::format("kind-{}  {}: {}, {} pairs", number, subject, reports::cause_words(kind),
                                         kind["shape"].get<std::string>());
   std::string text = reports::bold(screen, line(0, title));
-  for (const Json& sentence : kind["simplest"]["sentences"]) {
-    text += line(2, sentence.get<std::string>());
-    break;
+  const Json& sentences = kind["simplest"]["sentences"];
+  for (std::size_t i = 0; i < sentences.size(); ++i) {
+    const std::string sentence = sentences[i];
+    if (i == 0 || analysis::tells_difference_from_cpu(sentence)) text += line(2, sentence);
   }
   text += line(2, fmt::format("{} of {}, by one pair of each{}; wrong: {}; simplest: {}",
                               reports::counted(kind["pairs"].get<std::uint64_t>(), "pair"),
@@ -114,11 +116,11 @@ int kinds_of(const std::string& directory, bool json, bool all) {
   }
   fmt::print("{}", limited.text());
   if (shown < kinds.size())
-    fmt::print("{}",
-               reports::wrapped(fmt::format("and {} rarer kinds with {:.1f} % of the pairs; --all lists them, and "
-                                            "where each kind occurs",
-                                            kinds.size() - shown, 100 * (1 - told / sum)),
-                                screen.columns));
+    fmt::print(
+        "{}", reports::wrapped(fmt::format("and {} rarer kinds with {:.1f} % of the failures, of which a pair may have "
+                                           "several; --all lists them, and where each kind occurs",
+                                           kinds.size() - shown, 100 * (1 - told / sum)),
+                               screen.columns));
   if (const std::size_t without = fuzz::signatures_without_kind(summary, kinds); without > 0)
     fmt::print("{}", reports::wrapped(fmt::format("{} of {} signatures belong to no kind: their lanes were not looked "
                                                   "at, run on a device alone, or did not fail again",

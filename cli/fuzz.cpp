@@ -32,6 +32,7 @@
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimised_cases.h"
 #include "fuzz/ranks/rank_campaign.h"
+#include "reports/junit.h"
 #include "reports/margin_figure.h"
 #include "reports/terminal.h"
 #include "strata/mesh.h"
@@ -59,24 +60,24 @@ std::vector<std::string> details(const fuzz::Progress& progress, const std::vect
 std::pair<Pair, std::filesystem::path> smallest_case(const std::filesystem::path& campaign,
                                                      const fuzz::SelectedLanes& under_test, const Json& summary,
                                                      const std::string& subject) {
-  std::vector<std::pair<fuzz::Simplicity, std::filesystem::path>> kept;
+  std::vector<std::pair<Simplicity, std::filesystem::path>> kept;
   for (const Json& row : summary["signatures"]) {
     const auto signature = analysis::parse_signature(row["key"].get<std::string>());
     if (!signature || signature->subject != subject) continue;
     const std::vector<corpus::Entry> entries = fuzz::checked_cases(under_test, summary["spec"], campaign, row);
-    kept.emplace_back(fuzz::simplicity(entries[0].pair), fuzz::case_file(campaign, row));
+    kept.emplace_back(simplicity(entries[0].pair), fuzz::case_file(campaign, row));
   }
   std::sort(kept.begin(), kept.end());
   if (kept.size() > kMostShrunk) kept.resize(kMostShrunk);
-  std::optional<fuzz::Simplicity> least;
+  std::optional<Simplicity> least;
   std::pair<Pair, std::filesystem::path> smallest;
   const auto take = [&](const Pair& pair, const std::filesystem::path& file) {
-    const fuzz::Simplicity simplicity = fuzz::simplicity(pair);
-    if (least && simplicity >= *least) return;
-    least = simplicity;
+    const Simplicity how = simplicity(pair);
+    if (least && how >= *least) return;
+    least = how;
     smallest = {pair, file};
   };
-  for (const auto& [simplicity, file] : kept) {
+  for (const auto& [how, file] : kept) {
     const std::vector<corpus::Entry> entries = corpus::read_pairs(file);
     const std::vector<fuzz::MinimisedCase> results = fuzz::minimise_file(under_test, file, entries);
     if (results.empty()) take(entries[0].pair, file);
@@ -174,6 +175,12 @@ fuzz::Campaign campaign_of(const FuzzOptions& options, const fuzz::SelectedLanes
   return campaign;
 }
 
+void write_junit(const FuzzOptions& options, const fuzz::SelectedLanes& under_test, const Json& summary) {
+  if (options.junit.empty()) return;
+  const auto tests = reports::junit_of_campaign(options.out, summary, under_test.left_out);
+  write_result(options.junit, reports::junit(tests), fuzz::NamedBy::user);
+}
+
 fuzz::Outcome run_with_progress(const fuzz::Campaign& campaign) {
   const bool on_terminal = isatty(STDERR_FILENO);
   std::optional<Progress> live;
@@ -195,6 +202,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
   std::vector<strata::LeftOut> left_out;
   fuzz::Campaign campaign = campaign_of(options, under_test, left_out);
   expect_campaign_folder(options.out);
+  if (!options.junit.empty()) expect_replaceable(options.junit, reports::junit({}));
   catch_interrupts();
   if (options.discard_damaged) {
     if (!campaign.scratch.empty()) fuzz::fetch_from_directory(campaign);
@@ -217,16 +225,19 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
   }
   print_campaign(options.out, outcome, options.json, left_out);
   std::cout.flush();
+  write_junit(options, under_test, outcome.summary);
   return options.fail_above ? fail_above(options, under_test, outcome.summary) : 0;
 }
 
 // Runs alone or as one of mpirun's processes; there, a failing process ends all of them.
 int start(const FuzzOptions& options) {
+  if (!options.junit.empty() && !options.shard.whole())
+    throw UsageError("--junit is for whole campaigns; a shard has a part of the pairs alone");
   if (!options.scratch.empty() && options.shard.whole())
     throw UsageError("--scratch is for shards alone; add --shard K/N");
   if (!fuzz::started_by_mpirun()) return fuzz(options, nullptr);
-  if (!options.shard.whole() || options.fail_above || options.discard_damaged)
-    throw UsageError("--shard, --fail-above and --discard-damaged do not work under mpirun; leave them out");
+  if (!options.shard.whole() || options.fail_above || options.discard_damaged || !options.junit.empty())
+    throw UsageError("--shard, --fail-above, --junit and --discard-damaged do not work under mpirun; leave them out");
   const std::unique_ptr<fuzz::Ranks> ranks = fuzz::open_ranks();
   fuzz::take_one_device(ranks->local_rank);
   try {
@@ -351,6 +362,7 @@ void add_fuzz(CLI::App& app, int& status) {
       ->excludes("--shard")
       ->option_text("N");
   command->add_flag("--json", options->json, "Print the summary as JSON");
+  add_junit(*command, options->junit, "one test for each lane and stratum");
   command->add_flag("--require-device", options->require_device, "Fail if there is no CUDA device");
   command->callback([options, &status] { status = start(*options); });
 }

@@ -26,6 +26,7 @@ struct FuzzOptions {
   bool require_device = false;
   bool discard_damaged = false;
   std::optional<std::uint64_t> fail_above;
+  std::string junit;  // a file; empty for none
   fuzz::Shard shard;
   std::string scratch;
 };
@@ -39,6 +40,9 @@ fuzz::SelectedLanes lanes_of_campaign(const FuzzOptions& options);
 // Throws: as drawn_from_scene, strata::read_mesh_pairs and fuzz::choose_engines.
 fuzz::Campaign campaign_of(const FuzzOptions& options, const fuzz::SelectedLanes& under_test,
                            std::vector<strata::LeftOut>& left_out);
+
+// Writes the finished campaign as tests to the file of --junit, if it was given.   Throws: as write_result.
+void write_junit(const FuzzOptions& options, const fuzz::SelectedLanes& under_test, const fuzz::Json& summary);
 
 // Runs or resumes the campaign, with a live line on a terminal, until it is done or the user interrupts it.
 // Throws: as fuzz::run_campaign.

@@ -59,6 +59,27 @@ TEST_F(Inputs, FoldersAndDevicesInAFilesPlaceAreNamed) {
     EXPECT_EQ(ran.err.find("basic_filebuf"), std::string::npos) << verb << ran.err;
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
   }
+  // An error of standard input is not its end.
+  expect_error("graze check - --truth-only < /tmp", 1, {"cannot read standard input"});
+}
+
+// A command that is refused leaves the folder as it was.
+TEST_F(Inputs, RefusedCommandsChangeNoFolder) {
+  expect_done("graze fuzz --pairs 500 --strata lattice --lanes '*/f32/cpu' --out c && rm c/campaign.sqlite");
+  for (const char* verb :
+       {"fuzz --pairs 500 --strata lattice --lanes '*/f32/cpu'", "fuzz --pairs 10", "hunt --runs 10"}) {
+    expect_error(std::string("graze ") + verb + " --out c", 2, {"not their database"});
+    expect_error("ls c/campaign.sqlite", 2, {"No such file"});
+    expect_done("graze report c");
+  }
+  expect_done("mkdir x && echo mine > x/notes.txt");
+  expect_error("graze corpus add c --top 1 --lanes '*/f32/cpu' --corpus x", 2, {"cannot write into x", "--force"});
+  EXPECT_EQ(shell("ls x").out, "notes.txt\n");
+  expect_done("graze corpus add c --top 1 --lanes '*/f32/cpu' --corpus x --force");
+  // Without the database, the strata must be those of the campaign.
+  expect_done("sed -i 's/\"lattice\"$/\"thesis\"/' c/summary.json");
+  expect_error("graze report c", 1, {"c/summary.json", "strata"});
+  expect_error("graze fuzz --subject z=cmd:no-such-cmd --pairs 10 --out z", 1, {"no-such-cmd"});
 }
 
 TEST_F(Inputs, WrongWordsAreNamedWithWhatIsNearest) {

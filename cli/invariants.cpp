@@ -5,9 +5,9 @@
 #include "cli/commands.h"
 #include "cli/results.h"
 #include "cli/screen.h"
+#include "core/simplify/simplicity.h"
 #include "core/text.h"
 #include "fuzz/files.h"
-#include "fuzz/minimise/simplicity.h"
 #include "reports/invariants.h"
 
 namespace graze::cli {
@@ -31,7 +31,7 @@ int invariants(const InvariantsOptions& options) {
   strata::SceneSources all = drawn(options.scene, options.seed, options.pairs, options.strata);
   spec.sources = std::move(all.sources);
   spec.threads = options.threads;
-  spec.simpler = [](const Pair& l, const Pair& r) { return fuzz::simplicity(l) < fuzz::simplicity(r); };
+  spec.simpler = [](const Pair& l, const Pair& r) { return simplicity(l) < simplicity(r); };
   const ResultFolder folder(options.out, "invariants.json");
   const analysis::Invariants found = analysis::invariants(spec);
 

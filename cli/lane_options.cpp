@@ -10,9 +10,19 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/checked_summary.h"
+#include "subjects/published.h"
 #include "subjects/subjects.h"
 
 namespace graze::cli {
+
+std::vector<std::string> compiler_flags(const std::vector<std::string>& texts) {
+  std::vector<std::string> flags;
+  for (const std::string& text : texts) {
+    std::istringstream words(text);
+    for (std::string word; words >> word;) flags.push_back(word);
+  }
+  return flags;
+}
 
 void add_subject_options(CLI::App& command, LaneOptions& options) {
   CLI::Option* subject =
@@ -29,6 +39,12 @@ void add_subject_options(CLI::App& command, LaneOptions& options) {
       ->needs(subject)
       ->allow_extra_args(false)
       ->option_text("TEXT");
+  command
+      .add_option(
+          "--toolchains", options.toolchains,
+          "Compile published algorithms and subjects that are sources by these toolchains too, as further lanes: "
+          "names such as arm64-gcc, all, FILE.toml; see docs/toolchains.md")
+      ->option_text("NAME,...");
   command.add_option("--subject-timeout", options.timeout, "Time limit of a subject for one pair, in seconds")
       ->needs(subject)
       ->check(number(0.001, 86400.0))
@@ -68,18 +84,35 @@ void add_resubject_option(CLI::App& command, LaneOptions& options) {
 }
 
 void open_subjects(const LaneOptions& options) {
-  if (options.subjects.empty()) return;
+  if (options.subjects.empty() && options.toolchains.empty()) return;
+  const std::vector<subjects::Toolchain> toolchains = options.toolchains.empty()
+                                                          ? std::vector<subjects::Toolchain>()
+                                                          : subjects::selected_toolchains(options.toolchains);
+  // The toolchains of which --lanes selects a lane of the subject.
+  const auto selected = [&](const std::string& name) {
+    std::vector<subjects::Toolchain> result;
+    for (const subjects::Toolchain& toolchain : toolchains) {
+      if (matches_any(options.globs, name + "/f32/" + toolchain.name) ||
+          matches_any(options.globs, name + "/f64/" + toolchain.name))
+        result.push_back(toolchain);
+    }
+    return result;
+  };
   std::string why_not;
   const bool on_device = options.executor != fuzz::Executor::twin && cuda::open_device(why_not);
   for (const std::string& text : options.subjects) {
     expect_utf8("--subject", text);
     subjects::Wanted wanted = subjects::parse_subject(text);
-    for (const std::string& flags : options.flags) {
-      std::istringstream words(flags);
-      for (std::string word; words >> word;) wanted.flags.push_back(word);
-    }
+    wanted.flags = compiler_flags(options.flags);
     wanted.timeout = options.timeout;
+    wanted.toolchains = selected(wanted.name);
     subjects::open(wanted, on_device);
+  }
+  for (const Lane* lane : subjects::published_algorithms()) {
+    const std::string id(lane->info->id);
+    subjects::Wanted wanted{id, "published", {}, options.timeout};
+    wanted.toolchains = selected(id);
+    if (!wanted.toolchains.empty()) subjects::open(wanted);
   }
 }
 
@@ -157,6 +190,7 @@ const Lane& named_lane(const std::string& id) {
 std::string subject_words(const std::string& subject) {
   const subjects::Opened* opened = subjects::opened(subject);
   if (!opened) return "";
+  if (opened->kind == "published") return "";
   std::string words = " --subject " + shell_word(opened->wanted.name + '=' + opened->wanted.what);
   for (const std::string& flag : opened->wanted.flags) words += ' ' + shell_word("--flags=" + flag);
   return words;
@@ -165,7 +199,15 @@ std::string subject_words(const std::string& subject) {
 std::string own_words(const LaneOptions& options) {
   std::string words;
   for (const std::string& name : subject_names(options)) words += subject_words(name);
-  return words;
+  return words + toolchain_words(options, {});
+}
+
+std::string toolchain_words(const LaneOptions& options, std::initializer_list<const Lane*> lanes) {
+  std::string names = options.toolchains;
+  for (const Lane* lane : lanes) {
+    if (options.toolchains.empty() && !lane->toolchain.empty()) names += (names.empty() ? "" : ",") + lane->toolchain;
+  }
+  return names.empty() ? "" : " --toolchains " + shell_word(names);
 }
 
 void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out) {

@@ -28,7 +28,7 @@ void print_lanes(bool json, const std::vector<std::string>& globs) {
                       {"status", here},
                       {"algorithm", lane.info->id},
                       {"scalar", name(lane.scalar)},
-                      {"target", name(lane.variant)},
+                      {"target", lane.variant_name()},
                       {"paper", lane.info->paper},
                       {"coplanar", lane.info->coplanar},
                       {"degenerate", lane.info->degenerate},

@@ -81,10 +81,9 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
       "  cause: {}, as before\n"
       "{}"
       "  worst on the way: {:.7g} ulps\n",
-      analysis::key(fuzz::signature_of(found.failure, found.result.pair)),
-      fuzz::nontrivial_magnitudes(found.result.pair), fuzz::nontrivial_magnitudes(found.original),
-      analysis::name(found.result.reason.cause), reports::wrapped(minimal, screen.columns, 2, 4),
-      found.result.worst_ulps);
+      analysis::key(fuzz::signature_of(found.failure, found.result.pair)), nontrivial_magnitudes(found.result.pair),
+      nontrivial_magnitudes(found.original), analysis::name(found.result.reason.cause),
+      reports::wrapped(minimal, screen.columns, 2, 4), found.result.worst_ulps);
   std::cout.flush();
 }
 
@@ -163,13 +162,13 @@ Done minimize_file(const fuzz::SelectedLanes& under_test, const Json& spec, cons
   const double before = processor_seconds();
   const fs::path file = fuzz::case_file(directory, row);
   const std::vector<corpus::Entry> entries = fuzz::checked_cases(under_test, spec, directory, row);
-  if (!again && has_result(under_test, entries)) return {true, fuzz::nontrivial_magnitudes(entries.front().pair), 0};
+  if (!again && has_result(under_test, entries)) return {true, nontrivial_magnitudes(entries.front().pair), 0};
   const std::vector<fuzz::MinimisedCase> results = fuzz::minimise_file(under_test, file, entries);
   if (results.empty()) return {};
   const auto cases =
       std::count_if(entries.begin(), entries.end(), [](const corpus::Entry& e) { return !corpus::field(e, "kind"); });
   const double seconds = seconds_since(start);
-  return {true, fuzz::nontrivial_magnitudes(results.front().result.pair),
+  return {true, nontrivial_magnitudes(results.front().result.pair),
           1e3 * seconds / static_cast<double>(std::max<std::ptrdiff_t>(cases, 1)), seconds,
           processor_seconds() - before};
 }
@@ -227,7 +226,7 @@ int minimize_directory(MinimizeOptions options) {
   expect_writable(directory);
   fuzz::read_timings(directory);  // before the work, because its end adds to them
   fuzz::expect_file(directory / "failures.json");
-  if (whole) fuzz::expect_own(directory / "failures.json", Json{{"summary", ""}}.dump(1));
+  if (whole) fuzz::expect_own(directory / "failures.json", Json{{"summary", ""}, {"cases", ""}}.dump(1));
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   const std::atomic<bool>& interrupted = catch_interrupts();

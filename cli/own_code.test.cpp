@@ -4,10 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "cli/run_graze.h"
+#include "core/simplify/simplicity.h"
 #include "corpus/pair_format.h"
-#include "fuzz/minimise/simplicity.h"
 
 namespace graze::cli {
 namespace {
@@ -220,6 +221,54 @@ TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
       << late.out << late.err;
 }
 
+// The cpu lane of a __host__ __device__ function is what its CUDA lanes are compared with.
+TEST_F(OwnCodeTest, CudaAgainstCpuIsExplained) {
+  shell(
+      "cat > own.cu <<'EOF'\n"
+      "__host__ __device__ inline float product(const float* t) {\n"
+      "  return t[0] * t[1] - t[3] * t[4];\n"
+      "}\n"
+      "__host__ __device__ bool both(const float* a, const float* b) {\n"
+      "  return product(a) != 0;\n"
+      "}\n"
+      "__device__ bool one(const float* a, const float* b) {\n"
+      "  return both(a, b);\n"
+      "}\nEOF\n"
+      // Two products of a are equal after rounding, and the triangles are disjoint.
+      "echo '0x1.000002p+0 0x1.000002p+0 1 0x1.000004p+0 1 1 3 3 1  0x1.000006p+0 0x1.000006p+0 9 0x1.00000cp+0 1 9 0 "
+      "2 9' > p");
+  const std::string cached = "export XDG_CACHE_HOME=$PWD/cache; ", both = " --subject own=./own.cu:both ";
+  const auto explained = [&](const std::string& rest) {
+    return shell(cached + "graze explain p " + rest + " | tr -s ' \\n' ' '");
+  };
+  if (shell(cached + "graze lanes" + both).err.find("NVRTC") != std::string::npos) GTEST_SKIP() << "no NVRTC";
+  const char said[] =
+      "own/f32/cuda-fma differs from cpu by contraction at own.cu:2 (inlined at own.cu:5): with the products there "
+      "rounded it says disjoint, as cpu does. Build with -fmad=false. Cost of ";
+  const Ran named = explained(both + "--lanes 'own/*'");
+  EXPECT_NE(named.out.find(said), std::string::npos) << named.out << named.err;
+  const Ran device_only = explained("--subject own=./own.cu:one --lanes 'own/*'");
+  EXPECT_NE(device_only.out.find("cuda-fma"), std::string::npos) << device_only.out << device_only.err;
+  EXPECT_EQ(device_only.out.find("differs from cpu"), std::string::npos) << device_only.out;
+  // What is said: with the products of that line rounded, and no other, the verdict is that of cpu.
+  shell("sed '2s/.*/  return __fsub_rn(__fmul_rn(t[0], t[1]), __fmul_rn(t[3], t[4]));/' own.cu > rounded.cu");
+  const Ran rounded =
+      shell(cached + "graze check p --json --executor twin --lanes 'own/*/cuda-fma' --subject own=./rounded.cu:one");
+  EXPECT_NE(rounded.out.find(R"("own/f32/cuda-fma":"disjoint")"), std::string::npos) << rounded.out << rounded.err;
+  // fuzz counts differences from cpu.
+  const Ran fuzzed =
+      shell(cached + "graze fuzz --executor twin --pairs 300 --strata exact_contact --out c --lanes 'own/*'" + both);
+  EXPECT_EQ(fuzzed.status, 0) << fuzzed.err;
+  const auto summary = nlohmann::json::parse(contents(shell.folder / "c/summary.json"));
+  EXPECT_TRUE(summary["spec"]["subjects"][0].contains("host")) << summary["spec"];
+  const Ran report = shell(cached + "graze report c");
+  EXPECT_EQ(report.status, 0) << report.err;
+  EXPECT_NE(contents(shell.folder / "c/differs.csv").find("own/f32/cuda-fma"), std::string::npos);
+  const Ran test = shell(cached + "graze repro p --emit gtest --lanes own/f32/cpu-fma" + both +
+                         " > case.cpp && eval \"$(grep -o 'g++ .*' case.cpp | head -1)\"");
+  EXPECT_NE(test.out.find("1 FAILED TEST"), std::string::npos) << test.out << test.err;
+}
+
 // Requested lanes that do not run are named, recorded and reported. A pattern that matches no lane is an error.
 TEST_F(OwnCodeTest, LanesThatDoNotRunAreNamedEverywhere) {
   const std::string lanes = " --lanes 'moller_1997/f32/c*' ";
@@ -269,15 +318,15 @@ TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
   // The file has the smallest of all minimised cases, which need not come from the smallest kept pair.
   const auto pairs_of = [&](const std::string& command) {
     shell(command + " > some.pairs");
-    std::vector<fuzz::Simplicity> found;
+    std::vector<Simplicity> found;
     for (const corpus::Entry& entry : corpus::read_pairs(shell.folder / "some.pairs"))
-      found.push_back(fuzz::simplicity(entry.pair));
+      found.push_back(simplicity(entry.pair));
     return found;
   };
   const std::size_t begin = ran.err.find("smallest is ") + 12;
   const std::string pair = ran.err.substr(begin, ran.err.find(';', begin) - begin);
-  const std::vector<fuzz::Simplicity> smallest = pairs_of("echo '" + pair + "'"),
-                                      minimised = pairs_of("grep -h kind=minimised c/cases/*.pairs");
+  const std::vector<Simplicity> smallest = pairs_of("echo '" + pair + "'"),
+                                minimised = pairs_of("grep -h kind=minimised c/cases/*.pairs");
   ASSERT_EQ(smallest.size(), 1u);
   EXPECT_GE(minimised.size(), 4u);
   EXPECT_LE(minimised.size(), 8u);

@@ -76,7 +76,7 @@ void expect_subjects_open(const fuzz::Pack& pack, const Json& recorded) {
 void pack(const std::string& directory, std::string out) {
   const fs::path folder = fs::path(directory).lexically_normal();
   if (out.empty()) out = (folder.has_filename() ? folder : folder.parent_path()).string() + ".sqlar";
-  if (const fs::path file = out; !fuzz::may_replace_foreign && fs::exists(file) && !fuzz::is_archive(file))
+  if (const fs::path file = out; !fuzz::may_replace_foreign && fs::is_regular_file(file) && !fuzz::is_archive(file))
     throw UsageError(cannot("replace", file, fuzz::kForeign));
   open_subjects_of(directory);
   reports::make_report(directory);  // throws for a damaged record

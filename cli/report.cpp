@@ -62,7 +62,16 @@ std::vector<std::string> write_report(const fs::path& directory, const Json& rep
 
 void say_report(const fs::path& directory, const Json& report, const std::vector<std::string>& names) {
   fmt::print("Wrote {}/{}\n", printable(directory.string()), fmt::join(names, ", "));
-  for (const Json& sentence : report["missing"]) fmt::print("{}\n", sentence.get<std::string>());
+  if (!report["toolchains"].is_null()) {
+    for (const Json& sentence : report["toolchains"]["sentences"]) fmt::print("{}\n", sentence.get<std::string>());
+  }
+  for (const Json& sentence : report["missing"]) {
+    std::string text = sentence;  // the report itself names no folder
+    const std::string placeholder = " DIR", named = ' ' + path_word(directory.string());
+    for (std::size_t at = 0; (at = text.find(placeholder, at)) != text.npos; at += named.size())
+      text.replace(at, placeholder.size(), named);
+    fmt::print("{}\n", text);
+  }
   say_what_the_page_is();
 }
 
@@ -120,7 +129,10 @@ void report(const ReportOptions& options) {
   } else {
     const Json made = make_report(options.directory);
     say_report(options.directory, made, write_report(options.directory, made, "report"));
-    if (made["signature_count"] > 0) fmt::print("Next: graze corpus add {}\n", path_word(options.directory));
+    if (made["signature_count"] > 0) {
+      const bool minimised = !fuzz::read_kinds(options.directory).is_null();
+      fmt::print("Next: graze {} {}\n", minimised ? "corpus add" : "minimize", path_word(options.directory));
+    }
   }
 }
 

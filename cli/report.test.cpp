@@ -20,6 +20,42 @@ class Report : public CommandTest {
   nlohmann::json json(const char* file) { return nlohmann::json::parse(contents(shell.folder / file)); }
 };
 
+// The map's differences come from signatures. Those from x86-gcc, which equals cpu, are also counted pair by pair.
+TEST_F(Report, MapsToolchains) {
+  expect_done(
+      "graze fuzz --pairs 4000 --lanes 'interval_overlap/*,exact/f32/cpu' --executor twin "
+      "--toolchains x86-gcc,x86-gcc-v3,x87-24 --out c > /dev/null");
+  const std::string said = shell("graze report c").out;
+  EXPECT_NE(said.find("cpu, cuda-nofma, x86-gcc agree on all 4,000 pairs."), said.npos) << said;
+  EXPECT_NE(said.find(" differs most from x86-gcc: on "), said.npos) << said;
+  const nlohmann::ordered_json report = nlohmann::ordered_json::parse(contents(shell.folder / "c/report.json"));
+  const nlohmann::ordered_json& map = report.at("toolchains");
+  std::map<std::size_t, nlohmann::ordered_json> differs;
+  for (const auto& rate : report.at("rates")) {
+    if (rate.at("stratum").is_null()) differs[rate.at("lane")] = rate.at("differs_from_cpu");
+  }
+  std::size_t compared = 0, differing = 0;
+  for (const auto& row : map.at("rows")) {
+    for (const auto& cell : row.at("cells")) {
+      if (differs[cell.at("lane")].is_null()) continue;
+      EXPECT_EQ(cell.at("differs"), differs[cell["lane"]]) << row;
+      ++compared;
+      differing += cell.at("differs").at("count") > 0;
+    }
+  }
+  EXPECT_GE(compared, 8u) << map;
+  EXPECT_GE(differing, 4u) << map;
+  expect_done("graze report --from c/report.json --out r.html && cmp r.html c/report.html");
+  for (const char* place : {"/toolchains/rows/0/cells/1/wrong/count", "/toolchains/rows/0/cells/0/variant",
+                            "/toolchains/rows/0/cells/0/lane"}) {
+    nlohmann::ordered_json other = report;
+    const nlohmann::ordered_json::json_pointer at(place);
+    other[at] = other[at].get<std::uint64_t>() + 1;
+    std::ofstream(shell.folder / "other.json") << sealed(other);
+    expect_error("graze report --from other.json --out r.html", 1, {"other.json"});
+  }
+}
+
 // Every verb that reads a campaign's JSON refuses counts that another program wrote, and names the file.
 TEST_F(Report, CountsThatCannotBeAreRefused) {
   expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c > /dev/null && graze report c");

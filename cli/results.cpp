@@ -26,7 +26,30 @@ void refuse_folder(const fs::path& out, const std::string& own) {
   throw std::runtime_error(cannot("write into", out, error.message()));
 }
 
-fs::path made(const fs::path& out, const char* own) {
+}  // namespace
+
+void add_force_flag(CLI::App& verb) {
+  verb.add_flag("--force", fuzz::may_replace_foreign,
+                "Replace files that graze did not write, and use folders that hold other files");
+}
+
+void add_force(CLI::App& app) {
+  for (CLI::App* verb : app.get_subcommands([](const CLI::App* v) { return v->get_name() != "merge"; })) {
+    add_force(*verb);  // `corpus` has verbs of its own
+    const char* const places[] = {"--out", "--plot", "--obj", "--prometheus", "--junit"};
+    if (std::any_of(std::begin(places), std::end(places),
+                    [&](const char* name) { return verb->get_option_no_throw(name); }))
+      add_force_flag(*verb);
+  }
+}
+
+void add_junit(CLI::App& command, std::string& file, const std::string& tests) {
+  command.add_option("--junit", file, "Write the result as JUnit XML too: " + tests)
+      ->check(not_empty())
+      ->option_text("FILE");
+}
+
+fs::path made_folder(const fs::path& out, const char* own) {
   if (!fuzz::may_replace_foreign && !fuzz::may_fill(out, {own}) && !fuzz::may_hold_campaign(out))
     refuse_folder(out, fmt::format("one with {} or a campaign", own));
   std::error_code error;
@@ -34,18 +57,6 @@ fs::path made(const fs::path& out, const char* own) {
   if (error) refuse_unwritable(out, error);
   expect_writable(out);
   return out;
-}
-
-}  // namespace
-
-void add_force(CLI::App& app) {
-  for (CLI::App* verb : app.get_subcommands([](const CLI::App* v) { return v->get_name() != "merge"; })) {
-    const char* const places[] = {"--out", "--plot", "--obj", "--prometheus"};
-    if (std::any_of(std::begin(places), std::end(places),
-                    [&](const char* name) { return verb->get_option_no_throw(name); }))
-      verb->add_flag("--force", fuzz::may_replace_foreign,
-                     "Replace files that graze did not write, and use folders that hold other files");
-  }
 }
 
 void expect_replaceable(const fs::path& file, const std::string& text) {
@@ -79,6 +90,6 @@ void expect_campaign_folder(const fs::path& out) {
 }
 
 ResultFolder::ResultFolder(const std::string& out, const char* own)
-    : path(made(out, own)), alone(path, fuzz::FolderLock::WhenTaken::refuse) {}
+    : path(made_folder(out, own)), alone(path, fuzz::FolderLock::WhenTaken::refuse) {}
 
 }  // namespace graze::cli

@@ -14,8 +14,12 @@ namespace graze::cli {
 
 inline constexpr const char* kPairs = "graze-pairs 1\n";  // the first line of files of pairs
 
-// Adds --force to every verb that writes results to a given place, except `merge`, whose folder is new.
+// --force, which every verb has that writes results to a given place, except `merge`, whose folder is new.
+void add_force_flag(CLI::App& verb);
 void add_force(CLI::App& app);
+
+// --junit. tests: what its tests are, for the help.
+void add_junit(CLI::App& command, std::string& file, const std::string& tests);
 
 // Throws: UsageError for a file that a result with this text may not replace.
 void expect_replaceable(const std::filesystem::path& file, const std::string& text);
@@ -39,6 +43,10 @@ void expect_campaign_folder(const std::filesystem::path& out);
 
 // Throws: std::runtime_error, with the system's reason, for a folder that cannot be written to.
 void expect_writable(const std::filesystem::path& folder);
+
+// Creates the folder if it is missing.   Throws: as ResultFolder, if it may not hold results of the verb that writes
+// `own`.
+std::filesystem::path made_folder(const std::filesystem::path& out, const char* own);
 
 // A folder for a verb's results. It is created if missing, and locked, so that two runs do not mix their results.
 struct ResultFolder {

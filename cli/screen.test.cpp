@@ -164,7 +164,7 @@ TEST_F(ScreenTest, HelpGroupsTheVerbsByTaskAndSaysDefaults) {
     ASSERT_NE(at, std::string::npos) << part << help;
     last = at;
   }
-  EXPECT_EQ(verbs_in_help(shell, "graze").size(), 28u);
+  EXPECT_EQ(verbs_in_help(shell, "graze").size(), 29u);
   const std::string fuzz = shell("graze fuzz --help").out;
   for (const std::string part :
        {"Usage: graze fuzz [OPTIONS]\n", "--pairs N ", "(default: 1000000)", "(default: auto)"})

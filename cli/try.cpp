@@ -31,6 +31,7 @@
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimised_cases.h"
 #include "fuzz/own_files.h"
+#include "reports/junit.h"
 #include "reports/margin_figure.h"
 #include "reports/own_code.h"
 #include "strata/mesh.h"
@@ -133,13 +134,13 @@ Json minimised_kinds(const fuzz::SelectedLanes& under_test, const fs::path& dire
     if (interrupted) return nullptr;
     std::set<std::size_t> next;
     for (const Json& kind : reports::first_kinds(kinds, lane, kMostTold)) {
-      std::vector<std::pair<fuzz::Simplicity, std::size_t>> of_kind;
+      std::vector<std::pair<Simplicity, std::size_t>> of_kind;
       std::size_t left = most_of_kind;
       for (const std::size_t place : kind.at("places").get<std::vector<std::size_t>>()) {
         if (done.contains(place)) {
           left -= left > 0;
         } else {
-          of_kind.emplace_back(fuzz::simplicity(fuzz::read_cases(directory, rows[place]).front().pair), place);
+          of_kind.emplace_back(simplicity(fuzz::read_cases(directory, rows[place]).front().pair), place);
         }
       }
       std::sort(of_kind.begin(), of_kind.end());
@@ -223,6 +224,7 @@ void expect_answers(const TriedCode& code, const fuzz::SelectedLanes& under_test
 int try_source(const TryOptions& options) {
   const std::string out = folder_named(options.fuzz.out);
   expect_campaign_folder(out);
+  if (!options.fuzz.junit.empty()) expect_replaceable(options.fuzz.junit, reports::junit({}));
   expect_mesh_or_scene(options.where);
   Answer answer;
   answer.code = code_of(options.source, out);
@@ -263,6 +265,7 @@ int try_source(const TryOptions& options) {
     answer.test = write_test(answer, under_test);
   }
   write_report(fuzz.out);
+  write_junit(fuzz, under_test, outcome.summary);
   answer.costs = call_costs(own, campaign.sources);
   answer.epsilon = epsilon_of_code(own, fuzz.out);
   answer.effect = epsilon_effect(own, campaign.sources);
@@ -309,6 +312,7 @@ void add_try(CLI::App& app, int& status) {
       ->capture_default_str()
       ->option_text("DIR");
   command->add_flag("--json", options->json, "Print the answer as JSON");
+  add_junit(*command, options->fuzz.junit, "one test for each build and stratum");
   command->callback([options, &status] { status = try_source(*options); });
 }
 

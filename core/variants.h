@@ -14,8 +14,8 @@ enum class Variant : std::uint8_t {
 #undef GRAZE_VARIANT
 };
 
-enum class Arithmetic : std::uint8_t { rounded, contracted, fast, flushed, exact };
-enum class RunsOn : std::uint8_t { host, device };
+enum class Arithmetic : std::uint8_t { rounded, contracted, fast, flushed, exact, unknown };
+enum class RunsOn : std::uint8_t { host, device, program };
 enum class Twin : std::uint8_t { no_twin, twin };
 
 struct VariantInfo {
@@ -40,7 +40,7 @@ constexpr std::string_view name(Variant variant) { return info_of(variant).id; }
 
 // Whether the published algorithms are built in this variant.
 constexpr bool builds_published(const VariantInfo& row) {
-  return row.arithmetic != Arithmetic::exact && row.arithmetic != Arithmetic::flushed;
+  return row.arithmetic != Arithmetic::exact && row.arithmetic != Arithmetic::flushed && row.runs_on != RunsOn::program;
 }
 
 constexpr std::optional<Variant> variant_of_name(std::string_view id) {
@@ -50,10 +50,12 @@ constexpr std::optional<Variant> variant_of_name(std::string_view id) {
   return std::nullopt;
 }
 
-// The variant on the same kind of processor in which every operation rounds as written.
+// The variant on the same kind of processor in which every operation rounds as written; of a toolchain's program, the
+// host's.
 constexpr Variant rounded_variant(Variant variant) {
+  const RunsOn where = info_of(variant).runs_on == RunsOn::device ? RunsOn::device : RunsOn::host;
   for (const VariantInfo& row : kVariants) {
-    if (row.runs_on == info_of(variant).runs_on && row.arithmetic == Arithmetic::rounded) return row.variant;
+    if (row.runs_on == where && row.arithmetic == Arithmetic::rounded) return row.variant;
   }
   return variant;
 }

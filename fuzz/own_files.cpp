@@ -85,9 +85,14 @@ bool is_left_over(const fs::path& file) {
 bool may_fill(const fs::path& folder, std::initializer_list<const char*> own) {
   std::error_code none;
   if (!fs::is_directory(folder, none)) return true;  // creating the folder will report what is wrong
-  return std::any_of(own.begin(), own.end(), [&](const char* name) { return fs::exists(folder / name); }) ||
+  const auto has_own = [&] {
+    return std::any_of(own.begin(), own.end(), [&](const char* name) { return fs::exists(folder / name); });
+  };
+  // Asked again at the end: another process of Graze may have written there meanwhile.
+  return has_own() ||
          std::all_of(fs::directory_iterator(folder), fs::directory_iterator(),
-                     [](const auto& e) { return is_nothing(e.path()); });
+                     [](const auto& e) { return is_nothing(e.path()); }) ||
+         has_own();
 }
 
 }  // namespace graze::fuzz

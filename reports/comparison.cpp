@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "core/text.h"
 #include "fuzz/counts_json.h"
 #include "reports/changed_verdicts.h"
+#include "reports/discrepancy_reading.h"
 #include "reports/recorded_code.h"
 #include "reports/tables.h"
 #include "reports/terminal.h"
@@ -77,10 +77,25 @@ std::set<std::string> lanes_of(const Json& report, const Json& subject) {
   return lanes;
 }
 
-// Tests whether two rates differ. If they are equal, each error of either campaign belongs to the first one with a
-// probability equal to its share of the pairs. This gives a binomial distribution, slightly wider than the true one. If
-// right verdicts are fewer than errors, they are counted instead.
-// Reference: Przyborowski and Wilenski 1940, the conditional test of two rates.
+// The chance that, of `all` errors among both campaigns' pairs, the first has as few as `count`, or fewer, if each of
+// all pairs is as likely to err. pairs: of each campaign.
+double chance_of_at_most(double count, double all, const double (&pairs)[2]) {
+  const auto log_choose = [](double n, double k) {
+    return std::lgamma(n + 1) - std::lgamma(k + 1) - std::lgamma(n - k + 1);
+  };
+  double term =
+      std::exp(log_choose(pairs[0], count) + log_choose(pairs[1], all - count) - log_choose(pairs[0] + pairs[1], all));
+  double sum = 0;
+  for (double k = count; k >= 0 && all - k <= pairs[1] && term > 1e-6 * kLeastChance * (sum + 1e-6); --k) {
+    sum += term;
+    term *= k * (pairs[1] - all + k) / ((pairs[0] - k + 1) * (all - k + 1));  // of k - 1
+  }
+  return sum;
+}
+
+// Tests whether two rates differ: whether chance alone would move so many errors, or more, from one campaign to the
+// other, given how many both have.
+// Reference: Fisher 1935, the exact test; twice the smaller of the two tails.
 bool apart(const Json& l, const Json& r) {
   double count[2], of[2];
   for (const int i : {0, 1}) {
@@ -88,13 +103,10 @@ bool apart(const Json& l, const Json& r) {
     of[i] = (i == 0 ? l : r).at("of");
   }
   if (of[0] == 0 || of[1] == 0) return false;
-  if (count[0] + count[1] > (of[0] + of[1]) / 2) {
-    for (const int i : {0, 1}) count[i] = of[i] - count[i];
-  }
-  if (count[0] + count[1] == 0) return false;
-  const boost::math::binomial_distribution<double> first(count[0] + count[1], of[0] / (of[0] + of[1]));
-  const double most = cdf(first, count[0]), least = count[0] == 0 ? 1 : cdf(complement(first, count[0] - 1));
-  return 2 * std::min(most, least) < kLeastChance;
+  const double all = count[0] + count[1], other_way[2] = {of[1], of[0]};
+  const bool fewer = count[0] * of[1] <= count[1] * of[0];  // in the first campaign
+  return 2 * (fewer ? chance_of_at_most(count[0], all, of) : chance_of_at_most(count[1], all, other_way)) <
+         kLeastChance;
 }
 
 // The smallest difference from a rate before that counts as changed: a true difference below it may pass for chance.
@@ -233,8 +245,51 @@ std::string scene_of(const Json& run) {
 // The hash in a scene's name, which does not change with the file's place: arm.toml#0123456789abcdef.
 std::string content_of(const std::string& scene) { return scene.substr(scene.rfind('#') + 1); }
 
+// How many verdicts of the lane changed, in words.   verdicts: null if unknown.
+std::string changes_of(const std::string& lane, const Json& verdicts) {
+  if (verdicts.is_null()) return "how many verdicts it changed is not known";
+  std::uint64_t least = 0, most = 0;
+  for (const Json& row : verdicts) {
+    if (row.at("lane") != lane) continue;
+    least += row.at("least").get<std::uint64_t>();
+    most += row.at("most").get<std::uint64_t>();
+  }
+  const std::string number = least == most ? grouped(most) : fmt::format("{} to {}", grouped(least), grouped(most));
+  return fmt::format("{} {}", number, most == 1 ? "verdict differs" : "verdicts differ");
+}
+
+// A sentence for each lane of a toolchain whose compiler fuses other products in the second campaign.
+std::vector<std::string> plan_differences(const Json& then, const Json& now, const Json& verdicts) {
+  std::vector<std::string> sentences;
+  for (const Json& old : then.value("subjects", Json::array())) {
+    for (const Json& found : now.value("subjects", Json::array())) {
+      if (old.at("name") != found.at("name")) continue;
+      const Json plans_then = old.value("contraction", Json::object()),
+                 plans = found.value("contraction", Json::object());
+      for (const auto& [toolchain, of] : plans_then.items()) {
+        if (!plans.contains(toolchain)) continue;
+        for (const auto& [scalar, plan] : of.items()) {
+          const Json other = plans[toolchain].value(scalar, plan);
+          if (other == plan) continue;
+          const std::string of_scalar = text_at(old, "name") + '/' + printable(scalar);
+          sentences.push_back(
+              fmt::format("{} ({}): the compiler fuses other products (plan {} before, {} after); {}.", of_scalar,
+                          printable(toolchain), text_at(plan, "plan"), text_at(other, "plan"),
+                          changes_of(old.at("name").get<std::string>() + '/' + scalar + '/' + toolchain, verdicts)));
+        }
+      }
+    }
+  }
+  return sentences;
+}
+
+bool has_contracted_lane(const Json& report) {
+  const std::set<std::string> ids = ids_of(report.at("lanes"));
+  return std::any_of(ids.begin(), ids.end(), [](const std::string& id) { return id.find("/cpu-fma") != id.npos; });
+}
+
 // Describes how the campaigns differ, one sentence for each difference.
-Json differences_of(const Json& after, const Json& before) {
+Json differences_of(const Json& after, const Json& before, const Json& verdicts) {
   Json rows = Json::array();
   const Json &now = after.at("run"), &then = before.at("run");
   for (const char* what : {"seed", "pairs"}) {
@@ -259,6 +314,12 @@ Json differences_of(const Json& after, const Json& before) {
                                  row.at("describes").get<std::string>()));
   }
   for (const std::string& sentence : code_differences(then, now)) rows.push_back(sentence);
+  for (const std::string& sentence : plan_differences(then, now, verdicts)) rows.push_back(sentence);
+  const auto compiler = [](const Json& run) { return printable(run.at("build").value("compiler", "")); };
+  if (compiler(now) != compiler(then) && has_contracted_lane(before) && has_contracted_lane(after))
+    rows.push_back(fmt::format(
+        "They differ in the compiler of Graze, so lanes of cpu-fma may fuse other products: {} before, {} after.",
+        compiler(then), compiler(now)));
   const auto commit = [](const Json& run) { return run.at("build").at("commit").get<std::string>(); };
   if (commit(now) != commit(then))
     rows.push_back(fmt::format("They differ in build: {} before, {} after.", commit(then), commit(now)));
@@ -336,7 +397,7 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
                            same ? "" : "; " + power_words(rows));
   }
   if (const std::string one_sided = one_sided_lanes(before, report); !one_sided.empty()) headline += ' ' + one_sided;
-  Json differences = differences_of(report, before);
+  Json differences = differences_of(report, before, verdicts);
   if (!alike)
     differences.push_back(
         "All strata together and kinds of failure are not compared: the campaigns have other strata, or in other "

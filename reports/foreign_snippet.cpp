@@ -83,7 +83,9 @@ bool returns_bool(const std::filesystem::path& source, const std::string& functi
 std::string flags_of(const Lane& lane, const subjects::Opened& opened) {
   std::string text;
   if (const std::string_view own = info_of(lane.variant).flags; !own.empty()) text += ' ' + std::string(own);
-  for (const std::string& flag : opened.wanted.flags) text += ' ' + shell_word(flag);
+  for (const std::string& flag :
+       backends::language_of(lane) == backends::Language::cuda ? opened.wanted.flags : subjects::host_flags(opened))
+    text += ' ' + shell_word(flag);
   return text;
 }
 
@@ -93,18 +95,20 @@ std::string hex_line(const Pair& pair) {
   return line;
 }
 
-// For a CUDA lane in a test that also runs without a device. Only Graze can replay the lane there.
+// For a CUDA lane in a test that also runs without a device: only Graze can replay the lane there. For a toolchain's
+// lane Graze compiles the source as the toolchain does.
 std::string by_graze(const Lane& lane, const Pair& pair, const subjects::Opened& opened, std::string_view real) {
-  std::string command =
-      fmt::format("echo '{}' | graze check - --json --subject {} --lanes {} --subject-timeout {}", hex_line(pair),
-                  shell_word(opened.wanted.name + '=' + opened.wanted.what), lane.id, opened.wanted.timeout);
+  std::string command = fmt::format("echo '{}' | graze check - --json --lanes {}", hex_line(pair), lane.id);
+  if (opened.kind != "published")
+    command += fmt::format(" --subject {} --subject-timeout {}",
+                           shell_word(opened.wanted.name + '=' + opened.wanted.what), opened.wanted.timeout);
+  if (const subjects::Toolchain* toolchain = subjects::toolchain_of(lane); toolchain && opened.kind != "opencl")
+    command += " --toolchains " + shell_word(subjects::list_of({*toolchain}));
   if (!opened.wanted.flags.empty())
     command += " --flags=" + shell_word(fmt::format("{}", fmt::join(opened.wanted.flags, " ")));
   return fmt::format(R"(#include <string>
 
-// Graze builds the source as it is now, and runs it on a CUDA device, or replays it on the CPU if there is none. The
-// field "cuda" of its answer says which of the two, and how well the replay is verified.
-static int decide(const {0}*, const {0}*) {{
+{3}static int decide(const {0}*, const {0}*) {{
   FILE* graze = popen({1},
                       "r");
   std::string said;
@@ -121,12 +125,17 @@ static int decide(const {0}*, const {0}*) {{
   return verdict.find("intersects\"") == 0 ? 1 : verdict.find("disjoint\"") == 0 ? 0 : -1;
 }}
 )",
-                     real, cpp_string(command), cpp_string('"' + lane.id + "\":\""));
+                     real, cpp_string(command), cpp_string('"' + lane.id + "\":\""),
+                     backends::language_of(lane) == backends::Language::cuda
+                         ? "// Graze builds the source as it is now, and runs it on a CUDA device, or replays it "
+                           "on the CPU if there is none. The\n// field \"cuda\" of its answer says which of the "
+                           "two, and how well the replay is verified.\n"
+                         : "// Graze builds the source as it is now, by the toolchain of the lane.\n");
 }
 
 }  // namespace
 
-bool shows_foreign(const Lane& lane) { return subjects::opened(lane.info->id) != nullptr; }
+bool shows_foreign(const Lane& lane) { return lane.foreign; }
 
 ForeignCall kernel_call(const Lane& lane) {
   const subjects::Opened& opened = *subjects::opened(lane.info->id);
@@ -146,7 +155,7 @@ ForeignCall foreign_call(const Lane& lane, const Pair& pair, std::string_view co
   call.seconds = static_cast<int>(std::ceil(opened.wanted.timeout)) + 1;
   const std::string plain = fmt::format("{} -std=c++20 case.cpp", compiler),
                     end = fmt::format("{} -o case && ./case", libraries);
-  if (backends::language_of(lane) == backends::Language::cuda) {
+  if (backends::language_of(lane) == backends::Language::cuda || subjects::toolchain_of(lane)) {
     call.command = plain + end;
     call.seconds += 100;  // for building the source
     call.decide = by_graze(lane, pair, opened, real);
@@ -195,7 +204,10 @@ static int decide(const {}*, const {}*) {{
   }
   const bool describes_itself = subjects::source_describes_itself(opened.file);
   std::string flags = flags_of(lane, opened);
-  if (describes_itself) flags += " -I" + shell_word((subjects::cache_folder() / "include").string());
+  const bool is_cuda = opened.kind == "cuda";
+  const std::string headers = (subjects::cache_folder() / "include").string();
+  if (describes_itself || is_cuda) flags += " -I" + shell_word(headers);
+  if (is_cuda) flags += " -I" + shell_word(headers + "/cuda");
   const std::string function = function_of(opened);
   if (opened.file.extension() == ".c") {
     call.command = fmt::format("cc -std=gnu11 -O2{} -c {} -o subject.o && {} -I{} subject.o{}", flags, shell_word(file),
@@ -211,7 +223,7 @@ static int decide(const {}*, const {}*) {{
     return call;
   }
   call.command = fmt::format("{} -std=c++20 -O2{} case.cpp{}", compiler, flags, end);
-  call.decide = fmt::format("#include {}\n", cpp_string(file)) +
+  call.decide = fmt::format("{}#include {}\n", is_cuda ? "#include <graze/cuda_host.h>\n" : "", cpp_string(file)) +
                 (describes_itself ? by_description(real, scalar, "&::graze_subject") : calling(real, function));
   return call;
 }

@@ -254,7 +254,8 @@ std::string epsilon_words(const CampaignCounts& counts, std::size_t lane, const 
   }
   std::string text = "Epsilon: no failure that was looked at shows an absolute epsilon";
   if (pairs > 0) {
-    text = fmt::format("Epsilon: on {}, by one of each signature, an absolute epsilon {}", counted(pairs, "wrong pair"),
+    text = fmt::format("Epsilon: on {}, by one of each signature, an absolute epsilon or another fixed number {}",
+                       counted(pairs, "wrong pair"),
                        settled == 0   ? "perhaps decides"
                        : settled < of ? "decides, on some of them perhaps"
                                       : "decides");

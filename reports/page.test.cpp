@@ -155,7 +155,12 @@ TEST(Page, OfManySignaturesIsUnderTenMebibytes) {
   }
   summary["spec"]["pairs"] = 19 * kBucketCount * kPairs;
   summary["strata"] = Json::object();
-  for (int s = 0; s < 19; ++s) summary["strata"]["a_stratum_with_a_name_" + std::to_string(s)] = stratum;
+  summary["spec"]["strata"] = Json::array();
+  for (int s = 0; s < 19; ++s) {
+    const std::string name = "a_stratum_with_a_name_" + std::to_string(s);
+    summary["strata"][name] = stratum;
+    summary["spec"]["strata"].push_back(name);
+  }
   const fs::path directory = fs::temp_directory_path() / ("graze_size_" + std::to_string(getpid()));
   fs::create_directories(directory / "cases");
   const Pair pair{{{0.1f, 0.2f, 0.3f}, {1.7f, 0.3f, 0.7f}, {0.3f, 1.9f, 1e-30f}},

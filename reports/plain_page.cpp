@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <climits>
@@ -150,6 +151,31 @@ std::string differs_section(const Json& report) {
          (equal.empty() ? "" : "<p>On every pair like the cpu lane: " + equal + ".</p>\n");
 }
 
+// How the verdicts of each algorithm change with the toolchain.
+std::string toolchains_section(const Json& map) {
+  if (map.is_null()) return "";
+  const std::string reference = html(map.at("reference"));
+  std::string text = "<h2>Toolchains</h2>\n";
+  for (const Json& sentence : map.at("sentences")) text += paragraph(sentence);
+  for (const char* share : {"differs", "wrong"}) {
+    text += (share == std::string_view("wrong") ? "<p>Verdicts that are wrong:</p>\n"
+                                                : "<p>Verdicts that differ from " + reference + "'s:</p>\n") +
+            "<div class=\"wide\"><table>\n<tr><th>algorithm</th>";
+    for (const Json& variant : map.at("variants")) text += "<th>" + html(variant) + "</th>";
+    text += "</tr>\n";
+    for (const Json& row : map.at("rows")) {
+      std::vector<std::string> cells(map["variants"].size(), "<td></td>");
+      for (const Json& cell : row.at("cells")) {
+        if (!cell.at(share).is_null()) cells.at(cell.at("variant").get<std::size_t>()) = share_cell(cell[share]);
+      }
+      text += fmt::format("<tr><th>{}/{}</th>{}</tr>\n", html(row.at("algorithm")), html(row.at("scalar")),
+                          fmt::join(cells, ""));
+    }
+    text += "</table></div>\n";
+  }
+  return text;
+}
+
 // A cell that is darker the more often the lane errs there than at the origin.
 std::string times_cell(const Json& cell) {
   const Json& share = cell.at("wrong");
@@ -296,9 +322,10 @@ coplanar, margin, algorithm, and a mark for each of its lanes: + false positive,
 
 std::string plain_page(const Json& report, const Json& costs, const Json& choices) {
   return page_head("Graze: discrepancy report", kStyle) + answer_section(report, costs) +
-         compare_section(report.at("compare")) + choices_section(choices) + league(report) + margin_section(report) +
-         differs_section(report) + extremes_section(report, choices.at("pareto")) + signature_section(report) +
-         kDefinitions + run_section(report) + "</body>\n</html>\n";
+         compare_section(report.at("compare")) + choices_section(choices) + league(report) +
+         toolchains_section(report.value("toolchains", Json())) + margin_section(report) + differs_section(report) +
+         extremes_section(report, choices.at("pareto")) + signature_section(report) + kDefinitions +
+         run_section(report) + "</body>\n</html>\n";
 }
 
 }  // namespace graze::reports

@@ -283,13 +283,15 @@ void expect_relocations(const Json& tuned) {
   for (const Json& row : tuned.at("interactions")) {
     for (const char* which : {"first", "second", "together"}) expect_relocation(row.at(which), zero);
   }
+  const std::uint64_t most = tuned.at("confirmed").at("pairs");
   for (const auto& [side, row] : tuned.at("scale_break").items()) {
     const analysis::PolicyErrors errors = errors_of(row.at("errors"));
     const int log2 = row.at("log2");
     expect((side == "up" ? log2 > 0 : log2 < 0) && std::abs(log2) <= analysis::kMostScale &&
-               errors.policy == tuned.at("chosen").get<std::string>() && errors.pairs <= zero.at("pairs") &&
-               errors.fixed <= errors.pairs - errors.not_right() && errors.broken <= errors.not_right(),
-           fmt::format("errors of the choice at another scale, of at most {} pairs", zero["pairs"].dump()), row);
+               errors.policy == tuned.at("chosen").get<std::string>() && errors.pairs <= most &&
+               errors_of(row.at("from")).pairs == errors.pairs && errors.fixed <= errors.pairs - errors.not_right() &&
+               errors.broken <= errors.not_right(),
+           fmt::format("errors of the choice at another scale, of at most {} pairs", most), row);
   }
 }
 
@@ -366,6 +368,37 @@ void expect_domination(const Json& row, const Json& lanes) {
          dominated ? "a lane that none dominates" : "a lane that another dominates", row.at("dominated"));
 }
 
+// Checks the map of toolchains against the lanes and their rates.
+void expect_possible_map(const Json& map, const Json& report) {
+  const std::vector<std::string> variants = map.at("variants");
+  const auto is_variant = [&](const Json& name) {
+    return std::find(variants.begin(), variants.end(), name.get<std::string>()) != variants.end();
+  };
+  expect(is_variant(map.at("reference")), "a reference among the variants", map["reference"]);
+  for (const Json& group : map.at("agree")) {
+    for (const Json& name : group) expect(is_variant(name), "one of the variants", name);
+  }
+  std::map<std::size_t, Json> wrong;  // by lane
+  for (const Json& rate : report.at("rates")) {
+    if (rate.at("stratum").is_null()) wrong[rate.at("lane")] = rate.at("wrong");
+  }
+  for (const Json& row : map.at("rows")) {
+    for (const Json& cell : row.at("cells")) {
+      const Json& lane = report.at("lanes").at(cell.at("lane").get<std::size_t>());
+      const std::size_t variant = cell.at("variant");
+      expect(variant < variants.size() && lane.at("algorithm") == row.at("algorithm") &&
+                 lane.at("scalar") == row.at("scalar") && lane.at("target") == variants[variant],
+             "a lane of its row and column", cell);
+      const Json& rate = wrong[cell["lane"]];
+      const Json& differs = cell.at("differs");
+      expect(cell.at("wrong") == rate && (differs.is_null() || differs.at("of") == rate.at("of")),
+             "shares of the lane's pairs", cell);
+      expect(variants[variant] != map["reference"] || differs.is_null() || differs.at("count") == 0,
+             "no difference of the reference from itself", cell);
+    }
+  }
+}
+
 }  // namespace
 
 void expect_possible_report(const Json& report) {
@@ -380,6 +413,7 @@ void expect_possible_report(const Json& report) {
   expect_possible_rates(report);
   expect_possible_curves(report);
   expect_possible_failures(report);
+  if (const Json map = report.value("toolchains", Json()); !map.is_null()) expect_possible_map(map, report);
   if (!report.at("compare").is_null()) expect_possible_changes(report["compare"].value("verdicts", Json()), all);
 }
 

@@ -17,6 +17,10 @@ Json code_json(const Json& recorded) {
     for (const char* key : {"source_hash", "compiler", "flags", "environment"}) {
       if (row.contains(key) && !row[key].empty()) code.back()[key] = row[key];
     }
+    for (const Json& toolchain : row.value("toolchains", Json::array())) {
+      if (toolchain.contains("contraction"))
+        code.back()["contraction"][toolchain.at("name").get<std::string>()] = toolchain["contraction"];
+    }
   }
   return code;
 }

@@ -8,8 +8,8 @@
 
 namespace graze::reports {
 
-// [{"name", "what", "hash", "source_hash", "compiler", "flags", "environment"}] of what subjects::record gives, without
-// what is empty; null without subjects.
+// [{"name", "what", "hash", "source_hash", "compiler", "flags", "environment", "contraction"}] of what subjects::record
+// gives, without what is empty; null without subjects. "contraction" has the plans by toolchain.
 nlohmann::ordered_json code_json(const nlohmann::ordered_json& recorded);
 
 // "P/m.cpp (hash 0a…, by g++ … -O3, CXX=g++)", of a row of code_json.

@@ -24,6 +24,7 @@
 #include "reports/recorded_code.h"
 #include "reports/tables.h"
 #include "reports/terminal.h"
+#include "reports/toolchain_map.h"
 #include "strata/strata.h"
 
 namespace graze::reports {
@@ -130,24 +131,26 @@ Json make_report(const std::filesystem::path& directory) {
   const Json summary = fuzz::checked_summary(directory);
   try {
     const CampaignCounts counts = counts_of(summary);
-    Json report = {{"format", 2},
-                   {"run", run_of(directory, summary, counts)},
-                   {"strata", strata_of(counts, summary.at("spec"))},
-                   {"lanes", lanes_of(summary, counts)},
-                   {"answer", answer(counts, nullptr, fuzz::read_kinds(directory))},
-                   {"groups", groups(counts)},
-                   {"rates", rates(counts)},
-                   {"group_rates", group_rates(counts)},
-                   {"side_by_side", side_by_side(counts)},
-                   {"margins", margins(counts)},
-                   {"thresholds", thresholds(counts)},
-                   {"extremes", extremes(counts)},
-                   {"signature_count", 0},
-                   {"signatures", nullptr},
-                   {"sources", nullptr},
-                   {"cards", nullptr},
-                   {"missing", missing_of(counts, summary, directory)},
-                   {"compare", nullptr}};
+    Json report = {
+        {"format", 2},
+        {"run", run_of(directory, summary, counts)},
+        {"strata", strata_of(counts, summary.at("spec"))},
+        {"lanes", lanes_of(summary, counts)},
+        {"answer", answer(counts, nullptr, fuzz::read_kinds(directory))},
+        {"groups", groups(counts)},
+        {"rates", rates(counts)},
+        {"group_rates", group_rates(counts)},
+        {"side_by_side", side_by_side(counts)},
+        {"toolchains", has_toolchains(counts) ? toolchain_map(counts, signature_rows(counts, summary)) : Json()},
+        {"margins", margins(counts)},
+        {"thresholds", thresholds(counts)},
+        {"extremes", extremes(counts)},
+        {"signature_count", 0},
+        {"signatures", nullptr},
+        {"sources", nullptr},
+        {"cards", nullptr},
+        {"missing", missing_of(counts, summary, directory)},
+        {"compare", nullptr}};
     add_signatures(report, directory, summary, counts);
     return report;
   } catch (const Json::exception&) {

@@ -276,6 +276,7 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
   tuned.curves[1].points[0].policy = "parallel=rel:1";
   tuned.dead = {"parallel"};
   tuned.scale.down = -4;
+  tuned.scale.here = errors(400, 30, "rel:8", 60);
   tuned.scale.at_down = errors(400, 200, "rel:8", 60);
   tuned.interactions = {{"a", "b", errors(400, 1, "a", 60), errors(400, 2, "b", 60), errors(400, 3, "c", 60)}};
   const Json tune = tuning_json({"moller_1997/f32/cpu", analysis::Forbid::false_negative, 1e-3, 0.1}, tuned);

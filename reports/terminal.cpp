@@ -135,33 +135,43 @@ namespace {
 void print_verdicts(std::ostream& out, const Pair& pair, const oracle::Truth& true_of_pair,
                     std::span<const Lane* const> lanes, std::span<const Verdict> verdicts, const Screen& screen) {
   const Verdict truth = true_of_pair.verdict;
-  const auto belongs = [](const Lane& lane, const VariantInfo& column) {
-    const VariantInfo& its = info_of(lane.variant);
-    return its.arithmetic == Arithmetic::exact ? column.runs_on == its.runs_on : lane.variant == column.variant;
+  struct Target {
+    const VariantInfo& row;
+    std::string_view name;
   };
-  std::vector<const VariantInfo*> variants;
+  const auto belongs = [](const Lane& lane, const Target& column) {
+    const VariantInfo& its = info_of(lane.variant);
+    return its.arithmetic == Arithmetic::exact ? column.row.runs_on == its.runs_on : lane.variant_name() == column.name;
+  };
+  const auto is_another = [](const Lane& l, const Lane& r) {
+    return l.info != r.info || l.scalar != r.scalar || l.policy != r.policy;
+  };
+  std::vector<Target> variants;
   for (const VariantInfo& row : kVariants) {
-    const bool shown =
-        std::any_of(lanes.begin(), lanes.end(), [&](const Lane* l) { return l->variant == row.variant; });
     const bool for_exact_alone =
-        row.arithmetic == Arithmetic::exact && !variants.empty() && variants.back()->runs_on == RunsOn::device;
-    if (shown && !for_exact_alone) variants.push_back(&row);
+        row.arithmetic == Arithmetic::exact && !variants.empty() && variants.back().row.runs_on == RunsOn::device;
+    for (const Lane* lane : lanes) {
+      const bool is_there = std::any_of(variants.begin(), variants.end(),
+                                        [&](const Target& column) { return column.name == lane->variant_name(); });
+      if (lane->variant == row.variant && !is_there && !for_exact_alone)
+        variants.push_back({row, lane->variant_name()});
+    }
   }
   if (variants.empty()) return;
   std::vector<Column> columns{{"", Align::left}};
-  for (const VariantInfo* variant : variants) columns.push_back({std::string(variant->id), Align::left});
+  for (const Target& variant : variants) columns.push_back({std::string(variant.name), Align::left});
   TextTable table(columns);
-  for (std::size_t first = 0, end; first < lanes.size(); first = end) {
+  for (std::size_t first = 0; first < lanes.size(); ++first) {
     const Lane& lane = *lanes[first];
-    for (end = first; end < lanes.size() && lanes[end]->info == lane.info && lanes[end]->scalar == lane.scalar &&
-                      lanes[end]->policy == lane.policy;)
-      ++end;
+    if (std::any_of(lanes.begin(), lanes.begin() + static_cast<std::ptrdiff_t>(first),
+                    [&](const Lane* before) { return !is_another(*before, lane); }))
+      continue;
     std::vector<Cell> cells{
         fmt::format("{}/{}{}{}", lane.info->id, name(lane.scalar), lane.policy.empty() ? "" : " ", lane.policy)};
-    for (const VariantInfo* variant : variants) {
+    for (const Target& variant : variants) {
       Cell& cell = cells.emplace_back("-");
-      for (std::size_t l = first; l < end && cell.text == "-"; ++l) {
-        if (!belongs(*lanes[l], *variant)) continue;
+      for (std::size_t l = first; l < lanes.size() && cell.text == "-"; ++l) {
+        if (is_another(*lanes[l], lane) || !belongs(*lanes[l], variant)) continue;
         const bool wrong = truth != Verdict::declined && is_wrong(verdicts[l], truth);
         const bool convention = wrong && analysis::by_convention(*lanes[l], verdicts[l], pair, true_of_pair);
         cell = {fmt::format("{}{}", name(verdicts[l]),

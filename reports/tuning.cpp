@@ -71,28 +71,41 @@ std::string errors(const PolicyErrors& e) {
 
 // The errors that double from one scale to another: all, or the forbidden ones alone.
 std::string_view doubled_words(const TuneQuestion& q, const PolicyErrors& here, const PolicyErrors& there) {
-  return analysis::doubles(here.wrong(), there.wrong()) ? "errors" : words(q.forbid);
+  return analysis::doubles(here.wrong(), there.wrong(), here.pairs) ? "errors" : words(q.forbid);
+}
+
+// How many pairs would show that the rate is under the limit, if it is what these pairs have.
+std::string pairs_to_show(const TuneQuestion& q, const Tuned& t) {
+  const std::uint64_t errors = analysis::forbidden(t.confirmed, q.forbid), pairs = t.confirmed.pairs;
+  if (errors == 0)
+    return fmt::format("To show such a rate, use at least {} pairs (--pairs), none with an error.",
+                       grouped(static_cast<std::uint64_t>(std::ceil(std::log(0.05) / std::log1p(-q.max_rate)))));
+  for (std::uint64_t times = 2; times <= 1024; times *= 2) {
+    if (analysis::upper_bound(times * errors, times * pairs) <= q.max_rate)
+      return fmt::format("With {} pairs (--pairs) and errors at the same rate, it would be shown.",
+                         grouped(times * pairs));
+  }
+  return "The rate is too near the limit, or above it, for more pairs to show it.";
 }
 
 std::string answer(const TuneQuestion& q, const Tuned& t) {
-  const std::string of =
-      fmt::format("{}: on pairs other than those it was chosen on, {}", choice_words(q, t.chosen), errors(t.confirmed));
+  const std::string on = "on pairs other than those it was chosen on, " + errors(t.confirmed),
+                    of = choice_words(q, t.chosen) + ": " + on;
   std::string trust = fmt::format("at 95 % confidence {} are under {}", words(q.forbid), rounded_up(t.bound, 2));
   if (q.forbid != Forbid::any)
     trust += fmt::format(", {} under {}", other_words(q.forbid), rounded_up(t.other_bound, 2));
   switch (t.result) {
     case TuneResult::satisfied:
+      if (!t.chosen.empty() && t.zero_confirmed.wrong() <= t.confirmed.wrong() &&
+          analysis::forbidden(t.zero_confirmed, q.forbid) <= analysis::forbidden(t.confirmed, q.forbid))
+        return fmt::format("Leave it as it is, since {} is no better: {}; {}.", policy_words(q, t.chosen), on, trust);
       return fmt::format("Use {}; {}.", of, trust);
     case TuneResult::too_few_pairs:
       if (t.bound <= q.max_rate)
         return fmt::format(
             "Not settled: {}; {}. The rate of {} may be at most {} (--max-other); more pairs (--pairs) settle it.", of,
             trust, other_words(q.forbid), q.max_other);
-      return fmt::format(
-          "Not settled: {}; {}, and {} was asked for. To show such a rate, use at least {} pairs (--pairs), none with "
-          "an error.",
-          of, trust, q.max_rate,
-          grouped(static_cast<std::uint64_t>(std::ceil(std::log(0.05) / std::log1p(-q.max_rate)))));
+      return fmt::format("Not settled: {}; {}, and {} was asked for. {}", of, trust, q.max_rate, pairs_to_show(q, t));
     case TuneResult::not_confirmed:
       return fmt::format(
           "Not settled: {}. It keeps {} at or under {} on the pairs of the choice, but not on these. "
@@ -181,15 +194,16 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
   const analysis::ScaleBreak& scale = tuned.scale;
   for (const auto& [k, at] : {std::pair{scale.up, scale.at_up}, {scale.down, scale.at_down}}) {
     if (k != 0)
-      result.push_back(fmt::format("Scale break: if the pairs should {}, {} more than double: {}.", power(k),
-                                   doubled_words(question, scale.here, at), errors(at)));
+      result.push_back(fmt::format("Scale break: if the pairs should {}, {} more than double: {}, after {}.", power(k),
+                                   doubled_words(question, scale.here, at), errors(at), errors(scale.here)));
   }
   if (!tuned.chosen.empty() && scale.up == 0 && scale.down == 0)
-    result.push_back(fmt::format("Scale: with {1}, {2} double from 2^-{0} to 2^{0} times the pairs' size.",
-                                 analysis::kMostScale, choice_words(question, tuned.chosen),
-                                 question.forbid == Forbid::any
-                                     ? "errors do not"
-                                     : fmt::format("neither errors nor {} alone", words(question.forbid))));
+    result.push_back(fmt::format(
+        "Scale: with {1}, {2} shown to double from 2^-{0} to 2^{0} times the pairs' size, on {3}.",
+        analysis::kMostScale, choice_words(question, tuned.chosen),
+        question.forbid == Forbid::any ? "errors are not"
+                                       : fmt::format("neither errors nor {} alone are", words(question.forbid)),
+        counted(scale.here.pairs, "pair")));
   for (const analysis::Interaction& i : tuned.interactions) {
     result.push_back(fmt::format("Two sites: {} alone has {} wrong, {} alone {}, both {}.", i.first,
                                  grouped(i.of_first.wrong()), i.second, grouped(i.of_second.wrong()),
@@ -234,9 +248,12 @@ Json tuning_json(const TuneQuestion& question, const Tuned& tuned) {
                {"sentences", tuning_sentences(question, tuned)}};
   if (question.source) json["epsilon"] = epsilon_json(question, tuned);
   if (tuned.scale.up)
-    json["scale_break"]["up"] = {{"log2", tuned.scale.up}, {"errors", errors_json(tuned.scale.at_up)}};
+    json["scale_break"]["up"] = {
+        {"log2", tuned.scale.up}, {"from", errors_json(tuned.scale.here)}, {"errors", errors_json(tuned.scale.at_up)}};
   if (tuned.scale.down)
-    json["scale_break"]["down"] = {{"log2", tuned.scale.down}, {"errors", errors_json(tuned.scale.at_down)}};
+    json["scale_break"]["down"] = {{"log2", tuned.scale.down},
+                                   {"from", errors_json(tuned.scale.here)},
+                                   {"errors", errors_json(tuned.scale.at_down)}};
   for (const analysis::Interaction& i : tuned.interactions)
     json["interactions"].push_back({{"first", errors_json(i.of_first)},
                                     {"second", errors_json(i.of_second)},

@@ -169,8 +169,9 @@ std::string verdicts_sentence(const Json& of) {
   if (of.contains("operands")) return verdicts + operands_sentence(of.at("operands"));
   return verdicts + "Only verdicts are compared: " +
          (of.contains("why_no_operands") ? text_at(of, "why_no_operands") + "."
-                                         : "Graze sees values inside your own code only between the builds "
-                                           "cuda-nofma and cuda-fma of a CUDA source, where they differ.");
+                                         : "Graze sees values inside the lanes that it builds itself; inside "
+                                           "your own code, between cuda-nofma and cuda-fma of a CUDA source that "
+                                           "differ.");
 }
 
 std::string verdicts_table(const Json& of, const Screen& screen) {

@@ -13,8 +13,9 @@ namespace graze::strata {
 std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs,
                                         const std::vector<std::string>& globs) {
   for (const std::string& glob : globs) {
+    const std::string wanted = glob.substr(glob.starts_with('!'));
     if (std::none_of(std::begin(kStrata), std::end(kStrata),
-                     [&](const StratumInfo& row) { return matches_any({glob}, row.id); })) {
+                     [&](const StratumInfo& row) { return matches_any({wanted}, row.id); })) {
       std::vector<std::string> ids;
       for (const StratumInfo& row : kStrata) ids.emplace_back(row.id);
       throw UsageError("no stratum matches '" + printable(glob) + "'; `graze strata` lists them" +

@@ -14,6 +14,7 @@
 
 #include "core/fnv1a.h"
 #include "core/plain_file.h"
+#include "core/programs/run_program.h"
 #include "core/stop.h"
 #include "core/text.h"
 
@@ -57,19 +58,6 @@ std::vector<std::string> words_of(const std::string& command, std::set<std::stri
 bool is_file(const fs::path& file) {
   std::error_code none;
   return fs::is_regular_file(file, none);
-}
-
-// The program's file on the PATH, as a shell finds it; empty when there is none. A folder without a name is the current
-// one.
-fs::path on_path(const std::string& program) {
-  const char* path = std::getenv("PATH");
-  if (!path) return {};
-  std::istringstream folders(std::string(path) + ':');
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const fs::path file = fs::path(folder) / program;
-    if (is_file(file) && access(file.c_str(), X_OK) == 0) return file;
-  }
-  return {};
 }
 
 // Splits the text at these characters.

@@ -5,8 +5,12 @@
 //   graze-subject-host --worker KIND WHAT NAME SCALAR MEMORY DESCRIBE
 // As the supervisor of a build tool whose temporary files are in the folder SCRATCH:
 //   graze-subject-host --run SECONDS SCRATCH NAMESPACES MEMORY WORD...
+// With CUDA, graze-subject-device also times kernels. It prints the device's name and, for each kernel, a line of
+// nanoseconds a pair, one number for each pass:
+//   graze-subject-device --time PAIRS PASSES f32|f64 PTX [f32|f64 PTX]...
 // KIND WHAT NAME SCALAR:  library FILE NAME f32|f64|any   a shared object and its export; see graze/subject.h
 //                         command TEXT "" f32             a program; see subjects/README.md
+//                         program RUN "" f32|f64|any      a program that RUN runs; see graze/program.h and toolchains.h
 //                         device FILE "" f32|f64          PTX of cuda/subject; run by graze-subject-device with CUDA
 // MEMORY: MiB that the code may use; a device's driver has no limit. SECONDS: for a pair or a block. DESCRIBE: 1 asks a
 // program to describe itself. NAMESPACES: 0 uses no process namespace. CACHE: a folder that the code cannot write to;
@@ -30,6 +34,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cfenv>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -42,9 +47,15 @@
 #include <string>
 #include <vector>
 
+#ifdef __x86_64__
+#include <immintrin.h>
+#endif
+
 #include "subjects/containment.h"
 #include "subjects/line_protocol.h"
+#include "subjects/program_protocol.h"
 #include "subjects/supervisor.h"
+#include "subjects/toolchains/command_of.h"
 #ifdef GRAZE_SUBJECT_DEVICE
 #include "cuda/subject/subject_device.h"
 #endif
@@ -165,6 +176,10 @@ graze_subject subject_of_library(const std::string& file, const std::string& nam
     if (subject.abi != GRAZE_SUBJECT_ABI)
       refuse(fmt::format("{}: expected a description for version {} of graze/subject.h, found {}", file,
                          GRAZE_SUBJECT_ABI, subject.abi));
+    constexpr std::uint32_t kKnown =
+        GRAZE_OUTSIDE_TOUCHING | GRAZE_OUTSIDE_COPLANAR | GRAZE_OUTSIDE_DEGENERATE | GRAZE_OUTSIDE_SHARED;
+    if (subject.outside & ~kKnown)
+      refuse(fmt::format("the description in {}: outside is {}, not a sum of GRAZE_OUTSIDE_…", file, subject.outside));
     if (!subject.f32 && !subject.f64 && !subject.block_f32 && !subject.block_f64)
       refuse(fmt::format("the description in {} names no function; set f32, f64, block_f32 or block_f64", file));
     return subject;
@@ -193,6 +208,40 @@ std::uint64_t processor_nanoseconds() {
   return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000'000 + static_cast<std::uint64_t>(now.tv_nsec);
 }
 
+// The processor's rounding mode, precision and treatment of subnormals, as loading the code has left them. Code that
+// changes them would change the answers to the pairs that come later.
+class FloatControl {
+ public:
+  FloatControl() : modes_(modes()), x87_(x87()) {}
+
+  // Returns: whether they had changed.
+  bool restore() const {
+    if (modes() == modes_ && x87() == x87_) return false;
+#ifdef __x86_64__
+    _mm_setcsr(modes_);
+    __asm__ volatile("fldcw %0" : : "m"(x87_));
+#else
+    fesetround(static_cast<int>(modes_));
+#endif
+    return true;
+  }
+
+ private:
+#ifdef __x86_64__
+  static unsigned modes() { return _mm_getcsr() & ~0x3fu; }  // without the flags of exceptions
+  static std::uint16_t x87() {
+    std::uint16_t word;
+    __asm__ volatile("fnstcw %0" : "=m"(word));
+    return word;
+  }
+#else
+  static unsigned modes() { return static_cast<unsigned>(fegetround()); }
+  static std::uint16_t x87() { return 0; }
+#endif
+  unsigned modes_;
+  std::uint16_t x87_;
+};
+
 // Asks about a question's pairs, forward and then backward.
 template <class Number>
 class Asking {
@@ -211,15 +260,19 @@ class Asking {
         ask_block(question, false, 0, question.count);
         break;
       }
-      put_answer(words, question, false, i, one(i));
+      put_answer(words, question, false, i, one(i, false));
     }
     const std::uint64_t taken = processor_nanoseconds() - start;
     if (block_ && !question.singly) {
-      ask_block(question, true, question.count / 2, question.count);
-      ask_block(question, true, 0, question.count / 2);
+      // In parts that begin at odd places: almost every pair has another place in its block, modulo every power of two.
+      const std::size_t half = std::min<std::size_t>(question.count, question.count / 2 | 1);
+      const std::size_t first = std::min<std::size_t>(half, 3);
+      ask_block(question, true, half, question.count);
+      ask_block(question, true, first, half);
+      ask_block(question, true, 0, first);
     } else {
       for (std::size_t i = question.count; i-- > 0;) {
-        if (is_chosen(question.second, i)) put_answer(words, question, true, i, one(i));
+        if (is_chosen(question.second, i)) put_answer(words, question, true, i, one(i, true));
       }
     }
     return taken;
@@ -228,11 +281,17 @@ class Asking {
  private:
   const Number* pair(std::size_t i) const { return static_cast<const Number*>(pairs) + 18 * i; }
 
-  signed char one(std::size_t i) const {
-    if (!block_) return answer_of(single_(pair(i), pair(i) + 9));
+  // A call that changes the control of floating-point numbers gets another answer the second time: it is unstable.
+  signed char one(std::size_t i, bool second) const {
     signed char said = kDeclined;
-    block_(pair(i), 1, &said);
-    return answer_of(said);
+    if (block_) {
+      block_(pair(i), 1, &said);
+      said = answer_of(said);
+    } else {
+      said = answer_of(single_(pair(i), pair(i) + 9));
+    }
+    const signed char other = said == kDeclined ? int{kDisjoint} : int{kDeclined};
+    return control_.restore() && second ? other : said;
   }
 
   void ask_block(const Question& question, bool second, std::size_t begin, std::size_t end) const {
@@ -240,11 +299,13 @@ class Asking {
     signed char said[kMostAsked];
     std::fill_n(said, kMostAsked, static_cast<signed char>(kDeclined));
     block_(pair(begin), end - begin, said);
+    if (control_.restore()) _exit(1);  // then the pairs are asked one at a time
     for (std::size_t i = begin; i < end; ++i) put_answer(words, question, second, i, answer_of(said[i - begin]));
   }
 
   Single single_;
   Block block_;
+  FloatControl control_;
 };
 
 // In the worker: answers questions forever.   ask: answers a question and returns its processor time.
@@ -315,6 +376,8 @@ void fix_addresses(char** argv) {
   if (personality(0xffffffff) & ADDR_NO_RANDOMIZE) execv("/proc/self/exe", argv);
 }
 
+constexpr double kGreetingSeconds = 50;  // an emulator or another machine may be slow to start
+
 constexpr int kNotReady = 99;  // exit status of a worker that cannot start its program or open its device
 
 // Becomes a worker.   subject: the library's description.   Throws: std::exception if it cannot.
@@ -324,6 +387,13 @@ constexpr int kNotReady = 99;  // exit status of a worker that cannot start its 
     LineProtocol program(what);
     serve([&](const Question& question) {
       program.ask(question, static_cast<const float*>(pairs), words);
+      return 0;
+    });
+  }
+  if (kind == "program") {
+    ProgramProtocol program(command_of(what, kCode), kGreetingSeconds);
+    serve([&](const Question& question) {
+      program.ask(question, pairs, scalar == "f64", words);
       return 0;
     });
   }
@@ -352,7 +422,8 @@ int load_and_fork(char** argv, const std::string& kind, const std::string& what,
   if (words == MAP_FAILED || pairs == MAP_FAILED) return 2;
   close(kPairsFd);
   close(kWordsFd);
-  for (const int fd : {kTalkFd, kCodeFd}) fcntl(fd, F_SETFD, FD_CLOEXEC);
+  fcntl(kTalkFd, F_SETFD, FD_CLOEXEC);
+  if (kind != "program") fcntl(kCodeFd, F_SETFD, FD_CLOEXEC);
   if (kind != "device") set_limits(memory);
   Loaded loaded{};
   graze_subject subject{GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
@@ -365,8 +436,19 @@ int load_and_fork(char** argv, const std::string& kind, const std::string& what,
     loaded.has_f32 = subject.f32 || subject.block_f32;
     loaded.has_f64 = subject.f64 || subject.block_f64;
     loaded.of_blocks = (scalar != "f32" && subject.block_f64) || (scalar != "f64" && subject.block_f32);
+  } else if (kind == "program" && describe) {
+    try {
+      const ProgramProtocol program(command_of(what, kCode), kGreetingSeconds);
+      loaded.has_f32 = program.has_f32();
+      loaded.has_f64 = program.has_f64();
+    } catch (const std::exception& error) {
+      refuse(error.what());
+    }
   } else {
-    loaded.has_f32 = loaded.of_blocks = 1;
+    loaded.has_f32 = 1;
+  }
+  if (kind != "library") {
+    loaded.of_blocks = 1;
     if (kind == "command" && describe) put(loaded.text, described_by(what).c_str());
   }
   loaded.says = Says::loaded;
@@ -395,13 +477,38 @@ int load_and_fork(char** argv, const std::string& kind, const std::string& what,
   }
 }
 
+#ifdef GRAZE_SUBJECT_DEVICE
+int print_times(int count, char** arguments) try {
+  std::vector<cuda::CudaBuild> builds;
+  for (int i = 2; i + 1 < count; i += 2) {
+    std::ostringstream ptx;
+    ptx << std::ifstream(arguments[i + 1]).rdbuf();
+    cuda::CudaBuild& build = builds.emplace_back();
+    build.scalar = std::strcmp(arguments[i], "f64") == 0 ? Scalar::f64 : Scalar::f32;
+    build.ptx = ptx.str();
+  }
+  const auto pairs_timed = static_cast<std::uint32_t>(std::strtoul(arguments[0], nullptr, 10));
+  const cuda::SubjectCosts costs = cuda::time_subjects(builds, pairs_timed, std::atoi(arguments[1]));
+  fmt::print("{}\n", costs.device);
+  for (const std::vector<double>& of : costs.nanoseconds) fmt::print("{}\n", fmt::join(of, " "));
+  return 0;
+} catch (const std::exception& error) {
+  fmt::print("{}\n", error.what());
+  return 1;
+}
+#endif
+
 int host(int argc, char** argv) {
+#ifdef GRAZE_SUBJECT_DEVICE
+  if (argc > 5 && std::strcmp(argv[1], "--time") == 0) return print_times(argc - 2, argv + 2);
+#endif
   if (argc == 8 && std::strcmp(argv[1], "--worker") == 0)
     return load_and_fork(argv, argv[2], argv[3], argv[4], argv[5], argv[6], *argv[7] == '1');
   if (argc > 6 && std::strcmp(argv[1], "--run") == 0) {
     fcntl(kControlFd, F_SETFD, FD_CLOEXEC);
     close_range(kControlFd + 1, ~0u, 0);
     setenv("TMPDIR", argv[3], 1);
+    setenv("LC_ALL", "C", 1);  // a compiler's message, with quotes in ASCII
     enter_containment(*argv[4] == '1', std::uint64_t{1} << 30, kControlFd);
     set_limit(RLIMIT_FSIZE, kMostFileBytes);
     return supervise_program(std::strtod(argv[2], nullptr), std::strtoull(argv[5], nullptr, 10) << 20, argv[3],
@@ -414,9 +521,10 @@ int host(int argc, char** argv) {
   fix_addresses(argv);
   const bool on_device = std::strcmp(argv[1], "device") == 0;
   Limits limits;
-  limits.program = std::strcmp(argv[1], "command") == 0;
+  limits.has_code = std::strcmp(argv[1], "command") != 0;
+  limits.program = !limits.has_code || std::strcmp(argv[1], "program") == 0;
   fcntl(kControlFd, F_SETFD, FD_CLOEXEC);
-  close_range(limits.program ? kSupervisorCodeFd : kSupervisorCodeFd + 1, ~0u, 0);
+  close_range(limits.has_code ? kSupervisorCodeFd + 1 : kSupervisorCodeFd, ~0u, 0);
   limits.seconds = std::strtod(argv[6], nullptr);
   limits.bytes = on_device ? 0 : std::strtoull(argv[5], nullptr, 10) << 20;
   limits.system_v = enter_containment(!on_device && *argv[8] == '1', limits.bytes, kControlFd, argv[9]);

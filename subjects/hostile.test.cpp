@@ -673,7 +673,9 @@ TEST_F(Hostile, WhatBuildsASubjectEndsWithARequestToStopAndWithGraze) {
   };
   for (const char* source : {"header.c", "data.c"}) {
     SCOPED_TRACE(source);
-    const auto build = [&] { build_source(folder / source, "intersects", kVariants[0], {}); };
+    const auto build = [&] {
+      build_source(folder / source, "intersects", recipe_of(kVariants[0], folder / source), {});
+    };
     std::jthread request([&] {
       while (unfinished() == 0) usleep(1000);
       usleep(300'000);

@@ -57,7 +57,7 @@ signed char answer_of_line(const std::string& line) {
   throw std::runtime_error(fmt::format("expected an answer 0, 1 or ?, found {}", shown(line)));
 }
 
-LineProtocol::LineProtocol(const std::string& command) {
+Pipes start_program(const std::string& command) {
   int to[2], from[2];
   if (pipe2(to, O_CLOEXEC) != 0 || pipe2(from, O_CLOEXEC) != 0)
     throw std::runtime_error(fmt::format("cannot make a pipe to '{}': {}", command, std::strerror(errno)));
@@ -75,14 +75,13 @@ LineProtocol::LineProtocol(const std::string& command) {
   }
   close(to[0]);
   close(from[1]);
-  to_ = to[1];
-  from_ = from[0];
-  fcntl(to_, F_SETFL, O_NONBLOCK);
+  fcntl(to[1], F_SETFL, O_NONBLOCK);
+  return {to[1], from[0]};
 }
 
 void LineProtocol::read_some() {
   char bytes[4096];
-  const ssize_t count = read(from_, bytes, sizeof bytes);
+  const ssize_t count = read(pipes_.from, bytes, sizeof bytes);
   if (count == 0 || (count < 0 && errno != EINTR)) throw std::runtime_error("the program ended");
   if (count > 0) lines_.add(bytes, static_cast<std::size_t>(count));
 }
@@ -92,12 +91,12 @@ void LineProtocol::send(const std::string& lines) {
   expect_silence(0);
   std::size_t sent = 0;
   while (sent < lines.size()) {
-    pollfd ready[] = {{to_, POLLOUT, 0}, {from_, POLLIN, 0}};
+    pollfd ready[] = {{pipes_.to, POLLOUT, 0}, {pipes_.from, POLLIN, 0}};
     poll(ready, 2, -1);
     if (ready[1].revents & POLLIN) read_some();
     if (ready[0].revents & (POLLERR | POLLHUP)) return;  // it reads no more; answers that it has given still count
     if (!(ready[0].revents & POLLOUT)) continue;
-    const ssize_t count = write(to_, lines.data() + sent, lines.size() - sent);
+    const ssize_t count = write(pipes_.to, lines.data() + sent, lines.size() - sent);
     if (count > 0) sent += static_cast<std::size_t>(count);
   }
 }
@@ -109,7 +108,7 @@ std::string LineProtocol::line() {
 }
 
 void LineProtocol::expect_silence(int milliseconds) {
-  pollfd more{from_, POLLIN, 0};
+  pollfd more{pipes_.from, POLLIN, 0};
   if (!lines_.empty() || (poll(&more, 1, milliseconds) > 0 && more.revents & POLLIN))
     throw std::runtime_error("the program writes more than it was asked for");
 }
@@ -139,17 +138,17 @@ void LineProtocol::ask(const Question& question, const float* pairs, std::uint64
 
 std::string LineProtocol::first_line(const std::string& in_answer_to, double seconds) {
   const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  if (write(to_, in_answer_to.data(), in_answer_to.size()) < 0) return "";
-  close(to_);
-  to_ = -1;
+  if (write(pipes_.to, in_answer_to.data(), in_answer_to.size()) < 0) return "";
+  close(pipes_.to);
+  pipes_.to = -1;
   std::string line;
   std::size_t bytes = 0;
   while (!lines_.take(line)) {
     const std::chrono::duration<double> left = until - std::chrono::steady_clock::now();
-    pollfd ready{from_, POLLIN, 0};
+    pollfd ready{pipes_.from, POLLIN, 0};
     if (left.count() <= 0 || poll(&ready, 1, static_cast<int>(1000 * left.count()) + 1) <= 0) return "";
     char some[4096];
-    const ssize_t count = read(from_, some, sizeof some);
+    const ssize_t count = read(pipes_.from, some, sizeof some);
     if (count <= 0 || (bytes += static_cast<std::size_t>(count)) >= sizeof(Loaded::text)) return "";
     lines_.add(some, static_cast<std::size_t>(count));
   }

@@ -31,10 +31,17 @@ class Lines {
 // Throws: std::runtime_error for a line that is not an answer.
 signed char answer_of_line(const std::string& line);
 
+// A program's standard input and output. The input does not block.
+struct Pipes {
+  int to = -1, from = -1;
+};
+
+// Starts the program in a shell. It ends with the calling process.   Throws: std::runtime_error.
+Pipes start_program(const std::string& command);
+
 class LineProtocol {
  public:
-  // Starts the program in a shell.
-  explicit LineProtocol(const std::string& command);
+  explicit LineProtocol(const std::string& command) : pipes_(start_program(command)) {}
 
   // Asks about the question's pairs, forward and then backward. Writes each answer into memory as it arrives. Then
   // waits 2 ms for unexpected output.
@@ -52,7 +59,7 @@ class LineProtocol {
   // Throws: std::runtime_error when there is unexpected output, now or within this time.
   void expect_silence(int milliseconds);
 
-  int to_ = -1, from_ = -1;
+  Pipes pipes_;
   Lines lines_;
 };
 

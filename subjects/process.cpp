@@ -203,9 +203,8 @@ std::unique_ptr<HostProcess> ForeignProcesses::idle_or_new() {
 
 void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects,
                               std::uint64_t* declined) {
-  // Several processes on one device would only wait for each other, so one at a time is just as fast.
   std::unique_lock alone(alone_, std::defer_lock);
-  if (code_.kind == "device") alone.lock();
+  if (code_.alone) alone.lock();
   const bool in_double = scalar_ == Scalar::f64 && code_.kind != "device";
   std::unique_ptr<HostProcess> process = idle_or_new();
   bool loads = process != nullptr;

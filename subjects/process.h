@@ -19,12 +19,13 @@ namespace graze::subjects {
 
 // The code that graze-subject-host loads; see its first lines.
 struct Code {
-  std::string kind;             // "library", "command" or "device"
-  std::string what, name;       // a file and its export, a command, or a file of PTX
+  std::string kind;             // "library", "program", "command" or "device"
+  std::string what, name;       // a file and its export, what runs the program, a command, or a file of PTX
   std::string scalar = "any";   // for a function without a description
   double timeout = 1;           // seconds for a pair, or for a block of a subject that takes blocks
   std::uint64_t memory = 1024;  // MiB, for all its processes together
   bool namespaces = true;       // run in a process namespace if the system allows one
+  bool alone = false;           // one process at a time: several would wait for one device
   std::shared_ptr<const SealedCopy> content = nullptr;  // of the file: what is loaded; taken from it where empty
   std::vector<HashedFile> files = {};                   // of a command: it ends where one of them changes
 };

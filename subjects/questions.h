@@ -14,7 +14,7 @@ namespace graze::subjects {
 // answers count all or not at all, and a pair fails only when it is asked alone.
 class Questions {
  public:
-  // of_blocks: the subject takes blocks of pairs. program: it answers by lines.
+  // of_blocks: the subject takes blocks of pairs. program: a program answers, by lines or block by block.
   // Requires: 0 < count <= kMostAsked.
   Questions(std::size_t count, bool of_blocks, bool program) : count_(count), singly_(!of_blocks), program_(program) {}
 

@@ -48,10 +48,50 @@ SourceLanguage language_of(const Opened& subject) {
   return subject.file.extension() == ".c" ? SourceLanguage::c : SourceLanguage::cpp;
 }
 
+Recipe recipe_of_lane(const Lane& lane, const fs::path& source) {
+  const Toolchain* toolchain = toolchain_of(lane);
+  return toolchain ? recipe_of(*toolchain, source) : recipe_of(info_of(lane.variant), source);
+}
+
+Code code_of_build(const Lane& lane, const Opened& subject, const Built& built) {
+  Code code{"library", built.file.string(), "", "any", subject.wanted.timeout, subject.wanted.memory};
+  if (const Toolchain* toolchain = toolchain_of(lane)) {
+    code.kind = "program";
+    code.what = toolchain->run;
+  }
+  code.content = built.content;
+  return code;
+}
+
+// The assembly of the lane's source. Kept in this process.   Throws: std::runtime_error; Stopped.
+const std::string& assembly_of_lane(const Lane& lane) {
+  static std::mutex mutex;
+  static std::map<std::string, std::string> known;
+  const std::lock_guard lock(mutex);
+  std::string& text = known[lane.id];
+  const Opened& subject = opened_of(lane);
+  if (text.empty())
+    text = assembly_of(subject.file, function_of(subject), recipe_of_lane(lane, subject.file), host_flags(subject));
+  return text;
+}
+
+// The lane's code with the products of this line rounded.   Throws: std::runtime_error if it cannot be built so;
+// Stopped.
+std::unique_ptr<ForeignProcesses> with_rounded(const Lane& lane, const FusedLine& line) {
+  const Opened& subject = opened_of(lane);
+  const auto text = with_rounded_products(assembly_of_lane(lane), subject.file.parent_path(), line);
+  if (!text) throw std::runtime_error(cannot("round", line.place(), "it has an operation that cannot be split"));
+  return std::make_unique<ForeignProcesses>(
+      code_of_build(lane, subject, build_assembly(*text, recipe_of_lane(lane, subject.file), host_flags(subject))),
+      lane.scalar);
+}
+
 // The text of a C or C++ lane's source; empty if it has none, or if that has changed or gone since it was built.
 std::string source_as_built(const Lane& lane) {
   const Opened* subject = opened(lane.lane_name().subject);
-  if (!subject || subject->kind != "source") return "";
+  if (!subject || lane.is_cuda() ||
+      (subject->kind != "source" && subject->kind != "published" && subject->kind != "cuda"))
+    return "";
   try {
     std::string text = code_in(subject->file);
     return fnv1a(text) == subject->hash ? text : "";
@@ -102,18 +142,29 @@ std::unique_ptr<ForeignProcesses> rebuilt(const Lane& lane, const std::string& t
   const fs::path copy = cache_folder() / fmt::format("changed-{:016x}", fnv1a(text, fnv1a(subject.file.string()))) /
                         subject.file.filename();
   write_atomically(copy, text);
-  std::vector<std::string> flags = subject.wanted.flags;
+  const bool by_nvrtc = subject.kind == "cuda" && lane.is_cuda();
+  std::vector<std::string> flags = by_nvrtc ? subject.wanted.flags : host_flags(subject);
   const std::string folder = subject.file.parent_path().string();  // of the files that the source includes
-  flags.push_back((subject.kind == "cuda" ? "-I" : "-iquote") + folder);
+  flags.push_back((by_nvrtc ? "-I" : "-iquote") + folder);
   flags.insert(flags.end(), more_flags.begin(), more_flags.end());
-  if (subject.kind == "cuda") return std::make_unique<ForeignProcesses>(cuda_code(lane, subject, copy, flags), scalar);
-  const Built built = build_source(copy, function_of(subject), info_of(lane.variant), flags);
-  Code code{"library", built.file.string(), "", "any", subject.wanted.timeout, subject.wanted.memory};
-  code.content = built.content;
+  if (by_nvrtc) return std::make_unique<ForeignProcesses>(cuda_code(lane, subject, copy, flags), scalar);
+  const Code code =
+      code_of_build(lane, subject, build_source(copy, function_of(subject), recipe_of_lane(lane, copy), flags));
   const Description description = describe(code);
   if (!(scalar == Scalar::f32 ? description.f32 : description.f64))
     throw std::runtime_error(cannot("run", lane.id + " as changed", "its function takes other numbers then"));
-  return std::make_unique<ForeignProcesses>(std::move(code), scalar);
+  return std::make_unique<ForeignProcesses>(code, scalar);
+}
+
+std::vector<FusedLine> fused_lines_of(const Lane& lane) {
+  if (source_as_built(lane).empty()) return {};
+  const Opened& subject = opened_of(lane);
+  const StopSignals stops;
+  try {
+    return fused_lines(assembly_of_lane(lane), subject.file.parent_path());
+  } catch (const std::runtime_error&) {  // a compiler without assembly
+    return {};
+  }
 }
 
 bool has_source_as_built(const Lane& lane) { return !source_as_built(lane).empty(); }
@@ -154,6 +205,7 @@ ChangedCode changed(const Lane& lane, const Change& change) {
   const SourceLanguage language = language_of(opened_of(lane));
   for (const Epsilon& number : change.negligible) key += '\n' + number.name;
   for (const std::string& flag : change.flags) key += '\n' + flag;
+  if (change.rounded) key += "\nrounded at " + change.rounded->place();
   Builds& all = builds();
   const std::lock_guard lock(all.mutex);
   const auto idle = std::find_if(all.idle.begin(), all.idle.end(), [&](const auto& code) { return code.first == key; });
@@ -169,7 +221,8 @@ ChangedCode changed(const Lane& lane, const Change& change) {
     std::unique_ptr<ForeignProcesses> made;
     const StopSignals stops;
     try {
-      made = rebuilt(lane, text, change.doubles ? Scalar::f64 : lane.scalar, change.flags);
+      made = change.rounded ? with_rounded(lane, *change.rounded)
+                            : rebuilt(lane, text, change.doubles ? Scalar::f64 : lane.scalar, change.flags);
     } catch (const std::runtime_error&) {  // it does not compile: the change shows nothing
     }
     found = all.built.emplace(key, std::move(made)).first;

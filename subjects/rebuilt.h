@@ -12,6 +12,7 @@
 #include "core/lanes/lanes.h"
 #include "subjects/epsilon.h"
 #include "subjects/process.h"
+#include "subjects/toolchains/assembly.h"
 
 namespace graze::subjects {
 
@@ -38,11 +39,16 @@ std::unique_ptr<ForeignProcesses> rebuilt(const Lane& lane, const std::string& t
                                           const std::vector<std::string>& more_flags = {});
 
 struct Change {
-  std::vector<Epsilon> negligible = {};  // numbers of which kNegligible takes the place
-  std::vector<std::string> flags = {};   // further compiler flags
-  bool doubles = false;                  // double takes the place of float
+  std::vector<Epsilon> negligible = {};   // numbers of which kNegligible takes the place
+  std::vector<std::string> flags = {};    // further compiler flags
+  bool doubles = false;                   // double takes the place of float
+  std::optional<FusedLine> rounded = {};  // products that the compiler fuses at this line are rounded
 };
 inline constexpr double kNegligible = 1e-36;  // a normal number in float32; comparisons with 0 keep their outcome
+
+// The lines of the lane's source at which its compiler fuses products into additions. Empty if it has no source as
+// built, or fuses nothing.   Throws: Stopped.
+std::vector<FusedLine> fused_lines_of(const Lane& lane);
 
 // Whether the lane is built from a C or C++ source whose file is there and still as it was.
 bool has_source_as_built(const Lane& lane);

@@ -29,7 +29,24 @@ namespace fs = std::filesystem;
 constexpr unsigned char kHeaderBytes[] = {
 #include "subjects/subject_h.inc"
 };
-const std::string kHeader(std::begin(kHeaderBytes), std::end(kHeaderBytes));
+constexpr unsigned char kProgramBytes[] = {
+#include "subjects/program_h.inc"
+};
+constexpr unsigned char kCudaHostBytes[] = {
+#include "subjects/cuda_host_h.inc"
+};
+constexpr const char* kCudaHost = "#include <graze/cuda_host.h>\n";
+// Below include/ in the cache folder. A CUDA source on the host finds those of cuda/ in place of the toolkit's.
+const std::pair<const char*, std::string> kHeaders[] = {
+    {"graze/subject.h", {std::begin(kHeaderBytes), std::end(kHeaderBytes)}},
+    {"graze/program.h", {std::begin(kProgramBytes), std::end(kProgramBytes)}},
+    {"graze/cuda_host.h", {std::begin(kCudaHostBytes), std::end(kCudaHostBytes)}},
+    {"cuda/cuda.h", kCudaHost},
+    {"cuda/cuda_runtime.h", kCudaHost},
+    {"cuda/cuda_runtime_api.h", kCudaHost},
+    {"cuda/device_launch_parameters.h", kCudaHost},
+    {"cuda/vector_types.h", kCudaHost},
+    {"cuda/vector_functions.h", kCudaHost}};
 
 // The file that is compiled: it includes the source and describes the function.
 constexpr std::string_view kCpp = R"(#include SOURCE
@@ -61,6 +78,28 @@ static int graze_of_f64(const double* a, const double* b) { return FUNCTION((con
 GRAZE_SUBJECT(graze_subject) = {.abi = GRAZE_SUBJECT_ABI, .f32 = graze_f32 ? graze_of_f32 : 0, .f64 = graze_f64 ? graze_of_f64 : 0};
 )";
 
+// Kernels of HIP. In C++, whose functions do not say where they run, every function is device code too.
+constexpr std::string_view kHip = R"(#include <hip/hip_runtime.h>
+#ifdef GRAZE_SAYS_WHERE
+#include SOURCE
+#endif
+#pragma clang force_cuda_host_device begin
+#ifndef GRAZE_SAYS_WHERE
+#include SOURCE
+#endif
+template <class Number>
+constexpr bool graze_takes = requires(const Number* p) { static_cast<int>(FUNCTION(p, p)); };
+template <class Number>
+int graze_answer(const Number* p) {
+  if constexpr (graze_takes<Number>) return static_cast<int>(FUNCTION(p, p + 9));
+  return 0;
+}
+#pragma clang force_cuda_host_device end
+static_assert(graze_takes<float> || graze_takes<double>, EXPECTED);
+extern "C" __attribute__((global)) void graze_f32(const float* p, int* answer) { *answer = graze_answer(p); }
+extern "C" __attribute__((global)) void graze_f64(const double* p, int* answer) { *answer = graze_answer(p); }
+)";
+
 std::string text_of(const fs::path& file) {
   std::string text = code_in(file);
   if (text.empty()) throw std::runtime_error("there is no code in " + file.string());
@@ -70,13 +109,6 @@ std::string text_of(const fs::path& file) {
 void write(const fs::path& file, std::string_view text) {
   std::ofstream out(file, std::ios::binary);
   if (!(out << text << std::flush)) throw std::runtime_error(cannot("write", file, errno));
-}
-
-// Returns: the command's output; its exit status in `status`.
-std::string output_of(const std::string& command, const Scratch& scratch, int& status) {
-  std::string text;
-  status = run_program({{"/bin/sh", "-c", command}}, scratch.path(), text);
-  return text;
 }
 
 std::string first_error(const std::string& text) {
@@ -118,9 +150,9 @@ bool assembler_lists_files(const std::string& compiler, const std::vector<std::s
   if (found != known.end()) return found->second;
   const std::string list = (scratch.path() / "probe.d").string();
   int status = 0;
-  output_of(fmt::format("{} -x assembler -c /dev/null -o {} -Wa,--MD,{}", compiler,
-                        shell_word((scratch.path() / "probe.o").string()), shell_word(list)),
-            scratch, status);
+  shell_output(fmt::format("{} -x assembler -c /dev/null -o {} -Wa,--MD,{}", compiler,
+                           shell_word((scratch.path() / "probe.o").string()), shell_word(list)),
+               scratch.path(), status);
   return known[compiler] = status == 0 && fs::exists(list);
 }
 
@@ -161,6 +193,7 @@ std::uint64_t hash_of_listed(const std::string& files, std::uint64_t hash) {
   return hash;
 }
 
+constexpr std::string_view kObject = ".so", kProgram = ".program";
 constexpr int kMostBuilds = 4;  // of code that changes meanwhile
 
 // The state of all inputs of a build at one time.
@@ -191,57 +224,131 @@ void write_atomically(const fs::path& file, std::string_view text) {
   move_over(part, file);
 }
 
+namespace {
+
+bool is_cuda(const fs::path& source) { return source.extension() == ".cu"; }
+
+// Before the user's flags, which may name the folder of the toolkit's own headers.
+std::string headers_for(const fs::path& source) {
+  return is_cuda(source) ? " -I" + shell_word((cache_folder() / "include/cuda").string()) : "";
+}
+
+}  // namespace
+
+Recipe recipe_of(const VariantInfo& variant, const fs::path& source) {
+  const bool c = source.extension() == ".c";
+  const char* chosen = std::getenv(c ? "CC" : "CXX");
+  const std::string compiler = chosen && *chosen ? chosen : c ? "cc" : "c++";
+  return {compiler, (c ? "-std=gnu11 -O2 -fPIC -shared" : "-std=c++20 -O2 -fPIC -shared") + headers_for(source),
+          std::string(variant.flags)};
+}
+
+// The dialects of GNU: with those of ISO, GCC neither contracts C nor, from version 13, keeps excess precision in C++.
+Recipe recipe_of(const Toolchain& toolchain, const fs::path& source) {
+  const bool c = source.extension() == ".c";
+  const std::string& compiler = c ? toolchain.cc : toolchain.cxx;
+  if (compiler.empty())
+    throw std::runtime_error(fmt::format("the toolchain {} has no compiler for {}", toolchain.name, c ? "C" : "C++"));
+  return {compiler, (c ? "-std=gnu11" : "-std=gnu++20") + headers_for(source), "", true};
+}
+
 bool source_describes_itself(const fs::path& source) {
   return text_of(source).find("GRAZE_SUBJECT(") != std::string::npos;
 }
 
-Built build_source(const fs::path& source, const std::string& function, const VariantInfo& variant,
+namespace {
+
+// The file that is compiled, in `folder`, and the command that compiles it.
+struct Wrapped {
+  std::string command, expected;  // expected: what the compiler says if the function is none
+};
+
+Wrapped wrapped(const fs::path& source, const std::string& function, const Recipe& recipe,
+                const std::vector<std::string>& flags, const fs::path& folder) {
+  const bool c = source.extension() == ".c";
+  const bool describes_itself = source_describes_itself(source);
+  Wrapped result{fmt::format("{} {} {}", recipe.compiler, recipe.fixed, recipe.flags),
+                 fmt::format("expected a function {} of two triangles, const float[9] or const double[9] each, "
+                             "that returns int or bool",
+                             function)};
+  for (const std::string& flag : flags) result.command += ' ' + shell_word(flag);
+  for (const auto& [file, text] : kHeaders) {
+    const fs::path header = cache_folder() / "include" / file;
+    if (!fs::exists(header) || text_of(header) != text) write_atomically(header, text);
+  }
+  const fs::path whole = folder / (c ? "whole.c" : "whole.cpp");
+  const bool says_where = is_cuda(source) || source.extension() == ".hip";
+  const std::string_view of_gpu = recipe.is_kernel  ? says_where ? "#define GRAZE_SAYS_WHERE\n" : ""
+                                  : is_cuda(source) ? kCudaHost
+                                                    : std::string_view();
+  // An absolute path, so that the source finds includes in its own folder.
+  write(whole, fmt::format("{}#define SOURCE \"{}\"\n#define FUNCTION {}\n#define EXPECTED \"{}\"\n{}{}", of_gpu,
+                           fs::absolute(source).string(), function, result.expected,
+                           recipe.is_kernel   ? kHip
+                           : describes_itself ? "#include SOURCE\n"
+                           : c                ? kC
+                                              : kCpp,
+                           recipe.is_program ? "#include <graze/program.h>\n" : ""));
+  // With the real time, code that uses __TIME__ would have another hash at each reading.
+  result.command = fmt::format("SOURCE_DATE_EPOCH=${{SOURCE_DATE_EPOCH:-0}} {} -I{} {}", result.command,
+                               shell_word((cache_folder() / "include").string()), shell_word(whole.string()));
+  return result;
+}
+
+}  // namespace
+
+bool is_host_device(const fs::path& source, const std::string& function, const Recipe& recipe,
+                    const std::vector<std::string>& flags) {
+  const Scratch scratch(cache_folder());
+  int status = 0;
+  std::string text = shell_output(fmt::format("{} -DGRAZE_KEEP_DECORATIONS -E -P 2>/dev/null",
+                                              wrapped(source, function, recipe, flags, scratch.path()).command),
+                                  scratch.path(), status);
+  const bool is_whole = status == 0;
+  if (!is_whole) text = text_of(source);
+  const std::string_view host = is_whole ? "graze_host" : "__host__", device = is_whole ? "graze_device" : "__device__";
+  std::string name = function.substr(0, function.find('<'));
+  name = name.substr(name.rfind(':') + 1);
+  const auto is_of_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+  for (std::size_t at = text.find(name); at != text.npos; at = text.find(name, at + 1)) {
+    const std::size_t behind = text.find_first_not_of(" \t\n", at + name.size());
+    if (behind == text.npos || text[behind] != '(' || at == 0 || is_of_word(text[at - 1])) continue;
+    const std::size_t end = text.find_last_of(";{}", at);  // of what comes before the declaration
+    const std::size_t begin = end == text.npos ? 0 : end + 1;
+    const std::string_view declaration = std::string_view(text).substr(begin, at - begin);
+    if (declaration.find(host) != declaration.npos && declaration.find(device) != declaration.npos) return true;
+  }
+  return false;
+}
+
+Built build_source(const fs::path& source, const std::string& function, const Recipe& recipe,
                    const std::vector<std::string>& flags) {
   const bool c = source.extension() == ".c";
   const std::string text = text_of(source);
-  // An absolute path, so that the source finds includes in its own folder.
   const std::string name = fs::absolute(source).string();
-  const bool describes_itself = source_describes_itself(source);
-  const char* chosen = std::getenv(c ? "CC" : "CXX");
-  const std::string compiler = chosen && *chosen ? chosen : c ? "cc" : "c++";
+  const std::string& compiler = recipe.compiler;
   const fs::path folder = cache_folder();
   const Scratch scratch(folder);
   int status = 0;
-  const std::string version = output_of(compiler + " --version", scratch, status);
+  const std::string version = shell_output(compiler + " --version", scratch.path(), status);
   const std::string first_line = version.substr(0, version.find('\n'));  // the lines below contain paths
   std::string identity = first_line;
   if (status != 0)
     throw std::runtime_error(
         cannot("compile", name,
                status == 127  // as a shell reports it
-                   ? fmt::format("there is no compiler '{}'; install one, or name it in {}", compiler, c ? "CC" : "CXX")
+                   ? fmt::format("there is no compiler '{}'; install one{}", compiler,
+                                 recipe.is_program ? "" : std::string(", or name it in ") + (c ? "CC" : "CXX"))
                    : fmt::format("'{} --version' ended with exit status {}", compiler, status)));
   // The same compiler version may use other parts from another machine's PATH, and the compiler may be a script.
-  identity += output_of(
+  identity += shell_output(
       fmt::format("for part in as ld {1}; do file=$(command -v \"$({0} -print-prog-name=$part 2>/dev/null)\") && "
                   "cksum < \"$file\"; done; cksum < \"$(command -v {2})\"",
                   compiler, c ? "cc1" : "cc1plus", compiler.substr(0, compiler.find(' '))),
-      scratch, status);
-  std::string command =
-      fmt::format("{} {} -O2 -fPIC -shared {}", compiler, c ? "-std=gnu11" : "-std=c++20", variant.flags);
-  for (const std::string& flag : flags) command += ' ' + shell_word(flag);
-  const std::string wrapped =
-      fmt::format("{}", describes_itself ? std::string("#include SOURCE\n") : std::string(c ? kC : kCpp));
-  const std::string expected = fmt::format(
-      "expected a function {} of two triangles, const float[9] or const double[9] each, "
-      "that returns int or bool",
-      function);
-  const std::string defines =
-      fmt::format("#define SOURCE \"{}\"\n#define FUNCTION {}\n#define EXPECTED \"{}\"\n", name, function, expected);
+      scratch.path(), status);
   // Included files may change too, so the hash is of the preprocessor's output.
-  const fs::path header = folder / "include/graze/subject.h";
-  if (!fs::exists(header) || text_of(header) != kHeader) write_atomically(header, kHeader);
-  const fs::path whole = scratch.path() / (c ? "whole.c" : "whole.cpp"), object = scratch.path() / "whole.so",
-                 list = scratch.path() / "assembled.d";
-  write(whole, defines + wrapped);
-  command += fmt::format(" -I{} {}", shell_word((folder / "include").string()), shell_word(whole.string()));
-  // With the real time, code that uses __TIME__ would have another hash at each reading.
-  command = "SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-0} " + command;
+  const auto [command, expected] = wrapped(source, function, recipe, flags, scratch.path());
+  const fs::path object = scratch.path() / "whole.out", list = scratch.path() / "assembled.d";
   std::vector<std::string> all_flags = further_flags(compiler);
   all_flags.insert(all_flags.end(), flags.begin(), flags.end());
   const auto lists = [&] { return assembler_lists_files(compiler, flags, scratch); };  // asked only where it matters
@@ -249,10 +356,10 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   std::string assembled;  // the files that the assembler read when it ran last
   const auto read = [&] {
     Reading reading;
-    const std::string preprocessed = output_of(
-        fmt::format("{} -E -P -MD -MF {} 2>/dev/null", command, shell_word(included.string())), scratch, status);
+    const std::string preprocessed = shell_output(
+        fmt::format("{} -E -P -MD -MF {} 2>/dev/null", command, shell_word(included.string())), scratch.path(), status);
     reading.is_whole = status == 0;
-    const CodeHash of_flags = hash_of_flags(all_flags, fnv1a(fmt::format("{}\n{}\n", identity, variant.flags)));
+    const CodeHash of_flags = hash_of_flags(all_flags, fnv1a(fmt::format("{}\n{}\n", identity, recipe.flags)));
     reading.hash = hash_of_listed(assembled, fnv1a(preprocessed, of_flags.hash));
     reading.not_covered = of_flags.not_covered;
     if (reading.not_covered.empty() && may_include_by_assembler(preprocessed) && !lists())
@@ -264,7 +371,8 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   // hashed.
   for (int builds = 0; builds < kMostBuilds; ++builds) {
     const Reading before = read();
-    Built built{folder / fmt::format("{:016x}.so", before.hash), before.not_covered, nullptr, first_line};
+    Built built{folder / fmt::format("{:016x}{}", before.hash, recipe.is_program ? kProgram : kObject),
+                before.not_covered, nullptr, first_line};
     // An object is not cached under this name if the assembler read further files for it: which files it would read now
     // is not known before it runs.
     if (before.is_whole && before.not_covered.empty() && assembled.empty()) {
@@ -274,9 +382,9 @@ Built build_source(const fs::path& source, const std::string& function, const Va
       }
     }
     const std::string said =
-        output_of(fmt::format("{} {} -o {} -Wl,-z,defs", command,
-                              lists() ? "-Wa,--MD," + shell_word(list.string()) : "", shell_word(object.string())),
-                  scratch, status);
+        shell_output(fmt::format("{} {} -o {}{}", command, lists() ? "-Wa,--MD," + shell_word(list.string()) : "",
+                                 shell_word(object.string()), recipe.is_program ? "" : " -Wl,-z,defs"),
+                     scratch.path(), status);
     if (status != 0) {
       std::string error = first_error(said);
       if (error.find(expected) != error.npos) error = name + ": " + expected;
@@ -297,9 +405,36 @@ Built build_source(const fs::path& source, const std::string& function, const Va
                   kMostBuilds)));
 }
 
-Built kept_build(const std::string& name) {
+std::string assembly_of(const fs::path& source, const std::string& function, const Recipe& recipe,
+                        const std::vector<std::string>& flags) {
+  const Scratch scratch(cache_folder());
+  const fs::path assembly = scratch.path() / "whole.s";
+  int status = 0;
+  const std::string said =
+      shell_output(fmt::format("{} -g1 -S -o {}", wrapped(source, function, recipe, flags, scratch.path()).command,
+                               shell_word(assembly.string())),
+                   scratch.path(), status);
+  if (status != 0) throw std::runtime_error(cannot("compile", source, first_error(said)));
+  return text_of(assembly);
+}
+
+Built build_assembly(std::string_view assembly, const Recipe& recipe, const std::vector<std::string>& flags) {
+  const Scratch scratch(cache_folder());
+  const fs::path file = scratch.path() / "whole.s", object = scratch.path() / "whole.out";
+  write(file, assembly);
+  std::string command = fmt::format("{} {} {}", recipe.compiler, recipe.fixed, recipe.flags);
+  for (const std::string& flag : flags) command += ' ' + shell_word(flag);
+  int status = 0;
+  const std::string said =
+      shell_output(fmt::format("{} {} -o {}", command, shell_word(file.string()), shell_word(object.string())),
+                   scratch.path(), status);
+  if (status != 0) throw std::runtime_error(cannot("assemble", file, first_error(said)));
+  return {object.filename(), "", std::make_shared<SealedCopy>("assembled", code_in(object)), ""};
+}
+
+Built kept_build(const std::string& name, bool is_program) {
   const bool is_hash = name.size() == 16 && name.find_first_not_of("0123456789abcdef") == name.npos;
-  const fs::path file = cache_folder() / (name + ".so");
+  const fs::path file = cache_folder() / (name + std::string(is_program ? kProgram : kObject));
   const std::optional<std::string> kept = is_hash ? kept_content(file) : std::nullopt;
   if (!kept) throw std::runtime_error(fmt::format("the build {} is no longer in the cache", shown(name)));
   return {file, "", std::make_shared<SealedCopy>(file.filename().string(), *kept)};

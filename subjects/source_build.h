@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds a user's C or C++ source as shared objects, one for each host variant. They are cached by the hash of all
-// their inputs.
+// Builds a user's C or C++ source, or a CUDA source whose function is __host__ __device__: as a shared object for each
+// host variant, as a program for each toolchain. They are cached by the hash of all their inputs.
 #pragma once
 
 #include <filesystem>
@@ -11,6 +11,7 @@
 
 #include "core/variants.h"
 #include "subjects/code_hash.h"
+#include "subjects/toolchains/toolchains.h"
 
 namespace graze::subjects {
 
@@ -23,19 +24,42 @@ void write_atomically(const std::filesystem::path& file, std::string_view text);
 // Whether the source defines a struct graze_subject.
 bool source_describes_itself(const std::filesystem::path& source);
 
-// Builds a shared object with `function` of the source, or with the source's own descriptions (see graze/subject.h).
-// Compiles with the variant's flags, then `flags`. The file name is a hash of the preprocessed source, the flags, the
-// files that they name, the files that the assembler reports as read, and the first line of the compiler's --version. A
-// cached object is used if it is unchanged, the hash covers all its inputs, and the assembler read no files for it.
-// Builds again if the files have changed since they were read for the hash.
-// Returns: the shared object.
-// Throws: std::runtime_error with the compiler's first error, or when the files keep changing; Stopped.
-Built build_source(const std::filesystem::path& source, const std::string& function, const VariantInfo& variant,
+// How a source is compiled.
+struct Recipe {
+  std::string compiler;     // with its flags: "aarch64-linux-gnu-g++ -O2 -static"
+  std::string fixed;        // the flags that all recipes of its kind have
+  std::string flags;        // further ones
+  bool is_program = false;  // of graze/program.h, instead of a shared object
+  bool is_kernel = false;   // of HIP, to read its assembly
+};
+Recipe recipe_of(const VariantInfo& variant, const std::filesystem::path& source);
+Recipe recipe_of(const Toolchain& toolchain, const std::filesystem::path& source);
+
+// Whether a CUDA source declares the function as __host__ __device__, also by a macro. A source that the preprocessor
+// of the host does not read whole must say it in these words.   Throws: std::runtime_error; Stopped.
+bool is_host_device(const std::filesystem::path& source, const std::string& function, const Recipe& recipe,
+                    const std::vector<std::string>& flags);
+
+// Builds a shared object or a program with `function` of the source, or with the source's own descriptions (see
+// graze/subject.h). Compiles with the recipe's flags, then `flags`. The file name is a hash of the preprocessed source,
+// the flags, the files that they name, the files that the assembler reports as read, and the first line of the
+// compiler's --version. A cached object is used if it is unchanged, the hash covers all its inputs, and the assembler
+// read no files for it. Builds again if the files have changed since they were read for the hash. Throws:
+// std::runtime_error with the compiler's first error, or when the files keep changing; Stopped.
+Built build_source(const std::filesystem::path& source, const std::string& function, const Recipe& recipe,
                    const std::vector<std::string>& flags);
 
-// The object that build_source has built and cached under this name, 16 hex digits.
+// The compiler's assembly of what build_source builds, with line information; see toolchains/assembly.h.
+// Throws: std::runtime_error with the compiler's first error; Stopped.
+std::string assembly_of(const std::filesystem::path& source, const std::string& function, const Recipe& recipe,
+                        const std::vector<std::string>& flags);
+
+// Assembles and links such an assembly. It is not cached.   Throws: as assembly_of.
+Built build_assembly(std::string_view assembly, const Recipe& recipe, const std::vector<std::string>& flags);
+
+// What build_source has built and cached under this name, 16 hex digits.
 // Throws: std::runtime_error if it is not there any more.
-Built kept_build(const std::string& name);
+Built kept_build(const std::string& name, bool is_program = false);
 
 // The set variables that choose the compiler of a C or C++ source, or what it reads.
 std::map<std::string, std::string> compiler_environment(const std::filesystem::path& source);

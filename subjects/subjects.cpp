@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <deque>
+#include <iterator>
+#include <map>
 #include <optional>
 
 #include "core/error.h"
@@ -16,9 +18,12 @@
 #include "cuda/subject/cuda_subject.h"
 #include "cuda/twin/twin.h"
 #include "subjects/code_hash.h"
+#include "subjects/contraction_plan.h"
 #include "subjects/cuda_code.h"
+#include "subjects/opencl_code.h"
 #include "subjects/process.h"
 #include "subjects/program_description.h"
+#include "subjects/published.h"
 #include "subjects/source_build.h"
 
 namespace graze::subjects {
@@ -39,6 +44,11 @@ struct Entry {
   std::vector<Running> running;
   std::vector<cuda::CudaBuild> builds;                   // of CUDA code: of each lane
   std::vector<std::shared_ptr<const SealedCopy>> twins;  // of each of these builds; empty where it has none
+  struct FromToolchain {
+    Toolchain toolchain;
+    std::string build, compiler;  // its cached program; empty: it cannot be built or run here
+  };
+  std::deque<FromToolchain> from_toolchains = {};
 };
 
 std::deque<Entry>& entries() {
@@ -46,24 +56,44 @@ std::deque<Entry>& entries() {
   return all;
 }
 
-constexpr std::string_view kCommand = "cmd:";
+constexpr std::string_view kCommand = "cmd:", kPublished = "published";
 constexpr std::size_t kLongestFunction = 4096;
 
-// "library", "cuda" or "source", by the file's extension; empty for others.
+// "library", "cuda", "opencl", "hip" or "source", by the file's extension; empty for others.
 std::string kind_of(std::string_view file) {
   const std::size_t version = file.find_last_not_of("0123456789.") + 1;  // libx.so.1.2
   if (file.substr(0, version).ends_with(".so") || file.ends_with(".dylib")) return "library";
   if (file.ends_with(".cu")) return "cuda";
+  if (file.ends_with(".cl")) return "opencl";
+  if (file.ends_with(".hip")) return "hip";
   for (const std::string_view ending : {".cpp", ".cc", ".cxx", ".c"})
     if (file.ends_with(ending)) return "source";
   return "";
 }
 
+// A lane of the published algorithm; null if there is none.
+const Lane* find_published(std::string_view name) {
+  const auto found = std::find_if(published_lanes().begin(), published_lanes().end(),
+                                  [&](const Lane& row) { return row.info->id == name; });
+  return found == published_lanes().end() ? nullptr : &*found;
+}
+
 Opened parsed(const Wanted& wanted) {
   Opened result;
   result.wanted = wanted;
+  if (wanted.what == kPublished) {
+    const Lane* lane = find_published(wanted.name);
+    if (!lane) throw std::runtime_error("no published algorithm has the name " + shown(wanted.name));
+    result.kind = kPublished;
+    result.file = published_source(*lane);
+    result.function = kPublishedFunction;
+    result.hash = result.code.hash = fnv1a(code_in(result.file));
+    return result;
+  }
   const bool blank = wanted.what.find_first_not_of(" \t\n", kCommand.size()) == std::string::npos;
   if (wanted.what.starts_with(kCommand) && !blank) {
+    if (const std::string missing = missing_program(wanted.what.substr(kCommand.size())); !missing.empty())
+      throw std::runtime_error(fmt::format("--subject {}: there is no program {}", wanted.name, shown(missing)));
     result.kind = "command";
     result.code = hash_of_command(wanted.what.substr(kCommand.size()));
     result.hash = result.code.hash;
@@ -74,12 +104,12 @@ Opened parsed(const Wanted& wanted) {
   while (end != what.npos && kind_of(what.substr(0, end)).empty())
     end = end == 0 ? what.npos : what.rfind(':', end - 1);
   if (end == what.npos || end + 1 == what.size()) {
-    throw UsageError(fmt::format("--subject {}: expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found {}{}",
-                                 wanted.name, shown(what),
-                                 what.find(".py") == what.npos
-                                     ? ""
-                                     : "; `graze try FILE.py:FUNCTION` writes a program that calls the function, "
-                                       "and names its command"));
+    throw UsageError(fmt::format(
+        "--subject {}: expected FILE.so, FILE.cpp, FILE.c, FILE.cu, FILE.cl or cmd:COMMAND, found {}{}", wanted.name,
+        shown(what),
+        what.find(".py") == what.npos ? ""
+                                      : "; `graze try FILE.py:FUNCTION` writes a program that calls the function, "
+                                        "and names its command"));
   }
   result.file = what.substr(0, end);
   if (end < what.size()) result.function = what.substr(end + 1);
@@ -100,7 +130,8 @@ Opened parsed(const Wanted& wanted) {
   const std::string bytes = wanted.builds.empty() ? code_in(result.file) : "";
   result.code = {fnv1a(bytes), "the libraries that it loads"};  // of a source, until it is built
   result.hash = result.code.hash;
-  if (result.kind == "library") result.content = std::make_shared<SealedCopy>(result.file.filename().string(), bytes);
+  if (result.kind == "library" || result.kind == "opencl")
+    result.content = std::make_shared<SealedCopy>(result.file.filename().string(), bytes);
   return result;
 }
 
@@ -120,10 +151,20 @@ void describe_info(Entry& entry, const Description& description) {
   entry.info = {entry.opened.wanted.name, entry.source, entry.coplanar, entry.degenerate, entry.order, false};
 }
 
+// The row of a lane that nothing runs yet.
+Lane lane_row(const AlgorithmInfo* info, Scalar scalar, Variant variant, unsigned outside) {
+  return {"", info, scalar, variant, "", {}, -1, nullptr, false, false, true, outside, "", ""};
+}
+
+void add_lane(Entry& entry, std::vector<Lane>& lanes, Code code, Lane lane) {
+  const auto& running = entry.running.emplace_back(lane.lane_name().within_subject(),
+                                                   std::make_unique<ForeignProcesses>(std::move(code), lane.scalar));
+  lane.decide = *running.processes;
+  lanes.push_back(std::move(lane));
+}
+
 void add_lane(Entry& entry, std::vector<Lane>& lanes, Code code, Scalar scalar, Variant variant, unsigned outside) {
-  const auto& running = entry.running.emplace_back(fmt::format("{}/{}", name(scalar), name(variant)),
-                                                   std::make_unique<ForeignProcesses>(std::move(code), scalar));
-  lanes.push_back({"", &entry.info, scalar, variant, "", {}, -1, *running.processes, false, false, true, outside, ""});
+  add_lane(entry, lanes, std::move(code), lane_row(&entry.info, scalar, variant, outside));
 }
 
 LaneName lane_name(const std::string& subject, const cuda::CudaBuild& build) {
@@ -158,6 +199,46 @@ void expect_code(const Opened& subject, const std::string& recorded) {
         subject.wanted.what, found, recorded));
 }
 
+// How a host compiler built a source, for record().
+Json how_built(const Opened& source, const std::vector<Built>& built) {
+  Json made = {{"compiler", built.front().compiler}, {"environment", compiler_environment(source.file)}};
+  for (const Built& build : built) made["builds"].push_back(build.file.stem().string());
+  return made;
+}
+
+// The host's lanes of a CUDA source whose function is __host__ __device__. One that cannot be built says why.
+void add_host_lanes(Entry& entry, std::vector<Lane>& made) {
+  Opened& o = entry.opened;
+  const Scalar scalar = entry.builds.front().scalar;
+  const std::vector<std::string> flags = host_flags(o);
+  const StopSignals stops;
+  try {
+    if (!is_host_device(o.file, function_of(o), recipe_of(info_of(Variant::cpu), o.file), flags)) return;
+  } catch (const std::runtime_error&) {  // the host's compiler cannot read it
+    return;
+  }
+  (scalar == Scalar::f32 ? o.description.f32 : o.description.f64) = true;
+  std::vector<Built> built;
+  for (const VariantInfo& row : kVariants) {
+    if (row.runs_on != RunsOn::host || row.arithmetic == Arithmetic::exact) continue;
+    Lane lane = lane_row(&entry.info, scalar, row.variant, 0);
+    if (!runs_on_this_cpu(lane)) continue;
+    try {
+      const Built& build = built.emplace_back(build_source(o.file, function_of(o), recipe_of(row, o.file), flags));
+      Code code{"library", build.file.string(), "", "any", o.wanted.timeout, o.wanted.memory};
+      code.content = build.content;
+      const Description description = describe(code);
+      if (!(scalar == Scalar::f32 ? description.f32 : description.f64))
+        throw std::runtime_error("on the host its function takes other numbers");
+      add_lane(entry, made, std::move(code), std::move(lane));
+    } catch (const std::runtime_error& error) {
+      lane.evidence = printable(error.what());
+      made.push_back(std::move(lane));
+    }
+  }
+  if (!built.empty()) o.made["host"] = how_built(o, built);
+}
+
 // The build for a device if there is one, else its twin. A build with neither is a lane that says why.
 void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   const Opened& o = entry.opened;
@@ -165,21 +246,24 @@ void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   for (cuda::CudaBuild& build : cuda::build_cuda_subject(o.file, function_of(o), o.wanted.flags, cache_folder())) {
     Code code = code_of(build, o.wanted, on_device, entry.twins.emplace_back(twin_of(build)));
     if (code.what.empty()) {
-      made.push_back({"", &entry.info, build.scalar, build.variant, "", {}, -1, nullptr, false, false, true, 0, ""});
+      made.push_back(lane_row(&entry.info, build.scalar, build.variant, 0));
     } else {
       add_lane(entry, made, std::move(code), build.scalar, build.variant, 0);
     }
     made.back().evidence = on_device ? "device" : evidence_of(o.file, build);
     entry.builds.push_back(std::move(build));
   }
+  std::vector<Lane> all;
+  const std::string toolkit = entry.builds.front().toolkit;
+  entry.opened.made = {{"source_hash", fmt::format("{:016x}", o.hash)}, {"compiler", "NVRTC " + toolkit}};
+  add_host_lanes(entry, all);
+  std::move(made.begin(), made.end(), std::back_inserter(all));
   std::vector<std::string_view> variants;
   for (const cuda::CudaBuild& build : entry.builds) variants.push_back(build.ptx);
   entry.opened.code = hash_of_ptx(variants);
-  entry.opened.made = {{"source_hash", fmt::format("{:016x}", o.hash)},
-                       {"compiler", "NVRTC " + entry.builds.front().toolkit}};
   expect_code(entry.opened, recorded);
   describe_info(entry, {});
-  add_lanes(std::move(made));
+  add_lanes(std::move(all));
   for (std::size_t i = 0; i < entry.builds.size(); ++i) {
     if (!entry.twins[i]) continue;
     cuda::add_foreign_twin(*find_lane(id_of(lane_name(o.wanted.name, entry.builds[i]))), entry.twins[i]->file(),
@@ -187,7 +271,70 @@ void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   }
 }
 
-void open_as(const Wanted& wanted, bool on_device, const std::string& recorded);
+// Builds the source by the toolchain and starts the program once.   Throws: std::runtime_error; Stopped.
+Code code_by(const Toolchain& toolchain, const Opened& subject, const std::string& kept, Built& built,
+             Description& description) {
+  if (const std::string why = why_not_here(toolchain); !why.empty()) throw std::runtime_error(why);
+  built = subject.kind == "opencl" ? built_for_opencl(subject.file, subject.content, toolchain.run)
+          : !kept.empty()          ? kept_build(kept, true)
+                          : build_source(subject.file, function_of(subject), recipe_of(toolchain, subject.file),
+                                         host_flags(subject));
+  Code code{"program", toolchain.run, "", "any", subject.wanted.timeout, subject.wanted.memory};
+  if (subject.kind == "opencl") {
+    code.memory = std::max(code.memory, kDriverMemory);
+    code.alone = true;
+  }
+  code.content = built.content;
+  description = describe(code);
+  return code;
+}
+
+// Adds the lanes of the toolchains that the entry does not have yet. A lane that cannot be built or run here says why.
+// kept: the programs to load instead, by toolchain.
+void add_toolchain_lanes(Entry& entry, const std::vector<Toolchain>& toolchains,
+                         const std::map<std::string, std::string>& kept) {
+  const bool published = entry.opened.kind == kPublished;
+  const AlgorithmInfo* info = published ? find_published(entry.opened.wanted.name)->info : &entry.info;
+  const Description& known = entry.opened.description;
+  std::vector<Lane> made;
+  for (const Toolchain& toolchain : toolchains) {
+    const auto is_it = [&](const Entry::FromToolchain& row) { return row.toolchain.name == toolchain.name; };
+    if (std::any_of(entry.from_toolchains.begin(), entry.from_toolchains.end(), is_it)) continue;
+    Built built;
+    Code code;
+    Description description;
+    std::string why_not;
+    try {
+      const auto found = kept.find(toolchain.name);
+      code = code_by(toolchain, entry.opened, found == kept.end() ? "" : found->second, built, description);
+    } catch (const std::runtime_error& error) {
+      why_not = printable(error.what());
+      description.f32 = published || known.f32 || entry.opened.kind == "opencl";
+      description.f64 = published || known.f64;
+    }
+    entry.from_toolchains.push_back({toolchain, why_not.empty() ? built.file.stem().string() : "", built.compiler});
+    for (const Scalar scalar : {Scalar::f32, Scalar::f64}) {
+      if (!(scalar == Scalar::f32 ? description.f32 : description.f64)) continue;
+      Lane lane = lane_row(info, scalar, Variant::toolchain, known.outside);
+      lane.toolchain = toolchain.name;
+      lane.evidence = why_not;
+      if (why_not.empty()) {
+        add_lane(entry, made, code, std::move(lane));
+      } else {
+        made.push_back(std::move(lane));
+      }
+    }
+  }
+  add_lanes(std::move(made));
+}
+
+// Whether a host compiler builds the source.
+bool runs_on_host(const Opened& source) {
+  return source.kind == "source" || (source.kind == "cuda" && (source.description.f32 || source.description.f64));
+}
+
+void open_as(const Wanted& wanted, bool on_device, const std::string& recorded,
+             const std::map<std::string, std::string>& kept = {});
 
 }  // namespace
 
@@ -213,27 +360,43 @@ namespace {
 
 // How a C or C++ source was compiled, for record().
 Json how_made(const Opened& source, const std::vector<Built>& built) {
-  Json made = {{"source_hash", fmt::format("{:016x}", source.hash)}, {"compiler", built.front().compiler}};
-  made["environment"] = compiler_environment(source.file);
-  for (const Built& build : built) made["builds"].push_back(build.file.stem().string());
+  Json made = {{"source_hash", fmt::format("{:016x}", source.hash)}};
+  made.update(how_built(source, built));
   return made;
 }
 
-void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) {
+void open_as(const Wanted& wanted, bool on_device, const std::string& recorded,
+             const std::map<std::string, std::string>& kept) {
   const Opened wish = parsed(wanted);
-  if (const Opened* there = opened(wanted.name)) {
-    if (there->hash == wish.hash && there->wanted.what == wanted.what && there->wanted.flags == wanted.flags) return;
+  if (wish.kind == "hip")
+    throw UsageError(fmt::format(
+        "--subject {0}: code of HIP is compiled, but not run; `graze toolchain hip --subject {0}={1}` lists what its "
+        "compiler fuses",
+        wanted.name, shown_path(wanted.what)));
+  const auto there = std::find_if(entries().begin(), entries().end(),
+                                  [&](const Entry& entry) { return entry.opened.wanted.name == wanted.name; });
+  if (there != entries().end()) {
+    const bool more = wish.kind == kPublished || runs_on_host(there->opened);
+    if (there->opened.hash == wish.hash && there->opened.wanted.what == wanted.what &&
+        there->opened.wanted.flags == wanted.flags)
+      return more ? add_toolchain_lanes(*there, wanted.toolchains, kept) : void();
     throw UsageError(
         fmt::format("--subject {0}: another subject has the name {0} already; choose another", wanted.name));
   }
   for (const Lane& lane : lanes()) {
-    if (lane.info->id == wanted.name)
+    if (lane.info->id == wanted.name && wish.kind != kPublished)
       throw UsageError(
           fmt::format("--subject {0}: a published algorithm has the name {0}; choose another", wanted.name));
   }
   entries().push_back({wish, "", "", "", "", {}, {}, {}, {}});
   Entry& entry = entries().back();
   try {
+    if (wish.kind == kPublished || wish.kind == "opencl") {
+      expect_code(wish, recorded);
+      if (wish.kind == kPublished) return add_toolchain_lanes(entry, wanted.toolchains, kept);
+      describe_info(entry, {});
+      return add_toolchain_lanes(entry, opencl_toolchains(function_of(wish)), kept);
+    }
     Code code{wish.kind == "command" ? "command" : "library",
               wish.kind == "command" ? wanted.what.substr(kCommand.size()) : wish.file.string(),
               wish.function,
@@ -250,7 +413,10 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
         throw UsageError(fmt::format("--subject {}: expected FUNCTION/f32 or FUNCTION/f64, found '{}'", wanted.name,
                                      printable(wish.function)));
     }
-    if (wish.kind == "cuda") return add_cuda_lanes(entry, on_device, recorded);
+    if (wish.kind == "cuda") {
+      add_cuda_lanes(entry, on_device, recorded);
+      return runs_on_host(entry.opened) ? add_toolchain_lanes(entry, wanted.toolchains, kept) : void();
+    }
     const StopSignals stops;  // not active while NVRTC compiles, which cannot be stopped
     std::vector<std::pair<Variant, Code>> builds;
     std::vector<Built> built_files;
@@ -259,8 +425,9 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
         if (row.runs_on != RunsOn::host || row.arithmetic == Arithmetic::exact) continue;
         Code built = code;
         built.name.clear();
-        built_files.push_back(wanted.builds.empty() ? build_source(wish.file, function_of(wish), row, wanted.flags)
-                                                    : kept_build(wanted.builds.at(built_files.size())));
+        built_files.push_back(wanted.builds.empty()
+                                  ? build_source(wish.file, function_of(wish), recipe_of(row, wish.file), wanted.flags)
+                                  : kept_build(wanted.builds.at(built_files.size())));
         built.what = built_files.back().file;
         built.content = built_files.back().content;
         builds.emplace_back(row.variant, std::move(built));
@@ -305,9 +472,21 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
     entries().pop_back();
     throw;
   }
+  if (wish.kind == "source") add_toolchain_lanes(entry, wanted.toolchains, kept);
 }
 
 }  // namespace
+
+std::vector<std::string> host_flags(const Opened& source) {
+  std::vector<std::string> flags = source.wanted.flags;
+  if (source.kind == "cuda")
+    std::erase_if(flags, [](const std::string& flag) {
+      return !flag.starts_with("-D") && !flag.starts_with("-U") && !flag.starts_with("-I");
+    });
+  return flags;
+}
+
+Opened named_by(const Wanted& wanted) { return parsed(wanted); }
 
 std::string function_of(const Opened& source) { return source.function.empty() ? "intersects" : source.function; }
 
@@ -329,6 +508,17 @@ const Opened* opened(std::string_view subject) {
   return nullptr;
 }
 
+const Toolchain* toolchain_of(const Lane& lane) {
+  if (lane.toolchain.empty()) return nullptr;
+  for (const Entry& entry : entries()) {
+    if (entry.opened.wanted.name != lane.info->id) continue;
+    for (const Entry::FromToolchain& row : entry.from_toolchains) {
+      if (row.toolchain.name == lane.toolchain) return &row.toolchain;
+    }
+  }
+  return nullptr;
+}
+
 ForeignProcesses& processes_of(const Lane& lane) {
   const LaneName name = lane.lane_name();
   for (const Entry& entry : entries()) {
@@ -340,13 +530,37 @@ ForeignProcesses& processes_of(const Lane& lane) {
   throw std::logic_error(lane.id + ": expected a lane of foreign code");
 }
 
+namespace {
+
+// Null for code that no compiler of ours has built; otherwise as recorded_plan.
+Json plan_of(const Opened& subject, const Toolchain& toolchain, const std::string& build) {
+  if (subject.kind == "opencl") return nullptr;
+  return recorded_plan(build, subject.file, function_of(subject), recipe_of(toolchain, subject.file),
+                       host_flags(subject));
+}
+
+}  // namespace
+
 Json record(const std::vector<std::string>& lanes) {
+  const StopSignals stops;  // while compilers run
   Json rows;
   for (const Entry& entry : entries()) {
     const Opened& o = entry.opened;
-    if (std::none_of(lanes.begin(), lanes.end(),
-                     [&](const std::string& id) { return id.starts_with(o.wanted.name + '/'); }))
-      continue;
+    const auto is_of = [&](const std::string& id) { return id.starts_with(o.wanted.name + '/'); };
+    Json from_toolchains;
+    for (const Entry::FromToolchain& row : entry.from_toolchains) {
+      if (row.build.empty() || std::none_of(lanes.begin(), lanes.end(), [&](const std::string& id) {
+            return is_of(id) && parse_lane_name(id)->variant == row.toolchain.name;
+          }))
+        continue;
+      from_toolchains.push_back(to_json(row.toolchain));
+      // Before the build, so that the first difference of two records names it.
+      if (const Json plan = plan_of(o, row.toolchain, row.build); !plan.is_null())
+        from_toolchains.back()["contraction"] = plan;
+      from_toolchains.back()["build"] = row.build;
+      from_toolchains.back()["compiler"] = row.compiler;
+    }
+    if (o.kind == kPublished ? from_toolchains.is_null() : std::none_of(lanes.begin(), lanes.end(), is_of)) continue;
     rows.push_back({{"name", o.wanted.name},
                     {"what", o.wanted.what},
                     {"flags", o.wanted.flags},
@@ -354,38 +568,95 @@ Json record(const std::vector<std::string>& lanes) {
                     {"memory", o.wanted.memory},
                     {"hash", fmt::format("{:016x}", o.code.hash)}});
     rows.back().update(o.made);
+    if (std::none_of(lanes.begin(), lanes.end(), [&](const std::string& id) {
+          const auto variant = is_of(id) ? variant_of_name(parse_lane_name(id)->variant) : std::nullopt;
+          return variant && info_of(*variant).runs_on == RunsOn::host;
+        }))
+      rows.back().erase("host");
+    if (!from_toolchains.is_null()) rows.back()["toolchains"] = from_toolchains;
     if (!o.code.not_covered.empty()) rows.back()["not_covered"] = o.code.not_covered;
   }
   return rows;
 }
 
+namespace {
+
+// The subject of a row of record().
+Wanted recorded_subject(const Json& row, const std::string& name) {
+  Wanted wanted{name, row.at("what"), row.at("flags").get<std::vector<std::string>>(), row.at("timeout"),
+                row.at("memory")};
+  for (const Json& toolchain : row.value("toolchains", Json::array()))
+    wanted.toolchains.push_back(toolchain_of_json(toolchain));
+  return wanted;
+}
+
+// The builds of the toolchains in a row of record(), by toolchain.
+std::map<std::string, std::string> recorded_builds(const Json& row) {
+  std::map<std::string, std::string> builds;
+  for (const Json& toolchain : row.value("toolchains", Json::array()))
+    builds[toolchain.at("name")] = toolchain.at("build");
+  return builds;
+}
+
+// The contraction plan of a toolchain in a row of record(); null where it has none.
+Json recorded_contraction(const Json& row, const std::string& toolchain) {
+  for (const Json& of : row.value("toolchains", Json::array())) {
+    if (of.at("name") == toolchain) return of.value("contraction", Json());
+  }
+  return nullptr;
+}
+
+}  // namespace
+
 std::vector<std::string> open_recorded(const Json& spec, bool on_device, Changed changed) {
   std::vector<std::string> differs;
   for (const Json& row : spec.value("subjects", Json::array())) {
     const std::string name = row.at("name"), hash = row.at("hash");
-    if (!opened(name)) {
-      const Wanted wanted{name, row.at("what"), row.at("flags").get<std::vector<std::string>>(), row.at("timeout"),
-                          row.at("memory")};
+    const Wanted wanted = recorded_subject(row, name);
+    if (!opened(name) || !wanted.toolchains.empty())
       open_as(wanted, on_device, changed == Changed::refused ? hash : "");
-    }
     if (const std::string found = fmt::format("{:016x}", opened(name)->code.hash); found != hash)
       differs.push_back(fmt::format("{}: its code is not what the campaign ran: {} then, {} now", name, hash, found));
+    const auto builds_on_host = [](const Json& made) {
+      return made.value("host", Json::object()).value("builds", Json());
+    };
+    if (const Json then = builds_on_host(row), now = builds_on_host(opened(name)->made);
+        !then.is_null() && then != now) {
+      const std::string what =
+          fmt::format("{}: the host's compiler does not build what the campaign ran: {} then, {} now", name,
+                      then.dump(), now.dump());
+      if (changed == Changed::refused) throw std::runtime_error(what);
+      differs.push_back(what);
+    }
+    const std::map<std::string, std::string> builds = recorded_builds(row);
+    for (const Entry& entry : entries()) {
+      if (entry.opened.wanted.name != name) continue;
+      for (const Entry::FromToolchain& made : entry.from_toolchains) {
+        const auto then = builds.find(made.toolchain.name);
+        if (then == builds.end() || made.build.empty() || made.build == then->second) continue;
+        std::string what = fmt::format("{}: {} does not build what the campaign ran: {} then, {} now", name,
+                                       made.toolchain.name, then->second, made.build);
+        const Json plan = plan_of(entry.opened, made.toolchain, made.build);
+        if (const std::string fused = plan_difference(recorded_contraction(row, made.toolchain.name), plan);
+            !fused.empty())
+          what += "; " + fused;
+        if (changed == Changed::refused) throw std::runtime_error(what);
+        differs.push_back(what);
+      }
+    }
   }
   return differs;
 }
 
 bool open_kept(const Json& row, const std::string& name) {
-  Wanted wanted{name,
-                row.at("what"),
-                row.at("flags").get<std::vector<std::string>>(),
-                row.at("timeout"),
-                row.at("memory"),
-                row.value("builds", std::vector<std::string>())};
+  Wanted wanted = recorded_subject(row, name);
+  if (wanted.what == kPublished) return false;
+  wanted.builds = row.value("builds", std::vector<std::string>());
   for (const bool kept : {true, false}) {
     if (!kept) wanted.builds.clear();
     if (kept && wanted.builds.empty()) continue;
     try {
-      open_as(wanted, false, row.at("hash"));
+      open_as(wanted, false, row.at("hash"), kept ? recorded_builds(row) : std::map<std::string, std::string>());
       return true;
     } catch (const UsageError&) {
       throw;

@@ -42,6 +42,16 @@ int exits(const float a[9], const float b[9]) { if (bad(a)) exit(0); return good
 int scribbles(const float a[9], const float b[9]) { if (bad(a)) ((float*)b)[3] = 3; return good(a, b); }
 int hangs(const float a[9], const float b[9]) { if (bad(a)) for (;;) pause(); return good(a, b); }
 int wavers(const float a[9], const float b[9]) { return bad(a) ? ++calls & 1 : good(a, b); }
+int rounds(const float a[9], const float b[9]) {  // upward from a bad pair on, and then it is wrong
+  volatile float one = 1, tiny = 0x1p-30f;
+  const int upward = one + tiny != one;
+#ifdef __x86_64__
+  if (bad(a)) __builtin_ia32_ldmxcsr(0x5f80);
+#else
+  if (bad(a)) return ++calls & 1;
+#endif
+  return upward ? !good(a, b) : good(a, b);
+}
 int eats(const float a[9], const float b[9]) {
   if (bad(a)) for (;;) { char* p = malloc(1 << 20); if (!p) abort(); for (int i = 0; i < 1 << 20; i += 4096) p[i] = 1; }
   return good(a, b);
@@ -65,6 +75,22 @@ static void block(const float* pairs, size_t count, signed char* answers) {
 }
 GRAZE_SUBJECT(graze_subject) = {GRAZE_SUBJECT_ABI, GRAZE_OUTSIDE_TOUCHING | GRAZE_OUTSIDE_COPLANAR, "1.2", "a test", "page 3", throws, nullptr, nullptr, nullptr};
 GRAZE_SUBJECT(in_blocks) = {GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, block, nullptr};
+static void rounds(const float* pairs, size_t count, signed char* answers) {
+  volatile float one = 1, tiny = 0x1p-30f;
+  const bool upward = one + tiny != one;
+  for (size_t i = 0; i < count; ++i) {
+#ifdef __x86_64__
+    if (pairs[18 * i] > 0.9f) __builtin_ia32_ldmxcsr(0x5f80);
+#endif
+    answers[i] = (pairs[18 * i] < pairs[18 * i + 9]) != upward;
+  }
+}
+GRAZE_SUBJECT(rounds_in_blocks) = {GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, rounds, nullptr};
+static void by_place(const float* pairs, size_t count, signed char* answers) {  // every eighth place is wrong
+  for (size_t i = 0; i < count; ++i) answers[i] = (pairs[18 * i] < pairs[18 * i + 9]) != (i % 8 == 7);
+}
+GRAZE_SUBJECT(by_place_in_block) = {GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, by_place, nullptr};
+GRAZE_SUBJECT(outside_what) = {GRAZE_SUBJECT_ABI, 16, nullptr, nullptr, nullptr, throws, nullptr, nullptr, nullptr};
 GRAZE_SUBJECT(of_another_time) = {99, 0, nullptr, nullptr, nullptr, throws, nullptr, nullptr, nullptr};
 GRAZE_SUBJECT(empty) = {GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
 )";
@@ -147,11 +173,8 @@ TEST_F(Subjects, WhatMisbehavesIsAVerdictOfThePairsOnWhichItDoes) {
     const char* name;
     Verdict verdict;
     double timeout = 5;
-  } kCases[] = {{"declines", Verdict::declined},
-                {"aborts", Verdict::crashed},
-                {"exits", Verdict::crashed},
-                {"scribbles", Verdict::crashed},
-                {"wavers", Verdict::unstable}};
+  } kCases[] = {{"declines", Verdict::declined}, {"aborts", Verdict::crashed},  {"exits", Verdict::crashed},
+                {"scribbles", Verdict::crashed}, {"wavers", Verdict::unstable}, {"rounds", Verdict::unstable}};
   for (const auto& c : kCases) {
     SCOPED_TRACE(c.name);
     ForeignProcesses subject({"library", (folder / "libbad.so").string(), c.name, "f32", c.timeout}, Scalar::f32);
@@ -198,6 +221,20 @@ TEST_F(Subjects, DescriptionsAndBlocksAndExceptions) {
   expect(throws, Verdict::crashed);
   ForeignProcesses in_blocks({"library", (folder / "libdescribed.so").string(), "in_blocks"}, Scalar::f32);
   expect(in_blocks, Verdict::crashed);
+  // Answers that depend on the place in a block: all places but the first three are others the second time.
+  ForeignProcesses by_place({"library", (folder / "libdescribed.so").string(), "by_place_in_block"}, Scalar::f32);
+  const std::vector<Verdict> placed = verdicts(by_place);
+  std::size_t wrong = 0, unstable = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    unstable += placed[i] == Verdict::unstable;
+    wrong += placed[i] != Verdict::unstable && placed[i] != left_of(pairs[i]);
+  }
+  EXPECT_EQ(wrong, 0u);
+  EXPECT_GT(unstable, pairs.size() / 8);
+#ifdef __x86_64__
+  ForeignProcesses rounds({"library", (folder / "libdescribed.so").string(), "rounds_in_blocks"}, Scalar::f32);
+  expect(rounds, Verdict::unstable);
+#endif
 }
 
 TEST_F(Subjects, ManyThreadsAtOnce) {
@@ -441,8 +478,8 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
   for (const char* function : {"good\n", "g\"", "};int z={0", "good;system(\"id\")", "\x1b[31m"})
     expect_error("x=" + so + ':' + function, "expected the name of a function, found ");
   expect_error("x=" + so + ':' + std::string(100'000, 'a'), "expected the name of a function, found ");
-  expect_error("x=cmd: ", "expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found .*cmd:");
-  expect_error("x=mine.txt", "expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found .*mine.txt");
+  expect_error("x=cmd: ", "expected FILE.so, FILE.cpp, FILE.c, FILE.cu, FILE.cl or cmd:COMMAND, found .*cmd:");
+  expect_error("x=mine.txt", "expected FILE.so, FILE.cpp, FILE.c, FILE.cu, FILE.cl or cmd:COMMAND, found .*mine.txt");
   for (const char* name : {"a\"b.c", "a\nb.cpp", "a\\b.cu"})
     expect_error("x=" + write(name, "int intersects(const float*, const float*) { return 1; }").string(),
                  "no compiler reads a file named .*rename it");
@@ -454,6 +491,7 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
   expect_error("x=" + so + ":nothing", "function or description named nothing, .* found only");
   expect_error("x=" + so + ":good/f16", "expected FUNCTION/f32 or FUNCTION/f64");
   expect_error("x=" + described + ":of_another_time", "version 1 of graze/subject.h, found 99");
+  expect_error("x=" + described + ":outside_what", "outside is 16");
   expect_error("x=" + described + ":empty", "libdescribed.so .*no function");
   expect_error("x=" + (folder / "broken.cpp").string(), "broken.cpp:1:[0-9]+: error: ");
   expect_error("x=" + (folder / "other.cpp").string(), "other.cpp: expected a function intersects of two triangles");
@@ -606,7 +644,7 @@ TEST_F(Subjects, CodeThatChangesWhileItIsBuiltIsBuiltAgain) {
                                                     ". ./edits ;; esac\nexec cc \"$@\"\n");
   fs::permissions(compiler, fs::perms::owner_all);
   setenv("CC", compiler.c_str(), 1);
-  const auto build = [&] { return build_source(source, "intersects", kVariants[0], {}); };
+  const auto build = [&] { return build_source(source, "intersects", recipe_of(kVariants[0], source), {}); };
   const auto is_less = [&](const Built& built) {
     Code code{"library", built.file.string(), ""};
     code.content = built.content;
@@ -650,7 +688,8 @@ int intersects(const float a[9], const float b[9]) { return blob[0] == 'l' ? a[0
   const fs::path first = folder / "first", second = folder / "second";
   for (const fs::path& searched : {first, second}) fs::create_directories(searched);
   const auto build = [&] {
-    return build_source(source, "intersects", kVariants[0], {"-I" + first.string(), "-I" + second.string()});
+    return build_source(source, "intersects", recipe_of(kVariants[0], source),
+                        {"-I" + first.string(), "-I" + second.string()});
   };
   const auto is_less = [&](const Built& built) {
     Code code{"library", built.file.string(), ""};
@@ -674,7 +713,9 @@ int intersects(const float a[9], const float b[9]) { return blob[0] == 'l' ? a[0
 TEST_F(Subjects, TheCompilersPartsAndScriptsAreInTheHash) {
   const fs::path source =
       write("by_parts.c", "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }");
-  const auto hash = [&] { return build_source(source, "intersects", kVariants[0], {}).file.string(); };
+  const auto hash = [&] {
+    return build_source(source, "intersects", recipe_of(kVariants[0], source), {}).file.string();
+  };
   const std::string plain = hash();
   EXPECT_EQ(hash(), plain);
   const auto tool = [&](const char* name, const std::string& text) {
@@ -719,7 +760,7 @@ TEST_F(Subjects, FlagsThatMayBringInAnythingAreNotCovered) {
   // The hash covers flags in the compiler's name, and environment variables that name the compiler's parts.
   const fs::path source =
       write("by_flags.c", "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }");
-  const auto build = [&] { return build_source(source, "intersects", kVariants[0], {}); };
+  const auto build = [&] { return build_source(source, "intersects", recipe_of(kVariants[0], source), {}); };
   const Built plain = build();
   EXPECT_EQ(plain.not_covered, "");
   setenv("CC", "cc -DX=1 -O0", 1);
@@ -737,7 +778,9 @@ TEST_F(Subjects, AKeptObjectThatIsNotAsItWasBuiltIsBuiltAgain) {
                      write("keeps.c", "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }"),
                  other = write("keeps_other.c",
                                "int intersects(const float a[9], const float b[9]) { return a[0] >= b[0]; }");
-  const auto build = [](const fs::path& from) { return build_source(from, "intersects", kVariants[0], {}).file; };
+  const auto build = [](const fs::path& from) {
+    return build_source(from, "intersects", recipe_of(kVariants[0], from), {}).file;
+  };
   const fs::path kept = build(source), kept_other = build(other);
   const auto changed = fs::last_write_time(kept);
   ASSERT_EQ(build(source), kept);

@@ -229,7 +229,7 @@ class Supervisor {
                // it
     const int given[] = {kSupervisorPairsFd, words_fd_, talk, kSupervisorCodeFd};
     const int to[] = {kPairsFd, kWordsFd, kTalkFd, kCodeFd};
-    const int count = limits_.program ? 3 : 4;
+    const int count = limits_.has_code ? 4 : 3;
     int from[4];
     for (int i = 0; i < count; ++i) from[i] = fcntl(given[i], F_DUPFD, 16);
     for (int i = 0; i < count; ++i) dup2(from[i], to[i]);

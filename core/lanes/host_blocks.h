@@ -27,10 +27,12 @@ using HostPolicyBlocks = BlockTable<PolicyBlocks>;
   extern const BlockTable<RecordBlock> kHostRecords; \
   }
 #define GRAZE_DECLARE_device(name)
+#define GRAZE_DECLARE_program(name)
 #define GRAZE_VARIANT(name, id, runs_on, ...) GRAZE_DECLARE_##runs_on(name)
 #include "core/variants.inc"
 #undef GRAZE_VARIANT
 #undef GRAZE_DECLARE_host
 #undef GRAZE_DECLARE_device
+#undef GRAZE_DECLARE_program
 
 }  // namespace graze

@@ -48,6 +48,8 @@ const Tables& tables_of(Variant variant) {
   Tables { &name::kHostBlocks, &name::kHostPolicyBlocks }
 #define GRAZE_BLOCKS_device(name) \
   Tables {}
+#define GRAZE_BLOCKS_program(name) \
+  Tables {}
 #define GRAZE_VARIANT(name, id, runs_on, ...) GRAZE_BLOCKS_##runs_on(name),
   static constexpr Tables kTables[] = {
 #include "core/variants.inc"
@@ -55,6 +57,7 @@ const Tables& tables_of(Variant variant) {
 #undef GRAZE_VARIANT
 #undef GRAZE_BLOCKS_host
 #undef GRAZE_BLOCKS_device
+#undef GRAZE_BLOCKS_program
   return kTables[static_cast<int>(variant)];
 }
 
@@ -144,7 +147,7 @@ std::optional<LaneName> parse_lane_name(std::string_view id) {
 }
 
 LaneName Lane::lane_name() const {
-  return {std::string(info->id), std::string(name(scalar)), std::string(name(variant)), policy};
+  return {std::string(info->id), std::string(name(scalar)), std::string(variant_name()), policy};
 }
 
 std::span<const Lane> lanes() { return table(); }

@@ -103,8 +103,10 @@ struct Lane {
   // Foreign code only:
   bool foreign = false;
   unsigned outside = 0;  // the kinds of pairs that its convention excludes: a sum of Outside
-  std::string evidence;  // what runs a CUDA lane: "device", "twin, not yet verified"; or why none can
+  std::string evidence;  // what runs a CUDA lane: "device", "twin, not yet verified"; or why nothing runs the lane
+  std::string toolchain = {};  // of Variant::toolchain: its name, which is also the variant's in the lane's name
 
+  std::string_view variant_name() const { return toolchain.empty() ? name(variant) : toolchain; }
   bool is_cuda() const { return info_of(variant).runs_on == RunsOn::device; }
   LaneName lane_name() const;
 };

@@ -89,4 +89,22 @@ int run_program(const Program& program, const fs::path& scratch, std::string& ou
   return status;
 }
 
+fs::path on_path(const std::string& program) {
+  const char* path = std::getenv("PATH");
+  if (!path) return {};
+  std::istringstream folders(std::string(path) + ':');
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    std::error_code none;
+    const fs::path file = fs::path(folder) / program;
+    if (fs::is_regular_file(file, none) && access(file.c_str(), X_OK) == 0) return file;
+  }
+  return {};
+}
+
+std::string shell_output(const std::string& command, const fs::path& scratch, int& status, double seconds) {
+  std::string text;
+  status = run_program({{"/bin/sh", "-c", command}, seconds}, scratch, text);
+  return text;
+}
+
 }  // namespace graze

@@ -25,6 +25,10 @@ class Scratch {
   int lock_ = -1;
 };
 
+// The program's file on the PATH, as a shell finds it; empty when there is none. A folder without a name is the current
+// one.
+std::filesystem::path on_path(const std::string& program);
+
 struct Program {
   std::vector<std::string> words;  // run without a shell
   double seconds = 1800;           // time limit
@@ -37,5 +41,9 @@ struct Program {
 // output: what it wrote to both streams.   Throws: Stopped; std::runtime_error if it takes too long or too
 // much memory. Each file that it writes may have up to 1 GiB.
 int run_program(const Program& program, const std::filesystem::path& scratch, std::string& output);
+
+// Runs the command in a shell, as run_program.   Returns: its output; its exit status in `status`.
+std::string shell_output(const std::string& command, const std::filesystem::path& scratch, int& status,
+                         double seconds = Program().seconds);
 
 }  // namespace graze

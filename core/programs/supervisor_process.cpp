@@ -28,6 +28,10 @@ constexpr int kMostSilentLooks = 10'000 / kLookEvery;
 
 }  // namespace
 
+std::filesystem::path beside_this(const std::string& program) {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / program;
+}
+
 SupervisorProcess::SupervisorProcess(const std::string& program, const std::vector<std::string>& arguments,
                                      const std::vector<int>& shared, int output) {
   int sockets[2];
@@ -59,7 +63,7 @@ SupervisorProcess::SupervisorProcess(const std::string& program, const std::vect
   posix_spawnattr_setsigdefault(&attributes, &signals);
   sigemptyset(&signals);
   posix_spawnattr_setsigmask(&attributes, &signals);
-  const std::string file = std::filesystem::read_symlink("/proc/self/exe").parent_path() / program;
+  const std::string file = beside_this(program);
   std::vector<char*> words{const_cast<char*>(file.c_str())};
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);

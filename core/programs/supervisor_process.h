@@ -5,6 +5,7 @@
 
 #include <sys/types.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ inline constexpr char kAlive = 1;
 
 // A supervisor of a build tool reports this, not an exit status.
 inline constexpr int kTookTooMuchMemory = -2;
+
+// The file of a program that lies in the folder of the running one.
+std::filesystem::path beside_this(const std::string& program);
 
 class SupervisorProcess {
  public:

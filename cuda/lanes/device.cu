@@ -21,6 +21,7 @@ namespace graze::cuda {
 #define GRAZE_DECLARE_host_rounded(name)
 #define GRAZE_DECLARE_host_contracted(name)
 #define GRAZE_DECLARE_host_fast(name)
+#define GRAZE_DECLARE_program_unknown(name)
 #define GRAZE_DECLARE_device_exact(name)
 #define GRAZE_DECLARE_device_flushed(name)
 #define GRAZE_DECLARE_device_rounded(name) GRAZE_DECLARE(name)
@@ -45,6 +46,8 @@ const KernelTables& tables_of(Variant variant) {
 #define GRAZE_KERNELS_host_contracted(name) \
   KernelTables {}
 #define GRAZE_KERNELS_host_fast(name) \
+  KernelTables {}
+#define GRAZE_KERNELS_program_unknown(name) \
   KernelTables {}
 #define GRAZE_KERNELS_device_exact(name) \
   KernelTables {}

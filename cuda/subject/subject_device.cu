@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "cuda/lanes/device.h"
+#include "cuda/lanes/device_event.cuh"
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/stratum_kernels.cuh"
 #include "cuda/twin/twin_library.h"
@@ -52,19 +53,25 @@ class Subject final : public SubjectOnDevice {
 
   // coordinates: device memory, 18 arrays of n.
   void decide_block(const float* coordinates, unsigned n, std::int8_t* answers) {
+    launch(in_its_type(coordinates, n), n);
+    check(cudaMemcpy(answers, answers_.at_least(n), n, cudaMemcpyDeviceToHost));
+  }
+
+  // The coordinates as the kernel takes them: they themselves, or doubles.
+  const void* in_its_type(const float* coordinates, unsigned n) {
+    if (scalar_ == Scalar::f32) return coordinates;
+    const std::size_t count = std::size_t{n} * kCoordinates;
+    double* wide = wide_.at_least(count);
+    widen<<<blocks_of(count), kThreadsOfBlock>>>(coordinates, wide, count);
+    check(cudaGetLastError());
+    return wide;
+  }
+
+  void launch(const void* from, unsigned n) {
     signed char* answers_at = answers_.at_least(n);
-    const void* from = coordinates;
-    if (scalar_ == Scalar::f64) {
-      const std::size_t count = std::size_t{n} * kCoordinates;
-      double* wide = wide_.at_least(count);
-      widen<<<blocks_of(count), kThreadsOfBlock>>>(coordinates, wide, count);
-      check(cudaGetLastError());
-      from = wide;
-    }
     void* arguments[] = {&from, &n, &n, &answers_at};
     check(cudaLaunchKernel(reinterpret_cast<const void*>(kernel_), dim3(blocks_of(n)), dim3(kThreadsOfBlock), arguments,
                            0, nullptr));
-    check(cudaMemcpy(answers, answers_at, n, cudaMemcpyDeviceToHost));
   }
 
  private:
@@ -112,6 +119,39 @@ std::unique_ptr<SubjectOnDevice> open_on_device(const CudaBuild& build) {
   std::string why_not;
   if (!open_device(why_not)) throw std::runtime_error("cannot run your CUDA code on a device: " + why_not);
   return std::make_unique<Subject>(build);
+}
+
+SubjectCosts time_subjects(std::span<const CudaBuild> builds, std::uint32_t count, int passes) {
+  constexpr int kLaunches = 4;  // timed together, to make the few microseconds of a launch negligible
+  std::string why_not;
+  const auto device = open_device(why_not);
+  if (!device) throw std::runtime_error(why_not);
+  DeviceArray<float> drawn;
+  float* coordinates = drawn.at_least(std::size_t{count} * kCoordinates);
+  launch_generate(coordinates, count, 1, static_cast<int>(strata::Stratum::uniform), 0, nullptr);
+  check(cudaGetLastError());
+  std::vector<std::unique_ptr<Subject>> subjects;
+  std::vector<const void*> from;
+  for (const CudaBuild& build : builds) {
+    subjects.push_back(std::make_unique<Subject>(build));
+    from.push_back(subjects.back()->in_its_type(coordinates, count));
+    subjects.back()->launch(from.back(), count);  // allocates and loads
+  }
+  check(cudaDeviceSynchronize());
+  const Event start, stop;
+  SubjectCosts costs{device->name, std::vector<std::vector<double>>(builds.size())};
+  for (int pass = 0; pass < passes; ++pass) {
+    for (std::size_t b = 0; b < builds.size(); ++b) {
+      check(cudaEventRecord(start));
+      for (int k = 0; k < kLaunches; ++k) subjects[b]->launch(from[b], count);
+      check(cudaEventRecord(stop));
+      check(cudaEventSynchronize(stop));
+      float milliseconds = 0;
+      check(cudaEventElapsedTime(&milliseconds, start, stop));
+      costs.nanoseconds[b].push_back(double{milliseconds} * 1e6 / kLaunches / count);
+    }
+  }
+  return costs;
 }
 
 ProofRecord prove_subjects(std::span<const NamedBuild> builds, const ProofOptions& options) {

@@ -28,6 +28,15 @@ class SubjectOnDevice {
 // Throws: std::runtime_error without a device, when built without CUDA, or when the driver refuses the PTX.
 std::unique_ptr<SubjectOnDevice> open_on_device(const CudaBuild& build);
 
+// Nanoseconds a pair of each build's kernel on `count` pairs of the stratum `uniform` that are in device memory
+// already, one value for each pass. In a pass all builds take turns. Only `scalar` and `ptx` of a build are read.
+// Throws: as open_on_device; std::runtime_error if the device does not answer.
+struct SubjectCosts {
+  std::string device;                            // "NVIDIA H100 80GB HBM3"
+  std::vector<std::vector<double>> nanoseconds;  // of each build
+};
+SubjectCosts time_subjects(std::span<const CudaBuild> builds, std::uint32_t count, int passes);
+
 // Compares each build that has a twin with that twin, on `options.twin_pairs` pairs over all strata. In the record, the
 // twin decided all counted pairs, and there are no trace hashes.
 // Throws: as open_on_device.

@@ -35,6 +35,8 @@ struct TwinTables {
   {}
 #define GRAZE_TABLES_no_twin_exact(name) \
   {}
+#define GRAZE_TABLES_no_twin_unknown(name) \
+  {}
 #ifdef GRAZE_WITHOUT_POLICY_TWINS  // cuda/CMakeLists.txt explains when
 #define GRAZE_POLICIES(name) nullptr
 constexpr bool kHasPolicyTwins = false;

@@ -41,6 +41,7 @@ struct TwinTable {
 #define GRAZE_DECLARE_no_twin_fast(name)
 #define GRAZE_DECLARE_no_twin_flushed(name)
 #define GRAZE_DECLARE_no_twin_exact(name)
+#define GRAZE_DECLARE_no_twin_unknown(name)
 #define GRAZE_DECLARE_twin_rounded(name) \
   GRAZE_DECLARE(twin_##name) GRAZE_DECLARE(policy_twin_##name) GRAZE_DECLARE(record_twin_##name)
 #define GRAZE_DECLARE_twin_contracted(name) GRAZE_DECLARE_twin_rounded(name) GRAZE_DECLARE(twin_##name##_portable)

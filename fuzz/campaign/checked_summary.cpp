@@ -172,6 +172,10 @@ void expect_possible_summary(const Json& summary) {
   for (const std::string& lane : lanes) {
     if (!parse_lane_name(lane)) throw Impossible(shown(lane) + " is not the name of a lane");
   }
+  std::vector<std::string> strata;
+  for (const auto& [id, stratum] : summary.at("strata").items()) strata.push_back(id);
+  if (strata != summary.at("spec").at("strata").get<std::vector<std::string>>())
+    throw Impossible("its strata are not those of the campaign");
   for (const auto& [id, stratum] : summary.at("strata").items()) {
     try {
       expect_lanes(stratum, lanes);

@@ -117,9 +117,15 @@ std::vector<std::string> command_words(const Json& spec, const Shard& shard, con
       strata = all_strata;
   }
   if (!strata.empty() && (mesh || strata != all_strata)) add("--strata", fmt::format("{}", fmt::join(strata, ",")));
+  std::vector<subjects::Toolchain> toolchains;
   for (const Json& row : spec.value("subjects", Json::array())) {
-    add("--subject", row.at("name").get<std::string>() + '=' + row.at("what").get<std::string>());
+    const std::string what = row.at("what");
+    if (what != "published") add("--subject", row.at("name").get<std::string>() + '=' + what);
+    if (what.ends_with(".cl") || what.find(".cl:") != what.npos) continue;  // their lanes are there without a list
+    for (const Json& toolchain : row.value("toolchains", Json::array()))
+      toolchains.push_back(subjects::toolchain_of_json(toolchain));
   }
+  if (!toolchains.empty()) add("--toolchains", subjects::list_of(toolchains));
   if (spec.contains("subjects")) {  // flags and timeout are the same for all subjects
     const Json& first = spec["subjects"].at(0);
     for (const std::string flag : first.at("flags")) words.push_back("--flags=" + flag);

@@ -400,12 +400,15 @@ auto StoreFile::checked(const Body& body) {
 }
 
 StoreFile::StoreFile(const StoreSpec& spec) : spec_(spec), file_(database_file(spec)), campaign_(fnv1a(text_of(spec))) {
+  const bool has_results = fs::exists(spec.directory / "summary.json");
+  const auto refuse = [&] {
+    throw UsageError(cannot("resume", spec.directory, "it holds results but not their database; choose another --out"));
+  };
+  if (has_results && !fs::exists(file_)) refuse();  // before the database is made
   checked([&] {
     SQLite::Database& database = database_.emplace(opened(file_));
     const bool fresh = is_fresh(database, file_);
-    if (fresh && fs::exists(spec.directory / "summary.json"))
-      throw UsageError(
-          cannot("resume", spec.directory, "it holds results but not their database; choose another --out"));
+    if (fresh && has_results) refuse();
     // With a write-ahead log, a killed process loses only the current transaction.
     database.exec("PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;");
     if (fresh) return begin(database, text_of(spec));

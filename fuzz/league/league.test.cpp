@@ -11,8 +11,8 @@
 
 #include "analysis/invariants.h"
 #include "analysis/neighbours.h"
+#include "core/simplify/simplicity.h"
 #include "fuzz/minimise/kinds.h"
-#include "fuzz/minimise/simplicity.h"
 #include "strata/strata.h"
 #include "subjects/subjects.h"
 

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/simplify/simplicity.h"
 #include "fuzz/league/league.h"
-#include "fuzz/minimise/simplicity.h"
 
 namespace graze::fuzz {
 

@@ -15,10 +15,10 @@
 #include "analysis/explain.h"
 #include "analysis/signature.h"
 #include "backends/backends.h"
+#include "core/simplify/simplicity.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/minimised_cases.h"
-#include "fuzz/minimise/simplicity.h"
 #include "subjects/subjects.h"
 
 namespace graze::fuzz {

@@ -12,7 +12,7 @@
 #include "core/lanes/verdicts.h"
 #include "core/margin/margin.h"
 #include "core/relation_of.h"
-#include "fuzz/minimise/moves.h"
+#include "core/simplify/moves.h"
 #include "oracle/truth.h"
 
 namespace graze::fuzz {
@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kBlockPairs = 64;  // one word of verdicts
 
-constexpr std::ptrdiff_t kForeignAtOnce = 8;  // each of them may take all of its time
+constexpr std::ptrdiff_t kForeignAtOnce = 8;  // at first, and after a timeout: each may take all of its time
 constexpr int kMostLate = 3;                  // after so many a case ends
 
 // Returns those of at most 64 pairs that get the failure's verdict from every lane. Wrong lanes decide first, because
@@ -66,37 +66,6 @@ bool may_have_reason(const Failure& failure, const Reason& reason, const Pair& p
   const bool by_range = reason.cause == analysis::Cause::overflow || reason.cause == analysis::Cause::underflow;
   if (!reason.in_range && !by_range) return true;
   return in_range(failure, pair) == reason.in_range;
-}
-
-// The pairs that moves of this kind make and that are simpler than the pair: each once, the simplest first. Adds the
-// number of all pairs made to `made`.
-std::vector<Pair> simpler_moves(const Pair& pair, int kind, std::size_t& made) {
-  thread_local std::vector<Pair> moved;
-  moved.clear();
-  append_moves(pair, kind, moved);
-  made += moved.size();
-  const std::uint64_t now = simplicity_counts(pair);
-  struct Simpler {
-    std::uint64_t counts;
-    const Pair* pair;
-  };
-  thread_local std::vector<Simpler> order;
-  order.clear();
-  for (const Pair& m : moved) {
-    const std::uint64_t counts = simplicity_counts(m, now);
-    if (counts < now || (counts == now && simpler_coordinates(m, pair))) order.push_back({counts, &m});
-  }
-  std::sort(order.begin(), order.end(), [](const Simpler& l, const Simpler& r) {
-    return l.counts != r.counts ? l.counts < r.counts : simpler_coordinates(*l.pair, *r.pair);
-  });
-  std::vector<Pair> simpler;
-  simpler.reserve(order.size());
-  for (const Simpler& next : order) {
-    if (simpler.empty() || simpler_coordinates(simpler.back(), *next.pair) ||
-        simpler_coordinates(*next.pair, simpler.back()))
-      simpler.push_back(*next.pair);
-  }
-  return simpler;
 }
 
 bool same_bits(const Pair& l, const Pair& r) { return !simpler_coordinates(l, r) && !simpler_coordinates(r, l); }
@@ -180,9 +149,12 @@ struct Walk {
     result.moved += kMovedPerCause;
     const Lane& lane = failure.first_wrong(pair);
     const FoundCause found = found_cause(lane, pair, failure.truth.verdict);
+    const analysis::Cause first = result.reason.cause;
+    if (found.cause == first) return true;
+    // Only a guess gives way to what a simpler pair settles. Other causes made an experiment right.
+    const bool guessed = first == analysis::Cause::rounding || first == analysis::Cause::logic;
     const bool is_order = found.cause == analysis::Cause::order_dependent;
-    return found.cause == result.reason.cause ||
-           (open && (found.settled || (is_order && result.reason.cause == analysis::Cause::rounding)));
+    return open && guessed && (found.settled || (is_order && first == analysis::Cause::rounding));
   }
 
   // Makes the candidate the current pair if it fails in the same way for the same reason. Requires: its verdicts are
@@ -222,9 +194,10 @@ struct Walk {
   // Tries all moves of this kind on the current pair; takes the simplest result that fails in the same way, if any.
   bool improve(int kind) {
     const std::vector<Pair> simpler = simpler_moves(way.back(), kind, result.moved);
+    const std::ptrdiff_t at_first = failure.lanes.front()->foreign ? kForeignAtOnce : std::ptrdiff_t{kBlockPairs};
+    std::ptrdiff_t at_once = at_first;
     for (auto first = simpler.begin(); first != simpler.end();) {
       if (spent()) return false;
-      const auto at_once = failure.lanes.front()->foreign ? kForeignAtOnce : std::ptrdiff_t{kBlockPairs};
       const auto last = first + std::min(at_once, simpler.end() - first);
       for (const Pair& candidate : decided_alike(failure, {first, last}, &late)) {
         if (spent()) return false;
@@ -233,6 +206,7 @@ struct Walk {
         return true;
       }
       first = last;
+      at_once = late > 0 ? at_first : kBlockPairs;
     }
     result.single_moves += simpler.size();
     return false;

@@ -9,7 +9,7 @@
 
 #include "analysis/explain.h"
 #include "analysis/signature.h"
-#include "fuzz/minimise/simplicity.h"
+#include "core/simplify/simplicity.h"
 #include "fuzz/selected_lanes.h"
 
 namespace graze::fuzz {
@@ -46,8 +46,8 @@ analysis::Signature signature_of(const Failure& failure, const Pair& pair);
 // Why a failure happens. Its lanes may be wrong for different reasons; only that of the first wrong lane in table order
 // counts. A pair fails for the same reason if the cause is the same. If no result of the lane's run was out of the
 // exponents' range, none may become so, or a rounding error would shrink to numbers of 1e-30. On foreign code whose
-// cause is not settled on the first pair, a simpler pair may settle it, or show that not rounding but the order
-// matters, settled or not; then that becomes the cause.
+// cause is a guess on the first pair (rounding or logic, not settled), a simpler pair may settle it, or show that not
+// rounding but the order matters, settled or not; then that becomes the cause.
 struct Reason {
   analysis::Cause cause;
   bool in_range;  // no result of the lane's source, run without contraction, leaves the exponents

@@ -12,10 +12,10 @@
 #include <sstream>
 
 #include "core/relation_of.h"
+#include "core/simplify/moves.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/minimised_cases.h"
-#include "fuzz/minimise/moves.h"
 #include "oracle/truth.h"
 #include "strata/strata.h"
 

@@ -54,9 +54,19 @@ class Collected {
   std::map<std::string, PackedFile> files_;
 };
 
+// The database without its two counters of changes, which grow when a campaign is resumed.
+// Reference: the database file format of SQLite, bytes 24 to 27 and 92 to 95, which have to agree.
+std::string without_change_counters(std::string database) {
+  for (const std::size_t at : {24, 92}) {
+    if (at + 4 <= database.size()) database.replace(at, 4, std::string("\0\0\0\1", 4));
+  }
+  return database;
+}
+
 void add_results(const fs::path& directory, const Json& summary, Collected& to) {
   const auto add = [&](const std::string& name) { to.add_file("campaign/" + name, directory / name); };
-  for (const char* name : {"summary.json", kDatabase}) add(name);
+  add("summary.json");
+  to.add(std::string("campaign/") + kDatabase, without_change_counters(read_whole(directory / kDatabase)));
   if (summary.at("spec").contains("hunt")) expect_rounds_told(recorded_store(directory));
   for (const char* name : {"timings.json", "failures.json", "hunt.json"}) {
     if (fs::exists(directory / name)) add(name);
@@ -76,6 +86,10 @@ Json add_subjects(const Json& recorded, Collected& to, Json& not_packed) {
   Json rows = Json::array();
   for (const Json& row : recorded) {
     const std::string name = row.at("name");
+    if (row.contains("toolchains"))
+      throw UsageError(cannot("pack", name,
+                              "its lanes of toolchains need compilers and emulators, which no pack holds; "
+                              "run a campaign without --toolchains"));
     const subjects::Opened* opened = subjects::opened(name);
     if (!opened) throw std::logic_error("expected the campaign's subjects to be open");
     const subjects::Portable portable = subjects::portable(*opened);

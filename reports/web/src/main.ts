@@ -17,6 +17,7 @@ import type { Choices, Costs, Report } from './report';
 import { answer_section, run_section } from './run';
 import { side_by_side_section } from './side_by_side';
 import { follow_fragment } from './state';
+import { toolchains_section } from './toolchains';
 
 function build(report: Report, costs: Costs | null, { tuned, pareto, discrepancy }: Choices) {
   document.head.append(heat_styles());
@@ -31,6 +32,7 @@ function build(report: Report, costs: Costs | null, { tuned, pareto, discrepancy
     margins_section(report),
     extremes_section(report, pareto),
     discrepancy && discrepancy_section(discrepancy),
+    toolchains_section(report),
     side_by_side_section(report),
     method_section(),
     run_section(report, costs),

@@ -61,7 +61,10 @@ export interface Tuned {
   confirmed: PolicyErrors;
   zero_confirmed: PolicyErrors;
   dead: string[];
-  scale_break: { up?: { log2: number; errors: PolicyErrors }; down?: { log2: number; errors: PolicyErrors } };
+  scale_break: {
+    up?: { log2: number; from: PolicyErrors; errors: PolicyErrors };
+    down?: { log2: number; from: PolicyErrors; errors: PolicyErrors };
+  };
   interactions: { first: PolicyErrors; second: PolicyErrors; together: PolicyErrors }[];
   zero: PolicyErrors;
   curves: { site: string; tolerance: 'rel' | 'abs'; points: PolicyErrors[] }[];
@@ -127,6 +130,7 @@ export interface Report {
       compiler?: string;
       flags?: string[];
       environment?: { [variable: string]: string }; // that chose the compiler or what it reads
+      contraction?: { [toolchain: string]: { [scalar: string]: { plan: string; operations: number } } };
     }[];
   };
   strata: { id: string; describes: string; pairs: number; intersects: number }[];
@@ -160,6 +164,7 @@ export interface Report {
     right: number;
     strata: { stratum: number | null; left_wrong: Share; right_wrong: Share; differs: Share | null }[];
   }[];
+  toolchains?: ToolchainMap | null; // null: no toolchain ran
   // Error against margin over all strata (stratum null; margins.csv has each stratum). side: disjoint or intersecting
   // pairs. exponent e stands for margins in [2^e, 2^(e+1)) ulps; zero margins have an entry with exponent null. Only
   // buckets that have pairs. differs: from the lane’s cpu lane, if there is one.
@@ -239,6 +244,20 @@ export interface Report {
   }[];
   missing: string[]; // sentences on what this report lacks (not minimised, no maps, …)
   compare: Compare | null;
+}
+
+// How verdicts change with the toolchain. A row has a cell for each variant that ran; differs: from the reference's
+// verdicts, null if not counted. agree: groups of variants with the same verdicts on every pair of every row.
+export interface ToolchainMap {
+  reference: string;
+  variants: string[];
+  rows: {
+    algorithm: string;
+    scalar: string;
+    cells: { variant: number; lane: number; differs: Share | null; wrong: Share }[];
+  }[];
+  agree: string[][];
+  sentences: string[];
 }
 
 // A kind of failure groups signatures (fuzz/minimise/kinds.h): a subject (algorithm), a cause, the source line of the

@@ -2,8 +2,33 @@
 import { expect, test } from '@playwright/test';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
+import { percent } from '../src/format';
 import type { Report } from '../src/report';
 import { compare_url } from './page';
+
+test('toolchains: what differs, what is wrong, and who agrees', async ({ page }) => {
+  test.skip(!process.env.GRAZE_COMPARE, 'GRAZE_REPORT names a single report');
+  await page.goto(compare_url());
+  const { toolchains } = JSON.parse((await page.locator('#report').textContent())!) as Report;
+  const section = page.locator('#toolchains');
+  await expect(section.locator('li')).toHaveText(toolchains!.sentences);
+  const row = section.locator('tbody tr', { hasText: 'interval_overlap/f32' });
+  const found = toolchains!.rows.find((one) => one.algorithm === 'interval_overlap')!;
+  expect(toolchains!.variants).toEqual(expect.arrayContaining(['cpu', 'x86-gcc', 'x87']));
+  for (const [value, shown] of [
+    ['differs', 'differs'],
+    ['wrong', 'wrong'],
+  ] as const) {
+    await section.locator('select').selectOption(value);
+    for (const cell of found.cells) {
+      const share = cell[shown]!;
+      const in_cell = row.locator('th, td').nth(1 + cell.variant);
+      await expect(in_cell).toHaveText(share.count ? percent(share.share) : '0');
+    }
+  }
+  await page.setViewportSize({ width: 375, height: 740 });
+  expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(375);
+});
 
 test('two campaigns compared: what changed on top, rates, kinds gained and lost', async ({ page }) => {
   test.skip(!process.env.GRAZE_COMPARE, 'GRAZE_REPORT names a single report');

@@ -18,7 +18,7 @@ export default function make_report() {
   if (!GRAZE) throw new Error('GRAZE: expected the path of the graze binary, found nothing');
   const folder = mkdtempSync(join(tmpdir(), 'graze-page-'));
   const run = (...args: string[]) => execFileSync(GRAZE, args, { cwd: folder, stdio: ['ignore', 'ignore', 'inherit'] });
-  const campaign = (out: string, seed: string, pairs: string, lanes: string) => {
+  const campaign = (out: string, seed: string, pairs: string, lanes: string, ...more: string[]) => {
     run(
       'fuzz',
       '--pairs',
@@ -33,6 +33,7 @@ export default function make_report() {
       'twin',
       '--out',
       out,
+      ...more,
     );
     run('minimize', out, '--executor', 'twin');
     run('tune', 'moller_1997/f32/cpu', '--pairs', '5000', '--strata', 'near_*', '--out', out);
@@ -40,7 +41,8 @@ export default function make_report() {
   };
   campaign('campaign', '1', '900', '*/f32/*,moller_1997/f64/*');
   run('report', 'campaign');
-  campaign('other', '2', '300', '*/f32/cpu,moller_1997/f32/cuda*');
+  const lanes = '*/f32/cpu,moller_1997/f32/cuda*,interval_overlap/f32/x*';
+  campaign('other', '2', '300', lanes, '--toolchains', 'x86-gcc,x87');
   run('report', '--compare', 'campaign', 'other');
   try {
     run('view', 'thesis:1:0', '--out', 'view.html');

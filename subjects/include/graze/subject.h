@@ -14,9 +14,10 @@
  *
  *     GRAZE_SUBJECT(graze_subject) = {.abi = GRAZE_SUBJECT_ABI, .version = "1.2", .f32 = function};
  *
- * Graze asks about each pair twice; the answers must agree. Triangles lie in read-only memory. The function runs in
- * separate processes, several at once, in one thread of each. If it crashes, throws, exits or does not return, it has
- * no verdict on that pair, and a new process continues with the next pair.
+ * Graze asks about each pair twice; the answers must agree, and the call must leave the rounding mode as it was.
+ * Triangles lie in read-only memory. The function runs in separate processes, several at once, in one thread of each.
+ * If it crashes, throws, exits or does not return, it has no verdict on that pair, and a new process continues with the
+ * next pair.
  */
 #ifndef GRAZE_SUBJECT_H
 #define GRAZE_SUBJECT_H

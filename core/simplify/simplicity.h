@@ -8,7 +8,7 @@
 
 #include "core/pair.h"
 
-namespace graze::fuzz {
+namespace graze {
 
 // The first count that differs decides; the smaller one is simpler:
 //   1. different magnitudes other than 0 and 1
@@ -42,4 +42,4 @@ bool simpler_coordinates(const Pair& l, const Pair& r);
 // How many different magnitudes other than 0 and 1 the pair has.
 inline int nontrivial_magnitudes(const Pair& pair) { return count_of(simplicity(pair), 1); }
 
-}  // namespace graze::fuzz
+}  // namespace graze

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sums and products are computed in double and rounded to float32 once. If the result is not exact, the move leads to a
 // nearby pair.
-#include "fuzz/minimise/moves.h"
+#include "core/simplify/moves.h"
 
 #include <algorithm>
 #include <bit>
@@ -10,8 +10,9 @@
 #include <limits>
 
 #include "core/margin/margin.h"
+#include "core/simplify/simplicity.h"
 
-namespace graze::fuzz {
+namespace graze {
 namespace {
 
 using Pairs = std::vector<Pair>;
@@ -294,4 +295,33 @@ void append_moves(const Pair& pair, int kind, Pairs& moved) {
   }
 }
 
-}  // namespace graze::fuzz
+std::vector<Pair> simpler_moves(const Pair& pair, int kind, std::size_t& made) {
+  thread_local std::vector<Pair> moved;
+  moved.clear();
+  append_moves(pair, kind, moved);
+  made += moved.size();
+  const std::uint64_t now = simplicity_counts(pair);
+  struct Simpler {
+    std::uint64_t counts;
+    const Pair* pair;
+  };
+  thread_local std::vector<Simpler> order;
+  order.clear();
+  for (const Pair& m : moved) {
+    const std::uint64_t counts = simplicity_counts(m, now);
+    if (counts < now || (counts == now && simpler_coordinates(m, pair))) order.push_back({counts, &m});
+  }
+  std::sort(order.begin(), order.end(), [](const Simpler& l, const Simpler& r) {
+    return l.counts != r.counts ? l.counts < r.counts : simpler_coordinates(*l.pair, *r.pair);
+  });
+  std::vector<Pair> simpler;
+  simpler.reserve(order.size());
+  for (const Simpler& next : order) {
+    if (simpler.empty() || simpler_coordinates(simpler.back(), *next.pair) ||
+        simpler_coordinates(*next.pair, simpler.back()))
+      simpler.push_back(*next.pair);
+  }
+  return simpler;
+}
+
+}  // namespace graze

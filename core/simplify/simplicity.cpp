@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The minimiser spends most of its time here: for every pair that a move makes, it asks whether it is simpler.
-#include "fuzz/minimise/simplicity.h"
+#include "core/simplify/simplicity.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
 
-namespace graze::fuzz {
+namespace graze {
 namespace {
 
 // Bits of each count. There are at most 18 coordinates of 24 bits, an exponent's distance of 149 each, and 6 vertices.
@@ -94,4 +94,4 @@ bool simpler_coordinates(const Pair& l, const Pair& r) {
   return at != x + kCoordinates && rank(*at) < rank(*other);
 }
 
-}  // namespace graze::fuzz
+}  // namespace graze

@@ -3,11 +3,12 @@
 // minimiser keeps only results that are simpler and fail in the same way.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "core/pair.h"
 
-namespace graze::fuzz {
+namespace graze {
 
 // The moves come in kinds. The number of kinds and their moves, in order:
 //   7   a vertex to the origin (none, then each); all coordinates rounded to a lattice of 1 to 24 bits or not at
@@ -31,4 +32,8 @@ inline constexpr int kMoveKinds = 77;
 // Requires: finite coordinates, 0 <= kind < kMoveKinds.
 void append_moves(const Pair& pair, int kind, std::vector<Pair>& moved);
 
-}  // namespace graze::fuzz
+// The pairs that moves of this kind make and that are simpler than the pair: each once, the simplest first. Adds the
+// number of all pairs made to `made`.   Requires: as append_moves.
+std::vector<Pair> simpler_moves(const Pair& pair, int kind, std::size_t& made);
+
+}  // namespace graze

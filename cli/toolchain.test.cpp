@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze toolchain` on the commands of several compilers, whose flags hold or do not hold.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "cli/run_graze.h"
+
+namespace graze::cli {
+namespace {
+
+struct Case {
+  const char* name;
+  const char* arguments;  // of `graze toolchain`
+  const char* measured;
+  const char* wrong = "";  // what is not as documented: names of canaries; empty: nothing
+  bool needs_fma = false;  // of this machine's processor
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+
+const char* const kUnroundedProducts = "difference dot expression inlined loop statements";
+
+const Case kCases[] = {
+    {"Gcc", "'x86_64-linux-gnu-gcc -O2'", "rounded"},
+    {"GccFma", "'x86_64-linux-gnu-g++ -O2 -march=x86-64-v3'", "contracted", "", true},
+    {"GccFmaOff", "'x86_64-linux-gnu-g++ -O2 -march=x86-64-v3 -ffp-contract=off'", "rounded", "", true},
+    {"GccFmaIsoC", "'x86_64-linux-gnu-gcc -O2 -march=x86-64-v3 -std=c11'", "rounded", "", true},
+    {"GccFast", "'x86_64-linux-gnu-gcc -O2 -ffast-math'", "fast"},
+    {"GccX87", "'x86_64-linux-gnu-g++ -O2 -mfpmath=387'", "excess"},
+    {"GccX87Standard", "'x86_64-linux-gnu-gcc -O2 -mfpmath=387 -fexcess-precision=standard'", "excess"},
+    {"ClangFma", "'clang-14 --target=x86_64-linux-gnu -O2 -march=x86-64-v3'", "contracted", "", true},
+    {"ClangFmaFast", "'clang-14 --target=x86_64-linux-gnu -O2 -march=x86-64-v3 -ffp-contract=fast'", "contracted", "",
+     true},
+    {"Arm64", "'aarch64-linux-gnu-g++ -O2 -static' --run qemu-aarch64", "contracted"},
+    {"Arm64Off", "arm64-gcc-off", "rounded"},
+    {"Arm64Clang", "arm64-clang", "contracted"},
+    {"Riscv64", "riscv64-gcc", "contracted"},
+    {"Ppc64le", "ppc64le-gcc", "contracted"},
+    // Flags that do not hold: GCC and clang flush subnormals although -fno-fast-math follows.
+    {"GccFlushes", "'x86_64-linux-gnu-gcc -Ofast -fno-fast-math'", "fast",
+     "fma subnormal_input subnormal_nearest subnormal_result"},
+    {"ClangFlushes", "'clang-14 --target=x86_64-linux-gnu -Ofast -fno-fast-math'", "fast",
+     "fma subnormal_input subnormal_nearest subnormal_result"},
+    // clang's fast math fuses in spite of a later flag.
+    {"ClangFastOff", "'clang-14 --target=x86_64-linux-gnu -O2 -march=x86-64-v3 -ffast-math -ffp-contract=off'", "fast",
+     kUnroundedProducts, true},
+    // Planted: claims that the flags do not keep.
+    {"ClaimedRounded",
+     "'x86_64-linux-gnu-gcc -O2 -march=x86-64-v3 -ffp-contract=off -ffp-contract=fast' --claims rounded", "contracted",
+     kUnroundedProducts, true},
+    {"X87ClaimedRounded", "'x86_64-linux-gnu-g++ -O2 -mfpmath=387' --claims rounded", "excess",
+     "difference division dot expression inlined loop nearest range range_assigned root statements subnormal_nearest "
+     "sum "
+     "sum_in_loop"},
+    {"X87Stored", "'x86_64-linux-gnu-gcc -O2 -mfpmath=387 -ffloat-store' --claims rounded", "excess",
+     "division nearest root subnormal_nearest"},
+    // Scripts that drop or replace the flag.
+    {"FlagDropped", "'./dropping -O2 -march=x86-64-v3 -ffp-contract=off'", "contracted", kUnroundedProducts, true},
+    {"FlagReplaced", "'./replacing --target=x86_64-linux-gnu -O2 -march=x86-64-v3 -ffp-contract=on'", "contracted",
+     "inlined statements", true},
+};
+
+class ToolchainCommand : public testing::TestWithParam<Case> {
+ protected:
+  ToolchainCommand() {
+    // Compilers that ignore a flag.
+    shell(
+        "printf '%s\\n' '#!/bin/bash' 'exec x86_64-linux-gnu-gcc \"${@/-ffp-contract=off/-O2}\"' > dropping\n"
+        "printf '%s\\n' '#!/bin/bash' 'exec clang-14 \"${@/-ffp-contract=on/-ffp-contract=fast}\"' > replacing\n"
+        "chmod +x dropping replacing");
+  }
+  Shell shell{std::string("toolchain-") + GetParam().name};
+};
+
+// The names of canaries with this word of the documentation.
+std::string names_with(const nlohmann::json& json, const std::string& word) {
+  std::set<std::string> names;
+  for (const auto& result : json["results"]) {
+    if (result.value("documentation", "") == word) names.insert(result["name"]);
+  }
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : " ") + name;
+  return text;
+}
+
+TEST_P(ToolchainCommand, IsMeasured) {
+  const Case& c = GetParam();
+  if (c.needs_fma && shell("grep -qw fma /proc/cpuinfo").status != 0) GTEST_SKIP() << "the processor has no FMA";
+  const Ran ran = shell(std::string("graze toolchain ") + c.arguments + " --json r.json");
+  if (ran.out.empty() && (ran.err.find(": no ") != std::string::npos || ran.err.find("not found") != std::string::npos))
+    GTEST_SKIP() << ran.err;
+  ASSERT_EQ(ran.status, *c.wrong ? 1 : 0) << ran.out << ran.err;
+  const nlohmann::json json = nlohmann::json::parse(contents(shell.folder / "r.json"));
+  EXPECT_EQ(json["measured"], c.measured) << ran.out;
+  EXPECT_EQ(names_with(json, "does not hold"), c.wrong) << ran.out;
+  EXPECT_EQ(json["without_answer"], 0);
+  EXPECT_NE(ran.out.find(std::string("measured:   ") + c.measured), std::string::npos) << ran.out;
+}
+
+INSTANTIATE_TEST_SUITE_P(cli, ToolchainCommand, testing::ValuesIn(kCases),
+                         [](const testing::TestParamInfo<Case>& test) { return test.param.name; });
+
+using Toolchain = CommandTest;
+
+// Emulators compute these by software of their own.
+TEST_F(Toolchain, EmulatorsDivideAndTakeRootsExactly) {
+  int emulated = 0;
+  for (const std::string name : {"arm64-gcc", "riscv64-gcc", "ppc64le-gcc"}) {
+    if (shell("graze toolchain | grep -q '^" + name + " .* yes$'").status != 0) continue;
+    ++emulated;
+    EXPECT_EQ(shell("graze toolchain " + name + " --json " + name + ".json").status, 0) << name;
+    const nlohmann::json json = nlohmann::json::parse(contents(shell.folder / (name + ".json")));
+    for (const auto& result : json["results"]) {
+      const std::string canary = result["name"];
+      if (canary == "division" || canary == "root" || canary == "fma" || canary == "nearest" ||
+          canary.starts_with("subnormal")) {
+        EXPECT_EQ(result["found"], "as written") << name << ' ' << result;
+      }
+    }
+  }
+  if (emulated == 0) GTEST_SKIP() << "no cross compiler with an emulator";
+}
+
+// fmaf() of Debian 12's wasi-libc rounds wrongly near the middle between two numbers. Nothing else of wasm is wrong.
+TEST_F(Toolchain, TheLibrarysOwnFmaIsTested) {
+  if (shell("graze toolchain | grep -q '^wasm .* yes$'").status != 0) GTEST_SKIP() << "no wasm";
+  shell("graze toolchain wasm --json r.json");
+  const nlohmann::json json = nlohmann::json::parse(contents(shell.folder / "r.json"));
+  EXPECT_EQ(json["measured"], "rounded");
+  for (const auto& result : json["results"]) {
+    if (result["name"] == "fma" && result["scalar"] == "f32") continue;
+    EXPECT_EQ(result["documentation"], "holds") << result;
+  }
+}
+
+TEST_F(Toolchain, ListsToolchains) {
+  const Ran ran = shell("graze toolchain");
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.out.find("\nx86-gcc "), std::string::npos) << ran.out;
+  shell("printf '[[toolchain]]\\nname = \"mine\"\\ncxx = \"no-such-c++\"\\nrounding = \"rounded\"\\n' > mine.toml");
+  const std::string list = shell("graze toolchain --toolchains mine.toml").out;
+  EXPECT_NE(list.find("\nmine "), std::string::npos) << list;
+  EXPECT_NE(list.find("no no-such-c++"), std::string::npos) << list;
+  expect_error("graze toolchain mine --toolchains mine.toml", 1, {"mine", "no-such-c++"});
+}
+
+// The fused products of a source, with the command's own flags, and of the published algorithms.
+TEST_F(Toolchain, ListsFusedProducts) {
+  if (shell("command -v x86_64-linux-gnu-g++").status != 0) GTEST_SKIP() << "no x86_64-linux-gnu-g++";
+  if (shell("grep -qw fma /proc/cpuinfo").status != 0) GTEST_SKIP() << "the processor has no FMA";
+  std::ofstream(shell.folder / "mine.cpp") << "bool intersects(const float* a, const float* b) {\n"
+                                              "  const float sum = a[0] * b[1] + a[2];\n"
+                                              "  return sum < b[0];\n}\n";
+  const std::string subject = " --subject mine=./mine.cpp ";
+  Ran ran = shell("graze toolchain x86-gcc-v3 --json r.json" + subject);
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.out.find("\n    mine.cpp:2: madd f32"), ran.out.npos) << ran.out;
+  EXPECT_NE(ran.out.find(": const float sum = a[0] * b[1] + a[2];\n"), ran.out.npos) << ran.out;
+  EXPECT_NE(ran.out.find(" on 1 line, plan "), ran.out.npos) << ran.out;
+  const nlohmann::json plan = nlohmann::json::parse(contents(shell.folder / "r.json"))["plans"][0];
+  EXPECT_EQ(plan["name"], "mine");
+  EXPECT_GT(plan["f32"]["operations"], 0);
+  EXPECT_EQ(plan["f64"]["operations"], 0);
+  EXPECT_EQ(plan["f32"]["lines"][0]["place"], "mine.cpp:2");
+  ran = shell("graze toolchain x86-gcc-v3 --flags=-ffp-contract=off" + subject);
+  EXPECT_NE(ran.out.find("mine/f32  no fused operation"), ran.out.npos) << ran.out;
+  ran = shell("graze toolchain 'x86_64-linux-gnu-g++ -O2 -march=x86-64-v3 -flto'" + subject);
+  EXPECT_NE(ran.out.find("not read: with -flto"), ran.out.npos) << ran.out;
+
+  ran = shell("graze toolchain x86-gcc-v3");
+  EXPECT_NE(ran.out.find("moller_1997/f32 "), ran.out.npos) << ran.out;
+  ran = shell("graze toolchain x87");
+  EXPECT_NE(ran.out.find("in the published algorithms: none\n"), ran.out.npos) << ran.out;
+  ran = shell("graze toolchain 'x86_64-linux-gnu-gcc -O2'");
+  EXPECT_NE(ran.out.find("not read: the toolchain x86_64-linux-gnu-gcc -O2 has no compiler for C++"), ran.out.npos)
+      << ran.out;
+  expect_error("graze toolchain x86-gcc --subject 'mine=cmd:cat'", 2, {"mine", "cmd:cat"});
+  expect_error("graze toolchain --subject mine=./mine.cpp", 2, {"--subject"});
+}
+
+// A script that compiles with contraction and later without it stands for two versions of a compiler.
+TEST_F(Toolchain, ACampaignWhosePlanChangedSaysSo) {
+  if (shell("command -v x86_64-linux-gnu-g++").status != 0) GTEST_SKIP() << "no x86_64-linux-gnu-g++";
+  if (shell("grep -qw fma /proc/cpuinfo").status != 0) GTEST_SKIP() << "the processor has no FMA";
+  const auto write = [&](const std::string& flag) {
+    std::ofstream(shell.folder / "v3++") << "#!/bin/sh\nexec x86_64-linux-gnu-g++ " << flag << " \"$@\"\n";
+  };
+  std::ofstream(shell.folder / "v3.toml")
+      << "[[toolchain]]\nname = \"v3\"\ncxx = \"" << (shell.folder / "v3++").string()
+      << " -O2 -march=x86-64-v3\"\nrounding = \"contracted\"\n";
+  const std::string fuzz =
+      "graze fuzz --toolchains v3.toml --lanes 'moller_1997/f32/cpu,moller_1997/f32/v3' --strata shared_vertex "
+      "--pairs 2000 ";
+  write("");
+  expect_done("chmod +x v3++ && " + fuzz + "--out a > /dev/null && " + fuzz + "--out same > /dev/null");
+  const nlohmann::json recorded = nlohmann::json::parse(
+      contents(shell.folder / "a/summary.json"))["spec"]["subjects"][0]["toolchains"][0]["contraction"];
+  const std::string then = recorded["f32"]["plan"];
+  EXPECT_GT(recorded["f32"]["operations"], 0);
+  Ran ran = shell("graze report --compare a same");
+  EXPECT_EQ(ran.out.find("fuses"), ran.out.npos) << ran.out << ran.err;
+  write("-ffp-contract=off");
+  expect_done(fuzz + "--out b > /dev/null");
+  ran = shell("graze report --compare a b");
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  std::string said;  // without line breaks
+  for (const char c : ran.out) {
+    if (c != '\n' && c != ' ') said += c;
+    if ((c == '\n' || c == ' ') && !said.ends_with(' ')) said += ' ';
+  }
+  EXPECT_NE(said.find("moller_1997/f32 (v3): the compiler fuses other products (plan " + then + " before, "), said.npos)
+      << ran.out;
+  EXPECT_NE(said.find(" after); "), said.npos);
+  const auto report = nlohmann::json::parse(contents(shell.folder / "b/compare.json"));
+  std::uint64_t changed = 0;
+  for (const auto& row : report["compare"]["verdicts"]) {
+    if (row["lane"] == "moller_1997/f32/v3") changed += row["most"].get<std::uint64_t>();
+  }
+  EXPECT_GT(changed, 0u);
+  // The folder holds a campaign of another plan.
+  expect_error(fuzz + "--out a", 2, {"contraction/f32/plan", then});
+}
+
+// AMD's compiler and NVIDIA's fuse the same lines here. hipcc needs no GPU.
+TEST_F(Toolchain, ListsWhatHipFuses) {
+  std::ofstream(shell.folder / "k.cu") << "__device__ bool meets(const float* a, const float* b) {\n"
+                                          "  const float u = a[0] * b[0] + a[1];\n"
+                                          "  return u / a[3] > b[3];\n"
+                                          "}\n";
+  const bool has_hip = shell("command -v hipcc").status == 0;
+  if (has_hip) {
+    const auto run = shell("graze toolchain hip --subject mine=./k.cu:meets --json h.json");
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.out.find("no verdict is claimed"), run.out.npos) << run.out;
+    EXPECT_NE(run.out.find("k.cu:2       1        1       1  const float u"), run.out.npos) << run.out;
+    EXPECT_EQ(run.out.find("k.cu:3"), run.out.npos) << run.out;
+    const auto json = nlohmann::ordered_json::parse(contents(shell.folder / "h.json"));
+    EXPECT_EQ(json.at("fused_with_contract_off"), 0);
+    EXPECT_EQ(json.at("plans").at(0).at("nvidia").at("operations"), 1);
+    std::ofstream(shell.folder / "l.hip") << "__device__ bool meets(const float* a, const float*) {\n"
+                                             "  return __builtin_fmaf(a[0], a[1], a[2]) > 0;\n"
+                                             "}\n";
+    const auto called = shell("graze toolchain hip --subject mine=./l.hip:meets");
+    EXPECT_EQ(called.status, 1) << "a call of fma() stays fused: " << called.out;
+  } else {
+    expect_error("graze toolchain hip", 1, {"hipcc", "install"});
+  }
+  std::ofstream(shell.folder / "m.hip") << "\n";
+  expect_error("graze fuzz --subject mine=./m.hip --pairs 10", 2, {"graze toolchain hip --subject mine="});
+  if (!has_hip) GTEST_SKIP() << "no hipcc";
+}
+
+TEST_F(Toolchain, SaysWhatIsWrong) {
+  expect_error("graze toolchain no-such-compiler", 2, {"no-such-compiler"});
+  expect_error("graze toolchain x86-gc", 2, {"x86-gc", "did you mean 'x86-gcc'?"});
+  expect_error("graze toolchain ''", 2, {"toolchain"});
+  expect_error("graze toolchain x86-gcc --claims slow", 2, {"slow"});
+  expect_error("graze toolchain --claims fast", 2, {"--claims"});
+  if (shell("command -v x86_64-linux-gnu-gcc").status != 0) GTEST_SKIP() << "no x86_64-linux-gnu-gcc";
+  expect_error("graze toolchain 'x86_64-linux-gnu-gcc -no-such-flag'", 1, {"-no-such-flag"});
+  expect_error("graze toolchain 'x86_64-linux-gnu-gcc -O2' --run false", 1, {"exit status 1"});
+  // A program that answers nothing, and one that forges a line.
+  EXPECT_EQ(shell("graze toolchain 'x86_64-linux-gnu-gcc -O2' --run 'true {}' --json r.json").status, 1);
+  EXPECT_EQ(nlohmann::json::parse(contents(shell.folder / "r.json"))["without_answer"], 54);
+  const Ran forged = shell("graze toolchain 'x86_64-linux-gnu-gcc -O2' --run 'echo expression f32 7; {}'");
+  EXPECT_EQ(forged.status, 1);
+  EXPECT_NE(forged.out.find("1 computation without an answer"), std::string::npos) << forged.out;
+}
+
+}  // namespace
+}  // namespace graze::cli

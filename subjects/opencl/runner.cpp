@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+// graze-subject-opencl answers for a subject in OpenCL C, as graze/program.h describes. Graze starts it, not a person:
+//   graze-subject-opencl FILE.cl FUNCTION f32|f64|any MODE [PLATFORM]
+// A person can list the devices:
+//   graze-subject-opencl --platforms
+// FILE.cl defines int FUNCTION(const REAL* a, const REAL* b), where each triangle is nine numbers in private memory. It
+// is compiled once with -DREAL=float -DREAL3=float3 and once with -DREAL=double -DREAL3=double3, and answers for those
+// of the two that compile. A function of float* or double* alone therefore works too. Files are OpenCL C 1.2, without
+// #include of other files.
+// MODE, of the compiler:
+//   default  contracts as it does by default
+//   nofma    #pragma OPENCL FP_CONTRACT OFF, before the source
+//   mad      -cl-mad-enable
+//   fast     -cl-fast-relaxed-math
+// In all modes but `fast`, division and square root are rounded correctly if the device can do this. Subnormal numbers
+// are as on the device. PLATFORM: a part of its name; else the first platform with a GPU, else the first with a device.
+// The environment's GRAZE_OPENCL names the library to load: a loader of drivers, or a driver such as
+// libnvidia-opencl.so.1; else libOpenCL.so.1.
+// Exit status: 1 a call failed; 2 wrong use; 3 no library, or no device; 4 the source does not compile.
+#define GRAZE_PROGRAM_TYPES_ONLY
+#include <fcntl.h>
+#include <graze/program.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "subjects/channel.h"
+#include "subjects/opencl/opencl.h"
+
+namespace graze::subjects {
+namespace {
+
+int print_platforms() {
+  const auto yes_no = [](bool is) { return is ? "yes" : "no"; };
+  for (const Device& device : all_devices()) {
+    const cl_device_fp_config single = device.floating(CL_DEVICE_SINGLE_FP_CONFIG);
+    std::printf(
+        "%s: %s; %s; driver %s; fp64 %s; subnormals %s; FMA %s; division and square root rounded correctly %s\n",
+        name_of(device.platform).c_str(), device.text(CL_DEVICE_NAME).c_str(), device.text(CL_DEVICE_VERSION).c_str(),
+        device.text(CL_DRIVER_VERSION).c_str(), yes_no(device.has_double()), yes_no(single & CL_FP_DENORM),
+        yes_no(single & CL_FP_FMA), yes_no(device.rounds_correctly()));
+  }
+  return 0;
+}
+
+// The subject, and how to compile it.
+struct Subject {
+  std::string file, function, mode, source;
+};
+
+// Source text that names the file in the compiler's messages.
+std::string line_1_of(const std::string& file) {
+  std::string name;
+  for (const char c : file) name += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+  return "#line 1 \"" + name + "\"\n";
+}
+
+// The function is called before it is declared: where it is missing, the call is the error. The declaration is an error
+// if its types are others. In C a call with pointers to another type only gets a warning.
+std::string with_kernel(const Subject& subject, bool in_double) {
+  std::string text;
+  if (in_double) text += "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n";
+  if (subject.mode == "nofma") text += "#pragma OPENCL FP_CONTRACT OFF\n";
+  text += line_1_of(subject.file) + subject.source + '\n' + line_1_of("kernel that calls " + subject.function);
+  return text + R"(
+__kernel void graze_answer(__global const REAL* pairs, __global int* answers, uint count) {
+  const size_t i = get_global_id(0);
+  if (i >= count) return;
+  REAL a[9], b[9];
+  for (int k = 0; k < 9; ++k) {
+    a[k] = pairs[18 * i + k];
+    b[k] = pairs[18 * i + 9 + k];
+  }
+  const int answer = )" +
+         subject.function + R"((a, b);
+  answers[i] = answer < 0 ? -1 : answer > 0;
+}
+int )" + subject.function +
+         "(const REAL* a, const REAL* b);\n";
+}
+
+std::string options(const Subject& subject, const Device& device, bool in_double) {
+  const std::string real = in_double ? "double" : "float";
+  std::string text = "-cl-std=CL1.2 -DREAL=" + real + " -DREAL3=" + real + "3";
+  if (subject.mode == "mad") text += " -cl-mad-enable";
+  if (subject.mode == "fast") return text + " -cl-fast-relaxed-math";
+  return device.rounds_correctly() ? text + " -cl-fp32-correctly-rounded-divide-sqrt" : text;
+}
+
+// The first line of the compiler's output that is about an error; else its first line.
+std::string first_error(const std::string& log) {
+  std::istringstream lines(log);
+  std::string first;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("error") != line.npos) return line;
+    if (first.empty()) first = line;
+  }
+  return first;
+}
+
+// While it exists, nothing is written to standard error: compilers count their errors there.
+class Quiet {
+ public:
+  Quiet() : kept_(dup(2)) {
+    const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (kept_ >= 0 && nowhere >= 0) dup2(nowhere, 2);
+    close(nowhere);
+  }
+  ~Quiet() {
+    dup2(kept_, 2);
+    close(kept_);
+  }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+ private:
+  int kept_;
+};
+
+// The subject on a device.
+class OnDevice {
+ public:
+  OnDevice(const Subject& subject, const Device& device) : subject_(subject), device_(device) {
+    cl_int error = CL_SUCCESS;
+    context_ = cl->clCreateContext(nullptr, 1, &device.id, nullptr, nullptr, &error);
+    check(error, "clCreateContext");
+    queue_ = cl->clCreateCommandQueue(context_, device.id, 0, &error);
+    check(error, "clCreateCommandQueue");
+    pairs_ = cl->clCreateBuffer(context_, CL_MEM_READ_ONLY, kWords * 18 * sizeof(double), nullptr, &error);
+    check(error, "clCreateBuffer");
+    answers_ = cl->clCreateBuffer(context_, CL_MEM_READ_WRITE, kWords * sizeof(cl_int), nullptr, &error);
+    check(error, "clCreateBuffer");
+  }
+
+  bool has(bool in_double) const { return kernels_[in_double].id != nullptr; }
+
+  // Compiles the subject for float or double. Some devices compile when a kernel first runs, so it runs once.
+  // Returns: the first error of the source; empty if there is none.
+  std::string compile(bool in_double) {
+    if (in_double && !device_.has_double()) return device_.text(CL_DEVICE_NAME) + " has no double";
+    const std::string text = with_kernel(subject_, in_double);
+    const char* source = text.c_str();
+    cl_int error = CL_SUCCESS;
+    const cl_program program = cl->clCreateProgramWithSource(context_, 1, &source, nullptr, &error);
+    check(error, "clCreateProgramWithSource");
+    const std::string flags = options(subject_, device_, in_double);
+    {
+      const Quiet quiet;
+      error = cl->clBuildProgram(program, 1, &device_.id, flags.c_str(), nullptr, nullptr);
+    }
+    if (error == CL_BUILD_PROGRAM_FAILURE) return first_error(log_of(program));
+    check(error, "clBuildProgram");
+    Kernel& kernel = kernels_[in_double];
+    kernel.id = cl->clCreateKernel(program, "graze_answer", &error);
+    check(error, "clCreateKernel");
+    check(cl->clGetKernelWorkGroupInfo(kernel.id, device_.id, CL_KERNEL_WORK_GROUP_SIZE, sizeof kernel.group_size,
+                                       &kernel.group_size, nullptr),
+          "clGetKernelWorkGroupInfo");
+    kernel.group_size = std::min<std::size_t>(kernel.group_size, 64);
+    answer(std::vector<double>(18).data(), 1, in_double);
+    return "";
+  }
+
+  // Returns: an answer to each of the pairs.   Requires: has(in_double), 0 < count <= kWords.
+  std::vector<cl_int> answer(const void* pairs, cl_uint count, bool in_double) const {
+    constexpr cl_int kNone = 2;  // stays if the kernel does not run
+    std::vector<cl_int> answers(count, kNone);
+    const Kernel& kernel = kernels_[in_double];
+    const std::size_t bytes = 18 * (in_double ? sizeof(double) : sizeof(float)) * count;
+    const std::size_t items = (count + kernel.group_size - 1) / kernel.group_size * kernel.group_size;
+    write(pairs_, pairs, bytes);
+    write(answers_, answers.data(), count * sizeof(cl_int));
+    check(cl->clSetKernelArg(kernel.id, 0, sizeof pairs_, &pairs_), "clSetKernelArg");
+    check(cl->clSetKernelArg(kernel.id, 1, sizeof answers_, &answers_), "clSetKernelArg");
+    check(cl->clSetKernelArg(kernel.id, 2, sizeof count, &count), "clSetKernelArg");
+    check(cl->clEnqueueNDRangeKernel(queue_, kernel.id, 1, nullptr, &items, &kernel.group_size, 0, nullptr, nullptr),
+          "clEnqueueNDRangeKernel");
+    check(cl->clEnqueueReadBuffer(queue_, answers_, CL_TRUE, 0, count * sizeof(cl_int), answers.data(), 0, nullptr,
+                                  nullptr),
+          "clEnqueueReadBuffer");
+    if (std::any_of(answers.begin(), answers.end(), [](cl_int said) { return said < -1 || said > 1; }))
+      throw Failure(1, "the kernel left a pair without an answer");
+    return answers;
+  }
+
+ private:
+  struct Kernel {
+    cl_kernel id = nullptr;
+    std::size_t group_size = 0;  // always the same, because some devices compile for each size
+  };
+
+  void write(cl_mem to, const void* from, std::size_t bytes) const {
+    check(cl->clEnqueueWriteBuffer(queue_, to, CL_TRUE, 0, bytes, from, 0, nullptr, nullptr), "clEnqueueWriteBuffer");
+  }
+
+  std::string log_of(cl_program program) const {
+    std::size_t size = 0;
+    check(cl->clGetProgramBuildInfo(program, device_.id, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size),
+          "clGetProgramBuildInfo");
+    std::string log(size, '\0');
+    check(cl->clGetProgramBuildInfo(program, device_.id, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr),
+          "clGetProgramBuildInfo");
+    return log.c_str();
+  }
+
+  const Subject& subject_;
+  Device device_;
+  cl_context context_;
+  cl_command_queue queue_;
+  cl_mem pairs_, answers_;
+  Kernel kernels_[2];  // for float and double
+};
+
+void write_all(std::FILE* out, const void* from, std::size_t bytes) {
+  if (std::fwrite(from, 1, bytes, out) != bytes || std::fflush(out) != 0)
+    throw Failure(1, std::string("cannot write answers: ") + std::strerror(errno));
+}
+
+// Answers questions until there are no more.
+void serve(const OnDevice& subject, std::FILE* out) {
+  const graze_hello hello{
+      {'g', 'r', 'a', 'z', 'e', ' ', '1', '\n'}, 1, (subject.has(false) ? 1u : 0u) | (subject.has(true) ? 2u : 0u)};
+  write_all(out, &hello, sizeof hello);
+  graze_question asked;
+  std::vector<std::uint32_t> places(kWords);
+  std::vector<double> pairs(kWords * 18);
+  while (std::fread(&asked, sizeof asked, 1, stdin) == 1) {
+    const bool in_double = asked.is_double;
+    const std::size_t size = 18 * (in_double ? sizeof(double) : sizeof(float));
+    if (asked.count > kWords) throw Failure(1, "a question about too many pairs");
+    if (!subject.has(in_double)) throw Failure(1, "a question about numbers of a type that the subject does not have");
+    if (std::fread(places.data(), sizeof places[0], asked.count, stdin) != asked.count ||
+        std::fread(pairs.data(), size, asked.count, stdin) != asked.count)
+      throw Failure(1, "a question is incomplete");
+    if (asked.count == 0) continue;
+    const std::vector<cl_int> answers = subject.answer(pairs.data(), asked.count, in_double);
+    std::vector<std::uint64_t> words;
+    for (std::size_t i = 0; i < answers.size(); ++i)
+      words.push_back(word_of(asked.nonce, places[i] & 1, places[i] >> 1, static_cast<signed char>(answers[i])));
+    write_all(out, words.data(), words.size() * sizeof words[0]);
+  }
+}
+
+int run(const std::vector<std::string>& arguments) {
+  if (arguments.size() == 1 && arguments[0] == "--platforms") return print_platforms();
+  const auto one_of = [](const std::string& word, std::initializer_list<const char*> words) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  if (arguments.size() < 4 || arguments.size() > 5 || !one_of(arguments[2], {"f32", "f64", "any"}) ||
+      !one_of(arguments[3], {"default", "nofma", "mad", "fast"}))
+    throw Failure(2, "expected FILE.cl FUNCTION f32|f64|any default|nofma|mad|fast [PLATFORM], or --platforms");
+  if (arguments[1].find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") !=
+      std::string::npos)
+    throw Failure(2, "expected the name of a function, found " + arguments[1]);
+  // What drivers and kernels print is no answer.
+  std::FILE* out = fdopen(dup(1), "wb");
+  if (!out || dup2(2, 1) < 0) throw Failure(1, std::string("cannot write answers: ") + std::strerror(errno));
+  Subject subject{arguments[0], arguments[1], arguments[3], ""};
+  std::ifstream file(subject.file);
+  std::getline(file, subject.source, '\0');
+  if (!file.is_open() || file.bad()) throw Failure(1, "cannot read " + subject.file + ": " + std::strerror(errno));
+  OnDevice on_device(subject, chosen_device(arguments.size() == 5 ? arguments[4] : ""));
+  std::string error;
+  for (const bool in_double : {false, true}) {
+    if (arguments[2] == (in_double ? "f32" : "f64")) continue;
+    const std::string first = on_device.compile(in_double);
+    if (first != error && !first.empty()) error += (error.empty() ? "" : "; ") + first;
+  }
+  if (!on_device.has(false) && !on_device.has(true)) throw Failure(4, subject.file + " does not compile: " + error);
+  serve(on_device, out);
+  return 0;
+}
+
+}  // namespace
+}  // namespace graze::subjects
+
+int main(int argc, char** argv) {
+  try {
+    return graze::subjects::run({argv + 1, argv + argc});
+  } catch (const graze::subjects::Failure& failure) {
+    std::fprintf(stderr, "graze-subject-opencl: %s\n", failure.what());
+    return failure.status;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "graze-subject-opencl: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// A program made from a subject for a toolchain (graze/program.h), which answers block by block on its standard output.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "subjects/channel.h"
+#include "subjects/line_protocol.h"
+
+namespace graze::subjects {
+
+class ProgramProtocol {
+ public:
+  // Starts the program in a shell and waits for its greeting.
+  // Throws: std::runtime_error when that does not come within `seconds`, or is none.
+  ProgramProtocol(const std::string& command, double seconds);
+
+  ~ProgramProtocol();  // the program's input ends, and so does the program
+  ProgramProtocol(const ProgramProtocol&) = delete;
+  ProgramProtocol& operator=(const ProgramProtocol&) = delete;
+
+  bool has_f32() const { return has_ & 1; }
+  bool has_f64() const { return has_ & 2; }
+
+  // Asks about the question's pairs, forward and then backward. Writes the answers into memory when all are there; the
+  // supervisor checks them.
+  // Throws: std::runtime_error when the program ends.
+  void ask(const Question& question, const void* pairs, bool in_double, std::uint64_t* words);
+
+ private:
+  // Writes `bytes` and reads `count` bytes at the same time, so that a full pipe causes no deadlock.
+  void exchange(const std::vector<char>& bytes, void* answer, std::size_t count, double seconds);
+
+  Pipes pipes_;
+  std::uint32_t has_ = 0;
+};
+
+}  // namespace graze::subjects

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The published algorithms as sources, so that toolchains can compile them wherever Graze runs.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/lanes/lanes.h"
+
+namespace graze::subjects {
+
+// The function of such a source, of floats and of doubles.
+inline constexpr char kPublishedFunction[] = "graze_published";
+
+// One lane of each published algorithm, in the order of the lane table.
+std::vector<const Lane*> published_algorithms();
+
+// Writes the source of the lane's algorithm into the cache, with the headers that it needs, which this program
+// contains. Returns: the source.   Requires: a lane of a published algorithm.   Throws: std::runtime_error.
+std::filesystem::path published_source(const Lane& lane);
+
+}  // namespace graze::subjects

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contraction as a compiler's assembly shows it: at which lines of the source products are fused into additions.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace graze::subjects {
+
+// A line of the source, with the fused operations that the compiler made of it: "madd f32 x2, msub f64".
+struct FusedLine {
+  std::string file;  // relative to the source's folder, if it lies there
+  int line;
+  std::string operations;
+  int count = 0;          // of them
+  std::string code = {};  // the line's text, if read_code has read it
+  std::string place() const { return file + ':' + std::to_string(line); }
+  friend bool operator==(const FusedLine&, const FusedLine&) = default;
+};
+
+// The fused lines of an assembly with line information (-g1), by file and line. Knows x86-64 (AT&T syntax), ARM64,
+// RISC-V, Power, and AMD's GPUs. folder: of the source.   numbers: "f32" or "f64" for their operations alone.
+std::vector<FusedLine> fused_lines(std::string_view assembly, const std::filesystem::path& folder,
+                                   std::string_view numbers = "");
+
+// Why a plan cannot be read from assembly for this processor, in words; empty if it can. target: as the compiler's
+// -dumpmachine prints it.
+std::string why_not_read(std::string_view target);
+
+// Reads the code of each line, where its file is there.   folder: of the source.
+void read_code(std::vector<FusedLine>& plan, const std::filesystem::path& folder);
+
+// A hash of the lines' code, or numbers where it was not read, and their operations. A line that was only moved leaves
+// it as it is. Of files elsewhere it has the name alone, because machines keep them in different folders.
+std::uint64_t plan_hash(const std::vector<FusedLine>& plan);
+
+// The number of fused operations on all lines.
+int operations_of(const std::vector<FusedLine>& plan);
+
+// A contraction plan in one line: "14 fused operations on 9 lines, plan 3f2a7b1c5d6e7f80".
+std::string plan_in_words(const std::vector<FusedLine>& plan);
+
+// {"plan": "3f2a7b1c5d6e7f80", "operations": 14, "lines": [{"place": "a.h:12", "operations": "madd f32 x2"}, …]}
+nlohmann::ordered_json plan_json(const std::vector<FusedLine>& plan);
+
+// The assembly with each fused operation of that line as a product, which rounds, and a sum. Other lines stay.
+// Returns: nothing where it has an operation that cannot be written so, or is for another processor than x86-64 and
+// ARM64.
+std::optional<std::string> with_rounded_products(std::string_view assembly, const std::filesystem::path& folder,
+                                                 const FusedLine& line);
+
+}  // namespace graze::subjects

@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
+// GRAZE_TEST(Name, function, …), as <graze/gtest.h>, as a test case of doctest.
+#pragma once
+
+#include <doctest/doctest.h>
+#include <graze/test_case.h>

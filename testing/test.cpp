@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <graze/test.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <stdexcept>
+#include <vector>
+
+#include "core/error.h"
+#include "core/lanes/convention.h"
+#include "core/lanes/lanes.h"
+#include "core/relation_of.h"
+#include "core/simplify/moves.h"
+#include "core/simplify/simplicity.h"
+#include "core/text.h"
+#include "strata/pair_source.h"
+
+namespace graze {
+namespace {
+
+constexpr std::size_t kMostCalls = 50'000;  // of the function, to find the smallest pair: a second at 20 us a call
+
+std::vector<strata::PairSource> sources_of(std::string_view names, std::uint64_t seed, std::uint64_t count) {
+  std::vector<std::string> globs;
+  for (std::string_view rest = names; !rest.empty();) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    globs.emplace_back(rest.substr(0, comma));
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  }
+  std::vector<strata::PairSource> sources;
+  try {
+    sources = strata::stratum_sources(seed, count, globs);
+  } catch (const UsageError& error) {
+    throw std::invalid_argument(error.what());
+  }
+  if (sources.empty()) throw std::invalid_argument("strata \"" + printable(names) + "\" leave none");
+  return sources;
+}
+
+struct Tested {
+  const std::function<int(const float*, const float*)>& overlap;
+  unsigned outside;  // kinds of pairs on which either answer is accepted
+
+  Verdict decide(const Pair& pair) const {
+    try {
+      const int answer = overlap(&pair.a[0].x, &pair.b[0].x);
+      return answer < 0 ? Verdict::declined : answer > 0 ? Verdict::intersects : Verdict::disjoint;
+    } catch (...) {
+      return Verdict::crashed;
+    }
+  }
+  bool accepts(Verdict verdict, const Pair& pair, const Relation& relation) const {
+    return verdict == relation.verdict ||
+           (!is_failure(verdict) && verdict != Verdict::declined && is_outside(outside, pair, relation));
+  }
+};
+
+// Shrinks the pair while it keeps its relation, and its verdict stays and is wrong.
+Pair smallest_like(Pair pair, const Tested& tested) {
+  const Relation relation = relation_of(pair);
+  const Verdict verdict = tested.decide(pair);
+  std::size_t calls = 0, moved = 0;
+  const auto alike = [&](const Pair& candidate) {
+    return relation_of(candidate) == relation && !tested.accepts(verdict, candidate, relation) &&
+           ++calls < kMostCalls && tested.decide(candidate) == verdict;
+  };
+  int in_vain = 0;
+  for (int kind = 0; in_vain < kMoveKinds && calls < kMostCalls; kind = (kind + 1) % kMoveKinds) {
+    const std::vector<Pair> simpler = simpler_moves(pair, kind, moved);
+    const auto found = std::find_if(simpler.begin(), simpler.end(), alike);
+    in_vain = found == simpler.end() ? in_vain + 1 : 0;
+    if (found != simpler.end()) pair = *found;
+  }
+  return pair;
+}
+
+// The shortest decimal that is this float32; "5" for 5.0, and "1e30f" for a number that is not whole or large.
+std::string number(float value, bool literal) {
+  char text[32];
+  const std::to_chars_result end = std::to_chars(text, text + sizeof text, value);
+  std::string shortest(text, end.ptr);
+  return literal && shortest.find_first_of(".e") != shortest.npos ? shortest + 'f' : shortest;
+}
+
+std::string numbers(const float* nine, std::string_view between, bool literal) {
+  std::string text;
+  for (int i = 0; i < 9; ++i) text += (i == 0 ? "" : std::string(between)) + number(nine[i], literal);
+  return text;
+}
+
+std::string with_commas(std::uint64_t count) {
+  std::string text = std::to_string(count);
+  for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, ",");
+  return text;
+}
+
+std::string percent(std::uint64_t count, std::uint64_t of) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g %%", 100.0 * static_cast<double>(count) / static_cast<double>(of));
+  return text;
+}
+
+std::string in_words(Verdict verdict, const Relation& relation) {
+  const std::string said = verdict == Verdict::crashed ? "it throws" : "it says " + std::string(name(verdict));
+  if (!relation.intersects()) return said + ", but the triangles are disjoint";
+  return said + ", but the triangles meet in " + (relation.contact == Contact::area ? "an " : "a ") +
+         std::string(name(relation.contact));
+}
+
+struct Row {
+  std::string stratum;
+  std::uint64_t pairs;
+  Counts counts;
+};
+
+std::string counts_in_words(const Counts& counts) {
+  std::string text;
+  const auto add = [&](std::uint64_t count, const char* what) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + with_commas(count) + what;
+  };
+  add(counts.false_positive, " false positives");
+  add(counts.false_negative, " false negatives");
+  add(counts.crashed, " exceptions");
+  return text;
+}
+
+std::string table(const std::vector<Row>& rows) {
+  std::string text;
+  for (const Row& row : rows) {
+    if (row.counts.wrong() == 0) continue;
+    char line[80];
+    std::snprintf(line, sizeof line, "  %-20s %9s of %9s\n", row.stratum.c_str(),
+                  with_commas(row.counts.wrong()).c_str(), with_commas(row.pairs).c_str());
+    text += line;
+  }
+  return text;
+}
+
+std::string pair_in_words(std::string_view name, const Pair& pair, const Tested& tested) {
+  const float *a = &pair.a[0].x, *b = &pair.b[0].x;
+  return "The smallest wrong pair that was found: " + in_words(tested.decide(pair), relation_of(pair)) +
+         ".\n  const float a[9] = {" + numbers(a, ", ", true) + "},\n              b[9] = {" + numbers(b, ", ", true) +
+         "};\nWhy: echo '" + numbers(a, " ", false) + "  " + numbers(b, " ", false) +
+         "' > wrong.pairs; graze explain wrong.pairs --subject own=YOUR_FILE.cpp:" + std::string(name) + "\n";
+}
+
+// Replaces the number by the environment's, if there is one.   Throws: std::invalid_argument.
+void take_from_environment(const char* variable, std::uint64_t& number) {
+  const char* text = std::getenv(variable);
+  if (!text) return;
+  const std::optional<std::uint64_t> wanted = parse_whole(text);
+  if (!wanted) throw std::invalid_argument(std::string(variable) + ": '" + printable(text) + "' is no whole number");
+  number = *wanted;
+}
+
+TestResult tested_with(std::string_view name, const Tested& tested, const TestOptions& options) {
+  TestResult result;
+  std::vector<Row> rows;
+  std::optional<std::pair<Pair, Simplicity>> simplest;
+  for (const strata::PairSource& source : sources_of(options.strata, options.seed, options.pairs)) {
+    Row row{source.id, source.pairs, {}};
+    for (std::uint64_t i = 0; i < source.pairs; ++i) {
+      const Pair pair = source.pair(i);
+      const Verdict verdict = tested.decide(pair);
+      const Relation relation = relation_of(pair);
+      if (verdict == relation.verdict) continue;
+      if (tested.accepts(verdict, pair, relation)) {
+        ++row.counts.by_convention;
+        continue;
+      }
+      ++row.counts.of(verdict);
+      if (verdict == Verdict::declined) continue;
+      if (Simplicity how = simplicity(pair); !simplest || how < simplest->second) simplest = {pair, how};
+    }
+    result.pairs += row.pairs;
+    result.counts += row.counts;
+    rows.push_back(std::move(row));
+  }
+  const std::uint64_t wrong = result.counts.wrong();
+  if (result.pairs == 0 || result.counts.declined == result.pairs) {
+    result.message = std::string(name) + (result.pairs == 0 ? ": no pair was asked for\n" : " declines every pair\n");
+    return result;
+  }
+  result.passed = static_cast<double>(wrong) <= options.max_wrong * static_cast<double>(result.pairs);
+  if (result.passed) return result;
+  result.smallest = smallest_like(simplest->first, tested);
+  result.message = std::string(name) + " is wrong on " + with_commas(wrong) + " of " + with_commas(result.pairs) +
+                   " pairs (" + percent(wrong, result.pairs) + "): " + counts_in_words(result.counts) + ".\n" +
+                   table(rows) + pair_in_words(name, *result.smallest, tested);
+  return result;
+}
+
+}  // namespace
+
+void for_each_pair(std::string_view strata, std::uint64_t seed, std::uint64_t count,
+                   const std::function<void(const Pair&)>& f) {
+  for (const strata::PairSource& source : sources_of(strata, seed, count)) {
+    for (std::uint64_t i = 0; i < source.pairs; ++i) f(source.pair(i));
+  }
+}
+
+Relation truth(const Pair& pair) {
+  if (!is_finite(pair)) return {Verdict::declined, Contact::unknown, 0, {}};
+  return relation_of(pair);
+}
+
+TestResult test_overlap(std::string_view name, const std::function<int(const float*, const float*)>& overlap,
+                        const TestOptions& options) {
+  TestOptions used = options;
+  TestResult result;
+  try {
+    take_from_environment("GRAZE_PAIRS", used.pairs);
+    take_from_environment("GRAZE_SEED", used.seed);
+    if (!(used.max_wrong >= 0 && used.max_wrong <= 1)) throw std::invalid_argument("max_wrong is not from 0 to 1");
+    const unsigned outside =
+        (used.touching == either ? kOutsideTouching : 0u) | (used.coplanar == either ? kOutsideCoplanar : 0u) |
+        (used.degenerate == either ? kOutsideDegenerate : 0u) | (used.shared == either ? kOutsideShared : 0u);
+    return tested_with(name, {overlap, outside}, used);
+  } catch (const std::invalid_argument& error) {
+    result.message = std::string(error.what()) + "\n";
+  }
+  return result;
+}
+
+}  // namespace graze

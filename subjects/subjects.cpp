@@ -458,7 +458,7 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded,
       entry.opened.code = hash_of_builds(built_files);
       entry.opened.made = how_made(wish, built_files);
     }
-    if (wish.kind == "command") {
+    if (wish.kind == "command" || description.describes_itself) {  // which may depend on more than its files
       entry.opened.code.hash = fnv1a(fmt::format("{}\n{}\n{}\n{}", description.version, description.source,
                                                  description.convention, description.outside),
                                      entry.opened.code.hash);

@@ -868,6 +868,31 @@ TEST_F(Subjects, AProgramThatThePathFindsEarlierMeanwhileIsRefused) {
   setenv("PATH", path.c_str(), 1);
 }
 
+// Otherwise shards of two versions would merge.
+TEST_F(Subjects, TheHashOfALibraryIsOfWhatItSaysOfItselfToo) {
+  const fs::path code = write("versions.cpp", std::string(R"(
+#include <graze/subject.h>
+#include <stdlib.h>
+static int decide(const float a[9], const float b[9]) { return a[0] < b[0]; }
+GRAZE_SUBJECT(graze_subject) = {GRAZE_SUBJECT_ABI, 0, getenv("VERSION_OF_TEST"), nullptr, nullptr, decide, nullptr, nullptr, nullptr};
+)"));
+  const fs::path library = folder / "libversions.so";
+  ASSERT_EQ(std::system(("c++ -std=c++20 -shared -fPIC -I" GRAZE_SOURCE_DIR "/subjects/include " + code.string() +
+                         " -o " + library.string())
+                            .c_str()),
+            0);
+  const auto hash = [&](const std::string& name, const char* version) {
+    setenv("VERSION_OF_TEST", version, 1);
+    open(parse_subject(name + '=' + library.string()));
+    unsetenv("VERSION_OF_TEST");
+    EXPECT_EQ(opened(name)->description.version, version);
+    return opened(name)->code.hash;
+  };
+  const std::uint64_t one = hash("version_one", "1");
+  EXPECT_EQ(hash("version_one_too", "1"), one);
+  EXPECT_NE(hash("version_two", "2"), one);
+}
+
 TEST_F(Subjects, TheHashOfACommandIsOfItsProgramAndFiles) {
   const fs::path file = write("with space.txt", "one");
   const auto hash = [&](const std::string& command) { return hash_of_command(command).hash; };

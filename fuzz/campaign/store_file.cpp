@@ -134,6 +134,7 @@ std::string recorded_text(SQLite::Database& database) {
   const std::string text = query.getColumn(0).getString();
   if (query.getColumn(1).getInt64() != static_cast<std::int64_t>(fnv1a(text)))
     throw Damaged("the record of its campaign does not match its checksum");
+  if (query.executeStep()) throw Damaged("it has records of two campaigns");
   return text;
 }
 

@@ -175,7 +175,9 @@ test('i and c name every triangle when they can be read, and the nearest otherwi
     await expect(names).toHaveCount(0);
   }
   await page.keyboard.press('i');
-  const named = await names.filter({ hasText: /^\d+$/ }).allTextContents();
+  const numbered = names.filter({ hasText: /^\d+$/ });
+  await expect(numbered).toHaveCount(30);
+  const named = await numbered.allTextContents();
   await page.locator('button', { hasText: 'Take a hit' }).click();
   await expect(page.locator('h1')).toHaveText(/^thesis:1:\d+$/);
   expect(named).toContain((await page.locator('h1').textContent())!.replace('thesis:1:', ''));

@@ -342,9 +342,11 @@ Built build_source(const fs::path& source, const std::string& function, const Re
                    : fmt::format("'{} --version' ended with exit status {}", compiler, status)));
   // The same compiler version may use other parts from another machine's PATH, and the compiler may be a script.
   identity += shell_output(
-      fmt::format("for part in as ld {1}; do file=$(command -v \"$({0} -print-prog-name=$part 2>/dev/null)\") && "
-                  "cksum < \"$file\"; done; cksum < \"$(command -v {2})\"",
-                  compiler, c ? "cc1" : "cc1plus", compiler.substr(0, compiler.find(' '))),
+      // By a file: a pipe would also wait for processes that the compiler leaves behind.
+      fmt::format("for part in as ld {1}; do {0} -print-prog-name=$part > {3} 2>/dev/null; read -r name < {3}; "
+                  "file=$(command -v \"$name\") && cksum < \"$file\"; done; cksum < \"$(command -v {2})\"",
+                  compiler, c ? "cc1" : "cc1plus", compiler.substr(0, compiler.find(' ')),
+                  shell_word((scratch.path() / "part").string())),
       scratch.path(), status);
   // Included files may change too, so the hash is of the preprocessor's output.
   const auto [command, expected] = wrapped(source, function, recipe, flags, scratch.path());

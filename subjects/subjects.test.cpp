@@ -736,6 +736,8 @@ TEST_F(Subjects, TheCompilersPartsAndScriptsAreInTheHash) {
   EXPECT_TRUE(hashes.insert(hash()).second);
   tool("my_cc", "exec cc -funsigned-char");
   EXPECT_TRUE(hashes.insert(hash()).second);
+  tool("my_cc", "sleep 100000 &\nexec cc");  // what it leaves behind is not waited for
+  EXPECT_TRUE(hashes.insert(hash()).second);
   unsetenv("CC");
   EXPECT_EQ(hash(), plain);
 }

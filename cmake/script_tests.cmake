@@ -11,6 +11,9 @@ set_tests_properties(scripts.Format PROPERTIES SKIP_RETURN_CODE 77)
 add_test(NAME scripts.test.format COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/format.test.py ${CMAKE_BINARY_DIR})
 set_tests_properties(scripts.test.format PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped")
 add_test(NAME scripts.AuditExplanations COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/audit_explanations.test.py $<TARGET_FILE:graze>)
+# Without the viewer, the test of the web site is skipped.
+add_test(NAME scripts.test.results COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/results.test.py $<TARGET_FILE:graze>)
+set_tests_properties(scripts.test.results PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped")
 # A minute on an idle machine; by hand for an hour: scripts/torture --minutes 60. The seed changes with each commit, so
 # ten commits kill campaigns and minimisations a hundred times, at different moments.
 add_test(NAME scripts.Torture COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/torture --rounds 2 --kills 10 --seed commits --graze $<TARGET_FILE:graze>)

@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """scripts/findings accepts only a page that shows its program's output. Every page of docs/findings has all parts."""
+import importlib.machinery
+import importlib.util
+import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 SCRIPT = pathlib.Path(__file__).with_name("findings")
 PAGES = SCRIPT.parent.parent / "docs/findings"
@@ -22,13 +26,54 @@ int main() {{ std::puts("{prints}"); }}
 ```
 """
 
+JS_PAGE = """**Packages:** `nodejs npm`
+**npm:** `{npm}`
+
+```js
+// node stub.mjs
+the program
+```
+
+```text
+{says}
+```
+"""
+# Stand-ins: npm notes what it installs, or prints a setting; node prints what npm has installed, and its program.
+NPM = """case $1 in
+  config) echo "the $3 of npm" ;;
+  install) shift; case "$*" in *missing*) echo "no such package"; exit 1 ;; esac; mkdir node_modules && echo "$@" > node_modules/installed ;;
+esac
+"""
+NODE = 'cat node_modules/installed; tail -n +2 "$1"\n'
+
+
+def loaded():
+    loader = importlib.machinery.SourceFileLoader("findings", str(SCRIPT))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("findings", loader))
+    loader.exec_module(module)
+    return module
+
 
 class Findings(unittest.TestCase):
-    def checked(self, text):
+    def checked(self, text, programs={}):
         with tempfile.TemporaryDirectory() as folder:
             page = pathlib.Path(folder, "stub.md")
             page.write_text(text, encoding="utf-8")
-            return subprocess.run([sys.executable, SCRIPT, "--here", page], capture_output=True, text=True, check=False)
+            path = self.path_with(folder, programs)
+            return subprocess.run(
+                [sys.executable, SCRIPT, "--here", page],
+                capture_output=True,
+                text=True,
+                check=False,
+                env={**os.environ, "PATH": path},
+            )
+
+    def path_with(self, folder, programs):
+        for name, text in programs.items():
+            program = pathlib.Path(folder, name)
+            program.write_text("#!/bin/sh\n" + text, encoding="utf-8")
+            program.chmod(0o755)
+        return f"{folder}:{os.environ['PATH']}"
 
     def test_a_page_is_held_to_what_it_says(self):
         right = self.checked(PAGE.format(prints="1", says="1"))
@@ -49,6 +94,35 @@ class Findings(unittest.TestCase):
             self.assertEqual(refused.returncode, 1)
             self.assertIn("has 0 times", refused.stderr)
 
+    def test_a_javascript_page_gets_its_npm_packages(self):
+        stubs = {"npm": NPM, "node": NODE}
+        npm = "some@1.2.3 @scope/other@4.5.6"
+        says = f"--no-save --no-audit --no-fund {npm}\nthe program"
+        right = self.checked(JS_PAGE.format(npm=npm, says=says), stubs)
+        self.assertEqual(
+            (right.returncode, right.stdout),
+            (0, f"as said  stub, with nodejs npm {npm}\n1 of 1 programs print what their pages say\n"),
+        )
+        self.assertEqual(self.checked(JS_PAGE.format(npm=npm, says="another"), stubs).returncode, 1)
+        missing = self.checked(JS_PAGE.format(npm="missing@1.2.3", says=says), stubs)
+        self.assertEqual(missing.returncode, 1)
+        self.assertIn("no such package", missing.stderr)
+        self.assertIn("nothing: it was not run", missing.stdout)
+
+    def test_npm_packages_without_an_exact_version_are_refused(self):
+        for npm in ("some", "some@latest", "some@^1.2.3", "some@1.2"):
+            refused = self.checked(JS_PAGE.format(npm=npm, says=""))
+            self.assertEqual(refused.returncode, 1)
+            self.assertIn(f"names '{npm}' for npm", refused.stderr)
+
+    def test_the_fresh_system_gets_the_registry_of_this_machine(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = self.path_with(folder, {"npm": NPM})
+            with unittest.mock.patch.dict(os.environ, PATH=path):
+                self.assertEqual(loaded().registry(), "export npm_config_registry='the registry of npm'\n")
+        with unittest.mock.patch.dict(os.environ, PATH=""):
+            self.assertEqual(loaded().registry(), "")
+
     def test_every_page_has_its_parts(self):
         pages = list(PAGES.glob("*.md"))
         self.assertTrue(pages)
@@ -60,11 +134,14 @@ class Findings(unittest.TestCase):
                 "**Expected:**",
                 "**Found:**",
                 "**Version:**",
-                "**Packages:** `g++ ",
+                "**Packages:** `",
                 "**Cause:**",
-                "```cpp\n// g++",
+                "**How often:**",
             ):
                 self.assertIn(part, text, page.name)
+            self.assertRegex(
+                text, rf"```cpp\n// g\+\+ -O2 {page.stem}\.cpp |```js\n// node {page.stem}\.mjs\n", page.name
+            )
 
 
 if __name__ == "__main__":

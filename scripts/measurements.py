@@ -13,6 +13,10 @@ RECORDS, PAGE = DOCS / "measurements", DOCS / "measurements.md"
 TOPICS = (
     "agreement",
     "discrepancy",
+    "hosts_2012",
+    "toolchains",
+    "campaign",
+    "league",
     "exact",
     "gpu_engine",
     "cpu_engine",

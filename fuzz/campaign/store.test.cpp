@@ -111,7 +111,8 @@ TEST_F(StoreTest, EditsAreFoundOutAndWhatChecksIsKept) {
         Edit{"UPDATE batch SET counts = zeroblob(9)", 0}, Edit{"UPDATE batch SET counts = 7 WHERE id = 7", 6},
         Edit{"INSERT INTO batch SELECT 8, source, first, pairs, counts, checksum FROM batch WHERE id = 3", 7},
         Edit{"UPDATE campaign SET text = replace(text, 'seed', 'sead')", 7}, Edit{"DELETE FROM campaign", 7},
-        Edit{"UPDATE campaign SET checksum = 1", 7}, Edit{"INSERT INTO campaign SELECT * FROM campaign", 7}, Edit{"DROP TABLE campaign", 7}, Edit{"DROP TABLE batch", 0},
+        Edit{"UPDATE campaign SET checksum = 1", 7}, Edit{"INSERT INTO campaign SELECT * FROM campaign", 7},
+        Edit{"DROP TABLE campaign", 7}, Edit{"DROP TABLE batch", 0},
         Edit{"DELETE FROM campaign; DELETE FROM batch", 0}}) {
     write_whole(file(c), bytes);
     SQLite::Database(file(c).string(), SQLite::OPEN_READWRITE).exec(sql);

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers for docs/results, from the records in docs/measurements. Each text that this module returns for a number
+carries marks around it, so that a number without a record is visible (`unbacked`)."""
+import decimal
+import math
+import re
+
+import measurements
+from verdicts_apart import wilson
+
+BEGIN, END = "\x02", "\x03"
+# Digits and words that are names, definitions or the confidence of every interval, and no measured numbers.
+NAMES = re.compile(
+    r"float(32|64)|2012|ARM64|x86-64|x87|95 %|H[12]00|Debian 12|C\+\+|2\^12 ulps|ulps?\b|3-D|GTX 590|8800 GT"
+    r"|one rounding|one core|one pair|moller_1997|guigue_devillers_2003|Open3D|3d"
+)
+NUMBER = re.compile(
+    r"[0-9]+|\b(one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|fifteen|half|third|quarter|twice)\b"
+)
+
+
+class Unsupported(Exception):
+    """The records no longer support a sentence."""
+
+
+class Records:
+    """The newest record of each metric. `used` has those that were asked for, `values` all values that were. In a test,
+    `changed` has other values, by topic, metric and key."""
+
+    def __init__(self, folder=measurements.RECORDS):
+        machines, topics = measurements.read(folder)
+        self.found, self.used, self.values, self.changed = {}, {}, {}, {}
+        for name, topic in topics.items():
+            for record in measurements.current(measurements.records(name, topic, machines)):
+                self.found[(name, record["metric"])] = record
+
+    def record(self, topic, metric):
+        if (topic, metric) not in self.found:
+            raise Unsupported(f"docs/measurements/{topic}.toml has no record of {metric!r}")
+        return self.used.setdefault((topic, metric), self.found[(topic, metric)])
+
+    def __call__(self, topic, metric, key="value"):
+        value = self.values[(topic, metric, key)] = self.record(topic, metric)[key]
+        return self.changed.get((topic, metric, key), value)
+
+
+def require(truth, sentence):
+    if not truth:
+        raise Unsupported(f"the records do not support: {sentence}")
+
+
+def backed(text):
+    return f"{BEGIN}{text}{END}"
+
+
+def plain(text):
+    return text.replace(BEGIN, "").replace(END, "")
+
+
+def unbacked(text):
+    """Returns: the numbers of a marked text that no record backs; code and the targets of links do not count."""
+    text = re.sub(f"{BEGIN}[^{END}]*{END}", " ", text)
+    text = re.sub(r"`[^`]*`|\]\([^)]*\)", " ", text)
+    return [found.group() for found in NUMBER.finditer(NAMES.sub(" ", text))]
+
+
+def digits(x, n=3, towards=None):
+    """x with n significant digits; towards: math.floor or math.ceil for a bound, else the nearest."""
+    if x == 0:
+        return "0"
+    scale = n - 1 - math.floor(math.log10(abs(x)))
+    scaled = x * 10**scale
+    rounded = towards(scaled - 1e-9 if towards is math.ceil else scaled + 1e-9) if towards else round(scaled)
+    return f"{rounded / 10**scale:,.{max(scale, 0)}f}"
+
+
+def count(x):
+    """A number as it stands in its record."""
+    return backed(measurements.text(x))
+
+
+WORDS = "no one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen".split()
+
+
+def word(x):
+    return backed(WORDS[x] if x < len(WORDS) else f"{x:,}")
+
+
+def one_in(x, of=1):
+    """x of so many as "1 in 3,270"."""
+    return backed(f"1 in {digits(float(of) / float(x))}")
+
+
+def times(x, towards=None):
+    """A factor, with two digits if it is a bound, else three."""
+    return backed(f"{digits(float(x), 2 if towards else 3, towards)} times")
+
+
+def one_pair_in(x, what="pair "):
+    """A number of pairs for one, as it stands in its record."""
+    return backed(f"1 {what}in {x:,}")
+
+
+def one_in_interval(x, of):
+    """The 95 % interval of x of so many, rounded outward."""
+    low, high = wilson(x, of)
+    return backed(f"1 in {digits(1 / low, towards=math.ceil)} to 1 in {digits(1 / high, towards=math.floor)}")
+
+
+def at_most_one_in(of):
+    """The 95 % bound of 0 of so many, rounded outward."""
+    return backed(f"1 in {digits(1 / wilson(0, of)[1], towards=math.floor)}")
+
+
+def percent(x, of=100, n=3, towards=None):
+    return backed(f"{digits(100 * float(x) / float(of), n, towards)} %")
+
+
+def percent_interval(x, of):
+    low, high = (100 * share for share in wilson(x, of))
+    return backed(f"{digits(low, towards=math.floor)} % to {digits(high, towards=math.ceil)} %")
+
+
+def at_most_percent(of):
+    return backed(f"{digits(100 * wilson(0, of)[1], 2, math.ceil)} %")
+
+
+def within_points(*shares):
+    """The widest half of the 95 % intervals of (x, of), in percentage points, rounded outward."""
+    halves = [(high - low) / 2 for low, high in (wilson(x, of) for x, of in shares)]
+    return backed(f"{digits(100 * max(halves), 1, math.ceil)} percentage points")
+
+
+def per_million(x, of):
+    return backed(digits(1e6 * float(x) / float(of)))
+
+
+def number(x):
+    return float(x) if isinstance(x, decimal.Decimal) else x

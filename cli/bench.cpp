@@ -17,6 +17,7 @@
 #include "cli/screen.h"
 #include "core/error.h"
 #include "core/exact_blocks/decide.h"
+#include "core/stop.h"
 #include "fuzz/campaign/campaign.h"
 #include "query/question.h"
 #include "reports/terminal.h"
@@ -30,6 +31,7 @@ struct Options {
   std::vector<std::string> sizes = {"10000", "100000", "1000000", "5000000", "10000000", "20000000"};
   LaneOptions lanes;  // without patterns: common ones
   std::string mesh, plot;
+  std::vector<std::string> between;
   bool json = false;
 };
 
@@ -52,6 +54,7 @@ nlohmann::ordered_json json_of(const Bench& bench) {
                                    {"lane", row.lane},       {"executor", row.executor},   {"data", row.data},
                                    {"seconds", row.seconds}, {"per_second", row.rate()},   {"hits", row.hits}};
     if (row.build_seconds > 0) line["build_seconds"] = row.build_seconds;
+    if (row.processor_seconds > 0) line["processor_seconds"] = row.processor_seconds;
     if (row.mismatches) line["mismatches"] = *row.mismatches;
     rows.push_back(std::move(line));
   }
@@ -150,16 +153,19 @@ void bench(const Options& options, int& status) {
     std::fflush(stdout);
   };
   Bench result;
+  const auto told = [&](const Bench& bench) {
+    const BenchRow& row = bench.rows.back();
+    if (row.group > printed) print_table(bench);
+    if (on_terminal)
+      fmt::print(stderr, "\r{} triangles, {}, {}, {}\033[K", reports::grouped(row.triangles), row.lane, row.executor,
+                 row.data);
+    return !interrupted;
+  };
   try {
-    result = measure(wanted, [&](const Bench& bench) {
-      const BenchRow& row = bench.rows.back();
-      if (row.group > printed) print_table(bench);
-      if (on_terminal)
-        fmt::print(stderr, "\r{} triangles, {}, {}, {}\033[K", reports::grouped(row.triangles), row.lane, row.executor,
-                   row.data);
-      return !interrupted;
-    });
+    result = measure(wanted, told);
+    if (!options.between.empty()) measure_between(options.between, result, told);
     print_table(result);
+  } catch (const Stopped&) {
   } catch (const std::runtime_error&) {
     if (!interrupted) throw;
   }
@@ -181,7 +187,7 @@ void bench(const Options& options, int& status) {
                reports::wrapped("Times of your own code include the exchange with its process, which asks each pair "
                                 "twice; `graze pareto` measures the code alone, of host lanes.",
                                 output_screen().columns));
-  if (!result.machine.devices.empty()) {
+  if (!result.machine.devices.empty() && !options.sizes.empty()) {
     fmt::print("crossover: {}\n", result.crossover == 0
                                       ? "none; with copies all cores are faster"
                                       : fmt::format("with copies one GPU is faster than all cores from {} triangles on",
@@ -206,6 +212,13 @@ void add_bench(CLI::App& app, int& status) {
                    "Mesh to test as well: all its triangles against the middle one of the file")
       ->check(not_empty())
       ->option_text("FILE");
+  command
+      ->add_option("--between", options->between,
+                   "Two meshes to test against each other, exactly and by CGAL's do_intersect; without --triangles "
+                   "nothing else is timed")
+      ->expected(2)
+      ->check(not_empty())
+      ->option_text("MESH MESH");
   add_globs(*command, "--lanes", options->lanes.globs,
             "Patterns of the lanes to time besides the exact one: host lanes on cores, CUDA lanes on GPUs, or by twins "
             "without one")
@@ -215,7 +228,10 @@ void add_bench(CLI::App& app, int& status) {
       ->check(not_empty())
       ->option_text("FILE.svg");
   command->add_flag("--json", options->json, "Print one JSON object");
-  command->callback([options, &status] { bench(*options, status); });
+  command->callback([options, &status, command] {
+    if (!options->between.empty() && command->count("--triangles") == 0) options->sizes.clear();
+    bench(*options, status);
+  });
 }
 
 }  // namespace graze::cli

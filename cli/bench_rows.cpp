@@ -122,7 +122,7 @@ class Measuring {
   // The lane's verdicts are written to `bytes` or, if `exact` is given, compared with it.
   void by_executors(const Array& array, const graze_triangles& host, const std::string& mode, const std::string& lane,
                     std::vector<std::uint8_t>& bytes, const std::vector<std::uint8_t>* exact) {
-    BenchRow row{group_, array.name, host.count, "", "host", mode, lane, 0, 0, 0, {}};
+    BenchRow row{group_, array.name, host.count, "", "host", mode, lane, 0, 0, 0, {}, 0};
     graze_query query = query::query_of(array.reference, host);
     query.mode = mode == "any" ? GRAZE_ANY : GRAZE_ALL;
     const bool by_twin = is_cuda(lane) && devices_ == 0;
@@ -201,7 +201,7 @@ class Measuring {
   template <class Tree>
   void by_tree(const Array& array, const char* name) {
     std::optional<Tree> tree;
-    BenchRow row{group_, array.name, array.triangles.size(), "one core", "host", "all", name, 1e9, 0, 0, {}};
+    BenchRow row{group_, array.name, array.triangles.size(), "one core", "host", "all", name, 1e9, 0, 0, {}, 0};
     row.build_seconds = seconds_of([&] { tree.emplace(array.triangles); });
     for (int k = 0; k < kTimes; ++k)
       row.seconds = std::min(row.seconds, seconds_of([&] { row.hits = tree->count(array.reference); }));

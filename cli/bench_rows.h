@@ -29,11 +29,12 @@ struct BenchRow {
   std::uint64_t triangles;
   std::string executor;               // "one core", "all cores", "one GPU", "2 GPUs"; "one core, twin"
   std::string data;                   // "host", "resident"; "resident, split": in launches of an eighth of the time
-  std::string mode;                   // "all", "any"
-  std::string lane;                   // "exact"; "CGAL AABB tree"
+  std::string mode;                   // "all", "any"; "between" of two meshes
+  std::string lane;                   // "exact"; "CGAL AABB tree"; "boxes alone"
   double seconds, build_seconds = 0;  // of building the tree
   std::uint64_t hits;
   std::optional<std::uint64_t> mismatches;  // triangles on which this lane differs from the exact one
+  double processor_seconds = 0;             // of all threads; measured only between two meshes
 
   double rate() const { return static_cast<double>(triangles) / seconds; }  // triangles a second
   std::string by() const { return data == "host" ? executor : executor + ", " + data; }
@@ -59,6 +60,11 @@ struct Bench {
 // Calls `told` with the results so far after each row; `told` returns false to stop.
 // Throws: std::runtime_error if a measurement fails.
 Bench measure(const BenchOptions& options, const std::function<bool(const Bench&)>& told);
+
+// Adds the rows of two meshes against each other. `told` as above.
+// Throws: std::runtime_error for a mesh that cannot be read, and as `measure`; Stopped.
+void measure_between(const std::vector<std::string>& files, Bench& bench,
+                     const std::function<bool(const Bench&)>& told);
 
 // Returns an SVG of 900 x 420: triangles per second on the thesis arrays, against the array's size, by the exact lane
 // and by the thesis's own algorithm. Both axes are logarithmic; each lane has a line for each executor. Twins have

@@ -15,9 +15,10 @@
 #include "backends/backends.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/mesh_pairs.h"
 #include "cli/progress.h"
 #include "cli/query_input.h"
-#include "cli/query_self.h"
+#include "cli/query_meshes.h"
 #include "cli/results.h"
 #include "cli/screen.h"
 #include "core/error.h"
@@ -40,10 +41,10 @@ const std::vector<std::string> kExecutors = {"auto", "one-core", "all-cores", "o
 struct QueryOptions {
   std::vector<std::string> files;
   std::string self;
-  bool any = false, all = false, json = false;
+  bool between = false, any = false, all = false, json = false;
   LaneOptions lanes;
   std::vector<std::string> executors;
-  std::string obj, pairs, mismatches;
+  std::string csv, obj, pairs, mismatches;
 };
 
 // A lane, an executor, and their verdicts.
@@ -103,14 +104,17 @@ void write_pairs(const std::string& file, const std::vector<corpus::Entry>& entr
 void write_hits(const QueryOptions& options, const Run& run, const std::vector<query::Triangle>& references,
                 const std::vector<query::Triangle>& triangles) {
   std::vector<corpus::Entry> entries;
+  std::vector<FoundPair> rows;
   ObjGroup hits{"hits", {}};
   for (std::size_t p = 0; p < run.bytes.size(); ++p) {
     if (run.bytes[p] != 1) continue;
     const std::size_t triangle = p % triangles.size(), reference = p / triangles.size();
-    entries.push_back({pair_of(references[reference], triangles[triangle]),
-                       {{"name", fmt::format("reference_{}_triangle_{}", reference, triangle)}}});
+    const Pair pair = pair_of(references[reference], triangles[triangle]);
+    entries.push_back({pair, {{"name", fmt::format("reference_{}_triangle_{}", reference, triangle)}}});
+    rows.push_back(related(static_cast<std::uint32_t>(reference), static_cast<std::uint32_t>(triangle), pair));
     hits.triangles.push_back(triangles[triangle]);
   }
+  if (!options.csv.empty()) write_result(options.csv, csv_of(rows), fuzz::NamedBy::user);
   if (!options.pairs.empty()) write_pairs(options.pairs, entries);
   if (!options.obj.empty()) write_result(options.obj, obj_of({{"reference", references}, hits}), fuzz::NamedBy::user);
 }
@@ -150,6 +154,16 @@ Json json_of(const Run& run) {
   if (run.failed > 0) json["failed"] = run.failed;
   if (const std::string evidence = evidence_of(run); !evidence.empty()) json["evidence"] = evidence;
   return json;
+}
+
+// The first hits: indices of triangles, or of a reference and a triangle where there are several references.
+void add_list(Json& json, const Run& run, std::size_t triangles, std::size_t references) {
+  json["list"] = Json::array();
+  for (std::size_t p = 0; p < run.bytes.size() && json["list"].size() < kMostListed; ++p) {
+    if (run.bytes[p] != 1) continue;
+    json["list"].push_back(references == 1 ? Json(p) : Json({p / triangles, p % triangles}));
+  }
+  json["not_listed"] = run.answer.hits - json["list"].size();
 }
 
 // On how many triangles two runs differ, for each two.
@@ -239,20 +253,37 @@ std::vector<Run> runs_of(const QueryOptions& options, const QueryLanes& lanes,
   return runs;
 }
 
+void expect_different_files(const QueryOptions& options) {
+  std::set<std::filesystem::path> files;
+  for (const std::string& file : {options.csv, options.obj, options.pairs, options.mismatches}) {
+    if (!file.empty() && !files.insert(std::filesystem::weakly_canonical(std::filesystem::absolute(file))).second)
+      throw UsageError("--csv, --obj, --pairs and --mismatches need different files; two of them are " +
+                       shown_path(file));
+  }
+}
+
+// --self and --between.
+void query_all_pairs(const QueryOptions& options, int& status) {
+  if (options.any || !options.lanes.globs.empty() || !options.lanes.subjects.empty() || !options.mismatches.empty() ||
+      options.executors.size() > 1)
+    throw UsageError(
+        "--self and --between are exact and use one executor; leave out --any, --lanes, --subject and --mismatches, "
+        "and name one --executor");
+  if (options.between && options.files.size() != 2)
+    throw UsageError(fmt::format("--between needs two meshes, but got {}", options.files.size()));
+  query_meshes({options.between ? options.files : std::vector{options.self}, options.json, options.executors[0],
+                options.csv, options.obj, options.pairs},
+               status);
+}
+
 void query_mesh(const QueryOptions& options, int& status) {
   if (options.files.size() != 2)
     throw UsageError(
         fmt::format("graze query needs two files, a reference and a mesh, but got {}", options.files.size()));
-  if (options.any && (!options.obj.empty() || !options.pairs.empty()))
-    throw UsageError("--any does not work with --obj or --pairs, which write all hits");
-  const std::string* outputs[] = {&options.obj, &options.pairs, &options.mismatches};
-  std::set<std::filesystem::path> files;
-  for (const std::string* file : outputs) {
-    if (!file->empty() && !files.insert(std::filesystem::weakly_canonical(std::filesystem::absolute(*file))).second)
-      throw UsageError("--obj, --pairs and --mismatches need different files; two of them are " + shown_path(*file));
-  }
+  if (options.any && (!options.csv.empty() || !options.obj.empty() || !options.pairs.empty()))
+    throw UsageError("--any does not work with --csv, --obj or --pairs, which write all hits");
   const std::vector<query::Triangle> references = read_references(options.files[0]),
-                                     triangles = read_mesh(options.files[1]);
+                                     triangles = read_mesh(options.files[1], strata::Coordinates::any);
   const QueryLanes lanes = query_lanes(options.lanes, {"exact"});
   const std::vector<Run> runs = runs_of(options, lanes, references, triangles, status);
   if (runs.empty()) return;
@@ -264,6 +295,7 @@ void query_mesh(const QueryOptions& options, int& status) {
   if (!mismatches.empty()) write_pairs(kept, mismatches);
   if (options.json) {
     Json json = json_of(runs[0]);
+    if (!options.any) add_list(json, runs[0], triangles.size(), references.size());
     if (runs.size() > 1) {
       json["mismatches"] = count;
       for (const Differing& row : differing(runs))
@@ -291,9 +323,16 @@ void query_mesh(const QueryOptions& options, int& status) {
 }  // namespace
 
 void add_query(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand(
-      "query", "Find the triangles of a mesh that meet a reference triangle, or where a mesh intersects itself");
-  command->footer("Example: graze query arm.off#0 arm.off --json");
+  CLI::App* command = app.add_subcommand("query",
+                                         "Find the triangles of a mesh that meet a reference triangle, or all pairs "
+                                         "that intersect within a mesh or between "
+                                         "two");
+  command->footer(
+      "Exit status: 0 whatever is found; 1 if a file\ncannot be read or written, or there is no GPU;\n2 for wrong use; "
+      "130 if interrupted.\n\n"
+      "Example: graze query arm.off#0 arm.off --json\n"
+      "Example: graze query --self arm.off --csv pairs.csv\n"
+      "Example: graze query arm.off table.off --between --csv pairs.csv");
   auto options = std::make_shared<QueryOptions>();
   command
       ->add_option(
@@ -306,6 +345,9 @@ void add_query(CLI::App& app, int& status) {
       ->check(not_empty())
       ->excludes("files")
       ->option_text("MESH");
+  command
+      ->add_flag("--between", options->between, "Find all intersecting pairs of two meshes, named instead of REF MESH")
+      ->excludes("--self");
   CLI::Option* any = command->add_flag("--any", options->any, "Stop at the first hit");
   command->add_flag("--all", options->all, "Find all hits (default)")->excludes(any);
   options->executors = {"auto"};
@@ -317,7 +359,12 @@ void add_query(CLI::App& app, int& status) {
   add_globs(*command, "--lanes", options->lanes.globs, "Patterns of the lanes that decide; several are compared")
       ->default_str("exact, and those of --subject");
   add_subject_options(*command, options->lanes);
-  command->add_flag("--json", options->json, "Print one JSON object");
+  command->add_flag("--json", options->json, "Print one JSON object; it lists the first 100,000 hits");
+  command
+      ->add_option("--csv", options->csv,
+                   "CSV file for the pairs that intersect: indices of the faces, contact and kind")
+      ->check(not_empty())
+      ->option_text("FILE");
   command->add_option("--obj", options->obj, "OBJ file for the reference and the hits")
       ->check(not_empty())
       ->option_text("FILE");
@@ -327,12 +374,9 @@ void add_query(CLI::App& app, int& status) {
       ->default_str("mismatches.pairs")
       ->option_text("FILE");
   command->callback([options, &status] {
-    if (options->self.empty()) return query_mesh(*options, status);
-    if (options->any || !options->lanes.globs.empty() || !options->lanes.subjects.empty() ||
-        !options->mismatches.empty() || options->executors != std::vector<std::string>{"auto"})
-      throw UsageError(
-          "--self is exact and runs on all cores; leave out --any, --lanes, --subject, --executor and --mismatches");
-    query_self({options->self, options->json, options->obj, options->pairs});
+    expect_different_files(*options);
+    if (options->between || !options->self.empty()) return query_all_pairs(*options, status);
+    query_mesh(*options, status);
   });
 }
 

@@ -92,9 +92,9 @@ std::vector<query::Triangle> read_references(const std::string& name) {
   return {triangles[*face]};
 }
 
-std::vector<query::Triangle> read_mesh(const std::string& file) {
+std::vector<query::Triangle> read_mesh(const std::string& file, strata::Coordinates coordinates) {
   std::vector<query::Triangle> triangles;
-  for (const auto& t : strata::read_triangles(file).triangles) {
+  for (const auto& t : strata::read_triangles(file, coordinates).triangles) {
     triangles.emplace_back();
     std::memcpy(triangles.back().data(), t.data(), sizeof(query::Triangle));
   }

@@ -9,6 +9,7 @@
 
 #include "cli/commands.h"
 #include "core/pair.h"
+#include "strata/mesh.h"
 
 namespace graze::cli {
 
@@ -26,7 +27,8 @@ QueryLanes query_lanes(const LaneOptions& options, const std::vector<std::string
 // Throws: std::runtime_error that names the file and the line; UsageError if FACE is not a whole number.
 std::vector<query::Triangle> read_references(const std::string& name);
 
-std::vector<query::Triangle> read_mesh(const std::string& file);
+std::vector<query::Triangle> read_mesh(const std::string& file,
+                                       strata::Coordinates coordinates = strata::Coordinates::finite);
 
 Pair pair_of(const query::Triangle& a, const query::Triangle& b);
 

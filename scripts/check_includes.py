@@ -33,6 +33,7 @@ LIBRARIES = [  # pattern of the include, name of the library, the folder that ma
 EXCEPTIONS = {  # files, the library that they include, and the reason
     "core/*.test.cpp": ("CGAL, GMP and MPFR", "runs the algorithms on MPFR numbers: they must compile for any scalar"),
     "strata/mesh*.cpp": ("CGAL, GMP and MPFR", "CGAL's mesh readers and box intersection, which decide nothing"),
+    "strata/mesh_box.h": ("CGAL, GMP and MPFR", "the boxes that those files give to CGAL"),
     "subjects/third_party/cgal.cpp": (
         "CGAL, GMP and MPFR",
         "the library that is tested; scripts/league alone builds it",

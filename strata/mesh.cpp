@@ -2,8 +2,9 @@
 // Pairs from real input: reads files to float32 triangles and pairs triangles whose closed boxes overlap.
 #include "strata/mesh.h"
 
-#include <CGAL/Box_intersection_d/Box_with_info_d.h>
 #include <CGAL/box_intersection_d.h>
+
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -16,20 +17,23 @@
 #include "core/fnv1a.h"
 #include "core/plain_file.h"
 #include "core/text.h"
+#include "strata/mesh_box.h"
 #include "strata/mesh_readers/lines.h"
 
 namespace graze::strata {
 namespace {
 
 using Triangle = std::array<Vec3<float>, 3>;
-using Box = CGAL::Box_intersection_d::Box_with_info_d<float, 3, std::uint32_t>;  // info: index of the triangle
 
 // A limit, so that a soup in which all triangles overlap is an error and does not fill the memory.
 constexpr std::size_t kMostCandidates = std::size_t{1} << 28;  // 2 GiB of indices
 
 std::string read_bytes(const std::filesystem::path& file) {
   std::string why;
-  if (auto bytes = plain_file(file, why, std::size_t{1} << 40)) return std::move(*bytes);
+  const auto memory =
+      static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  if (auto bytes = plain_file(file, why, memory)) return std::move(*bytes);
+  if (why.starts_with("it is larger")) why += ", the memory of this machine";
   throw std::runtime_error(cannot("read", file, why));
 }
 
@@ -63,8 +67,8 @@ std::string listed(std::string_view MeshFormat::*column) {
   return list;
 }
 
-Soup read_soup(const std::filesystem::path& file, std::string_view bytes) {
-  const MeshBytes mesh{file.string(), bytes};
+Soup read_soup(const std::filesystem::path& file, std::string_view bytes, Coordinates coordinates) {
+  const MeshBytes mesh{file.string(), bytes, coordinates};
   if (const MeshFormat* format = format_of(file)) return format->read(mesh);
   const std::string extension = file.extension().string();
   fail(mesh.name, "a file of extension " + listed(&MeshFormat::extension),
@@ -72,10 +76,10 @@ Soup read_soup(const std::filesystem::path& file, std::string_view bytes) {
 }
 
 // Adds the file's triangles, and its bytes to the hash.
-void add_mesh(MeshPairs& pairs, const std::filesystem::path& file) {
+void add_mesh(MeshPairs& pairs, const std::filesystem::path& file, Coordinates coordinates = Coordinates::finite) {
   const std::string bytes = read_bytes(file);
   pairs.content_hash = fnv1a(bytes, pairs.content_hash);
-  const Soup soup = read_soup(file, bytes);
+  const Soup soup = read_soup(file, bytes, coordinates);
   if (soup.triangles.empty()) throw std::runtime_error("there is no triangle in " + file.string());
   for (const auto& [i, j, k] : soup.triangles)
     pairs.triangles.push_back({soup.vertices[i], soup.vertices[j], soup.vertices[k]});
@@ -87,22 +91,6 @@ void add_mesh(MeshPairs& pairs, const std::filesystem::path& file) {
   if (!skipped.empty())
     pairs.notes.push_back(printable(file.string()) + ": " + std::to_string(soup.triangles.size()) +
                           " triangles; not used: " + skipped);
-}
-
-std::vector<Box> boxes_of(const std::vector<Triangle>& triangles, std::size_t begin, std::size_t end) {
-  std::vector<Box> boxes;
-  boxes.reserve(end - begin);
-  for (std::size_t i = begin; i < end; ++i) {
-    float low[3], high[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto [least, most] = std::minmax(
-          {component(triangles[i][0], axis), component(triangles[i][1], axis), component(triangles[i][2], axis)});
-      low[axis] = least;
-      high[axis] = most;
-    }
-    boxes.emplace_back(low, high, static_cast<std::uint32_t>(i));
-  }
-  return boxes;
 }
 
 using Pose = std::array<double, 12>;
@@ -208,16 +196,10 @@ MeshPairs read_bodies(const std::vector<std::filesystem::path>& files, const std
   return result;
 }
 
-MeshPairs read_triangles(const std::filesystem::path& file) {
+MeshPairs read_triangles(const std::filesystem::path& file, Coordinates coordinates) {
   MeshPairs result;
   result.content_hash = fnv1a("");
-  add_mesh(result, file);
-  return result;
-}
-
-MeshPairs read_self_pairs(const std::filesystem::path& file) {
-  MeshPairs result = read_triangles(file);
-  pair_up(result, {result.triangles.size()}, file);
+  add_mesh(result, file, coordinates);
   return result;
 }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/pair.h"
+#include "strata/mesh_readers/soup.h"
 
 namespace graze::strata {
 
@@ -47,8 +48,7 @@ MeshPairs read_mesh_pairs(const std::filesystem::path& file,
 // Requires: at least one file; exactly one if there are poses.
 MeshPairs read_bodies(const std::vector<std::filesystem::path>& files, const std::filesystem::path& poses = {});
 
-// Reads the triangles of a mesh, without pairs or with its candidate pairs against itself, which may be none.
-MeshPairs read_triangles(const std::filesystem::path& file);
-MeshPairs read_self_pairs(const std::filesystem::path& file);
+// Reads the triangles of a mesh, without pairs.
+MeshPairs read_triangles(const std::filesystem::path& file, Coordinates coordinates = Coordinates::finite);
 
 }  // namespace graze::strata

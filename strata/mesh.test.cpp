@@ -35,6 +35,11 @@ class MeshFile : public testing::Test {
     return folder_ / name;
   }
 
+  std::string contents(const std::string& name) const {
+    std::ifstream in(folder_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
   // Returns: the error message without the folder.
   std::string error_of(const std::string& name) const {
     std::string message = "none";
@@ -114,6 +119,23 @@ TEST_F(MeshFile, EveryFormatReadsTheSameTriangles) {
   }
   EXPECT_EQ(read_mesh_pairs(write("t.STL", stl + "endsolid t\n")).triangles, expected);
   EXPECT_EQ(read_mesh_pairs(write("binary.stl", binary_stl_of(expected))).triangles, expected);
+}
+
+// Every format: campaigns refuse a vertex that is not finite, queries read it.
+TEST_F(MeshFile, VerticesThatAreNotFiniteAreReadOnRequest) {
+  const float nan = std::nanf(""), infinity = HUGE_VALF;
+  const Triangle bad{{{0, nan, 0}, {1, 0, -infinity}, {0, 1, 0}}}, good{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+  write("m.off", off_of({bad, good}));
+  write("m.obj", "v 0 nan 0\nv 1 0 -inf\nv 0 1 0\nv 0 0 0\nv 1 0 0\nf 1 2 3\nf 4 5 3\n");
+  write("m.stl", binary_stl_of({bad, good}));
+  for (const std::string name : {"m.off", "m.obj", "m.stl"}) {
+    EXPECT_NE(error_of(name).find("finite"), std::string::npos) << name;
+    const auto read = read_triangles(write(name, contents(name)), Coordinates::any).triangles;
+    ASSERT_EQ(read.size(), 2u) << name;
+    EXPECT_TRUE(std::isnan(read[0][0].y)) << name;
+    EXPECT_EQ(read[0][1].z, -infinity) << name;
+    EXPECT_EQ(read[1], good) << name;
+  }
 }
 
 TEST_F(MeshFile, AMeshAgainstItselfPairsEachTwoOnce) {

@@ -2,7 +2,6 @@
 #include "strata/mesh_readers/lines.h"
 
 #include <charconv>
-#include <cmath>
 #include <stdexcept>
 
 #include "core/text.h"
@@ -76,7 +75,7 @@ void Lines::fail_at(std::size_t i, const std::string& expected) const {
 
 float Lines::coordinate(std::size_t i) const {
   const std::optional<float> value = i < words_.size() ? parse_float32(words_[i]) : std::nullopt;
-  if (!value || !std::isfinite(*value)) fail_at(i, "a coordinate that is finite in float32");
+  if (!value || !file_.may_be(*value)) fail_at(i, "a coordinate that is finite in float32");
   return *value;
 }
 

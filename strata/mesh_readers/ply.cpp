@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // PLY, as text or binary of either byte order. Reads the coordinates of vertices and the vertices of faces.
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <optional>
@@ -182,7 +181,7 @@ class Body {
     if (is_text()) return lines_.coordinate(word_++);
     const float value = static_cast<float>(type.size == 4 ? std::bit_cast<float>(take<std::uint32_t>())
                                                           : std::bit_cast<double>(take<std::uint64_t>()));
-    if (!std::isfinite(value)) fail("a coordinate that is finite in float32", "one that is not");
+    if (!file_.may_be(value)) fail("a coordinate that is finite in float32", "one that is not");
     return value;
   }
   std::uint64_t list_count(const Property& list) {

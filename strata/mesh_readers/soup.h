@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -17,15 +18,21 @@
 namespace graze::strata {
 
 struct Soup {
-  std::vector<Vec3<float>> vertices;                    // finite
+  std::vector<Vec3<float>> vertices;                    // finite, unless MeshBytes::coordinates allows others
   std::vector<std::array<std::uint32_t, 3>> triangles;  // indices of existing vertices, in file order
   std::map<std::string, std::uint64_t> skipped;         // how many items were left out, by kind: "normals"
 };
+
+// Whether a vertex that is not finite is an error, or is read as it is.
+enum class Coordinates { finite, any };
 
 // The bytes of a file, and its name for error messages.
 struct MeshBytes {
   std::string name;
   std::string_view bytes;
+  Coordinates coordinates = Coordinates::finite;
+
+  bool may_be(float coordinate) const { return coordinates == Coordinates::any || std::isfinite(coordinate); }
 };
 
 // Parses the bytes of a mesh file. Decimals become the nearest float32, rounded once.

@@ -2,7 +2,6 @@
 // STL, as text or binary. A file is binary if its size is the one that its binary facet count implies. That holds even
 // if its header begins with "solid", as many programs write it.
 #include <bit>
-#include <cmath>
 #include <cstring>
 
 #include "core/text.h"
@@ -36,7 +35,7 @@ Soup read_binary(const MeshBytes& file) {
     Vec3<float> v[3];
     std::memcpy(v, file.bytes.data() + at + 12, sizeof v);
     for (const Vec3<float>& vertex : v) {
-      if (!std::isfinite(vertex.x) || !std::isfinite(vertex.y) || !std::isfinite(vertex.z))
+      if (!file.may_be(vertex.x) || !file.may_be(vertex.y) || !file.may_be(vertex.z))
         fail(at_byte(file, at), "a facet with finite coordinates", "one without");
     }
     add_triangle(soup, v);

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// The search of `graze query --self` and `--between`: all pairs of triangles that intersect, within one mesh or between
+// two, with their contact and kind. Boxes give the candidates (strata/mesh_slabs.h), in blocks; a decider says which of
+// them intersect, and the exact relation tells how. The result does not depend on the decider or the threads.
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/pair.h"
+#include "core/verdict.h"
+#include "strata/mesh_slabs.h"
+
+namespace graze::cli {
+
+// How two triangles meet. common_vertex and common_edge: they share nothing else, as neighbours in a mesh do. pierces:
+// no tiny translation separates them, or they are coplanar and share an area. touches: all others that intersect.
+enum class Kind : std::uint8_t { apart, common_vertex, common_edge, touches, pierces };
+inline constexpr std::size_t kKinds = 5;
+std::string_view name(Kind kind);
+
+// Indices count from 0. Of one mesh, i < j.
+struct FoundPair {
+  std::uint32_t i, j;
+  Contact contact;
+  Kind kind;
+  friend auto operator<=>(const FoundPair&, const FoundPair&) = default;
+};
+
+inline constexpr std::size_t kMostListed = 100'000;  // hits in one JSON object
+
+// Requires: finite coordinates.   Exact: always.
+FoundPair related(std::uint32_t i, std::uint32_t j, const Pair& pair);
+
+// The text of a CSV file: a head, and a row for each pair.
+std::string csv_of(std::span<const FoundPair> pairs);
+
+using MeshTriangles = std::vector<std::array<Vec3<float>, 3>>;
+
+// One mesh against itself, or two against each other.
+struct TwoMeshes {
+  MeshTriangles a;
+  std::optional<MeshTriangles> b;
+
+  const std::array<Vec3<float>, 3>& second(std::uint32_t j) const { return b ? (*b)[j] : a[j]; }
+};
+
+// Candidates, and which of them intersect: bit k % 64 of word k / 64.
+struct Candidates {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> indices;
+  std::vector<Pair> pairs;
+  std::vector<std::uint64_t> intersect;
+};
+
+struct Decider {
+  std::string executor;
+  int threads = 1;
+  std::size_t block = 1;                    // candidates decided together
+  std::function<void(Candidates&)> decide;  // sets `intersect`; called by several threads at once
+};
+
+// executor: auto, one-core, all-cores or one-gpu. auto takes all cores.
+// Throws: std::runtime_error if there is no device.
+Decider exact_decider(const std::string& executor);
+
+// The pairs to keep: the first `most` in the order of (i, j), all or only those that pierce.
+struct Kept {
+  std::size_t most;
+  bool only_piercing = false;
+};
+
+struct FoundPairs {
+  std::array<std::uint64_t, kKinds> count{};  // of each kind; apart is 0
+  std::uint64_t candidates = 0;               // pairs whose boxes overlap
+  std::uint64_t declined = 0;                 // triangles that are not finite; they are in no pair
+  std::vector<FoundPair> pairs;               // sorted
+  double seconds = 0, processor_seconds = 0;  // elapsed; of all threads together
+
+  std::uint64_t of(Kind kind) const { return count[static_cast<std::size_t>(kind)]; }
+  std::uint64_t all() const;
+};
+
+// told: called with the number of triangles of `a` that are done, by one thread at a time.
+// Throws: Stopped, soon after a request to stop (core/stop.h).
+FoundPairs find_pairs(
+    const TwoMeshes& meshes, const Decider& decider, const Kept& kept,
+    const std::function<void(std::size_t)>& told = [](std::size_t) {});
+
+}  // namespace graze::cli

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// The broad phase of `graze query`: the pairs of triangles whose closed boxes overlap, within one mesh or between two.
+// The first mesh is cut into slabs along the longest axis. Slabs are independent, so threads can work on several at
+// once, and a run can show its progress and stop between two of them. CGAL intersects the boxes of each slab.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "core/vec3.h"
+
+namespace graze::strata {
+
+class BoxSlabs {
+ public:
+  using Triangles = std::span<const std::array<Vec3<float>, 3>>;
+  static constexpr std::size_t kTriangles = std::size_t{1} << 14;  // of the first mesh in a slab
+
+  // Pairs triangles of `a` with those of `b`; without `b`, each two of `a`. Triangles that are not finite are in no
+  // pair.   Requires: at most 2^32 - 1 triangles in each.
+  BoxSlabs(Triangles a, std::optional<Triangles> b, std::size_t triangles_of_slab = kTriangles);
+  ~BoxSlabs();
+
+  std::size_t size() const;
+  // Triangles of `a` in the slabs before this one; all that are finite for slab size().
+  std::size_t triangles_before(std::size_t slab) const;
+  std::uint64_t not_finite() const;  // triangles of both
+
+  // Calls found(i, j) for each pair of the slab once, in any order: i of `a` and j of `b`, or i < j of `a`. Each pair
+  // is in one slab. Several threads may call it at once. What `found` throws ends the call.
+  // Throws: Stopped, soon after a request to stop.
+  void pairs(std::size_t slab, const std::function<void(std::uint32_t, std::uint32_t)>& found) const;
+
+ private:
+  struct Boxes;
+  std::unique_ptr<const Boxes> boxes_;
+};
+
+}  // namespace graze::strata

@@ -118,6 +118,14 @@ TEST(Docs, TestingPrintsWhatItSays) {
   expect_true_commands("docs/testing.md", 3);
 }
 
+TEST(Docs, PythonPrintsWhatItSays) {  // by Debian's interpreter, which has Debian's NumPy
+  if (std::system("/usr/bin/python3 -c 'import numpy' 2> /dev/null") != 0) GTEST_SKIP() << "NumPy is not installed";
+  setenv("PYTHONPATH", (fs::path(GRAZE_BINARY_DIR).parent_path() / "python").c_str(), 1);
+  setenv("PATH", ("/usr/bin:" + std::string(std::getenv("PATH"))).c_str(), 1);
+  expect_true_commands("docs/python.md", 2);
+  unsetenv("PYTHONPATH");
+}
+
 TEST(Docs, Result2012PrintsWhatItSays) {
   setenv("GRAZE", kRoot.c_str(), 1);
   expect_true_commands("docs/results/2012.md", 2);

@@ -22,6 +22,7 @@ namespace graze {
 namespace {
 
 constexpr std::size_t kMostCalls = 50'000;  // of the function, to find the smallest pair: a second at 20 us a call
+constexpr std::size_t kBlock = 4096;        // pairs decided together
 
 std::vector<strata::PairSource> sources_of(std::string_view names, std::uint64_t seed, std::uint64_t count) {
   std::vector<std::string> globs;
@@ -40,21 +41,28 @@ std::vector<strata::PairSource> sources_of(std::string_view names, std::uint64_t
   return sources;
 }
 
+// The kinds of pairs on which either answer is accepted.
+unsigned outside_of(const TestOptions& options) {
+  return (options.touching == either ? kOutsideTouching : 0u) | (options.coplanar == either ? kOutsideCoplanar : 0u) |
+         (options.degenerate == either ? kOutsideDegenerate : 0u) | (options.shared == either ? kOutsideShared : 0u);
+}
+
+bool accepts(unsigned outside, Verdict verdict, const Pair& pair, const Relation& relation) {
+  return verdict == relation.verdict ||
+         (!is_failure(verdict) && verdict != Verdict::declined && is_outside(outside, pair, relation));
+}
+
 struct Tested {
-  const std::function<int(const float*, const float*)>& overlap;
-  unsigned outside;  // kinds of pairs on which either answer is accepted
+  const DecidePairs& decide_pairs;
+  unsigned outside;
 
   Verdict decide(const Pair& pair) const {
-    try {
-      const int answer = overlap(&pair.a[0].x, &pair.b[0].x);
-      return answer < 0 ? Verdict::declined : answer > 0 ? Verdict::intersects : Verdict::disjoint;
-    } catch (...) {
-      return Verdict::crashed;
-    }
+    Verdict verdict = Verdict::declined;
+    decide_pairs(&pair, 1, &verdict);
+    return verdict;
   }
   bool accepts(Verdict verdict, const Pair& pair, const Relation& relation) const {
-    return verdict == relation.verdict ||
-           (!is_failure(verdict) && verdict != Verdict::declined && is_outside(outside, pair, relation));
+    return graze::accepts(outside, verdict, pair, relation);
   }
 };
 
@@ -139,11 +147,11 @@ std::string table(const std::vector<Row>& rows) {
   return text;
 }
 
-std::string pair_in_words(std::string_view name, const Pair& pair, const Tested& tested) {
+std::string pair_in_words(std::string_view name, const Pair& pair, const std::string& fault) {
   const float *a = &pair.a[0].x, *b = &pair.b[0].x;
-  return "The smallest wrong pair that was found: " + in_words(tested.decide(pair), relation_of(pair)) +
-         ".\n  const float a[9] = {" + numbers(a, ", ", true) + "},\n              b[9] = {" + numbers(b, ", ", true) +
-         "};\nWhy: echo '" + numbers(a, " ", false) + "  " + numbers(b, " ", false) +
+  return "The smallest wrong pair that was found: " + fault + ".\n  const float a[9] = {" + numbers(a, ", ", true) +
+         "},\n              b[9] = {" + numbers(b, ", ", true) + "};\nWhy: echo '" + numbers(a, " ", false) + "  " +
+         numbers(b, " ", false) +
          "' > wrong.pairs; graze explain wrong.pairs --subject own=YOUR_FILE.cpp:" + std::string(name) + "\n";
 }
 
@@ -156,24 +164,32 @@ void take_from_environment(const char* variable, std::uint64_t& number) {
   number = *wanted;
 }
 
-TestResult tested_with(std::string_view name, const Tested& tested, const TestOptions& options) {
+TestResult tested_with(std::string_view name, const Tested& tested, const std::vector<strata::PairSource>& sources,
+                       double max_wrong) {
   TestResult result;
   std::vector<Row> rows;
+  std::vector<Pair> pairs;
+  std::vector<Verdict> verdicts;
   std::optional<std::pair<Pair, Simplicity>> simplest;
-  for (const strata::PairSource& source : sources_of(options.strata, options.seed, options.pairs)) {
+  for (const strata::PairSource& source : sources) {
     Row row{source.id, source.pairs, {}};
-    for (std::uint64_t i = 0; i < source.pairs; ++i) {
-      const Pair pair = source.pair(i);
-      const Verdict verdict = tested.decide(pair);
-      const Relation relation = relation_of(pair);
-      if (verdict == relation.verdict) continue;
-      if (tested.accepts(verdict, pair, relation)) {
-        ++row.counts.by_convention;
-        continue;
+    for (std::uint64_t done = 0; done < source.pairs; done += pairs.size()) {
+      pairs.resize(std::min<std::uint64_t>(kBlock, source.pairs - done));
+      verdicts.assign(pairs.size(), Verdict::declined);
+      for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = source.pair(done + i);
+      tested.decide_pairs(pairs.data(), pairs.size(), verdicts.data());
+      for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const Pair& pair = pairs[i];
+        const Relation relation = relation_of(pair);
+        if (verdicts[i] == relation.verdict) continue;
+        if (tested.accepts(verdicts[i], pair, relation)) {
+          ++row.counts.by_convention;
+          continue;
+        }
+        ++row.counts.of(verdicts[i]);
+        if (verdicts[i] == Verdict::declined) continue;
+        if (Simplicity how = simplicity(pair); !simplest || how < simplest->second) simplest = {pair, how};
       }
-      ++row.counts.of(verdict);
-      if (verdict == Verdict::declined) continue;
-      if (Simplicity how = simplicity(pair); !simplest || how < simplest->second) simplest = {pair, how};
     }
     result.pairs += row.pairs;
     result.counts += row.counts;
@@ -182,14 +198,17 @@ TestResult tested_with(std::string_view name, const Tested& tested, const TestOp
   const std::uint64_t wrong = result.counts.wrong();
   if (result.pairs == 0 || result.counts.declined == result.pairs) {
     result.message = std::string(name) + (result.pairs == 0 ? ": no pair was asked for\n" : " declines every pair\n");
+    result.summary = result.message;
     return result;
   }
-  result.passed = static_cast<double>(wrong) <= options.max_wrong * static_cast<double>(result.pairs);
+  result.passed = static_cast<double>(wrong) <= max_wrong * static_cast<double>(result.pairs);
   if (result.passed) return result;
   result.smallest = smallest_like(simplest->first, tested);
-  result.message = std::string(name) + " is wrong on " + with_commas(wrong) + " of " + with_commas(result.pairs) +
+  result.fault = in_words(tested.decide(*result.smallest), relation_of(*result.smallest));
+  result.summary = std::string(name) + " is wrong on " + with_commas(wrong) + " of " + with_commas(result.pairs) +
                    " pairs (" + percent(wrong, result.pairs) + "): " + counts_in_words(result.counts) + ".\n" +
-                   table(rows) + pair_in_words(name, *result.smallest, tested);
+                   table(rows);
+  result.message = result.summary + pair_in_words(name, *result.smallest, result.fault);
   return result;
 }
 
@@ -207,22 +226,42 @@ Relation truth(const Pair& pair) {
   return relation_of(pair);
 }
 
-TestResult test_overlap(std::string_view name, const std::function<int(const float*, const float*)>& overlap,
-                        const TestOptions& options) {
+TestResult test_pairs(std::string_view name, const DecidePairs& decide, const TestOptions& options) {
   TestOptions used = options;
-  TestResult result;
+  std::vector<strata::PairSource> sources;
   try {
     take_from_environment("GRAZE_PAIRS", used.pairs);
     take_from_environment("GRAZE_SEED", used.seed);
     if (!(used.max_wrong >= 0 && used.max_wrong <= 1)) throw std::invalid_argument("max_wrong is not from 0 to 1");
-    const unsigned outside =
-        (used.touching == either ? kOutsideTouching : 0u) | (used.coplanar == either ? kOutsideCoplanar : 0u) |
-        (used.degenerate == either ? kOutsideDegenerate : 0u) | (used.shared == either ? kOutsideShared : 0u);
-    return tested_with(name, {overlap, outside}, used);
+    sources = sources_of(used.strata, used.seed, used.pairs);
   } catch (const std::invalid_argument& error) {
-    result.message = std::string(error.what()) + "\n";
+    TestResult result;
+    result.message = result.summary = std::string(error.what()) + "\n";
+    return result;
   }
-  return result;
+  return tested_with(name, {decide, outside_of(used)}, sources, used.max_wrong);
+}
+
+TestResult test_overlap(std::string_view name, const std::function<int(const float*, const float*)>& overlap,
+                        const TestOptions& options) {
+  const auto decide = [&](const Pair* pairs, std::size_t count, Verdict* verdicts) {
+    for (std::size_t i = 0; i < count; ++i) {
+      try {
+        const int answer = overlap(&pairs[i].a[0].x, &pairs[i].b[0].x);
+        verdicts[i] = answer < 0 ? Verdict::declined : answer > 0 ? Verdict::intersects : Verdict::disjoint;
+      } catch (...) {
+        verdicts[i] = Verdict::crashed;
+      }
+    }
+  };
+  return test_pairs(name, decide, options);
+}
+
+std::string fault_of(const Pair& pair, Verdict verdict, const TestOptions& options) {
+  const Relation relation = truth(pair);
+  if (verdict == relation.verdict || verdict == Verdict::declined) return "";
+  if (relation.verdict == Verdict::declined) return "";  // a coordinate that is not finite: no answer is wrong
+  return accepts(outside_of(options), verdict, pair, relation) ? "" : in_words(verdict, relation);
 }
 
 }  // namespace graze

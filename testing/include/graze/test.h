@@ -4,6 +4,7 @@
 // cases of it. C++20; the library, graze::test, needs the C++ standard library only.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -43,6 +44,9 @@ struct TestOptions {
 struct TestResult {
   bool passed = false;
   std::string message;  // why it failed; empty if it passed
+  std::string summary;  // the part of the message without the pair: how many answers are wrong, by stratum
+  std::string
+      fault;  // what is wrong with the answer on the pair: "it says disjoint, but the triangles meet in a point"
   std::uint64_t pairs = 0;
   Counts counts;                 // an exception counts as crashed
   std::optional<Pair> smallest;  // where it failed: a wrong pair, shrunk while truth and answer stay
@@ -54,6 +58,14 @@ struct TestResult {
 // result depends on its arguments and the environment alone.
 TestResult test_overlap(std::string_view name, const std::function<int(const float*, const float*)>& overlap,
                         const TestOptions& options = {});
+
+// As test_overlap, for code that decides many pairs in a call. It sets the verdict of each of `count` pairs, at most
+// 4096. What it throws ends the test.
+using DecidePairs = std::function<void(const Pair* pairs, std::size_t count, Verdict* verdicts)>;
+TestResult test_pairs(std::string_view name, const DecidePairs& decide, const TestOptions& options = {});
+
+// What is wrong with the verdict on the pair, in words; empty if it is accepted.
+std::string fault_of(const Pair& pair, Verdict verdict, const TestOptions& options = {});
 
 // The function as test_overlap takes it. f takes two triangles as float or double arrays, const T a[9], and returns
 // bool or int. Doubles are the floats, exactly.

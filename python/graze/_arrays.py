@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pairs, truths and verdicts as NumPy arrays."""
+import ctypes
+import html
+from typing import Any
+
+import numpy as np
+
+from graze import _library, _program
+
+DISJOINT, INTERSECTS, DECLINED = 0, 1, -1
+CONTACTS = ("none", "point", "segment", "area", "unknown")  # by the number in `contact`
+
+_RELATION = np.dtype(
+    [(name, np.int8) for name in ("verdict", "contact", "margin_sign", "dimension_a", "dimension_b", "coplanar")]
+)
+
+
+class Pair:
+    """Two triangles, float32 of shape (2, 3, 3). In a notebook it shows itself in 3-D if the program `graze` is there.
+
+    >>> touching = Pair("0 0 0  1 0 0  0 1 0   0 0 0  0 0 1  0 1 1")
+    >>> touching.relation["contact"] == CONTACTS.index("point")
+    True
+    >>> touching
+    Pair('0 0 0  1 0 0  0 1 0   0 0 0  0 0 1  0 1 1')
+    """
+
+    def __init__(self, numbers: Any):
+        if isinstance(numbers, str):
+            numbers = np.array([np.float32(word) for word in numbers.split()], np.float32)
+        self.array = np.asarray(numbers, np.float32).reshape(2, 3, 3)
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> np.ndarray:
+        return self.array if dtype is None else self.array.astype(dtype)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Pair) and self.array.tobytes() == other.array.tobytes()
+
+    def __hash__(self) -> int:
+        return hash(self.array.tobytes())
+
+    def __str__(self) -> str:
+        vertices = [" ".join(_shortest(x) for x in vertex) for vertex in self.array.reshape(6, 3)]
+        return "  ".join(vertices[:3]) + "   " + "  ".join(vertices[3:])
+
+    def __repr__(self) -> str:
+        return f"Pair('{self}')"
+
+    @property
+    def relation(self) -> np.void:
+        return relation(self.array)[0]
+
+    def _repr_html_(self) -> str:
+        try:
+            page = _program.viewer_page(str(self))
+        except (FileNotFoundError, RuntimeError) as failure:
+            return f"<pre>{html.escape(repr(self))}\n{html.escape(str(failure))}</pre>"
+        return f'<iframe srcdoc="{html.escape(page)}" style="width:100%;height:560px;border:0"></iframe>'
+
+
+def _shortest(number: np.float32) -> str:
+    text = np.format_float_positional(number, trim="-")
+    return text if len(text) < 16 else np.format_float_scientific(number, trim="-")
+
+
+def strata() -> list[str]:
+    """The names of all strata, families of pairs such as "near_edge_edge"."""
+    return _library.names("strata")
+
+
+def lanes() -> list[str]:
+    """The names of all lanes that run here, such as "moller_1997/f32/cpu". A policy may follow: "…/cpu/rel:8"."""
+    return _library.names("lanes")
+
+
+def pairs(strata: str = "*", *, seed: int = 1, count: int = 1000) -> np.ndarray:
+    """Draws pairs of the strata, in order of their names; the strata share them evenly.
+
+    strata: names with * and ?, separated by commas; "!x" leaves out x. A pair depends on seed, stratum and its place
+    alone; it is the same on every machine.
+    Returns: float32, shape (count, 2, 3, 3).   Raises: ValueError.
+    """
+    seed, count = _library.count_of(seed, "seed"), _library.count_of(count, "count")
+    names = strata.encode()
+    _library.call(
+        "pairs", names, ctypes.c_uint64(seed), ctypes.c_uint64(count), ctypes.c_uint64(0), ctypes.c_uint64(0), None
+    )
+    drawn = np.empty((count, 2, 3, 3), np.float32)
+
+    def draw(first: int, some: int) -> None:
+        to = _library.pointer(drawn[first:])
+        numbers = (ctypes.c_uint64(n) for n in (seed, count, first, some))
+        _library.call("pairs", names, *numbers, to)
+
+    _library.in_pieces(count, draw)
+    return drawn
+
+
+def _of_pairs(function: str, pairs: Any, result: np.ndarray, *before: Any) -> np.ndarray:
+    """Calls a function of the library on pieces of the pairs and of the result."""
+
+    def one(first: int, some: int) -> None:
+        arguments = (_library.pointer(pairs[first:]), ctypes.c_uint64(some), _library.pointer(result[first:]))
+        _library.call(function, *before, *arguments)
+
+    _library.in_pieces(len(pairs), one)
+    return result
+
+
+def _checked(pairs: Any) -> np.ndarray:
+    return _library.floats(pairs.array if isinstance(pairs, Pair) else pairs, (2, 3, 3), "pairs")
+
+
+def relation(pairs: Any) -> np.ndarray:
+    """How the triangles of each pair lie. Exact.
+
+    Returns: a structured array of int8: verdict (1 intersects, 0 disjoint, -1 a coordinate is not finite), contact (an
+    index of CONTACTS), margin_sign (1: disjoint; -1: no tiny translation separates them; else 0), dimension_a and
+    dimension_b (of the hulls, 0 to 2), coplanar.
+    """
+    checked = _checked(pairs)
+    return _of_pairs("relations", checked, np.empty(len(checked), _RELATION))
+
+
+def truth(pairs: Any) -> np.ndarray:
+    """Whether the triangles of each pair intersect: 1, 0, or -1 where a coordinate is not finite. Exact. int8."""
+    return np.ascontiguousarray(relation(pairs)["verdict"])
+
+
+def margin(pairs: Any) -> np.ndarray:
+    """Certified bounds of each pair's margin: its distance, or minus the shortest translation that separates it.
+
+    Returns: float64, shape (n, 2): at least, at most. NaN where a coordinate is not finite.
+    """
+    checked = _checked(pairs)
+    return _of_pairs("margins", checked, np.empty((len(checked), 2)))
+
+
+def verdicts(lane: str, pairs: Any) -> np.ndarray:
+    """What the lane says of each pair: 1 intersects, 0 disjoint, -1 declined. int8. CUDA lanes run as twins, which
+    replay the kernels on this processor.   Raises: ValueError for a lane that is not there."""
+    checked = _checked(pairs)
+    return _of_pairs("verdicts", checked, np.empty(len(checked), np.int8), lane.encode())
+
+
+def _triangles(triangles: Any) -> np.ndarray:
+    return _library.floats(triangles, (3, 3), "triangles")
+
+
+def meets(reference: Any, triangles: Any) -> np.ndarray:
+    """Whether each triangle intersects the reference, of shape (3, 3): 1, 0, or -1 where a coordinate is not finite.
+    Exact. int8, shape (n,)."""
+    one, many = _triangles(reference), _triangles(triangles)
+    if len(one) != 1:
+        raise ValueError(f"reference: one triangle of shape (3, 3) is needed, not {np.shape(reference)}")
+    result = np.empty(len(many), np.int8)
+
+    def some(first: int, count: int) -> None:
+        _library.call(
+            "meets",
+            _library.pointer(one),
+            _library.pointer(many[first:]),
+            ctypes.c_uint64(count),
+            _library.pointer(result[first:]),
+        )
+
+    _library.in_pieces(len(many), some)
+    return result
+
+
+def _found(a: np.ndarray, b: "np.ndarray | None", touching: bool) -> np.ndarray:
+    count = ctypes.c_uint64()
+    indices: list[np.ndarray] = []
+
+    def take() -> None:
+        indices.append(np.empty((count.value, 2), np.uint32))
+        _library.take(indices[0])
+
+    second = (None, ctypes.c_uint64(0)) if b is None else (_library.pointer(b), ctypes.c_uint64(len(b)))
+    first = (_library.pointer(a), ctypes.c_uint64(len(a)))
+    _library.call_in_thread("intersections", *first, *second, int(not touching), ctypes.byref(count), then=take)
+    return indices[0]
+
+
+def self_intersections(triangles: Any, *, touching: bool = False) -> np.ndarray:
+    """The pairs of triangles of one mesh that pierce each other. Exact. touching: also those that only touch, such as
+    neighbours.   Returns: uint32, shape (k, 2), sorted; i < j."""
+    return _found(_triangles(triangles), None, touching)
+
+
+def intersections(a: Any, b: Any, *, touching: bool = True) -> np.ndarray:
+    """The pairs of a triangle of `a` and one of `b` that intersect. Exact. touching=False: those that pierce each other
+    alone.   Returns: uint32, shape (k, 2), sorted."""
+    return _found(_triangles(a), _triangles(b), touching)

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tests of a function of two triangles, for pytest and unittest."""
+import ctypes
+from typing import Any, Callable, Optional
+
+import numpy as np
+
+from graze import _library
+from graze._arrays import Pair
+
+_DISJOINT, _INTERSECTS, _DECLINED, _RAISED = range(4)  # as the library numbers verdicts
+_EITHER = ("touching", "coplanar", "degenerate", "shared")
+
+
+def _verdict(answer: Any) -> int:
+    if not isinstance(answer, (bool, int, np.bool_, np.integer)):
+        raise TypeError(f"the function returns {answer!r}; True, False, or an int below 0 for declined is needed")
+    return _DECLINED if answer < 0 else _INTERSECTS if answer else _DISJOINT
+
+
+class _Tested:
+    """The user's function, called by the library."""
+
+    def __init__(self, function: Callable[..., Any], vectorized: bool):
+        self.function, self.vectorized = function, vectorized
+        self.ended_by: Optional[BaseException] = None  # what ends the test
+        self.raised: Optional[Exception] = None  # the first exception of the function, which is a wrong answer
+
+    def of_pairs(self, pairs: np.ndarray) -> np.ndarray:
+        if not self.vectorized:
+            return np.fromiter((self._of_one(pair) for pair in pairs), np.uint8, len(pairs))
+        try:
+            answers = np.asarray(self.function(pairs[:, 0], pairs[:, 1]))
+        except Exception as raised:  # of one of the pairs, or of all
+            self.raised = self.raised or raised
+            if len(pairs) == 1:
+                return np.array([_RAISED], np.uint8)
+            return np.concatenate([self.of_pairs(half) for half in np.array_split(pairs, 2)])
+        if answers.shape != (len(pairs),) or answers.dtype.kind not in "biu":
+            raise TypeError(
+                f"the function returns {answers.dtype} of shape {answers.shape}, not {len(pairs)} bools or ints"
+            )
+        return (
+            np.where(answers < 0, _DECLINED, answers != 0).astype(np.uint8)
+            if answers.dtype.kind == "i"
+            else (answers != 0).astype(np.uint8)
+        )
+
+    def _of_one(self, pair: np.ndarray) -> int:
+        try:
+            answer = self.function(pair[0], pair[1])
+        except Exception as raised:
+            self.raised = self.raised or raised
+            return _RAISED
+        return _verdict(answer)
+
+    def decide(self, floats: Any, count: int, verdicts: Any) -> int:
+        try:
+            pairs = np.array(np.ctypeslib.as_array(floats, (count, 2, 3, 3)))
+            pairs.flags.writeable = False
+            np.ctypeslib.as_array(verdicts, (count,))[:] = self.of_pairs(pairs)
+            return 0
+        except BaseException as failure:  # it cannot pass through the library; raised again after the call
+            self.ended_by = failure
+            return 1
+
+
+def _words(pair: Pair, fault: str) -> str:
+    return (
+        f"{fault}.\n  @graze.example('{pair}')\n"
+        f"To see it: echo '{pair}' > wrong.pairs; graze check wrong.pairs; graze view wrong.pairs"
+    )
+
+
+def _check(tested: _Tested, name: str, options: _library.Options, examples: list[Pair]) -> Optional[str]:
+    """Returns: why the function fails; None if it does not."""
+    for pair in examples:
+        verdict = int(tested.of_pairs(pair.array[np.newaxis])[0])
+        _library.call("fault", _library.pointer(pair.array), ctypes.c_uint8(verdict), ctypes.byref(options))
+        if _library.text():
+            return f"{name} is wrong on an example: {_words(pair, _library.text())}"
+    result, decide = _library.Result(), _library.Decide(tested.decide)
+    try:
+        _library.call("test", name.encode(), decide, ctypes.byref(options), ctypes.byref(result))
+    except KeyboardInterrupt:
+        raise tested.ended_by or KeyboardInterrupt
+    if result.passed:
+        return None
+    summary, _, fault = _library.text().rpartition("\n")
+    if not result.has_smallest:
+        return summary.strip()
+    pair = Pair(np.array(result.smallest, np.float32))
+    return summary.rstrip() + "\nThe smallest wrong pair that was found: " + _words(pair, fault)
+
+
+def given(
+    strata: str = "*",
+    *,
+    pairs: int = 100_000,
+    seed: int = 1,
+    max_wrong: float = 0.0,
+    either: "str | tuple[str, ...]" = (),
+    vectorized: bool = False,
+) -> Callable[[Callable[..., Any]], Callable[[], None]]:
+    """Makes a test of a function of two triangles, float32 arrays of shape (3, 3), that returns whether they intersect;
+    an int below 0 declines. The test draws pairs of the strata, compares with the exact answers, and fails with the
+    smallest wrong pair.
+
+    max_wrong: the share of wrong answers that is accepted.
+    either: kinds of pairs on which both answers are accepted: "touching", "coplanar", "degenerate", "shared".
+    vectorized: the function takes arrays of shape (n, 3, 3) and returns n answers.
+    The environment's GRAZE_PAIRS and GRAZE_SEED, or pytest's --graze-pairs and --graze-seed, replace the numbers.
+
+    >>> @given("uniform", pairs=100)
+    ... def test_boxes(a, b):
+    ...     return bool((a.max(0) >= b.min(0)).all() and (b.max(0) >= a.min(0)).all())
+    >>> test_boxes()
+    Traceback (most recent call last):
+    AssertionError: test_boxes is wrong on 53 of 100 pairs (53 %): 53 false positives.
+      uniform                     53 of       100
+    The smallest wrong pair that was found: it says intersects, but the triangles are disjoint.
+      @graze.example('...')
+    To see it: ...
+    """
+    kinds = (either,) if isinstance(either, str) else tuple(either)
+    if unknown := set(kinds) - set(_EITHER):
+        raise ValueError(f"either: {sorted(unknown)[0]!r} is none of {', '.join(_EITHER)}")
+    numbers = _library.count_of(pairs, "pairs"), _library.count_of(seed, "seed")
+    options = _library.Options(strata.encode(), *numbers, max_wrong, *(kind in kinds for kind in _EITHER))
+
+    def decorate(function: Callable[..., Any]) -> Callable[[], None]:
+        examples: list[Pair] = list(getattr(function, "_graze_examples", ()))
+        name = getattr(function, "__name__", "the function")
+
+        def test() -> None:
+            __tracebackhide__ = True
+            tested = _Tested(function, vectorized)
+            why = _check(tested, name, options, test._graze_examples)  # type: ignore[attr-defined]
+            if why is not None:
+                raise AssertionError(why) from tested.raised
+
+        test.__name__, test.__doc__, test.__module__ = name, function.__doc__, function.__module__
+        test.__qualname__ = getattr(function, "__qualname__", name)
+        test._graze_examples = examples  # type: ignore[attr-defined]
+        return test
+
+    return decorate
+
+
+def example(pair: Any) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Adds a pair, as 18 numbers in a text or an array, that a test by `given` checks first."""
+    added = pair if isinstance(pair, Pair) else Pair(pair)
+
+    def decorate(function: Callable[..., Any]) -> Callable[..., Any]:
+        function._graze_examples = [added, *getattr(function, "_graze_examples", ())]  # type: ignore[attr-defined]
+        return function
+
+    return decorate

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The shared library beside this file, and how arrays and failures pass through it. ctypes releases the interpreter's
+lock during a call."""
+import ctypes
+import pathlib
+import threading
+from typing import Any, Callable
+
+import numpy as np
+
+_PIECE = 1 << 18  # elements of a call, between which Ctrl+C is noticed
+
+_library = ctypes.CDLL(str(pathlib.Path(__file__).with_name("libgraze_python.so")))
+for _name in ("error", "strata", "lanes", "text"):
+    getattr(_library, "graze_py_" + _name).restype = ctypes.c_char_p
+
+
+class Options(ctypes.Structure):
+    _fields_ = [
+        ("strata", ctypes.c_char_p),
+        ("pairs", ctypes.c_uint64),
+        ("seed", ctypes.c_uint64),
+        ("max_wrong", ctypes.c_double),
+        ("touching", ctypes.c_int),
+        ("coplanar", ctypes.c_int),
+        ("degenerate", ctypes.c_int),
+        ("shared", ctypes.c_int),
+    ]
+
+
+class Result(ctypes.Structure):
+    _fields_ = [
+        ("passed", ctypes.c_int),
+        ("has_smallest", ctypes.c_int),
+        ("pairs", ctypes.c_uint64),
+        ("wrong", ctypes.c_uint64),
+        ("smallest", ctypes.c_float * 18),
+    ]
+
+
+Decide = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_float), ctypes.c_uint64, ctypes.POINTER(ctypes.c_uint8))
+
+
+def call(function: str, *arguments: Any) -> None:
+    """Calls graze_py_FUNCTION. Raises ValueError with the library's words, or KeyboardInterrupt if it was stopped."""
+    status = getattr(_library, "graze_py_" + function)(*arguments)
+    if status == 2:
+        raise KeyboardInterrupt
+    if status != 0:
+        raise ValueError(_library.graze_py_error().decode())
+
+
+def call_in_thread(function: str, *arguments: Any, then: Callable[[], None]) -> None:
+    """As call, for one long call: Ctrl+C asks it to stop, and is raised when it has. `then` runs in the same thread
+    after it, because what it found is kept for that thread."""
+    failures: list[BaseException] = []
+
+    def run() -> None:
+        try:
+            call(function, *arguments)
+            then()
+        except BaseException as failure:  # raised again below, in the caller's thread
+            failures.append(failure)
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    try:
+        while thread.is_alive():
+            thread.join(0.1)
+    except BaseException:
+        _library.graze_py_stop(1)
+        thread.join()
+        _library.graze_py_stop(0)
+        raise
+    if failures:
+        raise failures[0]
+
+
+def take(indices: np.ndarray) -> None:
+    _library.graze_py_take(pointer(indices))
+
+
+def names(what: str) -> list[str]:
+    return getattr(_library, "graze_py_" + what)().decode().split()
+
+
+def text() -> str:
+    return _library.graze_py_text().decode()
+
+
+def pointer(array: np.ndarray) -> ctypes.c_void_p:
+    return ctypes.c_void_p(array.ctypes.data)
+
+
+def in_pieces(count: int, f: Callable[[int, int], None]) -> None:
+    """Calls f(first, count) for consecutive pieces, between which Python handles signals."""
+    for first in range(0, count, _PIECE):
+        f(first, min(_PIECE, count - first))
+
+
+def floats(array: Any, shape: tuple[int, ...], what: str) -> np.ndarray:
+    """The array as contiguous float32 of shape (n, *shape); one element may lack the first axis. Without a copy if it
+    is that already. Raises TypeError for other numbers, which would have to be rounded, and ValueError for another
+    shape."""
+    found = np.asarray(array)
+    if found.dtype != np.float32:
+        raise TypeError(
+            f"{what}: the numbers are {found.dtype}, but Graze decides float32; round them yourself: "
+            "numpy.asarray(x, numpy.float32)"
+        )
+    if found.shape == shape:
+        found = found[np.newaxis]
+    if found.ndim != len(shape) + 1 or found.shape[1:] != shape:
+        raise ValueError(f"{what}: the shape is {found.shape}, but (n, {', '.join(map(str, shape))}) is needed")
+    return np.ascontiguousarray(found)
+
+
+def count_of(number: Any, what: str) -> int:
+    """The number as a whole number of 64 bits. Raises ValueError."""
+    if isinstance(number, bool) or int(number) != number or not 0 <= number < 1 << 64:
+        raise ValueError(f"{what}: a whole number from 0 to 2^64 - 1 is needed, not {number!r}")
+    return int(number)

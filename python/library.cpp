@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: Apache-2.0
+// The functions that the Python package calls through ctypes (python/graze/_library.py). An array of pairs is float32
+// of shape (n, 2, 3, 3): Pair. Each function returns 0; 1 after a failure, which graze_py_error describes; or 2 if it
+// was asked to stop. No exception leaves this file.
+#include <fmt/format.h>
+#include <graze/test.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <exception>
+#include <limits>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "backends/backends.h"
+#include "core/lanes/lanes.h"
+#include "core/lanes/policies.h"
+#include "core/margin/margin.h"
+#include "core/relation_of.h"
+#include "core/stop.h"
+#include "core/text.h"
+#include "query/include/graze/query_c.h"
+#include "strata/mesh_slabs.h"
+#include "strata/pair_source.h"
+#include "strata/strata.h"
+
+namespace graze {
+namespace {
+
+constexpr std::size_t kBlock = 1024;  // pairs decided together: whole words of verdict bits
+
+thread_local std::string error, text;
+thread_local std::vector<std::array<std::uint32_t, 2>> found;
+
+template <class F>
+int guarded(F f) noexcept {
+  try {
+    f();
+    return 0;
+  } catch (const Stopped&) {
+    return 2;
+  } catch (const std::exception& e) {
+    error = e.what();
+  } catch (...) {
+    error = "an unknown failure";
+  }
+  return 1;
+}
+
+// Calls f(first, count) for blocks of the range on all cores.
+template <class F>
+void in_blocks(std::size_t count, F f) {
+  tbb::parallel_for(std::size_t{0}, (count + kBlock - 1) / kBlock,
+                    [&](std::size_t block) { f(block * kBlock, std::min(kBlock, count - block * kBlock)); });
+}
+
+std::int8_t code(Verdict verdict) { return verdict == Verdict::intersects ? 1 : verdict == Verdict::disjoint ? 0 : -1; }
+
+// The function of the lane on this processor, or of its twin.   Throws: std::invalid_argument.
+DecideBlock decider_of(const std::string& id) {
+  const std::optional<LaneName> name = parse_lane_name(id);
+  const Lane* lane = find_lane(id);
+  std::string policy;
+  if (!lane && name && !name->policy.empty()) {
+    lane = find_lane(id_of({name->subject, name->scalar, name->variant, ""}));
+    policy = name->policy;
+  }
+  if (!lane) throw std::invalid_argument(fmt::format("there is no lane {}; graze.lanes() lists them", shown(id)));
+  const DecideBlock block = backends::on_host(policy.empty() ? *lane : lane_under(*lane, policy));
+  if (!block)
+    throw std::invalid_argument(fmt::format("the lane {} does not run here: {}", id, backends::why_not_on_host(*lane)));
+  return block;
+}
+
+using Triangle = std::array<Vec3<float>, 3>;
+
+std::span<const Triangle> triangles_of(const float* numbers, std::uint64_t count) {
+  static_assert(sizeof(Triangle) == 9 * sizeof(float));
+  return {reinterpret_cast<const Triangle*>(numbers), count};
+}
+
+// Whether no tiny translation separates the triangles, or they are coplanar and share an area.
+bool pierces(const Relation& r) { return r.intersects() && (!r.touches() || r.contact == Contact::area); }
+
+std::vector<std::string> parts_of(std::string_view names) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= names.size();) {
+    const std::size_t end = std::min(names.find(',', begin), names.size());
+    if (end > begin) parts.emplace_back(names.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+}  // namespace
+
+extern "C" {
+
+// The failure of this thread's last call.
+const char* graze_py_error() { return error.c_str(); }
+
+// The names of all strata, or of all lanes that run here, a line each.
+const char* graze_py_strata() {
+  text.clear();
+  for (const auto& stratum : strata::kStrata) text += std::string(stratum.id) + '\n';
+  return text.c_str();
+}
+
+const char* graze_py_lanes() {
+  text.clear();
+  for (const Lane& lane : lanes()) {
+    if (backends::on_host(lane)) text += lane.id + '\n';
+  }
+  return text.c_str();
+}
+
+// Draws the pairs [first, first + count) of `all` pairs of the strata.
+int graze_py_pairs(const char* names, std::uint64_t seed, std::uint64_t all, std::uint64_t first, std::uint64_t count,
+                   Pair* pairs) {
+  return guarded([&] {
+    std::uint64_t begin = 0;
+    for (const strata::PairSource& source : strata::stratum_sources(seed, all, parts_of(names))) {
+      const std::uint64_t from = std::max(first, begin), to = std::min(first + count, begin + source.pairs);
+      if (from < to)
+        in_blocks(to - from, [&](std::size_t at, std::size_t some) {
+          for (std::size_t i = at; i < at + some; ++i) pairs[from - first + i] = source.pair(from - begin + i);
+        });
+      begin += source.pairs;
+    }
+  });
+}
+
+// The exact relation of each pair: verdict (1, 0, -1 declined), contact (0 none, 1 point, 2 segment, 3 area, 4
+// unknown), sign of the margin, dimension of both hulls, whether one plane holds all.
+int graze_py_relations(const Pair* pairs, std::uint64_t count, std::int8_t (*relations)[6]) {
+  return guarded([&] {
+    in_blocks(count, [&](std::size_t first, std::size_t some) {
+      for (std::size_t i = first; i < first + some; ++i) {
+        const Relation r = truth(pairs[i]);
+        const std::int8_t row[6] = {code(r.verdict),
+                                    static_cast<std::int8_t>(r.contact),
+                                    static_cast<std::int8_t>(r.margin_sign),
+                                    static_cast<std::int8_t>(r.hulls.dimension_a),
+                                    static_cast<std::int8_t>(r.hulls.dimension_b),
+                                    static_cast<std::int8_t>(r.hulls.coplanar)};
+        std::memcpy(relations[i], row, sizeof row);
+      }
+    });
+  });
+}
+
+// Certified bounds of each margin: least, most. Both are 0 where it is exactly 0, and NaN where the pair is not finite.
+int graze_py_margins(const Pair* pairs, std::uint64_t count, double (*margins)[2]) {
+  return guarded([&] {
+    in_blocks(count, [&](std::size_t first, std::size_t some) {
+      for (std::size_t i = first; i < first + some; ++i) {
+        const Relation r = truth(pairs[i]);
+        double &least = margins[i][0], &most = margins[i][1];
+        least = most = r.verdict == Verdict::declined ? std::numeric_limits<double>::quiet_NaN() : 0;
+        if (r.verdict == Verdict::declined || r.margin_sign == 0) continue;
+        const MarginBounds bounds = margin_bounds(pairs[i], r.verdict);
+        least = r.margin_sign > 0 ? bounds.lo : -bounds.hi;
+        most = r.margin_sign > 0 ? bounds.hi : -bounds.lo;
+      }
+    });
+  });
+}
+
+// The lane's verdict on each pair: 1, 0, or -1 declined.
+int graze_py_verdicts(const char* lane, const Pair* pairs, std::uint64_t count, std::int8_t* verdicts) {
+  return guarded([&] {
+    const DecideBlock decide = decider_of(lane);
+    in_blocks(count, [&](std::size_t first, std::size_t some) {
+      std::uint64_t intersects[kBlock / 64], declined[kBlock / 64];
+      decide(pairs + first, some, intersects, declined);
+      for (std::size_t i = 0; i < some; ++i)
+        verdicts[first + i] = code(verdict_of_bits(intersects[i / 64] >> i % 64 & 1, declined[i / 64] >> i % 64 & 1));
+    });
+  });
+}
+
+// Whether each triangle meets the reference: 1, 0, or -1 declined.
+int graze_py_meets(const float* reference, const float* triangles, std::uint64_t count, std::int8_t* verdicts) {
+  return guarded([&] {
+    static graze_context* const context = graze_open();
+    graze_triangles part{};
+    part.device = -1;
+    part.count = count;
+    part.rows = triangles;
+    graze_query query{};
+    query.size = sizeof query;
+    query.references = reference;
+    query.reference_count = query.part_count = 1;
+    query.parts = &part;
+    query.mode = GRAZE_ALL;
+    query.executor = GRAZE_ALL_CORES;
+    query.bytes = reinterpret_cast<unsigned char*>(verdicts);
+    graze_answer answer;
+    if (graze_run(context, &query, &answer) != GRAZE_OK) throw std::runtime_error(answer.message);
+    std::replace(verdicts, verdicts + count, std::int8_t{2}, std::int8_t{-1});
+  });
+}
+
+// The pairs of triangles that intersect within a mesh (b null), or between two; only_piercing: without those that only
+// touch. Sets their number; graze_py_take copies them, sorted, for the same thread.
+int graze_py_intersections(const float* a, std::uint64_t count_a, const float* b, std::uint64_t count_b,
+                           int only_piercing, std::uint64_t* count) {
+  return guarded([&] {
+    const std::span<const Triangle> first = triangles_of(a, count_a), second = b ? triangles_of(b, count_b) : first;
+    const strata::BoxSlabs slabs(first, b ? std::optional(second) : std::nullopt);
+    tbb::enumerable_thread_specific<std::vector<std::array<std::uint32_t, 2>>> parts;
+    tbb::parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t slab) {
+      std::vector<std::array<std::uint32_t, 2>>& part = parts.local();
+      slabs.pairs(slab, [&](std::uint32_t i, std::uint32_t j) {
+        if (stop_requested.load(std::memory_order_relaxed)) throw Stopped();
+        const Triangle &of_a = first[i], &of_b = second[j];
+        const Relation r = relation_of({{of_a[0], of_a[1], of_a[2]}, {of_b[0], of_b[1], of_b[2]}});
+        if (only_piercing ? pierces(r) : r.intersects()) part.push_back({i, j});
+      });
+    });
+    found.clear();
+    for (const auto& part : parts) found.insert(found.end(), part.begin(), part.end());
+    std::sort(found.begin(), found.end());
+    *count = found.size();
+  });
+}
+
+void graze_py_take(std::uint32_t* indices) {
+  if (!found.empty()) std::memcpy(indices, found.data(), found.size() * sizeof found[0]);
+  found = {};
+}
+
+// Asks calls in other threads to stop soon; 0 withdraws the request.
+void graze_py_stop(int stop) { stop_requested = stop != 0; }
+
+struct graze_py_options {
+  const char* strata;
+  std::uint64_t pairs, seed;
+  double max_wrong;
+  int touching, coplanar, degenerate, shared;  // 1: either answer is accepted
+};
+
+struct graze_py_result {
+  int passed, has_smallest;
+  std::uint64_t pairs, wrong;
+  Pair smallest;
+};
+
+}  // extern "C"
+
+namespace {
+
+TestOptions options_of(const graze_py_options& o) {
+  const auto answer = [](int either) { return either ? Answer::either : Answer::required; };
+  return {.strata = o.strata,
+          .pairs = o.pairs,
+          .seed = o.seed,
+          .max_wrong = o.max_wrong,
+          .touching = answer(o.touching),
+          .coplanar = answer(o.coplanar),
+          .degenerate = answer(o.degenerate),
+          .shared = answer(o.shared)};
+}
+
+}  // namespace
+
+extern "C" {
+
+// Decides `count` pairs; verdicts as the enum Verdict.   Returns: nonzero to end the test.
+typedef int (*graze_py_decide)(const Pair* pairs, std::uint64_t count, std::uint8_t* verdicts);
+
+// Tests the function on the strata (graze/test.h). The text of this thread is the summary, an empty line, the fault.
+int graze_py_test(const char* name, graze_py_decide decide, const graze_py_options* options, graze_py_result* result) {
+  static_assert(sizeof(Verdict) == 1);
+  return guarded([&] {
+    const TestResult r = test_pairs(
+        name,
+        [&](const Pair* pairs, std::size_t count, Verdict* verdicts) {
+          if (decide(pairs, count, reinterpret_cast<std::uint8_t*>(verdicts)) != 0) throw Stopped();
+        },
+        options_of(*options));
+    *result = {r.passed, r.smallest.has_value(), r.pairs, r.counts.wrong(), r.smallest.value_or(Pair{})};
+    text = r.summary + '\n' + r.fault;
+  });
+}
+
+// What is wrong with the verdict on the pair; the text is empty if it is accepted.
+int graze_py_fault(const Pair* pair, std::uint8_t verdict, const graze_py_options* options) {
+  return guarded([&] { text = fault_of(*pair, static_cast<Verdict>(verdict), options_of(*options)); });
+}
+
+const char* graze_py_text() { return text.c_str(); }
+
+}  // extern "C"
+}  // namespace graze

@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arrays against the program `graze`, against integers, and with arguments that are wrong."""
+import csv
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from fractions import Fraction
+
+import graze
+import numpy as np
+
+
+def float32(*numbers):
+    return np.array(numbers, np.float32)
+
+
+class Arrays(unittest.TestCase):
+    def test_pairs_truths_and_contacts_are_those_of_the_program(self):
+        for stratum in graze.strata():
+            words = [os.environ["GRAZE"], "dump", stratum + ":3", "--pairs", "40"]
+            table = csv.DictReader(
+                subprocess.run(words, capture_output=True, text=True, check=True).stdout.splitlines()
+            )
+            rows = list(table)
+            self.assertEqual(len(rows), 40)
+            drawn = graze.pairs(stratum, seed=3, count=40)
+            columns = [name for name in table.fieldnames if re.fullmatch("[ab][0-2][xyz]", name)]
+            known = np.array([[row[name] for name in columns] for row in rows], float)
+            self.assertEqual(known.astype(np.float32).tobytes(), drawn.tobytes(), stratum)
+            relation = graze.relation(drawn)
+            self.assertEqual([row["truth"] == "intersects" for row in rows], (relation["verdict"] == 1).tolist())
+            self.assertEqual([row["contact"] for row in rows], [graze.CONTACTS[c] for c in relation["contact"]])
+            said = np.array([float(row["margin"]) for row in rows])  # rounded once more
+            least, most = graze.margin(drawn).T
+            slack = 1e-14 * np.abs(said)
+            self.assertTrue(((least <= said + slack) & (said - slack <= most)).all(), stratum)
+
+    def test_a_range_of_pairs_does_not_depend_on_the_pieces(self):
+        piece = graze._library._PIECE
+        whole = graze.pairs("uniform,lattice", count=1000)
+        try:
+            graze._library._PIECE = 7
+            self.assertEqual(graze.pairs("uniform,lattice", count=1000).tobytes(), whole.tobytes())
+            self.assertEqual(graze.margin(whole).shape, (1000, 2))
+        finally:
+            graze._library._PIECE = piece
+
+    def test_truth_is_that_of_fractions(self):
+        """Triangles with small integers: a separating axis test in whole numbers."""
+        drawn = graze.pairs("lattice,coplanar_lattice,degenerate", count=600)
+        said = graze.truth(drawn)
+        self.assertTrue(0 < said.sum() < 600)
+        for pair, verdict in zip(drawn, said):
+            self.assertEqual(verdict, intersect(pair), graze.Pair(pair))
+
+    def test_relations(self):
+        same = graze.Pair("0 0 0  1 0 0  0 1 0   0 0 0  1 0 0  0 1 0").relation
+        self.assertEqual(graze.CONTACTS[same["contact"]], "area")
+        self.assertEqual((same["verdict"], same["margin_sign"], same["coplanar"], same["dimension_a"]), (1, 0, 1, 2))
+        point = graze.Pair("0 0 0  0 0 0  0 0 0   0 0 1  1 0 1  0 1 1")
+        self.assertEqual((point.relation["verdict"], point.relation["dimension_a"]), (0, 0))
+        least, most = graze.margin(point.array)[0]
+        self.assertTrue(least <= 1 <= most and most - least < 1e-12)
+        self.assertTrue(np.isnan(graze.margin(point.array * np.float32(np.nan))).all())
+
+    def test_exact_lanes_and_twins(self):
+        drawn = graze.pairs("near_*", count=20000)
+        right = graze.truth(drawn)
+        self.assertTrue((graze.verdicts("exact/f32/cpu", drawn) == right).all())
+        for lane in ("moller_1997/f32/cpu", "moller_1997/f32/cuda-fma", "moller_1997/f32/cpu/rel:24"):
+            wrong = (graze.verdicts(lane, drawn) != right).mean()
+            self.assertTrue(0.01 < wrong < 0.9, (lane, wrong))
+        self.assertIn("moller_1997/f32/cpu", graze.lanes())
+
+    def test_meshes(self):
+        triangles = graze.pairs("near_*,exact_contact", count=60)[:, 0]
+        others = graze.pairs("uniform,thesis", count=60)[:, 1]
+        for touching in (False, True):
+            expected = []
+            for i, first in enumerate(triangles):
+                at = graze.relation(np.stack([np.broadcast_to(first, others.shape), others], 1))
+                only_touch = (at["margin_sign"] == 0) & (at["contact"] != graze.CONTACTS.index("area"))
+                expected += [(i, j) for j in np.flatnonzero((at["verdict"] == 1) & (touching | ~only_touch))]
+                self.assertTrue((graze.meets(first, others) == at["verdict"]).all())
+            found = graze.intersections(triangles, others, touching=touching)
+            self.assertTrue(len(expected) > 20)
+            self.assertEqual([tuple(row) for row in found], expected)
+        both = graze.self_intersections(np.concatenate([triangles, triangles]), touching=True)
+        self.assertTrue(set(zip(range(60), range(60, 120))) <= {tuple(row) for row in both})
+        self.assertTrue((both[:, 0] < both[:, 1]).all())
+
+    def test_no_copies_of_contiguous_arrays(self):
+        drawn = graze.pairs(count=10)
+        self.assertTrue(np.shares_memory(graze._library.floats(drawn, (2, 3, 3), ""), drawn))
+        turned = np.asfortranarray(drawn)
+        self.assertEqual(graze.truth(turned).tolist(), graze.truth(drawn).tolist())
+        drawn.flags.writeable = False
+        self.assertEqual(len(graze.truth(drawn)), 10)
+
+    def test_wrong_arguments(self):
+        drawn = graze.pairs(count=10)
+        for error, words, call in (
+            (TypeError, "float64", lambda: graze.truth(drawn.astype(float))),
+            (ValueError, r"\(n, 2, 3, 3\)", lambda: graze.truth(drawn[0, 0])),
+            (ValueError, "no_such", lambda: graze.pairs("no_such")),
+            (ValueError, "seed", lambda: graze.pairs(seed=-1)),
+            (ValueError, "count", lambda: graze.pairs(count=1.5)),
+            (ValueError, "no lane", lambda: graze.verdicts("no/f32/cpu", drawn)),
+            (ValueError, "policy", lambda: graze.verdicts("moller_1997/f32/cpu/rel:x", drawn)),
+            (ValueError, "reference", lambda: graze.meets(drawn[:, 0], drawn[:, 1])),
+            (ValueError, "either", lambda: graze.given(either="sometimes")),
+        ):
+            with self.assertRaisesRegex(error, words):
+                call()
+        for empty in (drawn[:0], np.empty((0, 2, 3, 3), np.float32)):
+            self.assertEqual(len(graze.truth(empty)), 0)
+        self.assertEqual(len(graze.self_intersections(drawn[:0, 0])), 0)
+        infinite = np.full((2, 2, 3, 3), np.inf, np.float32)
+        self.assertEqual(graze.truth(infinite).tolist(), [graze.DECLINED] * 2)
+        self.assertEqual(len(graze.self_intersections(infinite[:, 0])), 0)
+
+    def test_ctrl_c_ends_long_calls(self):
+        for call in (
+            "graze.pairs(count=10**8)",
+            "graze.self_intersections(graze.pairs(count=60000).reshape(-1, 3, 3), touching=True)",
+            "graze.given(pairs=10**9)(lambda a, b: True)()",
+        ):
+            code = f"import graze\nprint('begun', flush=True)\n{call}"
+            with subprocess.Popen(
+                [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            ) as process:
+                self.assertEqual(process.stdout.readline(), "begun\n")
+                time.sleep(0.3)
+                process.send_signal(signal.SIGINT)
+                self.assertIn("KeyboardInterrupt", process.communicate(timeout=120)[1], call)
+
+    def test_campaign_and_drawing(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "near"
+            summary = graze.campaign(out, pairs=300, strata="near_edge_edge", lanes="moller_1997/f32/cpu")
+            self.assertEqual(summary["strata"]["near_edge_edge"]["pairs"], 300)
+            with self.assertRaisesRegex(RuntimeError, "no_such"):
+                graze.campaign(out, strata="no_such")
+        pair = graze.Pair("0 0 0  1 0 0  0 1 0   0 0 0  0 0 1  0 1 1")
+        self.assertRegex(pair._repr_html_(), "<iframe srcdoc=|<pre>Pair")
+        program = os.environ.pop("GRAZE")
+        path, os.environ["PATH"] = os.environ["PATH"], folder
+        try:
+            self.assertIn("<pre>Pair", pair._repr_html_())
+        finally:
+            os.environ.update(GRAZE=program, PATH=path)
+
+
+def intersect(pair):
+    """Whether the hulls of two triangles have a common point, by linear programming in fractions: 0 lies in the hull of
+    the differences of their vertices."""
+    points = [tuple(Fraction(float(x)) - Fraction(float(y)) for x, y in zip(p, q)) for p in pair[0] for q in pair[1]]
+    return int(holds_origin(points))
+
+
+def holds_origin(points):
+    """Whether the hull of the points holds 0: no plane through 0, spanned by them, has all of them on one open side.
+    Reduces the dimension where all lie on one side and some in the plane."""
+    points = list(dict.fromkeys(points))
+    if any(all(x == 0 for x in p) for p in points):
+        return True
+    if not points:
+        return False
+    if len(points[0]) == 1:
+        return min(p[0] for p in points) < 0 < max(p[0] for p in points)
+    for normal in normals(points):
+        sides = [sum(n * x for n, x in zip(normal, p)) for p in points]
+        for sign in (1, -1):
+            if all(sign * s >= 0 for s in sides):
+                return holds_origin(flattened([p for p, s in zip(points, sides) if s == 0], normal))
+    return True
+
+
+def normals(points):
+    """Normals of planes through 0 that are spanned by points and axes: among them every plane that supports the hull."""
+    size = len(points[0])
+    axes = [tuple(Fraction(int(i == k)) for i in range(size)) for k in range(size)]
+    spanning = points + axes
+    if size == 2:
+        return [(-p[1], p[0]) for p in spanning]
+    crosses = []
+    for i, p in enumerate(spanning):
+        for q in spanning[:i]:
+            n = (p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0])
+            if any(n):
+                crosses.append(n)
+    return crosses
+
+
+def flattened(points, normal):
+    """The points of the plane without one coordinate in which its normal is not 0."""
+    drop = next(k for k, n in enumerate(normal) if n)
+    return [p[:drop] + p[drop + 1 :] for p in points]
+
+
+if __name__ == "__main__":
+    unittest.main()

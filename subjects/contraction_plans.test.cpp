@@ -25,7 +25,8 @@ using Json = nlohmann::ordered_json;
 
 const fs::path kGoldens = fs::path(GRAZE_SOURCE_DIR) / "subjects/toolchains/plans.json";
 
-// "GCC 12.2.0" or "clang 14.0.6", by the first line of the compiler's --version; empty for others.
+// "GCC 12.2.0" or "clang 14.0.6", by the first line of the compiler's --version; empty for others, and where the
+// standard library's headers are missing.
 std::string version_of(const std::string& compiler) {
   const Scratch scratch(cache_folder());
   int status = 0;
@@ -33,7 +34,9 @@ std::string version_of(const std::string& compiler) {
   const std::string line = said.substr(0, said.find('\n'));
   std::smatch found;
   if (status != 0 || !std::regex_search(line, found, std::regex("[0-9]+\\.[0-9]+\\.[0-9]+"))) return "";
-  return (line.find("clang") != line.npos ? "clang " : "GCC ") + found.str();
+  // clang has every processor's code, but not every processor's headers.
+  shell_output("printf '#include <tuple>' | " + compiler + " -x c++ -fsyntax-only -", scratch.path(), status);
+  return status != 0 ? "" : (line.find("clang") != line.npos ? "clang " : "GCC ") + found.str();
 }
 
 struct ContractionPlans : testing::Test {

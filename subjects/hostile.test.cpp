@@ -382,8 +382,9 @@ TEST_F(Hostile, ChildrenThatAreLeftInSilenceEndWithTheSubject) {
     const std::vector<Verdict> found = verdicts(*subject);
     for (std::size_t i = 0; i < pairs.size(); ++i) EXPECT_EQ(found[i], left_of(pairs[i])) << i;
     // Beside the supervisor, the process that loads the code and the worker. A child may still be starting.
-    for (int times = 0; times < 6000 && left_over().size() < 3 + children; ++times) usleep(10'000);
-    EXPECT_GE(left_over().size(), 3 + children);
+    std::size_t left = 0;
+    for (int times = 0; times < 6000 && (left = left_over().size()) < 3 + children; ++times) usleep(10'000);
+    EXPECT_GE(left, 3 + children);
     subject.reset();
     expect_nothing_left();
   }

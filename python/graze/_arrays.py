@@ -17,7 +17,8 @@ _RELATION = np.dtype(
 
 
 class Pair:
-    """Two triangles, float32 of shape (2, 3, 3). In a notebook it shows itself in 3-D if the program `graze` is there.
+    """Two triangles, from 18 numbers in a text or an array: `array`, float32 of shape (2, 3, 3). In a notebook it shows
+    itself in 3-D if the program `graze` is there.
 
     >>> touching = Pair("0 0 0  1 0 0  0 1 0   0 0 0  0 0 1  0 1 1")
     >>> touching.relation["contact"] == CONTACTS.index("point")
@@ -27,12 +28,16 @@ class Pair:
     """
 
     def __init__(self, numbers: Any):
-        if isinstance(numbers, str):
-            numbers = np.array([np.float32(word) for word in numbers.split()], np.float32)
-        self.array = np.asarray(numbers, np.float32).reshape(2, 3, 3)
+        found = np.array([np.float32(word) for word in numbers.split()] if isinstance(numbers, str) else numbers)
+        if found.size != 18:
+            raise ValueError(f"a pair has 18 numbers, not {found.size}")
+        self.array = np.asarray(found, np.float32).reshape(2, 3, 3)
+        if not np.array_equal(self.array.ravel(), found.ravel(), equal_nan=True):
+            raise ValueError("a pair's numbers are float32; round them yourself: numpy.asarray(x, numpy.float32)")
 
     def __array__(self, dtype: Any = None, copy: Any = None) -> np.ndarray:
-        return self.array if dtype is None else self.array.astype(dtype)
+        found = self.array if dtype is None else self.array.astype(dtype)
+        return found.copy() if copy else found
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Pair) and self.array.tobytes() == other.array.tobytes()
@@ -82,7 +87,7 @@ def pairs(strata: str = "*", *, seed: int = 1, count: int = 1000) -> np.ndarray:
     Returns: float32, shape (count, 2, 3, 3).   Raises: ValueError.
     """
     seed, count = _library.count_of(seed, "seed"), _library.count_of(count, "count")
-    names = strata.encode()
+    names = _library.name_of(strata, "strata")
     _library.call(
         "pairs", names, ctypes.c_uint64(seed), ctypes.c_uint64(count), ctypes.c_uint64(0), ctypes.c_uint64(0), None
     )
@@ -141,7 +146,7 @@ def verdicts(lane: str, pairs: Any) -> np.ndarray:
     """What the lane says of each pair: 1 intersects, 0 disjoint, -1 declined. int8. CUDA lanes run as twins, which
     replay the kernels on this processor.   Raises: ValueError for a lane that is not there."""
     checked = _checked(pairs)
-    return _of_pairs("verdicts", checked, np.empty(len(checked), np.int8), lane.encode())
+    return _of_pairs("verdicts", checked, np.empty(len(checked), np.int8), _library.name_of(lane, "lane"))
 
 
 def _triangles(triangles: Any) -> np.ndarray:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests of a function of two triangles, for pytest and unittest."""
 import ctypes
+import functools
 from typing import Any, Callable, Optional
 
 import numpy as np
@@ -101,10 +102,10 @@ def given(
     max_wrong: float = 0.0,
     either: "str | tuple[str, ...]" = (),
     vectorized: bool = False,
-) -> Callable[[Callable[..., Any]], Callable[[], None]]:
-    """Makes a test of a function of two triangles, float32 arrays of shape (3, 3), that returns whether they intersect;
-    an int below 0 declines. The test draws pairs of the strata, compares with the exact answers, and fails with the
-    smallest wrong pair.
+) -> Callable[[Callable[..., Any]], Callable[..., None]]:
+    """Makes a test of a function, or a method, of two triangles, float32 arrays of shape (3, 3), that returns whether
+    they intersect; an int below 0 declines. The test draws pairs of the strata, compares with the exact answers, and
+    fails with the smallest wrong pair.
 
     max_wrong: the share of wrong answers that is accepted.
     either: kinds of pairs on which both answers are accepted: "touching", "coplanar", "degenerate", "shared".
@@ -126,15 +127,17 @@ def given(
     if unknown := set(kinds) - set(_EITHER):
         raise ValueError(f"either: {sorted(unknown)[0]!r} is none of {', '.join(_EITHER)}")
     numbers = _library.count_of(pairs, "pairs"), _library.count_of(seed, "seed")
-    options = _library.Options(strata.encode(), *numbers, max_wrong, *(kind in kinds for kind in _EITHER))
+    options = _library.Options(
+        _library.name_of(strata, "strata"), *numbers, max_wrong, *(kind in kinds for kind in _EITHER)
+    )
 
-    def decorate(function: Callable[..., Any]) -> Callable[[], None]:
+    def decorate(function: Callable[..., Any]) -> Callable[..., None]:
         examples: list[Pair] = list(getattr(function, "_graze_examples", ()))
         name = getattr(function, "__name__", "the function")
 
-        def test() -> None:
+        def test(*self: Any) -> None:  # of a method: its object
             __tracebackhide__ = True
-            tested = _Tested(function, vectorized)
+            tested = _Tested(functools.partial(function, *self), vectorized)
             why = _check(tested, name, options, test._graze_examples)  # type: ignore[attr-defined]
             if why is not None:
                 raise AssertionError(why) from tested.raised

@@ -117,6 +117,17 @@ def floats(array: Any, shape: tuple[int, ...], what: str) -> np.ndarray:
 
 def count_of(number: Any, what: str) -> int:
     """The number as a whole number of 64 bits. Raises ValueError."""
-    if isinstance(number, bool) or int(number) != number or not 0 <= number < 1 << 64:
-        raise ValueError(f"{what}: a whole number from 0 to 2^64 - 1 is needed, not {number!r}")
-    return int(number)
+    try:
+        whole = int(number)
+        if whole == number and not isinstance(number, (bool, str)) and 0 <= whole < 1 << 64:
+            return whole
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise ValueError(f"{what}: a whole number from 0 to 2^64 - 1 is needed, not {number!r}")
+
+
+def name_of(name: Any, what: str) -> bytes:
+    """The name as the library takes it. Raises TypeError."""
+    if not isinstance(name, str) or "\0" in name:
+        raise TypeError(f"{what}: a text is needed, not {name!r}")
+    return name.encode()

@@ -98,6 +98,9 @@ class Arrays(unittest.TestCase):
     def test_no_copies_of_contiguous_arrays(self):
         drawn = graze.pairs(count=10)
         self.assertTrue(np.shares_memory(graze._library.floats(drawn, (2, 3, 3), ""), drawn))
+        pair = graze.Pair(drawn[0])
+        self.assertFalse(np.shares_memory(np.array(pair), pair.array))
+        self.assertFalse(np.shares_memory(pair.array, drawn))
         turned = np.asfortranarray(drawn)
         self.assertEqual(graze.truth(turned).tolist(), graze.truth(drawn).tolist())
         drawn.flags.writeable = False
@@ -111,6 +114,12 @@ class Arrays(unittest.TestCase):
             (ValueError, "no_such", lambda: graze.pairs("no_such")),
             (ValueError, "seed", lambda: graze.pairs(seed=-1)),
             (ValueError, "count", lambda: graze.pairs(count=1.5)),
+            (ValueError, "count", lambda: graze.pairs(count=None)),
+            ((MemoryError, ValueError), "", lambda: graze.pairs(count=1 << 60)),
+            (TypeError, "strata", lambda: graze.pairs(["uniform"])),
+            (TypeError, "lane", lambda: graze.verdicts("exact/f32/cpu\0", drawn)),
+            (ValueError, "18 numbers", lambda: graze.Pair("1 2 3")),
+            (ValueError, "float32", lambda: graze.Pair([0.1] * 18)),
             (ValueError, "no lane", lambda: graze.verdicts("no/f32/cpu", drawn)),
             (ValueError, "policy", lambda: graze.verdicts("moller_1997/f32/cpu/rel:x", drawn)),
             (ValueError, "reference", lambda: graze.meets(drawn[:, 0], drawn[:, 1])),
@@ -148,8 +157,13 @@ class Arrays(unittest.TestCase):
             with self.assertRaisesRegex(RuntimeError, "no_such"):
                 graze.campaign(out, strata="no_such")
         pair = graze.Pair("0 0 0  1 0 0  0 1 0   0 0 0  0 0 1  0 1 1")
-        self.assertRegex(pair._repr_html_(), "<iframe srcdoc=|<pre>Pair")
-        program = os.environ.pop("GRAZE")
+        program = os.environ["GRAZE"]
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "pair.txt"
+            file.write_text(str(pair), encoding="utf-8")
+            viewer = subprocess.run([program, "view", file, "--out", file.with_suffix(".html")], capture_output=True)
+        self.assertIn("<iframe srcdoc=" if viewer.returncode == 0 else "<pre>Pair", pair._repr_html_())
+        del os.environ["GRAZE"]
         path, os.environ["PATH"] = os.environ["PATH"], folder
         try:
             self.assertIn("<pre>Pair", pair._repr_html_())

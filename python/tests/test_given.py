@@ -70,6 +70,18 @@ class Given(unittest.TestCase):
         graze.given(pairs=2000)(exact)()
         graze.given(pairs=100_000, vectorized=True)(lambda a, b: graze.truth(np.stack([a, b], 1)))()
 
+    def test_methods_of_a_test_case(self):
+        class Case(unittest.TestCase):
+            answer = True
+
+            @graze.given("near_*", pairs=500)
+            def runTest(self, a, b):
+                return self.answer
+
+        ran = Case().run()
+        self.assertEqual((ran.testsRun, len(ran.errors), len(ran.failures)), (1, 0, 1), ran.errors)
+        self.assertIn("runTest is wrong on", ran.failures[0][1])
+
     def test_conventions_and_declined(self):
         def without_touching(a, b):
             relation = graze.relation(np.stack([a, b]))[0]
@@ -137,9 +149,12 @@ class Given(unittest.TestCase):
             zipfile.ZipFile(wheels[0]).extractall(installed)
             code = "import graze; print(graze.__file__, graze.truth(graze.pairs(count=9)).sum())"
             environment = dict(os.environ, PYTHONPATH=str(installed))
-            said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment)
+            words = [sys.executable, "-c", code]
+            said = subprocess.run(words, capture_output=True, text=True, env=environment, cwd=folder)
             self.assertIn(str(installed), said.stdout, said.stderr)
-            self.assertTrue((installed / "graze/libtbb.so.12").exists())
+            libraries = list((installed / "graze").glob("*.so.*"))
+            self.assertIn("libtbb.so.12", [library.name for library in libraries])
+            self.assertEqual(len(list(installed.glob("*.dist-info/LICENSE.*"))), len(libraries))
 
 
 if __name__ == "__main__":

@@ -140,6 +140,16 @@ TEST(Docs, TuningPrintsWhatItSays) { expect_true_commands("docs/tuning.md", 10);
 
 TEST(Docs, QueryPrintsWhatItSays) { expect_true_commands("docs/query.md", 7); }
 
+TEST(Docs, PackagesPrintsWhatItSays) {
+  const std::string build = fs::path(GRAZE_BINARY_DIR).parent_path().string();
+  setenv("BUILD", build.c_str(), 1);
+  setenv("GRAZE", kRoot.c_str(), 1);
+  for (const std::string& needed : {build + "/wasm/graze.wasm", build + "/web/node_modules/typescript"})
+    if (!fs::exists(needed)) GTEST_SKIP() << "scripts/npm_package needs " << needed;
+  if (std::system("python3 -c 'import yaml' 2> /dev/null") != 0) GTEST_SKIP() << "PyYAML is not installed";
+  expect_true_commands("docs/packages.md", 6);
+}
+
 TEST(Docs, AbridgesAsBefore) {
   EXPECT_EQ(abridged({"a", "…", "z"}, {"a", "b", "c", "y"}), (Lines{"a", "…", "y"}));
   EXPECT_EQ(abridged({"a", "…"}, {"b", "c"}), (Lines{"b", "…"}));

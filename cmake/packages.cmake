@@ -15,6 +15,10 @@ install(CODE [[
   set(bin "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/bin")
   file(MAKE_DIRECTORY "${bin}")
   file(CREATE_LINK ../lib/graze/graze "${bin}/graze" SYMBOLIC)]] COMPONENT program)
+install(CODE "
+  execute_process(COMMAND ${PROJECT_SOURCE_DIR}/packaging/man_page $<TARGET_FILE:graze> OUTPUT_FILE ${CMAKE_BINARY_DIR}/graze.1 COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND gzip -9nkf ${CMAKE_BINARY_DIR}/graze.1 COMMAND_ERROR_IS_FATAL ANY)" COMPONENT program)
+install(FILES ${CMAKE_BINARY_DIR}/graze.1.gz DESTINATION share/man/man1 COMPONENT program)
 install(TARGETS graze_query_shared graze_test LIBRARY DESTINATION lib COMPONENT libraries)
 
 set(GRAZE_MAINTAINER "The Graze developers <graze@example.org>" CACHE STRING "Name and address in the Debian packages")
@@ -27,7 +31,20 @@ Files: *
 Copyright: 2026 The Graze developers
 License: Apache-2.0
  On Debian systems, the full text is in /usr/share/common-licenses/Apache-2.0.
+Comment:
+ The binaries contain code of header-only libraries. Their licenses stand beside
+ this file, as copyright.NAME. Parts of CGAL in the program are under the GPL,
+ version 3 or newer, and so is the program as a whole.
 ]])
+# Installs the licenses of header-only libraries, by Debian package.
+function(install_licenses component name)
+  foreach(library IN LISTS ARGN)
+    install(FILES /usr/share/doc/${library}/copyright DESTINATION share/doc/${name} RENAME copyright.${library} COMPONENT ${component} OPTIONAL)
+  endforeach()
+endfunction()
+install_licenses(program graze libboost-dev libcgal-dev libcli11-dev librandom123-dev libstb-dev libtomlplusplus-dev nlohmann-json3-dev)
+install_licenses(libraries libgraze librandom123-dev)
+install_licenses(python python3-graze librandom123-dev)
 file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/changelog CONTENT [[
 graze (@PROJECT_VERSION@) unstable; urgency=medium
 

@@ -11,11 +11,16 @@ set_tests_properties(scripts.Format PROPERTIES SKIP_RETURN_CODE 77)
 add_test(NAME scripts.test.format COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/format.test.py ${CMAKE_BINARY_DIR})
 set_tests_properties(scripts.test.format PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped")
 add_test(NAME scripts.AuditExplanations COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/audit_explanations.test.py $<TARGET_FILE:graze>)
-# By hand, with a fresh system: scripts/debs --try.
+# By hand, with a fresh system: scripts/debs --try and scripts/container.
+add_test(NAME packaging.Containerfile COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/container --print)
 if(CMAKE_BINARY_DIR STREQUAL ${PROJECT_SOURCE_DIR}/build)
   add_test(NAME scripts.Debs COMMAND ${PROJECT_SOURCE_DIR}/scripts/debs --out ${CMAKE_BINARY_DIR}/debs-test)
   set_tests_properties(scripts.Debs PROPERTIES SKIP_RETURN_CODE 77)
 endif()
+# Both are skipped where they need something that is missing; the message names it.
+add_test(NAME scripts.test.npm_package COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/npm_package.test.py ${CMAKE_BINARY_DIR})
+add_test(NAME packaging.Action COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/packaging/action.test.py $<TARGET_FILE:graze>)
+set_tests_properties(scripts.test.npm_package packaging.Action PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped")
 # Without the viewer, the test of the web site is skipped.
 add_test(NAME scripts.test.results COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/results.test.py $<TARGET_FILE:graze>)
 set_tests_properties(scripts.test.results PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped")

@@ -12,6 +12,7 @@
 /** @typedef {{ contact: Point[], line: Point[], sections: [Point[], Point[]], witness: Point[], along: [number, number][], features: [string, string] }} Drawing line: of both planes; sections: of it, by a and by b. witness: what the margin is: the nearest points of a and b, or the shortest push of b that parts them; along: from where to where a and b reach along it, a's end being 0; features: of a and b, that it joins or that give the push its direction. */
 /** @typedef {{ line: string, site: string, relation: string, held: boolean, holds: boolean, result: number, left: number, right: number, exactLeft: number, exactRight: number }} Step relation '': a value (left). held: in the lane; holds: with 113 bits. result: which of the run's computed numbers left is, -1 for none. */
 /** @typedef {{ line: string, from: string }} Site An operation with one rounding where the source has two, and what it is inlined into. */
+/** @typedef {{ decide: (pairs: number, count: number, verdicts: number) => void }} Host What the module calls: it sets the verdicts of pairs, both at these addresses. */
 /** @typedef {ReturnType<typeof graze_of>} Graze */
 
 /** @type {readonly Verdict[]} */
@@ -33,9 +34,9 @@ const feature_at = (of, feature) =>
 
 /**
  * The functions over an instance of the module.
- * @param {any} exports
+ * @param {any} exports @param {Host} host
  */
-function graze_of(exports) {
+function graze_of(exports, host) {
   /** @type {WebAssembly.Memory} */
   const memory = exports.memory;
   const view = () => new DataView(memory.buffer); // made for each use, because a memory that grows detaches old views
@@ -99,8 +100,11 @@ function graze_of(exports) {
     strata,
     /** How many pairs fit into one call of the functions below that take several. */
     room: /** @type {number} */ (exports.room()),
-    /** The module's own functions, for those who know them. */
+    /** The module's own functions, its texts, and the function that it calls, for those who know them. */
     exports,
+    text_at,
+    set_text,
+    host,
 
     /**
      * What each lane says of the pair; null where a lane cannot have the policy that is set.
@@ -111,6 +115,25 @@ function graze_of(exports) {
       return Object.fromEntries(
         lanes.map((id, i) => [id, exports.decide(i, 1) ? kVerdicts[view().getUint8(verdicts_at)] : null]),
       );
+    },
+
+    /**
+     * Whether two triangles intersect, exactly; touching counts. A double that is no float32 is refused, because rounding it
+     * could change the answer.
+     * @param {ArrayLike<number>} a 9 coordinates @param {ArrayLike<number>} b @returns {boolean}
+     */
+    intersects(a, b) {
+      if (a.length !== 9 || b.length !== 9)
+        throw new RangeError(`expected 9 coordinates of each triangle, found ${a.length} and ${b.length}`);
+      for (const of of [a, b])
+        for (let i = 0; i < 9; ++i)
+          if (!Number.isFinite(of[i]) || Math.fround(of[i]) !== of[i])
+            throw new RangeError(`expected finite float32 numbers, found ${of[i]}; Math.fround rounds to them`);
+      const pair = new Float32Array(memory.buffer, exports.pairs(), 18);
+      pair.set(a);
+      pair.set(b, 9);
+      exports.decide_truth(1);
+      return view().getUint8(verdicts_at) === 1;
     },
 
     /**
@@ -284,7 +307,11 @@ function graze_of(exports) {
  */
 export async function load(bytes) {
   const module = bytes instanceof WebAssembly.Module ? bytes : await WebAssembly.compile(bytes);
-  const { exports } = await WebAssembly.instantiate(module);
+  /** @type {Host} */
+  const host = { decide() {} };
+  const { exports } = await WebAssembly.instantiate(module, {
+    graze: { decide: (/** @type {Parameters<Host['decide']>} */ ...of) => host.decide(...of) },
+  });
   /** @type {any} */ (exports)._initialize();
-  return graze_of(exports);
+  return graze_of(exports, host);
 }

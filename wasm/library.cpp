@@ -36,6 +36,16 @@ extern "C" double __wrap_fma(double x, double y, double z) {
 extern "C" void* __cxa_allocate_exception(std::size_t) { __builtin_trap(); }
 extern "C" void __cxa_throw(void*, void*, void (*)(void*)) { __builtin_trap(); }
 
+// The module needs nothing of its host's system. There is no environment, and nothing is printed: snprintf alone brings
+// the functions of files in.
+extern "C" char* getenv(const char*) { return nullptr; }
+extern "C" int __imported_wasi_snapshot_preview1_fd_close(int) { __builtin_trap(); }
+extern "C" int __imported_wasi_snapshot_preview1_fd_seek(int, std::int64_t, int, int) { __builtin_trap(); }
+extern "C" int __imported_wasi_snapshot_preview1_fd_write(int, int, int, int) { __builtin_trap(); }
+
+// The one thread never ends.
+extern "C" int __cxa_thread_atexit(void (*)(void*), void*, void*) { return 0; }
+
 namespace graze {
 
 // These lanes exist only in the native build, because another compiler contracts differently.

@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
+// graze-wasm in Node: the module is a file beside this one.
+import { readFile } from 'node:fs/promises';
+import { packaged } from './packaged.js';
+
+export const { ready, testOverlap } = packaged(() => readFile(new URL('graze.wasm', import.meta.url)));
+export { load } from './graze.js';

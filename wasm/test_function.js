@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tests a function of two triangles on pairs of the strata, as <graze/test.h> does for C++.
+
+/**
+ * Whether two triangles, 9 coordinates each, intersect; a number below 0 declines.
+ * @typedef {(a: Float32Array, b: Float32Array) => boolean | number} Overlap
+ */
+/**
+ * Pairs that only touch, lie in one plane, have a segment or a point for a triangle, or share a vertex.
+ * @typedef {'touching' | 'coplanar' | 'degenerate' | 'shared'} Kind
+ */
+/**
+ * @typedef {object} TestOptions
+ * @property {string} [name] of the function, for the message
+ * @property {string} [strata] names with * and ?, separated by commas; "!x" leaves out x; default: "*"
+ * @property {number} [pairs] how many, shared evenly by the strata; default: 100,000
+ * @property {number} [seed] of the pairs; default: 1
+ * @property {number} [max_wrong] the share of wrong answers that is accepted; default: 0
+ * @property {Kind[]} [either] kinds of pairs on which both answers are accepted; default: none
+ */
+/**
+ * @typedef {object} TestResult
+ * @property {boolean} passed
+ * @property {string} summary how many answers are wrong, by stratum; empty if it passed
+ * @property {string} fault what is wrong with the answer on the smallest pair
+ * @property {number} pairs
+ * @property {number} wrong
+ * @property {number} declined
+ * @property {{ a: number[], b: number[] } | null} smallest a wrong pair, shrunk while truth and answer stay
+ * @property {unknown} thrown what the function threw first, which is a wrong answer; null if nothing
+ */
+
+/** @type {readonly Kind[]} */
+const kKinds = ['touching', 'coplanar', 'degenerate', 'shared'];
+const kDeclined = 2,
+  kThrown = 3;
+
+/** Whether a stratum's name matches the pattern. @param {string} pattern @param {string} name */
+function matches(pattern, name) {
+  const expression = pattern.replace(/\W/g, (c) => ({ '*': '.*', '?': '.' })[c] ?? `\\${c}`);
+  return new RegExp(`^${expression}$`).test(name);
+}
+
+/** @param {readonly string[]} strata @param {string} wanted */
+function expect_strata(strata, wanted) {
+  const patterns = wanted.split(',');
+  for (const pattern of patterns)
+    if (!strata.some((id) => matches(pattern.replace(/^!/, ''), id)))
+      throw new RangeError(`strata: none matches '${pattern}'; there are ${strata.join(', ')}`);
+  const [taken, left_out] = [false, true].map((out) => patterns.filter((pattern) => pattern.startsWith('!') === out));
+  const leaves = strata.some(
+    (id) =>
+      (taken.length === 0 || taken.some((pattern) => matches(pattern, id))) &&
+      !left_out.some((pattern) => matches(pattern.slice(1), id)),
+  );
+  if (!leaves) throw new RangeError(`strata: '${wanted}' leaves none`);
+}
+
+/** @param {string} what @param {number} count */
+function whole(what, count) {
+  if (!Number.isSafeInteger(count) || count < 0)
+    throw new RangeError(`${what}: expected a whole number, found ${count}`);
+  return BigInt(count);
+}
+
+/**
+ * Draws pairs of the strata, asks the function, and compares with the exact answers. Of the wrong pairs, the simplest
+ * is made smaller, with at most 50,000 calls, while the true relation and the wrong answer stay.
+ * Throws: RangeError for an option that is not valid, TypeError for an answer that is neither boolean nor number.
+ * @param {import('./graze.js').Graze} graze @param {Overlap} overlap
+ * @param {TestOptions} [options] @returns {TestResult}
+ */
+export function test_function(graze, overlap, options = {}) {
+  const { strata = '*', pairs = 100_000, seed = 1, max_wrong = 0, either = [] } = options;
+  const name = (options.name ?? overlap.name) || 'the function';
+  const { exports, host } = graze;
+  expect_strata(graze.strata, strata);
+  if (!(max_wrong >= 0 && max_wrong <= 1)) throw new RangeError(`max_wrong: expected 0 to 1, found ${max_wrong}`);
+  let kinds = 0;
+  for (const kind of either) {
+    if (!kKinds.includes(kind)) throw new RangeError(`either: '${kind}' is none of ${kKinds.join(', ')}`);
+    kinds |= 1 << kKinds.indexOf(kind);
+  }
+
+  /** @type {unknown} */
+  let thrown = null;
+  /** @type {TypeError | null} */
+  let no_answer = null; // thrown only after the module has returned, because it does not unwind
+  /** @param {Float32Array} a @param {Float32Array} b */
+  function verdict(a, b) {
+    if (no_answer) return kDeclined;
+    let answer;
+    try {
+      answer = overlap(a, b);
+    } catch (error) {
+      thrown ??= error;
+      return kThrown;
+    }
+    if (typeof answer !== 'boolean' && !(typeof answer === 'number' && !Number.isNaN(answer))) {
+      no_answer = new TypeError(`${name} returns ${answer}; expected true, false, or a number below 0 for declined`);
+      return kDeclined;
+    }
+    return Number(answer) < 0 ? kDeclined : Number(Boolean(answer));
+  }
+
+  host.decide = (at, count, verdicts) => {
+    const numbers = new Float32Array(exports.memory.buffer, at, 18 * count).slice();
+    const said = Uint8Array.from({ length: count }, (_, i) =>
+      verdict(numbers.slice(18 * i, 18 * i + 9), numbers.slice(18 * i + 9, 18 * i + 18)),
+    );
+    new Uint8Array(exports.memory.buffer, verdicts, count).set(said);
+  };
+  graze.set_text(`${name.replaceAll('\0', ' ')}\0${strata}`);
+  const out = exports.test_function(whole('pairs', pairs), whole('seed', seed), max_wrong, kinds);
+  if (no_answer) throw no_answer;
+
+  const data = new DataView(exports.memory.buffer, out);
+  const [tested, positive, negative, declined, failed] = [0, 1, 2, 3, 4].map((k) => data.getFloat64(16 + 8 * k, true));
+  const coordinates = Array.from({ length: 18 }, (_, k) => data.getFloat32(64 + 4 * k, true));
+  return {
+    passed: data.getInt32(0, true) !== 0,
+    summary: graze.text_at(data.getInt32(8, true)),
+    fault: graze.text_at(data.getInt32(12, true)),
+    pairs: tested,
+    wrong: positive + negative + failed,
+    declined,
+    smallest: data.getInt32(4, true) ? { a: coordinates.slice(0, 9), b: coordinates.slice(9) } : null,
+    thrown,
+  };
+}
+
+/**
+ * The number of an environment variable, in Node; or else the other.
+ * @param {string} variable @param {number | undefined} otherwise
+ */
+function of_environment(variable, otherwise) {
+  const text = /** @type {any} */ (globalThis).process?.env?.[variable];
+  return text ? Number(text) : otherwise;
+}
+
+/** @param {number[]} nine */
+const list = (nine) => `[${nine.map((x) => (Object.is(x, -0) ? '-0' : String(x))).join(', ')}]`;
+
+/**
+ * Throws an error with the counts and the smallest wrong pair unless the function is right on all pairs, or wrong on
+ * no more than max_wrong allows. In Node, GRAZE_PAIRS and GRAZE_SEED of the environment replace the numbers.
+ * @param {import('./graze.js').Graze} graze @param {Overlap} overlap
+ * @param {TestOptions} [options] @returns {TestResult}
+ */
+export function expect_right(graze, overlap, options = {}) {
+  const { pairs, seed } = options;
+  const result = test_function(graze, overlap, {
+    ...options,
+    pairs: of_environment('GRAZE_PAIRS', pairs),
+    seed: of_environment('GRAZE_SEED', seed),
+  });
+  if (result.passed) return result;
+  const { smallest } = result;
+  const pair = smallest ? `  const a = ${list(smallest.a)},\n    b = ${list(smallest.b)};\n` : '';
+  const words = smallest ? `The smallest wrong pair that was found: ${result.fault}.\n` : '';
+  throw new Error(result.summary + words + pair, result.thrown === null ? undefined : { cause: result.thrown });
+}

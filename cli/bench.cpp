@@ -10,6 +10,7 @@
 
 #include "backends/backends.h"
 #include "cli/bench_rows.h"
+#include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/query_input.h"
@@ -139,7 +140,9 @@ void bench(const Options& options, int& status) {
   query::on_cores = backends::on_host;  // with twins
   if (!options.mesh.empty()) {
     wanted.mesh_name = std::filesystem::path(options.mesh).filename().string();
-    for (const auto& t : strata::read_triangles(options.mesh).triangles)
+    const strata::MeshPairs mesh = strata::read_triangles(options.mesh);
+    say_notes(mesh.notes, mesh.rounding, false);
+    for (const auto& t : mesh.triangles)
       wanted.mesh.push_back({t[0].x, t[0].y, t[0].z, t[1].x, t[1].y, t[1].z, t[2].x, t[2].y, t[2].z});
   }
   const std::atomic<bool>& interrupted = catch_interrupts();

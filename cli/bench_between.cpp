@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "cli/bench_rows.h"
+#include "cli/cases.h"
 #include "cli/mesh_pairs.h"
 #include "cuda/query/device_query.h"
 #include "oracle/cgal_triangles.h"
@@ -31,7 +32,11 @@ void decide_none(Candidates& of) { std::fill(of.intersect.begin(), of.intersect.
 
 void measure_between(const std::vector<std::string>& files, Bench& bench,
                      const std::function<bool(const Bench&)>& told) {
-  const auto read = [](const std::string& file) { return strata::read_triangles(file).triangles; };
+  const auto read = [](const std::string& file) {
+    const strata::MeshPairs mesh = strata::read_triangles(file);
+    say_notes(mesh.notes, mesh.rounding, false);
+    return mesh.triangles;
+  };
   const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
   const TwoMeshes meshes{read(files[0]), read(files[1])};
   const oracle::CgalTriangles a(meshes.a), b(*meshes.b);

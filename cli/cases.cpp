@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "analysis/signature.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -111,6 +113,16 @@ void expect_exact_input(const std::string& name, const corpus::Entry& entry) {
     throw UsageError(fmt::format("{}:{}: float32 cannot represent number {}, {}, exactly, as --exact-input demands",
                                  name, entry.line, *i + 1, shown(entry.written[*i])));
   }
+}
+
+void say_notes(const std::vector<std::string>& notes, const strata::Rounding& rounding, bool exact_input) {
+  std::vector<std::string> once;
+  for (const std::string& note : notes) {
+    if (std::find(once.begin(), once.end(), note) == once.end()) once.push_back(note);
+  }
+  if (exact_input && rounding.rounded > 0)
+    throw UsageError(fmt::format("{}; --exact-input refuses that", fmt::join(once, "; ")));
+  for (const std::string& note : once) fmt::print(stderr, "graze: {}\n", note);
 }
 
 }  // namespace graze::cli

@@ -11,6 +11,7 @@
 #include "corpus/pair_format.h"
 #include "fuzz/selected_lanes.h"
 #include "oracle/truth.h"
+#include "strata/mesh_readers/soup.h"
 
 namespace graze::cli {
 
@@ -32,10 +33,14 @@ std::vector<std::pair<std::string, Verdict>> stored_verdicts_of(const corpus::En
 // The same as a line: "stored by the campaign: mine/f32/cpu disjoint !". Empty if there are none.
 std::string stored_verdicts(const corpus::Entry& entry, const std::vector<fuzz::LaneLeftOut>& left_out, Verdict truth);
 
-// Adds --exact-input to a verb that reads pairs.
+// Adds --exact-input to a verb that reads pairs or meshes.
 CLI::Option* add_exact_input(CLI::App& command, bool& exact_input);
 
 // Throws: UsageError that names the entry's first number that is not exact in float32.
 void expect_exact_input(const std::string& name, const corpus::Entry& entry);
+
+// Prints the notes about meshes on standard error, each once.
+// Throws: UsageError if the input must be exact and float32 rounded a coordinate.
+void say_notes(const std::vector<std::string>& notes, const strata::Rounding& rounding, bool exact_input);
 
 }  // namespace graze::cli

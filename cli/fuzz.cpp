@@ -16,6 +16,7 @@
 
 #include "analysis/signature.h"
 #include "cli/campaign_end.h"
+#include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/fuzz.h"
 #include "cli/interrupt.h"
@@ -146,7 +147,7 @@ fuzz::Campaign campaign_of(const FuzzOptions& options, const fuzz::SelectedLanes
   if (!options.scene.empty()) {
     strata::SceneSources drawn =
         drawn_from_scene(options.scene, options.seed, options.pairs, options.strata, scene_spec);
-    for (const std::string& note : drawn.notes) fmt::print(stderr, "graze: {}\n", note);
+    say_notes(drawn.notes, drawn.rounding, options.exact_input);
     campaign.sources = std::move(drawn.sources);
     left_out = std::move(drawn.left_out);
   } else if (options.mesh.empty() ||
@@ -159,7 +160,7 @@ fuzz::Campaign campaign_of(const FuzzOptions& options, const fuzz::SelectedLanes
     const auto mesh = std::make_shared<strata::MeshPairs>(strata::read_mesh_pairs(
         options.mesh[0],
         options.mesh.size() > 1 ? std::optional<std::filesystem::path>(options.mesh[1]) : std::nullopt));
-    for (const std::string& note : mesh->notes) fmt::print(stderr, "graze: {}\n", note);
+    say_notes(mesh->notes, mesh->rounding, options.exact_input);
     campaign.sources.push_back({"mesh", mesh->size(), [mesh](std::uint64_t index) { return mesh->pair(index); }});
     mesh_spec = {{"files", options.mesh}, {"content", fmt::format("{:016x}", mesh->content_hash)}};
   }
@@ -331,6 +332,7 @@ void add_fuzz(CLI::App& app, int& status) {
       ->expected(1, 2)
       ->excludes("--scene")
       ->option_text("FILE [FILE2]");
+  add_exact_input(*command, options->exact_input);
   static_assert(static_cast<int>(fuzz::EngineChoice::automatic) == 0 &&
                 static_cast<int>(fuzz::EngineChoice::cpu) == 1 && static_cast<int>(fuzz::EngineChoice::gpu) == 2);
   command

@@ -21,7 +21,7 @@ struct FuzzOptions {
   std::vector<std::string> strata, mesh;
   LaneOptions lanes;
   fuzz::EngineChoice engine = fuzz::EngineChoice::automatic;
-  bool by_exact_lane = false;
+  bool by_exact_lane = false, exact_input = false;
   bool json = false;
   bool require_device = false;
   bool discard_damaged = false;

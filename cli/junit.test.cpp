@@ -86,6 +86,8 @@ TEST_F(Junit, OfACampaignHasTheCountsOfItsSummary) {
   const Ran refused = shell("echo '<testsuites/>' > mine.xml; graze fuzz --pairs 100 --out d --junit mine.xml");
   EXPECT_EQ(refused.status, 2) << refused.err;
   EXPECT_EQ(shell("cat mine.xml; ls d").out, "<testsuites/>\n");
+  EXPECT_EQ(shell("graze fuzz --pairs 100 --out d --junit .").status, 1);
+  EXPECT_FALSE(std::filesystem::exists(shell.folder / "d"));
   EXPECT_EQ(shell("graze fuzz --pairs 100 --lanes exact/f32/cpu --out e --junit r.xml").status, 0);
   EXPECT_EQ(read("r.xml").size(), 1u);
   EXPECT_EQ(shell("graze fuzz --pairs 100 --shard 1/2 --out f --junit s.xml").status, 2);

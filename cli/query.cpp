@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "backends/backends.h"
+#include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/mesh_pairs.h"
@@ -41,7 +42,7 @@ const std::vector<std::string> kExecutors = {"auto", "one-core", "all-cores", "o
 struct QueryOptions {
   std::vector<std::string> files;
   std::string self;
-  bool between = false, any = false, all = false, json = false;
+  bool between = false, any = false, all = false, json = false, exact_input = false;
   LaneOptions lanes;
   std::vector<std::string> executors;
   std::string csv, obj, pairs, mismatches;
@@ -272,7 +273,7 @@ void query_all_pairs(const QueryOptions& options, int& status) {
   if (options.between && options.files.size() != 2)
     throw UsageError(fmt::format("--between needs two meshes, but got {}", options.files.size()));
   query_meshes({options.between ? options.files : std::vector{options.self}, options.json, options.executors[0],
-                options.csv, options.obj, options.pairs},
+                options.csv, options.obj, options.pairs, options.exact_input},
                status);
 }
 
@@ -282,8 +283,10 @@ void query_mesh(const QueryOptions& options, int& status) {
         fmt::format("graze query needs two files, a reference and a mesh, but got {}", options.files.size()));
   if (options.any && (!options.csv.empty() || !options.obj.empty() || !options.pairs.empty()))
     throw UsageError("--any does not work with --csv, --obj or --pairs, which write all hits");
-  const std::vector<query::Triangle> references = read_references(options.files[0]),
-                                     triangles = read_mesh(options.files[1], strata::Coordinates::any);
+  const Input of_references = read_references(options.files[0]),
+              of_mesh = read_mesh(options.files[1], strata::Coordinates::any);
+  say_notes(of_references, of_mesh, options.exact_input);
+  const std::vector<query::Triangle>&references = of_references.triangles, &triangles = of_mesh.triangles;
   const QueryLanes lanes = query_lanes(options.lanes, {"exact"});
   const std::vector<Run> runs = runs_of(options, lanes, references, triangles, status);
   if (runs.empty()) return;
@@ -359,6 +362,7 @@ void add_query(CLI::App& app, int& status) {
   add_globs(*command, "--lanes", options->lanes.globs, "Patterns of the lanes that decide; several are compared")
       ->default_str("exact, and those of --subject");
   add_subject_options(*command, options->lanes);
+  add_exact_input(*command, options->exact_input);
   command->add_flag("--json", options->json, "Print one JSON object; it lists the first 100,000 hits");
   command
       ->add_option("--csv", options->csv,

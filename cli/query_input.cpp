@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "backends/backends.h"
+#include "cli/cases.h"
 #include "core/cannot.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -19,21 +20,23 @@
 namespace graze::cli {
 namespace {
 
-std::vector<query::Triangle> read_numbers(const std::string& file) {
+Input read_numbers(const std::string& file) {
   if (!std::filesystem::is_regular_file(file))
     throw std::runtime_error(cannot("read", file, std::filesystem::is_directory(file) ? EISDIR : ENOENT));
   std::string text = fuzz::read_whole(file);
   std::replace(text.begin(), text.end(), ',', ' ');
   strata::Lines lines({file, text}, '#');
+  Input references;
   std::vector<float> numbers;
   while (lines.next()) {
-    for (std::size_t i = 0; i < lines.words().size(); ++i) numbers.push_back(lines.coordinate(i));
+    for (std::size_t i = 0; i < lines.words().size(); ++i) numbers.push_back(lines.coordinate(i, references.rounding));
   }
   if (numbers.empty() || numbers.size() % 9 != 0)
     throw std::runtime_error(
         fmt::format("{}: expected nine numbers for each reference, found {}", file, numbers.size()));
-  std::vector<query::Triangle> references(numbers.size() / 9);
-  std::memcpy(references.data(), numbers.data(), numbers.size() * sizeof(float));
+  references.triangles.resize(numbers.size() / 9);
+  std::memcpy(references.triangles.data(), numbers.data(), numbers.size() * sizeof(float));
+  references.notes = strata::rounding_note(file, references.rounding);
   return references;
 }
 
@@ -74,7 +77,7 @@ QueryLanes query_lanes(const LaneOptions& options, const std::vector<std::string
   return result;
 }
 
-std::vector<query::Triangle> read_references(const std::string& name) {
+Input read_references(const std::string& name) {
   const std::size_t hash = name.rfind('#');
   if (strata::is_mesh(name) && std::filesystem::exists(name))
     throw UsageError(
@@ -85,20 +88,26 @@ std::vector<query::Triangle> read_references(const std::string& name) {
   const std::optional<std::uint64_t> face = parse_whole(name.substr(hash + 1));
   if (!face) throw UsageError(name + ": expected MESH#FACE with a whole number, found '" + name.substr(hash + 1) + "'");
   const std::string file = name.substr(0, hash);
-  const std::vector<query::Triangle> triangles = read_mesh(file);
-  if (*face >= triangles.size())
+  Input mesh = read_mesh(file);
+  if (*face >= mesh.triangles.size())
     throw std::runtime_error(
-        fmt::format("{} has no face {}: it has {}, numbered from 0", file, *face, triangles.size()));
-  return {triangles[*face]};
+        fmt::format("{} has no face {}: it has {}, numbered from 0", file, *face, mesh.triangles.size()));
+  mesh.triangles = {mesh.triangles[*face]};
+  return mesh;
 }
 
-std::vector<query::Triangle> read_mesh(const std::string& file, strata::Coordinates coordinates) {
-  std::vector<query::Triangle> triangles;
-  for (const auto& t : strata::read_triangles(file, coordinates).triangles) {
-    triangles.emplace_back();
-    std::memcpy(triangles.back().data(), t.data(), sizeof(query::Triangle));
-  }
-  return triangles;
+Input read_mesh(const std::string& file, strata::Coordinates coordinates) {
+  const strata::MeshPairs mesh = strata::read_triangles(file, coordinates);
+  Input result{std::vector<query::Triangle>(mesh.triangles.size()), mesh.notes, mesh.rounding};
+  std::memcpy(result.triangles.data(), mesh.triangles.data(), mesh.triangles.size() * sizeof(query::Triangle));
+  return result;
+}
+
+void say_notes(const Input& references, const Input& mesh, bool exact_input) {
+  std::vector<std::string> notes = references.notes;
+  notes.insert(notes.end(), mesh.notes.begin(), mesh.notes.end());
+  strata::Rounding rounding = references.rounding;
+  say_notes(notes, rounding += mesh.rounding, exact_input);
 }
 
 Pair pair_of(const query::Triangle& a, const query::Triangle& b) {

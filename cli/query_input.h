@@ -23,12 +23,20 @@ struct QueryLanes {
 // Throws: UsageError if no lane of a pattern or subject exists, or runs here.
 QueryLanes query_lanes(const LaneOptions& options, const std::vector<std::string>& common);
 
+struct Input {
+  std::vector<query::Triangle> triangles;
+  std::vector<std::string> notes;  // see strata::MeshPairs
+  strata::Rounding rounding;
+};
+
 // Reads a text file with nine numbers for each reference, or MESH#FACE, one triangle of a mesh; faces count from 0.
 // Throws: std::runtime_error that names the file and the line; UsageError if FACE is not a whole number.
-std::vector<query::Triangle> read_references(const std::string& name);
+Input read_references(const std::string& name);
 
-std::vector<query::Triangle> read_mesh(const std::string& file,
-                                       strata::Coordinates coordinates = strata::Coordinates::finite);
+Input read_mesh(const std::string& file, strata::Coordinates coordinates = strata::Coordinates::finite);
+
+// As in cli/cases.h, of both.
+void say_notes(const Input& references, const Input& mesh, bool exact_input);
 
 Pair pair_of(const query::Triangle& a, const query::Triangle& b);
 

@@ -11,6 +11,7 @@
 #include <optional>
 #include <sstream>
 
+#include "cli/cases.h"
 #include "cli/interrupt.h"
 #include "cli/mesh_pairs.h"
 #include "cli/progress.h"
@@ -54,8 +55,10 @@ struct Search {
 };
 
 Search opened(const MeshQuestion& question) {
-  const auto read = [](const std::string& file) {
-    return strata::read_triangles(file, strata::Coordinates::any).triangles;
+  const auto read = [&](const std::string& file) {
+    const strata::MeshPairs mesh = strata::read_triangles(file, strata::Coordinates::any);
+    say_notes(mesh.notes, mesh.rounding, question.exact_input);
+    return mesh.triangles;
   };
   Search search{question, {read(question.files[0]), {}}};
   if (question.files.size() == 2) search.meshes.b = read(question.files[1]);

@@ -11,6 +11,7 @@ struct MeshQuestion {
   bool json;
   std::string executor;         // auto, one-core, all-cores, one-gpu, all-gpus
   std::string csv, obj, pairs;  // files, or empty
+  bool exact_input;
 };
 
 // `graze query --self` and `--between`: prints how many pairs of triangles intersect, and how, and writes the pairs.

@@ -62,6 +62,8 @@ fs::path made_folder(const fs::path& out, const char* own) {
 void expect_replaceable(const fs::path& file, const std::string& text) {
   if (!fuzz::may_replace_foreign && !fuzz::may_replace(file, text))
     throw UsageError(cannot("replace", file, fuzz::kForeign));
+  std::error_code ignored;
+  if (fs::is_directory(file, ignored)) throw std::runtime_error(cannot("write", file, EISDIR));
 }
 
 void write_result(const fs::path& file, const std::string& text, fuzz::NamedBy named_by) {

@@ -21,7 +21,7 @@ void add_force(CLI::App& app);
 // --junit. tests: what its tests are, for the help.
 void add_junit(CLI::App& command, std::string& file, const std::string& tests);
 
-// Throws: UsageError for a file that a result with this text may not replace.
+// Throws: UsageError for a file that a result with this text may not replace; std::runtime_error for a folder.
 void expect_replaceable(const std::filesystem::path& file, const std::string& text);
 
 // Throws: as expect_replaceable and fuzz::write_whole.

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "analysis/measure_scene.h"
+#include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/results.h"
 #include "core/error.h"
@@ -23,6 +24,7 @@ struct SceneVerb {
   std::vector<std::string> files;
   std::string out, poses, units = "units";
   double sufficient = 0;  // the rate; 0: not asked
+  bool exact_input = false;
 };
 
 std::string relative_to(const fs::path& folder, const std::string& file) {
@@ -30,11 +32,12 @@ std::string relative_to(const fs::path& folder, const std::string& file) {
   return path.is_absolute() ? file : path.lexically_normal().lexically_proximate(folder.lexically_normal()).string();
 }
 
-analysis::SceneSample sample_of_pairs(const std::string& file) {
+analysis::SceneSample sample_of_pairs(const std::string& file, bool exact_input) {
   std::vector<Pair> pairs;
   for (const corpus::Entry& entry : corpus::read_pairs(file)) {
     if (!is_finite(entry.pair))
       throw std::runtime_error(fmt::format("cannot measure {}, line {}: a coordinate is not finite", file, entry.line));
+    if (exact_input) expect_exact_input(file, entry);
     pairs.push_back(entry.pair);
   }
   return analysis::sample_of(pairs);
@@ -54,11 +57,11 @@ analysis::SceneSample write_scene(const SceneVerb& options) {
   analysis::SceneSample sample;
   strata::SceneMeshes meshes;
   if (pairs) {
-    sample = sample_of_pairs(options.files[0]);
+    sample = sample_of_pairs(options.files[0], options.exact_input);
   } else {
     auto found = std::make_shared<strata::MeshPairs>(
         strata::read_bodies({options.files.begin(), options.files.end()}, options.poses));
-    for (const std::string& note : found->notes) fmt::print(stderr, "graze: {}\n", note);
+    say_notes(found->notes, found->rounding, options.exact_input);
     sample = {found->triangles, found->size(), [found](std::uint64_t index) { return found->pair(index); }};
     const fs::path folder = fs::path(options.out).parent_path();
     for (const std::string& file : options.files) meshes.files.push_back(relative_to(folder, file));
@@ -130,6 +133,7 @@ void add_scene(CLI::App& app, int&) {
   command->add_option("--out", options->out, "File for the scene (default: standard output)")
       ->check(not_empty())
       ->option_text("FILE");
+  add_exact_input(*command, options->exact_input);
   command
       ->add_option("--sufficient", options->sufficient,
                    "Highest rate of wrong verdicts; finds the cheapest lane that keeps it in the scene")
@@ -167,7 +171,7 @@ strata::SceneSources drawn(const std::string& scene, std::uint64_t seed, std::ui
                            const std::vector<std::string>& globs) {
   fuzz::Json recorded;
   if (!scene.empty()) return drawn_from_scene(scene, seed, pairs, globs, recorded);
-  return {strata::stratum_sources(seed, pairs, globs), {}, {}};
+  return {strata::stratum_sources(seed, pairs, globs), {}, {}, {}};
 }
 
 std::string left_out_text(const std::vector<strata::LeftOut>& left_out) {

@@ -101,8 +101,9 @@ void add_folder(const fs::path& folder, const OwnCode& own, Viewed& viewed) {
 }
 
 // Adds the triangles, and the pairs whose boxes overlap, starting with those on which some lane is wrong.
-void add_mesh(const fs::path& file, Viewed& viewed) {
+void add_mesh(const fs::path& file, bool exact_input, Viewed& viewed) {
   const strata::MeshPairs mesh = strata::read_mesh_pairs(file);
+  say_notes(mesh.notes, mesh.rounding, exact_input);
   const std::size_t shown = std::min(mesh.triangles.size(), reports::kMostViewedTriangles);
   viewed.triangles.assign(mesh.triangles.begin(), mesh.triangles.begin() + static_cast<std::ptrdiff_t>(shown));
   const fuzz::SelectedLanes under_test = fuzz::select_lanes({}, fuzz::Executor::twin);
@@ -141,13 +142,14 @@ void show_against_the_first(Viewed& viewed) {
 }
 
 // Adds the triangles of `graze query REFERENCE MESH`, hits first; the hits are also the pairs.
-void add_query(const std::string& reference, const std::string& file, Viewed& viewed) {
-  const std::vector<query::Triangle> references = read_references(reference);
+void add_query(const std::string& reference, const std::string& file, bool exact_input, Viewed& viewed) {
+  const Input of_references = read_references(reference), of_mesh = read_mesh(file);
+  say_notes(of_references, of_mesh, exact_input);
+  const std::vector<query::Triangle>&references = of_references.triangles, &mesh = of_mesh.triangles;
   if (references.size() != 1)
     throw std::runtime_error(
         fmt::format("graze view shows one reference, and {} has {}", printable(reference), references.size()));
   const Lane* exact = find_lane("exact/f32/cpu");
-  const std::vector<query::Triangle> mesh = read_mesh(file);
   std::vector<Triangle> others;
   std::vector<std::size_t> other_ids;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
@@ -169,18 +171,18 @@ void add_query(const std::string& reference, const std::string& file, Viewed& vi
   viewed.opens_with_triangles = true;
 }
 
-Viewed viewed_of(const std::string& what, const std::string& mesh, const OwnCode& own) {
+Viewed viewed_of(const std::string& what, const std::string& mesh, bool exact_input, const OwnCode& own) {
   Viewed viewed;
   viewed.title = printable(fs::path(what).filename().string());
   std::error_code ignored;
   if (what.empty()) return viewed;
   if (!mesh.empty()) {
-    add_query(what, mesh, viewed);
+    add_query(what, mesh, exact_input, viewed);
   } else if (fs::is_directory(what, ignored)) {
     viewed.title = printable(what);
     add_folder(what, own, viewed);
   } else if (strata::is_mesh(what)) {
-    add_mesh(what, viewed);
+    add_mesh(what, exact_input, viewed);
   } else {
     add_cases(what, own, viewed);
     show_against_the_first(viewed);
@@ -201,15 +203,15 @@ void open_page(const std::string& page) {
   posix_spawn_file_actions_destroy(&quiet);
 }
 
-void view(const LaneOptions& options, const std::string& what, const std::string& mesh, std::size_t random,
-          const std::string& out) {
+void view(const LaneOptions& options, const std::string& what, const std::string& mesh, bool exact_input,
+          std::size_t random, const std::string& out) {
   if (!reports::has_viewer()) {
     throw std::runtime_error(
         "the viewer is not in this build: it needs Node with npm, clang and wasi-libc; run scripts/setup to install "
         "them and build");
   }
   const OwnCode own(options, what);
-  Viewed viewed = viewed_of(what, mesh, own);
+  Viewed viewed = viewed_of(what, mesh, exact_input, own);
   own.add_verdicts(viewed);
   viewed.random = random;
   write_result(out, reports::viewer_page(viewed), fuzz::NamedBy::user);
@@ -248,6 +250,8 @@ void add_view(CLI::App& app, int&) {
       ->transform(whole_number(1, reports::kMostViewedTriangles))
       ->excludes(pairs)
       ->option_text("N");
+  const auto exact_input = std::make_shared<bool>(false);
+  add_exact_input(*command, *exact_input);
   const auto own_code = std::make_shared<LaneOptions>();
   add_subject_options(*command, *own_code);
   add_resubject_option(*command, *own_code);
@@ -255,7 +259,7 @@ void add_view(CLI::App& app, int&) {
       ->check(not_empty())
       ->capture_default_str()
       ->option_text("FILE");
-  command->callback([=] { view(*own_code, *what, *mesh, *random, *out); });
+  command->callback([=] { view(*own_code, *what, *mesh, *exact_input, *random, *out); });
 }
 
 }  // namespace graze::cli

@@ -75,6 +75,11 @@ Soup read_soup(const std::filesystem::path& file, std::string_view bytes, Coordi
        extension.empty() ? "no extension" : extension);
 }
 
+void add_rounding(MeshPairs& pairs, const Rounding& rounding, const std::filesystem::path& file) {
+  pairs.rounding += rounding;
+  for (std::string& note : rounding_note(file.string(), rounding)) pairs.notes.push_back(std::move(note));
+}
+
 // Adds the file's triangles, and its bytes to the hash.
 void add_mesh(MeshPairs& pairs, const std::filesystem::path& file, Coordinates coordinates = Coordinates::finite) {
   const std::string bytes = read_bytes(file);
@@ -91,6 +96,7 @@ void add_mesh(MeshPairs& pairs, const std::filesystem::path& file, Coordinates c
   if (!skipped.empty())
     pairs.notes.push_back(printable(file.string()) + ": " + std::to_string(soup.triangles.size()) +
                           " triangles; not used: " + skipped);
+  add_rounding(pairs, soup.rounding, file);
 }
 
 using Pose = std::array<double, 12>;
@@ -120,12 +126,14 @@ std::vector<Pose> read_poses(const std::filesystem::path& file, std::uint64_t& h
   return poses;
 }
 
-Vec3<float> moved(const Pose& m, const Vec3<float>& v) {
+Vec3<float> moved(const Pose& m, const Vec3<float>& v, Rounding& rounding) {
   float to[3];
   for (std::size_t i = 0; i < 3; ++i) {
     const double x = m[4 * i] * static_cast<double>(v.x), y = m[4 * i + 1] * static_cast<double>(v.y),
                  z = m[4 * i + 2] * static_cast<double>(v.z);
-    to[i] = static_cast<float>(x + y + z + m[4 * i + 3]);
+    const double sum = x + y + z + m[4 * i + 3];
+    to[i] = static_cast<float>(sum);
+    rounding.add(sum, to[i], 0x1p-50 * (std::abs(x) + std::abs(y) + std::abs(z) + std::abs(m[4 * i + 3])));
   }
   return {to[0], to[1], to[2]};
 }
@@ -140,9 +148,11 @@ std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path
                                         " triangles are more than 2^26 triangles"));
   pairs.triangles.clear();
   std::vector<std::size_t> ends;
+  Rounding rounding;
   for (const Pose& pose : poses) {
     for (const Triangle& t : mesh) {
-      pairs.triangles.push_back({moved(pose, t[0]), moved(pose, t[1]), moved(pose, t[2])});
+      const auto vertex = [&](std::size_t i) { return moved(pose, t[i], rounding); };
+      pairs.triangles.push_back({vertex(0), vertex(1), vertex(2)});
       for (const Vec3<float>& v : pairs.triangles.back()) {
         if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
           throw std::runtime_error(cannot(
@@ -151,6 +161,7 @@ std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path
     }
     ends.push_back(pairs.triangles.size());
   }
+  add_rounding(pairs, rounding, file);
   return ends;
 }
 

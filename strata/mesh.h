@@ -21,7 +21,9 @@ struct MeshPairs {
   std::vector<std::array<Vec3<float>, 3>> triangles;  // of the first file, then of the second, in file order
   std::vector<std::pair<std::uint32_t, std::uint32_t>> candidates;  // indices into triangles, sorted, first < second
   std::uint64_t content_hash = 0;  // FNV-1a of the bytes of the first file, then of the second
-  std::vector<std::string> notes;  // one line for each file with unused content, such as normals
+  // One line for each file with unused content, such as normals, and for each whose coordinates float32 rounded.
+  std::vector<std::string> notes;
+  Rounding rounding;  // of the coordinates in all files
 
   std::size_t size() const { return candidates.size(); }
 
@@ -36,9 +38,10 @@ bool is_mesh(const std::filesystem::path& file);
 std::string mesh_formats();
 
 // The candidate pairs of a mesh against itself, or against the other mesh. A face of more than three vertices is cut
-// into a fan from its first vertex. Coordinates are rounded once to float32; triangles that become degenerate stay in.
-// The boxes are those of the rounded triangles, so no touching pair is missed. The extension tells the format.
-// Throws: std::runtime_error of one line that names the file, the line or byte, and what was expected and found.
+// into a fan from its first vertex. Coordinates are rounded once to float32, and counted; triangles that become
+// degenerate stay in. The boxes are those of the rounded triangles, so no touching pair is missed. The extension tells
+// the format. Throws: std::runtime_error of one line that names the file, the line or byte, and what was expected and
+// found.
 MeshPairs read_mesh_pairs(const std::filesystem::path& file,
                           const std::optional<std::filesystem::path>& other = std::nullopt);
 

@@ -242,6 +242,66 @@ TEST_F(MeshFile, SaysWhatItDoesNotUse) {
             (std::vector<std::string>{file.string() + ": 2 triangles; not used: 2 lines, 1 normals"}));
 }
 
+// 1000000.01 is 2^-6 from its neighbours in float32, so it moves by 0.01; 0.5 does not move.
+TEST_F(MeshFile, SaysWhatFloat32Rounds) {
+  const std::string note = ": float32 rounded 2 of 12 coordinates, by at most 0.011";
+  const char* off = "OFF\n4 2 0\n1000000.01 0 0.5\n1 0 0\n0 1000000.01 0\n0 0 1\n3 0 1 2\n3 0 1 3\n";
+  const char* obj = "v 1000000.01 0 0.5\nv 1 0 0\nv 0 1000000.01 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n";
+  const char* ply =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\n"
+      "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+      "1000000.01 0 0.5\n1 0 0\n0 1000000.01 0\n0 0 1\n3 0 1 2\n3 0 1 3\n";
+  for (const auto& [name, text] : {std::pair{"r.off", off}, {"r.obj", obj}, {"r.ply", ply}}) {
+    const auto file = write(name, text);
+    const MeshPairs mesh = read_mesh_pairs(file);
+    EXPECT_EQ(mesh.notes, std::vector{file.string() + note});
+    EXPECT_EQ(mesh.rounding.rounded, 2u);
+    EXPECT_GE(mesh.rounding.most, 0.0099999);
+    EXPECT_LE(mesh.rounding.most, 0.0100001);
+  }
+  const auto file = write("t.off", kTetrahedron);
+  EXPECT_EQ(read_bodies({file}, write("poses.csv", "1 0 0 1000000.01 0 1 0 0 0 0 1 0\n")).rounding.rounded, 12u);
+  EXPECT_EQ(read_bodies({file}, write("whole.csv", "1 0 0 1000000 0 1 0 0 0 0 1 0\n")).rounding.rounded, 0u);
+}
+
+// Whatever the file says in decimals or binary doubles, no coordinate is farther from it than the note says.
+TEST_F(MeshFile, BoundsHowFarFloat32Moves) {
+  std::mt19937_64 random(3);
+  for (int round = 0; round < 200; ++round) {
+    std::string header =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty double x\nproperty double y\n"
+        "property double z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n";
+    std::string text = "OFF\n3 2 0\n";
+    double numbers[9];
+    for (double& x : numbers) {
+      x = std::ldexp(static_cast<double>(static_cast<std::int64_t>(random())), static_cast<int>(random() % 100) - 113);
+      if (random() % 4 == 0) x = static_cast<double>(static_cast<float>(x));
+    }
+    for (std::size_t i = 0; i < 9; ++i) {
+      char word[40];
+      std::snprintf(word, sizeof word, "%.17g%c", numbers[i], i % 3 == 2 ? '\n' : ' ');
+      text += word;
+      header.append(reinterpret_cast<const char*>(&numbers[i]), 8);
+    }
+    text += "3 0 1 2\n3 0 1 2\n";
+    for (int face = 0; face < 2; ++face) header.append("\3\0\0\0\0\1\0\0\0\2\0\0\0", 13);
+    std::uint64_t moved = 0;
+    double most = 0;
+    for (const double x : numbers) {
+      const double by = std::abs(x - static_cast<double>(static_cast<float>(x)));
+      moved += by > 0;
+      most = std::max(most, by);
+    }
+    for (const auto& [file, slack] : {std::pair{write("d.off", text), 1e-9}, {write("d.ply", header), 0.0}}) {
+      const Rounding& rounding = read_triangles(file).rounding;
+      EXPECT_EQ(rounding.rounded, moved);
+      EXPECT_EQ(rounding.coordinates, 9u);
+      EXPECT_GE(rounding.most, most);
+      EXPECT_LE(rounding.most, most * (1 + slack) + (slack > 0 ? most * 1e-6 : 0));
+    }
+  }
+}
+
 TEST(MeshFormats, AreThoseOfTheTable) {
   EXPECT_EQ(mesh_formats(), "OFF, OBJ, STL or PLY");
   for (const char* file : {"a.off", "b/A.PLY", "a.b.stl"}) EXPECT_TRUE(is_mesh(file)) << file;

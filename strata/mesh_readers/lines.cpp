@@ -2,6 +2,7 @@
 #include "strata/mesh_readers/lines.h"
 
 #include <charconv>
+#include <cstdlib>
 #include <stdexcept>
 
 #include "core/text.h"
@@ -19,6 +20,13 @@ void fail(const std::string& where, const std::string& expected, const std::stri
 
 std::string at_line(const MeshBytes& file, std::size_t line) { return file.name + ':' + std::to_string(line); }
 std::string at_byte(const MeshBytes& file, std::size_t byte) { return file.name + ": byte " + std::to_string(byte); }
+
+std::vector<std::string> rounding_note(const std::string& file, const Rounding& rounding) {
+  if (rounding.rounded == 0) return {};
+  return {printable(file) + ": float32 rounded " + std::to_string(rounding.rounded) + " of " +
+          std::to_string(rounding.coordinates) + " coordinates, by at most " +
+          (std::isinf(rounding.most) ? "infinity" : rounded_up(rounding.most, 2))};
+}
 
 void add_face(Soup& soup, std::span<const std::uint32_t> face) {
   if (face.size() < 3) ++soup.skipped["faces of fewer than three vertices"];
@@ -73,9 +81,11 @@ void Lines::fail_at(std::size_t i, const std::string& expected) const {
   fail(expected, i < words_.size() ? shown(words_[i]) : "the end of the line");
 }
 
-float Lines::coordinate(std::size_t i) const {
+float Lines::coordinate(std::size_t i, Rounding& rounding) const {
   const std::optional<float> value = i < words_.size() ? parse_float32(words_[i]) : std::nullopt;
   if (!value || !file_.may_be(*value)) fail_at(i, "a coordinate that is finite in float32");
+  const double written = std::strtod(std::string(words_[i]).c_str(), nullptr);
+  rounding.add(written, *value, std::max(std::abs(written) * 0x1p-53, 0x1p-1074));
   return *value;
 }
 

@@ -177,10 +177,12 @@ class Body {
            is_text() ? shown(lines_.words()[0]) : std::to_string(file_.bytes.size() - byte_) + " bytes more");
   }
 
-  float coordinate(const Type& type) {
-    if (is_text()) return lines_.coordinate(word_++);
-    const float value = static_cast<float>(type.size == 4 ? std::bit_cast<float>(take<std::uint32_t>())
-                                                          : std::bit_cast<double>(take<std::uint64_t>()));
+  float coordinate(const Type& type, Rounding& rounding) {
+    if (is_text()) return lines_.coordinate(word_++, rounding);
+    const double written = type.size == 4 ? static_cast<double>(std::bit_cast<float>(take<std::uint32_t>()))
+                                          : std::bit_cast<double>(take<std::uint64_t>());
+    const auto value = static_cast<float>(written);
+    rounding.add(written, value);
     if (!file_.may_be(value)) fail("a coordinate that is finite in float32", "one that is not");
     return value;
   }
@@ -242,7 +244,7 @@ void take_vertex(Body& body, const Element& element, Soup& soup) {
   Vec3<float> vertex{};
   for (const Property& p : element.properties) {
     if (is_coordinate(p)) {
-      component(vertex, p.name[0] - 'x') = body.coordinate(*p.type);
+      component(vertex, p.name[0] - 'x') = body.coordinate(*p.type, soup.rounding);
       continue;
     }
     for (std::uint64_t n = p.count_type ? body.list_count(p) : 1; n > 0; --n) body.skip(*p.type);

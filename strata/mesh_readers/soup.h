@@ -4,6 +4,7 @@
 // counted and left out. Nothing else is left out.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -17,10 +18,34 @@
 
 namespace graze::strata {
 
+// How many coordinates float32 cannot hold, and by how much rounding moved them.
+struct Rounding {
+  std::uint64_t coordinates = 0, rounded = 0;
+  double most = 0;  // no coordinate moved by more
+
+  // written: the double nearest to the number in the file; slack: how far it can be from that number.
+  void add(double written, float stored, double slack = 0) {
+    ++coordinates;
+    if (!std::isfinite(written) || written == static_cast<double>(stored)) return;
+    ++rounded;
+    most = std::max(most, std::abs(written - static_cast<double>(stored)) + slack);
+  }
+  Rounding& operator+=(const Rounding& other) {
+    coordinates += other.coordinates;
+    rounded += other.rounded;
+    most = std::max(most, other.most);
+    return *this;
+  }
+};
+
+// "FILE: float32 rounded 5 of 18 coordinates, by at most 0.00012", rounded up; empty if it rounded none.
+std::vector<std::string> rounding_note(const std::string& file, const Rounding& rounding);
+
 struct Soup {
   std::vector<Vec3<float>> vertices;                    // finite, unless MeshBytes::coordinates allows others
   std::vector<std::array<std::uint32_t, 3>> triangles;  // indices of existing vertices, in file order
   std::map<std::string, std::uint64_t> skipped;         // how many items were left out, by kind: "normals"
+  Rounding rounding;                                    // of the coordinates of vertices
 };
 
 // Whether a vertex that is not finite is an error, or is read as it is.

@@ -39,6 +39,7 @@ Soup read_binary(const MeshBytes& file) {
         fail(at_byte(file, at), "a facet with finite coordinates", "one without");
     }
     add_triangle(soup, v);
+    soup.rounding.coordinates += 9;
     if (file.bytes[at + 48] != 0 || file.bytes[at + 49] != 0) ++soup.skipped["attributes of facets"];
   }
   if (count > 0) soup.skipped["normals"] = count;
@@ -67,7 +68,8 @@ void take_facet(Lines& lines, Soup& soup) {
   for (Vec3<float>& vertex : v) {
     lines.expect_next("a vertex");
     expect_words(lines, {"vertex"}, 3);
-    vertex = {lines.coordinate(1), lines.coordinate(2), lines.coordinate(3)};
+    const auto coordinate = [&](std::size_t i) { return lines.coordinate(i, soup.rounding); };
+    vertex = {coordinate(1), coordinate(2), coordinate(3)};
   }
   lines.expect_next("endloop");
   expect_words(lines, {"endloop"});

@@ -195,6 +195,7 @@ SceneSources scene_sources(const SceneFile& file, const std::filesystem::path& f
     if (!meshes) {
       meshes = open_meshes(file, folder);
       result.notes = meshes->pairs.notes;
+      result.rounding = meshes->pairs.rounding;
     }
     result.sources.push_back({std::string(row.id), 0, drawn_from(meshes, row.source, seed)});
     weights.push_back(0);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "strata/mesh_readers/soup.h"
 #include "strata/pair_source.h"
 #include "strata/scene/file.h"
 
@@ -21,6 +22,7 @@ struct SceneSources {
   std::vector<PairSource> sources;
   std::vector<LeftOut> left_out;   // sources that match but cannot be drawn
   std::vector<std::string> notes;  // about the meshes, see MeshPairs
+  Rounding rounding;               // of their coordinates
 };
 
 // Half of the pairs come from strata, in the shares of the mix, divided evenly among the strata of a kind. Half come

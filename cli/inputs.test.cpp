@@ -180,7 +180,7 @@ TEST_F(Inputs, WhatFloat32MakesOfMeshesIsSaid) {
   std::ofstream(shell.folder / "far.off") << "OFF\n6 2 0\n1000000.01 0 0\n1000000.01 1 0\n1000000.01 0 1\n"
                                              "1000000.02 0 0\n1000000.02 1 0\n1000000.02 0 1\n3 0 1 2\n3 3 4 5\n";
   std::ofstream(shell.folder / "first.txt") << "1000000.01 0 0 1000000.01 1 0 1000000.01 0 1\n";
-  const std::string note = "far.off: float32 rounded 6 of 18 coordinates, by at most 0.011";
+  const std::string note = "far.off: float32 rounded 6 of 18 coordinates, by at most 0.021";
   for (const std::string command :
        {"graze query --self far.off", "graze query far.off far.off --between", "graze query far.off#0 far.off",
         "graze query first.txt far.off", "graze scene far.off", "graze fuzz --mesh far.off --lanes '*/f32/cpu' --out c",

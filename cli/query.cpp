@@ -285,9 +285,9 @@ void query_mesh(const QueryOptions& options, int& status) {
     throw UsageError("--any does not work with --csv, --obj or --pairs, which write all hits");
   const Input of_references = read_references(options.files[0]),
               of_mesh = read_mesh(options.files[1], strata::Coordinates::any);
-  say_notes(of_references, of_mesh, options.exact_input);
   const std::vector<query::Triangle>&references = of_references.triangles, &triangles = of_mesh.triangles;
   const QueryLanes lanes = query_lanes(options.lanes, {"exact"});
+  say_notes(of_references, of_mesh, options.exact_input);
   const std::vector<Run> runs = runs_of(options, lanes, references, triangles, status);
   if (runs.empty()) return;
   write_hits(options, runs[0], references, triangles);

@@ -37,6 +37,17 @@ test('where a verdict differs from the stored one it shows none', async ({ page 
   await expect(page.locator('[data-lane]')).toHaveCount(0);
 });
 
+test('a notebook shows it in a frame that has no address', async ({ page }) => {
+  test.skip(!file());
+  await page.addInitScript(without_webgl);
+  await page.setContent('<iframe style="width: 100%; height: 560px"></iframe>');
+  const text = readFileSync(file(), 'utf8');
+  await page.locator('iframe').evaluate((frame, text) => ((frame as HTMLIFrameElement).srcdoc = text), text);
+  const inside = page.frameLocator('iframe');
+  await expect(inside.locator('#replayed')).toContainText('Same as the native build');
+  await expect(inside.locator('[data-lane]').first()).toBeVisible();
+});
+
 test('it says what graze check says', async ({ viewer }) => {
   for (let pair = 0; pair < 3; ++pair) {
     await viewer.locator('button', { hasText: 'check line' }).click();

@@ -24,7 +24,8 @@ async function start() {
   const data = JSON.parse(text) as ViewData;
   try {
     const shown = viewer(data, await make_ready(data.replay), first_of(data), {
-      keep: (model: Model) => history.replaceState(null, '', fragment_of(model)),
+      // A page inside a notebook (about:srcdoc) has no address.
+      keep: (model: Model) => location.protocol !== 'about:' && history.replaceState(null, '', fragment_of(model)),
       link: (model: Model) => `${location.href.split('#')[0]}${fragment_of(model)}`,
       active: () => true,
     });

@@ -140,7 +140,9 @@ def given(
             tested = _Tested(functools.partial(function, *self), vectorized)
             why = _check(tested, name, options, test._graze_examples)  # type: ignore[attr-defined]
             if why is not None:
-                raise AssertionError(why) from tested.raised
+                failure = AssertionError(why)
+                failure.graze_says_all = tested.raised is None  # type: ignore[attr-defined]
+                raise failure from tested.raised
 
         test.__name__, test.__doc__, test.__module__ = name, function.__doc__, function.__module__
         test.__qualname__ = getattr(function, "__qualname__", name)

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The plug-in for pytest: how many pairs tests by graze.given draw, for a nightly run."""
+"""The plug-in for pytest: how many pairs tests by graze.given draw, for a nightly run. A failure is shown without the
+lines of graze itself."""
 import os
-from typing import Any
+from typing import Any, Generator
+
+import pytest
 
 
 def pytest_addoption(parser: Any) -> None:
@@ -15,3 +18,10 @@ def pytest_configure(config: Any) -> None:
         value = config.getoption("--graze-" + name)
         if value is not None:
             os.environ["GRAZE_" + name.upper()] = value
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_makereport(call: Any) -> Generator[None, Any, None]:
+    report = (yield).get_result()
+    if call.excinfo and getattr(call.excinfo.value, "graze_says_all", False):
+        report.longrepr = str(call.excinfo.value)

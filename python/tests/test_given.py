@@ -129,6 +129,7 @@ class Given(unittest.TestCase):
         self.assertRegex(done.stdout, r"1 failed, 1 passed")
         self.assertRegex(done.stdout, r"test_boxes is wrong on [\d,]+ of 8,000 pairs")
         self.assertIn("@graze.example('", done.stdout)
+        self.assertNotIn("_given.py", done.stdout)
 
     @unittest.skipUnless(
         all(importlib.util.find_spec(name) for name in ("build", "setuptools", "wheel")),

@@ -96,6 +96,7 @@ class Package(unittest.TestCase):
 
     def test_a_wrong_function_fails_with_the_readmes_smallest_pair(self):
         said = re.sub(r"^ +", "", self.node_test(BOXES, status=1), flags=re.M)
+        self.assertIn("b = [0, 0, 1, 0, -1, 0, 1, 0, 0]; // right: false", said)
         for line in block("36,443").splitlines():
             if line.strip() != "…":
                 self.assertIn(line.strip(), said)
@@ -111,7 +112,9 @@ class Package(unittest.TestCase):
     def test_the_environment_changes_how_many_pairs(self):
         said = self.node_test(BOXES, status=1, GRAZE_PAIRS="210", GRAZE_SEED="7")
         self.assertRegex(said, r"is wrong on \d+ of 210 pairs")
-        self.assertIn("expected a whole number", self.node_test(BOXES, status=1, GRAZE_PAIRS="many"))
+        self.assertIn(
+            "GRAZE_PAIRS: expected a whole number, found 'many'", self.node_test(BOXES, 1, GRAZE_PAIRS="many")
+        )
 
     def test_exceptions_are_wrong_and_declined_answers_are_not(self):
         said = self.script(
@@ -126,6 +129,9 @@ class Package(unittest.TestCase):
             "console.log(await why(() => undefined, { name: 'empty' }));\n"
             "console.log(await why((a, b) => false, { strata: 'shared_*', either: ['shared'] }));\n"
             "console.log(await why((a, b) => false, { strata: 'shared_*' }));\n"
+            "console.log(await why(() => true, { stratum: 'near_*' }));\n"
+            "console.log(await why('boxes'), await why(undefined));\n"
+            "console.log(await why((a, b) => false, { strata: ['shared_*'], either: 'shared' }));\n"
             "for (const strata of ['no_such', '!*', 'uniform,!uniform'])\n"
             "  console.log(await why(() => true, { strata }));\n"
         ).splitlines()
@@ -136,7 +142,11 @@ class Package(unittest.TestCase):
         self.assertRegex(text, r"passed, [1-9]\d+ declined")
         self.assertIn("unsure declines every pair", text)
         self.assertIn("empty returns undefined; expected true, false", text)
-        self.assertIn("passed, 0 declined", text)
+        self.assertEqual(text.count("passed, 0 declined"), 2)
+        self.assertIn("there is no option 'stratum'", text)
+        self.assertIn("expected a function of two triangles, found string", text)
+        self.assertIn("expected a function of two triangles, found undefined", text)
+        self.assertIn("It first threw: Error: planted", text)
         self.assertIn("is wrong on 2,100 of 2,100 pairs (100 %)", text)
         self.assertIn("none matches 'no_such'", text)
         self.assertEqual(text.count("leaves none"), 2)

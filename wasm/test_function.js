@@ -12,11 +12,11 @@
 /**
  * @typedef {object} TestOptions
  * @property {string} [name] of the function, for the message
- * @property {string} [strata] names with * and ?, separated by commas; "!x" leaves out x; default: "*"
+ * @property {string | string[]} [strata] names with * and ?, separated by commas; "!x" leaves out x; default: "*"
  * @property {number} [pairs] how many, shared evenly by the strata; default: 100,000
  * @property {number} [seed] of the pairs; default: 1
  * @property {number} [max_wrong] the share of wrong answers that is accepted; default: 0
- * @property {Kind[]} [either] kinds of pairs on which both answers are accepted; default: none
+ * @property {Kind | Kind[]} [either] kinds of pairs on which both answers are accepted; default: none
  */
 /**
  * @typedef {object} TestResult
@@ -32,6 +32,7 @@
 
 /** @type {readonly Kind[]} */
 const kKinds = ['touching', 'coplanar', 'degenerate', 'shared'];
+const kOptions = ['name', 'strata', 'pairs', 'seed', 'max_wrong', 'either'];
 const kDeclined = 2,
   kThrown = 3;
 
@@ -59,8 +60,19 @@ function expect_strata(strata, wanted) {
 /** @param {string} what @param {number} count */
 function whole(what, count) {
   if (!Number.isSafeInteger(count) || count < 0)
-    throw new RangeError(`${what}: expected a whole number, found ${count}`);
+    throw new RangeError(`${what}: expected a whole number, found ${typeof count} ${count}`);
   return BigInt(count);
+}
+
+/** @param {Overlap} overlap @param {TestOptions} options */
+function expect_function_and_options(overlap, options) {
+  if (typeof overlap !== 'function')
+    throw new TypeError(`expected a function of two triangles, found ${overlap === null ? 'null' : typeof overlap}`);
+  if (typeof options !== 'object' || options === null)
+    throw new TypeError(`options: expected an object such as { pairs: 1000 }, found ${options}`);
+  for (const option of Object.keys(options))
+    if (!kOptions.includes(option))
+      throw new TypeError(`there is no option '${option}'; there are ${kOptions.join(', ')}`);
 }
 
 /**
@@ -71,7 +83,10 @@ function whole(what, count) {
  * @param {TestOptions} [options] @returns {TestResult}
  */
 export function test_function(graze, overlap, options = {}) {
-  const { strata = '*', pairs = 100_000, seed = 1, max_wrong = 0, either = [] } = options;
+  expect_function_and_options(overlap, options);
+  const { pairs = 100_000, seed = 1, max_wrong = 0 } = options;
+  const strata = [options.strata ?? '*'].flat().join(',');
+  const either = [options.either ?? []].flat();
   const name = (options.name ?? overlap.name) || 'the function';
   const { exports, host } = graze;
   expect_strata(graze.strata, strata);
@@ -135,7 +150,9 @@ export function test_function(graze, overlap, options = {}) {
  */
 function of_environment(variable, otherwise) {
   const text = /** @type {any} */ (globalThis).process?.env?.[variable];
-  return text ? Number(text) : otherwise;
+  if (!text) return otherwise;
+  if (!/^\d{1,15}$/.test(text)) throw new RangeError(`${variable}: expected a whole number, found '${text}'`);
+  return Number(text);
 }
 
 /** @param {number[]} nine */
@@ -148,6 +165,7 @@ const list = (nine) => `[${nine.map((x) => (Object.is(x, -0) ? '-0' : String(x))
  * @param {TestOptions} [options] @returns {TestResult}
  */
 export function expect_right(graze, overlap, options = {}) {
+  expect_function_and_options(overlap, options);
   const { pairs, seed } = options;
   const result = test_function(graze, overlap, {
     ...options,
@@ -156,7 +174,10 @@ export function expect_right(graze, overlap, options = {}) {
   });
   if (result.passed) return result;
   const { smallest } = result;
-  const pair = smallest ? `  const a = ${list(smallest.a)},\n    b = ${list(smallest.b)};\n` : '';
+  const pair = smallest
+    ? `  const a = ${list(smallest.a)},\n    b = ${list(smallest.b)}; // right: ${graze.intersects(smallest.a, smallest.b)}\n`
+    : '';
   const words = smallest ? `The smallest wrong pair that was found: ${result.fault}.\n` : '';
-  throw new Error(result.summary + words + pair, result.thrown === null ? undefined : { cause: result.thrown });
+  const first = result.thrown === null ? '' : `It first threw: ${result.thrown}\n`;
+  throw new Error(result.summary + words + pair + first, result.thrown === null ? undefined : { cause: result.thrown });
 }

@@ -35,11 +35,11 @@ void measure_between(const std::vector<std::string>& files, Bench& bench,
   const auto read = [](const std::string& file) {
     const strata::MeshPairs mesh = strata::read_triangles(file);
     say_notes(mesh.notes, mesh.rounding, false);
-    return mesh.triangles;
+    return MeshTriangles{mesh.triangles};
   };
   const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
   const TwoMeshes meshes{read(files[0]), read(files[1])};
-  const oracle::CgalTriangles a(meshes.a), b(*meshes.b);
+  const oracle::CgalTriangles a(meshes.a.triangles), b(meshes.b->triangles);
   const auto by_cgal = [&](Candidates& of) {
     decide_none(of);
     for (std::size_t k = 0; k < of.indices.size(); ++k) {
@@ -49,7 +49,7 @@ void measure_between(const std::vector<std::string>& files, Bench& bench,
   };
   std::vector<Way> ways;
   for (const char* executor : {"one-core", "all-cores"}) {
-    Decider decider = exact_decider(executor);
+    Decider decider = exact_decider(executor, false);
     if (decider.threads == 1 && executor == std::string("all-cores")) continue;
     ways.push_back({"exact", decider});
     decider.decide = by_cgal;
@@ -58,7 +58,7 @@ void measure_between(const std::vector<std::string>& files, Bench& bench,
     ways.push_back({"boxes alone", decider});
   }
   std::string why_not;
-  if (cuda::count_query_devices(why_not) > 0) ways.push_back({"exact", exact_decider("one-gpu")});
+  if (cuda::count_query_devices(why_not) > 0) ways.push_back({"exact", exact_decider("one-gpu", false)});
 
   const std::size_t group = bench.rows.empty() ? 0 : bench.rows.back().group + 1;
   std::vector<FoundPair> exact;

@@ -26,20 +26,19 @@ namespace {
 
 constexpr std::size_t kBlock = 1 << 10, kDeviceBlock = 1 << 17;  // candidates decided together
 
-bool same(const Vec3<float>& p, const Vec3<float>& q) { return p.x == q.x && p.y == q.y && p.z == q.z; }
-
 // The number of distinct points that are vertices of both.
-int common_vertices(const Pair& pair) {
+template <class Real>
+int common_vertices(const BasicPair<Real>& pair) {
   int common = 0;
   for (int i = 0; i < 3; ++i) {
-    const Vec3<float>& p = pair.a[i];
-    const auto is_p = [&](const Vec3<float>& q) { return same(p, q); };
+    const auto is_p = [&p = pair.a[i]](const Vec3<Real>& q) { return p.x == q.x && p.y == q.y && p.z == q.z; };
     common += std::any_of(pair.b, pair.b + 3, is_p) && std::none_of(pair.a, pair.a + i, is_p);
   }
   return common;
 }
 
-Kind kind_of(const Pair& pair, const Relation& relation) {
+template <class Real>
+Kind kind_of(const BasicPair<Real>& pair, const Relation& relation) {
   if (!relation.intersects()) return Kind::apart;
   const int common = common_vertices(pair);
   if (common == 1 && relation.contact == Contact::point) return Kind::common_vertex;
@@ -87,19 +86,29 @@ struct Block {
 
   void decide(const Decider& decider, Collected& collected) {
     if (stop_requested) throw Stopped();
-    if (candidates.pairs.empty()) return;
-    candidates.intersect.resize((candidates.pairs.size() + 63) / 64);
+    if (candidates.indices.empty()) return;
+    candidates.intersect.assign((candidates.indices.size() + 63) / 64, 0);
     decider.decide(candidates);
-    for (std::size_t k = 0; k < candidates.pairs.size(); ++k) {
+    for (std::size_t k = 0; k < candidates.indices.size(); ++k) {
       const auto [i, j] = candidates.indices[k];
-      if (test_bit(candidates.intersect, k)) found.push_back(related(i, j, candidates.pairs[k]));
+      if (!test_bit(candidates.intersect, k)) continue;
+      found.push_back(candidates.pairs.empty() ? related(i, j, candidates.pairs_of_doubles[k])
+                                               : related(i, j, candidates.pairs[k]));
     }
-    collected.add(found, candidates.pairs.size());
+    collected.add(found, candidates.indices.size());
     candidates.indices.clear();
     candidates.pairs.clear();
+    candidates.pairs_of_doubles.clear();
     found.clear();
   }
 };
+
+void decide_doubles(Candidates& of) {
+  for (std::size_t k = 0; k < of.pairs_of_doubles.size(); ++k) {
+    const DoublePair& pair = of.pairs_of_doubles[k];
+    of.intersect[k / 64] |= std::uint64_t{exact::intersects(&pair.a[0].x, &pair.b[0].x)} << k % 64;
+  }
+}
 
 void decide_on_cores(Candidates& of) {
   std::vector<std::uint64_t> declined(of.intersect.size());
@@ -118,6 +127,24 @@ FoundPair related(std::uint32_t i, std::uint32_t j, const Pair& pair) {
   return {i, j, relation.contact, kind_of(pair, relation)};
 }
 
+FoundPair related(std::uint32_t i, std::uint32_t j, const DoublePair& pair) {
+  const Relation relation = relation_of(pair);
+  return {i, j, relation.contact, kind_of(pair, relation)};
+}
+
+Pair TwoMeshes::pair(std::uint32_t i, std::uint32_t j) const {
+  const auto &p = a.triangles[i], &q = (b ? *b : a).triangles[j];
+  return {{p[0], p[1], p[2]}, {q[0], q[1], q[2]}};
+}
+
+DoublePair TwoMeshes::pair_of_doubles(std::uint32_t i, std::uint32_t j) const {
+  const MeshTriangles& other = b ? *b : a;
+  DoublePair result = in_doubles(pair(i, j));
+  if (!a.in_doubles.empty()) std::copy_n(a.in_doubles[i].begin(), 3, result.a);
+  if (!other.in_doubles.empty()) std::copy_n(other.in_doubles[j].begin(), 3, result.b);
+  return result;
+}
+
 std::string csv_of(std::span<const FoundPair> pairs) {
   fmt::memory_buffer text;
   fmt::format_to(std::back_inserter(text), "i,j,contact,kind\n");
@@ -126,10 +153,15 @@ std::string csv_of(std::span<const FoundPair> pairs) {
   return fmt::to_string(text);
 }
 
-Decider exact_decider(const std::string& executor) {
+Decider exact_decider(const std::string& executor, bool of_doubles) {
   const int cores = tbb::info::default_concurrency();
-  if (executor == "one-core") return {executor, 1, kBlock, decide_on_cores};
-  if (executor != "one-gpu") return {"all-cores", cores, kBlock, decide_on_cores};
+  const auto decide = of_doubles ? decide_doubles : decide_on_cores;
+  if (executor == "one-core") return {executor, 1, kBlock, decide};
+  if (executor != "one-gpu") return {"all-cores", cores, kBlock, decide};
+  if (of_doubles)
+    throw std::runtime_error(
+        "--executor one-gpu: the device decides float32, which does not hold these coordinates; leave it out, and the "
+        "cores decide them as doubles");
   struct Shared {
     std::mutex turn;
     std::unique_ptr<cuda::Device> device;
@@ -152,8 +184,9 @@ FoundPairs find_pairs(const TwoMeshes& meshes, const Decider& decider, const Kep
                       const std::function<void(std::size_t)>& told) {
   const auto start = std::chrono::steady_clock::now();
   const std::clock_t processor_start = std::clock();
-  const strata::BoxSlabs slabs(meshes.a,
-                               meshes.b ? std::optional<strata::BoxSlabs::Triangles>(*meshes.b) : std::nullopt);
+  const strata::BoxSlabs slabs(
+      meshes.a.triangles, meshes.b ? std::optional<strata::BoxSlabs::Triangles>(meshes.b->triangles) : std::nullopt);
+  const bool are_doubles = meshes.are_doubles();
   Collected collected(kept);
   tbb::enumerable_thread_specific<Block> blocks;
   std::mutex telling;
@@ -164,10 +197,13 @@ FoundPairs find_pairs(const TwoMeshes& meshes, const Decider& decider, const Kep
     Block& block = blocks.local();
     Candidates& candidates = block.candidates;
     slabs.pairs(slab, [&](std::uint32_t i, std::uint32_t j) {
-      const auto &a = meshes.a[i], &b = meshes.second(j);
       candidates.indices.emplace_back(i, j);
-      candidates.pairs.push_back({{a[0], a[1], a[2]}, {b[0], b[1], b[2]}});
-      if (candidates.pairs.size() == decider.block) block.decide(decider, collected);
+      if (are_doubles) {
+        candidates.pairs_of_doubles.push_back(meshes.pair_of_doubles(i, j));
+      } else {
+        candidates.pairs.push_back(meshes.pair(i, j));
+      }
+      if (candidates.indices.size() == decider.block) block.decide(decider, collected);
     });
     if (stop_requested) throw Stopped();
     const std::lock_guard lock(telling);

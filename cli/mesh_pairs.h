@@ -39,24 +39,36 @@ inline constexpr std::size_t kMostListed = 100'000;  // hits in one JSON object
 
 // Requires: finite coordinates.   Exact: always.
 FoundPair related(std::uint32_t i, std::uint32_t j, const Pair& pair);
+FoundPair related(std::uint32_t i, std::uint32_t j, const DoublePair& pair);
 
 // The text of a CSV file: a head, and a row for each pair.
 std::string csv_of(std::span<const FoundPair> pairs);
 
-using MeshTriangles = std::vector<std::array<Vec3<float>, 3>>;
+// The triangles of a mesh in float32. `in_doubles` are the same in doubles, if a coordinate is beyond float32
+// (strata::Rounding); else empty.
+struct MeshTriangles {
+  std::vector<std::array<Vec3<float>, 3>> triangles;
+  std::vector<std::array<Vec3<double>, 3>> in_doubles = {};
+
+  std::size_t size() const { return triangles.size(); }
+};
 
 // One mesh against itself, or two against each other.
 struct TwoMeshes {
   MeshTriangles a;
   std::optional<MeshTriangles> b;
 
-  const std::array<Vec3<float>, 3>& second(std::uint32_t j) const { return b ? (*b)[j] : a[j]; }
+  // Whether a coordinate is beyond float32. Then doubles are decided.
+  bool are_doubles() const { return !a.in_doubles.empty() || (b && !b->in_doubles.empty()); }
+  Pair pair(std::uint32_t i, std::uint32_t j) const;
+  DoublePair pair_of_doubles(std::uint32_t i, std::uint32_t j) const;
 };
 
-// Candidates, and which of them intersect: bit k % 64 of word k / 64.
+// Candidates, as floats or as doubles, and which of them intersect: bit k % 64 of word k / 64.
 struct Candidates {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> indices;
   std::vector<Pair> pairs;
+  std::vector<DoublePair> pairs_of_doubles;
   std::vector<std::uint64_t> intersect;
 };
 
@@ -68,8 +80,8 @@ struct Decider {
 };
 
 // executor: auto, one-core, all-cores or one-gpu. auto takes all cores.
-// Throws: std::runtime_error if there is no device.
-Decider exact_decider(const std::string& executor);
+// Throws: std::runtime_error if there is no device, or if it would have to decide doubles.
+Decider exact_decider(const std::string& executor, bool of_doubles);
 
 // The pairs to keep: the first `most` in the order of (i, j), all or only those that pierce.
 struct Kept {
@@ -88,8 +100,9 @@ struct FoundPairs {
   std::uint64_t all() const;
 };
 
-// told: called with the number of triangles of `a` that are done, by one thread at a time.
-// Throws: Stopped, soon after a request to stop (core/stop.h).
+// Boxes are those of the triangles in float32. Rounding keeps the order of coordinates, so they miss no pair of
+// doubles. told: called with the number of triangles of `a` that are done, by one thread at a time. Throws: Stopped,
+// soon after a request to stop (core/stop.h).
 FoundPairs find_pairs(
     const TwoMeshes& meshes, const Decider& decider, const Kept& kept,
     const std::function<void(std::size_t)>& told = [](std::size_t) {});

@@ -113,11 +113,14 @@ void write_hits(const QueryOptions& options, const Run& run, const std::vector<q
     const Pair pair = pair_of(references[reference], triangles[triangle]);
     entries.push_back({pair, {{"name", fmt::format("reference_{}_triangle_{}", reference, triangle)}}});
     rows.push_back(related(static_cast<std::uint32_t>(reference), static_cast<std::uint32_t>(triangle), pair));
-    hits.triangles.push_back(triangles[triangle]);
+    hits.triangles.push_back(in_doubles(triangles[triangle]));
   }
   if (!options.csv.empty()) write_result(options.csv, csv_of(rows), fuzz::NamedBy::user);
   if (!options.pairs.empty()) write_pairs(options.pairs, entries);
-  if (!options.obj.empty()) write_result(options.obj, obj_of({{"reference", references}, hits}), fuzz::NamedBy::user);
+  if (options.obj.empty()) return;
+  ObjGroup asked{"reference", {}};
+  for (const query::Triangle& reference : references) asked.triangles.push_back(in_doubles(reference));
+  write_result(options.obj, obj_of({asked, hits}), fuzz::NamedBy::user);
 }
 
 // How we know the verdicts of a CUDA lane that ran on cores; empty for others.

@@ -29,7 +29,8 @@ Input read_numbers(const std::string& file) {
   Input references;
   std::vector<float> numbers;
   while (lines.next()) {
-    for (std::size_t i = 0; i < lines.words().size(); ++i) numbers.push_back(lines.coordinate(i, references.rounding));
+    for (std::size_t i = 0; i < lines.words().size(); ++i)
+      numbers.push_back(lines.coordinate(i, references.rounding).stored);
   }
   if (numbers.empty() || numbers.size() % 9 != 0)
     throw std::runtime_error(
@@ -117,13 +118,23 @@ Pair pair_of(const query::Triangle& a, const query::Triangle& b) {
   return pair;
 }
 
+std::array<double, 9> in_doubles(const query::Triangle& triangle) {
+  std::array<double, 9> result;
+  std::copy(triangle.begin(), triangle.end(), result.begin());
+  return result;
+}
+
 std::string obj_of(const std::vector<ObjGroup>& groups) {
+  const auto digits = [](double x) {
+    return static_cast<double>(static_cast<float>(x)) == x ? fmt::format("{:.9g}", x) : fmt::format("{:.17g}", x);
+  };
   std::string text = "# Written by graze query\n";
   std::size_t vertex = 1;
   for (const ObjGroup& group : groups) {
     text += "g " + group.name + "\n";
-    for (const query::Triangle& t : group.triangles) {
-      for (std::size_t k = 0; k < 9; k += 3) text += fmt::format("v {:.9g} {:.9g} {:.9g}\n", t[k], t[k + 1], t[k + 2]);
+    for (const std::array<double, 9>& t : group.triangles) {
+      for (std::size_t k = 0; k < 9; k += 3)
+        text += fmt::format("v {} {} {}\n", digits(t[k]), digits(t[k + 1]), digits(t[k + 2]));
       text += fmt::format("f {} {} {}\n", vertex, vertex + 1, vertex + 2);
       vertex += 3;
     }

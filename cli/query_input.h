@@ -2,6 +2,7 @@
 // The inputs of `graze query`: reference triangles, and the triangles of a mesh.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -40,10 +41,13 @@ void say_notes(const Input& references, const Input& mesh, bool exact_input);
 
 Pair pair_of(const query::Triangle& a, const query::Triangle& b);
 
-// The triangles as an OBJ file, in named groups.
+std::array<double, 9> in_doubles(const query::Triangle& triangle);
+
+// The triangles as an OBJ file, in named groups. Each number has the digits that tell it from others of its type:
+// float32 if that holds it, else double.
 struct ObjGroup {
   std::string name;
-  std::vector<query::Triangle> triangles;
+  std::vector<std::array<double, 9>> triangles;
 };
 std::string obj_of(const std::vector<ObjGroup>& groups);
 

@@ -47,18 +47,24 @@ struct Search {
     if (self()) std::erase_if(list, [](const FoundPair& pair) { return pair.kind != Kind::pierces; });
     return list;
   }
-
-  Pair pair(const FoundPair& of) const {
-    const auto &a = meshes.a[of.i], &b = meshes.second(of.j);
-    return {{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
-  }
 };
+
+// Says what is special about the mesh: content that is not used, and that doubles are decided.
+void say_notes_of(const std::string& file, const strata::MeshPairs& mesh, bool exact_input) {
+  if (mesh.rounding.beyond == 0 || exact_input) return say_notes(mesh.notes, mesh.rounding, exact_input);
+  std::vector<std::string> notes = mesh.notes;
+  for (const std::string& rounding : strata::rounding_note(file, mesh.rounding)) std::erase(notes, rounding);
+  notes.push_back(
+      fmt::format("{}: decided in doubles, because {} of {} coordinates have more digits than float32 holds",
+                  printable(file), mesh.rounding.beyond, mesh.rounding.coordinates));
+  say_notes(notes, {}, false);
+}
 
 Search opened(const MeshQuestion& question) {
   const auto read = [&](const std::string& file) {
-    const strata::MeshPairs mesh = strata::read_triangles(file, strata::Coordinates::any);
-    say_notes(mesh.notes, mesh.rounding, question.exact_input);
-    return mesh.triangles;
+    strata::MeshPairs mesh = strata::read_triangles(file, strata::Coordinates::any);
+    say_notes_of(file, mesh, question.exact_input);
+    return MeshTriangles{std::move(mesh.triangles), std::move(mesh.in_doubles)};
   };
   Search search{question, {read(question.files[0]), {}}};
   if (question.files.size() == 2) search.meshes.b = read(question.files[1]);
@@ -93,15 +99,21 @@ void write_files(const Search& search) {
   std::ostringstream pairs;
   corpus::write_header(pairs);
   ObjGroup hits{search.self() ? "piercing" : "hits", {}};
+  strata::Rounding rounding;
   for (const FoundPair& hit : search.list()) {
-    const Pair pair = search.pair(hit);
+    const DoublePair exact = search.meshes.pair_of_doubles(hit.i, hit.j);
+    const Pair pair = search.meshes.pair(hit.i, hit.j);
     corpus::write_entry(pairs, {pair, {{"name", fmt::format("triangles_{}_{}", hit.i, hit.j)}}});
-    for (const float* from : {&pair.a[0].x, &pair.b[0].x}) {
+    for (int k = 0; k < kCoordinates; ++k) rounding.add(coordinates(exact)[k], coordinates(pair)[k]);
+    for (const double* from : {&exact.a[0].x, &exact.b[0].x}) {
       hits.triangles.emplace_back();
       std::copy_n(from, 9, hits.triangles.back().begin());
     }
   }
-  if (!question.pairs.empty()) write_result(question.pairs, pairs.str(), fuzz::NamedBy::user);
+  if (!question.pairs.empty()) {
+    write_result(question.pairs, pairs.str(), fuzz::NamedBy::user);
+    say_notes(strata::rounding_note(question.pairs, rounding), rounding, false);
+  }
   if (!question.obj.empty()) write_result(question.obj, obj_of({hits}), fuzz::NamedBy::user);
 }
 
@@ -114,6 +126,7 @@ Json json_of(const Search& search) {
   json["declined"] = found.declined;
   json["seconds"] = found.seconds;
   json["executor"] = search.executor;
+  json["coordinates"] = search.meshes.are_doubles() ? "f64" : "f32";
   json["candidates"] = found.candidates;
   json["piercing"] = found.of(Kind::pierces);
   json["touching"] = found.of(Kind::touches);
@@ -167,7 +180,7 @@ void query_meshes(const MeshQuestion& question, int& status) {
   if (!question.obj.empty()) expect_replaceable(question.obj, obj_of({}));
   Search search = opened(question);
   catch_interrupts();
-  const Decider decider = exact_decider(question.executor);
+  const Decider decider = exact_decider(question.executor, search.meshes.are_doubles());
   search.executor = decider.executor;
   const std::size_t triangles = search.meshes.a.size();
   Progress progress("triangles", triangles, isatty(STDERR_FILENO), error_screen());

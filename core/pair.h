@@ -1,32 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair: two float32 triangles, 18 floats, 72 bytes. Its stored bits are the input; nothing rounds them again.
+// A pair: two triangles, 18 coordinates of one type, float32 (72 bytes) or double (144 bytes). Its stored bits are the
+// input; nothing rounds them again.
 #pragma once
 
 #include <bit>
 #include <cstdint>
+#include <type_traits>
 
 #include "core/vec3.h"
 
 namespace graze {
 
 // Vertices a[0..2] of the first triangle and b[0..2] of the second, in the order of the text format.
-struct Pair {
-  Vec3<float> a[3];
-  Vec3<float> b[3];
+template <class Real>
+struct BasicPair {
+  Vec3<Real> a[3];
+  Vec3<Real> b[3];
 };
-static_assert(sizeof(Pair) == 72);
+using Pair = BasicPair<float>;
+using DoublePair = BasicPair<double>;
+static_assert(sizeof(Pair) == 72 && sizeof(DoublePair) == 144);
 
 inline constexpr int kCoordinates = 18;
 
 // The 18 coordinates of a pair as one array: ax0 ay0 az0 ax1 … bz2.
-inline const float* coordinates(const Pair& pair) { return &pair.a[0].x; }
-inline float* coordinates(Pair& pair) { return &pair.a[0].x; }
+template <class Real>
+const Real* coordinates(const BasicPair<Real>& pair) {
+  return &pair.a[0].x;
+}
+template <class Real>
+Real* coordinates(BasicPair<Real>& pair) {
+  return &pair.a[0].x;
+}
 
-inline bool is_finite(const Pair& pair) {
+template <class Real>
+bool is_finite(const BasicPair<Real>& pair) {
+  using Bits = std::conditional_t<std::is_same_v<Real, float>, std::uint32_t, std::uint64_t>;
+  constexpr Bits kExponent = std::is_same_v<Real, float> ? Bits{0x7f800000u} : static_cast<Bits>(0x7ff0000000000000u);
   unsigned others = 0;  // no branch for each coordinate, so that this becomes vector instructions
   for (int i = 0; i < kCoordinates; ++i)
-    others |= unsigned{(std::bit_cast<std::uint32_t>(coordinates(pair)[i]) & 0x7f800000u) == 0x7f800000u};
+    others |= unsigned{(std::bit_cast<Bits>(coordinates(pair)[i]) & kExponent) == kExponent};
   return others == 0;
+}
+
+// The pair as a program stores it that keeps its coordinates in float32: each rounded to nearest, beyond the largest
+// float32 to infinity.
+inline Pair stored_in_float32(const DoublePair& pair) {
+  Pair result;
+  for (int i = 0; i < kCoordinates; ++i) coordinates(result)[i] = static_cast<float>(coordinates(pair)[i]);
+  return result;
+}
+
+// The same coordinates as doubles.   Exact: always.
+inline DoublePair in_doubles(const Pair& pair) {
+  DoublePair result;
+  for (int i = 0; i < kCoordinates; ++i) coordinates(result)[i] = static_cast<double>(coordinates(pair)[i]);
+  return result;
 }
 
 }  // namespace graze

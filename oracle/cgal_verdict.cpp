@@ -20,11 +20,14 @@ namespace {
 // orientation, coplanar orientation, collinear, and, for two segments, line points p + v.)
 using SmallKernel = CGAL::Simple_cartesian<boost::int128_type>;
 
-// Filtered double arithmetic for the other pairs. Any float32 is a double, and a product of three differences of
-// float32 lies between 2^-447 and 2^390. So nothing over- or underflows, and the filters' error bounds hold.
+// Filtered double arithmetic for the other pairs, if their coordinates are multiples of 2^-300 below 2^300, as all of
+// float32 are. A product of three differences is then zero or lies between 2^-900 and 2^903. So nothing over- or
+// underflows, and the filters' error bounds hold.
 using WideKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-// Rationals, for pairs whose numbers are not float32.
+constexpr int kWideExponents = 300;
+
+// Rationals, for all others.
 using LargeKernel = CGAL::Simple_cartesian<mpq_class>;
 
 // The closed convex hull of three points: its dimension (0, 1 or 2) and its dimension + 1 vertices.
@@ -73,22 +76,24 @@ Hull<Kernel> hull(const Vec3<Real> (&p)[3]) {
   return {point(p[0]), point(p[1]), point(p[2])};
 }
 
+template <class Kernel, class Triangles>
+Verdict verdict_in(const Triangles& pair) {
+  return hulls_intersect(hull<Kernel>(pair.a), hull<Kernel>(pair.b)) ? Verdict::intersects : Verdict::disjoint;
+}
+
+template <class Real>
+Verdict verdict_of_pair(const BasicPair<Real>& pair) {
+  const Grid grid = grid_of(pair);
+  if (grid.is_small()) return verdict_in<SmallKernel>(small_integers(pair, grid));
+  if (grid.exponent < -kWideExponents || grid.exponent + grid.bits > kWideExponents)
+    return cgal_verdict(large_integers(pair, grid));
+  return verdict_in<WideKernel>(pair);
+}
+
 }  // namespace
 
-Verdict cgal_verdict(const Pair& pair) {
-  bool intersects;
-  if (const Grid grid = grid_of(pair); grid.is_small()) {
-    const SmallPair small = small_integers(pair, grid);
-    intersects = hulls_intersect(hull<SmallKernel>(small.a), hull<SmallKernel>(small.b));
-  } else {
-    intersects = hulls_intersect(hull<WideKernel>(pair.a), hull<WideKernel>(pair.b));
-  }
-  return intersects ? Verdict::intersects : Verdict::disjoint;
-}
-
-Verdict cgal_verdict(const LargePair& pair) {
-  return hulls_intersect(hull<LargeKernel>(pair.a), hull<LargeKernel>(pair.b)) ? Verdict::intersects
-                                                                               : Verdict::disjoint;
-}
+Verdict cgal_verdict(const Pair& pair) { return verdict_of_pair(pair); }
+Verdict cgal_verdict(const DoublePair& pair) { return verdict_of_pair(pair); }
+Verdict cgal_verdict(const LargePair& pair) { return verdict_in<LargeKernel>(pair); }
 
 }  // namespace graze::oracle

@@ -5,7 +5,6 @@
 #include <mpfr.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace graze::oracle {
 namespace {
@@ -131,18 +130,19 @@ double rounded(const SquaredMargin& margin) {
   const bool cut = root * root != quotient || quotient * denominator != numerator;
   root = 2 * root + (cut ? 1 : 0);
   mpfr_t value;
-  mpfr_init2(value, 53);
+  mpfr_init2(value, 80);  // holds the root; it is rounded once, below, also to a subnormal
   mpfr_set_z_2exp(value, root.get_mpz_t(), margin.exponent - shift - 1, MPFR_RNDN);
   const double result = mpfr_get_d(value, MPFR_RNDN);
   mpfr_clear(value);
   return result;
 }
 
-Truth truth_of(Verdict verdict, Contact contact, const Hulls& hulls, double size, int log2_ulp) {
-  const double margin = verdict == Verdict::disjoint ? size : -size;
-  const int sign = (margin > 0) - (margin < 0);
-  // Adding zero turns -0 into 0. The power of two is exact, because margins stay far from the limits of double.
-  return {{verdict, contact, sign, hulls}, margin + 0.0, std::ldexp(margin, -log2_ulp) + 0.0};
+Truth truth_of(Verdict verdict, Contact contact, const Hulls& hulls, const SquaredMargin& size, int log2_ulp) {
+  const int sign = size.numerator == 0 ? 0 : verdict == Verdict::disjoint ? 1 : -1;
+  SquaredMargin in_ulps = size;
+  in_ulps.exponent -= log2_ulp;
+  // Adding zero turns -0 into 0.
+  return {{verdict, contact, sign, hulls}, sign * rounded(size) + 0.0, sign * rounded(in_ulps) + 0.0};
 }
 
 }  // namespace graze::oracle

@@ -34,11 +34,12 @@ SquaredMargin exact_separation(const LargePair& pair, int exponent, int d);
 // floor(log2(|margin|)).   Requires: margin is not zero.   Exact: always.
 int floor_log2(const SquaredMargin& margin);
 
-// |margin|, rounded to nearest once. Nonzero margins lie in [2^-705, 2^130], so the double is always normal.
+// |margin|, rounded to nearest once. Nonzero margins of float32 lie in [2^-705, 2^130]; those of doubles may round to 0
+// or to infinity.
 double rounded(const SquaredMargin& margin);
 
-// The truth of a pair whose distance or depth is `size`. log2_ulp: log2 of the ulp of its largest coordinate.
-Truth truth_of(Verdict verdict, Contact contact, const Hulls& hulls, double size, int log2_ulp);
+// The truth of a pair with this distance or depth. log2_ulp: log2 of the ulp of its largest coordinate.
+Truth truth_of(Verdict verdict, Contact contact, const Hulls& hulls, const SquaredMargin& size, int log2_ulp);
 
 // Direction d of core/margin/directions.h, exactly, for any integer type.
 template <class Int>

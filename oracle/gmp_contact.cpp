@@ -266,9 +266,8 @@ Contact contact_of_pair(Workspace<Number>& work) {
   return flat_with_triangle(work, b, a);
 }
 
-}  // namespace
-
-Contact gmp_contact(const Pair& pair) {
+template <class Real>
+Contact contact_of_coordinates(const BasicPair<Real>& pair) {
   const Grid grid = grid_of(pair);
   if (grid.is_small()) {
     Workspace<TwoLimbs> work;
@@ -286,6 +285,11 @@ Contact gmp_contact(const Pair& pair) {
   }
   return contact_of_pair(work);
 }
+
+}  // namespace
+
+Contact gmp_contact(const Pair& pair) { return contact_of_coordinates(pair); }
+Contact gmp_contact(const DoublePair& pair) { return contact_of_coordinates(pair); }
 
 Contact gmp_contact(const LargePair& pair) {
   Workspace<Register> work;

@@ -60,14 +60,17 @@ Hulls hulls_of(const Integers& pair) {
   return {dimension<Integer>(pair.a), dimension<Integer>(pair.b), coplanar};
 }
 
-}  // namespace
-
-Hulls hulls(const Pair& pair) {
+template <class Real>
+Hulls hulls_of_pair(const BasicPair<Real>& pair) {
   const Grid grid = grid_of(pair);
   return grid.is_small() ? hulls_of<std::int64_t>(small_integers(pair, grid))
                          : hulls_of<mpz_class>(large_integers(pair, grid));
 }
 
+}  // namespace
+
+Hulls hulls(const Pair& pair) { return hulls_of_pair(pair); }
+Hulls hulls(const DoublePair& pair) { return hulls_of_pair(pair); }
 Hulls hulls(const LargePair& pair) { return hulls_of<mpz_class>(pair); }
 
 }  // namespace graze::oracle

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Splits float32 bits into mantissa and exponent; see integer_pair.h.
+// Splits the bits of a float32 or double into mantissa and exponent; see integer_pair.h.
 #include "oracle/integer_pair.h"
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 namespace graze::oracle {
 namespace {
 
-// |value| = mantissa * 2^exponent, mantissa < 2^24; subnormals share the exponent of the smallest normals.
+// |value| = mantissa * 2^exponent, mantissa < 2^24 or 2^53; subnormals share the exponent of the smallest normals.
 struct Parts {
-  std::uint32_t mantissa;
+  std::uint64_t mantissa;
   int exponent;
   bool negative;
 };
@@ -23,16 +24,26 @@ Parts split(float value) {
   return {fraction | hidden, static_cast<int>(std::max(biased, 1u)) - 150, (bits >> 31) != 0};
 }
 
+Parts split(double value) {
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  const std::uint64_t biased = (bits >> 52) & 0x7ffu;
+  const std::uint64_t fraction = bits & 0xfffffffffffffu;
+  const std::uint64_t hidden = biased != 0 ? 0x10000000000000u : 0u;
+  return {fraction | hidden, static_cast<int>(std::max<std::uint64_t>(biased, 1)) - 1075, (bits >> 63) != 0};
+}
+
 // mantissa * 2^shift, without losing a bit.   Requires: it fits.
 std::int64_t shifted(const Parts& parts, int shift) {
-  const std::int64_t size = shift >= 0 ? std::int64_t{parts.mantissa} << shift : std::int64_t{parts.mantissa} >> -shift;
+  const auto whole = static_cast<std::int64_t>(parts.mantissa);
+  const std::int64_t size = shift >= 0 ? whole << shift : whole >> -shift;
   return parts.negative ? -size : size;
 }
 
 }  // namespace
 
-Grid grid_of(const Pair& pair) {
-  int lowest = 128, highest = -150;
+template <class Real>
+Grid grid_of(const BasicPair<Real>& pair) {
+  int lowest = 1 << 11, highest = -(1 << 11);
   for (int i = 0; i < kCoordinates; ++i) {
     const Parts parts = split(coordinates(pair)[i]);
     if (parts.mantissa == 0) continue;
@@ -42,7 +53,8 @@ Grid grid_of(const Pair& pair) {
   return highest < lowest ? Grid{} : Grid{lowest, highest - lowest};
 }
 
-SmallPair small_integers(const Pair& pair, const Grid& grid) {
+template <class Real>
+SmallPair small_integers(const BasicPair<Real>& pair, const Grid& grid) {
   SmallPair result;
   std::int64_t* out = &result.a[0].x;
   for (int i = 0; i < kCoordinates; ++i) {
@@ -53,17 +65,19 @@ SmallPair small_integers(const Pair& pair, const Grid& grid) {
   return result;
 }
 
-void set_integer(mpz_t out, float coordinate, const Grid& grid) {
+template <class Real>
+void set_integer(mpz_t out, Real coordinate, const Grid& grid) {
   const Parts parts = split(coordinate);
   const int shift = parts.exponent - grid.exponent;
   if (parts.mantissa == 0) return mpz_set_ui(out, 0);
-  if (shift < 64 - 24) return mpz_set_si(out, shifted(parts, shift));
+  if (shift < 63 - std::numeric_limits<Real>::digits) return mpz_set_si(out, shifted(parts, shift));
   mpz_set_ui(out, parts.mantissa);
   mpz_mul_2exp(out, out, static_cast<mp_bitcnt_t>(shift));
   if (parts.negative) mpz_neg(out, out);
 }
 
-LargePair large_integers(const Pair& pair, const Grid& grid) {
+template <class Real>
+LargePair large_integers(const BasicPair<Real>& pair, const Grid& grid) {
   LargePair result;
   for (int i = 0; i < kCoordinates; ++i) {
     Vec3<mpz_class>& point = i < 9 ? result.a[i / 3] : result.b[(i - 9) / 3];
@@ -71,5 +85,14 @@ LargePair large_integers(const Pair& pair, const Grid& grid) {
   }
   return result;
 }
+
+template Grid grid_of(const Pair&);
+template Grid grid_of(const DoublePair&);
+template SmallPair small_integers(const Pair&, const Grid&);
+template SmallPair small_integers(const DoublePair&, const Grid&);
+template void set_integer(mpz_t, float, const Grid&);
+template void set_integer(mpz_t, double, const Grid&);
+template LargePair large_integers(const Pair&, const Grid&);
+template LargePair large_integers(const DoublePair&, const Grid&);
 
 }  // namespace graze::oracle

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair as integers: every float32 coordinate is an integer times one power of two that all 18 share. That factor does
-// not affect the signs of determinants. Lengths are multiplied by it at the end.
+// A pair as integers: every coordinate, float32 or double, is an integer times one power of two that all 18 share. That
+// factor does not affect the signs of determinants. Lengths are multiplied by it at the end.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +21,14 @@ inline constexpr int kSmallBits = 40;
 
 // The common grid: every coordinate is an integer of at most `bits` bits times 2^exponent.
 struct Grid {
-  int exponent = 0;  // in [-149, 127]; 0 when all coordinates are zero
-  int bits = 0;      // in [0, 277]
+  int exponent = 0;  // in [-149, 127], for doubles in [-1074, 1023]; 0 when all coordinates are zero
+  int bits = 0;      // in [0, 277], for doubles in [0, 2098]
   bool is_small() const { return bits <= kSmallBits; }
 };
 
 // Requires: finite coordinates.   Returns: the coarsest such grid.
-Grid grid_of(const Pair& pair);
+template <class Real>
+Grid grid_of(const BasicPair<Real>& pair);
 
 struct SmallPair {
   Vec3<std::int64_t> a[3];
@@ -36,11 +37,13 @@ struct SmallPair {
 
 // The pair's coordinates divided by 2^grid.exponent.
 // Requires: grid is the pair's, and is_small().   Exact: always.
-SmallPair small_integers(const Pair& pair, const Grid& grid);
+template <class Real>
+SmallPair small_integers(const BasicPair<Real>& pair, const Grid& grid);
 
 // Like small_integers for one coordinate, of any size, stored in an initialised GMP integer.
 // Requires: grid is that of the coordinate's pair.   Exact: always.
-void set_integer(mpz_t out, float coordinate, const Grid& grid);
+template <class Real>
+void set_integer(mpz_t out, Real coordinate, const Grid& grid);
 
 struct LargePair {
   Vec3<mpz_class> a[3];
@@ -48,7 +51,8 @@ struct LargePair {
 };
 
 // The pair's coordinates divided by 2^grid.exponent.
-LargePair large_integers(const Pair& pair, const Grid& grid);
+template <class Real>
+LargePair large_integers(const BasicPair<Real>& pair, const Grid& grid);
 
 // The two decisions of truth.h, and the hulls, for a pair of integers of any size.   Exact: always.
 Verdict cgal_verdict(const LargePair& pair);

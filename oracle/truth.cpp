@@ -12,7 +12,8 @@
 namespace graze::oracle {
 namespace {
 
-std::string hex_coordinates(const Pair& pair) {
+template <class Real>
+std::string hex_coordinates(const BasicPair<Real>& pair) {
   std::string text;
   char number[32];
   for (int i = 0; i < kCoordinates; ++i) {
@@ -22,9 +23,8 @@ std::string hex_coordinates(const Pair& pair) {
   return text;
 }
 
-}  // namespace
-
-Truth truth(const Pair& pair) {
+template <class Real>
+Truth truth_of_pair(const BasicPair<Real>& pair) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   if (!is_finite(pair)) return {{Verdict::declined, Contact::unknown, 0, {}}, kNaN, kNaN};
   const Verdict verdict = cgal_verdict(pair);
@@ -38,7 +38,12 @@ Truth truth(const Pair& pair) {
   constexpr std::uint32_t kAllAxes = (1u << kSeparatingAxes) - 1;
   const SquaredMargin squared =
       verdict == Verdict::disjoint ? exact_distance(large, grid.exponent) : exact_depth(large, grid.exponent, kAllAxes);
-  return truth_of(verdict, contact, hulls(pair), rounded(squared), log2_ulp(pair));
+  return truth_of(verdict, contact, hulls(pair), squared, log2_ulp(pair));
 }
+
+}  // namespace
+
+Truth truth(const Pair& pair) { return truth_of_pair(pair); }
+Truth truth(const DoublePair& pair) { return truth_of_pair(pair); }
 
 }  // namespace graze::oracle

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The truth of a pair: exact for every finite float32 pair, subnormals and 1e38 included.
+// The truth of a pair: exact for every finite pair of float32 or double, subnormals and 1e308 included.
 #pragma once
 
 #include <compare>
@@ -13,7 +13,7 @@ namespace graze::oracle {
 
 struct Truth : Relation {
   double margin = 0;       // signed gap in the pair's units, correctly rounded; NaN when declined
-  double margin_ulps = 0;  // the same in float32 ulps of the largest coordinate
+  double margin_ulps = 0;  // the same in ulps of the largest coordinate, in its own type
 };
 
 // The oracle's two decisions differ, which is a defect of the oracle itself.
@@ -22,20 +22,25 @@ struct OracleMismatch : std::runtime_error {
 };
 
 // Relation and margin. The verdict is CGAL's, confirmed by the decision on GMP integers.
-// Exact: always; the margin is a rational's square root, rounded once by MPFR.
-// Throws: OracleMismatch.   Returns: declined, unknown and NaN if a coordinate is not finite.
+// Exact: always; the margin is a rational's square root, rounded once by MPFR. Of doubles it may be beyond what a
+// double holds: it is then 0 or infinite, and margin_sign still tells. Throws: OracleMismatch.   Returns: declined,
+// unknown and NaN if a coordinate is not finite.
 Truth truth(const Pair& pair);
+Truth truth(const DoublePair& pair);
 
 // CGAL's decision: its triangle test for proper triangles, and its tests of segments and points for degenerate ones.
 // Requires: finite coordinates.   Exact: always.
 Verdict cgal_verdict(const Pair& pair);
+Verdict cgal_verdict(const DoublePair& pair);
 
 // The independent decision: the dimension of the common set, from signs of determinants of GMP integers.
 // Requires: finite coordinates.   Exact: always. The pair intersects if this is not Contact::none.
 Contact gmp_contact(const Pair& pair);
+Contact gmp_contact(const DoublePair& pair);
 
 // The hulls, by exact ranks of integer vectors.   Requires: finite coordinates.   Exact: always.
 Hulls hulls(const Pair& pair);
+Hulls hulls(const DoublePair& pair);
 
 // The bucket of the exact margin. A certified double-precision estimate nearly always decides it, otherwise GMP.
 // Requires: finite coordinates; verdict is the pair's true verdict.   Exact: always.

@@ -86,7 +86,7 @@ std::optional<Truth> truth_as_written(std::span<const std::string> numbers, cons
   constexpr std::uint32_t kAllAxes = (1u << kSeparatingAxes) - 1;
   SquaredMargin squared = verdict == Verdict::disjoint ? exact_distance(large, 0) : exact_depth(large, 0, kAllAxes);
   squared.denominator *= denominator * denominator;
-  return truth_of(verdict, contact, hulls(large), rounded(squared), log2_ulp(stored));
+  return truth_of(verdict, contact, hulls(large), squared, log2_ulp(stored));
 }
 
 }  // namespace graze::oracle

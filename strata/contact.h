@@ -10,30 +10,42 @@ namespace graze::strata {
 inline namespace GRAZE_FP {
 
 // The ranges of a contact's numbers. With integers nothing rounds, in double or in float32, because (place + 2 * weight
-// * step) <= 2^24.
+// * step) <= 2^bits, of the draws' wide_bits.
+template <class D>
 struct Grain {
-  int place;   // the contact lies within ±place; for reals this is 0 and it lies within ±1/2
-  int step;    // steps (vectors that weights multiply) lie within ±step; reals: ±1
-  int weight;  // weights are 1 … weight; reals: (0, 1]
+  typename D::Integer place;  // the contact lies within ±place; for reals this is 0 and it lies within ±1/2
+  typename D::Integer step;   // steps (vectors that weights multiply) lie within ±step; reals: ±1
+  int weight;                 // weights are 1 … weight; reals: (0, 1]
 };
 
 // These are functions, because device code cannot refer to constants of class type.
-GRAZE_INLINE Grain real_grain() { return {0, 0, 0}; }
-GRAZE_INLINE Grain small_grain() { return {4, 2, 3}; }
+template <class D>
+GRAZE_INLINE Grain<D> real_grain(const D&) {
+  return {0, 0, 0};
+}
+template <class D>
+GRAZE_INLINE Grain<D> small_grain(const D&) {
+  return {4, 2, 3};
+}
 
-// Coordinates use all 24 bits of a float; products of three differences need 60 to 75.
-GRAZE_INLINE Grain wide_grain(Draws& draws) { return {(1 << 23) - 2, 1 << draws.between(14, 19), 8}; }
+// Coordinates use all 24 bits of a float; products of three differences need 60 to 75. Of doubles accordingly.
+template <class D>
+GRAZE_INLINE Grain<D> wide_grain(D& draws) {
+  using Integer = typename D::Integer;
+  const int bits = draws.wide_bits();
+  return {(Integer{1} << (bits - 1)) - 2, Integer{1} << draws.between(bits - 10, bits - 5), 8};
+}
 
-GRAZE_INLINE Vec draw_place(Draws& draws, const Grain& grain) {
+GRAZE_INLINE Vec draw_place(auto& draws, const auto& grain) {
   return grain.place > 0 ? draws.integers(grain.place) : draws.reals() * 0.5;
 }
-GRAZE_INLINE Vec draw_step(Draws& draws, const Grain& grain) {
+GRAZE_INLINE Vec draw_step(auto& draws, const auto& grain) {
   return grain.place > 0 ? draws.integers(grain.step) : draws.reals();
 }
-GRAZE_INLINE Vec draw_arm(Draws& draws, const Grain& grain) {
+GRAZE_INLINE Vec draw_arm(auto& draws, const auto& grain) {
   return grain.place > 0 ? draws.integers(grain.step * grain.weight) : draws.reals();
 }
-GRAZE_INLINE double draw_weight(Draws& draws, const Grain& grain) {
+GRAZE_INLINE double draw_weight(auto& draws, const auto& grain) {
   return grain.place > 0 ? 1.0 + draws.below(static_cast<std::uint32_t>(grain.weight)) : draws.positive();
 }
 
@@ -47,7 +59,7 @@ struct Shape {
 
 // The third vertex, relative to p. It lies anywhere on the given side, or for a sliver beside the edge, which runs from
 // e * low to e * high.
-GRAZE_INLINE Vec draw_third(Draws& draws, const Grain& grain, const Shape& shape, const Vec& side, const Vec& e,
+GRAZE_INLINE Vec draw_third(auto& draws, const auto& grain, const Shape& shape, const Vec& side, const Vec& e,
                             double low, double high) {
   const Vec arm = toward(side, draw_arm(draws, grain));
   if (!shape.sliver) return arm;
@@ -56,7 +68,7 @@ GRAZE_INLINE Vec draw_third(Draws& draws, const Grain& grain, const Shape& shape
 }
 
 // A triangle with its vertex [0] at p.
-GRAZE_INLINE void put_vertex(Draws& draws, const Grain& grain, const Shape& shape, const Vec& p, const Vec& side,
+GRAZE_INLINE void put_vertex(auto& draws, const auto& grain, const Shape& shape, const Vec& p, const Vec& side,
                              Vec (&triangle)[3]) {
   const Vec arm = toward(side, draw_arm(draws, grain));
   triangle[0] = p;
@@ -65,7 +77,7 @@ GRAZE_INLINE void put_vertex(Draws& draws, const Grain& grain, const Shape& shap
 }
 
 // A triangle whose edge [0][1] passes through p along e.
-GRAZE_INLINE void put_edge(Draws& draws, const Grain& grain, const Shape& shape, const Vec& p, const Vec& e,
+GRAZE_INLINE void put_edge(auto& draws, const auto& grain, const Shape& shape, const Vec& p, const Vec& e,
                            const Vec& side, Vec (&triangle)[3]) {
   const double back = draw_weight(draws, grain);
   const double forth = draw_weight(draws, grain);
@@ -75,7 +87,7 @@ GRAZE_INLINE void put_edge(Draws& draws, const Grain& grain, const Shape& shape,
 }
 
 // A triangle in the plane of s and t with p inside: w0 * (a0 - p) + w1 * (a1 - p) + w2 * (a2 - p) = 0.
-GRAZE_INLINE void put_face(Draws& draws, const Grain& grain, const Vec& p, const Vec& s, const Vec& t,
+GRAZE_INLINE void put_face(auto& draws, const auto& grain, const Vec& p, const Vec& s, const Vec& t,
                            Vec (&triangle)[3]) {
   const double w0 = draw_weight(draws, grain);
   const double w1 = draw_weight(draws, grain);
@@ -95,7 +107,7 @@ struct Contact {
 };
 
 // Real coordinates stay within ±5/2.
-GRAZE_INLINE Contact draw_contact(Draws& draws, Touch touch, const Grain& grain, const Shape& shape_a = {},
+GRAZE_INLINE Contact draw_contact(auto& draws, Touch touch, const auto& grain, const Shape& shape_a = {},
                                   const Shape& shape_b = {}) {
   Contact contact;
   const Vec p = draw_place(draws, grain);
@@ -126,50 +138,50 @@ GRAZE_INLINE Contact draw_contact(Draws& draws, Touch touch, const Grain& grain,
   return contact;
 }
 
-// How B leaves the contact or enters A. Half of the pushes are gaps of ±2^-1 … ±2^-40 of the triangles' size, applied
-// before rounding. The other half move one coordinate of b[0] by 0 … ±8 ulps, after rounding.
+// How B leaves the contact or enters A. Half of the pushes are gaps of ±2^-1 … ±2^-40 of the triangles' size (doubles:
+// 2^-100), applied before rounding. The other half move one coordinate of b[0] by 0 … ±8 ulps, after rounding.
 struct Push {
   double gap;
   int axis;
   int ulps;
 };
 
-GRAZE_INLINE Push draw_push(Draws& draws) {
+GRAZE_INLINE Push draw_push(auto& draws) {
   if (draws.coin()) {
     const double sign = draws.sign();
-    return {sign * power_of_two(-draws.between(1, 40)), 0, 0};
+    return {sign * power_of_two(-draws.between(1, draws.kGap)), 0, 0};
   }
   return {0, draws.between(0, 2), draws.integer(8)};
 }
 
 // Rounds the draft, moves b[0] by the push's ulps, and shuffles.
-GRAZE_INLINE Pair finished(Draws& draws, const Draft& draft, const Push& push) {
-  Pair pair = rounded(draft);
-  Vec3<float>& v = pair.b[0];
+GRAZE_INLINE auto finished(auto& draws, const Draft& draft, const Push& push) {
+  auto pair = rounded(draws, draft);
+  auto& v = pair.b[0];
   v = {push.axis == 0 ? nudged(v.x, push.ulps) : v.x, push.axis == 1 ? nudged(v.y, push.ulps) : v.y,
        push.axis == 2 ? nudged(v.z, push.ulps) : v.z};
   return shuffled(draws, pair);
 }
 
-GRAZE_INLINE Pair near_contact(Draws& draws, Touch touch, const Shape& shape_a = {}, const Shape& shape_b = {}) {
-  Contact contact = draw_contact(draws, touch, real_grain(), shape_a, shape_b);
+GRAZE_INLINE auto near_contact(auto& draws, Touch touch, const Shape& shape_a = {}, const Shape& shape_b = {}) {
+  Contact contact = draw_contact(draws, touch, real_grain(draws), shape_a, shape_b);
   const Push push = draw_push(draws);
   move(contact.draft.b, contact.away * push.gap);
   return finished(draws, contact.draft, push);
 }
 
-GRAZE_INLINE Touch draw_touch(Draws& draws) { return static_cast<Touch>(draws.below(4)); }
+GRAZE_INLINE Touch draw_touch(auto& draws) { return static_cast<Touch>(draws.below(4)); }
 
 // Half of the pairs touch exactly. In a quarter each, one coordinate of b[0] is one unit more or less.
-GRAZE_INLINE Pair exact_contact(Draws& draws) {
+GRAZE_INLINE auto exact_contact(auto& draws) {
   const Touch touch = static_cast<Touch>(draws.below(3));  // two equal vertices are left to shared_vertex
-  const Grain grain = wide_grain(draws);
+  const auto grain = wide_grain(draws);
   Contact contact = draw_contact(draws, touch, grain);
   if (draws.coin()) {
     const double unit = draws.sign();
     component(contact.draft.b[0], draws.between(0, 2)) += unit;
   }
-  return shuffled(draws, rounded(contact.draft));
+  return shuffled(draws, rounded(draws, contact.draft));
 }
 
 }  // namespace GRAZE_FP

@@ -17,7 +17,7 @@ struct GridPair {
   GridPoint b[3];
 };
 
-GRAZE_HD inline GridPoint draw_point(Draws& draws, int reach) { return {draws.integer(reach), draws.integer(reach)}; }
+GRAZE_HD inline GridPoint draw_point(auto& draws, int reach) { return {draws.integer(reach), draws.integer(reach)}; }
 
 GRAZE_HD inline GridPoint along(GridPoint p, GridPoint d, int times) { return {p.i + d.i * times, p.j + d.j * times}; }
 
@@ -32,7 +32,7 @@ GRAZE_HD inline GridPoint beside(GridPoint p, GridPoint d, int side, GridPoint w
 // Two triangles on the grid, within ±(reach + 1). Half of the pairs are unrelated. In the other half a vertex of B is
 // on an edge of A or one grid step from it.
 // Requires: reach >= 8.
-GRAZE_HD inline GridPair draw_grid_pair(Draws& draws, int reach) {
+GRAZE_HD inline GridPair draw_grid_pair(auto& draws, int reach) {
   GridPair pair;
   if (draws.coin()) {
     for (GridPoint& point : pair.a) point = draw_point(draws, reach);
@@ -79,7 +79,7 @@ GRAZE_HD inline Chart axis_chart(const Vec& origin, int normal, double step) {
   return {origin, unit_axis((normal + 1) % 3) * step, unit_axis((normal + 2) % 3) * step};
 }
 
-GRAZE_HD inline Pair coplanar_lattice(Draws& draws) {
+GRAZE_HD inline auto coplanar_lattice(auto& draws) {
   const Vec origin = draws.integers(4);
   Chart chart = axis_chart(origin, draws.between(0, 2), 1);
   if (draws.coin()) {
@@ -88,63 +88,68 @@ GRAZE_HD inline Pair coplanar_lattice(Draws& draws) {
     if (!(cross(u, v) == Vec{0, 0, 0})) chart = {origin, u, v};
   }
   const Draft draft = laid(chart, draw_grid_pair(draws, 8));
-  return shuffled(draws, rounded(draft));
+  return shuffled(draws, rounded(draws, draft));
 }
 
-// An integer chart and a grid pair on it, within ±(place + 2^23). The 22 bits of each product are split at random
-// between grid and chart.
-GRAZE_HD inline Draft draw_wide_coplanar(Draws& draws, int place) {
-  const int grid_bits = draws.between(4, 19);
-  const int step = 1 << (22 - grid_bits);
-  const Chart chart{draws.integers(place), draws.integers(step), draws.integers(step)};
+// An integer chart and a grid pair on it, within ±(2^place + 2^(bits - 1)). The bits - 2 of each product are split at
+// random between grid and chart.
+template <class D>
+GRAZE_HD Draft draw_wide_coplanar(D& draws, int bits, int place) {
+  using Integer = typename D::Integer;
+  const int grid_bits = draws.between(4, bits < 33 ? bits - 5 : 28);
+  const Integer step = Integer{1} << (bits - 2 - grid_bits);
+  const Chart chart{draws.integers(Integer{1} << place), draws.integers(step), draws.integers(step)};
   return laid(chart, draw_grid_pair(draws, (1 << grid_bits) - 1));
 }
 
-GRAZE_HD inline Pair coplanar_wide(Draws& draws) {
-  const Draft draft = draw_wide_coplanar(draws, 1 << 23);
-  return shuffled(draws, rounded(draft));
+GRAZE_HD inline auto coplanar_wide(auto& draws) {
+  const int bits = draws.wide_bits();
+  const Draft draft = draw_wide_coplanar(draws, bits, bits - 1);
+  return shuffled(draws, rounded(draws, draft));
 }
 
 inline constexpr int kRealReach = 1 << 20;  // the grid of a real chart, fine enough to be almost continuous
 
-GRAZE_HD inline Draft draw_real_coplanar(Draws& draws, const Chart& chart) {
+GRAZE_HD inline Draft draw_real_coplanar(auto& draws, const Chart& chart) {
   return laid(chart, draw_grid_pair(draws, kRealReach));
 }
 
-GRAZE_HD inline Chart draw_real_chart(Draws& draws) {
+GRAZE_HD inline Chart draw_real_chart(auto& draws) {
   const double step = 1.0 / kRealReach;
   return {draws.reals(), draws.reals() * step, draws.reals() * step};
 }
 
-GRAZE_HD inline Pair coplanar_rounded(Draws& draws) {
+GRAZE_HD inline auto coplanar_rounded(auto& draws) {
   const Draft draft = draw_real_coplanar(draws, draw_real_chart(draws));
-  return shuffled(draws, rounded(draft));
+  return shuffled(draws, rounded(draws, draft));
 }
 
 // B's plane is A's plane, translated.
-GRAZE_HD inline Pair parallel(Draws& draws) {
+template <class D>
+GRAZE_HD auto parallel(D& draws) {
   switch (draws.below(3)) {
-    case 0: {  // tilted; parallel until rounding, at a distance of 1 … 2^-40 of the size
+    case 0: {  // tilted; parallel until rounding, at a distance of 1 … 2^-40 (doubles: 2^-100) of the size
       const Chart chart = draw_real_chart(draws);
       Draft draft = draw_real_coplanar(draws, chart);
       const double gap = draws.sign();
-      move(draft.b, normalised(cross(chart.u, chart.v)) * (gap * power_of_two(-draws.between(0, 40))));
-      return shuffled(draws, rounded(draft));
+      move(draft.b, normalised(cross(chart.u, chart.v)) * (gap * power_of_two(-draws.between(0, draws.kGap))));
+      return shuffled(draws, rounded(draws, draft));
     }
     case 1: {  // tilted; exactly parallel, moved by up to one unit in a coordinate or by any vector
-      Draft draft = draw_wide_coplanar(draws, 1 << 22);
-      Vec by = draws.integers(1 << draws.between(0, 22));
+      const int bits = draws.wide_bits();
+      Draft draft = draw_wide_coplanar(draws, bits, bits - 2);
+      Vec by = draws.integers(typename D::Integer{1} << draws.between(0, bits - 2));
       const double units = draws.integer(1);
       if (draws.coin()) by = unit_axis(draws.between(0, 2)) * units;
       move(draft.b, by);
-      return shuffled(draws, rounded(draft));
+      return shuffled(draws, rounded(draws, draft));
     }
     default: {  // axis-aligned; exactly parallel, moved by up to 4 ulps
       const int normal = draws.between(0, 2);
       const Vec origin = draws.reals();
-      Pair pair = rounded(draw_real_coplanar(draws, axis_chart(origin, normal, 1.0 / kRealReach)));
+      auto pair = rounded(draws, draw_real_coplanar(draws, axis_chart(origin, normal, 1.0 / kRealReach)));
       const int ulps = draws.integer(4);
-      for (Vec3<float>& vertex : pair.b) component(vertex, normal) = nudged(component(vertex, normal), ulps);
+      for (auto& vertex : pair.b) component(vertex, normal) = nudged(component(vertex, normal), ulps);
       return shuffled(draws, pair);
     }
   }

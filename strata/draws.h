@@ -80,6 +80,54 @@ struct Draws {
     return {static_cast<double>(integer(reach)), static_cast<double>(integer(reach)),
             static_cast<double>(integer(reach))};
   }
+
+  // What depends on the type of the coordinates: the bits that it holds and those of wide integers, the exponents of
+  // the least gap, the greatest offset, the flattest sliver and the largest ratio of axes, and the range of scales.
+  using Real = float;
+  using Integer = int;
+  static constexpr int kBits = 24, kGap = 40, kOffset = 22, kSliver = 22, kRatio = 20, kLeastScale = -149,
+                       kMostScale = 126;
+  GRAZE_INLINE int wide_bits() { return kBits; }
+};
+
+// Likewise for pairs of doubles. Reals have 53 bits, wide integers 16 to 53.
+struct DoubleDraws : Draws {
+  using Draws::Draws;
+  using Draws::integer;
+  using Draws::integers;
+
+  GRAZE_INLINE std::uint64_t long_word() {
+    const std::uint64_t high = word();
+    return high << 32 | word();
+  }
+
+  // -reach … reach.
+  GRAZE_INLINE std::int64_t integer(std::int64_t reach) {
+    const std::uint64_t count = 2 * static_cast<std::uint64_t>(reach) + 1;
+    const auto drawn = static_cast<unsigned __int128>(long_word()) * count >> 64;
+    return static_cast<std::int64_t>(drawn) - reach;
+  }
+
+  // [-1, 1) in steps of 2^-52.
+  GRAZE_INLINE double real() { return static_cast<double>(static_cast<std::int64_t>(long_word()) >> 11) * 0x1p-52; }
+
+  // (0, 1] in steps of 2^-52.
+  GRAZE_INLINE double positive() { return static_cast<double>((long_word() >> 12) + 1) * 0x1p-52; }
+
+  GRAZE_INLINE double real_float() { return real(); }
+
+  GRAZE_INLINE Vec reals() { return {real(), real(), real()}; }
+
+  GRAZE_INLINE Vec integers(std::int64_t reach) {
+    return {static_cast<double>(integer(reach)), static_cast<double>(integer(reach)),
+            static_cast<double>(integer(reach))};
+  }
+
+  using Real = double;
+  using Integer = std::int64_t;
+  static constexpr int kBits = 53, kGap = 100, kOffset = 50, kSliver = 50, kRatio = 100, kLeastScale = -1074,
+                       kMostScale = 1022;
+  GRAZE_INLINE int wide_bits() { return between(16, kBits); }
 };
 
 // 2^exponent, for exponents of normal doubles.
@@ -90,8 +138,8 @@ GRAZE_INLINE double power_of_two(int exponent) {
   return power;
 }
 
-// The float that is `ulps` steps above x, or below if negative; steps cross zero and the subnormals.
-// Requires: no step goes past the largest float.
+// The float or double that is `ulps` steps above x, or below if negative; steps cross zero and the subnormals.
+// Requires: no step goes past the largest number.
 GRAZE_INLINE float nudged(float x, int ulps) {
   constexpr std::uint32_t kSign = 0x80000000u;
   std::uint32_t bits;
@@ -99,6 +147,17 @@ GRAZE_INLINE float nudged(float x, int ulps) {
   const std::int32_t distance = static_cast<std::int32_t>(bits & ~kSign);
   const std::int32_t position = (bits & kSign ? -distance : distance) + ulps;
   bits = position < 0 ? kSign | static_cast<std::uint32_t>(-position) : static_cast<std::uint32_t>(position);
+  memcpy(&x, &bits, sizeof x);
+  return x;
+}
+
+GRAZE_INLINE double nudged(double x, int ulps) {
+  constexpr std::uint64_t kSign = std::uint64_t{1} << 63;
+  std::uint64_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  const std::int64_t distance = static_cast<std::int64_t>(bits & ~kSign);
+  const std::int64_t position = (bits & kSign ? -distance : distance) + ulps;
+  bits = position < 0 ? kSign | static_cast<std::uint64_t>(-position) : static_cast<std::uint64_t>(position);
   memcpy(&x, &bits, sizeof x);
   return x;
 }
@@ -133,7 +192,7 @@ GRAZE_INLINE Vec3<float> rounded(const Vec& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-GRAZE_INLINE Pair rounded(const Draft& draft) {
+GRAZE_INLINE Pair rounded(const Draws&, const Draft& draft) {
   Pair pair;
   for (int i = 0; i < 3; ++i) {
     pair.a[i] = rounded(draft.a[i]);
@@ -142,20 +201,25 @@ GRAZE_INLINE Pair rounded(const Draft& draft) {
   return pair;
 }
 
+GRAZE_INLINE DoublePair rounded(const DoubleDraws&, const Draft& draft) {
+  return {{draft.a[0], draft.a[1], draft.a[2]}, {draft.b[0], draft.b[1], draft.b[2]}};
+}
+
 // The pair in a random one of its 72 orders, so that no algorithm sees a stratum's contacts in one order only.
-GRAZE_INLINE Pair shuffled(Draws& draws, const Pair& pair) {
+template <class Real>
+GRAZE_INLINE BasicPair<Real> shuffled(Draws& draws, const BasicPair<Real>& pair) {
   const std::uint32_t order = draws.below(72);
   const bool swap = order % 2 != 0;
   const int turn_a = static_cast<int>(order / 2 % 3), turn_b = static_cast<int>(order / 6 % 3);
   const int step_a = order / 18 % 2 != 0 ? 2 : 1, step_b = order / 36 != 0 ? 2 : 1;
   // Selects without indexing, which on a device would move the pair from registers to memory.
-  const auto choose = [](bool first, const Vec3<float>& u, const Vec3<float>& v) -> Vec3<float> {
+  const auto choose = [](bool first, const Vec3<Real>& u, const Vec3<Real>& v) -> Vec3<Real> {
     return {first ? u.x : v.x, first ? u.y : v.y, first ? u.z : v.z};
   };
-  const auto at = [&](const Vec3<float>(&v)[3], int k) { return choose(k == 0, v[0], choose(k == 1, v[1], v[2])); };
-  Pair result;
+  const auto at = [&](const Vec3<Real>(&v)[3], int k) { return choose(k == 0, v[0], choose(k == 1, v[1], v[2])); };
+  BasicPair<Real> result;
   for (int i = 0; i < 3; ++i) {
-    const Vec3<float> a = at(pair.a, (turn_a + step_a * i) % 3), b = at(pair.b, (turn_b + step_b * i) % 3);
+    const Vec3<Real> a = at(pair.a, (turn_a + step_a * i) % 3), b = at(pair.b, (turn_b + step_b * i) % 3);
     result.a[i] = choose(swap, b, a);
     result.b[i] = choose(swap, a, b);
   }

@@ -15,12 +15,14 @@ inline constexpr std::uint64_t kGoldenPairs = 10'000;
 
 inline constexpr std::uint64_t kHashStart = 0xcbf29ce484222325u;
 
-// FNV-1a over the coordinates' bits, each float least significant byte first; `hash` chains calls.
-inline std::uint64_t hash_bits(const Pair& pair, std::uint64_t hash = kHashStart) {
+// FNV-1a over the coordinates' bits, each number least significant byte first; `hash` chains calls.
+template <class Real>
+std::uint64_t hash_bits(const BasicPair<Real>& pair, std::uint64_t hash = kHashStart) {
   for (int i = 0; i < kCoordinates; ++i) {
-    std::uint32_t bits;
-    std::memcpy(&bits, coordinates(pair) + i, sizeof bits);
-    for (int shift = 0; shift < 32; shift += 8) hash = (hash ^ (bits >> shift & 0xffu)) * 0x100000001b3u;
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, coordinates(pair) + i, sizeof(Real));  // of a little-endian machine
+    for (unsigned shift = 0; shift < 8 * sizeof(Real); shift += 8)
+      hash = (hash ^ (bits >> shift & 0xffu)) * 0x100000001b3u;
   }
   return hash;
 }

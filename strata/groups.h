@@ -36,10 +36,12 @@ constexpr Group group_of(Stratum stratum) {
 #define GRAZE_STRATUM(name, group, ...) \
   case Stratum::name:                   \
     return Group::group;
+#include "strata/double_strata.inc"
 #include "strata/strata.inc"
 #undef GRAZE_STRATUM
+    default:
+      return Group::general;
   }
-  return Group::general;
 }
 
 // The group of a source, given its name: a stratum, or a mesh as it is or moved. Nothing for a stratum that this build

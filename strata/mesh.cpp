@@ -80,11 +80,11 @@ void add_rounding(MeshPairs& pairs, const Rounding& rounding, const std::filesys
   for (std::string& note : rounding_note(file.string(), rounding)) pairs.notes.push_back(std::move(note));
 }
 
-// Adds the file's triangles, and its bytes to the hash.
-void add_mesh(MeshPairs& pairs, const std::filesystem::path& file, Coordinates coordinates = Coordinates::finite) {
+// Adds the file's triangles, and its bytes to the hash.   Returns: what was read.
+Soup add_mesh(MeshPairs& pairs, const std::filesystem::path& file, Coordinates coordinates = Coordinates::finite) {
   const std::string bytes = read_bytes(file);
   pairs.content_hash = fnv1a(bytes, pairs.content_hash);
-  const Soup soup = read_soup(file, bytes, coordinates);
+  Soup soup = read_soup(file, bytes, coordinates);
   if (soup.triangles.empty()) throw std::runtime_error("there is no triangle in " + file.string());
   for (const auto& [i, j, k] : soup.triangles)
     pairs.triangles.push_back({soup.vertices[i], soup.vertices[j], soup.vertices[k]});
@@ -97,6 +97,7 @@ void add_mesh(MeshPairs& pairs, const std::filesystem::path& file, Coordinates c
     pairs.notes.push_back(printable(file.string()) + ": " + std::to_string(soup.triangles.size()) +
                           " triangles; not used: " + skipped);
   add_rounding(pairs, soup.rounding, file);
+  return soup;
 }
 
 using Pose = std::array<double, 12>;
@@ -210,7 +211,11 @@ MeshPairs read_bodies(const std::vector<std::filesystem::path>& files, const std
 MeshPairs read_triangles(const std::filesystem::path& file, Coordinates coordinates) {
   MeshPairs result;
   result.content_hash = fnv1a("");
-  add_mesh(result, file, coordinates);
+  const Soup soup = add_mesh(result, file, coordinates);
+  if (soup.rounding.beyond > 0) {
+    for (const auto& [i, j, k] : soup.triangles)
+      result.in_doubles.push_back({soup.in_doubles[i], soup.in_doubles[j], soup.in_doubles[k]});
+  }
   return result;
 }
 

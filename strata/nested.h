@@ -11,7 +11,7 @@ inline namespace GRAZE_FP {
 
 // A triangle within (0, 0), (size, 0), (0, size), or that turned by half a turn, which reaches to 2 * size. Its corners
 // stand at most a quarter of the size from those, so that they are never collinear.
-GRAZE_HD inline void put_inner(Draws& draws, int size, bool turned, GridPoint (&inner)[3]) {
+GRAZE_HD inline void put_inner(auto& draws, int size, bool turned, GridPoint (&inner)[3]) {
   const int inset = draws.coin() ? size / 4 : size >> draws.between(2, 20);
   for (int m = 0; m < 3; ++m) {
     const int i = draws.between(0, inset);
@@ -25,7 +25,7 @@ GRAZE_HD inline void put_inner(Draws& draws, int size, bool turned, GridPoint (&
 // A is (0, 0), (reach, 0), (0, reach), where reach is 2^bits. B has about the given size. Three of four times it lies
 // within A, otherwise beyond A's edge i = 0. In a third of the pairs or more, a vertex or an edge of B is on that edge.
 // Requires: 1 <= size <= reach.   Returns: points with |i| + |j| <= 2 * reach.
-GRAZE_HD inline GridPair draw_nested_grid_pair(Draws& draws, int bits, int size) {
+GRAZE_HD inline GridPair draw_nested_grid_pair(auto& draws, int bits, int size) {
   const int reach = 1 << bits;
   GridPair pair{{{0, 0}, {reach, 0}, {0, reach}}, {}};
   const bool turned = draws.coin() && 2 * size <= reach;
@@ -45,17 +45,20 @@ GRAZE_HD inline GridPair draw_nested_grid_pair(Draws& draws, int bits, int size)
   return pair;
 }
 
-// Half of the pairs are exact: integers, small or of up to 24 bits. The other half are real numbers before rounding. B
-// is smaller by 2^0 … 2^-20. It lies in A's plane in three of four pairs; in one, its vertices stand on both sides.
-GRAZE_HD inline Pair nested(Draws& draws) {
+// Half of the pairs are exact: integers, small or of up to 24 bits (doubles: 53). The other half are real numbers
+// before rounding. B is smaller by 2^0 … 2^-20. It lies in A's plane in three of four pairs; in one, its vertices stand
+// on both sides.
+template <class D>
+GRAZE_HD auto nested(D& draws) {
+  using Integer = typename D::Integer;
   const bool exact = draws.coin();
-  const int digits = exact ? draws.between(2, 22) : 20;
+  const int digits = exact ? draws.between(2, draws.kBits - 2) : 20;
   const int bits = exact ? draws.between(2, digits < 20 ? digits : 20) : 20;
-  const int step = 1 << (digits - bits);
-  const double unit = exact ? step : 1.0 / kRealReach;
+  const Integer step = Integer{1} << (digits - bits);
+  const double unit = exact ? static_cast<double>(step) : 1.0 / kRealReach;
   Chart chart;
   if (exact) {  // all sums are within ±2^24: 2^22 for the place, 2^23 for the grid, 2^22 for the lift
-    chart = {draws.integers(1 << digits), draws.integers(step), draws.integers(step)};
+    chart = {draws.integers(Integer{1} << digits), draws.integers(step), draws.integers(step)};
   } else {
     chart = draw_real_chart(draws);
   }
@@ -74,7 +77,7 @@ GRAZE_HD inline Pair nested(Draws& draws) {
     draft.b[1] = draft.b[1] - lift * below;
     draft.b[2] = draft.b[2] + lift * (side * third);
   }
-  return shuffled(draws, rounded(draft));
+  return shuffled(draws, rounded(draws, draft));
 }
 
 }  // namespace GRAZE_FP

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contacts at scales that strain float32: far from the origin, near overflow and underflow, and very different scales
-// within one pair. Each function transforms a contact before its one rounding.
+// Contacts at scales that strain the type of the coordinates: far from the origin, near overflow and underflow, and
+// very different scales within one pair. Each function transforms a contact before its one rounding.
 #pragma once
 
 #include "strata/contact.h"
@@ -8,47 +8,52 @@
 namespace graze::strata {
 inline namespace GRAZE_FP {
 
-GRAZE_HD inline Pair far_from_origin(Draws& draws) {
-  Contact contact = draw_contact(draws, draw_touch(draws), real_grain());
+GRAZE_HD inline auto far_from_origin(auto& draws) {
+  Contact contact = draw_contact(draws, draw_touch(draws), real_grain(draws));
   const Push push = draw_push(draws);
   move(contact.draft.b, contact.away * push.gap);
-  // 2^7 … 2^23 is 1.3e2 … 8.4e6, log-uniform.
+  // 2^7 … 2^23 is 1.3e2 … 8.4e6, log-uniform; doubles: up to 2^51.
   const Vec direction = normalised(draws.reals());
   const double fraction = 1 + draws.positive();
-  const Vec offset = direction * (fraction * power_of_two(draws.between(7, 22)));
+  const Vec offset = direction * (fraction * power_of_two(draws.between(7, draws.kOffset)));
   move(contact.draft.a, offset);
   move(contact.draft.b, offset);
   return finished(draws, contact.draft, push);
 }
 
 // Half of the pairs are near contacts. The other half are exact, unless they round into the subnormals.
-GRAZE_HD inline Pair extreme_scale(Draws& draws) {
+GRAZE_HD inline auto extreme_scale(auto& draws) {
   const bool exact = draws.coin();
-  const Grain grain = exact ? wide_grain(draws) : real_grain();
+  const auto grain = exact ? wide_grain(draws) : real_grain(draws);
   Contact contact = draw_contact(draws, draw_touch(draws), grain);
   Push push = draw_push(draws);
   if (exact) push.gap = 0;
   move(contact.draft.b, contact.away * push.gap);
-  // Contacts reach 3 (reals) or 2^24 (integers), so the largest coordinate stays below 2^128.
-  const double size = power_of_two(draws.between(-149, 126) - (exact ? 23 : 0));
-  scale(contact.draft.a, {size, size, size});
-  scale(contact.draft.b, {size, size, size});
+  // Contacts reach 3 (reals) or 2^24 (integers), so the largest coordinate stays below 2^128; of doubles, 2^53 and
+  // 2^1024. In two steps, because a double holds no power of two below 2^-1074; the first is exact.
+  const int exponent = draws.between(draws.kLeastScale, draws.kMostScale) - (exact ? draws.kBits - 1 : 0);
+  for (const int part : {exponent / 2, exponent - exponent / 2}) {
+    const double size = power_of_two(part);
+    scale(contact.draft.a, {size, size, size});
+    scale(contact.draft.b, {size, size, size});
+  }
   return finished(draws, contact.draft, push);
 }
 
-GRAZE_HD inline Pair mixed_scale(Draws& draws) {
-  Contact contact = draw_contact(draws, draw_touch(draws), real_grain());
+GRAZE_HD inline auto mixed_scale(auto& draws) {
+  Contact contact = draw_contact(draws, draw_touch(draws), real_grain(draws));
   Push push = draw_push(draws);
   Draft& draft = contact.draft;
   if (draws.coin()) {  // each axis has its own scale; the contact remains one
-    const Vec size{power_of_two(draws.integer(20)), power_of_two(draws.integer(20)), power_of_two(draws.integer(20))};
+    const Vec size{power_of_two(draws.integer(draws.kRatio)), power_of_two(draws.integer(draws.kRatio)),
+                   power_of_two(draws.integer(draws.kRatio))};
     move(draft.b, contact.away * push.gap);
     scale(draft.a, size);
     scale(draft.b, size);
     return finished(draws, draft, push);
   }
   // One triangle and the gap shrink towards the contact.
-  const double size = power_of_two(-draws.between(1, 40));
+  const double size = power_of_two(-draws.between(1, draws.kGap));
   const bool shrink_a = draws.coin();
   const Vec to_origin = contact.p * -1.0;
   move(draft.a, to_origin);

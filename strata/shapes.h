@@ -7,13 +7,13 @@
 namespace graze::strata {
 inline namespace GRAZE_FP {
 
-// Length divided by height is 2^10 … 2^23, log-uniform.
-GRAZE_HD inline Shape draw_sliver_shape(Draws& draws) {
+// Length divided by height is 2^10 … 2^23 (doubles: 2^51), log-uniform.
+GRAZE_HD inline Shape draw_sliver_shape(auto& draws) {
   const double fraction = 0.5 + 0.5 * draws.positive();
-  return {fraction * power_of_two(-draws.between(10, 22)), true, draws.coin()};
+  return {fraction * power_of_two(-draws.between(10, draws.kSliver)), true, draws.coin()};
 }
 
-GRAZE_HD inline Pair sliver(Draws& draws) {
+GRAZE_HD inline auto sliver(auto& draws) {
   const Touch touch = draw_touch(draws);
   const Shape shape = draw_sliver_shape(draws);
   const std::uint32_t which = draws.below(3);  // A, B or both
@@ -21,7 +21,7 @@ GRAZE_HD inline Pair sliver(Draws& draws) {
 }
 
 // A segment along e that contains p or starts there. The third vertex is an end, or lies exactly on the same line.
-GRAZE_HD inline void put_segment(Draws& draws, const Grain& grain, const Vec& p, const Vec& e, Vec (&triangle)[3]) {
+GRAZE_HD inline void put_segment(auto& draws, const auto& grain, const Vec& p, const Vec& e, Vec (&triangle)[3]) {
   const double back = draws.coin() ? draw_weight(draws, grain) : 0;
   const double forth = draw_weight(draws, grain);
   triangle[0] = p - e * back;
@@ -35,8 +35,8 @@ GRAZE_HD inline void put_point(const Vec& p, Vec (&triangle)[3]) { triangle[0] =
 // B is a segment or a point, and A is anything. Both contain a point p; then B is moved by one unit in half of the
 // pairs. Coordinates are integers, small or wide, so that collinear points are exactly so. A power of two then scales
 // the pair.
-GRAZE_HD inline Pair degenerate(Draws& draws) {
-  const Grain grain = draws.coin() ? small_grain() : wide_grain(draws);
+GRAZE_HD inline auto degenerate(auto& draws) {
+  const auto grain = draws.coin() ? small_grain(draws) : wide_grain(draws);
   const Vec p = draw_place(draws, grain);
   const Vec u = draw_step(draws, grain);
   const Vec v = draw_step(draws, grain);
@@ -69,10 +69,10 @@ GRAZE_HD inline Pair degenerate(Draws& draws) {
     const double unit = draws.sign();
     move(draft.b, unit_axis(draws.between(0, 2)) * unit);
   }
-  const double size = power_of_two(-draws.between(0, 24));
+  const double size = power_of_two(-draws.between(0, draws.kBits));
   scale(draft.a, {size, size, size});
   scale(draft.b, {size, size, size});
-  return shuffled(draws, rounded(draft));
+  return shuffled(draws, rounded(draws, draft));
 }
 
 // How the neighbour's free vertices leave the first triangle's plane. Exact: integers, in the plane or one unit off it
@@ -83,40 +83,40 @@ struct Fold {
   double lift;
 };
 
-GRAZE_HD inline Fold draw_fold(Draws& draws) {
+GRAZE_HD inline Fold draw_fold(auto& draws) {
   Fold fold;
   fold.exact = draws.coin();
-  const Grain grain = fold.exact ? wide_grain(draws) : real_grain();
+  const auto grain = fold.exact ? wide_grain(draws) : real_grain(draws);
   fold.p = draw_place(draws, grain);
   fold.u = draw_step(draws, grain);
   fold.v = draw_step(draws, grain);
-  fold.lift = power_of_two(fold.exact ? 0 : -draws.between(0, 30));
+  fold.lift = power_of_two(fold.exact ? 0 : -draws.between(0, draws.kGap - 10));
   if (draws.coin()) fold.lift = 0;
   return fold;
 }
 
 // A point around p in A's plane, then lifted. Beyond the common edge the triangles lie side by side; within it they
 // fold onto each other.
-GRAZE_HD inline Vec draw_free_vertex(Draws& draws, const Fold& fold) {
+GRAZE_HD inline Vec draw_free_vertex(auto& draws, const Fold& fold) {
   const double i = fold.exact ? draws.integer(8) : draws.real();
   const double j = fold.exact ? draws.integer(8) : draws.real();
   const Vec direction = fold.exact ? unit_axis(draws.between(0, 2)) : normalised(cross(fold.u, fold.v));
   return fold.p + fold.u * i + fold.v * j + direction * (fold.lift * draws.sign());
 }
 
-GRAZE_HD inline Pair shared_vertex(Draws& draws) {
+GRAZE_HD inline auto shared_vertex(auto& draws) {
   const Fold fold = draw_fold(draws);
   Draft draft{{fold.p, fold.p + fold.u, fold.p + fold.v}, {fold.p, {}, {}}};
   draft.b[1] = draw_free_vertex(draws, fold);
   draft.b[2] = draw_free_vertex(draws, fold);
-  return shuffled(draws, rounded(draft));
+  return shuffled(draws, rounded(draws, draft));
 }
 
-GRAZE_HD inline Pair shared_edge(Draws& draws) {
+GRAZE_HD inline auto shared_edge(auto& draws) {
   const Fold fold = draw_fold(draws);
   Draft draft{{fold.p, fold.p + fold.u, fold.p + fold.v}, {fold.p, fold.p + fold.u, {}}};
   draft.b[2] = draw_free_vertex(draws, fold);
-  return shuffled(draws, rounded(draft));
+  return shuffled(draws, rounded(draws, draft));
 }
 
 }  // namespace GRAZE_FP

@@ -14,10 +14,12 @@ namespace graze::strata {
 enum class Stratum : std::uint8_t {
 #define GRAZE_STRATUM(name, ...) name,
 #include "strata/strata.inc"
+  last_of_both = 63,  // no stratum
+#include "strata/double_strata.inc"
 #undef GRAZE_STRATUM
 };
 
-// A row of strata/strata.inc, which explains the columns.
+// A row of strata/strata.inc or strata/double_strata.inc. The first explains the columns.
 struct StratumInfo {
   Stratum stratum;
   std::string_view id;
@@ -25,6 +27,7 @@ struct StratumInfo {
   Axis axis;
 };
 
+// The strata of pairs of float32.
 inline constexpr StratumInfo kStrata[] = {
 #define GRAZE_STRATUM(name, group, kind, axis, draw, what) {Stratum::name, #name, what, Axis::axis},
 #include "strata/strata.inc"
@@ -32,11 +35,23 @@ inline constexpr StratumInfo kStrata[] = {
 };
 inline constexpr int kStrataCount = sizeof kStrata / sizeof kStrata[0];
 
+// Those of pairs of doubles.
+inline constexpr StratumInfo kDoubleStrata[] = {
+#define GRAZE_STRATUM(name, group, kind, axis, draw, what) {Stratum::name, #name, what, Axis::axis},
+#include "strata/double_strata.inc"
+#include "strata/strata.inc"
+#undef GRAZE_STRATUM
+};
+inline constexpr int kDoubleStrataCount = sizeof kDoubleStrata / sizeof kDoubleStrata[0];
+
 inline namespace GRAZE_FP {
 
 // The pair with this index. It is finite in every stratum.
-// Requires: compiled without contraction, on host and device alike.
+// Requires: a stratum of kStrata; compiled without contraction, on host and device alike.
 GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, std::uint64_t index);
+
+// Likewise in doubles, with their bits, gaps and scales, for the strata of kDoubleStrata.
+GRAZE_HD inline DoublePair generate_doubles(std::uint64_t seed, Stratum stratum, std::uint64_t index);
 
 }  // namespace GRAZE_FP
 }  // namespace graze::strata

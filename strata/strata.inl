@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strata that need no construction, and the choice among all. The others: contact.h, coplanar.h, nested.h,
-// shapes.h, scale.h.
+// The strata that need no construction, and the choice among all. The others: contact.h, coplanar.h, doubles.h,
+// nested.h, shapes.h, scale.h.
 #include "strata/contact.h"
 #include "strata/coplanar.h"
+#include "strata/doubles.h"
 #include "strata/draws.h"
 #include "strata/nested.h"
 #include "strata/scale.h"
@@ -11,52 +12,77 @@
 namespace graze::strata {
 inline namespace GRAZE_FP {
 
-GRAZE_HD inline Vec3<float> draw_uniform(Draws& draws) {
+template <class D>
+GRAZE_HD Vec3<typename D::Real> draw_uniform(D& draws) {
   return {draws.real_float(), draws.real_float(), draws.real_float()};
 }
 
-GRAZE_HD inline Pair uniform(Draws& draws) {
+template <class D>
+GRAZE_HD BasicPair<typename D::Real> uniform(D& draws) {
   return {{draw_uniform(draws), draw_uniform(draws), draw_uniform(draws)},
           {draw_uniform(draws), draw_uniform(draws), draw_uniform(draws)}};
 }
 
-// The listing's `(rand()%80 - 40)/10.0f` per axis, and `x + rand()%5` per coordinate, in float, as it computes them.
-GRAZE_HD inline Pair thesis_against(Draws& draws, Pair pair) {
-  float base[3];
-  for (float& x : base) x = static_cast<float>(draws.between(-40, 39)) / 10.0f;
-  for (Vec3<float>& vertex : pair.b) {
-    for (int axis = 0; axis < 3; ++axis) component(vertex, axis) = base[axis] + static_cast<float>(draws.below(5));
+// The listing's `(rand()%80 - 40)/10.0f` per axis, and `x + rand()%5` per coordinate, in the type of the coordinates;
+// it computes them in float.
+template <class D>
+GRAZE_HD auto thesis_against(D& draws, BasicPair<typename D::Real> pair) {
+  using Real = typename D::Real;
+  Real base[3];
+  for (Real& x : base) x = static_cast<Real>(draws.between(-40, 39)) / Real{10};
+  for (Vec3<Real>& vertex : pair.b) {
+    for (int axis = 0; axis < 3; ++axis) component(vertex, axis) = base[axis] + static_cast<Real>(draws.below(5));
   }
   return pair;
 }
 
-GRAZE_HD inline Pair thesis(Draws& draws) { return thesis_against(draws, {{{2, -2, 4}, {1, 5, -2}, {1, -3, -3}}, {}}); }
+GRAZE_HD inline auto thesis(auto& draws) { return thesis_against(draws, {{{2, -2, 4}, {1, 5, -2}, {1, -3, -3}}, {}}); }
 
-GRAZE_HD inline Pair thesis_special(Draws& draws) {
+GRAZE_HD inline auto thesis_special(auto& draws) {
   return thesis_against(draws, {{{0, -2, 6}, {0, 5, 0}, {0, -3, 0}}, {}});
 }
 
-GRAZE_HD inline Vec3<float> draw_lattice(Draws& draws) {
-  return {static_cast<float>(draws.integer(1)), static_cast<float>(draws.integer(1)),
-          static_cast<float>(draws.integer(1))};
+template <class D>
+GRAZE_HD Vec3<typename D::Real> draw_lattice(D& draws) {
+  using Real = typename D::Real;
+  return {static_cast<Real>(draws.integer(1)), static_cast<Real>(draws.integer(1)),
+          static_cast<Real>(draws.integer(1))};
 }
 
-GRAZE_HD inline Pair lattice(Draws& draws) {
+template <class D>
+GRAZE_HD BasicPair<typename D::Real> lattice(D& draws) {
   return {{draw_lattice(draws), draw_lattice(draws), draw_lattice(draws)},
           {draw_lattice(draws), draw_lattice(draws), draw_lattice(draws)}};
 }
 
-GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, std::uint64_t index) {
+template <class D>
+GRAZE_HD BasicPair<typename D::Real> generate_by(D draws, Stratum stratum) {
   using strata::Touch;
-  strata::Draws draws(seed, static_cast<std::uint32_t>(stratum), index);
   switch (stratum) {
 #define GRAZE_STRATUM(name, group, kind, axis, draw, what) \
   case Stratum::name:                                      \
     return strata::draw;
 #include "strata/strata.inc"
+    default:
+      break;
+  }
+  if constexpr (sizeof(typename D::Real) == sizeof(double)) {
+    switch (stratum) {
+#include "strata/double_strata.inc"
 #undef GRAZE_STRATUM
+      default:
+        break;
+    }
   }
   return {};
+}
+
+GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, std::uint64_t index) {
+  return generate_by(Draws(seed, static_cast<std::uint32_t>(stratum), index), stratum);
+}
+
+GRAZE_HD inline DoublePair generate_doubles(std::uint64_t seed, Stratum stratum, std::uint64_t index) {
+  return generate_by(DoubleDraws(seed, static_cast<std::uint32_t>(stratum), index), stratum);
 }
 
 }  // namespace GRAZE_FP

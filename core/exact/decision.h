@@ -92,8 +92,8 @@ GRAZE_HD bool segments_meet(const Triangles<Numbers>& t) {
 }
 
 // Requires: the numbers hold the pair's grid, whose exponent is given.
-template <class Numbers>
-GRAZE_HD bool decide(const float* a, const float* b, int exponent) {
+template <class Numbers, class Real>
+GRAZE_HD bool decide(const Real* a, const Real* b, int exponent) {
   const Triangles<Numbers> t = triangles<Numbers>(a, b, exponent);
   const Finding found = by_planes(t);
   if (found == Finding::unsure) return segments_meet(t);
@@ -105,18 +105,18 @@ GRAZE_HD bool decide(const float* a, const float* b, int exponent) {
 // The decision by planes for pairs that no machine number holds. Each determinant is first computed in `Near` numbers
 // with a bound of its own. Those that remain unknown, mostly zeros, are computed one by one in exact numbers. Returns:
 // unsure if all vertices of one triangle lie in the plane of the other.
-template <class Near, class Numbers>
-GRAZE_HD Finding by_planes_one_by_one(const float* a, const float* b, int exponent, Stage& stage) {
+template <class Near, class Numbers, class Real>
+GRAZE_HD Finding by_planes_one_by_one(const Real* a, const Real* b, int exponent, Stage& stage) {
   const Near bounded;
   const Numbers exact;
   const Triangles<Near> near = triangles<Near>(a, b);
-  const double scale = power_of_two(-exponent);
-  const auto exactly = [&](const Vec<float>& o, const Vec<float>& q, const Vec<float>& r, const Vec<float>& s) {
+  const PlaceOf<Real> place = place_of<Real>(exponent);
+  const auto exactly = [&](const Vec<Real>& o, const Vec<Real>& q, const Vec<Real>& r, const Vec<Real>& s) {
     stage = Numbers::kStage;
-    return determinant<Numbers>(on_grid<Numbers>(o, scale), on_grid<Numbers>(q, scale), on_grid<Numbers>(r, scale),
-                                on_grid<Numbers>(s, scale));
+    return determinant<Numbers>(on_grid<Numbers>(o, place), on_grid<Numbers>(q, place), on_grid<Numbers>(r, place),
+                                on_grid<Numbers>(s, place));
   };
-  const auto settle = [&](Sides& sides, const float* p, const float* q) {
+  const auto settle = [&](Sides& sides, const Real* p, const Real* q) {
     for (unsigned open = 7 & ~(sides.above | sides.below | sides.in); open != 0; open &= open - 1) {
       const unsigned bit = open & (0 - open);
       const auto height = exactly(vertex(p, 0), vertex(p, 1), vertex(p, 2), vertex(q, bit >> 1));
@@ -147,7 +147,10 @@ GRAZE_HD Finding by_planes_one_by_one(const float* a, const float* b, int expone
 }
 
 // Decides the pairs of which the filter is unsure.
-GRAZE_HD inline bool decide_unsure(const float* a, const float* b, Stage& stage) {
+template <class Real>
+GRAZE_HD bool decide_unsure(const Real* a, const Real* b, Stage& stage) {
+  using Machine = typename KindsFor<Real>::Machine;
+  using Multiword = typename KindsFor<Real>::Multiword;
   stage = Stage::bounded;
   if (shared_vertex(a, b) >= 0) return true;
   const Grid grid = grid_of(a, b);
@@ -156,16 +159,18 @@ GRAZE_HD inline bool decide_unsure(const float* a, const float* b, Stage& stage)
     stage = Numbers::kStage;
     return decide<Numbers>(a, b, grid.exponent);
   };
-  if (MachineNumbers::hold(grid)) return MachineNumbers::visit(grid, decide_in);
-  const Finding found = MultiwordNumbers::visit(grid, [&](auto numbers) {
+  if (Machine::hold(grid)) return Machine::visit(grid, decide_in);
+  if (sizeof(Real) > sizeof(float) && !is_moderate(grid)) return Multiword::visit(grid, decide_in);
+  const Finding found = Multiword::visit(grid, [&](auto numbers) {
     return by_planes_one_by_one<BoundedNumbers, decltype(numbers)>(a, b, grid.exponent, stage);
   });
-  return found == Finding::unsure ? MultiwordNumbers::visit(grid, decide_in) : found != Finding::disjoint;
+  return found == Finding::unsure ? Multiword::visit(grid, decide_in) : found != Finding::disjoint;
 }
 
 // The relation of a pair in general position, given the finding of a decision by planes.
 // Returns: false if the finding does not determine it.
-GRAZE_HD inline bool relation_of(Finding found, const float* a, const float* b, Relation& r) {
+template <class Real>
+GRAZE_HD bool relation_of(Finding found, const Real* a, const Real* b, Relation& r) {
   r = found == Finding::crosses ? Relation{Verdict::intersects, Contact::segment, -1, {}} : Relation{};
   // A nonzero determinant separates the triangles, so they are not coplanar.
   return found == Finding::crosses || (found == Finding::disjoint && both_proper(a, b));
@@ -173,7 +178,8 @@ GRAZE_HD inline bool relation_of(Finding found, const float* a, const float* b, 
 
 // The relation of pairs in general position: they cross, a plane or an edge of each separates them, or they share
 // a vertex.   Returns: false if rounding leaves that in doubt.
-GRAZE_HD inline bool relate_quickly(const float* a, const float* b, Relation& r) {
+template <class Real>
+GRAZE_HD bool relate_quickly(const Real* a, const Real* b, Relation& r) {
   const Finding found = filter(a, b);
   if (found == Finding::unsure) {
     const int shared = shared_vertex(a, b);
@@ -183,7 +189,9 @@ GRAZE_HD inline bool relate_quickly(const float* a, const float* b, Relation& r)
 }
 
 // Like relate_quickly without shared vertices, but each determinant has its own bound, so fewer are in doubt.
-GRAZE_HD inline bool relate_by_bounds(const float* a, const float* b, Relation& r) {
+// Requires: floats, or doubles on a moderate grid.
+template <class Real>
+GRAZE_HD bool relate_by_bounds(const Real* a, const Real* b, Relation& r) {
   return relation_of(by_planes(triangles<BoundedNumbers>(a, b)), a, b, r);
 }
 

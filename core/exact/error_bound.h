@@ -1,21 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far rounding to doubles can move a determinant of three differences of floats: a bound for each
+// How far rounding to doubles can move a determinant of three differences of floats or doubles: a bound for each
 // determinant, and one bound for all determinants of a pair. Each difference is rounded once, so a determinant
 // is off by at most (7 + 56 e) e sum |products|, e = 2^-53 (Shewchuk 1997, orient3d stage A). Contraction only
-// removes roundings. Nothing over- or underflows: differences of floats are zero or lie between 2^-149 and
-// 2^129.
+// removes roundings. With floats nothing over- or underflows: their differences are zero or lie between 2^-149 and
+// 2^129. With doubles see kMostExtent.
 #pragma once
 
 #ifdef __FAST_MATH__
 #error "graze/exact.h: error bounds do not hold under -ffast-math"
 #endif
 
+#include "core/exact/grid.h"
 #include "core/exact/vector.h"
 
 namespace graze::exact::detail {
 
 // Error bound relative to the sum of the products' magnitudes: (7 + 56 e) e < 8 e.
 inline constexpr double kDeterminantError = 8 * 0x1p-53;
+
+// The bounds of a pair of doubles hold up to this extent, where nothing overflows. A product of two differences that
+// underflows is off by at most 2^-1075, so a determinant by less than 6 * 2^-1075 * (2^300 + 1) < 2^-771 more, and a
+// minor by less than 2^-1073. The bounds themselves underflow by less than that.
+inline constexpr double kMostExtent = 0x1p300, kDeterminantUnderflow = 0x1p-700, kMinorUnderflow = 0x1p-1000;
+
+// Whether nothing over- or underflows in determinants of coordinates on this grid: differences are zero or lie between
+// 2^-300 and 2^301.
+GRAZE_HD constexpr bool is_moderate(const Grid& grid) {
+  return grid.exponent >= -300 && grid.exponent + grid.bits <= 300;
+}
 
 // A sum of products, and the sum of their magnitudes.
 struct Bounded {
@@ -28,10 +40,11 @@ struct Bounded {
 };
 
 // The extent of the pair along each axis, each with one rounding.
-GRAZE_HD inline Vec<double> extent_of(const float* a, const float* b) {
+template <class Real>
+GRAZE_HD Vec<double> extent_of(const Real* a, const Real* b) {
   double extent[3];
   for (int axis = 0; axis < 3; ++axis) {
-    float low = a[axis], high = a[axis];
+    Real low = a[axis], high = a[axis];
     for (int i = axis; i < 9; i += 3) {
       low = a[i] < low ? a[i] : low;
       high = a[i] > high ? a[i] : high;
@@ -43,21 +56,29 @@ GRAZE_HD inline Vec<double> extent_of(const float* a, const float* b) {
   return {extent[0], extent[1], extent[2]};
 }
 
-// Error bound of every determinant of the pair. A determinant is a sum of six products of a difference in x, one in y
-// and one in z. No difference is larger than the pair's extent in that axis.
-GRAZE_HD inline double determinant_error(const Vec<double>& extent) {
-  return 6 * kDeterminantError * extent.x * extent.y * extent.z;
+// Error bound of every determinant of the pair, whose coordinates are of type Real. A determinant is a sum of six
+// products of a difference in x, one in y and one in z. No difference is larger than the pair's extent in that axis.
+// Returns: infinity where no bound holds.
+template <class Real>
+GRAZE_HD double determinant_error(const Vec<double>& extent) {
+  const double error = 6 * kDeterminantError * extent.x * extent.y * extent.z;
+  if constexpr (sizeof(Real) == sizeof(float)) return error;
+  const bool holds = extent.x <= kMostExtent && extent.y <= kMostExtent && extent.z <= kMostExtent;
+  return holds ? error + kDeterminantUnderflow : __builtin_inf();
 }
 
-// Whether both are certainly proper: a normal's component is the difference of two products of differences.
-GRAZE_HD inline bool both_proper(const float* a, const float* b) {
+// Whether both are certainly proper: a normal's component is the difference of two products of differences. Doubles
+// whose differences overflow may give infinities and NaN, which show nothing.
+template <class Real>
+GRAZE_HD bool both_proper(const Real* a, const Real* b) {
   const Vec<double> extent = extent_of(a, b);
-  const double error_x = 2 * kDeterminantError * extent.y * extent.z,
-               error_y = 2 * kDeterminantError * extent.z * extent.x,
-               error_z = 2 * kDeterminantError * extent.x * extent.y;
+  const double underflow = sizeof(Real) == sizeof(float) ? 0 : kMinorUnderflow;
+  const double error_x = 2 * kDeterminantError * extent.y * extent.z + underflow,
+               error_y = 2 * kDeterminantError * extent.z * extent.x + underflow,
+               error_z = 2 * kDeterminantError * extent.x * extent.y + underflow;
   bool proper = true;
-  const float* const triangles[2] = {a, b};
-  for (const float* v : triangles) {
+  const Real* const triangles[2] = {a, b};
+  for (const Real* v : triangles) {
     const Vec<double> u{double(v[3]) - v[0], double(v[4]) - v[1], double(v[5]) - v[2]};
     const Vec<double> w{double(v[6]) - v[0], double(v[7]) - v[1], double(v[8]) - v[2]};
     const Vec<double> n = cross<double>(u, w);

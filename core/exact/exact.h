@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact triangle-triangle intersection for float32 input, on host and device. It takes closed triangles, segments and
-// points that cross, touch, are coplanar, or share vertices or edges, with any finite coordinates, subnormals and 1e38
-// included. It needs the C++ standard library only, and a compiler with 128-bit integers (GCC, Clang, nvcc).
+// Exact triangle-triangle intersection for input in float32 or double, on host and device. It takes closed triangles,
+// segments and points that cross, touch, are coplanar, or share vertices or edges, with any finite coordinates,
+// subnormals and 1e308 included. It needs the C++ standard library only, and a compiler with 128-bit integers (GCC,
+// Clang, nvcc).
 //
 // Method: two decisions, written as templates over a kind of numbers. The numbers are exact, or they report when they
 // are not.
@@ -24,11 +25,10 @@
 #include "core/exact/triangles.h"
 
 namespace graze::exact {
+namespace detail {
 
-// Whether the closed triangles a and b, three vertices x y z each, share a point. `stage`: which numbers decided.
-// Requires: finite coordinates.   Exact: always.
-GRAZE_HD inline bool intersects(const float* a, const float* b, Stage* stage = nullptr) {
-  using namespace detail;
+template <class Real>
+GRAZE_HD bool intersects(const Real* a, const Real* b, Stage* stage) {
   Stage decided = Stage::bounded;
   const Finding found = filter(a, b);
   const bool result = found == Finding::unsure ? decide_unsure(a, b, decided) : found != Finding::disjoint;
@@ -36,16 +36,31 @@ GRAZE_HD inline bool intersects(const float* a, const float* b, Stage* stage = n
   return result;
 }
 
-// The verdict with contact, margin sign and hulls.
-// Requires: finite coordinates.   Exact: always.
-GRAZE_HD inline Relation relation(const float* a, const float* b) {
-  using namespace detail;
+template <class Real>
+GRAZE_HD Relation relation(const Real* a, const Real* b) {
   Relation r;
   if (relate_quickly(a, b, r)) return r;
   const Grid grid = grid_of(a, b);
-  if (!MachineNumbers::hold(grid) && relate_by_bounds(a, b, r)) return r;
-  return AllNumbers::visit(grid,
-                           [&](auto numbers) { return by_axes(triangles<decltype(numbers)>(a, b, grid.exponent)); });
+  const bool bounds_hold = sizeof(Real) == sizeof(float) || is_moderate(grid);
+  if (bounds_hold && !KindsFor<Real>::Machine::hold(grid) && relate_by_bounds(a, b, r)) return r;
+  return KindsFor<Real>::All::visit(
+      grid, [&](auto numbers) { return by_axes(triangles<decltype(numbers)>(a, b, grid.exponent)); });
 }
+
+}  // namespace detail
+
+// Whether the closed triangles a and b, three vertices x y z each, share a point. `stage`: which numbers decided.
+// Requires: finite coordinates.   Exact: always.
+GRAZE_HD inline bool intersects(const float* a, const float* b, Stage* stage = nullptr) {
+  return detail::intersects(a, b, stage);
+}
+GRAZE_HD inline bool intersects(const double* a, const double* b, Stage* stage = nullptr) {
+  return detail::intersects(a, b, stage);
+}
+
+// The verdict with contact, margin sign and hulls.
+// Requires: finite coordinates.   Exact: always.
+GRAZE_HD inline Relation relation(const float* a, const float* b) { return detail::relation(a, b); }
+GRAZE_HD inline Relation relation(const double* a, const double* b) { return detail::relation(a, b); }
 
 }  // namespace graze::exact

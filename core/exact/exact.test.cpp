@@ -5,8 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
+#include <vector>
 
 namespace graze::exact {
 namespace {
@@ -106,10 +109,11 @@ const Example kExamples[] = {
 };
 
 // The example, moved and scaled so that the given kind of numbers must decide it.
-void expect_relation(const Example& example, float scale, float offset, const char* numbers) {
+template <class Real>
+void expect_relation(const Example& example, Real scale, Real offset, const char* numbers) {
   constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   for (int order = 0; order < 72; ++order) {
-    float a[9], b[9];
+    Real a[9], b[9];
     for (int i = 0; i < 9; ++i) {
       const int p = kOrders[order % 6][i / 3], q = kOrders[order / 6 % 6][i / 3];
       a[i] = example.a[3 * p + i % 3] * scale + offset;
@@ -126,13 +130,88 @@ void expect_relation(const Example& example, float scale, float offset, const ch
 
 TEST(Exact, KnowsContactsInAllOrdersAndScales) {
   for (const Example& example : kExamples) {
-    expect_relation(example, 1, 0, "small integers");
-    expect_relation(example, 0x1p18f, 1, "24 bits");
-    expect_relation(example, 1, 0x1p20f, "far from the origin");
-    expect_relation(example, 0x1p-149f, 0, "subnormal");
-    expect_relation(example, 0x1p-149f, 0x1p-126f, "at the least normal number");
-    expect_relation(example, 0x1p124f, 0, "near the largest float");
+    expect_relation<float>(example, 1, 0, "small integers");
+    expect_relation<float>(example, 0x1p18f, 1, "24 bits");
+    expect_relation<float>(example, 1, 0x1p20f, "far from the origin");
+    expect_relation<float>(example, 0x1p-149f, 0, "subnormal");
+    expect_relation<float>(example, 0x1p-149f, 0x1p-126f, "at the least normal number");
+    expect_relation<float>(example, 0x1p124f, 0, "near the largest float");
   }
+}
+
+TEST(Exact, KnowsContactsOfDoublesInAllOrdersAndScales) {
+  for (const Example& example : kExamples) {
+    expect_relation<double>(example, 1, 0, "small integers");
+    expect_relation<double>(example, 0x1p24, 1, "30 bits");
+    expect_relation<double>(example, 0x1p34, 1, "40 bits");
+    expect_relation<double>(example, 0x1p46, 1, "53 bits");
+    expect_relation<double>(example, 1, 0x1p48, "far from the origin");
+    expect_relation<double>(example, 0x1p-298, 0, "where bounds still hold");
+    expect_relation<double>(example, 0x1p-340, 0, "where products of three underflow");
+    expect_relation<double>(example, 0x1p298, 0, "where bounds no longer hold");
+    expect_relation<double>(example, 0x1p340, 0, "where products of three overflow");
+    expect_relation<double>(example, 0x1p-1074, 0, "subnormal");
+    expect_relation<double>(example, 0x1p-1074, 0x1p-1022, "at the least normal number");
+    expect_relation<double>(example, 0x1p1020, 0, "near the largest double");
+  }
+}
+
+// A far vertex, which does not affect the contact, widens the grid: to 61 bits, 90, 300 and all 2,098.
+TEST(Exact, DecidesDoublesOnEveryGrid) {
+  using namespace detail;
+  std::vector<int> widths;
+  for (const auto& [tiny, huge] :
+       {std::pair{0x1p-8, 0x1p52}, {0x1p-37, 0x1p52}, {0x1p-200, 0x1p98}, {0x1p-1074, 0x1p1022}}) {
+    const double a[9] = {0, 0, 0, huge, 0, huge, 0, huge, huge};  // in z = x + y
+    for (const double height : {0.0, tiny, -tiny}) {
+      const double b[9] = {tiny, tiny, 2 * tiny + height, 1, 2, huge, 2, 1, huge};
+      Stage stage;
+      EXPECT_EQ(intersects(a, b, &stage), height <= 0) << tiny;
+      EXPECT_TRUE(height != 0 || stage == Stage::wide);
+      const Relation r = relation(a, b);
+      EXPECT_EQ(r.contact, height > 0 ? Contact::none : height < 0 ? Contact::segment : Contact::point) << tiny;
+      EXPECT_EQ(r.margin_sign, height > 0 ? 1 : height < 0 ? -1 : 0) << tiny;
+      widths.push_back(grid_of(a, b).bits);
+    }
+  }
+  EXPECT_EQ(widths, (std::vector<int>{61, 61, 61, 90, 90, 90, 299, 299, 299, 2097, 2097, 2097}));
+}
+
+// The largest determinants of each kind that doubles use, against one that is wider.
+TEST(Exact, KindsForDoublesHoldWhatTheyPromise) {
+  using namespace detail;
+  std::mt19937_64 random(17);
+  const auto decided = [&](auto numbers, int bits) {
+    using Numbers = decltype(numbers);
+    long zero = 0;
+    for (int i = 0; i < 20'000; ++i) {
+      double c[18];
+      for (double& x : c) {
+        const double most = std::ldexp(1.0, bits);
+        const double near = std::nextafter(most, 0.0);
+        x = random() % 3 == 0 ? 0 : std::ldexp(1.0, static_cast<int>(random() % static_cast<unsigned>(bits)));
+        if (random() % 2) x = near >= 0x1p52 ? near : most - 1;
+        if (random() % 2) x = -x;
+      }
+      if (i % 4 == 0) std::copy_n(c, 3, c + 9);  // determinants of zero
+      c[17] = 1;
+      const Grid grid = grid_of(c, c + 9);
+      ASSERT_TRUE(Numbers::holds(grid)) << grid.bits;
+      const auto t = triangles<Numbers>(c, c + 9, grid.exponent);
+      const auto u = triangles<HugeNumbers>(c, c + 9, grid.exponent);
+      const auto found = determinant<Numbers>(t.a[0], t.a[1], t.a[2], t.b[i % 3]);
+      const auto exact = determinant<HugeNumbers>(u.a[0], u.a[1], u.a[2], u.b[i % 3]);
+      ASSERT_EQ(numbers.positive(found), HugeNumbers().positive(exact)) << bits << ' ' << i;
+      ASSERT_EQ(numbers.negative(found), HugeNumbers().negative(exact)) << bits << ' ' << i;
+      zero += numbers.zero(found);
+    }
+    EXPECT_GT(zero, 100) << bits;
+  };
+  decided(NarrowNumbers(), kNarrowBits);
+  decided(IntNumbers(), kIntBits);
+  decided(MediumNumbers(), kMediumBits);
+  decided(LongNumbers(), kLongBits);
+  decided(LargeNumbers(), kLargeBits);
 }
 
 // A far vertex, which does not affect the contact, widens the grid to 250 bits.
@@ -331,8 +410,21 @@ TEST(ErrorBound, IsShewchuksAndNoMoreThanAFewPercentAbove) {
   const double e = 0x1p-53, stage_a = (7 + 56 * e) * e;
   EXPECT_GE(detail::kDeterminantError, stage_a);
   EXPECT_LE(detail::kDeterminantError, 1.2 * stage_a);
-  EXPECT_GE(detail::determinant_error({3, 5, 7}), 6 * stage_a * 3 * 5 * 7);
-  EXPECT_LE(detail::determinant_error({3, 5, 7}), 1.2 * 6 * stage_a * 3 * 5 * 7);
+  EXPECT_GE(detail::determinant_error<float>({3, 5, 7}), 6 * stage_a * 3 * 5 * 7);
+  EXPECT_LE(detail::determinant_error<float>({3, 5, 7}), 1.2 * 6 * stage_a * 3 * 5 * 7);
+}
+
+TEST(Exact, WideIntegersMultiplyByOneLimb) {
+  using detail::Int128, detail::Wide;
+  std::mt19937_64 random(19);
+  for (int i = 0; i < 100'000; ++i) {
+    const auto l = static_cast<Int128>(static_cast<std::int64_t>(random())) * static_cast<std::int64_t>(random() >> 2);
+    const auto r = static_cast<std::int64_t>(i % 5 == 0 ? random() & 1 : random());
+    Wide<3> other(0);
+    other.limb[0] = static_cast<std::uint64_t>(r);
+    other.limb[1] = other.limb[2] = r < 0 ? ~std::uint64_t{0} : 0;
+    ASSERT_TRUE(Wide<3>(l) * r == Wide<3>(l) * other) << i;
+  }
 }
 
 TEST(Exact, WideIntegersMultiplyAndCompare) {

@@ -13,7 +13,8 @@
 namespace graze::exact::detail {
 
 // Requires: finite coordinates.   Returns: disjoint, crosses, or unsure if a determinant is within its error bound.
-GRAZE_HD inline Finding filter(const float* a, const float* b) {
+template <class Real>
+GRAZE_HD Finding filter(const Real* a, const Real* b) {
 #if defined(__SSE2__) && !defined(__CUDACC__)
   return sse2::filter(a, b);
 #else

@@ -88,6 +88,38 @@ TEST(Filter, FindsNothingThatIsNotSo) {
   }
 }
 
+// The same pairs as doubles, and scaled to the limits where the bounds end.
+TEST(Filter, OfDoublesFindsNothingThatIsNotSo) {
+  for (const Kind& kind : kKinds) {
+    for (const int exponent : {0, -900, -300, 150, 299, 320, 890}) {
+      Random random(13);
+      int found_of[5] = {};
+      for (int i = 0; i < 2'000; ++i) {
+        const Coordinates c = kind.draw(random);
+        double a[9], b[9];
+        for (int k = 0; k < 9; ++k) {
+          a[k] = std::ldexp(static_cast<double>(c.a[k]), exponent);
+          b[k] = std::ldexp(static_cast<double>(c.b[k]), exponent);
+        }
+        if (i % 2 == 0) b[i / 2 % 9] = std::nextafter(b[i / 2 % 9], 0.0);
+        const Finding found = portable::filter(a, b);
+        ++found_of[static_cast<int>(found)];
+#ifdef __SSE2__
+        ASSERT_EQ(sse2::filter(a, b), found) << kind.name << ' ' << i;
+#endif
+        if (found == Finding::unsure) continue;
+        const bool intersects = KindsFor<double>::All::visit(grid_of(a, b), [&](auto numbers) {
+          return by_axes(triangles<decltype(numbers)>(a, b, grid_of(a, b).exponent)).intersects();
+        });
+        ASSERT_EQ(found, intersects ? Finding::crosses : Finding::disjoint) << kind.name << ' ' << i;
+      }
+      if (kind.draw != uniform_pair) continue;
+      const bool certain = exponent > -300 && exponent < 300;
+      EXPECT_EQ(found_of[static_cast<int>(Finding::unsure)], certain ? 0 : 2'000) << exponent;
+    }
+  }
+}
+
 #ifdef __SSE2__
 TEST(Filter, IsTheSameWithAndWithoutSse2) {
   for (const Kind& kind : kKinds) {

@@ -23,12 +23,14 @@ GRAZE_HD inline unsigned exceeds(const Two& x, const Two& bound) {
 
 GRAZE_HD inline Two exchanged(const Two& x) { return Two{x[1], x[0]}; }
 
-GRAZE_HD inline Vec<Two> both(const Vec<float>& l, const Vec<float>& r) {
+template <class Real>
+GRAZE_HD Vec<Two> both(const Vec<Real>& l, const Vec<Real>& r) {
   return {Two{double(l.x), double(r.x)}, Two{double(l.y), double(r.y)}, Two{double(l.z), double(r.z)}};
 }
 
-GRAZE_HD inline Finding filter(const float* a, const float* b) {
-  const double error = determinant_error(extent_of(a, b));
+template <class Real>
+GRAZE_HD Finding filter(const Real* a, const Real* b) {
+  const double error = determinant_error<Real>(extent_of(a, b));
   const Two bound = {error, error};
   const Vec<Two> v[3] = {both(vertex(a, 0), vertex(b, 0)), both(vertex(a, 1), vertex(b, 1)),
                          both(vertex(a, 2), vertex(b, 2))};
@@ -45,7 +47,7 @@ GRAZE_HD inline Finding filter(const float* a, const float* b) {
   const unsigned above_a = above[0] >> 1 | (above[1] >> 1) << 1 | (above[2] >> 1) << 2;
   const unsigned above_b = (above[0] & 1) | (above[1] & 1) << 1 | (above[2] & 1) << 2;
   const Turn turn = lone_vertices({above_a, 7 & ~above_a, 0}, {above_b, 7 & ~above_b, 0});
-  const Vec<float> a0 = vertex(a, turn.a[0]), b0 = vertex(b, turn.b[0]);
+  const Vec<Real> a0 = vertex(a, turn.a[0]), b0 = vertex(b, turn.b[0]);
   const Vec<Two> o = both(vertex(a, turn.a[1]), a0), p = both(b0, b0), q = both(a0, vertex(a, turn.a[2])),
                  r = both(vertex(b, turn.b[1]), vertex(b, turn.b[2]));
   const Two height = dot<Two>(cross<Two>(p - o, q - o), r - o);

@@ -30,13 +30,17 @@ inline Two most(Two x, Two y) { return _mm_max_pd(x, y); }
 
 inline Two magnitude(Two x) { return _mm_andnot_pd(_mm_set1_pd(-0.0), x); }
 
-// The coordinates of a triangle as doubles, widened two at a time.
+// The coordinates of a triangle as doubles, two at a time.
 struct Widened {
   Two two[5];  // 0 and 1, 2 and 3, 4 and 5, 6 and 7, 8 and 8
 
   explicit Widened(const float* v) {
     for (int i = 0; i < 4; ++i)
       two[i] = _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(v + 2 * i))));
+    two[4] = _mm_set1_pd(v[8]);
+  }
+  explicit Widened(const double* v) {
+    for (int i = 0; i < 4; ++i) two[i] = _mm_loadu_pd(v + 2 * i);
     two[4] = _mm_set1_pd(v[8]);
   }
 
@@ -53,8 +57,9 @@ inline Two both(const Widened& l, const Widened& r, int i) {
 // Two vertices, as one vector of two.
 inline Vec<Two> both(const double* l, const double* r) { return {Two{l[0], r[0]}, Two{l[1], r[1]}, Two{l[2], r[2]}}; }
 
-// determinant_error(extent_of(a, b)), in both parts.   Requires: the vertices of both triangles.
-inline Two determinant_error(const Vec<Two> (&v)[3]) {
+// determinant_error<Real>(extent_of(a, b)), in both parts.   Requires: the vertices of both triangles.
+template <class Real>
+Two determinant_error(const Vec<Two> (&v)[3]) {
   const Vec<Two> low{least(least(v[0].x, v[1].x), v[2].x), least(least(v[0].y, v[1].y), v[2].y),
                      least(least(v[0].z, v[1].z), v[2].z)};
   const Vec<Two> high{most(most(v[0].x, v[1].x), v[2].x), most(most(v[0].y, v[1].y), v[2].y),
@@ -62,7 +67,11 @@ inline Two determinant_error(const Vec<Two> (&v)[3]) {
   const Two xy = most(_mm_unpacklo_pd(high.x, high.y), _mm_unpackhi_pd(high.x, high.y)) -
                  least(_mm_unpacklo_pd(low.x, low.y), _mm_unpackhi_pd(low.x, low.y));
   const Two z = most(high.z, exchanged(high.z)) - least(low.z, exchanged(low.z));
-  return 6 * kDeterminantError * xy * exchanged(xy) * z;
+  const Two error = 6 * kDeterminantError * xy * exchanged(xy) * z;
+  if constexpr (sizeof(Real) == sizeof(float)) return error;
+  const Two holds = _mm_cmple_pd(most(most(xy, exchanged(xy)), z), _mm_set1_pd(kMostExtent));
+  return _mm_or_pd(_mm_and_pd(holds, error + kDeterminantUnderflow),
+                   _mm_andnot_pd(holds, _mm_set1_pd(__builtin_inf())));
 }
 
 // lone_vertices as a table, for pairs with no vertex in the other's plane. Index: bit 2 i is set if vertex i of a is
@@ -86,7 +95,8 @@ inline constexpr Turns kTurns;
 
 // It branches only where most pairs of one kind take the same branch: a mispredicted branch costs as much as everything
 // after it.
-inline Finding filter(const float* a, const float* b) {
+template <class Real>
+Finding filter(const Real* a, const Real* b) {
   const Widened wide_a(a), wide_b(b);
   alignas(16) double at_a[10], at_b[10];
   wide_a.store(at_a);
@@ -94,7 +104,7 @@ inline Finding filter(const float* a, const float* b) {
   Vec<Two> v[3];
   for (int i = 0; i < 3; ++i)
     v[i] = {both(wide_a, wide_b, 3 * i), both(wide_a, wide_b, 3 * i + 1), both(wide_a, wide_b, 3 * i + 2)};
-  const Two bound = determinant_error(v);
+  const Two bound = determinant_error<Real>(v);
   // Relative to the other triangle: the heights of a's vertices over b, and of b's over a.
   const Vec<Two> n = exchanged(cross<Two>(v[1] - v[0], v[2] - v[0])), from = exchanged(v[0]);
   const Two height[3] = {dot<Two>(n, v[0] - from), dot<Two>(n, v[1] - from), dot<Two>(n, v[2] - from)};

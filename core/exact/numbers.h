@@ -7,8 +7,11 @@
 //              6 * 2^(3 * 7) < 2^24
 //   residue    up to 34 bits, on devices: a double, and an integer modulo 2^64 for use when the double is small
 //   int128     up to 30 bits: minors fit in 64 bits; up to 40 bits: less than 6 * 2^(3 * 41) < 2^127
-//   wide       up to 90 bits: a minor is less than 2 * 2^(2 * 91) < 2^191, a determinant than 6 * 2^(3 * 91) < 2^319;
-//              else multiples of 2^-149: a float has 277 bits, a difference 278, a determinant less than 840
+//   wide       up to 61 bits: a difference is less than 2^62, a minor than 2^125, a determinant than 6 * 2^186 < 2^189;
+//              up to 90 bits: a minor is less than 2 * 2^(2 * 91) < 2^191, a determinant than 6 * 2^(3 * 91) < 2^319;
+//              all floats, as multiples of 2^-149: a float has 277 bits, a difference 278, a determinant less than 840;
+//              doubles up to 300 bits: a difference has 301, a minor 603, a determinant less than 906;
+//              all doubles, up to 2,098 bits: a difference has 2,099, a minor 4,199, a determinant less than 6,300
 // Integers do not round, so exact results do not depend on rounding mode, contraction or optimisation.
 #pragma once
 
@@ -56,13 +59,22 @@ struct ExactNumbers {
 };
 
 inline constexpr int kSingleBits = 6, kResidueBits = 34, kDoubleBits = 15, kNarrowBits = 30, kIntBits = 40,
-                     kLongBits = 90,
-                     kFloatBits = 277;  // of all floats, as multiples of 2^-149
+                     kMediumBits = 61, kLongBits = 90,
+                     kFloatBits = 277,  // of all floats, as multiples of 2^-149
+    kLargeBits = 300, kAllBits = 2098;
 using DoubleNumbers = ExactNumbers<double, double, double, kDoubleBits, Stage::doubles>;
 using NarrowNumbers = ExactNumbers<std::int64_t, std::int64_t, Int128, kNarrowBits, Stage::int128>;
 using IntNumbers = ExactNumbers<std::int64_t, Int128, Int128, kIntBits, Stage::int128>;
 using LongNumbers = ExactNumbers<Wide<2>, Wide<3>, Wide<5>, kLongBits, Stage::wide>;
 using WideNumbers = ExactNumbers<Wide<5>, Wide<9>, Wide<14>, kFloatBits, Stage::wide>;
+
+// For doubles.
+struct ModerateDoubleNumbers : DoubleNumbers {
+  GRAZE_HD static bool holds(const Grid& grid) { return grid.bits <= kDoubleBits && is_moderate(grid); }
+};
+using MediumNumbers = ExactNumbers<std::int64_t, Int128, Wide<3>, kMediumBits, Stage::wide>;
+using LargeNumbers = ExactNumbers<Wide<5>, Wide<10>, Wide<15>, kLargeBits, Stage::wide>;
+using HugeNumbers = ExactNumbers<Wide<33>, Wide<66>, Wide<99>, kAllBits, Stage::wide>;
 
 // For devices. Coordinates are not scaled, so the exponent is limited to keep determinants in the range of a float.
 struct SingleNumbers : ExactNumbers<float, float, float, kSingleBits, Stage::doubles> {
@@ -94,6 +106,22 @@ struct NumberKinds {
 using MachineNumbers = NumberKinds<DoubleNumbers, NarrowNumbers, IntNumbers>;
 using MultiwordNumbers = NumberKinds<LongNumbers, WideNumbers>;
 using AllNumbers = NumberKinds<DoubleNumbers, NarrowNumbers, IntNumbers, LongNumbers, WideNumbers>;
+
+// The kinds for coordinates of a type: those whose determinants are so cheap that all are computed exactly, and those
+// with which each is first bounded.
+template <class Real>
+struct KindsFor {
+  using Machine = MachineNumbers;
+  using Multiword = MultiwordNumbers;
+  using All = AllNumbers;
+};
+template <>
+struct KindsFor<double> {
+  using Machine = NumberKinds<ModerateDoubleNumbers, NarrowNumbers, IntNumbers>;
+  using Multiword = NumberKinds<MediumNumbers, LongNumbers, LargeNumbers, HugeNumbers>;
+  using All = NumberKinds<ModerateDoubleNumbers, NarrowNumbers, IntNumbers, MediumNumbers, LongNumbers, LargeNumbers,
+                          HugeNumbers>;
+};
 
 }  // namespace detail
 }  // namespace graze::exact

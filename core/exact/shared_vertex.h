@@ -9,7 +9,8 @@
 namespace graze::exact::detail {
 
 // A vertex that a and b share, as 3 * its index in a + its index in b; -1 if there is none.
-GRAZE_HD inline int shared_vertex(const float* a, const float* b) {
+template <class Real>
+GRAZE_HD int shared_vertex(const Real* a, const Real* b) {
   int found = -1;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
@@ -25,14 +26,15 @@ GRAZE_HD inline int shared_vertex(const float* a, const float* b) {
 // vertex; otherwise they meet in a segment that ends there. Candidates are a's plane (p1 == p2), b's plane (q1 == q2),
 // and planes through an edge of each, whose determinants are the same four numbers.
 // Returns: false if a sign is in doubt.
-GRAZE_HD inline bool relate_at_vertex(const float* a, const float* b, int shared, Relation& r) {
-  const double error = determinant_error(extent_of(a, b));
+template <class Real>
+GRAZE_HD bool relate_at_vertex(const Real* a, const Real* b, int shared, Relation& r) {
+  const double error = determinant_error<Real>(extent_of(a, b));
   const unsigned i = static_cast<unsigned>(shared) / 3, j = static_cast<unsigned>(shared) % 3;
-  const auto seen = [](const float* v, unsigned k, const Vec<float>& from) {
-    const Vec<float> at = vertex(v, k);
+  const auto seen = [](const Real* v, unsigned k, const Vec<Real>& from) {
+    const Vec<Real> at = vertex(v, k);
     return Vec<double>{double(at.x) - from.x, double(at.y) - from.y, double(at.z) - from.z};
   };
-  const Vec<float> from = vertex(a, i);
+  const Vec<Real> from = vertex(a, i);
   const Vec<double> a1 = seen(a, (i + 1) % 3, from), a2 = seen(a, (i + 2) % 3, from);
   const Vec<double> b1 = seen(b, (j + 1) % 3, from), b2 = seen(b, (j + 2) % 3, from);
   const Vec<double> normal_a = cross<double>(a1, a2), normal_b = cross<double>(b1, b2);

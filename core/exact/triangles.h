@@ -46,22 +46,62 @@ GRAZE_HD inline void convert(float x, double, Wide<5>& out) {
   if (bits >> 31) out = -out;
 }
 
-template <class Numbers>
-GRAZE_HD VecOf<Numbers> on_grid(const Vec<float>& v, double scale) {
+// Doubles on the grid of this exponent. A scale may be beyond what a double holds, so their bits are shifted.
+// Requires: x is a multiple of 2^exponent.
+GRAZE_HD inline void convert(double x, int, double& out) { out = x; }
+GRAZE_HD inline void convert(double x, int exponent, std::int64_t& out) {
+  int own;
+  const std::uint64_t mantissa = mantissa_of(x, own);
+  const int shift = own - exponent;  // of zero it may be anything
+  const auto size = static_cast<std::int64_t>(mantissa == 0 ? 0 : shift < 0 ? mantissa >> -shift : mantissa << shift);
+  out = x < 0 ? -size : size;
+}
+template <int N>
+GRAZE_HD void convert(double x, int exponent, Wide<N>& out) {
+  int own;
+  std::uint64_t mantissa = mantissa_of(x, own);
+  int shift = mantissa == 0 ? 0 : own - exponent;
+  if (shift < 0) {
+    mantissa >>= -shift;
+    shift = 0;
+  }
+  out = Wide<N>(0);
+  for (int i = 0; i < N; ++i) {
+    if (i == shift / 64) out.limb[i] = mantissa << shift % 64;
+    if (i == shift / 64 + 1 && shift % 64 != 0) out.limb[i] = mantissa >> (64 - shift % 64);
+  }
+  if (x < 0) out = -out;
+}
+
+// What puts coordinates on the grid of an exponent: for floats a factor, for doubles the exponent.
+template <class Real>
+using PlaceOf = std::conditional_t<sizeof(Real) == sizeof(float), double, int>;
+
+template <class Real>
+GRAZE_HD PlaceOf<Real> place_of(int exponent) {
+  if constexpr (sizeof(Real) == sizeof(float)) {
+    return power_of_two(-exponent);
+  } else {
+    return exponent;
+  }
+}
+
+template <class Numbers, class Real>
+GRAZE_HD VecOf<Numbers> on_grid(const Vec<Real>& v, PlaceOf<Real> place) {
   VecOf<Numbers> out;
-  convert(v.x, scale, out.x);
-  convert(v.y, scale, out.y);
-  convert(v.z, scale, out.z);
+  convert(v.x, place, out.x);
+  convert(v.y, place, out.y);
+  convert(v.z, place, out.z);
   return out;
 }
 
-template <class Numbers>
-GRAZE_HD Triangles<Numbers> triangles(const float* a, const float* b, int exponent = 0) {
-  const double scale = power_of_two(-exponent);
+template <class Numbers, class Real>
+GRAZE_HD Triangles<Numbers> triangles(const Real* a, const Real* b, int exponent = 0) {
+  const PlaceOf<Real> place = place_of<Real>(exponent);
   Triangles<Numbers> t;
   for (int i = 0; i < 3; ++i) {
-    t.a[i] = on_grid<Numbers>({a[3 * i], a[3 * i + 1], a[3 * i + 2]}, scale);
-    t.b[i] = on_grid<Numbers>({b[3 * i], b[3 * i + 1], b[3 * i + 2]}, scale);
+    t.a[i] = on_grid<Numbers>(Vec<Real>{a[3 * i], a[3 * i + 1], a[3 * i + 2]}, place);
+    t.b[i] = on_grid<Numbers>(Vec<Real>{b[3 * i], b[3 * i + 1], b[3 * i + 2]}, place);
   }
   return t;
 }

@@ -47,7 +47,8 @@ GRAZE_HD Vec<D> pick(const Vec<D> (&v)[3], unsigned i) {
 #endif
 }
 
-GRAZE_HD inline Vec<float> vertex(const float* v, unsigned i) {
+template <class Real>
+GRAZE_HD Vec<Real> vertex(const Real* v, unsigned i) {
 #ifdef __CUDA_ARCH__
   return {pick(v[0], v[3], v[6], i), pick(v[1], v[4], v[7], i), pick(v[2], v[5], v[8], i)};
 #else

@@ -22,6 +22,13 @@ struct Wide {
     for (int i = 0; i < N; ++i) limb[i] = i < K ? x.limb[i] : x.negative() ? ~std::uint64_t{0} : 0;
   }
 
+  GRAZE_HD explicit Wide(Int128 x) : limb{} {
+    for (int i = 0; i < N; ++i) {
+      limb[i] = static_cast<std::uint64_t>(x);
+      x >>= 64;
+    }
+  }
+
   GRAZE_HD bool negative() const { return limb[N - 1] >> 63 != 0; }
 
   GRAZE_HD Wide operator-() const { return Wide(0) - *this; }
@@ -66,6 +73,22 @@ struct Wide {
       }
     }
     return turn ? -product : product;
+  }
+
+  // Both as unsigned: modulo 2^(64 N), a negative r counts 2^64 too much.
+  GRAZE_HD friend Wide operator*(const Wide& l, std::int64_t r) {
+    Wide product;
+    std::uint64_t carry = 0, borrow = 0;
+    const std::uint64_t correct = r < 0 ? ~std::uint64_t{0} : 0;
+    for (int i = 0; i < N; ++i) {
+      const unsigned __int128 term = static_cast<unsigned __int128>(l.limb[i]) * static_cast<std::uint64_t>(r) + carry;
+      carry = static_cast<std::uint64_t>(term >> 64);
+      const auto low = static_cast<std::uint64_t>(term);
+      const std::uint64_t less = i > 0 ? l.limb[i - 1] & correct : 0, part = low - less;
+      product.limb[i] = part - borrow;
+      borrow = (low < less) | (part < borrow);
+    }
+    return product;
   }
 
   GRAZE_HD friend bool operator<(const Wide& l, const Wide& r) { return (l - r).negative(); }

@@ -42,7 +42,7 @@ GRAZE_HD inline int floor_log2(double x) {
   return static_cast<int>(bits >> 52) - 1023;
 }
 
-// log2 of the float32 ulp of the pair's largest coordinate in magnitude: in [-149, 104].
+// log2 of the ulp of the pair's largest coordinate in magnitude: in [-149, 104] for float32, [-1074, 971] for double.
 // Requires: finite coordinates.
 GRAZE_HD inline int log2_ulp(const Pair& pair) {
   std::uint32_t largest = 0;
@@ -55,6 +55,18 @@ GRAZE_HD inline int log2_ulp(const Pair& pair) {
   }
   const int exponent = static_cast<int>(largest >> 23);
   return (exponent == 0 ? 1 : exponent) - 150;
+}
+GRAZE_HD inline int log2_ulp(const DoublePair& pair) {
+  std::uint64_t largest = 0;
+  const double* c = &pair.a[0].x;
+  for (int i = 0; i < kCoordinates; ++i) {
+    std::uint64_t bits;
+    memcpy(&bits, &c[i], sizeof bits);
+    bits &= 0x7fffffffffffffffu;
+    if (bits > largest) largest = bits;
+  }
+  const int exponent = static_cast<int>(largest >> 52);
+  return (exponent == 0 ? 1 : exponent) - 1075;
 }
 
 }  // namespace graze

@@ -81,12 +81,30 @@ void Lines::fail_at(std::size_t i, const std::string& expected) const {
   fail(expected, i < words_.size() ? shown(words_[i]) : "the end of the line");
 }
 
-float Lines::coordinate(std::size_t i, Rounding& rounding) const {
+namespace {
+
+// Whether `written` is the double nearest to the shortest decimal of a float32, or to that of nine digits.
+bool is_decimal_of(float stored, double written) {
+  const auto nearest = [](const char* begin, const char* end) {
+    double value = 0;
+    std::from_chars(begin, end, value);
+    return value;
+  };
+  char text[32];
+  char* const end = text + sizeof text;
+  if (nearest(text, std::to_chars(text, end, stored).ptr) == written) return true;
+  return nearest(text, std::to_chars(text, end, stored, std::chars_format::general, 9).ptr) == written;
+}
+
+}  // namespace
+
+Coordinate Lines::coordinate(std::size_t i, Rounding& rounding) const {
   const std::optional<float> value = i < words_.size() ? parse_float32(words_[i]) : std::nullopt;
   if (!value || !file_.may_be(*value)) fail_at(i, "a coordinate that is finite in float32");
   const double written = std::strtod(std::string(words_[i]).c_str(), nullptr);
   rounding.add(written, *value, std::max(std::abs(written) * 0x1p-53, 0x1p-1074));
-  return *value;
+  rounding.beyond += written != static_cast<double>(*value) && !is_decimal_of(*value, written);
+  return {*value, written};
 }
 
 std::uint64_t Lines::whole(std::size_t i, const std::string& expected) const {

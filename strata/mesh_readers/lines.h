@@ -30,7 +30,7 @@ class Lines {
   std::size_t bytes_left() const { return file_.bytes.size() - byte_; }
 
   // Parses word i.   Requires: i < words().size().   Throws: an error if it is not of that kind.
-  float coordinate(std::size_t i, Rounding& rounding) const;
+  Coordinate coordinate(std::size_t i, Rounding& rounding) const;
   std::uint64_t whole(std::size_t i, const std::string& expected) const;
   std::uint32_t vertex(std::size_t i, std::size_t vertices) const;
   void number(std::size_t i, const std::string& expected) const;

@@ -54,7 +54,7 @@ std::optional<std::int64_t> parse_corner(std::string_view word) {
 void add_vertex(Soup& soup, const Lines& lines) {
   const std::size_t count = lines.words().size() - 1;
   const auto coordinate = [&](std::size_t i) { return lines.coordinate(i, soup.rounding); };
-  soup.vertices.push_back({coordinate(1), coordinate(2), coordinate(3)});
+  soup.add_vertex({coordinate(1), coordinate(2), coordinate(3)});
   for (std::size_t i = 4; i <= count; ++i) lines.number(i, "a number or the end of the line");
   if (count == 5 || count > 7)
     lines.fail("three coordinates, a weight or a colour", std::to_string(count) + " numbers");

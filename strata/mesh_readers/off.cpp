@@ -80,7 +80,7 @@ Soup read_off(const MeshBytes& file) {
   for (std::uint64_t i = 0; i < header.vertices; ++i) {
     lines.expect_next(std::to_string(header.vertices) + " vertices");
     const auto coordinate = [&](std::size_t c) { return lines.coordinate(c, soup.rounding); };
-    soup.vertices.push_back({coordinate(0), coordinate(1), coordinate(2)});
+    soup.add_vertex({coordinate(0), coordinate(1), coordinate(2)});
     if (lines.words().size() > 3 || header.normals || header.texture || header.colours)
       skip_attributes(lines, header, soup);
   }

@@ -177,14 +177,15 @@ class Body {
            is_text() ? shown(lines_.words()[0]) : std::to_string(file_.bytes.size() - byte_) + " bytes more");
   }
 
-  float coordinate(const Type& type, Rounding& rounding) {
+  Coordinate coordinate(const Type& type, Rounding& rounding) {
     if (is_text()) return lines_.coordinate(word_++, rounding);
     const double written = type.size == 4 ? static_cast<double>(std::bit_cast<float>(take<std::uint32_t>()))
                                           : std::bit_cast<double>(take<std::uint64_t>());
     const auto value = static_cast<float>(written);
     rounding.add(written, value);
+    rounding.beyond += written != static_cast<double>(value);
     if (!file_.may_be(value)) fail("a coordinate that is finite in float32", "one that is not");
-    return value;
+    return {value, written};
   }
   std::uint64_t list_count(const Property& list) {
     const std::uint64_t count = whole(*list.count_type, "the count of a list");
@@ -241,15 +242,15 @@ class Body {
 };
 
 void take_vertex(Body& body, const Element& element, Soup& soup) {
-  Vec3<float> vertex{};
+  Coordinate vertex[3]{};
   for (const Property& p : element.properties) {
     if (is_coordinate(p)) {
-      component(vertex, p.name[0] - 'x') = body.coordinate(*p.type, soup.rounding);
+      vertex[p.name[0] - 'x'] = body.coordinate(*p.type, soup.rounding);
       continue;
     }
     for (std::uint64_t n = p.count_type ? body.list_count(p) : 1; n > 0; --n) body.skip(*p.type);
   }
-  soup.vertices.push_back(vertex);
+  soup.add_vertex(vertex);
 }
 
 void take_face(Body& body, const Element& element, std::uint64_t vertices, Soup& soup,

@@ -18,9 +18,10 @@
 
 namespace graze::strata {
 
-// How many coordinates float32 cannot hold, and by how much rounding moved them.
+// How many coordinates float32 cannot hold, and by how much rounding moved them. `beyond` counts those that no program
+// prints of a float32: 1000000.01 is one. 0.1 is none, because it is the shortest decimal of the float32 nearest to it.
 struct Rounding {
-  std::uint64_t coordinates = 0, rounded = 0;
+  std::uint64_t coordinates = 0, rounded = 0, beyond = 0;
   double most = 0;  // no coordinate moved by more
 
   // written: the double nearest to the number in the file; slack: how far it can be from that number.
@@ -33,6 +34,7 @@ struct Rounding {
   Rounding& operator+=(const Rounding& other) {
     coordinates += other.coordinates;
     rounded += other.rounded;
+    beyond += other.beyond;
     most = std::max(most, other.most);
     return *this;
   }
@@ -41,11 +43,23 @@ struct Rounding {
 // "FILE: float32 rounded 5 of 18 coordinates, by at most 0.00012", rounded up; empty if it rounded none.
 std::vector<std::string> rounding_note(const std::string& file, const Rounding& rounding);
 
+// A number of a file: the float32 nearest to it, and the double nearest to it.
+struct Coordinate {
+  float stored;
+  double written;
+};
+
 struct Soup {
   std::vector<Vec3<float>> vertices;                    // finite, unless MeshBytes::coordinates allows others
+  std::vector<Vec3<double>> in_doubles;                 // the same vertices, of which float32 may hold no coordinate
   std::vector<std::array<std::uint32_t, 3>> triangles;  // indices of existing vertices, in file order
   std::map<std::string, std::uint64_t> skipped;         // how many items were left out, by kind: "normals"
   Rounding rounding;                                    // of the coordinates of vertices
+
+  void add_vertex(const Coordinate (&v)[3]) {
+    vertices.push_back({v[0].stored, v[1].stored, v[2].stored});
+    in_doubles.push_back({v[0].written, v[1].written, v[2].written});
+  }
 };
 
 // Whether a vertex that is not finite is an error, or is read as it is.
@@ -60,7 +74,7 @@ struct MeshBytes {
   bool may_be(float coordinate) const { return coordinates == Coordinates::any || std::isfinite(coordinate); }
 };
 
-// Parses the bytes of a mesh file. Decimals become the nearest float32, rounded once.
+// Parses the bytes of a mesh file. Decimals become the nearest float32 and the nearest double, each rounded once.
 // Throws: std::runtime_error of one line that names the file, the line or byte, and what was expected and found.
 #define GRAZE_MESH_FORMAT(extension, name) Soup read_##extension(const MeshBytes& file);
 #include "strata/mesh_readers/formats.inc"

@@ -20,9 +20,9 @@ std::uint64_t count_of_binary(std::string_view bytes) {
   return count;
 }
 
-void add_triangle(Soup& soup, const Vec3<float> (&v)[3]) {
-  const auto first = static_cast<std::uint32_t>(soup.vertices.size());
-  soup.vertices.insert(soup.vertices.end(), v, v + 3);
+// Of the last three vertices.
+void add_triangle(Soup& soup) {
+  const auto first = static_cast<std::uint32_t>(soup.vertices.size()) - 3;
   soup.triangles.push_back({first, first + 1, first + 2});
 }
 
@@ -35,10 +35,11 @@ Soup read_binary(const MeshBytes& file) {
     Vec3<float> v[3];
     std::memcpy(v, file.bytes.data() + at + 12, sizeof v);
     for (const Vec3<float>& vertex : v) {
+      soup.add_vertex({{vertex.x, double{vertex.x}}, {vertex.y, double{vertex.y}}, {vertex.z, double{vertex.z}}});
       if (!file.may_be(vertex.x) || !file.may_be(vertex.y) || !file.may_be(vertex.z))
         fail(at_byte(file, at), "a facet with finite coordinates", "one without");
     }
-    add_triangle(soup, v);
+    add_triangle(soup);
     soup.rounding.coordinates += 9;
     if (file.bytes[at + 48] != 0 || file.bytes[at + 49] != 0) ++soup.skipped["attributes of facets"];
   }
@@ -64,18 +65,17 @@ void take_facet(Lines& lines, Soup& soup) {
   ++soup.skipped["normals"];
   lines.expect_next("outer loop");
   expect_words(lines, {"outer", "loop"});
-  Vec3<float> v[3];
-  for (Vec3<float>& vertex : v) {
+  for (int i = 0; i < 3; ++i) {
     lines.expect_next("a vertex");
     expect_words(lines, {"vertex"}, 3);
     const auto coordinate = [&](std::size_t i) { return lines.coordinate(i, soup.rounding); };
-    vertex = {coordinate(1), coordinate(2), coordinate(3)};
+    soup.add_vertex({coordinate(1), coordinate(2), coordinate(3)});
   }
   lines.expect_next("endloop");
   expect_words(lines, {"endloop"});
   lines.expect_next("endfacet");
   expect_words(lines, {"endfacet"});
-  add_triangle(soup, v);
+  add_triangle(soup);
 }
 
 // Reads one solid after another: "solid NAME", facets, "endsolid NAME".

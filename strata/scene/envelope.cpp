@@ -97,10 +97,12 @@ Kind kind_of(Stratum stratum) {
 #define GRAZE_STRATUM(name, group, kind, ...) \
   case Stratum::name:                         \
     return Kind::kind;
+#include "strata/double_strata.inc"
 #include "strata/strata.inc"
 #undef GRAZE_STRATUM
+    default:
+      return Kind::general;
   }
-  return Kind::general;
 }
 
 std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum) {

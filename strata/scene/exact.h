@@ -51,7 +51,7 @@ GRAZE_HD inline Pair finished_on_grid(Draws& draws, const Scene& scene, const Dr
       component(placed.b[i], axis) = point_of(scene.exact, component(draft.b[i], axis) + component(to, axis));
     }
   }
-  return shuffled(draws, rounded(placed));
+  return shuffled(draws, rounded(draws, placed));
 }
 
 inline constexpr int kWeight = 8;         // the largest multiple of a step

@@ -243,6 +243,7 @@ GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, const Scene& 
     case Stratum::thesis_special:
     case Stratum::far_from_origin:
     case Stratum::extreme_scale:
+    default:
       break;  // never in a scene
   }
   return {};

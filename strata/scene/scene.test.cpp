@@ -61,8 +61,8 @@ TEST(Scene, EveryPairIsWithinTheExtentOnTheGridAndOfTheSizes) {
     const Scene scene = resolved(file);
     double ulp = 0;
     for (const auto& [low, high] : file.extent)
-      ulp = std::max(ulp,
-                     std::ldexp(1.0, log2_ulp({{{static_cast<float>(low), static_cast<float>(high), 0}, {}, {}}, {}})));
+      ulp = std::max(
+          ulp, std::ldexp(1.0, log2_ulp(Pair{{{static_cast<float>(low), static_cast<float>(high), 0}, {}, {}}, {}})));
     const double step =
         std::max(ulp, scene.on_grid ? (scene.grid.decimal ? 1 / scene.grid.scale : scene.grid.scale) : 0);
     const double most = scene.edges.at[kQuantiles - 1] * 1.00001 + 20 * step;  // rounding, and pushes by 8 steps

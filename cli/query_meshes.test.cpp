@@ -16,24 +16,29 @@ namespace graze::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Triangle = std::array<Vec3<float>, 3>;
+template <class Real>
+using TriangleOf = std::array<Vec3<Real>, 3>;
+using Triangle = TriangleOf<float>;
 using Triangles = std::vector<Triangle>;
 
-bool is_finite(const Triangle& t) {
-  return std::all_of(t.begin(), t.end(), [](const Vec3<float>& v) {
+template <class Real>
+bool is_finite(const TriangleOf<Real>& t) {
+  return std::all_of(t.begin(), t.end(), [](const Vec3<Real>& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
   });
 }
 
 // The row of the CSV file, from the oracle and its own count of common vertices; empty for disjoint triangles.
-std::string row_of(std::size_t i, std::size_t j, const Triangle& a, const Triangle& b) {
-  const Pair pair{{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
+template <class Real>
+std::string row_of(std::size_t i, std::size_t j, const TriangleOf<Real>& a, const TriangleOf<Real>& b) {
+  const BasicPair<Real> pair{{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
   const oracle::Truth truth = oracle::truth(pair);
   if (!truth.intersects()) return "";
-  std::set<std::array<float, 3>> of_a, both;
-  for (const Vec3<float>& v : a) of_a.insert({v.x + 0.0f, v.y + 0.0f, v.z + 0.0f});
-  for (const Vec3<float>& v : b) {
-    if (of_a.contains({v.x + 0.0f, v.y + 0.0f, v.z + 0.0f})) both.insert({v.x + 0.0f, v.y + 0.0f, v.z + 0.0f});
+  std::set<std::array<Real, 3>> of_a, both;
+  constexpr Real kZero = 0;  // added, so that both zeros are one
+  for (const Vec3<Real>& v : a) of_a.insert({v.x + kZero, v.y + kZero, v.z + kZero});
+  for (const Vec3<Real>& v : b) {
+    if (of_a.contains({v.x + kZero, v.y + kZero, v.z + kZero})) both.insert({v.x + kZero, v.y + kZero, v.z + kZero});
   }
   const bool piercing = truth.margin_sign < 0 || truth.contact == Contact::area;
   const char* kind = both.size() == 1 && truth.contact == Contact::point     ? "common_vertex"
@@ -43,11 +48,12 @@ std::string row_of(std::size_t i, std::size_t j, const Triangle& a, const Triang
   return fmt::format("{},{},{},{}\n", i, j, name(truth.contact), kind);
 }
 
-std::string by_oracle(const Triangles& a, const Triangles& b, bool self) {
+template <class Real>
+std::string by_oracle(const std::vector<TriangleOf<Real>>& a, const std::vector<TriangleOf<Real>>& b, bool self) {
   std::string csv = "i,j,contact,kind\n";
   for (std::size_t i = 0; i < a.size(); ++i) {
     for (std::size_t j = self ? i + 1 : 0; j < b.size(); ++j) {
-      if (is_finite(a[i]) && is_finite(b[j])) csv += row_of(i, j, a[i], b[j]);
+      if (is_finite<Real>(a[i]) && is_finite<Real>(b[j])) csv += row_of<Real>(i, j, a[i], b[j]);
     }
   }
   return csv;
@@ -56,10 +62,13 @@ std::string by_oracle(const Triangles& a, const Triangles& b, bool self) {
 class QueryMeshes : public CommandTest {
  protected:
   // Writes the triangles with all their digits.
-  void write(const std::string& file, const Triangles& triangles) const {
+  template <class Real>
+  void write(const std::string& file, const std::vector<TriangleOf<Real>>& triangles) const {
+    constexpr int kDigits = std::numeric_limits<Real>::max_digits10;
     std::ofstream out(shell.folder / file);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
-      for (const Vec3<float>& v : triangles[i]) out << fmt::format("v {:.9g} {:.9g} {:.9g}\n", v.x, v.y, v.z);
+      for (const Vec3<Real>& v : triangles[i])
+        out << fmt::format("v {1:.{0}g} {2:.{0}g} {3:.{0}g}\n", kDigits, v.x, v.y, v.z);
       out << fmt::format("f {} {} {}\n", 3 * i + 1, 3 * i + 2, 3 * i + 3);
     }
   }
@@ -78,11 +87,13 @@ class QueryMeshes : public CommandTest {
   }
 
   // Compares every output of both searches with brute force.
-  void expect_as_by_oracle(const Triangles& a, const Triangles& b, const std::string& what) const {
+  template <class Real>
+  void expect_as_by_oracle(const std::vector<TriangleOf<Real>>& a, const std::vector<TriangleOf<Real>>& b,
+                           const std::string& what) const {
     SCOPED_TRACE(what);
     write("a.obj", a);
     write("b.obj", b);
-    const std::string between = by_oracle(a, b, false), self = by_oracle(a, a, true);
+    const std::string between = by_oracle<Real>(a, b, false), self = by_oracle<Real>(a, a, true);
     for (const std::string executor : {"one-core", "all-cores"}) {
       const Json found = json("graze query a.obj b.obj --between --csv ab.csv --json --executor " + executor);
       EXPECT_EQ(contents(shell.folder / "ab.csv"), between);
@@ -90,8 +101,9 @@ class QueryMeshes : public CommandTest {
       EXPECT_EQ(found["list"].size(), rows(between));
       EXPECT_EQ(found["touching"], rows(between, "touches"));
       EXPECT_EQ(found["common_vertex"], rows(between, "common_vertex"));
-      EXPECT_EQ(found["declined"], std::count_if(a.begin(), a.end(), std::not_fn(is_finite)) +
-                                       std::count_if(b.begin(), b.end(), std::not_fn(is_finite)));
+      EXPECT_EQ(found["declined"], std::count_if(a.begin(), a.end(), std::not_fn(is_finite<Real>)) +
+                                       std::count_if(b.begin(), b.end(), std::not_fn(is_finite<Real>)));
+      EXPECT_EQ(found["coordinates"], sizeof(Real) == sizeof(float) ? "f32" : "f64");
       const Json within = json("graze query --self a.obj --csv aa.csv --json --executor " + executor);
       EXPECT_EQ(contents(shell.folder / "aa.csv"), self);
       EXPECT_EQ(within["hits"], rows(self, "pierces"));
@@ -127,13 +139,44 @@ TEST_F(QueryMeshes, FindThePairsOfBruteForceWithTheOracle) {
   broken[3][1].y = NAN;
   broken[4][0].x = -INFINITY;
   expect_as_by_oracle(broken, b, "not finite");
-  expect_as_by_oracle({a[0]}, {b[0]}, "one face");
+  expect_as_by_oracle<float>({a[0]}, {b[0]}, "one face");
   expect_as_by_oracle(lattice, lattice, "the same mesh twice");
   Triangles moved = lattice;
   for (Triangle& t : moved) {
     for (Vec3<float>& v : t) v.z = std::nextafter(v.z, 9.0f);
   }
   expect_as_by_oracle(lattice, moved, "shifted by an ulp");
+}
+
+// Doubles, of which float32 changes many verdicts. They are read back bit for bit, because 17 digits tell them.
+TEST_F(QueryMeshes, DecideDoublesAsTheOracleDoes) {
+  std::vector<TriangleOf<double>> a, b;
+  int changed = 0;
+  for (const strata::StratumInfo& row : strata::kDoubleStrata) {
+    if (row.stratum == strata::Stratum::extreme_scale) continue;  // beyond the range of float32
+    for (std::uint64_t i = 0; i < 4; ++i) {
+      const DoublePair pair = strata::generate_doubles(5, row.stratum, i);
+      a.push_back({pair.a[0], pair.a[1], pair.a[2]});
+      b.push_back({pair.b[0], pair.b[1], pair.b[2]});
+      changed += relation_of(stored_in_float32(pair)).verdict != relation_of(pair).verdict;
+    }
+  }
+  ASSERT_GT(changed, 20);
+  expect_as_by_oracle(a, b, "strata of doubles");
+  expect_error("graze query a.obj b.obj --between --executor one-gpu", 1, {"one-gpu", "float32", "doubles"});
+
+  // What is written is what was decided: in an OBJ file as doubles, in a pair file rounded, which is said.
+  write("a.obj", std::vector<TriangleOf<double>>{a[0], a[1]});
+  const Ran wrote = shell("graze query a.obj a.obj --between --obj hits.obj --pairs hits.pairs");
+  EXPECT_EQ(wrote.status, 0) << wrote.err;
+  EXPECT_NE(wrote.err.find("hits.pairs: float32 rounded"), std::string::npos) << wrote.err;
+  expect_done("graze query --self hits.obj --json > again.json");
+  EXPECT_EQ(Json::parse(contents(shell.folder / "again.json"), nullptr, false)["coordinates"], "f64");
+
+  // A user's question: two parallel triangles, a hundredth apart at a million.
+  std::ofstream(shell.folder / "far.off") << "OFF\n6 2 0\n1000000.01 0 0\n1000000.01 1 0\n1000000.01 0 1\n"
+                                             "1000000.02 0 0\n1000000.02 1 0\n1000000.02 0 1\n3 0 1 2\n3 3 4 5\n";
+  EXPECT_EQ(json("graze query --self far.off --json")["hits"], 0);
 }
 
 // Enough triangles for several slabs, blocks and threads: strips of a plane, and needles through it.

@@ -33,8 +33,9 @@ License: Apache-2.0
  On Debian systems, the full text is in /usr/share/common-licenses/Apache-2.0.
 Comment:
  The binaries contain code of header-only libraries. Their licenses stand beside
- this file, as copyright.NAME. Parts of CGAL in the program are under the GPL,
- version 3 or newer, and so is the program as a whole.
+ this file, as copyright.NAME. Parts of CGAL in the program and in the library
+ of the Python package are under the GPL, version 3 or newer, and so are these as
+ a whole.
 ]])
 # Installs the licenses of header-only libraries, by Debian package.
 function(install_licenses component name)
@@ -44,7 +45,7 @@ function(install_licenses component name)
 endfunction()
 install_licenses(program graze libboost-dev libcgal-dev libcli11-dev librandom123-dev libstb-dev libtomlplusplus-dev nlohmann-json3-dev)
 install_licenses(libraries libgraze librandom123-dev)
-install_licenses(python python3-graze librandom123-dev)
+install_licenses(python python3-graze libcgal-dev librandom123-dev)
 file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/changelog CONTENT [[
 graze (@PROJECT_VERSION@) unstable; urgency=medium
 

@@ -36,8 +36,9 @@ constexpr Group group_of(Stratum stratum) {
 #define GRAZE_STRATUM(name, group, ...) \
   case Stratum::name:                   \
     return Group::group;
-#include "strata/double_strata.inc"
 #include "strata/strata.inc"
+
+#include "strata/double_strata.inc"
 #undef GRAZE_STRATUM
     default:
       return Group::general;

@@ -146,6 +146,25 @@ TEST_F(MeshFile, AMeshAgainstItselfPairsEachTwoOnce) {
   EXPECT_EQ((Triangle{pair.b[0], pair.b[1], pair.b[2]}), pairs.triangles[3]);
 }
 
+// A decimal that a program prints of a float32 is none that float32 cannot hold; one of more digits is.
+TEST_F(MeshFile, KeepsDoublesBeyondFloat32) {
+  const auto read = [&](const std::string& x) {
+    const auto file = write("m.obj", "v " + x + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    return read_triangles(file);
+  };
+  for (const char* x : {"0.1", "0.100000001", "3.14159", "0.5", "16777216", "1e-45", "123456.789"}) {
+    EXPECT_EQ(read(x).rounding.beyond, 0u) << x;
+    EXPECT_TRUE(read(x).in_doubles.empty()) << x;
+  }
+  for (const char* x : {"1000000.01", "0.1000000001", "3.14159265358979", "16777217", "1e-46", "123456.7891"}) {
+    const MeshPairs mesh = read(x);
+    EXPECT_EQ(mesh.rounding.beyond, 1u) << x;
+    ASSERT_EQ(mesh.in_doubles.size(), 1u) << x;
+    EXPECT_EQ(mesh.in_doubles[0][0].x, std::strtod(x, nullptr));
+    EXPECT_EQ(mesh.in_doubles[0][1].x, 1.0);
+  }
+}
+
 TEST_F(MeshFile, TwoMeshesPairAcrossOnly) {
   const std::string touching = "OFF\n3 1 0\n1 1 1\n2 1 1\n1 2 1\n3 0 1 2\n";  // its box touches theirs only in a point
   const MeshPairs pairs = read_mesh_pairs(write("t.off", kTetrahedron), write("u.off", touching));

@@ -38,8 +38,9 @@ inline constexpr int kStrataCount = sizeof kStrata / sizeof kStrata[0];
 // Those of pairs of doubles.
 inline constexpr StratumInfo kDoubleStrata[] = {
 #define GRAZE_STRATUM(name, group, kind, axis, draw, what) {Stratum::name, #name, what, Axis::axis},
-#include "strata/double_strata.inc"
 #include "strata/strata.inc"
+
+#include "strata/double_strata.inc"
 #undef GRAZE_STRATUM
 };
 inline constexpr int kDoubleStrataCount = sizeof kDoubleStrata / sizeof kDoubleStrata[0];

@@ -66,7 +66,7 @@ std::string kind_of(std::string_view file) {
   if (file.ends_with(".cu")) return "cuda";
   if (file.ends_with(".cl")) return "opencl";
   if (file.ends_with(".hip")) return "hip";
-  for (const std::string_view ending : {".cpp", ".cc", ".cxx", ".c"})
+  for (const std::string_view ending : {".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hxx", ".hh"})  // headers: C++
     if (file.ends_with(ending)) return "source";
   return "";
 }
@@ -105,8 +105,8 @@ Opened parsed(const Wanted& wanted) {
     end = end == 0 ? what.npos : what.rfind(':', end - 1);
   if (end == what.npos || end + 1 == what.size()) {
     throw UsageError(fmt::format(
-        "--subject {}: expected FILE.so, FILE.cpp, FILE.c, FILE.cu, FILE.cl or cmd:COMMAND, found {}{}", wanted.name,
-        shown(what),
+        "--subject {}: expected FILE.so, FILE.cpp, FILE.h, FILE.c, FILE.cu, FILE.cl or cmd:COMMAND, found {}{}",
+        wanted.name, shown(what),
         what.find(".py") == what.npos ? ""
                                       : "; `graze try FILE.py:FUNCTION` writes a program that calls the function, "
                                         "and names its command"));

@@ -371,9 +371,13 @@ TEST_F(Subjects, SourcesInCAndCppFindTheirFunctionAndScalar) {
         "bool meets(const double a[9], const double b[9]) { return LESS(a, b); } }");
   write("part.h", "#define LESS(a, b) (a)[0] < (b)[0]");
   open_one("both=" + (folder / "both.cpp").string() + ":geo::meets");
+  open_one("header=" +
+           write("header.hpp", "inline bool meets(const float a[9], const float b[9]) { return *a < *b; }").string() +
+           ":meets");
   open_one("in_double=" + (folder / "bad.c").string() + ":in_double");
   open_one("by_name=" + (folder / "libbad.so").string() + ":in_double/f64");
-  for (const char* id : {"both/f32/cpu", "both/f64/cpu", "both/f32/cpu-fast", "in_double/f64/cpu", "by_name/f64/cpu"}) {
+  for (const char* id : {"both/f32/cpu", "both/f64/cpu", "both/f32/cpu-fast", "header/f32/cpu", "in_double/f64/cpu",
+                         "by_name/f64/cpu"}) {
     const Lane* lane = find_lane(id);
     if (!lane && std::string(id).ends_with("fast")) continue;
     ASSERT_TRUE(lane) << id;
@@ -478,8 +482,9 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
   for (const char* function : {"good\n", "g\"", "};int z={0", "good;system(\"id\")", "\x1b[31m"})
     expect_error("x=" + so + ':' + function, "expected the name of a function, found ");
   expect_error("x=" + so + ':' + std::string(100'000, 'a'), "expected the name of a function, found ");
-  expect_error("x=cmd: ", "expected FILE.so, FILE.cpp, FILE.c, FILE.cu, FILE.cl or cmd:COMMAND, found .*cmd:");
-  expect_error("x=mine.txt", "expected FILE.so, FILE.cpp, FILE.c, FILE.cu, FILE.cl or cmd:COMMAND, found .*mine.txt");
+  expect_error("x=cmd: ", "expected FILE.so, FILE.cpp, FILE.h, FILE.c, FILE.cu, FILE.cl or cmd:COMMAND, found .*cmd:");
+  expect_error("x=mine.txt",
+               "expected FILE.so, FILE.cpp, FILE.h, FILE.c, FILE.cu, FILE.cl or cmd:COMMAND, found .*mine.txt");
   for (const char* name : {"a\"b.c", "a\nb.cpp", "a\\b.cu"})
     expect_error("x=" + write(name, "int intersects(const float*, const float*) { return 1; }").string(),
                  "no compiler reads a file named .*rename it");

@@ -118,6 +118,11 @@ std::string in_words(Verdict verdict, const Relation& relation) {
          std::string(name(relation.contact));
 }
 
+std::string shortest(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr};
+}
+
 struct Row {
   std::string stratum;
   std::uint64_t pairs;
@@ -147,12 +152,29 @@ std::string table(const std::vector<Row>& rows) {
   return text;
 }
 
+// The options that accept both answers on this pair: "Accepted with .coplanar = graze::either, …".
+std::string conventions_of(const Pair& pair, const Relation& relation) {
+  constexpr std::pair<Outside, const char*> kOptions[] = {{kOutsideTouching, ".touching"},
+                                                          {kOutsideCoplanar, ".coplanar"},
+                                                          {kOutsideDegenerate, ".degenerate"},
+                                                          {kOutsideShared, ".shared"}};
+  std::string text;
+  for (const auto& [outside, option] : kOptions) {
+    if (is_outside(outside, pair, relation)) text += (text.empty() ? "" : " or ") + std::string(option);
+  }
+  return text.empty() ? "" : "Either answer is accepted on such a pair with " + text + " = graze::either.\n";
+}
+
 std::string pair_in_words(std::string_view name, const Pair& pair, const std::string& fault) {
   const float *a = &pair.a[0].x, *b = &pair.b[0].x;
+  const Relation relation = relation_of(pair);
+  const bool is_name = name.find_first_of(" ([{") == name.npos;  // not a lambda's text
   return "The smallest wrong pair that was found: " + fault + ".\n  const float a[9] = {" + numbers(a, ", ", true) +
-         "},\n              b[9] = {" + numbers(b, ", ", true) + "};\nWhy: echo '" + numbers(a, " ", false) + "  " +
-         numbers(b, " ", false) +
-         "' > wrong.pairs; graze explain wrong.pairs --subject own=YOUR_FILE.cpp:" + std::string(name) + "\n";
+         "},\n              b[9] = {" + numbers(b, ", ", true) +
+         "};  // right: " + (relation.intersects() ? "true" : "false") + "\n" + conventions_of(pair, relation) +
+         "Why: echo '" + numbers(a, " ", false) + "  " + numbers(b, " ", false) +
+         "' > wrong.pairs; graze explain wrong.pairs --lanes 'own/*' --subject own=YOUR_FILE.cpp:" +
+         (is_name ? std::string(name) : "YOUR_FUNCTION") + "\n";
 }
 
 // Replaces the number by the environment's, if there is one.   Throws: std::invalid_argument.
@@ -206,8 +228,9 @@ TestResult tested_with(std::string_view name, const Tested& tested, const std::v
   result.smallest = smallest_like(simplest->first, tested);
   result.fault = in_words(tested.decide(*result.smallest), relation_of(*result.smallest));
   result.summary = std::string(name) + " is wrong on " + with_commas(wrong) + " of " + with_commas(result.pairs) +
-                   " pairs (" + percent(wrong, result.pairs) + "): " + counts_in_words(result.counts) + ".\n" +
-                   table(rows);
+                   " pairs (" + percent(wrong, result.pairs) +
+                   (max_wrong > 0 ? "; " + shortest(100 * max_wrong) + " % are accepted" : "") +
+                   "): " + counts_in_words(result.counts) + ".\n" + table(rows);
   result.message = result.summary + pair_in_words(name, *result.smallest, result.fault);
   return result;
 }

@@ -97,8 +97,9 @@ Kind kind_of(Stratum stratum) {
 #define GRAZE_STRATUM(name, group, kind, ...) \
   case Stratum::name:                         \
     return Kind::kind;
-#include "strata/double_strata.inc"
 #include "strata/strata.inc"
+
+#include "strata/double_strata.inc"
 #undef GRAZE_STRATUM
     default:
       return Kind::general;

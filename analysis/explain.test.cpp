@@ -134,6 +134,22 @@ TEST(Explain, ARangeThatIsNotAllThatLacksIsStillTheCause) {
   EXPECT_TRUE(std::isnan(lane.told()->left.lane));
 }
 
+// Exact arithmetic divides by zero on the lane's path, so the compared numbers have no exact values.
+TEST(Explain, NumbersThatExactArithmeticDoesNotDefineAreNotGivenExactly) {
+  const Pair pair{{{0, 0, 0}, {0x1.a59p-3f, 0x1.ad0cep-2f, -0x1.fb2cp+0f}, {0x1.96b08p+0f, 0, -0x1.5a92p+1f}},
+                  {{0x1.a0252p+2f, -0x1.776b44p+1f, 0x1.52p-2f},
+                   {-0x1.a59p-3f, -0x1.ad0cep-2f, 0x1.fb2cp+0f},
+                   {-0x1.96b08p+0f, 0, 0x1.5a92p+1f}}};
+  const Explanation explanation = explain(pair, lanes_here());
+  const LaneExplanation& lane = lane_of(explanation, "interval_overlap/f32/cpu");
+  ASSERT_NE(lane.told(), nullptr);
+  EXPECT_TRUE(std::isnan(lane.told()->left.exact) || std::isnan(lane.told()->right.exact));
+  const std::string text = sentence(explanation, lane.lane->info);
+  EXPECT_NE(text.find("a division by exactly zero, after which no number is defined"), std::string::npos) << text;
+  EXPECT_NE(text.find("goes another way"), std::string::npos) << text;
+  EXPECT_EQ(text.find("exactly NaN"), std::string::npos) << text;
+}
+
 TEST(Explain, WhatMoreBitsWouldHelpIsRounding) {
   const Explanation explanation = explain(strata::generate(3, strata::Stratum::near_edge_edge, 100), lanes_here());
   const LaneExplanation& lane = lane_of(explanation, "moller_1997/f32/cpu");

@@ -38,13 +38,17 @@ std::string place(const analysis::Step& step) { return step.line.substr(step.lin
 std::string step_text(const analysis::Step& step, bool told, Scalar scalar, int places, const reports::Screen& screen) {
   std::string text = fmt::format("{}{:<{}}  ", told ? "   => " : "      ", place(step), places), exactly;
   const int hang = reports::width_of(text);
+  constexpr const char* kUndefined = "no exact value, after a division by exactly zero";
   if (step.relation.empty()) {
     text += fmt::format("{}: {:.7g}", step.site, step.left.lane);
-    if (is_off(step.left, scalar)) exactly = "exactly " + step.left.decimal;
+    if (is_off(step.left, scalar)) exactly = std::isnan(step.left.exact) ? kUndefined : "exactly " + step.left.decimal;
   } else {
     text += fmt::format("{:.7g} {} {:.7g} is {}", step.left.lane, step.relation, step.right.lane, step.held);
     if (step.wrong())
-      exactly = fmt::format("exactly {} {} {} is {}", step.left.decimal, step.relation, step.right.decimal, step.holds);
+      exactly =
+          std::isnan(step.left.exact) || std::isnan(step.right.exact)
+              ? kUndefined
+              : fmt::format("exactly {} {} {} is {}", step.left.decimal, step.relation, step.right.decimal, step.holds);
   }
   if (!exactly.empty()) {
     const bool fits = reports::width_of(text) + 2 + reports::width_of(exactly) <= screen.columns;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """verdicts_apart.py CAMPAIGN SUBJECT ROW,… COLUMN,…: prints, as Markdown, on how many pairs two lanes of a subject or an
 algorithm have different verdicts. Rows and columns are the rest of the lanes' names, such as f32/cpu. A cell is the
-number of pairs for one that differs, with its 95 % interval, or 0 and the least number that this would be."""
+number of pairs for one that differs, with its 95 % interval, rounded outward, or 0 and the least number that this would be."""
 import json
 import math
 import pathlib
@@ -46,8 +46,8 @@ def wilson(count, of):
 def cell(count, of):
     low, high = wilson(count, of)
     if count == 0:
-        return f"0 (over {1 / high:,.0f})"
-    return f"{of / count:,.0f} ({1 / high:,.0f} to {1 / low:,.0f})"
+        return f"0 (over {math.floor(1 / high):,})"
+    return f"{of / count:,.0f} ({math.floor(1 / high):,} to {math.ceil(1 / low):,})"
 
 
 def main(campaign, subject, rows, columns):

@@ -65,7 +65,7 @@ void take_facet(Lines& lines, Soup& soup) {
   ++soup.skipped["normals"];
   lines.expect_next("outer loop");
   expect_words(lines, {"outer", "loop"});
-  for (int i = 0; i < 3; ++i) {
+  for (int corner = 0; corner < 3; ++corner) {
     lines.expect_next("a vertex");
     expect_words(lines, {"vertex"}, 3);
     const auto coordinate = [&](std::size_t i) { return lines.coordinate(i, soup.rounding); };

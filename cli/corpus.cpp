@@ -2,6 +2,7 @@
 // `graze corpus`: the regression corpus. `add` adds failures, `list` shows them, `verify` replays them.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <limits>
@@ -136,15 +137,27 @@ void list(const CorpusOptions& options) {
   print_next(options, "verify");
 }
 
-// "mine, yours": subjects with recorded verdicts that need --subject to run.
-std::string subjects_not_run(const fuzz::RegressionCorpus& corpus) {
-  std::set<std::string> subjects;
+// "Not run: mine. …": what has recorded verdicts and did not run: subjects that need --subject, and lanes of published
+// algorithms that this build does not have.
+std::string not_run(const fuzz::RegressionCorpus& corpus) {
+  std::set<std::string> subjects, unknown;
   for (const auto& [signature, c] : corpus) {
     for (const auto& [id, mark] : c.marks) {
-      if (!find_lane(id)) subjects.insert(parse_lane_name(id).value().subject);
+      if (find_lane(id)) continue;
+      const std::string subject = parse_lane_name(id).value().subject;
+      const bool published = std::any_of(lanes().begin(), lanes().end(),
+                                         [&](const Lane& lane) { return lane.info->id == subject && !lane.foreign; });
+      published ? unknown.insert(id) : subjects.insert(subject);
     }
   }
-  return fmt::format("{}", fmt::join(subjects, ", "));
+  std::string text;
+  if (!subjects.empty())
+    text += fmt::format("Not run: {}. Give your own code by --subject NAME=WHAT.\n",
+                        printable(fmt::format("{}", fmt::join(subjects, ", "))));
+  if (!unknown.empty())
+    text += fmt::format("Not run: {}. There is no such lane here; --toolchains adds those of other compilers.\n",
+                        printable(fmt::format("{}", fmt::join(unknown, ", "))));
+  return text;
 }
 
 // One test a case: it fails if a verdict differs from the record.
@@ -177,8 +190,7 @@ int verify(const CorpusOptions& options) {
              reports::grouped(result.compared), result.changes.size(), options.update ? ", recorded" : "");
   if (const std::string evidence = cuda_evidence(under_test); !evidence.empty())
     fmt::print("CUDA lanes: {}\n", evidence);
-  if (const std::string subjects = subjects_not_run(corpus); !subjects.empty())
-    fmt::print("Not run: {}. Give your own code by --subject NAME=WHAT.\n", printable(subjects));
+  fmt::print("{}", not_run(corpus));
   if (options.update) {
     write_corpus(options, corpus);
     return 0;

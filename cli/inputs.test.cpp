@@ -208,6 +208,32 @@ TEST_F(Inputs, WhatFloat32MakesOfMeshesIsSaid) {
   EXPECT_EQ(exact.err.find("float32"), std::string::npos);
 }
 
+TEST_F(Inputs, PatternsThatLeaveNothingAreWrongUse) {
+  for (const std::string strata : {"'!*'", "'near_*,!near_*'"}) {
+    for (const std::string command :
+         {"graze fuzz --pairs 100 --out c", "graze hunt --runs 100 --out c", "graze invariants --pairs 100",
+          "graze discrepancy interval_overlap/f32/cpu interval_overlap/f32/cpu-fma --pairs 100 --out c",
+          "graze tune moller_1997/f32/cpu --pairs 1000 --out c"})
+      expect_error(command + " --strata " + strata, 2, {"leave none"});
+  }
+  std::ofstream(shell.folder / "m.off") << "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  for (const std::string lanes : {"'exact,!exact'", "'!*'"})
+    expect_error("graze query m.off#0 m.off --lanes " + lanes, 2, {"leave no lane"});
+  expect_error("graze fuzz --pairs 100 --out c --lanes '!*'", 2, {"leave no lane"});
+}
+
+// A name in brackets is a name, not a list.
+TEST_F(Inputs, NamesInBracketsAreNames) {
+  expect_done("graze fuzz --strata lattice --lanes exact/f32/cpu --pairs 100 --seed 1 --out '[x]'");
+  expect_done("graze fuzz --strata lattice --lanes exact/f32/cpu --pairs 200 --seed 2 --out x");
+  expect_done("graze merge '[x]' --out m && grep -q '\"seed\": 1,' m/summary.json");
+  const std::string mesh = "OFF\n3 1 0\n0 0 0\n1 0 0\n0.5 1 0\n3 0 1 2\n";
+  std::ofstream(shell.folder / "[t].off") << mesh;
+  std::ofstream(shell.folder / "[t.off]") << mesh;
+  expect_done("graze scene '[t].off'");
+  expect_error("graze scene '[t.off]'", 1, {"[t.off]"});
+}
+
 // Pasted pairs, in every verb that takes a pair; here two segments that meet in a point.
 TEST_F(Inputs, PastedPairsAreReadByEveryVerb) {
   const std::pair<const char*, const char*> pasted[] = {

@@ -6,6 +6,10 @@
 #include <cerrno>
 #include <csignal>
 #include <iostream>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/help.h"
@@ -96,7 +100,13 @@ int main(int argc, char** argv) {
   try {
     std::cout.exceptions(std::ios_base::badbit);
     expect_verb(app, argc > 1 ? argv[1] : "");
-    app.parse(argc, argv);
+    // The parser takes "[a,b]" as a list. Here it is the name of a file.
+    std::vector<std::string> words(argv + 1, argv + argc);
+    for (std::string& word : words) {
+      if (word.starts_with('[') && word.ends_with(']')) word.insert(0, "./");
+    }
+    std::reverse(words.begin(), words.end());
+    app.parse(std::move(words));
     errno = 0;
     if (std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout.flush())
       throw std::runtime_error(graze::cannot("write", "standard output", errno != 0 ? errno : EIO));
@@ -115,6 +125,10 @@ int main(int argc, char** argv) {
     return fail("interrupted", graze::cli::kInterrupted);
   } catch (const graze::UsageError& error) {
     return fail(error.what(), 2);
+  } catch (const nlohmann::json::exception& error) {
+    return fail(fmt::format("a JSON file has another form than this build writes ({})", error.what()), 1);
+  } catch (const std::bad_alloc&) {
+    return fail("there is not enough memory", 1);
   } catch (const std::ios_base::failure&) {  // only std::cout throws it
     return fail(graze::cannot("write", "standard output", errno != 0 ? errno : EIO), 1);
   } catch (const std::exception& error) {

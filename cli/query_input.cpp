@@ -55,7 +55,7 @@ QueryLanes query_lanes(const LaneOptions& options, const std::vector<std::string
   for (const std::string& glob : any_wanted ? options.globs : with_subjects(common, options)) {
     if (leaves_out(glob)) continue;
     if (glob == "exact") {
-      result.ids.push_back(glob);
+      if (matches_any(options.globs, glob)) result.ids.push_back(glob);
       continue;
     }
     fuzz::expect_each_matches({glob});
@@ -72,6 +72,7 @@ QueryLanes query_lanes(const LaneOptions& options, const std::vector<std::string
       }
     }
   }
+  if (result.ids.empty() && under_test.left_out.empty()) throw UsageError("the patterns of --lanes leave no lane");
   fuzz::expect_each_runs(under_test);
   expect_subjects_among(options, result.ids, "--lanes");
   say_left_out(under_test.left_out);

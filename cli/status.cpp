@@ -66,8 +66,9 @@ void expect_own_signatures(const fs::path& directory, const Json& status) {
   const std::uint64_t found = status.at("signatures");
   if (found > most || status.at("disagreements") != disagreements)
     throw std::runtime_error(cannot(
-        "use", directory / "status.json",
-        fmt::format("it has {} disagreements and {} signatures, but the campaign beside it has {} and at most {}",
+        "use", directory,
+        fmt::format("status.json has {} disagreements and {} signatures, but summary.json or the database beside it {} "
+                    "and at most {}",
                     status.at("disagreements").get<std::uint64_t>(), found, disagreements, most)));
 }
 

@@ -102,6 +102,7 @@ void add_folder(const fs::path& folder, const OwnCode& own, Viewed& viewed) {
 
 // Adds the triangles, and the pairs whose boxes overlap, starting with those on which some lane is wrong.
 void add_mesh(const fs::path& file, bool exact_input, Viewed& viewed) {
+  expect_utf8("the mesh", file.string());
   const strata::MeshPairs mesh = strata::read_mesh_pairs(file);
   say_notes(mesh.notes, mesh.rounding, exact_input);
   const std::size_t shown = std::min(mesh.triangles.size(), reports::kMostViewedTriangles);

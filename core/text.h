@@ -14,6 +14,10 @@ namespace graze {
 // entirely a number, or if it rounds beyond the largest float32. "inf" and "nan" are numbers.
 std::optional<float> parse_float32(std::string_view text);
 
+// Whether the number that text spells is exactly this one.
+// Requires: text is such a number, `value` the finite double nearest to it.   Exact: always.
+bool is_exactly(std::string_view text, double value);
+
 // Returns: the whole number that text spells, without a sign; nothing if it spells none or a too large one.
 std::optional<std::uint64_t> parse_whole(std::string_view text);
 

@@ -197,6 +197,7 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
   }
   sort_by_subject(under_test);
   if (under_test.lanes.empty()) {
+    if (under_test.left_out.empty()) throw UsageError("the patterns of --lanes leave no lane");
     throw UsageError(fmt::format("expected a lane that runs here, found only some {}",
                                  fmt::join(left_out_in_words(under_test.left_out), "; ")));
   }

@@ -165,6 +165,16 @@ TEST_F(MeshFile, KeepsDoublesBeyondFloat32) {
   }
 }
 
+// Doubles round such a number to a float32.
+TEST_F(MeshFile, CountsWhatDoublesRoundToo) {
+  for (const char* x : {"0.50000000000000001", "0.49999999999999999999", "0x1.00000000000000001p-1"}) {
+    const MeshPairs mesh = read_triangles(write("m.obj", std::string("v ") + x + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+    EXPECT_EQ(mesh.rounding.rounded, 1u) << x;
+    EXPECT_GT(mesh.rounding.most, 0) << x;
+    EXPECT_EQ(mesh.rounding.beyond, 0u) << x;
+  }
+}
+
 TEST_F(MeshFile, TwoMeshesPairAcrossOnly) {
   const std::string touching = "OFF\n3 1 0\n1 1 1\n2 1 1\n1 2 1\n3 0 1 2\n";  // its box touches theirs only in a point
   const MeshPairs pairs = read_mesh_pairs(write("t.off", kTetrahedron), write("u.off", touching));

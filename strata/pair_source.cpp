@@ -29,6 +29,11 @@ std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs,
                        [seed, stratum = row.stratum](std::uint64_t index) { return generate(seed, stratum, index); },
                        static_cast<int>(row.stratum), row.axis, seed});
   }
+  if (sources.empty()) {
+    std::string names;
+    for (const std::string& glob : globs) names += (names.empty() ? "" : ",") + glob;
+    throw UsageError("strata \"" + printable(names) + "\" leave none");
+  }
   for (std::size_t s = 0; s < sources.size(); ++s)
     sources[s].pairs = pairs / sources.size() + (s < pairs % sources.size());
   return sources;

@@ -27,7 +27,7 @@ struct PairSource {
 };
 
 // The strata whose names match (all for an empty list). They share `pairs` evenly; the first ones take the remainder.
-// Throws: UsageError if a pattern matches no stratum.
+// Throws: UsageError if a pattern matches no stratum, or if all together leave none.
 std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs);
 
 }  // namespace graze::strata

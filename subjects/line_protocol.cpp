@@ -146,10 +146,11 @@ std::string LineProtocol::first_line(const std::string& in_answer_to, double sec
   while (!lines_.take(line)) {
     const std::chrono::duration<double> left = until - std::chrono::steady_clock::now();
     pollfd ready{pipes_.from, POLLIN, 0};
-    if (left.count() <= 0 || poll(&ready, 1, static_cast<int>(1000 * left.count()) + 1) <= 0) return "";
+    if (left.count() <= 0 || poll(&ready, 1, static_cast<int>(1000 * left.count()) + 1) <= 0) return kNoAnswer;
     char some[4096];
     const ssize_t count = read(pipes_.from, some, sizeof some);
-    if (count <= 0 || (bytes += static_cast<std::size_t>(count)) >= sizeof(Loaded::text)) return "";
+    if (count <= 0) return "";
+    if ((bytes += static_cast<std::size_t>(count)) >= sizeof(Loaded::text)) return kLongAnswer;
     lines_.add(some, static_cast<std::size_t>(count));
   }
   return line;

@@ -63,7 +63,10 @@ class LineProtocol {
   Lines lines_;
 };
 
-// The program's answer to `describe`.
+// The program's answer to `describe`; kNoAnswer if it gives none in time and does not end, kLongAnswer for a line that
+// is too long.
+inline constexpr const char* kNoAnswer = "?no answer within 10 s";
+inline constexpr const char* kLongAnswer = "?an answer of 8 KiB or more";
 std::string described_by(const std::string& command);
 
 }  // namespace graze::subjects

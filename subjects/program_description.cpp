@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "core/lanes/lanes.h"
 #include "core/text.h"
+#include "subjects/line_protocol.h"
 
 namespace graze::subjects {
 
@@ -18,6 +20,16 @@ using Json = nlohmann::ordered_json;
 
 void add_description(Description& description, const std::string& subject) {
   const std::string& said = description.said;
+  if (said == kNoAnswer) {
+    fmt::print(
+        stderr,
+        "graze: --subject {}: the program did not answer `describe` within 10 s; no version and no convention of "
+        "it is known\n",
+        subject);
+    return;
+  }
+  if (said == kLongAnswer)
+    throw std::runtime_error(fmt::format("--subject {}: its description is 8 KiB or longer", subject));
   const Json json = Json::parse(said, nullptr, false);
   if (!json.is_object()) return;
   static const std::pair<std::string_view, unsigned> kOutside[] = {{"touching", kOutsideTouching},
@@ -32,9 +44,14 @@ void add_description(Description& description, const std::string& subject) {
                       subject, shown(key)));
   }
   try {
-    description.version = json.value("version", "");
-    description.source = json.value("source", "");
-    description.convention = json.value("convention", "");
+    const auto text = [&](const char* key) {  // without characters that move a terminal's cursor
+      std::string value = json.value(key, "");
+      for (char& c : value) c = static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? ' ' : c;
+      return value;
+    };
+    description.version = text("version");
+    description.source = text("source");
+    description.convention = text("convention");
     for (const std::string& word : json.value("outside", Json::array()).get<std::vector<std::string>>()) {
       const auto found =
           std::find_if(std::begin(kOutside), std::end(kOutside), [&](auto& o) { return o.first == word; });

@@ -307,6 +307,11 @@ TEST_F(Subjects, AProgramMayDescribeItself) {
     EXPECT_NE(error_of([&] { open_program("odd", fmt::format("read line; echo '{}'", other)); }).find("expected texts"),
               std::string::npos)
         << other;
+  EXPECT_NE(error_of([&] { open_program("odd", "read line; printf '{\"version\": \"%09000d\"}\\n' 1"); }).find("8 KiB"),
+            std::string::npos);
+  lane = open_program("controls", R"(read line; echo '{"version": "1\u001b[2J\u0007"}')");
+  ASSERT_TRUE(lane);
+  EXPECT_EQ(opened("controls")->description.version, "1 [2J ");
   EXPECT_NE(error_of([&] {
               open_program("odd", R"(read line; echo '{"outsied": ["touching"]}')");
             }).find("in its description, found \"outsied\""),

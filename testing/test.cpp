@@ -31,14 +31,11 @@ std::vector<strata::PairSource> sources_of(std::string_view names, std::uint64_t
     globs.emplace_back(rest.substr(0, comma));
     rest.remove_prefix(std::min(comma + 1, rest.size()));
   }
-  std::vector<strata::PairSource> sources;
   try {
-    sources = strata::stratum_sources(seed, count, globs);
+    return strata::stratum_sources(seed, count, globs);
   } catch (const UsageError& error) {
     throw std::invalid_argument(error.what());
   }
-  if (sources.empty()) throw std::invalid_argument("strata \"" + printable(names) + "\" leave none");
-  return sources;
 }
 
 // The kinds of pairs on which either answer is accepted.

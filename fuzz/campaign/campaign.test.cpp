@@ -315,6 +315,8 @@ TEST(PairSource, SharesPairsEvenlyAndRefusesUnknownStrata) {
   EXPECT_EQ(sources[0].pairs, 3u);
   EXPECT_EQ(sources[3].pairs, 2u);
   EXPECT_THROW(strata::stratum_sources(1, 10, {"nearly_*"}), UsageError);
+  EXPECT_THROW(strata::stratum_sources(1, 10, {"!*"}), UsageError);
+  EXPECT_THROW(strata::stratum_sources(1, 10, {"near_*", "!near_*"}), UsageError);
 }
 
 TEST(SignatureCount, KeepsTheSmallestCasesInWhateverOrderTheyCome) {

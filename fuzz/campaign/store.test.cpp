@@ -112,8 +112,11 @@ TEST_F(StoreTest, EditsAreFoundOutAndWhatChecksIsKept) {
         Edit{"INSERT INTO batch SELECT 8, source, first, pairs, counts, checksum FROM batch WHERE id = 3", 7},
         Edit{"UPDATE campaign SET text = replace(text, 'seed', 'sead')", 7}, Edit{"DELETE FROM campaign", 7},
         Edit{"UPDATE campaign SET checksum = 1", 7}, Edit{"INSERT INTO campaign SELECT * FROM campaign", 7},
-        Edit{"DROP TABLE campaign", 7}, Edit{"DROP TABLE batch", 0},
-        Edit{"DELETE FROM campaign; DELETE FROM batch", 0}}) {
+        Edit{"DROP TABLE campaign", 7}, Edit{"DROP TABLE batch", 0}, Edit{"DELETE FROM campaign; DELETE FROM batch", 0},
+        Edit{"ALTER TABLE batch RENAME TO rows; CREATE VIEW batch(id, source, first, pairs, counts, checksum) AS WITH "
+             "RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT id, source, first, pairs, counts, "
+             "checksum FROM rows, n",
+             0}}) {
     write_whole(file(c), bytes);
     SQLite::Database(file(c).string(), SQLite::OPEN_READWRITE).exec(sql);
     expect_one_line_of_damage(c, sql);

@@ -321,6 +321,8 @@ struct KeptRow {
 std::vector<KeptRow> rows_that_check(SQLite::Database& database, const StoreSpec& spec, std::uint64_t campaign,
                                      std::size_t& seen) {
   std::vector<KeptRow> kept;
+  // A view could go on for ever.
+  if (number(database, "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name = 'batch'") != 1) return kept;
   Coverage coverage(spec);
   for (const char* order : {"ORDER BY id", "ORDER BY id DESC"}) {
     try {
@@ -467,7 +469,9 @@ StoreSpec recorded_store(const fs::path& directory) {
   if (!fs::exists(file)) throw std::runtime_error(cannot("read", file, ENOENT));
   return in_one_line(file, [&] {
     OpenedToRead store(directory);
-    if (is_fresh(store.database, file)) throw Damaged("it is empty");
+    if (is_fresh(store.database, file))
+      throw std::runtime_error(
+          cannot("use", file, "it is empty, so the campaign is lost; run it again with another --out"));
     const Json text = parse_shallow(recorded_text(store.database));
     if (!text.is_object()) throw Damaged("its campaign is not a JSON object");
     try {

@@ -83,6 +83,7 @@ struct Line {
         rest.remove_prefix(end + 1);
       }
     }
+    if (marks.empty()) fail("a mark of at least one lane in lanes", "none");
     return marks;
   }
 };

@@ -102,7 +102,10 @@ Coordinate Lines::coordinate(std::size_t i, Rounding& rounding) const {
   const std::optional<float> value = i < words_.size() ? parse_float32(words_[i]) : std::nullopt;
   if (!value || !file_.may_be(*value)) fail_at(i, "a coordinate that is finite in float32");
   const double written = std::strtod(std::string(words_[i]).c_str(), nullptr);
-  rounding.add(written, *value, std::max(std::abs(written) * 0x1p-53, 0x1p-1074));
+  constexpr std::size_t kTold = 15;  // digits, by which doubles tell any two decimals apart
+  const bool is_it = words_[i].size() <= kTold || written != static_cast<double>(*value) || !std::isfinite(written) ||
+                     is_exactly(words_[i], written);
+  rounding.add(written, *value, std::max(std::abs(written) * 0x1p-53, 0x1p-1074), is_it);
   rounding.beyond += written != static_cast<double>(*value) && !is_decimal_of(*value, written);
   return {*value, written};
 }

@@ -24,10 +24,10 @@ struct Rounding {
   std::uint64_t coordinates = 0, rounded = 0, beyond = 0;
   double most = 0;  // no coordinate moved by more
 
-  // written: the double nearest to the number in the file; slack: how far it can be from that number.
-  void add(double written, float stored, double slack = 0) {
+  // written: the double nearest to the number in the file; slack: how far it can be from that number, if it is not it.
+  void add(double written, float stored, double slack = 0, bool is_it = true) {
     ++coordinates;
-    if (!std::isfinite(written) || written == static_cast<double>(stored)) return;
+    if (!std::isfinite(written) || (is_it && written == static_cast<double>(stored))) return;
     ++rounded;
     most = std::max(most, std::abs(written - static_cast<double>(stored)) + slack);
   }

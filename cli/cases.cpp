@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "analysis/signature.h"
 #include "core/error.h"
@@ -68,10 +69,21 @@ std::string written_note(const corpus::Entry& entry, const oracle::Truth& stored
   if (entry.written.empty()) return "";
   const std::optional<oracle::Truth> written = oracle::truth_as_written(entry.written, entry.pair);
   if (!written) return "";
-  const auto sign = [](double margin) { return (margin > 0) - (margin < 0); };
-  const bool alike = written->verdict == stored.verdict && written->contact == stored.contact &&
-                     sign(written->margin) == sign(stored.margin);
-  return alike ? "" : fmt::format("as written: {}; as stored in float32: {}", words(*written), words(stored));
+  const auto alike = [](const oracle::Truth& l, const oracle::Truth& r) {
+    return l.verdict == r.verdict && l.contact == r.contact && l.margin_sign == r.margin_sign;
+  };
+  DoublePair pair;
+  for (std::size_t i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = std::strtod(entry.written[i].c_str(), nullptr);
+  const oracle::Truth in_doubles = is_finite(pair) ? oracle::truth(pair) : *written;
+  const bool double_differs = !alike(*written, in_doubles), float_differs = !alike(in_doubles, stored);
+  if (!double_differs && !float_differs) return "";
+  std::string text = "as written: " + words(*written);
+  if (double_differs)
+    text += fmt::format("; as doubles{}: {}", float_differs ? "" : " and as stored in float32", words(in_doubles));
+  if (!float_differs) return text;
+  const std::size_t i = oracle::first_rounded(entry.written, entry.pair).value();
+  return fmt::format("{}; as stored in float32: {} (it rounds number {}, {})", text, words(stored), i + 1,
+                     printable(entry.written[i]));
 }
 
 std::vector<std::pair<std::string, Verdict>> stored_verdicts_of(const corpus::Entry& entry,

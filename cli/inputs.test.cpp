@@ -170,6 +170,16 @@ TEST_F(Inputs, WhatFloat32MakesOfDecimalsIsSaid) {
   EXPECT_NE(hex.out.find("as written: disjoint, 2.22e-16 apart; as stored in float32: they share an area"),
             std::string::npos)
       << hex.out;
+  // Decimals that doubles do not tell apart either.
+  const Ran finer = shell(
+      "echo '0 0 1 1 0 1 0 1 1  0 0 1.00000000000000000001 1 0 1.00000000000000000001 0 1 1.00000000000000000001' | "
+      "graze check -");
+  EXPECT_NE(
+      finer.out.find("as written: disjoint, 1e-20 apart; as doubles and as stored in float32: they share an area"),
+      std::string::npos)
+      << finer.out;
+  EXPECT_EQ(finer.out.find("it rounds"), std::string::npos);
+  EXPECT_NE(shell("graze check near.pairs").out.find("(it rounds number 12, 1.00000000001)"), std::string::npos);
   // Rounding that does not change the truth is not reported.
   expect_done("echo '0.1 0 0 4 0 0 0 4 0  1 1 0.3 1 2 4 2 1 4' > p; graze check p > out; ! grep -q written out");
   expect_done(std::string("echo '") + kTouching + "' | graze check - --exact-input");

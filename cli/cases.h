@@ -20,8 +20,8 @@ namespace graze::cli {
 // std::runtime_error for a file without a case.
 std::vector<corpus::Entry> read_cases(const std::string& name);
 
-// "as written: disjoint, 1e-11 apart; as stored in float32: they share an area (it rounds number 12, 1.00000000001)", if
-// rounding to double or to float32 changes the truth of the entry; otherwise empty.
+// "as written: disjoint, 1e-11 apart; as stored in float32: they share an area (it rounds number 12, 1.00000000001)",
+// if rounding to double or to float32 changes the truth of the entry; otherwise empty.
 std::string written_note(const corpus::Entry& entry, const oracle::Truth& stored);
 
 // The verdicts that the entry's campaign stored of lanes of foreign code that are left out now. None without a

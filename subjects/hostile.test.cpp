@@ -26,6 +26,7 @@
 #include "core/stop.h"
 #include "strata/strata.h"
 #include "subjects/containment.h"
+#include "subjects/line_protocol.h"
 #include "subjects/process.h"
 #include "subjects/source_build.h"
 #include "subjects/usage.h"
@@ -547,8 +548,8 @@ TEST_F(Hostile, DescriptionsOfProgramsAreBounded) {
     return describe(code).said;
   };
   EXPECT_EQ(said("read l; echo \"$l, you say\""), "describe, you say");
-  EXPECT_EQ(said("cat /dev/zero"), "");
-  EXPECT_EQ(said("head -c 9000 /dev/zero | tr '\\0' x; echo"), "");
+  EXPECT_EQ(said("cat /dev/zero"), kLongAnswer);
+  EXPECT_EQ(said("head -c 9000 /dev/zero | tr '\\0' x; echo"), kLongAnswer);
   EXPECT_EQ(said("sleep 1000 & exec echo"), "");
   EXPECT_EQ(said("python3 -c 'x = bytearray(10**9)'"), "");
   expect_nothing_left();

@@ -116,8 +116,9 @@ std::string in_words(Verdict verdict, const Relation& relation) {
 }
 
 std::string shortest(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr};
+  char text[32];  // not by to_chars, whose tables would make the WebAssembly larger
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
 }
 
 struct Row {

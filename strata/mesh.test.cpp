@@ -157,6 +157,10 @@ TEST_F(MeshFile, KeepsDoublesBeyondFloat32) {
     EXPECT_EQ(read(x).rounding.beyond, 0u) << x;
     EXPECT_TRUE(read(x).in_doubles.empty()) << x;
   }
+  for (const char* x : {"nan", "inf"}) {
+    const auto file = write("m.obj", std::string("v ") + x + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_EQ(read_triangles(file, Coordinates::any).rounding.beyond, 0u) << x;
+  }
   for (const char* x : {"1000000.01", "0.1000000001", "3.14159265358979", "16777217", "1e-46", "123456.7891"}) {
     const MeshPairs mesh = read(x);
     EXPECT_EQ(mesh.rounding.beyond, 1u) << x;

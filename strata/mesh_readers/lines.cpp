@@ -106,7 +106,8 @@ Coordinate Lines::coordinate(std::size_t i, Rounding& rounding) const {
   const bool is_it = words_[i].size() <= kTold || written != static_cast<double>(*value) || !std::isfinite(written) ||
                      is_exactly(words_[i], written);
   rounding.add(written, *value, std::max(std::abs(written) * 0x1p-53, 0x1p-1074), is_it);
-  rounding.beyond += written != static_cast<double>(*value) && !is_decimal_of(*value, written);
+  rounding.beyond +=
+      std::isfinite(written) && written != static_cast<double>(*value) && !is_decimal_of(*value, written);
   return {*value, written};
 }
 

@@ -183,7 +183,7 @@ class Body {
                                           : std::bit_cast<double>(take<std::uint64_t>());
     const auto value = static_cast<float>(written);
     rounding.add(written, value);
-    rounding.beyond += written != static_cast<double>(value);
+    rounding.beyond += std::isfinite(written) && written != static_cast<double>(value);
     if (!file_.may_be(value)) fail("a coordinate that is finite in float32", "one that is not");
     return {value, written};
   }

@@ -236,7 +236,7 @@ TEST_F(Inputs, NamesInBracketsAreNames) {
   expect_done("graze fuzz --strata lattice --lanes exact/f32/cpu --pairs 100 --seed 1 --out '[x]'");
   expect_done("graze fuzz --strata lattice --lanes exact/f32/cpu --pairs 200 --seed 2 --out x");
   expect_done("graze merge '[x]' --out m && grep -q '\"seed\": 1,' m/summary.json");
-  const std::string mesh = "OFF\n3 1 0\n0 0 0\n1 0 0\n0.5 1 0\n3 0 1 2\n";
+  const std::string mesh = "OFF\n4 2 0\n0 0 0\n1 0 0\n0.5 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n";
   std::ofstream(shell.folder / "[t].off") << mesh;
   std::ofstream(shell.folder / "[t.off]") << mesh;
   expect_done("graze scene '[t].off'");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -73,6 +74,8 @@ struct Step {
   bool held = true;                        // in the lane's arithmetic
   bool holds = true;                       // in exact arithmetic
   bool wrong() const { return held != holds; }
+  // Whether exact arithmetic has no such numbers to compare, because it divides by zero on the way to them.
+  bool is_undefined() const { return std::isnan(left.exact) || std::isnan(right.exact); }
 };
 
 // The number of pairs with the same truth on which the lane is wrong, out of how many.

@@ -86,13 +86,10 @@ std::string words(double x) {
 
 std::string exact_words(const oracle::Beside& value) { return std::isnan(value.exact) ? "NaN" : value.decimal; }
 
-// Whether exact arithmetic has no such numbers, because it divides by zero on the way to them.
-bool is_undefined(const Step& told) { return std::isnan(told.left.exact) || std::isnan(told.right.exact); }
-
 // "a signed distance of exactly 0 into 1.2e-09". The lane itself computes no difference of the two numbers. If that
 // difference is not finite, names both: "two interval ends of exactly 3 and 4 into infinity and 4".
 std::string turned(const LaneExplanation& lane, const Step& told) {
-  if (is_undefined(told))
+  if (told.is_undefined())
     return fmt::format("a division by exactly zero, after which no number is defined, into {} and {}",
                        words(told.left.lane), words(told.right.lane));
   const bool with_zero = told.right.decimal == "0" && told.right.lane == 0;
@@ -113,10 +110,10 @@ std::string effect(const LaneExplanation& lane, std::string_view replayed) {
   if (lane.deciding.front().by_cause) {
     text = fmt::format("{} {}turns {}, so that the comparison at {} goes {} way",
                        lane.cause == Cause::rounding ? "" : ", which", replayed, turned(lane, *told), told->line,
-                       is_undefined(*told) ? "another" : "the wrong");
+                       told->is_undefined() ? "another" : "the wrong");
   } else {
     text = fmt::format("; {}the comparison at {}, which decides, goes {} way without that too", replayed, told->line,
-                       is_undefined(*told) ? "another" : "the wrong");
+                       told->is_undefined() ? "another" : "the wrong");
   }
   std::vector<std::string> then;
   for (const Step& step : lane.then) then.push_back(step.line);

@@ -45,10 +45,9 @@ std::string step_text(const analysis::Step& step, bool told, Scalar scalar, int 
   } else {
     text += fmt::format("{:.7g} {} {:.7g} is {}", step.left.lane, step.relation, step.right.lane, step.held);
     if (step.wrong())
-      exactly =
-          std::isnan(step.left.exact) || std::isnan(step.right.exact)
-              ? kUndefined
-              : fmt::format("exactly {} {} {} is {}", step.left.decimal, step.relation, step.right.decimal, step.holds);
+      exactly = step.is_undefined() ? kUndefined
+                                    : fmt::format("exactly {} {} {} is {}", step.left.decimal, step.relation,
+                                                  step.right.decimal, step.holds);
   }
   if (!exactly.empty()) {
     const bool fits = reports::width_of(text) + 2 + reports::width_of(exactly) <= screen.columns;

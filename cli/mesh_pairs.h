@@ -101,8 +101,8 @@ struct FoundPairs {
 };
 
 // Boxes are those of the triangles in float32. Rounding keeps the order of coordinates, so they miss no pair of
-// doubles. told: called with the number of triangles of `a` that are done, by one thread at a time. Throws: Stopped,
-// soon after a request to stop (core/stop.h).
+// doubles.   told: called with the number of triangles of `a` that are done, by one thread at a time.
+// Throws: Stopped, soon after a request to stop (core/stop.h).
 FoundPairs find_pairs(
     const TwoMeshes& meshes, const Decider& decider, const Kept& kept,
     const std::function<void(std::size_t)>& told = [](std::size_t) {});

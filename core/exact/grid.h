@@ -47,7 +47,6 @@ template <class Real>
 struct Format {
   using Bits = decltype(bits_of(Real()));
   static constexpr int kFraction = sizeof(Real) == 4 ? 23 : 52, kBias = sizeof(Real) == 4 ? 127 : 1023;
-  static constexpr int kLeastExponent = 1 - kBias - kFraction;  // of the least subnormal
   static constexpr Bits kHidden = Bits{1} << kFraction, kSign = Bits{1} << (8 * sizeof(Real) - 1);
 };
 

@@ -59,9 +59,8 @@ struct ExactNumbers {
 };
 
 inline constexpr int kSingleBits = 6, kResidueBits = 34, kDoubleBits = 15, kNarrowBits = 30, kIntBits = 40,
-                     kMediumBits = 61, kLongBits = 90,
-                     kFloatBits = 277,  // of all floats, as multiples of 2^-149
-    kLargeBits = 300, kAllBits = 2098;
+                     kMediumBits = 61, kLongBits = 90, kLargeBits = 300;
+inline constexpr int kFloatBits = 277, kAllBits = 2098;  // of all floats as multiples of 2^-149, and of all doubles
 using DoubleNumbers = ExactNumbers<double, double, double, kDoubleBits, Stage::doubles>;
 using NarrowNumbers = ExactNumbers<std::int64_t, std::int64_t, Int128, kNarrowBits, Stage::int128>;
 using IntNumbers = ExactNumbers<std::int64_t, Int128, Int128, kIntBits, Stage::int128>;

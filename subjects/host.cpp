@@ -281,9 +281,13 @@ class Asking {
  private:
   const Number* pair(std::size_t i) const { return static_cast<const Number*>(pairs) + 18 * i; }
 
+  // What an answer holds before a block's function writes it. It differs between the passes, so an answer that is not
+  // written is unstable.
+  static signed char unwritten(bool second) { return second ? kDisjoint : kDeclined; }
+
   // A call that changes the control of floating-point numbers gets another answer the second time: it is unstable.
   signed char one(std::size_t i, bool second) const {
-    signed char said = kDeclined;
+    signed char said = unwritten(second);
     if (block_) {
       block_(pair(i), 1, &said);
       said = answer_of(said);
@@ -297,7 +301,7 @@ class Asking {
   void ask_block(const Question& question, bool second, std::size_t begin, std::size_t end) const {
     if (begin == end) return;
     signed char said[kMostAsked];
-    std::fill_n(said, kMostAsked, static_cast<signed char>(kDeclined));
+    std::fill_n(said, kMostAsked, unwritten(second));
     block_(pair(begin), end - begin, said);
     if (control_.restore()) _exit(1);  // then the pairs are asked one at a time
     for (std::size_t i = begin; i < end; ++i) put_answer(words, question, second, i, answer_of(said[i - begin]));

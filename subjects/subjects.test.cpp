@@ -90,6 +90,11 @@ static void by_place(const float* pairs, size_t count, signed char* answers) {  
   for (size_t i = 0; i < count; ++i) answers[i] = (pairs[18 * i] < pairs[18 * i + 9]) != (i % 8 == 7);
 }
 GRAZE_SUBJECT(by_place_in_block) = {GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, by_place, nullptr};
+static void writes_some(const float* pairs, size_t count, signed char* answers) {
+  for (size_t i = 0; i < count; ++i)
+    if (!(pairs[18 * i] > 0.9f)) answers[i] = pairs[18 * i] < pairs[18 * i + 9];
+}
+GRAZE_SUBJECT(writes_some_answers) = {GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, writes_some, nullptr};
 GRAZE_SUBJECT(outside_what) = {GRAZE_SUBJECT_ABI, 16, nullptr, nullptr, nullptr, throws, nullptr, nullptr, nullptr};
 GRAZE_SUBJECT(of_another_time) = {99, 0, nullptr, nullptr, nullptr, throws, nullptr, nullptr, nullptr};
 GRAZE_SUBJECT(empty) = {GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
@@ -231,6 +236,8 @@ TEST_F(Subjects, DescriptionsAndBlocksAndExceptions) {
   }
   EXPECT_EQ(wrong, 0u);
   EXPECT_GT(unstable, pairs.size() / 8);
+  ForeignProcesses writes_some({"library", (folder / "libdescribed.so").string(), "writes_some_answers"}, Scalar::f32);
+  expect(writes_some, Verdict::unstable);
 #ifdef __x86_64__
   ForeignProcesses rounds({"library", (folder / "libdescribed.so").string(), "rounds_in_blocks"}, Scalar::f32);
   expect(rounds, Verdict::unstable);

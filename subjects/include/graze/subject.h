@@ -50,8 +50,8 @@ struct graze_subject {
   /* Decide one pair at a time; may be null. */
   int (*f32)(const float a[9], const float b[9]);
   int (*f64)(const double a[9], const double b[9]);
-  /* Decide a block of pairs instead: pair i is pairs[18 * i] to pairs[18 * i + 17], its answer is answers[i]. After a
-   * crash Graze asks about the block again, one pair at a time. */
+  /* Decide a block of pairs instead: pair i is pairs[18 * i] to pairs[18 * i + 17], its answer is answers[i]. An answer
+   * that is not written is unstable. After a crash Graze asks about the block again, one pair at a time. */
   void (*block_f32)(const float* pairs, size_t count, signed char* answers);
   void (*block_f64)(const double* pairs, size_t count, signed char* answers);
 };

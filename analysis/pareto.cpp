@@ -66,17 +66,30 @@ std::string_view name(Extreme extreme) {
   return kNames[static_cast<int>(extreme)];
 }
 
-double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<Pair>& pairs, Calls calls) {
+namespace {
+
+template <class AnyPair>
+double nanoseconds_of(const DecideBlock& lane, const std::vector<AnyPair>& pairs, Calls calls) {
   VerdictBits bits;
   std::uint64_t intersects = 0, declined = 0;
   const double start = processor_nanoseconds();
   if (calls == Calls::of_blocks) {
-    decide(lane, pairs, bits);
+    decide(lane, std::span<const AnyPair>(pairs), bits);
   } else {
-    for (const Pair& pair : pairs) lane(&pair, 1, &intersects, &declined);
+    for (const AnyPair& pair : pairs) lane(&pair, 1, &intersects, &declined);
   }
   const double taken = std::max(0.0, processor_nanoseconds() - start - nanoseconds_of_the_clock());
   return taken / static_cast<double>(pairs.size());
+}
+
+}  // namespace
+
+double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<Pair>& pairs, Calls calls) {
+  return nanoseconds_of(lane, pairs, calls);
+}
+
+double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<DoublePair>& pairs) {
+  return nanoseconds_of(lane, pairs, Calls::of_blocks);
 }
 
 Cost quartiles(std::vector<double> nanoseconds) {

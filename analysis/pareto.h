@@ -27,6 +27,7 @@ double processor_nanoseconds();
 
 // Nanoseconds per pair of one run of the lane over the pairs.   Requires: pairs.
 double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<Pair>& pairs, Calls calls = Calls::of_blocks);
+double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<DoublePair>& pairs);
 
 // Requires: some.
 Cost quartiles(std::vector<double> nanoseconds);

@@ -72,14 +72,27 @@ char Signature::mark_of(std::string_view lane_within_subject) const {
 
 std::string_view name(Nesting nesting) { return kNestings[static_cast<int>(nesting)]; }
 
-Nesting nesting_of(const Pair& pair, const Relation& truth) {
-  const float *a = coordinates(pair), *b = a + 9;
-  Nesting nesting;
-  if (exact::detail::nesting_quickly(a, b, truth, nesting)) return nesting;
+namespace {
+
+template <class Real>
+Nesting exact_nesting(const BasicPair<Real>& pair, const Relation& truth) {
+  const Real *a = coordinates(pair), *b = a + 9;
   const exact::detail::Grid grid = exact::detail::grid_of(a, b);
-  return exact::detail::AllNumbers::visit(grid, [&](auto numbers) {
+  return exact::detail::KindsFor<Real>::All::visit(grid, [&](auto numbers) {
     return exact::detail::nesting(exact::detail::triangles<decltype(numbers)>(a, b, grid.exponent), truth);
   });
+}
+
+}  // namespace
+
+Nesting nesting_of(const Pair& pair, const Relation& truth) {
+  const float* a = coordinates(pair);
+  Nesting nesting;
+  return exact::detail::nesting_quickly(a, a + 9, truth, nesting) ? nesting : exact_nesting(pair, truth);
+}
+
+Nesting nesting_of(const DoublePair& pair, const Relation& truth) {
+  return exact::detail::may_nest(truth) ? exact_nesting(pair, truth) : Nesting::none;
 }
 
 Signature signature(const Relation& truth, Nesting nesting, Bucket bucket, std::span<const Lane* const> lanes,

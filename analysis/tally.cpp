@@ -39,6 +39,9 @@ void Tally::add(const JudgedBlock& block) {
       for_each_bit(bits.false_negative, [&](std::size_t i) { ++at(i).false_negative; });
       for_each_bit(bits.declined, [&](std::size_t i) { ++at(i).declined; });
       for_each_bit(bits.failed, [&](std::size_t i) { ++at(i).of(lane.at(w * 64 + i)); });
+      if (!block.changed_by_storing.empty() && !lane.doubles)
+        for_each_bit((bits.false_positive | bits.false_negative) & block.changed_by_storing[w],
+                     [&](std::size_t i) { ++at(i).stored; });
       if (cpu_twin_[l] >= 0) {
         const LaneVerdicts& cpu = block.verdicts[static_cast<std::size_t>(cpu_twin_[l])];
         for_each_bit((yes ^ cpu.intersects[w]) | (none ^ cpu.declined[w]),
@@ -65,10 +68,11 @@ void Tally::add(Bucket b, int lane, const LaneCounts& counts) {
   lanes_[static_cast<std::size_t>(lane) * kBucketCount + row(b)] += counts;
 }
 
-void Tally::excuse(Bucket b, int lane, Verdict verdict) {
+void Tally::excuse(Bucket b, int lane, Verdict verdict, bool stored) {
   LaneCounts& counts = lanes_[static_cast<std::size_t>(lane) * kBucketCount + row(b)];
   --counts.of(verdict);
   ++counts.by_convention;
+  counts.stored -= stored;
 }
 
 Bits not_right(const JudgedBlock& block) {

@@ -20,15 +20,20 @@ struct JudgedBlock {
   std::span<const std::uint64_t> truth;    // intersects
   std::span<const Bucket> buckets;         // of each pair's margin
   std::span<const LaneVerdicts> verdicts;  // of each lane under test
+  // Of pairs of doubles: the pairs whose verdict differs once they are stored in float32, as lanes in float32 decide
+  // them. Else empty.
+  std::span<const std::uint64_t> changed_by_storing = {};
 };
 
 struct LaneCounts : Counts {
   std::uint64_t differs_from_cpu = 0;  // another verdict than the cpu lane of the same algorithm and scalar
+  std::uint64_t stored = 0;            // of the wrong ones: right on the pair as it is stored in float32
 
   bool any() const { return *this != LaneCounts{}; }
   LaneCounts& operator+=(const LaneCounts& other) {
     Counts::operator+=(other);
     differs_from_cpu += other.differs_from_cpu;
+    stored += other.stored;
     return *this;
   }
   friend bool operator==(const LaneCounts&, const LaneCounts&) = default;
@@ -46,7 +51,8 @@ class Tally {
   void add(Bucket b, std::uint64_t pairs, std::uint64_t intersects);
   void add(Bucket b, int lane, const LaneCounts& counts);
   // Moves one pair from the count of that verdict to those by convention, because the lane's convention excludes it.
-  void excuse(Bucket b, int lane, Verdict verdict);
+  // stored: it was counted as stored too.
+  void excuse(Bucket b, int lane, Verdict verdict, bool stored = false);
 
   int lane_count() const { return static_cast<int>(cpu_twin_.size()); }
   std::uint64_t pairs(Bucket b) const { return pairs_[row(b)]; }

@@ -2,8 +2,10 @@
 #include "cli/cases.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include "analysis/signature.h"
@@ -34,7 +36,7 @@ std::string words(const oracle::Truth& truth) {
 
 }  // namespace
 
-std::vector<corpus::Entry> read_cases(const std::string& name) {
+std::vector<corpus::Entry> read_cases(const std::string& name, PairTypes taken) {
   const std::size_t first = name.find(':'), last = name.rfind(':');
   // A scene is named by a path, which may contain slashes and colons.
   const std::size_t at = std::min(name.find('@'), name.size());
@@ -52,37 +54,78 @@ std::vector<corpus::Entry> read_cases(const std::string& name) {
               {"scene", named.scene}},
              0}};
   }
-  const bool three_numbers = first != std::string::npos && first != last && name.find('/') == std::string::npos;
+  const std::string stratum = name.substr(0, std::min(first, name.size()));
+  const bool in_doubles = strata::stratum_in_doubles(stratum).has_value();
+  const bool three_numbers =
+      first != std::string::npos && first != last && (in_doubles || name.find('/') == std::string::npos);
   if (!three_numbers || std::filesystem::exists(name, ignored)) {
-    std::vector<corpus::Entry> entries = corpus::read_pairs(name);
+    std::vector<corpus::Entry> entries = corpus::read_pairs(name, taken);
     if (entries.empty()) throw std::runtime_error("there is no pair in " + name);
     return entries;
   }
-  const std::string stratum = name.substr(0, first), seed = name.substr(first + 1, last - first - 1),
+  const std::string seed = name.substr(first + 1, last - first - 1),
                     index = name.substr(last + 1);
-  const std::vector<strata::PairSource> sources = strata::stratum_sources(number(seed, name), 1, {stratum});
+  const std::vector<strata::PairSource> sources = strata::stratum_sources(
+      number(seed, name), 1, {stratum}, in_doubles ? PairTypes::f64 : PairTypes::f32);
   if (sources.size() != 1) throw UsageError(name + " matches several strata; name one");
-  return {{sources.front().pair(number(index, name)), {{"stratum", stratum}, {"seed", seed}, {"index", index}}, 0}};
+  const std::vector<std::pair<std::string, std::string>> numbers = {
+      {"stratum", stratum}, {"seed", seed}, {"index", index}};
+  if (!in_doubles) return {corpus::entry_of(sources.front().pair(number(index, name)), numbers)};
+  if (taken == PairTypes::f32) throw UsageError(name + " is a pair of doubles; this takes pairs of float32");
+  return {corpus::entry_of(sources.front().double_pair(number(index, name)), numbers)};
 }
 
-std::string written_note(const corpus::Entry& entry, const oracle::Truth& stored) {
+namespace {
+
+bool alike(const oracle::Truth& l, const oracle::Truth& r) {
+  return l.verdict == r.verdict && l.contact == r.contact && l.margin_sign == r.margin_sign;
+}
+
+// The note of a pair of doubles. truth: its own.
+std::string note_of_doubles(const corpus::Entry& entry, const oracle::Truth& truth) {
+  const double* own = coordinates(*entry.doubles);
+  const float* stored = coordinates(entry.pair);
+  std::vector<std::string> parts;
+  if (const auto written =
+          entry.written.empty() ? std::nullopt : oracle::truth_as_written(entry.written, entry.pair);
+      written && !alike(*written, truth))
+    parts.push_back("as written: " + words(*written) + "; as doubles: " + words(truth));
+  int i = 0;
+  while (i < kCoordinates && (std::isnan(own[i]) || double{stored[i]} == own[i])) ++i;
+  if (i == kCoordinates) return fmt::format("{}", fmt::join(parts, "; "));
+  const std::string number = fmt::format("number {}, {}", i + 1, own[i]);
+  if (const auto beyond = std::find_if(stored, stored + kCoordinates, [](float x) { return std::isinf(x); });
+      is_finite(*entry.doubles) && beyond != stored + kCoordinates) {
+    parts.push_back(fmt::format("float32 cannot store it: number {}, {} is beyond its largest", beyond - stored + 1,
+                                own[beyond - stored]));
+  } else if (const oracle::Truth in_float32 = oracle::truth(entry.pair); !alike(in_float32, truth)) {
+    parts.push_back(fmt::format("as stored in float32: {} (it rounds {})", words(in_float32), number));
+  }
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+}  // namespace
+
+oracle::Truth truth_of(const corpus::Entry& entry) {
+  return corpus::visit(entry, [](const auto& pair) { return oracle::truth(pair); });
+}
+
+std::string written_note(const corpus::Entry& entry, const oracle::Truth& truth) {
+  if (entry.doubles) return note_of_doubles(entry, truth);
   if (entry.written.empty()) return "";
   const std::optional<oracle::Truth> written = oracle::truth_as_written(entry.written, entry.pair);
   if (!written) return "";
-  const auto alike = [](const oracle::Truth& l, const oracle::Truth& r) {
-    return l.verdict == r.verdict && l.contact == r.contact && l.margin_sign == r.margin_sign;
-  };
   DoublePair pair;
   for (std::size_t i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = std::strtod(entry.written[i].c_str(), nullptr);
   const oracle::Truth in_doubles = is_finite(pair) ? oracle::truth(pair) : *written;
-  const bool double_differs = !alike(*written, in_doubles), float_differs = !alike(in_doubles, stored);
+  const bool double_differs = !alike(*written, in_doubles), float_differs = !alike(in_doubles, truth);
   if (!double_differs && !float_differs) return "";
   std::string text = "as written: " + words(*written);
   if (double_differs)
     text += fmt::format("; as doubles{}: {}", float_differs ? "" : " and as stored in float32", words(in_doubles));
   if (!float_differs) return text;
   const std::size_t i = oracle::first_rounded(entry.written, entry.pair).value();
-  return fmt::format("{}; as stored in float32: {} (it rounds number {}, {})", text, words(stored), i + 1,
+  return fmt::format("{}; as stored in float32: {} (it rounds number {}, {})", text, words(truth), i + 1,
                      printable(entry.written[i]));
 }
 

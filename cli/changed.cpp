@@ -108,6 +108,7 @@ Json changed_rows(const std::string& before, const std::string& after) {
     const Lane *lane_then = then.lane(id), *lane_now = lane_then ? now.lane(id) : nullptr;
     if (!lane_then || !lane_now || !lane_then->decide || !lane_now->decide) continue;
     if (sources.empty()) sources = fuzz::recorded_sources(spec);
+    strata::expect_float32(sources, "report --since");
     count_on_pairs(*lane_then, *lane_now, sources, spec, changed);
   }
   return rows;

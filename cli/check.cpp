@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "analysis/convention.h"
 #include "cli/cases.h"
@@ -39,16 +40,18 @@ void check(const CheckOptions& options) {
   if (!options.truth_only) under_test = selected_lanes(options.lanes, options.file);
   const std::string evidence = cuda_evidence(under_test);
   const std::string name_of_input = from_stdin ? "standard input" : options.file;
-  corpus::PairReader reader(from_stdin ? std::cin : file, name_of_input);
+  corpus::PairReader reader(from_stdin ? std::cin : file, name_of_input, PairTypes::both);
   std::size_t number_of_pair = 0;
-  bool wrong = false;
+  bool wrong = false, any_doubles = false;
   for (; const auto entry = reader.next(); ++number_of_pair) {
+    if (entry->doubles && !std::exchange(any_doubles, true) && !options.truth_only) take_doubles(under_test);
     if (options.exact_input) expect_exact_input(name_of_input, *entry);
-    const oracle::Truth t = oracle::truth(entry->pair);
+    const oracle::Truth t = truth_of(*entry);
     const std::string note = written_note(*entry, t), stored = stored_verdicts(*entry, under_test.left_out, t.verdict);
-    const std::vector<Verdict> verdicts = options.truth_only ? std::vector<Verdict>() : decide(under_test, entry->pair);
-    wrong = wrong || (!verdicts.empty() &&
-                      some_is_wrong(analysis::excused(under_test.lanes, verdicts, entry->pair, t), t.verdict));
+    const std::vector<Verdict> verdicts = options.truth_only ? std::vector<Verdict>() : decide(under_test, *entry);
+    const std::vector<Verdict> counted = corpus::visit(
+        *entry, [&](const auto& pair) { return analysis::excused(under_test.lanes, verdicts, pair, t); });
+    wrong = wrong || some_is_wrong(counted, t.verdict);
     if (options.json) {
       nlohmann::ordered_json line = {{"pair", number_of_pair},
                                      {"truth",
@@ -57,6 +60,7 @@ void check(const CheckOptions& options) {
                                        {"margin", number(t.margin)},
                                        {"margin_ulps", number(t.margin_ulps)}}},
                                      {"lanes", nlohmann::ordered_json::object()}};
+      if (entry->doubles) line["coordinates"] = name(Scalar::f64);
       for (std::size_t l = 0; l < verdicts.size(); ++l) line["lanes"][under_test.lanes[l]->id] = name(verdicts[l]);
       if (!evidence.empty()) line["cuda"] = evidence;
       fuzz::add_left_out(line, under_test);
@@ -67,7 +71,9 @@ void check(const CheckOptions& options) {
       const std::string* label = corpus::field(*entry, "name");
       fmt::print("pair {}, line {}{}\n", number_of_pair, entry->line, label ? ": " + printable(*label) : "");
       std::fflush(stdout);
-      reports::print_pair(std::cout, entry->pair, t, under_test.lanes, verdicts, output_screen());
+      corpus::visit(*entry, [&](const auto& pair) {
+        reports::print_pair(std::cout, pair, t, under_test.lanes, verdicts, output_screen());
+      });
       if (!evidence.empty()) std::cout << reports::wrapped("CUDA lanes: " + evidence, output_screen().columns, 2, 4);
       for (const std::string& text : {stored, note})
         if (!text.empty()) std::cout << reports::wrapped(text, output_screen().columns, 2, 4);
@@ -78,7 +84,7 @@ void check(const CheckOptions& options) {
     throw std::runtime_error(
         fmt::format("cannot read standard input after {}: an input error", reports::counted(number_of_pair, "pair")));
   if (number_of_pair == 0) throw std::runtime_error("there is no pair in " + name_of_input);
-  if (wrong && !from_stdin && !options.json)
+  if (wrong && !any_doubles && !from_stdin && !options.json)
     fmt::print("Next: graze explain {}{}\n", path_word(options.file), own_words(options.lanes));
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "corpus/pair_format.h"
 #include "fuzz/campaign/campaign_scene.h"
 #include "fuzz/campaign/store_file.h"
 #include "fuzz/selected_lanes.h"
@@ -94,6 +95,9 @@ CampaignPairs pairs_of_campaign(const std::string& directory, std::uint64_t most
 // Lists these lanes on standard error, each with the reason.
 void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out);
 
+// Makes the lanes those of pairs of doubles, and says which it leaves out.   Throws: as fuzz::select_for_doubles.
+void take_doubles(fuzz::SelectedLanes& under_test);
+
 // Adds an option for patterns, separated by commas in one argument.
 CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::string>& globs, const char* description);
 
@@ -157,6 +161,7 @@ CLI::Validator one_of(std::vector<std::string> words, Chosen chosen);
 
 // Each lane's verdict on one pair; reports on standard error where a device and its twin differ.
 std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const Pair& pair);
+std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const corpus::Entry& entry);
 
 // Whether a verdict is wrong; no verdict is wrong if the truth is declined.
 bool some_is_wrong(const std::vector<Verdict>& verdicts, Verdict truth);

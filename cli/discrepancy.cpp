@@ -192,6 +192,7 @@ int discrepancy(DiscrepancyOptions options) {
     }
   } else {
     CampaignPairs of_campaign = pairs_of_campaign(options.campaign, options.pairs, "compare lanes on");
+    strata::expect_float32(of_campaign.sources, "discrepancy");
     spec.sources = std::move(of_campaign.sources);
     seed = of_campaign.seed;
     scene = of_campaign.scene;

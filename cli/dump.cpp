@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "analysis/discrepancy.h"
+#include "cli/cases.h"
 #include "cli/commands.h"
 #include "core/cannot.h"
 #include "core/error.h"
@@ -45,13 +46,17 @@ CampaignPairs of_stratum(const DumpOptions& options) {
       throw UsageError(fmt::format("expected STRATUM:SEED, found '{}' as the seed", printable(seed)));
     dumped.seed = *value;
   }
+  const std::string stratum = options.name.substr(0, colon);
   dumped.sources =
-      strata::stratum_sources(dumped.seed, options.pairs > 0 ? options.pairs : 1000, {options.name.substr(0, colon)});
+      strata::stratum_sources(dumped.seed, options.pairs > 0 ? options.pairs : 1000, {stratum},
+                              strata::stratum_in_doubles(stratum) ? PairTypes::f64 : PairTypes::f32);
   return dumped;
 }
 
 CampaignPairs drawn_for(const DumpOptions& options) {
-  const bool is_path = fs::is_directory(options.name) || options.name.find('/') != std::string::npos;
+  const std::string stratum = options.name.substr(0, options.name.find(':'));
+  const bool is_path = fs::is_directory(options.name) ||
+                       (options.name.find('/') != std::string::npos && !strata::stratum_in_doubles(stratum));
   return is_path ? pairs_of_campaign(options.name, options.pairs, "dump") : of_stratum(options);
 }
 
@@ -74,8 +79,9 @@ void print_header(Format format, const std::vector<const Lane*>& lanes) {
 void print_row(Format format, const corpus::Entry& entry) {
   if (format == Format::pairs) return corpus::write_entry(std::cout, entry);
   for (int i = 0; i < 3; ++i) std::cout << (i > 0 ? "," : "") << entry.fields[static_cast<std::size_t>(i)].second;
-  // The shortest decimal whose nearest double converts back to this float32.
-  for (int i = 0; i < kCoordinates; ++i) std::cout << ',' << fmt::format("{}", double{coordinates(entry.pair)[i]});
+  // The shortest decimal whose nearest double is the coordinate.
+  const DoublePair pair = entry.doubles.value_or(in_doubles(entry.pair));
+  for (int i = 0; i < kCoordinates; ++i) std::cout << ',' << fmt::format("{}", coordinates(pair)[i]);
   for (std::size_t i = 3; i < entry.fields.size(); ++i) std::cout << ',' << entry.fields[i].second;
   std::cout << '\n';
 }
@@ -86,16 +92,20 @@ void dump(const DumpOptions& options) {
   if (lanes.globs.empty()) lanes.globs = with_subjects({}, lanes);
   if (!lanes.globs.empty()) under_test = selected_lanes(lanes, options.name);
   const CampaignPairs dumped = drawn_for(options);
+  const bool some_doubles =
+      std::any_of(dumped.sources.begin(), dumped.sources.end(), [](const auto& source) { return source.in_doubles(); });
+  if (some_doubles && !under_test.lanes.empty()) take_doubles(under_test);
   print_header(options.format, under_test.lanes);
   for (const strata::PairSource& source : dumped.sources) {
     for (std::uint64_t index = 0; index < source.pairs && std::cout; ++index) {
-      corpus::Entry entry{
-          source.pair(index),
-          {{"stratum", source.id}, {"seed", std::to_string(dumped.seed)}, {"index", std::to_string(index)}}};
+      const std::vector<std::pair<std::string, std::string>> numbers = {
+          {"stratum", source.id}, {"seed", std::to_string(dumped.seed)}, {"index", std::to_string(index)}};
+      corpus::Entry entry = source.in_doubles() ? corpus::entry_of(source.double_pair(index), numbers)
+                                                : corpus::entry_of(source.pair(index), numbers);
       if (!dumped.scene.empty() && options.format == Format::pairs) entry.fields.emplace_back("scene", dumped.scene);
-      for (auto& field : fuzz::truth_fields(oracle::truth(entry.pair))) entry.fields.push_back(std::move(field));
+      for (auto& field : fuzz::truth_fields(truth_of(entry))) entry.fields.push_back(std::move(field));
       if (!under_test.lanes.empty()) {
-        const std::vector<Verdict> verdicts = decide(under_test, entry.pair);
+        const std::vector<Verdict> verdicts = decide(under_test, entry);
         for (std::size_t l = 0; l < verdicts.size(); ++l)
           entry.fields.emplace_back(key_of(*under_test.lanes[l]), name(verdicts[l]));
       }
@@ -116,6 +126,7 @@ void dump_values(const DumpOptions& options) {
   const analysis::LanesCompared lanes = compared_lanes(options.values);
   const std::vector<Question>& questions = questions_of(lanes.first->algorithm);
   const CampaignPairs dumped = drawn_for(options);
+  strata::expect_float32(dumped.sources, "dump --values");
   std::cout << "stratum,seed,index,question,value,first,second,compared,exact_high,exact_low,bound,rounding\n";
   const auto number = [](const std::optional<double>& x) { return x ? fmt::format("{:a}", *x) : ""; };
   for (const strata::PairSource& source : dumped.sources) {

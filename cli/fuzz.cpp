@@ -28,6 +28,7 @@
 #include "core/lanes/lanes.h"
 #include "core/text.h"
 #include "fuzz/campaign/campaign.h"
+#include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/campaign/scratch.h"
 #include "fuzz/minimise/kinds.h"
@@ -56,11 +57,23 @@ std::vector<std::string> details(const fuzz::Progress& progress, const std::vect
           reports::grouped(static_cast<std::uint64_t>(rate)) + " pairs/s", "most in " + sources[best].id};
 }
 
-// The subject's smallest case. Minimises, as `graze minimize` would, the kMostShrunk signatures whose first kept pairs
+// The first kept case of the subject's commonest signature, and its file.
+std::pair<std::string, std::filesystem::path> first_case(const std::filesystem::path& campaign, const Json& summary,
+                                                         const std::string& subject) {
+  for (const Json& row : summary["signatures"]) {
+    if (analysis::subject_of(row["key"].get<std::string>()) == subject)
+      return {fuzz::pair_text(fuzz::read_cases(campaign, row, PairTypes::both).front()),
+              fuzz::case_file(campaign, row)};
+  }
+  return {};
+}
+
+// The subject's smallest case; with pairs of doubles its first one. Minimises, as `graze minimize` would, the kMostShrunk signatures whose first kept pairs
 // are the simplest. Returns the simplest result and its file; of equal results, the one from the simpler kept pair.
-std::pair<Pair, std::filesystem::path> smallest_case(const std::filesystem::path& campaign,
+std::pair<std::string, std::filesystem::path> smallest_case(const std::filesystem::path& campaign,
                                                      const fuzz::SelectedLanes& under_test, const Json& summary,
                                                      const std::string& subject) {
+  if (fuzz::has_doubles(summary["spec"])) return first_case(campaign, summary, subject);
   std::vector<std::pair<Simplicity, std::filesystem::path>> kept;
   for (const Json& row : summary["signatures"]) {
     const auto signature = analysis::parse_signature(row["key"].get<std::string>());
@@ -71,12 +84,12 @@ std::pair<Pair, std::filesystem::path> smallest_case(const std::filesystem::path
   std::sort(kept.begin(), kept.end());
   if (kept.size() > kMostShrunk) kept.resize(kMostShrunk);
   std::optional<Simplicity> least;
-  std::pair<Pair, std::filesystem::path> smallest;
+  std::pair<std::string, std::filesystem::path> smallest;
   const auto take = [&](const Pair& pair, const std::filesystem::path& file) {
     const Simplicity how = simplicity(pair);
     if (least && how >= *least) return;
     least = how;
-    smallest = {pair, file};
+    smallest = {fuzz::pair_text(pair), file};
   };
   for (const auto& [how, file] : kept) {
     const std::vector<corpus::Entry> entries = corpus::read_pairs(file);
@@ -103,10 +116,10 @@ int fail_above(const FuzzOptions& options, const fuzz::SelectedLanes& under_test
       continue;
     const auto [pair, file] = smallest_case(options.out, under_test, summary, subject);
     fmt::print(stderr,
-               "graze: {} is wrong on {} pairs, above the limit {} of --fail-above; the smallest is {}; again: graze "
+               "graze: {} is wrong on {} pairs, above the limit {} of --fail-above; {} is {}; again: graze "
                "repro {}\n",
-               subject, reports::grouped(count), reports::grouped(*options.fail_above), fuzz::pair_text(pair),
-               path_word(file.string()));
+               subject, reports::grouped(count), reports::grouped(*options.fail_above),
+               fuzz::has_doubles(summary["spec"]) ? "one of them" : "the smallest", pair, path_word(file.string()));
     return 1;
   }
   return 0;
@@ -131,7 +144,9 @@ int on_ranks(const FuzzOptions& options, fuzz::Campaign& campaign, const std::ve
 fuzz::SelectedLanes lanes_of_campaign(const FuzzOptions& options) {
   LaneOptions lanes = options.lanes;
   if (!lanes.subjects.empty()) lanes.globs = fuzz::with_exact_lane(std::move(lanes.globs));
-  return selected_lanes(lanes, {}, options.require_device);
+  fuzz::SelectedLanes under_test = selected_lanes(lanes, {}, options.require_device);
+  if (options.coordinates != PairTypes::f32) take_doubles(under_test);
+  return under_test;
 }
 
 fuzz::Campaign campaign_of(const FuzzOptions& options, const fuzz::SelectedLanes& under_test,
@@ -152,7 +167,7 @@ fuzz::Campaign campaign_of(const FuzzOptions& options, const fuzz::SelectedLanes
     left_out = std::move(drawn.left_out);
   } else if (options.mesh.empty() ||
              !options.strata.empty()) {  // with a mesh, strata are used only if the user asks for them
-    campaign.sources = strata::stratum_sources(options.seed, options.pairs, options.strata);
+    campaign.sources = strata::stratum_sources(options.seed, options.pairs, options.strata, options.coordinates);
   }
   Json mesh_spec;
   if (!options.mesh.empty()) {
@@ -172,7 +187,7 @@ fuzz::Campaign campaign_of(const FuzzOptions& options, const fuzz::SelectedLanes
     campaign.spec["subjects"] = subjects;
   campaign.build = fuzz::build_info(under_test);
   campaign.engines = fuzz::choose_engines(campaign, options.engine);
-  if (options.by_exact_lane) campaign.exact = find_lane("exact/f32/cpu")->decide;
+  if (options.by_exact_lane) campaign.exact = find_lane(fuzz::kExactDoubles)->decide;
   return campaign;
 }
 
@@ -234,6 +249,8 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
 int start(const FuzzOptions& options) {
   if (!options.junit.empty() && !options.shard.whole())
     throw UsageError("--junit is for whole campaigns; a shard has a part of the pairs alone");
+  if (options.coordinates != PairTypes::f32 && !(options.scene.empty() && options.mesh.empty()))
+    throw UsageError("--coordinates is for strata; scenes and meshes are read as float32");
   if (!options.scratch.empty() && options.shard.whole())
     throw UsageError("--scratch is for shards alone; add --shard K/N");
   if (!fuzz::started_by_mpirun()) return fuzz(options, nullptr);
@@ -292,8 +309,8 @@ void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool j
       "\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", printable(out));
   if (summary["signatures"].empty()) return;
   const std::string first = out + '/' + summary["signatures"][0]["case"].get<std::string>();
-  std::cout << fmt::format("The commonest disagreement again: graze repro {}\nNext: graze minimize {}\n",
-                           path_word(first), path_word(out));
+  std::cout << fmt::format("The commonest disagreement again: graze repro {}\n", path_word(first));
+  if (!fuzz::has_doubles(summary["spec"])) std::cout << fmt::format("Next: graze minimize {}\n", path_word(out));
 }
 
 void add_fuzz(CLI::App& app, int& status) {
@@ -322,6 +339,15 @@ void add_fuzz(CLI::App& app, int& status) {
       ->check(not_empty())
       ->option_text("DIR");
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
+  static_assert(static_cast<int>(PairTypes::f32) == 0 && static_cast<int>(PairTypes::f64) == 1 &&
+                static_cast<int>(PairTypes::both) == 2);
+  command
+      ->add_option("--coordinates", options->coordinates,
+                   "Coordinates of the pairs. f64: doubles, which lanes in double decide as they are, and lanes in "
+                   "float as float32 stores them; see docs/double.md")
+      ->transform(one_of({"f32", "f64", "both"}, Chosen::place))
+      ->option_text("f32|f64|both")
+      ->default_str("f32");
   add_lane_options(*command, options->lanes);
   add_scene_option(*command, options->scene);
   command

@@ -19,6 +19,7 @@ struct FuzzOptions {
   int threads = 0;
   std::string out = "campaign", scene;
   std::vector<std::string> strata, mesh;
+  PairTypes coordinates = PairTypes::f32;
   LaneOptions lanes;
   fuzz::EngineChoice engine = fuzz::EngineChoice::automatic;
   bool by_exact_lane = false, exact_input = false;

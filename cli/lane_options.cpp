@@ -214,4 +214,6 @@ void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out) {
   for (const std::string& line : fuzz::left_out_in_words(left_out)) fmt::print(stderr, "graze: {}\n", line);
 }
 
+void take_doubles(fuzz::SelectedLanes& under_test) { say_left_out(fuzz::select_for_doubles(under_test)); }
+
 }  // namespace graze::cli

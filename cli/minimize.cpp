@@ -28,6 +28,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/checked_summary.h"
+#include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/cost_estimate.h"
 #include "fuzz/minimise/kinds.h"
@@ -205,6 +206,7 @@ int minimize_directory(MinimizeOptions options) {
   // Reads the summary before the lock is taken, because reading the database of a killed run takes the lock itself.
   const std::string text = fuzz::read_whole(directory / "summary.json");
   const Json summary = fuzz::checked_summary(directory);
+  fuzz::expect_float32(summary["spec"], "minimize");
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
   open_subjects(options.lanes);
   if (!subjects::open_recorded(summary["spec"]).empty())

@@ -145,8 +145,12 @@ const Lane& published_lane(const std::string& id) {
 }
 
 std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const Pair& pair) {
+  return decide(under_test, corpus::entry_of(pair, {}));
+}
+
+std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const corpus::Entry& entry) {
   std::vector<const Lane*> apart;
-  std::vector<Verdict> verdicts = decide(under_test, pair, apart);
+  std::vector<Verdict> verdicts = decide(under_test, entry.pair, apart, entry.doubles ? &*entry.doubles : nullptr);
   for (const Lane* lane : apart) fmt::print(stderr, "graze: {}: device and twin differ\n", lane->id);
   return verdicts;
 }

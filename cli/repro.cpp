@@ -48,8 +48,9 @@ bool compare_signatures(const corpus::Entry& entry, const oracle::Truth& t, std:
                         std::span<const Verdict> verdicts) {
   const std::string* text = corpus::field(entry, "signature");
   const std::optional<analysis::Signature> recorded = text ? analysis::parse_signature(*text) : std::nullopt;
-  const Bucket bucket = oracle::margin_bucket(entry.pair, t.verdict);
-  const Nesting nesting = analysis::nesting_of(entry.pair, t);
+  const Bucket bucket =
+      corpus::visit(entry, [&](const auto& pair) { return oracle::margin_bucket(pair, t.verdict); });
+  const Nesting nesting = corpus::visit(entry, [&](const auto& pair) { return analysis::nesting_of(pair, t); });
   Compared compared = Compared::nothing;
   analysis::for_each_subject(run, [&](std::size_t first, std::size_t count) {
     const analysis::Signature now =
@@ -86,8 +87,12 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
       throw UsageError("graze repro: a pack runs as its campaign did; leave out --lanes, --subject and --emit");
     return repro_pack(name);
   }
-  const fuzz::SelectedLanes under_test = selected_lanes(lanes, name);
-  const std::vector<corpus::Entry> entries = read_cases(name);
+  fuzz::SelectedLanes under_test = selected_lanes(lanes, name);
+  const std::vector<corpus::Entry> entries =
+      read_cases(name, emitted.empty() ? PairTypes::both : PairTypes::f32);
+  const bool in_doubles =
+      std::any_of(entries.begin(), entries.end(), [](const corpus::Entry& entry) { return bool(entry.doubles); });
+  if (in_doubles) take_doubles(under_test);
   if (!emitted.empty()) {
     const auto kind = std::find(std::begin(reports::kSnippetKinds), std::end(reports::kSnippetKinds), emitted);
     std::cout << emit(static_cast<reports::SnippetKind>(kind - std::begin(reports::kSnippetKinds)), name, entries,
@@ -97,21 +102,26 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
   const std::string evidence = cuda_evidence(under_test);
   bool changed = false, wrong = false;
   for (const corpus::Entry& entry : entries) {
-    const oracle::Truth t = oracle::truth(entry.pair);
-    const std::vector<Verdict> verdicts = decide(under_test, entry.pair);
+    const oracle::Truth t = truth_of(entry);
+    const std::vector<Verdict> verdicts = decide(under_test, entry);
     fmt::print("{}\n", printable(corpus::numbers_of(entry).value_or(name)));
     std::fflush(stdout);
-    reports::print_pair(std::cout, entry.pair, t, under_test.lanes, verdicts, output_screen());
+    corpus::visit(entry, [&](const auto& pair) {
+      reports::print_pair(std::cout, pair, t, under_test.lanes, verdicts, output_screen());
+    });
     if (!evidence.empty()) std::cout << reports::wrapped("CUDA lanes: " + evidence, output_screen().columns, 2, 4);
     if (const std::string stored = stored_verdicts(entry, under_test.left_out, t.verdict); !stored.empty())
       std::cout << reports::wrapped(stored, output_screen().columns, 2, 4);
-    const std::vector<Verdict> counted = analysis::excused(under_test.lanes, verdicts, entry.pair, t);
+    if (const std::string note = entry.doubles ? written_note(entry, t) : ""; !note.empty())
+      std::cout << reports::wrapped(note, output_screen().columns, 2, 4);
+    const std::vector<Verdict> counted = corpus::visit(
+        entry, [&](const auto& pair) { return analysis::excused(under_test.lanes, verdicts, pair, t); });
     changed = compare_truth(entry, t) || changed;
     if (t.verdict != Verdict::declined) changed = compare_signatures(entry, t, under_test.lanes, counted) || changed;
     wrong = wrong || some_is_wrong(counted, t.verdict);
     std::cout.flush();
   }
-  if (wrong) fmt::print("Next: graze minimize {}{}\n", path_word(name), own_words(lanes));
+  if (wrong && !in_doubles) fmt::print("Next: graze minimize {}{}\n", path_word(name), own_words(lanes));
   return changed ? 1 : 0;
 }
 

@@ -241,7 +241,7 @@ TEST_F(Shards, StatusRefusesADamagedStatus) {
   ASSERT_EQ(whole["state"], "done");
   const auto refused = [&](const std::string& text, const std::string& found) {
     std::ofstream(shell.folder / "c/status.json") << text;
-    expect_error("graze status c", 1, {"c/status.json", found});
+    expect_error("graze status c", 1, {"status.json", found});
   };
   const std::string damaged = "damaged";
   for (const std::string& text : {std::string(), std::string("[]"), whole.dump().substr(0, 90)}) refused(text, damaged);

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <iterator>
 #include <limits>
+#include <span>
 
 #include "cli/commands.h"
 #include "cli/screen.h"
@@ -20,12 +22,16 @@ void add_strata(CLI::App& app, int&) {
   command->callback([] {
     // One line each, for programs that read the list.
     const int columns = isatty(STDOUT_FILENO) ? output_screen().columns : std::numeric_limits<int>::max();
-    for (const strata::StratumInfo& row : strata::kStrata) {
+    const auto print = [&](const strata::StratumInfo& row) {
       const strata::Group group = strata::group_of(row.stratum);
       fmt::print("{}", reports::wrapped(fmt::format("{:<20} {:<11} {}", row.id,
                                                     strata::kGroups[static_cast<int>(group)].id, row.what),
                                         columns, 0, 33));
-    }
+    };
+    for (const strata::StratumInfo& row : strata::kStrata) print(row);
+    fmt::print("\nWith --coordinates f64 all of these, drawn in doubles, and:\n");
+    for (const strata::StratumInfo& row : std::span(strata::kDoubleStrata).subspan(std::size(strata::kStrata)))
+      print(row);
     fmt::print("\nNext: graze fuzz --strata 'near_*'\n");
   });
 }

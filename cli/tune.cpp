@@ -50,11 +50,13 @@ std::vector<strata::PairSource> without_meshes(std::vector<strata::PairSource> s
 // The campaign's own pairs to choose on, which show the disagreements that it counted.
 TunePairs pairs_from(const TuneOptions& options) {
   CampaignPairs campaign = pairs_of_campaign(options.from, 0, "tune on");
+  strata::expect_float32(campaign.sources, "tune");
   if (!campaign.summary.at("complete"))
     throw UsageError(cannot("tune on", options.from, "it is not finished; finish it with `graze fuzz`"));
   fuzz::Json spec = campaign.summary["spec"];
   spec["seed"] = campaign.seed + 1;
   std::vector<strata::PairSource> others = without_meshes(fuzz::recorded_sources(spec), "verify the choice");
+  strata::expect_float32(others, "tune");
   if (options.pairs > 0) {  // in the campaign's shares
     double before = 0, all = 0, rounded = 0;
     for (const strata::PairSource& source : others) all += static_cast<double>(source.pairs);

@@ -300,6 +300,25 @@ TEST(Bucket, IsTheSignAndTheBinaryLogarithm) {
   EXPECT_EQ(log2_ulp(pair), 104);
 }
 
+TEST(Extreme, OfDoublesIsTheScaleInStepsOf32) {
+  DoublePair pair{};
+  const auto exponent = [&] { return exponent_of(Axis::wide_scale, place_on_axis(pair, Axis::wide_scale)); };
+  EXPECT_EQ(exponent(), -1024);
+  pair.a[1].z = -0x1p-1074;
+  EXPECT_EQ(exponent(), -1024);
+  for (const int k : {-992, -32, 0, 32, 992}) {
+    pair.a[1].z = std::ldexp(-1.5, k);
+    EXPECT_EQ(exponent(), k);
+    pair.a[1].z = std::ldexp(0.75, k);
+    EXPECT_EQ(exponent(), k - 32);
+  }
+  pair.a[1].z = 0x1.fffffffffffffp1023;
+  EXPECT_EQ(exponent(), 992);
+  EXPECT_EQ(place_on_axis(pair, Axis::offset), 0);
+  pair.b[1].z = -0x1.fffffffffffffp1023;  // the box is larger than a double holds
+  EXPECT_EQ(place_on_axis(pair, Axis::offset), -kBucketMost);
+}
+
 TEST(Extreme, IsTheScaleInStepsOfFourOrTheOffsetInSizes) {
   Pair pair{};
   EXPECT_EQ(exponent_of(Axis::scale, place_on_axis(pair, Axis::scale)), -152);

@@ -12,8 +12,8 @@ namespace graze {
 inline namespace GRAZE_FP {
 
 // Bit i % 64 of word i / 64 is the verdict of decide(pairs[i]). Unused bits become zero.
-template <class Decide>
-void decide_each(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined,
+template <class AnyPair, class Decide>
+void decide_each(const AnyPair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined,
                  const Decide& decide) {
   for (std::size_t word = 0; word * 64 < count; ++word) {
     std::uint64_t yes = 0, no_answer = 0;

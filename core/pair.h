@@ -23,6 +23,9 @@ static_assert(sizeof(Pair) == 72 && sizeof(DoublePair) == 144);
 
 inline constexpr int kCoordinates = 18;
 
+// The coordinate types of the pairs that a reader takes or a source draws.
+enum class PairTypes { f32, f64, both };
+
 // The 18 coordinates of a pair as one array: ax0 ay0 az0 ax1 … bz2.
 template <class Real>
 const Real* coordinates(const BasicPair<Real>& pair) {

@@ -41,7 +41,13 @@ std::string cut_in_quotes(std::string_view text, std::size_t longest) {
 
 }  // namespace
 
-std::optional<float> parse_float32(std::string_view text) {
+namespace {
+
+float rounded_by_library(const std::string& text, float) { return std::strtof(text.c_str(), nullptr); }
+double rounded_by_library(const std::string& text, double) { return std::strtod(text.c_str(), nullptr); }
+
+template <class Real>
+std::optional<Real> parse_real(std::string_view text) {
   const bool negative = text.starts_with('-');
   if (negative || text.starts_with('+')) text.remove_prefix(1);
   const bool hex = text.starts_with("0x") || text.starts_with("0X");
@@ -49,17 +55,22 @@ std::optional<float> parse_float32(std::string_view text) {
   if (hex) text.remove_prefix(2);
   if (text.empty() || text[0] == '-' || (hex && text[0] != '.' && !is_hex_digit(text[0]))) return std::nullopt;
 
-  float magnitude = 0;
+  Real magnitude = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), magnitude,
                                             hex ? std::chars_format::hex : std::chars_format::general);
   if (end != text.data() + text.size() || error == std::errc::invalid_argument) return std::nullopt;
   if (error == std::errc::result_out_of_range) {
-    // from_chars does not tell underflow from overflow, but strtof does: it rounds, or returns infinity.
-    magnitude = std::strtof(magnitude_text.c_str(), nullptr);
+    // from_chars does not tell underflow from overflow, but strtof and strtod do: they round, or return infinity.
+    magnitude = rounded_by_library(magnitude_text, Real());
     if (std::isinf(magnitude)) return std::nullopt;
   }
   return negative ? -magnitude : magnitude;
 }
+
+}  // namespace
+
+std::optional<float> parse_float32(std::string_view text) { return parse_real<float>(text); }
+std::optional<double> parse_float64(std::string_view text) { return parse_real<double>(text); }
 
 namespace {
 

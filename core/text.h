@@ -13,6 +13,8 @@ namespace graze {
 // Returns: the float32 nearest to the number that text spells, ties to even, rounded once. Nothing if text is not
 // entirely a number, or if it rounds beyond the largest float32. "inf" and "nan" are numbers.
 std::optional<float> parse_float32(std::string_view text);
+// Likewise for doubles.
+std::optional<double> parse_float64(std::string_view text);
 
 // Whether the number that text spells is exactly this one.
 // Requires: text is such a number, `value` the finite double nearest to it.   Exact: always.

@@ -20,6 +20,8 @@ namespace {
 
 constexpr std::string_view kFormat = "graze-pairs";
 constexpr std::string_view kVersion = "1";
+constexpr const char* kCoordinatesField = "coordinates";
+constexpr const char *kOfFloats = "f32", *kOfDoubles = "f64";
 constexpr std::size_t kLongestLine = 65536;  // so that an endless line is an error and does not fill the memory
 
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
@@ -92,13 +94,15 @@ bool skip_name(Line& line) {
 
 // Accepts "1.5", or "1.5f" as in C.   Returns: the number without the suffix; empty if it is none.
 std::string_view number_in(std::string_view word) {
-  if (parse_float32(word)) return word;
+  if (parse_float64(word)) return word;
   const bool suffix = word.size() > 1 && (word.back() == 'f' || word.back() == 'F');
   const char before = suffix ? word[word.size() - 2] : ' ';
   if (!(before == '.' || (before >= '0' && before <= '9'))) return {};
   word.remove_suffix(1);
-  return parse_float32(word) ? word : std::string_view();
+  return parse_float64(word) ? word : std::string_view();
 }
+
+bool is_hex(std::string_view number) { return number.find('x') != number.npos || number.find('X') != number.npos; }
 
 // The numbers read so far for the current entry. An entry may span several lines.
 struct Draft {
@@ -106,6 +110,8 @@ struct Draft {
   std::size_t count = 0;
   bool open = false;  // the last line ended in a comma or an opening bracket
   std::string where;  // FILE:LINE of the first line with a number
+  // The first number that only a double holds, if any.
+  std::optional<std::size_t> only_double;
 };
 
 // Takes the line's numbers, up to its end or a '|'.
@@ -113,7 +119,7 @@ void take_numbers(Line& line, Draft& draft) {
   for (;;) {
     while (!line.at_end() && is_punctuation(line.rest[0])) draft.open = is_opening(line.take(1)[0]);
     if (line.at_end() || line.rest[0] == '|' || line.rest.starts_with("//")) return;
-    if (draft.count % 3 == 0 && draft.count < kCoordinates && !parse_float32(Line(line).take_number()) &&
+    if (draft.count % 3 == 0 && draft.count < kCoordinates && !parse_float64(Line(line).take_number()) &&
         skip_name(line)) {
       draft.open = true;
       continue;
@@ -122,11 +128,15 @@ void take_numbers(Line& line, Draft& draft) {
     draft.open = false;
     if (draft.count < kCoordinates) {
       if (number.empty()) {
-        line.fail("a float32 as number " + std::to_string(draft.count + 1) + " (" + coordinate_name(draft.count) + ")",
+        line.fail("a number as number " + std::to_string(draft.count + 1) + " (" + coordinate_name(draft.count) + ")",
                   shown(word));
       }
       if (draft.count == 0) draft.where = line.where;
-      coordinates(draft.entry.pair)[draft.count] = *parse_float32(number);
+      const double value = *parse_float64(number);
+      const std::optional<float> stored = parse_float32(number);
+      const bool fits = stored && !(is_hex(number) && double{*stored} != value && !std::isnan(value));
+      if (!fits && !draft.only_double) draft.only_double = draft.count;
+      coordinates(draft.entry.pair)[draft.count] = stored ? *stored : static_cast<float>(value);
       draft.entry.written.emplace_back(number);
     } else if (number.empty()) {
       line.fail("'|' or the end of the line after 18 numbers", shown(word));
@@ -184,6 +194,29 @@ void take_fields(Line& line, Entry& entry) {
   }
 }
 
+// Finds the pair's coordinate type, once its fields are known.
+void take_type(Draft& draft, PairTypes taken) {
+  Entry& entry = draft.entry;
+  const std::string* type = field(entry, kCoordinatesField);
+  const auto refuse = [&](const std::string& why) { throw FormatError(draft.where + ": " + why); };
+  if (type && *type != kOfFloats && *type != kOfDoubles)
+    refuse("expected coordinates=f32 or coordinates=f64, found " + shown(*type));
+  const auto number = [&] {
+    const std::size_t i = draft.only_double.value_or(0);
+    return "number " + std::to_string(i + 1) + " (" + coordinate_name(i) + "), " + shown(entry.written[i]);
+  };
+  if (type ? *type == kOfFloats : !draft.only_double) {
+    if (draft.only_double) refuse("coordinates=f32, but float32 does not hold " + number());
+    return;
+  }
+  if (taken == PairTypes::f32)
+    refuse("expected coordinates in float32, found doubles: " +
+           (draft.only_double ? "float32 does not hold " + number() : "coordinates=f64"));
+  DoublePair& pair = entry.doubles.emplace();
+  for (std::size_t i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = *parse_float64(entry.written[i]);
+  entry.pair = stored_in_float32(pair);
+}
+
 // Whether the line belongs to an OBJ file.
 bool is_obj(Line line) {
   const std::string_view word = line.take_word();
@@ -206,7 +239,18 @@ bool is_bare(std::string_view value) {
 
 }  // namespace
 
-PairReader::PairReader(std::istream& in, std::string name) : in_(in), name_(std::move(name)) {}
+Entry entry_of(const Pair& pair, std::vector<std::pair<std::string, std::string>> fields) {
+  return {pair, std::move(fields)};
+}
+
+Entry entry_of(const DoublePair& pair, std::vector<std::pair<std::string, std::string>> fields) {
+  Entry entry{stored_in_float32(pair), std::move(fields)};
+  entry.doubles = pair;
+  return entry;
+}
+
+PairReader::PairReader(std::istream& in, std::string name, PairTypes taken)
+    : in_(in), name_(std::move(name)), taken_(taken) {}
 
 bool PairReader::read_line(std::string& text) {
   text.clear();
@@ -291,6 +335,7 @@ std::optional<Entry> PairReader::next() {
     if (draft.count != kCoordinates) expect_18(draft.count == 0 ? line.where : draft.where);
     draft.entry.lines = line_ - draft.entry.line + 1;
     take_fields(line, draft.entry);
+    take_type(draft, taken_);
     return draft.entry;
   }
   if (draft.count > 0) expect_18(draft.where);
@@ -305,9 +350,9 @@ std::ifstream open_pairs(const std::filesystem::path& file) {
   return in;
 }
 
-std::vector<Entry> read_pairs(const std::filesystem::path& file) {
+std::vector<Entry> read_pairs(const std::filesystem::path& file, PairTypes taken) {
   std::ifstream in = open_pairs(file);
-  PairReader reader(in, file.string());
+  PairReader reader(in, file.string(), taken);
   std::vector<Entry> entries;
   while (std::optional<Entry> entry = reader.next()) entries.push_back(std::move(*entry));
   return entries;
@@ -316,21 +361,23 @@ std::vector<Entry> read_pairs(const std::filesystem::path& file) {
 void write_header(std::ostream& out) { out << kFormat << ' ' << kVersion << '\n'; }
 
 void write_entry(std::ostream& out, const Entry& entry) {
-  for (int i = 0; i < kCoordinates; ++i) out << (i == 0 ? "" : " ") << hex_float(coordinates(entry.pair)[i]);
-  if (!entry.fields.empty()) out << " |";
+  const DoublePair pair = entry.doubles.value_or(in_doubles(entry.pair));
+  for (int i = 0; i < kCoordinates; ++i) out << (i == 0 ? "" : " ") << hex_float(coordinates(pair)[i]);
+  const bool says_type = entry.doubles && !field(entry, kCoordinatesField);
+  if (says_type || !entry.fields.empty()) out << " |";
+  if (says_type) out << ' ' << kCoordinatesField << '=' << kOfDoubles;
   for (const auto& [key, value] : entry.fields) {
     out << ' ' << key << '=' << (is_bare(value) ? value : in_quotes(value));
   }
   out << '\n';
 }
 
-std::string hex_float(float value) {
+std::string hex_float(double value) {
   if (std::isnan(value)) return "nan";
   std::string text = std::signbit(value) ? "-" : "";
   if (std::isinf(value)) return text + "inf";
   char digits[32];
-  const double magnitude = std::fabs(value);  // a double, in which a subnormal float is normal: 0x1p-149
-  const auto end = std::to_chars(std::begin(digits), std::end(digits), magnitude, std::chars_format::hex).ptr;
+  const auto end = std::to_chars(std::begin(digits), std::end(digits), std::fabs(value), std::chars_format::hex).ptr;
   return text.append("0x").append(digits, end);
 }
 

@@ -20,12 +20,26 @@
 namespace graze::corpus {
 
 struct Entry {
-  Pair pair{};
+  Pair pair{};  // of a pair of doubles: as it is stored in float32
   std::vector<std::pair<std::string, std::string>> fields = {};  // key and value, in the order of the line
   std::size_t line = 0;                                          // where the entry begins; 0 if it was not read
   std::size_t lines = 1;                                         // how many lines the entry takes
   std::vector<std::string> written = {};                         // the 18 numbers as typed; empty if it was not read
+  std::optional<DoublePair> doubles = {};                        // the pair, if its coordinates are doubles
 };
+
+// The entry of a pair that was not read.
+Entry entry_of(const Pair& pair, std::vector<std::pair<std::string, std::string>> fields);
+Entry entry_of(const DoublePair& pair, std::vector<std::pair<std::string, std::string>> fields);
+
+// with(pair), for the pair in its own coordinate type.
+template <class With>
+auto visit(const Entry& entry, const With& with) {
+  return entry.doubles ? with(*entry.doubles) : with(entry.pair);
+}
+
+// A pair is one of doubles if it has the field coordinates=f64, if a number
+// is beyond float32's largest, or if a hexadecimal number has more digits than float32 holds.
 
 // Input that is not in the format; what() is one line: "FILE:LINE: expected 18 numbers, found 17".
 struct FormatError : std::runtime_error {
@@ -38,10 +52,11 @@ struct FormatError : std::runtime_error {
 class PairReader {
  public:
   // Requires: in outlives the reader. name: what error messages call the stream.
-  PairReader(std::istream& in, std::string name);
+  PairReader(std::istream& in, std::string name, PairTypes taken = PairTypes::f32);
 
   // Returns: the next entry, or nothing at the end of the stream.
-  // Throws: FormatError; reading can continue at the line after the bad one.
+  // Throws: FormatError, also for a pair of doubles unless they are taken; reading can continue at the line after the
+  // bad one.
   std::optional<Entry> next();
 
  private:
@@ -51,6 +66,7 @@ class PairReader {
 
   std::istream& in_;
   std::string name_;
+  PairTypes taken_;
   std::size_t line_ = 0;
   bool versioned_ = false;
 };
@@ -59,7 +75,7 @@ class PairReader {
 std::ifstream open_pairs(const std::filesystem::path& file);
 
 // All entries of a file.   Throws: FormatError, also if the file is missing or cannot be read.
-std::vector<Entry> read_pairs(const std::filesystem::path& file);
+std::vector<Entry> read_pairs(const std::filesystem::path& file, PairTypes taken = PairTypes::f32);
 
 // Writes the version line, the first line of every file.
 void write_header(std::ostream& out);
@@ -70,7 +86,7 @@ void write_header(std::ostream& out);
 void write_entry(std::ostream& out, const Entry& entry);
 
 // Returns: the shortest hex float, such as "0x1.8p+1", "-0x0p+0", "0x1p-149"; or "inf", "-inf", "nan".
-std::string hex_float(float value);
+std::string hex_float(double value);
 
 // Returns: the value of the field, or null if the entry has no such key.
 const std::string* field(const Entry& entry, std::string_view key);

@@ -166,10 +166,10 @@ TEST(PairFormat, AWrongCountIsNamed) {
   expect_named(kZeros + " name=x", {"in.pairs:1", "18", "name=x"});
 }
 
-TEST(PairFormat, AWordThatIsNoFloat32IsNamed) {
-  expect_named("0 0 0 0 one 0", {"in.pairs:1", "float32", "5", "a[1].y", "one"});
+TEST(PairFormat, AWordThatIsNoNumberIsNamed) {
+  expect_named("0 0 0 0 one 0", {"in.pairs:1", "a number", "5", "a[1].y", "one"});
   expect_named(kSeventeen + " 1e39", {"in.pairs:1", "float32", "18", "b[2].z", "1e39"});
-  expect_named("0,one,0", {"in.pairs:1", "float32", "2", "a[0].y", "one"});
+  expect_named("0,one,0", {"in.pairs:1", "a number", "2", "a[0].y", "one"});
 }
 
 TEST(PairFormat, ABrokenFieldIsNamed) {
@@ -239,6 +239,49 @@ TEST(PairFormat, KeepsWhatWasTyped) {
   EXPECT_EQ(entry.written[2], "-0x1.8p1");
   EXPECT_EQ(entry.written[3], "+1e0");
   EXPECT_EQ(entry.written[17], "1");
+}
+
+std::optional<Entry> read_any(const std::string& text) {
+  std::istringstream in(text);
+  return PairReader(in, "in.pairs", PairTypes::both).next();
+}
+
+TEST(PairFormat, APairOfDoublesReadsBack) {
+  constexpr double kValues[] = {0.1, -0.0, 0x1p-1074, -0x1.fffffffffffffp1023, 1.0 / 3, 5, 0x1.8p-1023, -1e300, 0x1p-149};
+  DoublePair pair;
+  for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = kValues[i % 9];
+  const std::string text = write(entry_of(pair, {{"name", "x"}}));
+  EXPECT_NE(text.find(" | coordinates=f64 name=x\n"), std::string::npos) << text;
+  const Entry again = read_any(text).value();
+  ASSERT_TRUE(again.doubles);
+  EXPECT_EQ(std::memcmp(&*again.doubles, &pair, sizeof pair), 0);
+  EXPECT_EQ(coordinates(again.pair)[0], 0.1f);
+  EXPECT_EQ(write(again), text);
+  const Entry on_float32 = read_any(write(entry_of(in_doubles(Pair{}), {}))).value();
+  EXPECT_TRUE(on_float32.doubles);  // as the file says, although float32 holds its numbers
+}
+
+TEST(PairFormat, TheTypeIsTheNarrowestThatHoldsTheNumbersUnlessTheFileSaysIt) {
+  const auto is_double = [](const std::string& number, const std::string& rest = "") {
+    return read_any(number + ' ' + kSeventeen + rest).value().doubles.has_value();
+  };
+  for (const char* number : {"0.1", "1e-60", "3.4028235e38", "0x1.fffffep127", "0x1p-149", "nan", "-inf", "1.5f"})
+    EXPECT_FALSE(is_double(number)) << number;
+  for (const char* number : {"0x1.0000001p0", "0x1p-150", "0x1.ffffffp127", "1e39", "-1e300", "0x1p1023"})
+    EXPECT_TRUE(is_double(number)) << number;
+  EXPECT_TRUE(is_double("0.1", " | coordinates=f64"));
+  EXPECT_FALSE(is_double("0.1", " | coordinates=f32"));
+  EXPECT_EQ(coordinates(*read_any("0.1 " + kSeventeen + " | coordinates=f64").value().doubles)[0], 0.1);
+}
+
+TEST(PairFormat, DoublesWhereTheyAreNotTakenAreNamed) {
+  expect_named("1e39 " + kSeventeen, {"in.pairs:1", "number 1", "a[0].x", "1e39"});
+  expect_named(kSeventeen + " 0x1.0000001p0", {"in.pairs:1", "number 18", "b[2].z"});
+  expect_named("0 " + kSeventeen + " | coordinates=f64", {"in.pairs:1", "coordinates=f64"});
+  expect_named("1e39 " + kSeventeen + " | coordinates=f32", {"in.pairs:1", "number 1", "coordinates=f32"});
+  expect_named("0 " + kSeventeen + " | coordinates=f16", {"in.pairs:1", "f16"});
+  expect_named("1e400 " + kSeventeen, {"in.pairs:1", "number 1", "1e400"});
+  EXPECT_THROW(read_any("1e400 " + kSeventeen), FormatError);
 }
 
 TEST(PairReader, GoesOnAfterABadLine) {

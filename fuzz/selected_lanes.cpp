@@ -173,6 +173,7 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
                            const std::vector<LaneLeftOut>& not_opened) {
   expect_each_matches(globs, not_opened);
   const bool names_some = std::any_of(globs.begin(), globs.end(), wants_lanes);
+  const bool asks_for_doubles = std::find(globs.begin(), globs.end(), kExactDoubles) != globs.end();
   SelectedLanes under_test;
   under_test.asked = globs;
   std::string why_not;
@@ -180,7 +181,7 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
   const bool needs_device = require_device || executor == Executor::device || executor == Executor::both;
   if (needs_device && !under_test.device) throw std::runtime_error("expected a CUDA device, found: " + why_not);
   for (const Lane& lane : lanes()) {
-    if (!matches_any(globs, lane.id)) continue;
+    if (!matches_any(globs, lane.id) || (lane.id == kExactDoubles && !asks_for_doubles)) continue;
     const Backend& backend = backend_of(lane);
     const bool only_device = backend.has_device && under_test.device && executor != Executor::both;
     const DecideBlock on_host = only_device ? nullptr : backend.on_host(lane);
@@ -204,20 +205,37 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
   return under_test;
 }
 
+std::vector<LaneLeftOut> select_for_doubles(SelectedLanes& under_test) {
+  const Lane& exact = *find_lane(kExactDoubles);
+  const auto at = std::find(under_test.lanes.begin(), under_test.lanes.end(), &exact);
+  if (at == under_test.lanes.end() && matches_any(under_test.asked, exact.id)) {
+    under_test.lanes.push_back(&exact);
+    under_test.on_host.push_back(exact.decide);
+    sort_by_subject(under_test);
+  }
+  return leave_out(under_test, [](const Lane& lane) {
+    const bool takes = lane.scalar == Scalar::f32 || backends::on_host(lane).decides_doubles();
+    return takes ? "" : "takes pairs of float32 alone";
+  });
+}
+
 BlockVerdicts::BlockVerdicts(const SelectedLanes& under_test)
     : under_test_(under_test), on_host_(under_test.lanes.size()), verdicts_(under_test.lanes.size()) {}
 
 std::span<const LaneVerdicts> BlockVerdicts::decide(std::span<const Pair> pairs, std::span<const VerdictBits> on_device,
                                                     std::size_t begin,
-                                                    const std::function<void(std::size_t l, std::size_t i)>& apart) {
+                                                    const std::function<void(std::size_t l, std::size_t i)>& apart,
+                                                    std::span<const DoublePair> doubles) {
   const std::size_t words = (pairs.size() + 63) / 64;
   auto next_device = on_device.begin();
   for (std::size_t l = 0; l < verdicts_.size(); ++l) {
     const DecideBlock& block = under_test_.on_host[l];
     if (block) {
-      graze::decide(block, pairs, on_host_[l]);
+      const bool in_doubles =
+          !doubles.empty() && under_test_.lanes[l]->scalar == Scalar::f64 && block.decides_doubles();
+      in_doubles ? graze::decide(block, doubles, on_host_[l]) : graze::decide(block, pairs, on_host_[l]);
       verdicts_[l] = {on_host_[l].intersects, on_host_[l].declined, under_test_.lanes[l]->foreign ? &block : nullptr,
-                      pairs.data()};
+                      pairs.data(), in_doubles ? doubles.data() : nullptr};
     }
     if (!under_test_.on_device(l)) continue;
     const LaneVerdicts twin = verdicts_[l];
@@ -231,15 +249,16 @@ std::span<const LaneVerdicts> BlockVerdicts::decide(std::span<const Pair> pairs,
   return verdicts_;
 }
 
-std::vector<Verdict> decide(const SelectedLanes& under_test, const Pair& pair, std::vector<const Lane*>& apart) {
+std::vector<Verdict> decide(const SelectedLanes& under_test, const Pair& pair, std::vector<const Lane*>& apart,
+                            const DoublePair* doubles) {
   apart.clear();
   std::vector<VerdictBits> on_device;
   if (under_test.device) under_test.device->decide(std::span(&pair, 1), under_test.device_lanes(), on_device);
   BlockVerdicts block(under_test);
   std::vector<Verdict> verdicts;
-  for (const LaneVerdicts& lane : block.decide(std::span(&pair, 1), on_device, 0, [&](std::size_t l, std::size_t) {
-         apart.push_back(under_test.lanes[l]);
-       }))
+  const auto differs = [&](std::size_t l, std::size_t) { apart.push_back(under_test.lanes[l]); };
+  for (const LaneVerdicts& lane :
+       block.decide(std::span(&pair, 1), on_device, 0, differs, std::span(doubles, doubles ? 1 : 0)))
     verdicts.push_back(lane.at(0));
   return verdicts;
 }

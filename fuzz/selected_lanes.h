@@ -47,6 +47,8 @@ inline constexpr char kLeaveOut = '!';
 // Adds the exact lane to the patterns, unless one of them selects it or leaves it out. If none selects lanes, all are
 // selected already.
 inline constexpr const char* kExactLane = "exact/f32/cpu";
+// The exact lane of doubles runs only on pairs of doubles, or where it is named in full.
+inline constexpr const char* kExactDoubles = "exact/f64/cpu";
 std::vector<std::string> with_exact_lane(std::vector<std::string> patterns);
 
 // not_opened: lanes of a campaign's subjects that are not in the table, because their code has changed.
@@ -58,6 +60,10 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
 // Adds the lanes under policies that the patterns name.   Throws: UsageError when a pattern matches no lane of the
 // table, and none of `not_opened`.
 void expect_each_matches(const std::vector<std::string>& globs, const std::vector<LaneLeftOut>& not_opened = {});
+
+// Makes the lanes those of pairs of doubles: adds the exact lane for them if the patterns select it, and leaves out the
+// lanes in double that take float32 pairs alone.   Returns: these.   Throws: as expect_each_runs.
+std::vector<LaneLeftOut> select_for_doubles(SelectedLanes& under_test);
 
 // Throws: UsageError, with the reasons, if no lane of a pattern runs here, or, without patterns, none of a subject.
 void expect_each_runs(const SelectedLanes& under_test);
@@ -86,11 +92,13 @@ class BlockVerdicts {
   explicit BlockVerdicts(const SelectedLanes& under_test);
 
   // on_device: the device's verdicts, by lane; `begin`: the first pair's place there, a multiple of 64.
+  // doubles: empty; or the pairs before they were stored in float32, which lanes in double decide.
   // apart(l, i): called for each pair i on which device and twin of lane l differ.
   // Returns: the verdicts of each lane, valid until the next call.
   std::span<const LaneVerdicts> decide(std::span<const Pair> pairs, std::span<const VerdictBits> on_device,
                                        std::size_t begin,
-                                       const std::function<void(std::size_t l, std::size_t i)>& apart);
+                                       const std::function<void(std::size_t l, std::size_t i)>& apart,
+                                       std::span<const DoublePair> doubles = {});
 
  private:
   const SelectedLanes& under_test_;
@@ -100,6 +108,8 @@ class BlockVerdicts {
 
 // Each lane's verdict on one pair.
 // apart: receives the lanes that run on both and whose device and twin differ.
-std::vector<Verdict> decide(const SelectedLanes& under_test, const Pair& pair, std::vector<const Lane*>& apart);
+// doubles: null; or the pair before it was stored in float32, which lanes in double decide.
+std::vector<Verdict> decide(const SelectedLanes& under_test, const Pair& pair, std::vector<const Lane*>& apart,
+                            const DoublePair* doubles = nullptr);
 
 }  // namespace graze::fuzz

@@ -25,6 +25,7 @@ SquaredMargin exact_distance(const LargePair& pair, int exponent);
 
 // The least overlap of two intersecting hulls along those of these axes that are nonzero; zero if none is.
 // axes: bit i selects separating axis i of core/margin/directions.h.   Exact: always.
+inline constexpr std::uint32_t kAllAxes = (1u << kSeparatingAxes) - 1;
 SquaredMargin exact_depth(const LargePair& pair, int exponent, std::uint32_t axes);
 
 // The separation of the hulls along direction d of core/margin/directions.h, a lower bound of their distance; zero if

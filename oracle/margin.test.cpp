@@ -22,7 +22,6 @@ using oracle_test::Kind;
 using oracle_test::PairSource;
 
 constexpr std::uint64_t kSeed = 20240502;
-constexpr std::uint32_t kAllAxes = (1u << kSeparatingAxes) - 1;
 
 SquaredMargin exact_margin(const Pair& pair, Verdict verdict) {
   const Grid grid = grid_of(pair);

@@ -51,4 +51,14 @@ Bucket margin_bucket(const Pair& pair, Verdict verdict) {
   return make_bucket(1, floor_log2(exact_distance(large, grid.exponent)) - ulp);
 }
 
+Bucket margin_bucket(const DoublePair& pair, Verdict verdict) {
+  const Grid grid = grid_of(pair);
+  const LargePair large = large_integers(pair, grid);
+  const bool apart = verdict == Verdict::disjoint;
+  const SquaredMargin margin =
+      apart ? exact_distance(large, grid.exponent) : exact_depth(large, grid.exponent, kAllAxes);
+  if (margin.numerator == 0) return 0;
+  return make_bucket(apart ? 1 : -1, floor_log2(margin) - log2_ulp(pair));
+}
+
 }  // namespace graze::oracle

@@ -45,5 +45,7 @@ Hulls hulls(const DoublePair& pair);
 // The bucket of the exact margin. A certified double-precision estimate nearly always decides it, otherwise GMP.
 // Requires: finite coordinates; verdict is the pair's true verdict.   Exact: always.
 Bucket margin_bucket(const Pair& pair, Verdict verdict);
+// In ulps of the largest coordinate as a double.
+Bucket margin_bucket(const DoublePair& pair, Verdict verdict);
 
 }  // namespace graze::oracle

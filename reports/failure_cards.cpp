@@ -12,6 +12,7 @@
 #include "core/lanes/verdicts.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
+#include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/sealed.h"
@@ -165,7 +166,7 @@ Json maps_of(const std::filesystem::path& case_file, const Pair& pair, std::size
 // The names of the pairs that the campaign kept for a signature, such as "near_edge_edge:1:42".
 Json kept_pairs(const std::filesystem::path& directory, const Json& found) {
   Json names = Json::array();
-  for (const corpus::Entry& entry : fuzz::read_cases(directory, found)) {
+  for (const corpus::Entry& entry : fuzz::read_cases(directory, found, PairTypes::both)) {
     if (!corpus::field(entry, "kind")) names.push_back(corpus::origin_of(entry));
   }
   return names;
@@ -248,7 +249,9 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
   const Json kinds = fuzz::read_kinds(directory);
   if (kinds.is_null() && !summary["signatures"].empty())
     report["missing"].push_back(
-        "The kinds of failure are not known yet: `graze minimize DIR` finds and explains them.");
+        fuzz::has_doubles(summary["spec"])
+            ? "The kinds of failure are not known: `graze minimize` does not take pairs of doubles."
+            : "The kinds of failure are not known yet: `graze minimize DIR` finds and explains them.");
   const std::size_t without = kinds.is_null() ? 0 : fuzz::signatures_without_kind(summary, kinds);
   if (without > 0)
     report["missing"].push_back(

@@ -55,9 +55,10 @@ std::string case_in_xml(const JunitCase& test) {
 
 // The simplest kept pair on which a lane is wrong, and the file that has it.
 struct Kept {
-  Simplicity simplicity;
-  Pair pair;
+  Simplicity simplicity;  // the same for all pairs of doubles, of which the first is shown
+  std::string pair;
   fs::path file;
+  std::string why;  // the command that explains it; empty if none does
 };
 
 // By lane and stratum; by lane and "" of all strata.
@@ -66,11 +67,13 @@ std::map<std::pair<std::string, std::string>, Kept> simplest_of(const fs::path& 
   for (const Json& row : summary["signatures"]) {
     const auto signature = analysis::parse_signature(row["key"].get<std::string>());
     if (!signature) continue;
-    for (const corpus::Entry& entry : fuzz::read_cases(directory, row)) {
+    for (const corpus::Entry& entry : fuzz::read_cases(directory, row, PairTypes::both)) {
       const auto stratum = std::find_if(entry.fields.begin(), entry.fields.end(),
                                         [](const auto& field) { return field.first == "stratum"; });
       if (stratum == entry.fields.end()) continue;  // a result of the minimiser, whose stratum is another pair's
-      const Kept kept{simplicity(entry.pair), entry.pair, fuzz::case_file(directory, row)};
+      const fs::path file = fuzz::case_file(directory, row);
+      const std::string why = entry.doubles ? "" : "\nWhy: graze explain " + path_word(file.string());
+      const Kept kept{entry.doubles ? Simplicity() : simplicity(entry.pair), fuzz::pair_text(entry), file, why};
       for (const analysis::WrongLane& lane : signature->wrong_lanes) {
         if (lane.mark == '?') continue;  // declined, which is not wrong
         for (const std::string& of : {stratum->second, std::string()}) {
@@ -116,8 +119,8 @@ std::vector<JunitCase> junit_of_campaign(const fs::path& directory, const Json& 
       test.failure = fmt::format("wrong on {} of {}", grouped(stratum.wrong(l)), counted(stratum.pairs, "pair"));
       if (kept == simplest.end()) continue;
       test.failure +=
-          fmt::format(", such as {}\nAgain: graze repro {}\nWhy: graze explain {}", fuzz::pair_text(kept->second.pair),
-                      path_word(kept->second.file.string()), path_word(kept->second.file.string()));
+          fmt::format(", such as {}\nAgain: graze repro {}{}", kept->second.pair,
+                      path_word(kept->second.file.string()), kept->second.why);
     }
   }
   for (const fuzz::LaneLeftOut& lane : left_out) cases.push_back({lane.id, "all strata", "", lane.why});

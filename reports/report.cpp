@@ -25,6 +25,7 @@
 #include "reports/tables.h"
 #include "reports/terminal.h"
 #include "reports/toolchain_map.h"
+#include "strata/pair_source.h"
 #include "strata/strata.h"
 
 namespace graze::reports {
@@ -63,9 +64,8 @@ Json run_of(const std::filesystem::path& directory, const Json& summary, const C
 
 // Describes the pairs of a stratum. The text differs for two meshes, and for two hunts from different strata.
 std::string description_of(const std::string& stratum, const Json& spec) {
-  for (const strata::StratumInfo& row : strata::kStrata) {
-    if (row.id == stratum) return std::string(row.what);
-  }
+  if (const strata::StratumInfo* row = strata::stratum_info(stratum))
+    return (strata::stratum_in_doubles(stratum) ? "in doubles: " : "") + std::string(row->what);
   if (stratum == "hunt" && spec.contains("hunt")) {
     const std::vector<std::string> from = spec["hunt"].at("strata");
     return "pairs that guided search made from " +

@@ -132,7 +132,8 @@ namespace {
 // Prints a row for each subject, scalar and policy, and a column for each variant among the lanes. '-' means that the
 // lane did not run, '!' that it is wrong. The exact CUDA lane appears under all device variants, because it is the same
 // for each.
-void print_verdicts(std::ostream& out, const Pair& pair, const oracle::Truth& true_of_pair,
+template <class AnyPair>
+void print_verdicts(std::ostream& out, const AnyPair& pair, const oracle::Truth& true_of_pair,
                     std::span<const Lane* const> lanes, std::span<const Verdict> verdicts, const Screen& screen) {
   const Verdict truth = true_of_pair.verdict;
   struct Target {
@@ -187,13 +188,14 @@ void print_verdicts(std::ostream& out, const Pair& pair, const oracle::Truth& tr
 }
 
 // Prints decimals and hex floats in one row, or each hex float below its decimal if the screen is too narrow.
-void print_coordinates(std::ostream& out, const Pair& pair, const Screen& screen) {
+template <class Real>
+void print_coordinates(std::ostream& out, const BasicPair<Real>& pair, const Screen& screen) {
   std::string cells[6][6];  // by vertex: x, y, z in decimals, then as hex floats
   int widths[6] = {};
   for (int v = 0; v < 6; ++v) {
-    const Vec3<float>& p = v < 3 ? pair.a[v] : pair.b[v - 3];
+    const Vec3<Real>& p = v < 3 ? pair.a[v] : pair.b[v - 3];
     int c = 0;
-    for (const float x : {p.x, p.y, p.z}) {
+    for (const Real x : {p.x, p.y, p.z}) {
       cells[v][c] = fmt::format("{}", x);
       cells[v][c + 3] = corpus::hex_float(x);
       ++c;
@@ -216,16 +218,27 @@ void print_coordinates(std::ostream& out, const Pair& pair, const Screen& screen
   }
 }
 
-}  // namespace
-
-void print_pair(std::ostream& out, const Pair& pair, const oracle::Truth& truth, std::span<const Lane* const> lanes,
-                std::span<const Verdict> verdicts, const Screen& screen) {
+template <class AnyPair>
+void print_any_pair(std::ostream& out, const AnyPair& pair, const oracle::Truth& truth,
+                    std::span<const Lane* const> lanes, std::span<const Verdict> verdicts, const Screen& screen) {
   print_coordinates(out, pair, screen);
   out << "  "
       << bold(screen, fmt::format("truth: {}, contact {}, margin {:.7g} ({:.7g} ulps)", name(truth.verdict),
                                   name(truth.contact), truth.margin, truth.margin_ulps))
       << '\n';
   print_verdicts(out, pair, truth, lanes, verdicts, screen);
+}
+
+}  // namespace
+
+void print_pair(std::ostream& out, const Pair& pair, const oracle::Truth& truth, std::span<const Lane* const> lanes,
+                std::span<const Verdict> verdicts, const Screen& screen) {
+  print_any_pair(out, pair, truth, lanes, verdicts, screen);
+}
+
+void print_pair(std::ostream& out, const DoublePair& pair, const oracle::Truth& truth,
+                std::span<const Lane* const> lanes, std::span<const Verdict> verdicts, const Screen& screen) {
+  print_any_pair(out, pair, truth, lanes, verdicts, screen);
 }
 
 }  // namespace graze::reports

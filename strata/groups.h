@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "strata/pair_source.h"
 #include "strata/strata.h"
 
 namespace graze::strata {
@@ -48,8 +49,9 @@ constexpr Group group_of(Stratum stratum) {
 // The group of a source, given its name: a stratum, or a mesh as it is or moved. Nothing for a stratum that this build
 // does not know.
 constexpr std::optional<Group> group_of_name(std::string_view id) {
-  for (const StratumInfo& row : kStrata) {
-    if (row.id == id) return group_of(row.stratum);
+  const std::string_view stratum = stratum_in_doubles(id).value_or(id);
+  for (const StratumInfo& row : kDoubleStrata) {
+    if (row.id == stratum) return group_of(row.stratum);
   }
   return id == "mesh" || id.starts_with("mesh_") ? std::optional(Group::mesh) : std::nullopt;
 }

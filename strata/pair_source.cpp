@@ -2,6 +2,7 @@
 #include "strata/pair_source.h"
 
 #include <algorithm>
+#include <span>
 
 #include "core/error.h"
 #include "core/lanes/lanes.h"
@@ -10,32 +11,110 @@
 
 namespace graze::strata {
 
-std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs,
-                                        const std::vector<std::string>& globs) {
+namespace {
+
+PairSource source_of(std::uint64_t seed, const StratumInfo& row) {
+  return {std::string(row.id), 0,
+          [seed, stratum = row.stratum](std::uint64_t index) { return generate(seed, stratum, index); },
+          static_cast<int>(row.stratum), row.axis, seed};
+}
+
+Axis wide(Axis axis) { return axis == Axis::scale ? Axis::wide_scale : axis; }
+
+PairSource double_source_of(std::uint64_t seed, const StratumInfo& row) {
+  PairSource source{std::string(row.id) + std::string(kInDoubles), 0, nullptr, -1, wide(row.axis), seed};
+  source.double_pair = [seed, stratum = row.stratum](std::uint64_t index) {
+    return generate_doubles(seed, stratum, index);
+  };
+  return source;
+}
+
+void share_evenly(std::vector<PairSource>& sources, std::uint64_t pairs) {
+  for (std::size_t s = 0; s < sources.size(); ++s)
+    sources[s].pairs = pairs / sources.size() + (s < pairs % sources.size());
+}
+
+}  // namespace
+
+void expect_float32(std::span<const PairSource> sources, const char* verb) {
+  for (const PairSource& source : sources) {
+    if (source.in_doubles())
+      throw UsageError("`graze " + std::string(verb) + "` takes pairs of float32, and " + source.id +
+                       " has pairs of doubles");
+  }
+}
+
+const StratumInfo* stratum_info(std::string_view source) {
+  const std::optional<std::string_view> in_doubles = stratum_in_doubles(source);
+  const std::span<const StratumInfo> rows =
+      in_doubles ? std::span<const StratumInfo>(kDoubleStrata) : std::span<const StratumInfo>(kStrata);
+  const auto row = std::find_if(rows.begin(), rows.end(),
+                                [&](const StratumInfo& s) { return s.id == in_doubles.value_or(source); });
+  return row == rows.end() ? nullptr : &*row;
+}
+
+Axis axis_of(std::string_view source) {
+  const StratumInfo* row = stratum_info(source);
+  return !row ? Axis::none : stratum_in_doubles(source) ? wide(row->axis) : row->axis;
+}
+
+std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs,
+                                        PairTypes types) {
+  std::vector<PairSource> all;
+  if (types != PairTypes::f64) {
+    for (const StratumInfo& row : kStrata) all.push_back(source_of(seed, row));
+  }
+  if (types != PairTypes::f32) {
+    for (const StratumInfo& row : kDoubleStrata) all.push_back(double_source_of(seed, row));
+  }
+  const auto names_of = [](const PairSource& source) {
+    std::vector<std::string> names{source.id};
+    if (const auto base = stratum_in_doubles(source.id)) names.emplace_back(*base);
+    return names;
+  };
+  const auto matches = [&](const PairSource& source, const std::string& glob) {
+    const std::vector<std::string> names = names_of(source);
+    return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return matches_any({glob}, name); });
+  };
+  bool any_wanted = false;
   for (const std::string& glob : globs) {
-    const std::string wanted = glob.substr(glob.starts_with('!'));
-    if (std::none_of(std::begin(kStrata), std::end(kStrata),
-                     [&](const StratumInfo& row) { return matches_any({wanted}, row.id); })) {
+    const bool leaves_out = glob.starts_with('!');
+    any_wanted |= !leaves_out;
+    const std::string wanted = glob.substr(leaves_out);
+    if (std::none_of(all.begin(), all.end(), [&](const PairSource& source) { return matches(source, wanted); })) {
       std::vector<std::string> ids;
-      for (const StratumInfo& row : kStrata) ids.emplace_back(row.id);
+      for (const PairSource& source : all) ids.push_back(source.id);
       throw UsageError("no stratum matches '" + printable(glob) + "'; `graze strata` lists them" +
                        did_you_mean(glob, ids));
     }
   }
   std::vector<PairSource> sources;
-  for (const StratumInfo& row : kStrata) {
-    if (!matches_any(globs, row.id)) continue;
-    sources.push_back({std::string(row.id), 0,
-                       [seed, stratum = row.stratum](std::uint64_t index) { return generate(seed, stratum, index); },
-                       static_cast<int>(row.stratum), row.axis, seed});
+  for (PairSource& source : all) {
+    bool wanted = !any_wanted, left_out = false;
+    for (const std::string& glob : globs) {
+      const bool leaves_out = glob.starts_with('!');
+      if (!matches(source, glob.substr(leaves_out))) continue;
+      (leaves_out ? left_out : wanted) = true;
+    }
+    if (wanted && !left_out) sources.push_back(std::move(source));
   }
   if (sources.empty()) {
     std::string names;
     for (const std::string& glob : globs) names += (names.empty() ? "" : ",") + glob;
     throw UsageError("strata \"" + printable(names) + "\" leave none");
   }
-  for (std::size_t s = 0; s < sources.size(); ++s)
-    sources[s].pairs = pairs / sources.size() + (s < pairs % sources.size());
+  share_evenly(sources, pairs);
+  return sources;
+}
+
+std::vector<PairSource> named_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& names) {
+  std::vector<PairSource> sources;
+  for (const std::string& name : names) {
+    const StratumInfo* row = stratum_info(name);
+    if (!row) throw UsageError("there is no stratum '" + printable(name) + "'; `graze strata` lists them");
+    sources.push_back(stratum_in_doubles(name) ? double_source_of(seed, *row) : source_of(seed, *row));
+  }
+  share_evenly(sources, pairs);
   return sources;
 }
 

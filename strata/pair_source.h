@@ -5,7 +5,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/margin/axis.h"
@@ -14,20 +17,43 @@
 namespace graze::strata {
 
 struct Scene;
+struct StratumInfo;
 
 struct PairSource {
   std::string id;
   std::uint64_t pairs = 0;  // the campaign takes the indices [0, pairs)
-  std::function<Pair(std::uint64_t index)> pair;
+  std::function<Pair(std::uint64_t index)> pair;  // null if the coordinates are doubles
   // For drawing the same pairs on a device: the stratum's index in kStrata; -1 if only `pair` can draw them.
   int stratum = -1;
   Axis axis = Axis::none;  // the stratum's
   std::uint64_t seed = 0;
   std::shared_ptr<const Scene> scene = nullptr;  // the scene in which the stratum is drawn; null: none
+  std::function<DoublePair(std::uint64_t index)> double_pair = nullptr;  // in place of `pair`
+
+  bool in_doubles() const { return bool(double_pair); }
 };
+
+// The name of a stratum of doubles as a source: "uniform/f64". Nothing if the source is not one of doubles.
+inline constexpr std::string_view kInDoubles = "/f64";
+constexpr std::optional<std::string_view> stratum_in_doubles(std::string_view source) {
+  if (!source.ends_with(kInDoubles)) return std::nullopt;
+  return source.substr(0, source.size() - kInDoubles.size());
+}
+
+// Throws: UsageError, naming the verb, if a source has pairs of doubles.
+void expect_float32(std::span<const PairSource> sources, const char* verb);
+
+// What is known of the stratum of this name, of either type; null if there is none.
+const StratumInfo* stratum_info(std::string_view source);
+Axis axis_of(std::string_view source);
 
 // The strata whose names match (all for an empty list). They share `pairs` evenly; the first ones take the remainder.
 // Throws: UsageError if a pattern matches no stratum, or if all together leave none.
-std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs);
+// Patterns match a stratum of doubles with or without its "/f64".
+std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs,
+                                        PairTypes types = PairTypes::f32);
+
+// The strata of these names, of both types; as above.
+std::vector<PairSource> named_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& names);
 
 }  // namespace graze::strata

@@ -139,6 +139,18 @@ class HostProcess {
     } else {
       std::memcpy(pairs_.at(), pairs, count * sizeof(Pair));
     }
+    return ask(count);
+  }
+  std::optional<Answers> ask(const DoublePair* pairs, std::size_t count, bool) {
+    std::memcpy(pairs_.at(), pairs, count * sizeof(DoublePair));
+    return ask(count);
+  }
+
+  bool silent() const { return supervisor_.silent(); }
+
+ private:
+  // About the pairs in the shared memory.
+  std::optional<Answers> ask(std::size_t count) {
     const Block block{static_cast<std::uint32_t>(count)};
     Answers answers;
     if (!supervisor_.send(&block, sizeof block) || supervisor_.receive(&answers, sizeof answers) != sizeof answers ||
@@ -147,9 +159,6 @@ class HostProcess {
     return answers;
   }
 
-  bool silent() const { return supervisor_.silent(); }
-
- private:
   SharedPairs pairs_;
   SupervisorProcess supervisor_;
   Loaded loaded_{};
@@ -201,16 +210,17 @@ std::unique_ptr<HostProcess> ForeignProcesses::idle_or_new() {
   }
 }
 
-void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects,
-                              std::uint64_t* declined) {
+template <class AnyPair>
+void ForeignProcesses::decide_all(const AnyPair* pairs, std::size_t count, std::uint64_t* intersects,
+                                  std::uint64_t* declined) {
   std::unique_lock alone(alone_, std::defer_lock);
   if (code_.alone) alone.lock();
-  const bool in_double = scalar_ == Scalar::f64 && code_.kind != "device";
+  const bool in_double = decides_doubles();
   std::unique_ptr<HostProcess> process = idle_or_new();
   bool loads = process != nullptr;
   signed char how = kCrashed;  // for pairs without an answer
   // Asks about pairs. Nullopt when the supervisor ended or the code can no longer be loaded.
-  const auto ask = [&](const Pair* of, std::size_t size) {
+  const auto ask = [&](const AnyPair* of, std::size_t size) {
     std::optional<Answers> answers;
     if (!process && loads) loads = (process = idle_or_new()) != nullptr;
     if (process) answers = process->ask(of, size, in_double);
@@ -242,7 +252,7 @@ void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_
       if (!is_failure(verdict)) continue;
       const std::lock_guard lock(mutex_);
       if (failures_.size() == kMostFailuresKept) failures_.clear();
-      failures_[std::string(reinterpret_cast<const char*>(&pairs[at]), sizeof(Pair))] = verdict;
+      failures_[std::string(reinterpret_cast<const char*>(&pairs[at]), sizeof(AnyPair))] = verdict;
     }
   }
   // The processes started after the files were read and have answered, so if the files are unchanged now, they ran that
@@ -251,6 +261,16 @@ void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_
   const std::lock_guard lock(mutex_);
   nanoseconds_ = nanoseconds;
   if (process) idle_.push_back(std::move(process));
+}
+
+void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects,
+                              std::uint64_t* declined) {
+  decide_all(pairs, count, intersects, declined);
+}
+
+void ForeignProcesses::decide_doubles(const DoublePair* pairs, std::size_t count, std::uint64_t* intersects,
+                                      std::uint64_t* declined) {
+  decide_all(pairs, count, intersects, declined);
 }
 
 std::optional<std::uint64_t> ForeignProcesses::nanoseconds() const {
@@ -264,8 +284,9 @@ std::unique_ptr<ForeignProcesses> ForeignProcesses::anew() const {
 
 int ForeignProcesses::content() const { return code_.content ? code_.content->fd() : -1; }
 
-Verdict ForeignProcesses::failure(const Pair& pair) {
-  const std::string key(reinterpret_cast<const char*>(&pair), sizeof(Pair));
+template <class AnyPair>
+Verdict ForeignProcesses::failure_of(const AnyPair& pair) {
+  const std::string key(reinterpret_cast<const char*>(&pair), sizeof pair);
   const auto kept = [&]() -> std::optional<Verdict> {
     const std::lock_guard lock(mutex_);
     const auto found = failures_.find(key);
@@ -274,8 +295,11 @@ Verdict ForeignProcesses::failure(const Pair& pair) {
   };
   if (const std::optional<Verdict> verdict = kept()) return *verdict;
   std::uint64_t intersects, declined;
-  decide(&pair, 1, &intersects, &declined);
+  decide_all(&pair, 1, &intersects, &declined);
   return kept().value_or(Verdict::unstable);  // it failed before and does not fail now
 }
+
+Verdict ForeignProcesses::failure(const Pair& pair) { return failure_of(pair); }
+Verdict ForeignProcesses::failure_on_doubles(const DoublePair& pair) { return failure_of(pair); }
 
 }  // namespace graze::subjects

@@ -54,7 +54,11 @@ class ForeignProcesses : public ForeignCode {
   // Throws: Stopped, always within 0.1 s of the request to stop; std::runtime_error if a file of a command has changed
   // since it was read.
   void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) override;
+  void decide_doubles(const DoublePair* pairs, std::size_t count, std::uint64_t* intersects,
+                      std::uint64_t* declined) override;
   Verdict failure(const Pair& pair) override;
+  Verdict failure_on_doubles(const DoublePair& pair) override;
+  bool decides_doubles() const override { return scalar_ == Scalar::f64 && code_.kind != "device"; }
 
   // Processor time of the code for the pairs of the last decide, asked once. It is measured in the code's own process,
   // without communication. Nothing for a command, or if the code failed on a pair.
@@ -66,6 +70,10 @@ class ForeignProcesses : public ForeignCode {
 
  private:
   std::unique_ptr<HostProcess> idle_or_new();
+  template <class AnyPair>
+  void decide_all(const AnyPair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined);
+  template <class AnyPair>
+  Verdict failure_of(const AnyPair& pair);
 
   Code code_;
   Scalar scalar_;

@@ -396,6 +396,17 @@ TEST_F(Subjects, SourcesInCAndCppFindTheirFunctionAndScalar) {
     const std::vector<Verdict> found = verdicts(lane->decide);
     for (std::size_t i = 0; i < pairs.size(); ++i) ASSERT_EQ(found[i], left_of(pairs[i])) << id;
   }
+  // A function in double gets the doubles of a pair of doubles, not what float32 stores.
+  ASSERT_TRUE(find_lane("in_double/f64/cpu")->decide.decides_doubles());
+  EXPECT_FALSE(find_lane("both/f32/cpu")->decide.decides_doubles());
+  std::vector<DoublePair> close;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    close.push_back(in_doubles(pairs[i]));
+    close.back().b[0].x = close.back().a[0].x + (i % 3 == 0 ? 0x1p-40 : 0);
+  }
+  VerdictBits bits;
+  decide(find_lane("in_double/f64/cpu")->decide, std::span<const DoublePair>(close), bits);
+  for (std::size_t i = 0; i < close.size(); ++i) ASSERT_EQ(test_bit(bits.intersects, i), i % 3 == 0) << i;
   EXPECT_FALSE(find_lane("in_double/f32/cpu"));
   EXPECT_FALSE(find_lane("by_name/f32/cpu"));
   // Included files count: another header makes another build.

@@ -35,6 +35,7 @@ using Clock = std::chrono::steady_clock;
 using Time = Clock::time_point;
 
 constexpr auto kLookEvery = std::chrono::milliseconds(100);  // between checks of what the processes use
+constexpr int kMostWaits = 20;  // times its limit that a program may wait for a processor
 constexpr int kMostLoads = 3;                                // failed ones, for one block
 
 Time after(double seconds) {
@@ -133,12 +134,14 @@ class Supervisor {
   signed char watch(Questions& questions) {
     double before = worker_seconds();
     int times = 0;
+    std::optional<Activity> programs;  // at the last time limit
     Time until = after(limits_.seconds);
     for (;;) {
       const bool told = wait(until);
       if (questions.take(words_) > 0) {
         before = worker_seconds();
         times = 0;
+        programs.reset();
         until = after(limits_.seconds);
       }
       if (told) return questions.answered() ? kDeclined : kCrashed;  // it claims to have given all answers
@@ -149,6 +152,16 @@ class Supervisor {
       }
       if (Clock::now() < until) continue;
       // It timed out only if it had the processor time; load on the machine gives no verdicts.
+      if (limits_.program && times < kMostWaits) {  // the worker itself only waits for its program
+        const Activity now = activity_of_descendants(limits_.processes);
+        const bool had_time = programs && now.seconds - programs->seconds >= 0.9 * limits_.seconds;
+        programs = now;
+        if (now.wants_processor && !had_time) {
+          ++times;
+          until = after(limits_.seconds);
+          continue;
+        }
+      }
       if (++times >= most_times() || worker_seconds() - before >= 0.9 * limits_.seconds) return kTimedOut;
       until = after(limits_.seconds);
     }

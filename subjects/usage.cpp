@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
@@ -127,6 +128,18 @@ std::vector<pid_t> descendants(std::uint64_t most, pid_t except) {
     for (const pid_t child : children_of(all[next])) all.push_back(child);
   }
   return all;
+}
+
+Activity activity_of_descendants(std::uint64_t most) {
+  Activity activity;
+  for (const pid_t process : descendants(most)) {
+    activity.wants_processor |= process_state(process) == 'R';
+    clockid_t clock;
+    timespec taken{};
+    if (clock_getcpuclockid(process, &clock) == 0 && clock_gettime(clock, &taken) == 0)
+      activity.seconds += static_cast<double>(taken.tv_sec) + 1e-9 * static_cast<double>(taken.tv_nsec);
+  }
+  return activity;
 }
 
 Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processes) {

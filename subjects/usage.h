@@ -14,6 +14,13 @@ std::vector<pid_t> own_children();  // of the calling thread
 // All descendants but those by one child, or a little more than `most` of them.
 std::vector<pid_t> descendants(std::uint64_t most, pid_t except = -1);
 
+// Whether some descendant runs or waits for a processor, and the processor time of all that are there, in seconds.
+struct Activity {
+  bool wants_processor = false;
+  double seconds = 0;
+};
+Activity activity_of_descendants(std::uint64_t most);
+
 struct Usage {
   std::uint64_t processes,
       bytes;  // of memory and page tables; shared memory counts once, and each process has its share of pages of files

@@ -6,13 +6,17 @@
 
 namespace graze::exact {
 
-// Like decide (decide.h), but one pair after the other.
-inline void one_by_one(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-  decide_each(reinterpret_cast<const Pair*>(pairs), count, intersects, declined, [](const Pair& pair) {
+// Like decide (decide.h), but one pair after the other, of either coordinate type.
+template <class AnyPair>
+void one_by_one(const AnyPair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+  decide_each(pairs, count, intersects, declined, [](const AnyPair& pair) {
     return !is_finite(pair)                                ? Verdict::declined
            : exact::intersects(&pair.a[0].x, &pair.b[0].x) ? Verdict::intersects
                                                            : Verdict::disjoint;
   });
+}
+inline void one_by_one(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+  one_by_one(reinterpret_cast<const Pair*>(pairs), count, intersects, declined);
 }
 
 }  // namespace graze::exact

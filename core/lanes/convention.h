@@ -8,9 +8,10 @@
 
 namespace graze {
 
-inline bool share_a_vertex(const Pair& pair) {
-  for (const Vec3<float>& a : pair.a) {
-    for (const Vec3<float>& b : pair.b) {
+template <class Real>
+bool share_a_vertex(const BasicPair<Real>& pair) {
+  for (const Vec3<Real>& a : pair.a) {
+    for (const Vec3<Real>& b : pair.b) {
       if (a.x == b.x && a.y == b.y && a.z == b.z) return true;
     }
   }
@@ -18,7 +19,8 @@ inline bool share_a_vertex(const Pair& pair) {
 }
 
 // outside: a sum of Outside.   Requires: finite coordinates; the truth is the pair's.
-inline bool is_outside(unsigned outside, const Pair& pair, const Relation& truth) {
+template <class Real>
+bool is_outside(unsigned outside, const BasicPair<Real>& pair, const Relation& truth) {
   const Hulls& hulls = truth.hulls;
   return (outside & kOutsideTouching && truth.touches() && truth.contact != Contact::area) ||
          (outside & kOutsideCoplanar && hulls.coplanar) ||

@@ -12,19 +12,25 @@ namespace graze {
 template <class Block>
 using BlockTable = std::array<std::array<Block, 2>, kAlgorithmCount>;
 using HostBlocks = BlockTable<DecideBlock::Function>;
+using HostDoubleBlocks = std::array<DecideFunction<DoublePair>, kAlgorithmCount>;  // in double
 
 // The block functions of each kind of policy; null if the algorithm or the variant does not have it.
-struct PolicyBlocks {
-  DecideBlock::Within absolute = nullptr, relative = nullptr;  // under absolute tolerances only; with relative ones
-  DecideBlock::Function bound = nullptr;
+template <class AnyPair>
+struct PolicyFunctions {
+  DecideWithin<AnyPair> absolute = nullptr, relative = nullptr;  // under absolute tolerances only; with relative ones
+  DecideFunction<AnyPair> bound = nullptr;
 };
+using PolicyBlocks = PolicyFunctions<Pair>;
 using HostPolicyBlocks = BlockTable<PolicyBlocks>;
+using HostDoublePolicyBlocks = std::array<PolicyFunctions<DoublePair>, kAlgorithmCount>;
 
-#define GRAZE_DECLARE_host(name)                     \
-  namespace name {                                   \
-  extern const HostBlocks kHostBlocks;               \
-  extern const HostPolicyBlocks kHostPolicyBlocks;   \
-  extern const BlockTable<RecordBlock> kHostRecords; \
+#define GRAZE_DECLARE_host(name)                               \
+  namespace name {                                             \
+  extern const HostBlocks kHostBlocks;                         \
+  extern const HostDoubleBlocks kHostDoubleBlocks;             \
+  extern const HostPolicyBlocks kHostPolicyBlocks;             \
+  extern const HostDoublePolicyBlocks kHostDoublePolicyBlocks; \
+  extern const BlockTable<RecordBlock> kHostRecords;           \
   }
 #define GRAZE_DECLARE_device(name)
 #define GRAZE_DECLARE_program(name)

@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/exact_blocks/decide.h"
+#include "core/exact_blocks/one_by_one.h"
 #include "core/lanes/host_blocks.h"
 #include "core/lanes/named_policies.h"
 #include "core/lanes/vector_blocks.h"
@@ -32,6 +33,11 @@ void decide_exactly(const Pair* pairs, std::size_t count, std::uint64_t* interse
   exact::decide(reinterpret_cast<const float*>(pairs), count, intersects, declined);
 }
 
+void decide_doubles_exactly(const DoublePair* pairs, std::size_t count, std::uint64_t* intersects,
+                            std::uint64_t* declined) {
+  exact::one_by_one(pairs, count, intersects, declined);
+}
+
 template <class... Algorithm>
 std::vector<const AlgorithmInfo*> infos(const std::tuple<Algorithm...>*) {
   return {&Algorithm::kInfo...};
@@ -40,12 +46,14 @@ std::vector<const AlgorithmInfo*> infos(const std::tuple<Algorithm...>*) {
 // The block functions of a variant; null for a device variant.
 struct Tables {
   const HostBlocks* blocks = nullptr;
+  const HostDoubleBlocks* of_doubles = nullptr;
   const HostPolicyBlocks* policies = nullptr;
+  const HostDoublePolicyBlocks* policies_of_doubles = nullptr;
 };
 
 const Tables& tables_of(Variant variant) {
 #define GRAZE_BLOCKS_host(name) \
-  Tables { &name::kHostBlocks, &name::kHostPolicyBlocks }
+  Tables { &name::kHostBlocks, &name::kHostDoubleBlocks, &name::kHostPolicyBlocks, &name::kHostDoublePolicyBlocks }
 #define GRAZE_BLOCKS_device(name) \
   Tables {}
 #define GRAZE_BLOCKS_program(name) \
@@ -67,16 +75,20 @@ const auto& of_lane(const Table& table, const Lane& lane) {
   return table.at(static_cast<std::size_t>(lane.algorithm)).at(static_cast<std::size_t>(lane.scalar));
 }
 
-DecideBlock block_under(const Policy& policy, const PolicyBlocks& blocks) {
-  switch (policy.kind) {
-    case Policy::Kind::bound:
-      return blocks.bound;
-    case Policy::Kind::filtered:
-      return blocks.bound ? DecideBlock(blocks.bound, decide_exactly) : nullptr;
-    case Policy::Kind::tolerances:
-      break;
-  }
-  return {policy.epsilons.any_relative() ? blocks.relative : blocks.absolute, policy.epsilons};
+template <class AnyPair>
+DecideFunctions<AnyPair> functions_under(const Policy& policy, const PolicyFunctions<AnyPair>& blocks,
+                                         DecideFunction<AnyPair> exactly) {
+  if (policy.kind == Policy::Kind::tolerances)
+    return {.within = policy.epsilons.any_relative() ? blocks.relative : blocks.absolute};
+  return {blocks.bound, policy.kind == Policy::Kind::filtered && blocks.bound ? exactly : nullptr};
+}
+
+DecideBlock block_under(const Policy& policy, const Tables& tables, const Lane& lane) {
+  DecideBlock::Doubles doubles;
+  if (lane.scalar == Scalar::f64)
+    doubles = functions_under(policy, tables.policies_of_doubles->at(static_cast<std::size_t>(lane.algorithm)),
+                              decide_doubles_exactly);
+  return {functions_under(policy, of_lane(*tables.policies, lane), decide_exactly), doubles, policy.epsilons};
 }
 
 Lane lane_of(const AlgorithmInfo* info, Scalar scalar, Variant variant) {
@@ -96,9 +108,14 @@ std::vector<Lane> make_lanes() {
         Lane& lane = table.emplace_back(lane_of(info, scalar, row.variant));
         lane.algorithm = algorithm;
         lane.explainable = row.arithmetic != Arithmetic::fast;
-        if (const HostBlocks* blocks = tables_of(row.variant).blocks) lane.decide = of_lane(*blocks, lane);
+        const Tables& tables = tables_of(row.variant);
+        if (!tables.blocks) continue;
+        DecideBlock::Floats floats{of_lane(*tables.blocks, lane)};
+        DecideBlock::Doubles doubles;
         const DecideBlock::Function vectors = row.variant == Variant::cpu ? vector_block(info->id, scalar) : nullptr;
-        if (vectors) lane.decide = vectors;
+        if (vectors) floats.function = vectors;
+        if (scalar == Scalar::f64) doubles.function = tables.of_doubles->at(static_cast<std::size_t>(algorithm));
+        lane.decide = {floats, doubles};
       }
     }
     ++algorithm;
@@ -108,6 +125,9 @@ std::vector<Lane> make_lanes() {
     lane.exact = true;
     if (!lane.is_cuda()) lane.decide = decide_exactly;
   }
+  Lane& of_doubles = table.emplace_back(lane_of(&kExactInfo, Scalar::f64, Variant::cpu));
+  of_doubles.exact = true;
+  of_doubles.decide = {{decide_exactly}, {decide_doubles_exactly}};
   return table;
 }
 
@@ -170,7 +190,7 @@ Lane lane_under(const Lane& lane, std::string_view policy) {
                      ": the compiler's fast math keeps no error bound");
   result.explainable = false;
   result.decide =
-      lane.is_cuda() ? nullptr : block_under(*result.under, of_lane(*tables_of(lane.variant).policies, lane));
+      lane.is_cuda() ? nullptr : block_under(*result.under, tables_of(lane.variant), lane);
   return result;
 }
 
@@ -233,28 +253,48 @@ const Lane* counterpart(const Lane& lane, Variant variant) {
   return find_lane(id_of(other));
 }
 
-void DecideBlock::operator()(const Pair* pairs, std::size_t count, std::uint64_t* intersects,
-                             std::uint64_t* declined) const {
-  if (foreign_) return foreign_->decide(pairs, count, intersects, declined);
-  if (within_) return within_(epsilons_, pairs, count, intersects, declined);
-  function_(pairs, count, intersects, declined);
-  if (!otherwise_) return;
+template <class AnyPair>
+void DecideFunctions<AnyPair>::decide(const Epsilons& epsilons, const AnyPair* pairs, std::size_t count,
+                                      std::uint64_t* intersects, std::uint64_t* declined) const {
+  if (within) return within(epsilons, pairs, count, intersects, declined);
+  function(pairs, count, intersects, declined);
+  if (!otherwise) return;
   for (std::size_t word = 0; word * 64 < count; ++word) {
     for (std::uint64_t left = declined[word]; left != 0; left &= left - 1) {
       const std::uint64_t bit = left & -left;
       std::uint64_t yes = 0, no_answer = 0;
-      otherwise_(pairs + word * 64 + std::countr_zero(left), 1, &yes, &no_answer);
+      otherwise(pairs + word * 64 + std::countr_zero(left), 1, &yes, &no_answer);
       intersects[word] |= yes ? bit : 0;
       declined[word] &= no_answer ? ~std::uint64_t{0} : ~bit;
     }
   }
 }
 
-Verdict decide_one(const DecideBlock& block, const Pair& pair) {
+void DecideBlock::operator()(const Pair* pairs, std::size_t count, std::uint64_t* intersects,
+                             std::uint64_t* declined) const {
+  if (foreign_) return foreign_->decide(pairs, count, intersects, declined);
+  floats_.decide(epsilons_, pairs, count, intersects, declined);
+}
+
+void DecideBlock::operator()(const DoublePair* pairs, std::size_t count, std::uint64_t* intersects,
+                             std::uint64_t* declined) const {
+  if (foreign_) return foreign_->decide_doubles(pairs, count, intersects, declined);
+  doubles_.decide(epsilons_, pairs, count, intersects, declined);
+}
+
+namespace {
+
+template <class AnyPair>
+Verdict decide_one_of(const DecideBlock& block, const AnyPair& pair) {
   std::uint64_t intersects = 0, declined = 0;
   block(&pair, 1, &intersects, &declined);
   return block.verdict_of(intersects & 1, declined & 1, pair);
 }
+
+}  // namespace
+
+Verdict decide_one(const DecideBlock& block, const Pair& pair) { return decide_one_of(block, pair); }
+Verdict decide_one(const DecideBlock& block, const DoublePair& pair) { return decide_one_of(block, pair); }
 
 bool runs_on_this_cpu(const Lane& lane) {
   if (lane.is_cuda()) return false;

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <optional>
 #include <span>
 #include <string>
@@ -42,36 +43,74 @@ class ForeignCode {
   virtual void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) = 0;
   // How it failed on a pair: crashed, timed_out or unstable.   Requires: it failed on the pair.
   virtual Verdict failure(const Pair& pair) = 0;
+
+  // The same for pairs of doubles, if it takes them.
+  virtual bool decides_doubles() const { return false; }
+  virtual void decide_doubles(const DoublePair*, std::size_t, std::uint64_t*, std::uint64_t*) { std::terminate(); }
+  virtual Verdict failure_on_doubles(const DoublePair&) { std::terminate(); }
 };
 
-// Decides pairs[0..count). Bit i % 64 of word i / 64: intersects, or declined. Unused bits become zero.
+template <class AnyPair>
+using DecideFunction = void (*)(const AnyPair* pairs, std::size_t count, std::uint64_t* intersects,
+                                std::uint64_t* declined);
+template <class AnyPair>
+using DecideWithin = void (*)(const Epsilons& epsilons, const AnyPair* pairs, std::size_t count,
+                              std::uint64_t* intersects, std::uint64_t* declined);
+
+// A lane's functions for pairs of one coordinate type; all null if it does not take them.
+template <class AnyPair>
+struct DecideFunctions {
+  DecideFunction<AnyPair> function = nullptr;
+  DecideFunction<AnyPair> otherwise = nullptr;  // decides the pairs that `function` declines
+  DecideWithin<AnyPair> within = nullptr;       // in place of `function`
+
+  void decide(const Epsilons& epsilons, const AnyPair* pairs, std::size_t count, std::uint64_t* intersects,
+              std::uint64_t* declined) const;
+  bool operator==(const DecideFunctions&) const = default;
+};
+
+// Decides pairs[0..count). Bit i % 64 of word i / 64: intersects, or declined. Unused bits become zero. Lanes in double
+// take pairs of both coordinate types; others only float32.
 // Requires: room for (count + 63) / 64 words in each of the two arrays.
 class DecideBlock {
  public:
-  using Function = void (*)(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined);
-  using Within = void (*)(const Epsilons& epsilons, const Pair* pairs, std::size_t count, std::uint64_t* intersects,
-                          std::uint64_t* declined);
+  using Function = DecideFunction<Pair>;
+  using Within = DecideWithin<Pair>;
+  using Floats = DecideFunctions<Pair>;
+  using Doubles = DecideFunctions<DoublePair>;
 
-  constexpr DecideBlock(Function function = nullptr) : function_(function) {}
-  DecideBlock(Within within, const Epsilons& epsilons) : within_(within), epsilons_(epsilons) {}
-  // `otherwise` decides the pairs that `bound` declines.
-  DecideBlock(Function bound, Function otherwise) : function_(bound), otherwise_(otherwise) {}
+  constexpr DecideBlock(Function function = nullptr) : floats_{function} {}
+  DecideBlock(Within within, const Epsilons& epsilons) : floats_{.within = within}, epsilons_(epsilons) {}
+  DecideBlock(const Floats& floats, const Doubles& doubles, const Epsilons& epsilons = {})
+      : floats_(floats), doubles_(doubles), epsilons_(epsilons) {}
   DecideBlock(ForeignCode& foreign) : foreign_(&foreign) {}
 
   void operator()(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) const;
-  constexpr explicit operator bool() const { return function_ || within_ || foreign_; }
+  // Requires: decides_doubles().
+  void operator()(const DoublePair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) const;
+  bool decides_doubles() const {
+    return foreign_ ? foreign_->decides_doubles() : doubles_.function || doubles_.within;
+  }
+  constexpr explicit operator bool() const { return floats_.function || floats_.within || foreign_; }
   bool operator==(const DecideBlock&) const = default;
   constexpr bool operator==(std::nullptr_t) const { return !*this; }
 
   // The verdict that a pair's two bits encode.
-  Verdict verdict_of(bool intersects, bool declined, const Pair& pair) const {
-    if (foreign_ && intersects && declined) return foreign_->failure(pair);
+  template <class AnyPair>
+  Verdict verdict_of(bool intersects, bool declined, const AnyPair& pair) const {
+    if (foreign_ && intersects && declined) {
+      if constexpr (sizeof pair == sizeof(Pair)) {
+        return foreign_->failure(pair);
+      } else {
+        return foreign_->failure_on_doubles(pair);
+      }
+    }
     return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
   }
 
  private:
-  Function function_ = nullptr, otherwise_ = nullptr;
-  Within within_ = nullptr;
+  Floats floats_;
+  Doubles doubles_;
   Epsilons epsilons_;
   ForeignCode* foreign_ = nullptr;
 };
@@ -83,6 +122,7 @@ constexpr Verdict verdict_of_bits(bool intersects, bool declined) {
 
 // The block's verdict on one pair.
 Verdict decide_one(const DecideBlock& block, const Pair& pair);
+Verdict decide_one(const DecideBlock& block, const DoublePair& pair);
 
 // Pairs that a subject does not promise to decide; see subjects/include/graze/subject.h.
 enum Outside : unsigned { kOutsideTouching = 1, kOutsideCoplanar = 2, kOutsideDegenerate = 4, kOutsideShared = 8 };
@@ -98,7 +138,7 @@ struct Lane {
   // Others: -1.
   int algorithm;
   DecideBlock decide;  // on this processor; null for lanes of a device, see cuda/lanes/device.h
-  bool exact;          // right on every finite pair, declines the others; see core/exact/exact.h
+  bool exact;          // right on every finite pair of its scalar, declines the others; see core/exact/exact.h
   bool explainable;    // runs on numbers that record every step; see core/algorithms/traced.h
   // Foreign code only:
   bool foreign = false;

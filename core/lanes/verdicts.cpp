@@ -3,10 +3,20 @@
 
 namespace graze {
 
-void decide(const DecideBlock& block, std::span<const Pair> pairs, VerdictBits& to) {
+namespace {
+
+template <class AnyPair>
+void decide_all(const DecideBlock& block, std::span<const AnyPair> pairs, VerdictBits& to) {
   to.intersects.resize((pairs.size() + 63) / 64);
   to.declined.resize(to.intersects.size());
   if (!pairs.empty()) block(pairs.data(), pairs.size(), to.intersects.data(), to.declined.data());
+}
+
+}  // namespace
+
+void decide(const DecideBlock& block, std::span<const Pair> pairs, VerdictBits& to) { decide_all(block, pairs, to); }
+void decide(const DecideBlock& block, std::span<const DoublePair> pairs, VerdictBits& to) {
+  decide_all(block, pairs, to);
 }
 
 std::vector<Verdict> verdicts_of(const DecideBlock& block, std::span<const Pair> pairs) {

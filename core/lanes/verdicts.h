@@ -20,16 +20,19 @@ struct VerdictBits {
 
 // Decides the pairs. Does not call the block function if there are none.
 void decide(const DecideBlock& block, std::span<const Pair> pairs, VerdictBits& to);
+void decide(const DecideBlock& block, std::span<const DoublePair> pairs, VerdictBits& to);
 
 // What a lane's bits say.
 struct LaneVerdicts {
   std::span<const std::uint64_t> intersects, declined;
   const DecideBlock* foreign = nullptr;  // of foreign code what decided, and the pairs: both bits say that it failed
   const Pair* pairs = nullptr;
+  const DoublePair* doubles = nullptr;  // in place of `pairs`
 
   Verdict at(std::size_t i) const {
     const bool yes = test_bit(intersects, i), none = test_bit(declined, i);
-    return foreign ? foreign->verdict_of(yes, none, pairs[i]) : verdict_of_bits(yes, none);
+    if (!foreign) return verdict_of_bits(yes, none);
+    return doubles ? foreign->verdict_of(yes, none, doubles[i]) : foreign->verdict_of(yes, none, pairs[i]);
   }
 };
 

@@ -11,26 +11,30 @@
 
 namespace graze {
 
-enum class Axis : std::uint8_t { none, scale, offset };
+// wide_scale: the scale of doubles.
+enum class Axis : std::uint8_t { none, scale, offset, wide_scale };
 
 inline std::string_view name(Axis axis) {
-  return axis == Axis::scale ? "scale" : axis == Axis::offset ? "offset" : "none";
+  return axis == Axis::none ? "none" : axis == Axis::offset ? "offset" : "scale";
 }
 
-// log2 of the lower end of place `extreme`. A place on the scale axis spans 2^4: -152 is 2^-152 to 2^-148.
-GRAZE_HD constexpr int exponent_of(Axis axis, std::int8_t extreme) {
-  return axis == Axis::scale ? 4 * extreme : extreme;
-}
+// log2 of the width of a place on a scale axis: on that of float32, -152 is 2^-152 to 2^-148.
+GRAZE_HD constexpr int width_of_place(Axis axis) { return axis == Axis::scale ? 4 : axis == Axis::wide_scale ? 32 : 1; }
+
+// log2 of the lower end of place `extreme`.
+GRAZE_HD constexpr int exponent_of(Axis axis, std::int8_t extreme) { return width_of_place(axis) * extreme; }
 
 inline namespace GRAZE_FP {
 
 // The pair's place on the axis, in [-kBucketMost, kBucketMost]. scale: floor(log2(m) / 4), where m is the largest
-// magnitude of a coordinate (2^-149 if all are zero). offset: floor(log2(m / s)), where s is the longest side of the
-// box around both triangles. kBucketMost stands for all larger offsets, and for s = 0.
+// magnitude of a coordinate (2^-149 if all are zero); of doubles floor(log2(m) / 32), with 2^-1023 for all smaller m.
+// offset: floor(log2(m / s)), where s is the longest side of the box around both triangles. kBucketMost stands for all
+// larger offsets, and for s = 0.
 // Requires: finite coordinates; compiled without contraction, on host and device alike.
-GRAZE_HD inline std::int8_t place_on_axis(const Pair& pair, Axis axis) {
+template <class Real>
+GRAZE_HD std::int8_t place_on_axis(const BasicPair<Real>& pair, Axis axis) {
   if (axis == Axis::none) return 0;
-  const float* c = &pair.a[0].x;
+  const Real* c = &pair.a[0].x;
   double largest = 0, extent = 0;
   for (int i = 0; i < 3; ++i) {
     double low = c[i], high = c[i];
@@ -43,8 +47,9 @@ GRAZE_HD inline std::int8_t place_on_axis(const Pair& pair, Axis axis) {
     if (high - low > extent) extent = high - low;
   }
   if (axis == Axis::scale) return static_cast<std::int8_t>((largest > 0 ? floor_log2(largest) : -149) >> 2);
+  if (axis == Axis::wide_scale) return static_cast<std::int8_t>(floor_log2(largest) >> 5);
   const int offset = extent > 0 ? floor_log2(largest / extent) : kBucketMost;
-  return static_cast<std::int8_t>(offset < kBucketMost ? offset : kBucketMost);
+  return static_cast<std::int8_t>(offset < -kBucketMost ? -kBucketMost : offset < kBucketMost ? offset : kBucketMost);
 }
 
 }  // namespace GRAZE_FP

@@ -36,9 +36,10 @@ std::size_t side_pattern(const Pair& pair) {
   return pattern;
 }
 
-// Sorts the pairs by their side pattern, and keeps the order within a pattern. Lanes take the same branches for such
-// neighbours, so the processor predicts them. Nothing that is counted or kept depends on the order.
-void bring_together(std::span<Pair> pairs, std::span<std::uint64_t> indices) {
+// Orders the indices by their pairs' side patterns, and keeps the order within a pattern. Lanes take the same branches
+// for such neighbours, so the processor predicts them. Nothing that is counted or kept depends on the order.
+// Returns: the old places, in the new order.
+std::vector<std::uint32_t> bring_together(std::span<const Pair> pairs) {
   std::array<std::uint32_t, kSidePatterns + 1> next{};
   std::vector<std::uint16_t> patterns(pairs.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -46,14 +47,28 @@ void bring_together(std::span<Pair> pairs, std::span<std::uint64_t> indices) {
     ++next[patterns[i] + 1u];
   }
   std::partial_sum(next.begin(), next.end(), next.begin());
-  const std::vector<Pair> before(pairs.begin(), pairs.end());
-  const std::vector<std::uint64_t> indices_before(indices.begin(), indices.end());
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    const std::uint32_t at = next[patterns[i]]++;
-    pairs[at] = before[i];
-    indices[at] = indices_before[i];
-  }
+  std::vector<std::uint32_t> order(pairs.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) order[next[patterns[i]]++] = i;
+  return order;
 }
+
+template <class T>
+void reorder(std::span<T> values, const std::vector<std::uint32_t>& order) {
+  const std::vector<T> before(values.begin(), values.end());
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = before[order[i]];
+}
+
+// Pairs to judge, as they are stored in float32; and, if their coordinates are doubles, those.
+struct PairsToJudge {
+  std::span<const Pair> pairs;
+  std::span<const DoublePair> doubles = {};
+
+  // Calls with(pair) in the pair's own coordinate type.
+  template <class With>
+  auto visit(std::size_t i, const With& with) const {
+    return doubles.empty() ? with(pairs[i]) : with(doubles[i]);
+  }
+};
 
 // Judges one block of pairs: host lanes, twins and truth here, device lanes from their bits.
 class BlockJudge {
@@ -71,28 +86,35 @@ class BlockJudge {
         signatures_(under_test_.lanes) {}
 
   // `begin` is the first pair's place among the device lanes' bits.
-  void judge(std::span<const Pair> pairs, std::span<const std::uint64_t> indices, std::size_t begin,
+  void judge(const PairsToJudge& to_judge, std::span<const std::uint64_t> indices, std::size_t begin,
              BatchResult& result, PairJudge::Found* found = nullptr) {
-    find_truth(pairs, result);
-    views_ = decider_.decide(pairs, device_bits_, begin, [&](std::size_t l, std::size_t i) {
-      result.executor_mismatches[under_test_.lanes[l]->id].add(CaseKey{indices[i], source_});
-    });
-    const analysis::JudgedBlock block{pairs.size(), truth_, buckets_, views_};
+    const std::span<const Pair> pairs = to_judge.pairs;
+    find_truth(to_judge, result);
+    views_ = decider_.decide(
+        pairs, device_bits_, begin,
+        [&](std::size_t l, std::size_t i) {
+          result.executor_mismatches[under_test_.lanes[l]->id].add(CaseKey{indices[i], source_});
+        },
+        to_judge.doubles);
+    const analysis::JudgedBlock block{pairs.size(), truth_, buckets_, views_, changed_by_storing_};
     result.tally.add(block);
     result.digests.pairs += pairs.size();
     if (const Axis axis = campaign_.sources[static_cast<std::size_t>(source_)].axis; axis != Axis::none) {
       extremes_.resize(pairs.size());
-      for (std::size_t i = 0; i < pairs.size(); ++i) extremes_[i] = place_on_axis(pairs[i], axis);
-      result.extremes.add(analysis::JudgedBlock{pairs.size(), truth_, extremes_, views_});
+      for (std::size_t i = 0; i < pairs.size(); ++i)
+        extremes_[i] = to_judge.visit(i, [&](const auto& pair) { return place_on_axis(pair, axis); });
+      result.extremes.add(analysis::JudgedBlock{pairs.size(), truth_, extremes_, views_, changed_by_storing_});
     }
     const analysis::Bits not_right = analysis::not_right(block);
     const std::uint64_t sample = exact_ ? kSample : kGmpSample;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const bool some_not_right = test_bit(not_right, i), sampled = indices[i] % sample == 0;
       if (!some_not_right && !sampled) continue;
-      const Relation relation = exact_ ? relation_by_exact_lane(pairs[i], indices[i], i, sampled, result)
-                                       : relation_by_oracle(pairs[i], indices[i], i, result);
-      if (some_not_right) add_failures(pairs[i], CaseKey{indices[i], source_}, i, relation, result, found);
+      to_judge.visit(i, [&](const auto& pair) {
+        const Relation relation = exact_ ? relation_by_exact_lane(pair, indices[i], i, sampled, result)
+                                         : relation_by_oracle(pair, indices[i], i, result);
+        if (some_not_right) add_failures(pair, CaseKey{indices[i], source_}, i, relation, result, found);
+      });
     }
     if (!found) return;
     found->truth = truth(0);
@@ -113,7 +135,24 @@ class BlockJudge {
     throw oracle::OracleMismatch(fmt::format("{} differ on {}:{}:{}", what, source_id(), campaign_.seed, index));
   }
 
-  void find_truth(std::span<const Pair> pairs, BatchResult& result) {
+  void find_truth(const PairsToJudge& to_judge, BatchResult& result) {
+    if (to_judge.doubles.empty()) {
+      decide_truth(to_judge.pairs, result);
+      buckets_.resize(to_judge.pairs.size());
+      margin_buckets(coordinates(to_judge.pairs.front()), buckets_.size(), truth_.data(), buckets_.data());
+    } else {
+      decide_truth(to_judge.doubles, result);
+      buckets_.assign(to_judge.doubles.size(), kOpenBucket);
+      find_changed_by_storing(to_judge.pairs);
+    }
+    for (std::size_t i = 0; i < buckets_.size(); ++i) {
+      if (buckets_[i] == kOpenBucket)
+        buckets_[i] = to_judge.visit(i, [&](const auto& pair) { return oracle::margin_bucket(pair, truth(i)); });
+    }
+  }
+
+  template <class AnyPair>
+  void decide_truth(std::span<const AnyPair> pairs, BatchResult& result) {
     const std::size_t words = (pairs.size() + 63) / 64;
     truth_.assign(words, 0);
     if (exact_) {
@@ -125,14 +164,19 @@ class BlockJudge {
         truth_[i / 64] |= std::uint64_t{oracle::cgal_verdict(pairs[i]) == Verdict::intersects} << (i % 64);
       result.cgal += pairs.size();
     }
-    buckets_.resize(pairs.size());
-    margin_buckets(coordinates(pairs.front()), pairs.size(), truth_.data(), buckets_.data());
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      if (buckets_[i] == kOpenBucket) buckets_[i] = oracle::margin_bucket(pairs[i], truth(i));
-    }
   }
 
-  Relation relation_by_oracle(const Pair& pair, std::uint64_t index, std::size_t i, BatchResult& result) const {
+  // By the exact decision. Where float32 has no finite number, nothing is changed: every lane in float32 declines.
+  void find_changed_by_storing(std::span<const Pair> stored) {
+    none_.resize(truth_.size());
+    changed_by_storing_.resize(truth_.size());
+    find_lane(kExactLane)->decide(stored.data(), stored.size(), changed_by_storing_.data(), none_.data());
+    for (std::size_t w = 0; w < truth_.size(); ++w)
+      changed_by_storing_[w] = (changed_by_storing_[w] ^ truth_[w]) & ~none_[w];
+  }
+
+  template <class AnyPair>
+  Relation relation_by_oracle(const AnyPair& pair, std::uint64_t index, std::size_t i, BatchResult& result) const {
     const Contact contact = oracle::gmp_contact(pair);
     ++result.gmp;
     if ((contact == Contact::none) != (truth(i) == Verdict::disjoint))
@@ -140,7 +184,8 @@ class BlockJudge {
     return {truth(i), contact, sign_of(buckets_[i]), oracle::hulls(pair)};
   }
 
-  Relation relation_by_exact_lane(const Pair& pair, std::uint64_t index, std::size_t i, bool sampled,
+  template <class AnyPair>
+  Relation relation_by_exact_lane(const AnyPair& pair, std::uint64_t index, std::size_t i, bool sampled,
                                   BatchResult& result) const {
     const Relation relation = relation_of(pair);
     if (relation.verdict != truth(i))
@@ -154,20 +199,23 @@ class BlockJudge {
     return relation;
   }
 
-  void add_failures(const Pair& pair, const CaseKey& key, std::size_t i, const Relation& relation, BatchResult& result,
+  template <class AnyPair>
+  void add_failures(const AnyPair& pair, const CaseKey& key, std::size_t i, const Relation& relation, BatchResult& result,
                     PairJudge::Found* found) {
     bool any_wrong = false;
     for (std::size_t l = 0; l < views_.size(); ++l) {
       verdicts_[l] = views_[l].at(i);
       if (verdicts_[l] == truth(i)) continue;
       result.digests.add(l, key.index, verdicts_[l]);
-      if (under_test_.lanes[l]->exact)
+      const bool in_float32 = !changed_by_storing_.empty() && under_test_.lanes[l]->scalar == Scalar::f32;
+      const bool stored = in_float32 && !is_failure(verdicts_[l]) && test_bit(changed_by_storing_, i);
+      if (under_test_.lanes[l]->exact && !stored && !(in_float32 && verdicts_[l] == Verdict::declined))
         apart(key.index,
               fmt::format("{} ({}) and the truth ({})", under_test_.lanes[l]->id, name(verdicts_[l]), name(truth(i))));
       if (analysis::by_convention(*under_test_.lanes[l], verdicts_[l], pair, relation)) {
-        result.tally.excuse(buckets_[i], static_cast<int>(l), verdicts_[l]);
+        result.tally.excuse(buckets_[i], static_cast<int>(l), verdicts_[l], stored);
         if (campaign_.sources[static_cast<std::size_t>(source_)].axis != Axis::none)
-          result.extremes.excuse(extremes_[i], static_cast<int>(l), verdicts_[l]);
+          result.extremes.excuse(extremes_[i], static_cast<int>(l), verdicts_[l], stored);
         verdicts_[l] = truth(i);
         continue;
       }
@@ -191,7 +239,7 @@ class BlockJudge {
   int source_;
   const DecideBlock& exact_;
   const std::vector<VerdictBits>& device_bits_;
-  analysis::Bits truth_, none_;
+  analysis::Bits truth_, none_, changed_by_storing_;  // the last is empty for pairs of float32
   std::vector<Bucket> buckets_;
   std::vector<std::int8_t> extremes_;
   BlockVerdicts decider_;
@@ -216,7 +264,7 @@ PairJudge::~PairJudge() = default;
 
 const PairJudge::Found& PairJudge::judge(const Pair& pair, std::uint64_t index, BatchResult& total) {
   parts_->found.failures.clear();
-  parts_->judge.judge({&pair, 1}, {&index, 1}, 0, total, &parts_->found);
+  parts_->judge.judge({{&pair, 1}}, {&index, 1}, 0, total, &parts_->found);
   parts_->judge.add_signatures(total);
   return parts_->found;
 }
@@ -229,6 +277,7 @@ BatchResult judge(const Campaign& campaign, int source_number, std::size_t count
                   const std::function<std::uint64_t(std::size_t)>& index_of, const DecideBlock& exact) {
   const strata::PairSource& source = campaign.sources[static_cast<std::size_t>(source_number)];
   std::vector<Pair> pairs(count);
+  std::vector<DoublePair> doubles(source.in_doubles() ? count : 0);
   std::vector<std::uint64_t> indices(count);
   const std::size_t block_pairs = std::clamp(count / 16 / 64 * 64, std::size_t{64}, kBlockPairs);
   const std::size_t blocks = (count + block_pairs - 1) / block_pairs;
@@ -236,9 +285,13 @@ BatchResult judge(const Campaign& campaign, int source_number, std::size_t count
     const std::size_t begin = block * block_pairs, size = std::min(count - begin, block_pairs);
     for (std::size_t i = begin; i < begin + size; ++i) {
       indices[i] = index_of(i);
-      pairs[i] = source.pair(indices[i]);
+      if (source.in_doubles()) doubles[i] = source.double_pair(indices[i]);
+      pairs[i] = source.in_doubles() ? stored_in_float32(doubles[i]) : source.pair(indices[i]);
     }
-    bring_together(std::span(pairs).subspan(begin, size), std::span(indices).subspan(begin, size));
+    const std::vector<std::uint32_t> order = bring_together(std::span(pairs).subspan(begin, size));
+    reorder(std::span(pairs).subspan(begin, size), order);
+    reorder(std::span(indices).subspan(begin, size), order);
+    if (source.in_doubles()) reorder(std::span(doubles).subspan(begin, size), order);
   });
 
   const std::vector<const Lane*> device_lanes = campaign.under_test->device_lanes();
@@ -251,8 +304,9 @@ BatchResult judge(const Campaign& campaign, int source_number, std::size_t count
       [&] { return BlockJudge(campaign, source_number, exact, device_bits); });
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
     const std::size_t begin = block * block_pairs, size = std::min(count - begin, block_pairs);
-    judges.local().judge(std::span(pairs).subspan(begin, size), std::span(indices).subspan(begin, size), begin,
-                         results.local());
+    PairsToJudge block_of{std::span(pairs).subspan(begin, size)};
+    if (source.in_doubles()) block_of.doubles = std::span(doubles).subspan(begin, size);
+    judges.local().judge(block_of, std::span(indices).subspan(begin, size), begin, results.local());
   });
   BatchResult total = empty;
   for (const BatchResult& part : results) total.add(part);

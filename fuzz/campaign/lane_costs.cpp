@@ -27,9 +27,14 @@ constexpr std::uint64_t kMostPasses = 1'000'000;
 
 Json measure_costs(const Campaign& campaign) {
   std::vector<std::vector<Pair>> blocks;
+  std::vector<std::vector<DoublePair>> blocks_of_doubles;  // of sources of doubles
   for (const strata::PairSource& source : campaign.sources) {
     std::vector<Pair>& block = blocks.emplace_back();
-    for (std::uint64_t i = 0; i < std::min(source.pairs, kPairsTimed); ++i) block.push_back(source.pair(i));
+    std::vector<DoublePair>& doubles = blocks_of_doubles.emplace_back();
+    for (std::uint64_t i = 0; i < std::min(source.pairs, kPairsTimed); ++i) {
+      if (source.in_doubles()) doubles.push_back(source.double_pair(i));
+      block.push_back(source.in_doubles() ? stored_in_float32(doubles.back()) : source.pair(i));
+    }
   }
   std::vector<const Lane*> lanes;
   for (const Lane* lane : campaign.under_test->lanes) {
@@ -39,7 +44,10 @@ Json measure_costs(const Campaign& campaign) {
   for (int pass = 0; pass < kPassesTimed; ++pass) {
     for (std::size_t l = 0; l < lanes.size(); ++l) {
       for (std::size_t s = 0; s < blocks.size(); ++s) {
-        if (!blocks[s].empty()) taken[l][s].push_back(analysis::nanoseconds_a_pair(lanes[l]->decide, blocks[s]));
+        if (blocks[s].empty()) continue;
+        const bool in_doubles = !blocks_of_doubles[s].empty() && lanes[l]->scalar == Scalar::f64;
+        taken[l][s].push_back(in_doubles ? analysis::nanoseconds_a_pair(lanes[l]->decide, blocks_of_doubles[s])
+                                         : analysis::nanoseconds_a_pair(lanes[l]->decide, blocks[s]));
       }
     }
   }

@@ -9,10 +9,11 @@
 #include <optional>
 
 #include "core/cannot.h"
+#include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/campaign_scene.h"
 #include "strata/mesh.h"
-#include "strata/strata.h"
+#include "strata/pair_source.h"
 #include "subjects/subjects.h"
 
 namespace graze::fuzz {
@@ -39,9 +40,22 @@ std::vector<strata::PairSource> recorded_sources(const Json& spec) {
   }
   std::erase(strata, "mesh");
   std::vector<strata::PairSource> sources;
-  if (!strata.empty()) sources = strata::stratum_sources(seed, pairs, strata);
+  if (!strata.empty()) sources = strata::named_sources(seed, pairs, strata);
   if (of_mesh) sources.push_back(*of_mesh);
   return sources;
+}
+
+bool has_doubles(const Json& spec) {
+  const Json strata = spec.value("strata", Json::array());
+  return std::any_of(strata.begin(), strata.end(), [](const Json& id) {
+    return id.is_string() && strata::stratum_in_doubles(id.get_ref<const std::string&>());
+  });
+}
+
+void expect_float32(const Json& spec, const char* verb) {
+  if (has_doubles(spec))
+    throw UsageError(
+        fmt::format("`graze {}` takes pairs of float32, and some strata of this campaign have pairs of doubles", verb));
 }
 
 SelectedLanes recorded_lanes(const Json& spec) {
@@ -109,13 +123,19 @@ std::vector<std::string> command_words(const Json& spec, const Shard& shard, con
   }
   if (!mesh || !strata.empty()) add(hunt ? "--runs" : "--pairs", std::to_string(pairs));
   add("--seed", std::to_string(spec.at("seed").get<std::uint64_t>()));
-  for (const strata::StratumInfo& row : strata::kStrata) all_strata.emplace_back(row.id);
+  const auto of_doubles =
+      std::count_if(strata.begin(), strata.end(), [](const std::string& id) { return strata::stratum_in_doubles(id); });
+  const PairTypes coordinates = of_doubles == 0 ? PairTypes::f32
+                                          : of_doubles == std::ssize(strata) ? PairTypes::f64
+                                                                             : PairTypes::both;
+  for (const strata::PairSource& source : strata::stratum_sources(0, 0, {}, coordinates)) all_strata.push_back(source.id);
   if (scene) {  // the user also asked for strata that the scene excludes
     for (const auto& [id, unused] : spec["scene"].at("left_out").items()) strata.push_back(id);
     if (std::all_of(all_strata.begin(), all_strata.end(),
                     [&](const std::string& id) { return std::find(strata.begin(), strata.end(), id) != strata.end(); }))
       strata = all_strata;
   }
+  if (of_doubles > 0) add("--coordinates", coordinates == PairTypes::f64 ? "f64" : "both");
   if (!strata.empty() && (mesh || strata != all_strata)) add("--strata", fmt::format("{}", fmt::join(strata, ",")));
   std::vector<subjects::Toolchain> toolchains;
   for (const Json& row : spec.value("subjects", Json::array())) {

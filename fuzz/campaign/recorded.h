@@ -16,6 +16,11 @@ namespace graze::fuzz {
 // Throws: std::runtime_error if a mesh has changed; nlohmann's exceptions for another shape.
 std::vector<strata::PairSource> recorded_sources(const Json& spec);
 
+bool has_doubles(const Json& spec);  // some of the campaign's pairs are pairs of doubles
+
+// Throws: UsageError, naming the verb, if the campaign has pairs of doubles.
+void expect_float32(const Json& spec, const char* verb);
+
 // Returns the lanes in the spec's order, without executors. Opens the campaign's subjects.
 // Throws: std::runtime_error for a lane that this build does not have.
 SelectedLanes recorded_lanes(const Json& spec);

@@ -32,26 +32,31 @@ std::string signature_line(const std::string& key, std::uint64_t count) {
 }
 
 // Whether the entry's truth and its signature match its pair.
-bool has_its_truth(const corpus::Entry& entry, const analysis::Signature& signature) {
-  const oracle::Truth truth = oracle::truth(entry.pair);
+template <class AnyPair>
+bool has_its_truth(const AnyPair& pair, const corpus::Entry& entry, const analysis::Signature& signature) {
+  const oracle::Truth truth = oracle::truth(pair);
   for (const auto& [name, value] : truth_fields(truth)) {
     if (corpus::text_of(entry, name) != value) return false;
   }
   return truth.verdict != Verdict::declined && signature.contact == truth.contact && signature.hulls == truth.hulls &&
-         signature.nesting == analysis::nesting_of(entry.pair, truth) &&
-         signature.bucket == oracle::margin_bucket(entry.pair, truth.verdict);
+         signature.nesting == analysis::nesting_of(pair, truth) &&
+         signature.bucket == oracle::margin_bucket(pair, truth.verdict);
+}
+
+bool has_its_truth(const corpus::Entry& entry, const analysis::Signature& signature) {
+  return entry.doubles ? has_its_truth(*entry.doubles, entry, signature) : has_its_truth(entry.pair, entry, signature);
 }
 
 // Whether the pair is the one that its stratum draws. Also true if that is not known: for scenes, meshes and hunts.
 bool is_drawn(const corpus::Entry& entry) {
   const std::string id = corpus::text_of(entry, "stratum");
-  const auto row =
-      std::find_if(std::begin(strata::kStrata), std::end(strata::kStrata), [&](auto& s) { return s.id == id; });
+  const strata::StratumInfo* row = strata::stratum_info(id);
   const auto seed = parse_whole(corpus::text_of(entry, "seed")), index = parse_whole(corpus::text_of(entry, "index"));
-  if (row == std::end(strata::kStrata) || corpus::field(entry, "scene")) return true;
-  if (!seed || !index) return false;
-  const Pair drawn = strata::generate(*seed, row->stratum, *index);
-  return std::memcmp(&drawn, &entry.pair, sizeof drawn) == 0;
+  if (!row || corpus::field(entry, "scene")) return true;
+  if (!seed || !index || bool(entry.doubles) != bool(strata::stratum_in_doubles(id))) return false;
+  const auto same = [](const auto& drawn, const auto& pair) { return std::memcmp(&drawn, &pair, sizeof drawn) == 0; };
+  return entry.doubles ? same(strata::generate_doubles(*seed, row->stratum, *index), *entry.doubles)
+                       : same(strata::generate(*seed, row->stratum, *index), entry.pair);
 }
 
 std::string case_text(const Campaign& campaign, const std::string& key, const SignatureCount& found) {
@@ -60,12 +65,14 @@ std::string case_text(const Campaign& campaign, const std::string& key, const Si
   out << signature_line(key, found.count);
   for (const CaseKey& c : found.cases) {
     const strata::PairSource& source = campaign.sources[static_cast<std::size_t>(c.source)];
-    const Pair pair = source.pair(c.index);
-    corpus::Entry entry{
-        pair, {{"stratum", source.id}, {"seed", std::to_string(campaign.seed)}, {"index", std::to_string(c.index)}}, 0};
+    const std::vector<std::pair<std::string, std::string>> numbers = {
+        {"stratum", source.id}, {"seed", std::to_string(campaign.seed)}, {"index", std::to_string(c.index)}};
+    corpus::Entry entry = source.in_doubles() ? corpus::entry_of(source.double_pair(c.index), numbers)
+                                              : corpus::entry_of(source.pair(c.index), numbers);
     if (campaign.spec.contains("scene"))
       entry.fields.emplace_back("scene", campaign.spec["scene"]["name"].get<std::string>());
-    for (auto& part : truth_fields(oracle::truth(pair))) entry.fields.push_back(std::move(part));
+    const oracle::Truth truth = entry.doubles ? oracle::truth(*entry.doubles) : oracle::truth(entry.pair);
+    for (auto& part : truth_fields(truth)) entry.fields.push_back(std::move(part));
     if (analysis::parse_signature(key)) entry.fields.push_back({"signature", key});
     corpus::write_entry(out, entry);
   }
@@ -164,7 +171,7 @@ corpus::FormatError wrong_cases(const std::filesystem::path& directory, const Js
                                                 row.at("key").get<std::string>(), again)));
 }
 
-std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, const Json& row) {
+std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, const Json& row, PairTypes taken) {
   const std::string key = row.at("key");
   const std::uint64_t count = row.at("count");
   const std::optional<analysis::Signature> recorded = analysis::parse_signature(key);
@@ -180,7 +187,7 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
   if (text.empty()) throw refuse("it is missing or empty");
   std::vector<corpus::Entry> entries;
   try {
-    entries = corpus::read_pairs(file);
+    entries = corpus::read_pairs(file, taken);
   } catch (const corpus::FormatError& error) {
     throw refuse(std::string("it is not a file of pairs: ") + error.what());
   }

@@ -39,7 +39,8 @@ std::filesystem::path case_file(const std::filesystem::path& directory, const Js
 // file's name, its head and its cases belong to the signature, that no case is missing, and that each pair has the
 // truth recorded beside it.
 // Throws: FormatError, in one line, with the command that writes the file again.
-std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, const Json& row);
+std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, const Json& row,
+                                      PairTypes taken = PairTypes::f32);
 
 // Whether the file's text is `fresh`, as a campaign writes it, with or without results of the minimiser.
 bool is_minimised_from(const std::string& text, const std::string& fresh);

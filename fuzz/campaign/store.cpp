@@ -32,6 +32,11 @@ bool is_foreign(const StoreSpec& spec, const std::string& id) {
                      [&](const Json& row) { return id.starts_with(row.at("name").get<std::string>() + '/'); });
 }
 
+bool is_in_float32(const std::string& id) {
+  const std::optional<LaneName> lane = parse_lane_name(id);
+  return lane && lane->scalar == name(Scalar::f32);
+}
+
 Json source_results(const strata::PairSource& source, const StoreSpec& spec, const StoredCounts& counts) {
   const std::vector<std::string>& lanes = spec.lanes;
   std::uint64_t pairs = 0, intersects = 0;
@@ -59,6 +64,7 @@ Json source_results(const strata::PairSource& source, const StoreSpec& spec, con
   for (std::size_t l = 0; l < lanes.size(); ++l) {
     Json& of = row["lanes"][lanes[l]] = counts_json(of_lane[l], is_foreign(spec, lanes[l]));
     of["differs_from_cpu"] = of_lane[l].differs_from_cpu;
+    if (strata::stratum_in_doubles(source.id) && is_in_float32(lanes[l])) of["stored"] = of_lane[l].stored;
   }
   if (source.axis != Axis::none) row["extremes"][std::string(name(source.axis))] = extremes;
   return row;

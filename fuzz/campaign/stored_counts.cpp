@@ -16,7 +16,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // [[bucket, pairs, intersects, [[lane, false positive, false negative, declined, differs from cpu], …]], …]. Foreign
-// code with such counts also has crashed, timed out, unstable and by convention.
+// code with such counts also has crashed, timed out, unstable and by convention; a lane in float32 with errors of storing
+// has these (of foreign code, or zeros) and that count.
 Json to_json(const analysis::Tally& tally) {
   Json rows = Json::array();
   for (int b = -kBucketMost; b <= kBucketMost; ++b) {
@@ -27,9 +28,10 @@ Json to_json(const analysis::Tally& tally) {
       const analysis::LaneCounts& lane = tally.lane(l, bucket);
       if (!lane.any()) continue;
       lanes.push_back({l, lane.false_positive, lane.false_negative, lane.declined, lane.differs_from_cpu});
-      if (!lane.any_foreign()) continue;
+      if (!lane.any_foreign() && lane.stored == 0) continue;
       for (const std::uint64_t count : {lane.crashed, lane.timed_out, lane.unstable, lane.by_convention})
         lanes.back().push_back(count);
+      if (lane.stored > 0) lanes.back().push_back(lane.stored);
     }
     rows.push_back({b, tally.pairs(bucket), tally.intersects(bucket), std::move(lanes)});
   }
@@ -77,16 +79,20 @@ std::uint64_t read_tally(const Json& rows, std::uint64_t pairs, analysis::Tally&
     tally.add(bucket, here, intersects);
     int last_lane = -1;
     for (const Json& lane : list(row[3], 0, static_cast<std::size_t>(tally.lane_count()), what)) {
-      list(lane, 5, 9, what);
-      expect(lane.size() == 5 || lane.size() == 9, what);
+      list(lane, 5, 10, what);
+      expect(lane.size() == 5 || lane.size() == 9 || lane.size() == 10, what);
       const int l = static_cast<int>(whole(lane[0], static_cast<std::uint64_t>(tally.lane_count() - 1), what));
       expect(l > last_lane, what);
       last_lane = l;
-      const auto foreign = [&](std::size_t i) { return lane.size() == 9 ? whole(lane[i], here, what) : 0; };
+      const auto more = [&](std::size_t i) { return i < lane.size() ? whole(lane[i], here, what) : 0; };
       const analysis::LaneCounts counts{{whole(lane[1], here - intersects, what), whole(lane[2], intersects, what),
-                                         whole(lane[3], here, what), foreign(5), foreign(6), foreign(7), foreign(8)},
-                                        whole(lane[4], here, what)};
-      expect(counts.not_right() + counts.by_convention <= here && (lane.size() == 5 || counts.any_foreign()), what);
+                                         whole(lane[3], here, what), more(5), more(6), more(7), more(8)},
+                                        whole(lane[4], here, what),
+                                        more(9)};
+      expect(counts.not_right() + counts.by_convention <= here && (lane.size() != 9 || counts.any_foreign()) &&
+                 (lane.size() == 10) == (counts.stored > 0) &&
+                 counts.stored <= counts.false_positive + counts.false_negative,
+             what);
       tally.add(bucket, l, counts);
     }
   }

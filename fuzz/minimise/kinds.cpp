@@ -237,9 +237,13 @@ std::vector<LaneReason> reasons_of(const SelectedLanes& under_test, std::string_
   return result;
 }
 
-std::string pair_text(const Pair& pair) {
+std::string pair_text(const Pair& pair) { return pair_text(corpus::entry_of(pair, {})); }
+
+std::string pair_text(const corpus::Entry& entry) {
   std::ostringstream out;
-  corpus::write_entry(out, {pair});
+  corpus::Entry alone{entry.pair};
+  alone.doubles = entry.doubles;
+  corpus::write_entry(out, alone);
   const std::string line = out.str();
   return line.substr(0, line.find('\n'));
 }

@@ -39,6 +39,7 @@ Verdict truth_of(const corpus::Entry& entry);
 
 // The 18 hex floats in the format of a file of pairs.
 std::string pair_text(const Pair& pair);
+std::string pair_text(const corpus::Entry& entry);  // in its own coordinate type, without its fields
 
 // "degenerate" if a triangle is a segment or a point; "contained" if one triangle lies in the other, in one plane;
 // otherwise "coplanar" or "general".

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs of doubles as users meet them: drawn, run, written, read, repeated; and refused by name where a verb takes
+// pairs of float32 alone.
+#include <map>
+
+#include "cli/run_graze.h"
+
+namespace graze::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class Doubles : public CommandTest {};
+
+constexpr const char* kCampaign =
+    "graze fuzz --coordinates f64 --strata 'stored,near_vertex_face' --pairs 600 --lanes '*/cpu' --out c > printed";
+
+TEST_F(Doubles, ACampaignIsRepeatedByItsFiles) {
+  expect_done(kCampaign);
+  const std::string printed = contents(shell.folder / "printed");
+  EXPECT_NE(printed.find("graze repro c/cases/"), std::string::npos) << printed;
+  EXPECT_EQ(printed.find("graze minimize"), std::string::npos) << printed;  // which does not take them
+  const Json summary = Json::parse(contents(shell.folder / "c/summary.json"));
+  ASSERT_TRUE(summary["strata"].contains("stored/f64"));
+  const Json& lanes = summary["strata"]["stored/f64"]["lanes"];
+  EXPECT_GT(lanes["exact/f32/cpu"]["stored"], 290);  // of 300: the stratum promises it
+  EXPECT_EQ(lanes["exact/f64/cpu"]["false_negative"], 0);
+  const std::string file = summary["signatures"][0]["case"];
+  const Ran again = shell("graze repro c/" + file + " --lanes '*/cpu'");
+  EXPECT_EQ(again.status, 0) << again.out << again.err;
+  EXPECT_NE(again.out.find("(as recorded)"), std::string::npos) << again.out;
+  expect_done("graze report c");
+  EXPECT_NE(contents(shell.folder / "c/report.html").find("stored/f64"), std::string::npos);
+  expect_done("graze fuzz --coordinates f64 --strata 'stored,near_vertex_face' --pairs 600 --lanes '*/cpu' --out c");
+  expect_done("graze fuzz --coordinates f64 --strata stored --pairs 100 --lanes 'moller_1997/*/cpu' --out j "
+              "--junit j.xml");
+  const std::string junit = contents(shell.folder / "j.xml");
+  EXPECT_NE(junit.find("name=\"stored/f64\""), std::string::npos) << junit;
+  EXPECT_NE(junit.find("graze repro j/cases/"), std::string::npos) << junit;
+  const Ran failed = shell(
+      "graze fuzz --coordinates f64 --strata stored --pairs 100 --lanes 'moller_1997/*/cpu' --out k --fail-above 3");
+  EXPECT_EQ(failed.status, 1);
+  EXPECT_NE(failed.err.find("coordinates=f64"), std::string::npos) << failed.err;
+}
+
+TEST_F(Doubles, ATableIsReadBackWithTheSameTruth) {
+  expect_done("graze dump stored/f64:7 --pairs 40 --format pairs --lanes 'exact/*/cpu,moller_1997/f32/cpu' > p.pairs");
+  const Ran check = shell("graze check p.pairs --json --lanes 'exact/*/cpu,moller_1997/f32/cpu'");
+  ASSERT_EQ(check.status, 0) << check.err;
+  std::istringstream lines(check.out);
+  int pairs = 0, changed = 0;
+  for (std::string line; std::getline(lines, line); ++pairs) {
+    const Json row = Json::parse(line);
+    EXPECT_EQ(row["coordinates"], "f64");
+    EXPECT_EQ(row["lanes"]["exact/f64/cpu"], row["truth"]["verdict"]);
+    const bool differs = row["lanes"]["exact/f32/cpu"] != row["truth"]["verdict"];
+    changed += differs;
+    EXPECT_EQ(row.value("note", "").find("as stored in float32: ") != std::string::npos, differs) << line;
+  }
+  EXPECT_EQ(pairs, 40);
+  EXPECT_GT(changed, 35);
+  // The same pairs by their numbers, and as a table of decimals.
+  const std::string first = contents(shell.folder / "p.pairs").substr(0, 400);
+  const Ran one = shell("graze repro stored/f64:7:0 --lanes 'exact/*/cpu'");
+  EXPECT_EQ(one.status, 0) << one.err;
+  EXPECT_NE(one.out.find("stored/f64:7:0"), std::string::npos) << one.out;
+  expect_done("graze dump stored/f64:7 --pairs 40 > p.csv");
+  expect_done(
+      "python3 -c \"\nimport csv\nfor row in csv.DictReader(open('p.csv')):\n"
+      " print(*[float(row[t + str(v) + c]).hex() for t in 'ab' for v in range(3) for c in 'xyz'])\n\" > decimals");
+  std::istringstream written(contents(shell.folder / "p.pairs")), decimals(contents(shell.folder / "decimals"));
+  std::string line;
+  std::getline(written, line);  // the version
+  for (std::string decimal; std::getline(decimals, decimal);) {
+    ASSERT_TRUE(std::getline(written, line));
+    std::istringstream l(line), r(decimal);
+    std::string left, right;
+    for (int i = 0; i < 18; ++i) {
+      ASSERT_TRUE(l >> left && r >> right);
+      EXPECT_EQ(std::stod(left), std::stod(right));
+    }
+  }
+}
+
+TEST_F(Doubles, WhatStoringChangesIsSaid) {
+  std::ofstream(shell.folder / "far.pairs")
+      << "1000000.01 0 0 1000000.01 1 0 1000000.01 0 1  1000000.02 0 0 1000000.02 1 0 1000000.02 0 1 | "
+         "coordinates=f64\n";
+  const Ran ran = shell("graze check far.pairs --lanes 'exact/*/cpu' | tr -s ' \\n' ' '");
+  EXPECT_NE(ran.out.find("truth: disjoint"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("as stored in float32: they share an area"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("number 1, 1000000.01"), std::string::npos) << ran.out;
+  std::ofstream(shell.folder / "large.pairs") << "1e300 0 0 0 1e300 0 0 0 1e300 1 1 1 2 2 2 3 3 4\n";
+  const Ran large = shell("graze check large.pairs --lanes 'exact/*/cpu,moller_1997/*/cpu' | tr -s ' \\n' ' '");
+  EXPECT_EQ(large.status, 0) << large.err;
+  EXPECT_NE(large.out.find("float32 cannot store it: number 1, 1e+300"), std::string::npos) << large.out;
+}
+
+TEST_F(Doubles, VerbsThatTakeFloat32AloneSaySo) {
+  expect_done(kCampaign);
+  const Json summary = Json::parse(contents(shell.folder / "c/summary.json"));
+  const std::string file = "c/" + summary["signatures"][0]["case"].get<std::string>();
+  for (const auto& [command, word] : std::map<std::string, std::string>{
+           {"graze minimize c", "minimize"},
+           {"graze tune moller_1997/f32/cpu --from c --forbid false-negative", "tune"},
+           {"graze discrepancy moller_1997/f32/cpu moller_1997/f64/cpu --campaign c", "discrepancy"},
+           {"graze map stored/f64:1:3", "stored/f64:1:3"},
+           {"graze explain stored/f64:1:3", "stored/f64:1:3"},
+           {"graze fuzz --coordinates f64 --mesh a.off --out m", "--coordinates"}})
+    expect_error(command, 2, {word});
+  for (const char* command : {"graze explain ", "graze map ", "graze minimize ", "graze view "})
+    expect_error(command + file, 1, {file, "doubles"});
+  expect_error("graze fuzz --coordinates f16 --out m", 2, {"f16"});
+  expect_error("graze fuzz --coordinates f64 --lanes 'moller_1997/f64/cuda-fma' --executor twin --out m", 2,
+               {"moller_1997/f64/cuda-fma", "float32"});
+  expect_error("graze dump nothing/f64", 2, {"nothing/f64"});
+  EXPECT_FALSE(std::filesystem::exists(shell.folder / "m"));
+}
+
+}  // namespace
+}  // namespace graze::cli

@@ -113,6 +113,8 @@ TEST(Docs, YourOwnCodePrintsWhatItSays) { expect_true_commands("docs/your_own_co
 
 TEST(Docs, ToolchainsPrintsWhatItSays) { expect_true_commands("docs/toolchains.md", 4); }
 
+TEST(Docs, DoublePrintsWhatItSays) { expect_true_commands("docs/double.md", 4); }
+
 TEST(Docs, TestingPrintsWhatItSays) {
   setenv("BUILD", fs::path(GRAZE_BINARY_DIR).parent_path().c_str(), 1);
   expect_true_commands("docs/testing.md", 3);

@@ -41,7 +41,8 @@ void add(StratumCounts& counts, const Json& row, const std::map<std::string, std
   counts.intersects += row.at("intersects").get<std::uint64_t>();
   for (const auto& [lane, found] : row.at("lanes").items()) {
     const Json& differs = found.at("differs_from_cpu");  // null if nothing was compared
-    counts.lanes[place.at(lane)] += {fuzz::counts_of(found), differs.is_null() ? 0 : differs.get<std::uint64_t>()};
+    counts.lanes[place.at(lane)] += {fuzz::counts_of(found), differs.is_null() ? 0 : differs.get<std::uint64_t>(),
+                                     found.value("stored", std::uint64_t{0})};
   }
   for (const auto& [bucket, found] : row.at("margins").items()) add(counts.margins[buckets.at(bucket)], found, place);
   if (!row.contains("extremes")) return;
@@ -104,15 +105,28 @@ CampaignCounts counts_of(const Json& summary) {
     add(stratum, row, place);
     add(counts.total, row, place);
   }
-  for (const strata::GroupInfo& info : strata::kGroups) {
-    GroupCounts group{std::string(info.id), std::string(info.what), {}, {}};
-    for (std::size_t s = 0; s < counts.strata.size(); ++s) {
-      const std::string& id = counts.strata[s].id;
-      if (strata::group_of_name(id) != info.group || counts.strata[s].pairs == 0) continue;
-      group.strata.push_back(s);
-      add(group.counts, summary["strata"][id], place);
+  const auto in_doubles = [&](const StratumCounts& stratum) { return bool(strata::stratum_in_doubles(stratum.id)); };
+  const auto doubles = std::count_if(counts.strata.begin(), counts.strata.end(), in_doubles);
+  for (ReportLane& lane : counts.lanes)
+    lane.exact = lane.exact && (doubles == 0 || lane.row->scalar == Scalar::f64);  // the other decides what is stored
+  // Where a campaign has both, strata of doubles have groups of their own.
+  for (const bool of_doubles : {false, true}) {
+    const bool apart = of_doubles && doubles != std::ssize(counts.strata);
+    for (const strata::GroupInfo& info : strata::kGroups) {
+      GroupCounts group{std::string(info.id) + (apart ? std::string(strata::kInDoubles) : ""),
+                        (apart ? "in doubles: " : "") + std::string(info.what),
+                        {},
+                        {}};
+      for (std::size_t s = 0; s < counts.strata.size(); ++s) {
+        const std::string& id = counts.strata[s].id;
+        if (strata::group_of_name(id) != info.group || counts.strata[s].pairs == 0 ||
+            in_doubles(counts.strata[s]) != of_doubles)
+          continue;
+        group.strata.push_back(s);
+        add(group.counts, summary["strata"][id], place);
+      }
+      if (!group.strata.empty()) counts.groups.push_back(std::move(group));
     }
-    if (!group.strata.empty()) counts.groups.push_back(std::move(group));
   }
   return counts;
 }

@@ -46,12 +46,14 @@ void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
   const auto lanes = summary["spec"]["lanes"].get<std::vector<std::string>>();
   std::vector<Counts> counts(lanes.size());
   std::vector<std::optional<std::uint64_t>> differs(lanes.size());  // from cpu; nothing if not compared
+  std::vector<std::optional<std::uint64_t>> stored(lanes.size());   // on pairs of doubles; nothing in double
   for (const auto& [stratum, row] : summary["strata"].items()) {
     for (std::size_t l = 0; l < lanes.size(); ++l) {
       const Json& of = row["lanes"][lanes[l]];
       counts[l] += fuzz::counts_of(of);
       const Json& apart = of.at("differs_from_cpu");
       if (!apart.is_null()) differs[l] = differs[l].value_or(0) + apart.get<std::uint64_t>();
+      if (of.contains("stored")) stored[l] = stored[l].value_or(0) + of["stored"].get<std::uint64_t>();
     }
   }
   std::vector<Column> columns{{"lane, over all strata", Align::left}};
@@ -65,6 +67,8 @@ void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
     columns.push_back({title});
   }
   columns.push_back({"differs from cpu"});
+  const bool any_stored = std::any_of(stored.begin(), stored.end(), [](const auto& count) { return bool(count); });
+  if (any_stored) columns.push_back({"wrong by storing"});
   TextTable table(columns);
   for (std::size_t l = 0; l < lanes.size(); ++l) {
     std::vector<Cell> cells{lanes[l]};
@@ -74,6 +78,7 @@ void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
       cells.push_back(known ? grouped(counts[l].*field.count) : "-");
     }
     cells.push_back(differs[l] ? grouped(*differs[l]) : "-");
+    if (any_stored) cells.push_back(stored[l] ? grouped(*stored[l]) : "-");
     table.add(std::move(cells));
   }
   out << '\n' << table.text(screen);

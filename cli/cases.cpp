@@ -63,10 +63,9 @@ std::vector<corpus::Entry> read_cases(const std::string& name, PairTypes taken) 
     if (entries.empty()) throw std::runtime_error("there is no pair in " + name);
     return entries;
   }
-  const std::string seed = name.substr(first + 1, last - first - 1),
-                    index = name.substr(last + 1);
-  const std::vector<strata::PairSource> sources = strata::stratum_sources(
-      number(seed, name), 1, {stratum}, in_doubles ? PairTypes::f64 : PairTypes::f32);
+  const std::string seed = name.substr(first + 1, last - first - 1), index = name.substr(last + 1);
+  const std::vector<strata::PairSource> sources =
+      strata::stratum_sources(number(seed, name), 1, {stratum}, in_doubles ? PairTypes::f64 : PairTypes::f32);
   if (sources.size() != 1) throw UsageError(name + " matches several strata; name one");
   const std::vector<std::pair<std::string, std::string>> numbers = {
       {"stratum", stratum}, {"seed", seed}, {"index", index}};
@@ -86,8 +85,7 @@ std::string note_of_doubles(const corpus::Entry& entry, const oracle::Truth& tru
   const double* own = coordinates(*entry.doubles);
   const float* stored = coordinates(entry.pair);
   std::vector<std::string> parts;
-  if (const auto written =
-          entry.written.empty() ? std::nullopt : oracle::truth_as_written(entry.written, entry.pair);
+  if (const auto written = entry.written.empty() ? std::nullopt : oracle::truth_as_written(entry.written, entry.pair);
       written && !alike(*written, truth))
     parts.push_back("as written: " + words(*written) + "; as doubles: " + words(truth));
   int i = 0;

@@ -49,8 +49,8 @@ void check(const CheckOptions& options) {
     const oracle::Truth t = truth_of(*entry);
     const std::string note = written_note(*entry, t), stored = stored_verdicts(*entry, under_test.left_out, t.verdict);
     const std::vector<Verdict> verdicts = options.truth_only ? std::vector<Verdict>() : decide(under_test, *entry);
-    const std::vector<Verdict> counted = corpus::visit(
-        *entry, [&](const auto& pair) { return analysis::excused(under_test.lanes, verdicts, pair, t); });
+    const std::vector<Verdict> counted =
+        corpus::visit(*entry, [&](const auto& pair) { return analysis::excused(under_test.lanes, verdicts, pair, t); });
     wrong = wrong || some_is_wrong(counted, t.verdict);
     if (options.json) {
       nlohmann::ordered_json line = {{"pair", number_of_pair},

@@ -32,8 +32,9 @@ TEST_F(Doubles, ACampaignIsRepeatedByItsFiles) {
   expect_done("graze report c");
   EXPECT_NE(contents(shell.folder / "c/report.html").find("stored/f64"), std::string::npos);
   expect_done("graze fuzz --coordinates f64 --strata 'stored,near_vertex_face' --pairs 600 --lanes '*/cpu' --out c");
-  expect_done("graze fuzz --coordinates f64 --strata stored --pairs 100 --lanes 'moller_1997/*/cpu' --out j "
-              "--junit j.xml");
+  expect_done(
+      "graze fuzz --coordinates f64 --strata stored --pairs 100 --lanes 'moller_1997/*/cpu' --out j "
+      "--junit j.xml");
   const std::string junit = contents(shell.folder / "j.xml");
   EXPECT_NE(junit.find("name=\"stored/f64\""), std::string::npos) << junit;
   EXPECT_NE(junit.find("graze repro j/cases/"), std::string::npos) << junit;
@@ -103,7 +104,7 @@ TEST_F(Doubles, VerbsThatTakeFloat32AloneSaySo) {
   for (const auto& [command, word] : std::map<std::string, std::string>{
            {"graze minimize c", "minimize"},
            {"graze tune moller_1997/f32/cpu --from c --forbid false-negative", "tune"},
-           {"graze discrepancy moller_1997/f32/cpu moller_1997/f64/cpu --campaign c", "discrepancy"},
+           {"graze discrepancy moller_1997/f32/cpu moller_1997/f32/cpu-fma --campaign c", "discrepancy"},
            {"graze map stored/f64:1:3", "stored/f64:1:3"},
            {"graze explain stored/f64:1:3", "stored/f64:1:3"},
            {"graze fuzz --coordinates f64 --mesh a.off --out m", "--coordinates"}})

@@ -47,9 +47,8 @@ CampaignPairs of_stratum(const DumpOptions& options) {
     dumped.seed = *value;
   }
   const std::string stratum = options.name.substr(0, colon);
-  dumped.sources =
-      strata::stratum_sources(dumped.seed, options.pairs > 0 ? options.pairs : 1000, {stratum},
-                              strata::stratum_in_doubles(stratum) ? PairTypes::f64 : PairTypes::f32);
+  dumped.sources = strata::stratum_sources(dumped.seed, options.pairs > 0 ? options.pairs : 1000, {stratum},
+                                           strata::stratum_in_doubles(stratum) ? PairTypes::f64 : PairTypes::f32);
   return dumped;
 }
 

@@ -68,11 +68,12 @@ std::pair<std::string, std::filesystem::path> first_case(const std::filesystem::
   return {};
 }
 
-// The subject's smallest case; with pairs of doubles its first one. Minimises, as `graze minimize` would, the kMostShrunk signatures whose first kept pairs
-// are the simplest. Returns the simplest result and its file; of equal results, the one from the simpler kept pair.
+// The subject's smallest case; with pairs of doubles its first one. Minimises, as `graze minimize` would, the
+// kMostShrunk signatures whose first kept pairs are the simplest. Returns the simplest result and its file; of equal
+// results, the one from the simpler kept pair.
 std::pair<std::string, std::filesystem::path> smallest_case(const std::filesystem::path& campaign,
-                                                     const fuzz::SelectedLanes& under_test, const Json& summary,
-                                                     const std::string& subject) {
+                                                            const fuzz::SelectedLanes& under_test, const Json& summary,
+                                                            const std::string& subject) {
   if (fuzz::has_doubles(summary["spec"])) return first_case(campaign, summary, subject);
   std::vector<std::pair<Simplicity, std::filesystem::path>> kept;
   for (const Json& row : summary["signatures"]) {

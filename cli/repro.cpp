@@ -48,8 +48,7 @@ bool compare_signatures(const corpus::Entry& entry, const oracle::Truth& t, std:
                         std::span<const Verdict> verdicts) {
   const std::string* text = corpus::field(entry, "signature");
   const std::optional<analysis::Signature> recorded = text ? analysis::parse_signature(*text) : std::nullopt;
-  const Bucket bucket =
-      corpus::visit(entry, [&](const auto& pair) { return oracle::margin_bucket(pair, t.verdict); });
+  const Bucket bucket = corpus::visit(entry, [&](const auto& pair) { return oracle::margin_bucket(pair, t.verdict); });
   const Nesting nesting = corpus::visit(entry, [&](const auto& pair) { return analysis::nesting_of(pair, t); });
   Compared compared = Compared::nothing;
   analysis::for_each_subject(run, [&](std::size_t first, std::size_t count) {
@@ -88,8 +87,7 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
     return repro_pack(name);
   }
   fuzz::SelectedLanes under_test = selected_lanes(lanes, name);
-  const std::vector<corpus::Entry> entries =
-      read_cases(name, emitted.empty() ? PairTypes::both : PairTypes::f32);
+  const std::vector<corpus::Entry> entries = read_cases(name, emitted.empty() ? PairTypes::both : PairTypes::f32);
   const bool in_doubles =
       std::any_of(entries.begin(), entries.end(), [](const corpus::Entry& entry) { return bool(entry.doubles); });
   if (in_doubles) take_doubles(under_test);
@@ -114,8 +112,8 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
       std::cout << reports::wrapped(stored, output_screen().columns, 2, 4);
     if (const std::string note = entry.doubles ? written_note(entry, t) : ""; !note.empty())
       std::cout << reports::wrapped(note, output_screen().columns, 2, 4);
-    const std::vector<Verdict> counted = corpus::visit(
-        entry, [&](const auto& pair) { return analysis::excused(under_test.lanes, verdicts, pair, t); });
+    const std::vector<Verdict> counted =
+        corpus::visit(entry, [&](const auto& pair) { return analysis::excused(under_test.lanes, verdicts, pair, t); });
     changed = compare_truth(entry, t) || changed;
     if (t.verdict != Verdict::declined) changed = compare_signatures(entry, t, under_test.lanes, counted) || changed;
     wrong = wrong || some_is_wrong(counted, t.verdict);

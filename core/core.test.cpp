@@ -128,7 +128,7 @@ TEST(LaneTable, IsTheProductOfAlgorithmsScalarsAndVariantsAndTheExactLanes) {
   }
   const auto built = std::count_if(std::begin(kVariants), std::end(kVariants), builds_published);
   EXPECT_EQ(built, 6);
-  EXPECT_EQ(ids.size(), static_cast<std::size_t>(kAlgorithmCount * 2 * built) + 2);
+  EXPECT_EQ(ids.size(), static_cast<std::size_t>(kAlgorithmCount * 2 * built) + 3);
   EXPECT_TRUE(ids.contains("exact/f32/cuda"));
   EXPECT_TRUE(ids.contains("moller_1997/f32/cuda-fma"));
   EXPECT_TRUE(matches_any({"*/f32/*", "x"}, "moller_1997/f32/cpu"));

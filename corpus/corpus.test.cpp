@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every entry of every corpus file is a separate test, which compares its fields truth and contact with the oracle.
+// Every entry of every corpus file is a separate test, which compares its fields truth and contact with the oracle; for
+// a pair of doubles also those of the pair as float32 stores it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +39,7 @@ Corpus read_corpus() {
   Corpus corpus;
   for (const auto& file : files) {
     try {
-      for (Entry& entry : read_pairs(file)) {
+      for (Entry& entry : read_pairs(file, PairTypes::both)) {
         const std::string* name = field(entry, "name");
         if (!name) {
           corpus.errors += file.string() + ':' + std::to_string(entry.line) + ": expected a field name, found none\n";
@@ -84,9 +85,13 @@ class Truth : public testing::TestWithParam<Case> {};
 
 TEST_P(Truth, MatchesTheOracle) {
   const Entry& entry = GetParam().entry;
-  const oracle::Truth truth = oracle::truth(entry.pair);
+  const oracle::Truth truth = visit(entry, [](const auto& pair) { return oracle::truth(pair); });
   EXPECT_EQ(value(entry, "truth"), name(truth.verdict));
   EXPECT_EQ(value(entry, "contact"), name(truth.contact));
+  if (!entry.doubles) return;
+  const oracle::Truth stored = oracle::truth(entry.pair);
+  EXPECT_EQ(value(entry, "truth_in_float32"), name(stored.verdict));
+  EXPECT_EQ(value(entry, "contact_in_float32"), name(stored.contact));
 }
 
 INSTANTIATE_TEST_SUITE_P(corpus, Truth, testing::ValuesIn(corpus().cases),

@@ -20,7 +20,7 @@
 namespace graze::corpus {
 
 struct Entry {
-  Pair pair{};  // of a pair of doubles: as it is stored in float32
+  Pair pair{};                                                   // of a pair of doubles: as it is stored in float32
   std::vector<std::pair<std::string, std::string>> fields = {};  // key and value, in the order of the line
   std::size_t line = 0;                                          // where the entry begins; 0 if it was not read
   std::size_t lines = 1;                                         // how many lines the entry takes

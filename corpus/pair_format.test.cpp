@@ -247,7 +247,8 @@ std::optional<Entry> read_any(const std::string& text) {
 }
 
 TEST(PairFormat, APairOfDoublesReadsBack) {
-  constexpr double kValues[] = {0.1, -0.0, 0x1p-1074, -0x1.fffffffffffffp1023, 1.0 / 3, 5, 0x1.8p-1023, -1e300, 0x1p-149};
+  constexpr double kValues[] = {0.1,         -0.0,   0x1p-1074, -0x1.fffffffffffffp1023, 1.0 / 3, 5,
+                                0x1.8p-1023, -1e300, 0x1p-149};
   DoublePair pair;
   for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = kValues[i % 9];
   const std::string text = write(entry_of(pair, {{"name", "x"}}));

@@ -118,9 +118,8 @@ std::vector<JunitCase> junit_of_campaign(const fs::path& directory, const Json& 
       if (kept == simplest.end()) kept = simplest.find({lane, ""});
       test.failure = fmt::format("wrong on {} of {}", grouped(stratum.wrong(l)), counted(stratum.pairs, "pair"));
       if (kept == simplest.end()) continue;
-      test.failure +=
-          fmt::format(", such as {}\nAgain: graze repro {}{}", kept->second.pair,
-                      path_word(kept->second.file.string()), kept->second.why);
+      test.failure += fmt::format(", such as {}\nAgain: graze repro {}{}", kept->second.pair,
+                                  path_word(kept->second.file.string()), kept->second.why);
     }
   }
   for (const fuzz::LaneLeftOut& lane : left_out) cases.push_back({lane.id, "all strata", "", lane.why});

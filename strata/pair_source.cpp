@@ -14,9 +14,12 @@ namespace graze::strata {
 namespace {
 
 PairSource source_of(std::uint64_t seed, const StratumInfo& row) {
-  return {std::string(row.id), 0,
+  return {std::string(row.id),
+          0,
           [seed, stratum = row.stratum](std::uint64_t index) { return generate(seed, stratum, index); },
-          static_cast<int>(row.stratum), row.axis, seed};
+          static_cast<int>(row.stratum),
+          row.axis,
+          seed};
 }
 
 Axis wide(Axis axis) { return axis == Axis::scale ? Axis::wide_scale : axis; }
@@ -48,8 +51,8 @@ const StratumInfo* stratum_info(std::string_view source) {
   const std::optional<std::string_view> in_doubles = stratum_in_doubles(source);
   const std::span<const StratumInfo> rows =
       in_doubles ? std::span<const StratumInfo>(kDoubleStrata) : std::span<const StratumInfo>(kStrata);
-  const auto row = std::find_if(rows.begin(), rows.end(),
-                                [&](const StratumInfo& s) { return s.id == in_doubles.value_or(source); });
+  const auto row =
+      std::find_if(rows.begin(), rows.end(), [&](const StratumInfo& s) { return s.id == in_doubles.value_or(source); });
   return row == rows.end() ? nullptr : &*row;
 }
 

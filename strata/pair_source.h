@@ -21,7 +21,7 @@ struct StratumInfo;
 
 struct PairSource {
   std::string id;
-  std::uint64_t pairs = 0;  // the campaign takes the indices [0, pairs)
+  std::uint64_t pairs = 0;                        // the campaign takes the indices [0, pairs)
   std::function<Pair(std::uint64_t index)> pair;  // null if the coordinates are doubles
   // For drawing the same pairs on a device: the stratum's index in kStrata; -1 if only `pair` can draw them.
   int stratum = -1;

@@ -35,7 +35,7 @@ using Clock = std::chrono::steady_clock;
 using Time = Clock::time_point;
 
 constexpr auto kLookEvery = std::chrono::milliseconds(100);  // between checks of what the processes use
-constexpr int kMostWaits = 20;  // times its limit that a program may wait for a processor
+constexpr int kMostWaits = 20;                               // times its limit that a program may wait for a processor
 constexpr int kMostLoads = 3;                                // failed ones, for one block
 
 Time after(double seconds) {

@@ -51,11 +51,15 @@ namespace graze {
 // These lanes exist only in the native build, because another compiler contracts differently.
 namespace cpu_fma {
 extern const HostBlocks kHostBlocks{};
+extern const HostDoubleBlocks kHostDoubleBlocks{};
 extern const HostPolicyBlocks kHostPolicyBlocks{};
+extern const HostDoublePolicyBlocks kHostDoublePolicyBlocks{};
 }  // namespace cpu_fma
 namespace cpu_fast {
 extern const HostBlocks kHostBlocks{};
+extern const HostDoubleBlocks kHostDoubleBlocks{};
 extern const HostPolicyBlocks kHostPolicyBlocks{};
+extern const HostDoublePolicyBlocks kHostDoublePolicyBlocks{};
 }  // namespace cpu_fast
 
 namespace cuda {

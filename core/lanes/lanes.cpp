@@ -189,8 +189,7 @@ Lane lane_under(const Lane& lane, std::string_view policy) {
     throw UsageError("expected another policy than " + result.policy + " for " + lane.id +
                      ": the compiler's fast math keeps no error bound");
   result.explainable = false;
-  result.decide =
-      lane.is_cuda() ? nullptr : block_under(*result.under, tables_of(lane.variant), lane);
+  result.decide = lane.is_cuda() ? nullptr : block_under(*result.under, tables_of(lane.variant), lane);
   return result;
 }
 

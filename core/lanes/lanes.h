@@ -88,9 +88,7 @@ class DecideBlock {
   void operator()(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) const;
   // Requires: decides_doubles().
   void operator()(const DoublePair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) const;
-  bool decides_doubles() const {
-    return foreign_ ? foreign_->decides_doubles() : doubles_.function || doubles_.within;
-  }
+  bool decides_doubles() const { return foreign_ ? foreign_->decides_doubles() : doubles_.function || doubles_.within; }
   constexpr explicit operator bool() const { return floats_.function || floats_.within || foreign_; }
   bool operator==(const DecideBlock&) const = default;
   constexpr bool operator==(std::nullptr_t) const { return !*this; }

@@ -128,6 +128,55 @@ TEST(Policies, OfOneSiteMayBeAbsoluteAndRelative) {
   EXPECT_EQ(both.relative[static_cast<int>(Site::plane_distance)], 5);
 }
 
+// Pairs of doubles near contact: b's first vertex lies in a's plane but for the last bits.
+std::vector<DoublePair> near_contacts() {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> number(-1, 1);
+  std::vector<DoublePair> pairs(3000);
+  for (DoublePair& pair : pairs) {
+    for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = number(random);
+    const double s = 0.3, t = 0.25;
+    const Vec3<double> u = pair.a[1] - pair.a[0], v = pair.a[2] - pair.a[0];
+    pair.b[0] = {pair.a[0].x + s * u.x + t * v.x, pair.a[0].y + s * u.y + t * v.y, pair.a[0].z + s * u.z + t * v.z};
+  }
+  return pairs;
+}
+
+template <class Algorithm>
+void expect_lane_of_doubles(const std::vector<DoublePair>& pairs) {
+  const Lane& lane = *find_lane(std::string(Algorithm::kInfo.id) + "/f64/cpu");
+  ASSERT_TRUE(lane.decide.decides_doubles());
+  for (const DoublePair& pair : pairs) {
+    const Verdict expected = Algorithm::decide(pair.a, pair.b);
+    ASSERT_EQ(decide_one(lane.decide, pair), expected) << lane.id;
+  }
+}
+
+TEST(LanesInDouble, DecideDoublesAsTheirAlgorithmDoes) {
+  const std::vector<DoublePair> pairs = near_contacts();
+  [&]<class... Algorithm>(const std::tuple<Algorithm...>*) {
+    (expect_lane_of_doubles<Algorithm>(pairs), ...);
+  }(static_cast<const Algorithms*>(nullptr));
+}
+
+// On doubles that float32 holds both functions of a lane agree, under every kind of policy.
+TEST(LanesInDouble, AgreeWithThemselvesOnFloat32) {
+  std::size_t lanes_seen = 0;
+  for (const char* policy : {"", "abs:1e-9", "rel:8", "bound", "filtered"}) {
+    if (*policy) add_policy_lanes("*/f64/cpu*/" + std::string(policy));
+  }
+  for (const Lane& lane : lanes()) {
+    if (lane.scalar != Scalar::f64 || !lane.decide || !runs_on_this_cpu(lane)) continue;
+    ASSERT_TRUE(lane.decide.decides_doubles()) << lane.id;
+    ++lanes_seen;
+    for (const DoublePair& pair : near_contacts()) {
+      const Pair stored = stored_in_float32(pair);
+      ASSERT_EQ(decide_one(lane.decide, in_doubles(stored)), decide_one(lane.decide, stored)) << lane.id;
+    }
+  }
+  EXPECT_GT(lanes_seen, 5u * 3 * 3);
+}
+
 TEST(Policies, RefuseWhatTheyDoNotKnow) {
   EXPECT_EQ(refusal("moller_1997/f32/cpu"), "accepted");
   EXPECT_EQ(refusal("nothing/f32/cpu/rel:1"), "accepted");  // no such lane; the code that selects lanes reports it

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <numeric>
 
 #include "analysis/convention.h"
@@ -136,14 +137,14 @@ class BlockJudge {
   }
 
   void find_truth(const PairsToJudge& to_judge, BatchResult& result) {
+    buckets_.resize(to_judge.pairs.size());
     if (to_judge.doubles.empty()) {
       decide_truth(to_judge.pairs, result);
-      buckets_.resize(to_judge.pairs.size());
       margin_buckets(coordinates(to_judge.pairs.front()), buckets_.size(), truth_.data(), buckets_.data());
     } else {
       decide_truth(to_judge.doubles, result);
-      buckets_.assign(to_judge.doubles.size(), kOpenBucket);
       find_changed_by_storing(to_judge.pairs);
+      find_wide_margins(to_judge.pairs);
     }
     for (std::size_t i = 0; i < buckets_.size(); ++i) {
       if (buckets_[i] == kOpenBucket)
@@ -175,6 +176,33 @@ class BlockJudge {
       changed_by_storing_[w] = (changed_by_storing_[w] ^ truth_[w]) & ~none_[w];
   }
 
+  // The buckets of pairs of doubles whose margin is wide already as float32 stores them; the others stay open. Storing
+  // moves each vertex by less than an ulp of float32. The distance of two hulls, and the depth, which is the least
+  // translation that separates them, change by no more than the vertices of both move. So a margin of 2^kWide such ulps
+  // stays above 2^(kWide - 1), which are more than 2^kBucketHighest ulps of double.
+  void find_wide_margins(std::span<const Pair> stored) {
+    constexpr int kWide = 5;
+    static_assert(kWide - 1 + 29 >= kBucketHighest);
+    std::vector<Pair> unchanged;  // the pairs whose stored form is finite and has the same truth
+    std::vector<std::size_t> places;
+    analysis::Bits intersects(truth_.size());
+    for (std::size_t i = 0; i < stored.size(); ++i) {
+      if (test_bit(changed_by_storing_, i) || !is_finite(stored[i])) continue;
+      intersects[places.size() / 64] |= std::uint64_t{test_bit(truth_, i)} << places.size() % 64;
+      unchanged.push_back(stored[i]);
+      places.push_back(i);
+    }
+    std::vector<Bucket> of_stored(places.size());
+    if (!places.empty())
+      margin_buckets(coordinates(unchanged.front()), places.size(), intersects.data(), of_stored.data());
+    buckets_.assign(stored.size(), kOpenBucket);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const int size = std::abs(int{of_stored[k]});
+      if (of_stored[k] != kOpenBucket && size >= make_bucket(1, kWide))
+        buckets_[places[k]] = make_bucket(sign_of(of_stored[k]), kBucketHighest);
+    }
+  }
+
   template <class AnyPair>
   Relation relation_by_oracle(const AnyPair& pair, std::uint64_t index, std::size_t i, BatchResult& result) const {
     const Contact contact = oracle::gmp_contact(pair);
@@ -200,8 +228,8 @@ class BlockJudge {
   }
 
   template <class AnyPair>
-  void add_failures(const AnyPair& pair, const CaseKey& key, std::size_t i, const Relation& relation, BatchResult& result,
-                    PairJudge::Found* found) {
+  void add_failures(const AnyPair& pair, const CaseKey& key, std::size_t i, const Relation& relation,
+                    BatchResult& result, PairJudge::Found* found) {
     bool any_wrong = false;
     for (std::size_t l = 0; l < views_.size(); ++l) {
       verdicts_[l] = views_[l].at(i);

@@ -28,6 +28,21 @@ class CampaignOfDoubles : public CampaignFiles {
   SelectedLanes lanes_ = select_lanes({}, Executor::twin);
 };
 
+// The margins of the summary are those of GMP, although float32 decides most of the wide ones.
+TEST_F(CampaignOfDoubles, MarginsAreTheOracles) {
+  const Campaign c = campaign("margins", 28 * 200);
+  const Json strata = run(c)["strata"];
+  for (const strata::PairSource& source : c.sources) {
+    std::map<std::string, std::uint64_t> expected, found;
+    for (std::uint64_t index = 0; index < source.pairs; ++index) {
+      const DoublePair pair = source.double_pair(index);
+      ++expected[name_of_bucket(oracle::margin_bucket(pair, oracle::cgal_verdict(pair)))];
+    }
+    for (const auto& [bucket, row] : strata[source.id]["margins"].items()) found[bucket] = row["pairs"];
+    EXPECT_EQ(found, expected) << source.id;
+  }
+}
+
 struct Expected {
   std::uint64_t false_positive = 0, false_negative = 0, declined = 0, stored = 0;
 };
@@ -50,8 +65,9 @@ TEST_F(CampaignOfDoubles, CountsAreThoseOfEachPairAlone) {
             in_double ? decide_one(lanes_.on_host[l], pair) : decide_one(lanes_.on_host[l], in_float32);
         if (verdict == truth) continue;
         Expected& of = expected[l];
-        ++(verdict == Verdict::declined ? of.declined
-                                        : verdict == Verdict::intersects ? of.false_positive : of.false_negative);
+        ++(verdict == Verdict::declined     ? of.declined
+           : verdict == Verdict::intersects ? of.false_positive
+                                            : of.false_negative);
         if (verdict == Verdict::declined) continue;
         const bool by_storing = !in_double && oracle::truth(in_float32).verdict == verdict;
         of.stored += by_storing;
@@ -127,12 +143,13 @@ TEST_F(CampaignOfDoubles, RecordsAreReadBackAndChecked) {
   EXPECT_EQ(checked_summary(directory), summary);
   ASSERT_GT(summary["signatures"].size(), 10u);
   for (const Json& row : summary["signatures"]) {
-    for (const corpus::Entry& entry : read_cases(directory, row)) ASSERT_TRUE(entry.doubles);
+    for (const corpus::Entry& entry : read_cases(directory, row, PairTypes::both)) ASSERT_TRUE(entry.doubles);
   }
   const std::vector<strata::PairSource> again = recorded_sources(summary["spec"]);
   ASSERT_EQ(again.size(), 2u);
   EXPECT_EQ(again[0].id, "near_vertex_face/f64");
-  const DoublePair one = again[1].double_pair(7), other = campaign("x", 900, {"extreme_scale"}).sources[0].double_pair(7);
+  const DoublePair one = again[1].double_pair(7),
+                   other = campaign("x", 900, {"extreme_scale"}).sources[0].double_pair(7);
   EXPECT_TRUE(std::equal(coordinates(one), coordinates(one) + kCoordinates, coordinates(other)));
   const std::vector<std::string> words = command_words(summary["spec"], {}, "o", summary);
   EXPECT_NE(std::find(words.begin(), words.end(), "--coordinates"), words.end());
@@ -142,7 +159,7 @@ TEST_F(CampaignOfDoubles, RecordsAreReadBackAndChecked) {
   const std::size_t at = text.find("p", text.find("0x1.")) - 1;
   text[at] = text[at] == '4' ? '5' : '4';
   write_whole(file, text);
-  EXPECT_THROW(read_cases(directory, summary["signatures"][0]), corpus::FormatError);
+  EXPECT_THROW(read_cases(directory, summary["signatures"][0], PairTypes::both), corpus::FormatError);
   // Errors of storing that are more than the errors.
   std::filesystem::remove(directory / kDatabase);
   Json edited = summary;

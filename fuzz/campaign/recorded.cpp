@@ -125,10 +125,11 @@ std::vector<std::string> command_words(const Json& spec, const Shard& shard, con
   add("--seed", std::to_string(spec.at("seed").get<std::uint64_t>()));
   const auto of_doubles =
       std::count_if(strata.begin(), strata.end(), [](const std::string& id) { return strata::stratum_in_doubles(id); });
-  const PairTypes coordinates = of_doubles == 0 ? PairTypes::f32
-                                          : of_doubles == std::ssize(strata) ? PairTypes::f64
-                                                                             : PairTypes::both;
-  for (const strata::PairSource& source : strata::stratum_sources(0, 0, {}, coordinates)) all_strata.push_back(source.id);
+  const PairTypes coordinates = of_doubles == 0                    ? PairTypes::f32
+                                : of_doubles == std::ssize(strata) ? PairTypes::f64
+                                                                   : PairTypes::both;
+  for (const strata::PairSource& source : strata::stratum_sources(0, 0, {}, coordinates))
+    all_strata.push_back(source.id);
   if (scene) {  // the user also asked for strata that the scene excludes
     for (const auto& [id, unused] : spec["scene"].at("left_out").items()) strata.push_back(id);
     if (std::all_of(all_strata.begin(), all_strata.end(),

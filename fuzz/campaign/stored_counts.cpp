@@ -16,8 +16,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // [[bucket, pairs, intersects, [[lane, false positive, false negative, declined, differs from cpu], …]], …]. Foreign
-// code with such counts also has crashed, timed out, unstable and by convention; a lane in float32 with errors of storing
-// has these (of foreign code, or zeros) and that count.
+// code with such counts also has crashed, timed out, unstable and by convention; a lane in float32 with errors of
+// storing has these (of foreign code, or zeros) and that count.
 Json to_json(const analysis::Tally& tally) {
   Json rows = Json::array();
   for (int b = -kBucketMost; b <= kBucketMost; ++b) {

@@ -21,13 +21,13 @@ struct JudgedBlock {
   std::span<const Bucket> buckets;         // of each pair's margin
   std::span<const LaneVerdicts> verdicts;  // of each lane under test
   // Of pairs of doubles: the pairs whose verdict differs once they are stored in float32, as lanes in float32 decide
-  // them. Else empty.
+  // them, or which float32 cannot store. Else empty.
   std::span<const std::uint64_t> changed_by_storing = {};
 };
 
 struct LaneCounts : Counts {
   std::uint64_t differs_from_cpu = 0;  // another verdict than the cpu lane of the same algorithm and scalar
-  std::uint64_t stored = 0;            // of the wrong ones: right on the pair as it is stored in float32
+  std::uint64_t stored = 0;  // of the wrong ones: right on the pair as float32 stores it, or float32 cannot store it
 
   bool any() const { return *this != LaneCounts{}; }
   LaneCounts& operator+=(const LaneCounts& other) {

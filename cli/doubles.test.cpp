@@ -29,7 +29,9 @@ TEST_F(Doubles, ACampaignIsRepeatedByItsFiles) {
   const Ran again = shell("graze repro c/" + file + " --lanes '*/cpu'");
   EXPECT_EQ(again.status, 0) << again.out << again.err;
   EXPECT_NE(again.out.find("(as recorded)"), std::string::npos) << again.out;
-  expect_done("graze report c");
+  const Ran report = shell("graze report c");
+  EXPECT_EQ(report.status, 0) << report.err;
+  EXPECT_EQ(report.out.find("Next:"), std::string::npos) << report.out;
   EXPECT_NE(contents(shell.folder / "c/report.html").find("stored/f64"), std::string::npos);
   expect_done("graze fuzz --coordinates f64 --strata 'stored,near_vertex_face' --pairs 600 --lanes '*/cpu' --out c");
   expect_done(
@@ -103,6 +105,8 @@ TEST_F(Doubles, VerbsThatTakeFloat32AloneSaySo) {
   const std::string file = "c/" + summary["signatures"][0]["case"].get<std::string>();
   for (const auto& [command, word] : std::map<std::string, std::string>{
            {"graze minimize c", "minimize"},
+           {"graze failures c", "failures"},
+           {"graze corpus add c --corpus r", "corpus add"},
            {"graze tune moller_1997/f32/cpu --from c --forbid false-negative", "tune"},
            {"graze discrepancy moller_1997/f32/cpu moller_1997/f32/cpu-fma --campaign c", "discrepancy"},
            {"graze map stored/f64:1:3", "stored/f64:1:3"},

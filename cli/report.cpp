@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/checked_summary.h"
+#include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/sealed.h"
@@ -129,7 +130,7 @@ void report(const ReportOptions& options) {
   } else {
     const Json made = make_report(options.directory);
     say_report(options.directory, made, write_report(options.directory, made, "report"));
-    if (made["signature_count"] > 0) {
+    if (made["signature_count"] > 0 && !fuzz::has_doubles(fuzz::recorded_spec(options.directory))) {
       const bool minimised = !fuzz::read_kinds(options.directory).is_null();
       fmt::print("Next: graze {} {}\n", minimised ? "corpus add" : "minimize", path_word(options.directory));
     }

@@ -167,13 +167,13 @@ class BlockJudge {
     }
   }
 
-  // By the exact decision. Where float32 has no finite number, nothing is changed: every lane in float32 declines.
+  // By the exact decision. A pair beyond float32's range counts as changed.
   void find_changed_by_storing(std::span<const Pair> stored) {
     none_.resize(truth_.size());
     changed_by_storing_.resize(truth_.size());
     find_lane(kExactLane)->decide(stored.data(), stored.size(), changed_by_storing_.data(), none_.data());
     for (std::size_t w = 0; w < truth_.size(); ++w)
-      changed_by_storing_[w] = (changed_by_storing_[w] ^ truth_[w]) & ~none_[w];
+      changed_by_storing_[w] = (changed_by_storing_[w] ^ truth_[w]) | none_[w];
   }
 
   // The buckets of pairs of doubles whose margin is wide already as float32 stores them; the others stay open. Storing
@@ -183,11 +183,11 @@ class BlockJudge {
   void find_wide_margins(std::span<const Pair> stored) {
     constexpr int kWide = 5;
     static_assert(kWide - 1 + 29 >= kBucketHighest);
-    std::vector<Pair> unchanged;  // the pairs whose stored form is finite and has the same truth
+    std::vector<Pair> unchanged;
     std::vector<std::size_t> places;
     analysis::Bits intersects(truth_.size());
     for (std::size_t i = 0; i < stored.size(); ++i) {
-      if (test_bit(changed_by_storing_, i) || !is_finite(stored[i])) continue;
+      if (test_bit(changed_by_storing_, i)) continue;
       intersects[places.size() / 64] |= std::uint64_t{test_bit(truth_, i)} << places.size() % 64;
       unchanged.push_back(stored[i]);
       places.push_back(i);
@@ -236,7 +236,8 @@ class BlockJudge {
       if (verdicts_[l] == truth(i)) continue;
       result.digests.add(l, key.index, verdicts_[l]);
       const bool in_float32 = !changed_by_storing_.empty() && under_test_.lanes[l]->scalar == Scalar::f32;
-      const bool stored = in_float32 && !is_failure(verdicts_[l]) && test_bit(changed_by_storing_, i);
+      const bool stored = in_float32 && test_bit(changed_by_storing_, i) && !is_failure(verdicts_[l]) &&
+                          verdicts_[l] != Verdict::declined;
       if (under_test_.lanes[l]->exact && !stored && !(in_float32 && verdicts_[l] == Verdict::declined))
         apart(key.index,
               fmt::format("{} ({}) and the truth ({})", under_test_.lanes[l]->id, name(verdicts_[l]), name(truth(i))));

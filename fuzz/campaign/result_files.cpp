@@ -11,6 +11,7 @@
 #include "analysis/signature.h"
 #include "analysis/tally.h"
 #include "core/cannot.h"
+#include "core/error.h"
 #include "core/fnv1a.h"
 #include "core/text.h"
 #include "fuzz/campaign/checked_summary.h"
@@ -187,10 +188,14 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
   if (text.empty()) throw refuse("it is missing or empty");
   std::vector<corpus::Entry> entries;
   try {
-    entries = corpus::read_pairs(file, taken);
+    entries = corpus::read_pairs(file, PairTypes::both);
   } catch (const corpus::FormatError& error) {
     throw refuse(std::string("it is not a file of pairs: ") + error.what());
   }
+  const bool some_doubles =
+      std::any_of(entries.begin(), entries.end(), [](const corpus::Entry& entry) { return bool(entry.doubles); });
+  if (taken == PairTypes::f32 && some_doubles)
+    throw UsageError(cannot("use", file, "it has pairs of doubles, and this takes pairs of float32"));
   const std::string head = signature_line(key, count);
   if (text.compare(text.find('\n') + 1, head.size(), head) != 0) throw refuse("its head is not that of this signature");
   std::size_t kept = 0;

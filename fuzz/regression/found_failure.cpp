@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "core/fnv1a.h"
 #include "fuzz/campaign/checked_summary.h"
+#include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/files.h"
 #include "fuzz/minimise/minimised_cases.h"
@@ -73,6 +74,7 @@ std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directo
   try {
     if (!summary.at("complete").get<bool>())
       throw UsageError(cannot("add", directory, "its campaign is not finished; finish it with `graze fuzz`"));
+    expect_float32(summary.at("spec"), "corpus add");
     const std::string seen = seen_by(summary.at("build"), "campaign", summary.at("spec").dump());
     std::map<std::string, std::size_t> taken;           // number of signatures taken, by subject
     for (const Json& row : summary.at("signatures")) {  // most frequent first

@@ -188,7 +188,7 @@ TEST(PairFormat, GarbageIsEscapedAndCutShort) {
   expect_named(std::string("\x7f"
                            "ELF\x02\x01\0\x1b[31m",
                            12),
-               {"in.pairs:1", "float32", "1", "a[0].x", R"(\x7fELF\x02\x01\x00\x1b)"});
+               {"in.pairs:1", "1", "a[0].x", R"(\x7fELF\x02\x01\x00\x1b)"});
   expect_named(std::string(1000, 'x'), {"in.pairs:1", "a[0].x", '"' + std::string(40, 'x') + "\"..."});
   expect_named("\n" + std::string(1 << 20, '0'), {"in.pairs:2", "65536"});
 }
@@ -225,8 +225,8 @@ TEST(PairFormat, PastedTextThatIsNoPairIsNamed) {
   expect_named("0 0\n0 0 0 0\n", {"in.pairs:1", "18", "2"});
   expect_named("graze-pairs 1\n0 0 0\n" + kZeros, {"in.pairs:2", "18", "3"});
   expect_named("0 0 0\ngraze-pairs 1\n", {"in.pairs:1", "18", "3"});
-  expect_named("1.5g 0 0", {"in.pairs:1", "float32", "1", "a[0].x", "1.5g"});
-  expect_named("point 7 (0 0 0)", {"in.pairs:1", "float32", "1", "a[0].x", "point"});
+  expect_named("1.5g 0 0", {"in.pairs:1", "1", "a[0].x", "1.5g"});
+  expect_named("point 7 (0 0 0)", {"in.pairs:1", "1", "a[0].x", "point"});
   expect_named("0x1ff 0 0", {"in.pairs:1", "18", "3"});  // a number in hex, not a suffix
   expect_named("\nv 0 0 0\nv 1 0\n", {"in.pairs:3", "coordinate", "float32"});
   expect_named("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", {"in.pairs:1", "triangles", "vertices", "1", "3"});

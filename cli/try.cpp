@@ -216,7 +216,7 @@ void expect_answers(const TriedCode& code, const fuzz::SelectedLanes& under_test
                             "function is named as mine.py:meet (docs/your_own_code.md); to see why: echo {} | "
                             "{}",
                             fuzz::pair_text(source.pair(0)), code.what.substr(kCommand.size()))
-                      : "call it by hand to see why";
+                      : "call it by hand to see why; a function of a shared object must return int, not bool";
   throw std::runtime_error(
       cannot("try", code.what, fmt::format("it fails on each of the first pairs ({}); {}", failed, by_hand)));
 }

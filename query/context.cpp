@@ -8,6 +8,7 @@
 #include <optional>
 #include <thread>
 
+#include "core/stop.h"
 #include "query/collector.h"
 #include "query/cpu.h"
 #include "query/question.h"
@@ -119,6 +120,8 @@ void graze_context::run(const graze_query& query, graze_answer& result) noexcept
     set(result, error.status, error.what());
   } catch (const DeviceFailure& error) {
     set(result, error.out_of_memory ? GRAZE_NO_MEMORY : GRAZE_DEVICE_FAILED, error.what());
+  } catch (const graze::Stopped&) {
+    set(result, GRAZE_CANCELLED, "interrupted while a subject was asked");
   } catch (const std::bad_alloc&) {
     set(result, GRAZE_NO_MEMORY, "there is not enough memory for the query");
   } catch (const std::exception& error) {

@@ -61,6 +61,7 @@ std::vector<Decider>& deciders() {
   static std::vector<Decider> all = [] {
     std::vector<Decider> found;
     for (const Lane& lane : lanes()) {
+      if (lane.exact && lane.scalar == Scalar::f64) continue;  // of doubles, which the module does not take
       if (DecideBlock block = backends::on_host(lane)) found.push_back({&lane, block});
     }
     return found;

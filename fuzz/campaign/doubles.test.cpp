@@ -162,6 +162,7 @@ TEST_F(CampaignOfDoubles, RecordsAreReadBackAndChecked) {
   EXPECT_THROW(read_cases(directory, summary["signatures"][0], PairTypes::both), corpus::FormatError);
   // Errors of storing that are more than the errors.
   std::filesystem::remove(directory / kDatabase);
+  EXPECT_EQ(checked_summary(directory), summary);  // also without its database
   Json edited = summary;
   edited["strata"]["near_vertex_face/f64"]["lanes"]["moller_1997/f32/cpu"]["stored"] = 451;
   write_whole(directory / "summary.json", edited.dump(1) + '\n');

@@ -85,6 +85,20 @@ TEST_F(Doubles, ATableIsReadBackWithTheSameTruth) {
   }
 }
 
+TEST_F(Doubles, ACaseThatNamesAnotherPairHasChanged) {
+  for (const char* stratum : {"near_edge_edge", "near_edge_edge/f64"}) {
+    expect_done("graze dump " + std::string(stratum) + " --pairs 2 --format pairs > two.pairs");
+    EXPECT_EQ(shell("graze repro two.pairs --lanes 'exact/*/cpu'").status, 0);
+    for (const char* edit : {"s/index=1/index=777/", "s/seed=1/seed=2/", "s/stratum=near_edge_edge/stratum=uniform/"}) {
+      const Ran ran = shell("sed '" + std::string(edit) +
+                            "' two.pairs > other.pairs && graze repro other.pairs --lanes "
+                            "'exact/*/cpu'");
+      EXPECT_EQ(ran.status, 1) << stratum << ' ' << edit << ran.out << ran.err;
+      EXPECT_NE(ran.out.find("which is another pair"), std::string::npos) << ran.out;
+    }
+  }
+}
+
 TEST_F(Doubles, WhatStoringChangesIsSaid) {
   std::ofstream(shell.folder / "far.pairs")
       << "1000000.01 0 0 1000000.01 1 0 1000000.01 0 1  1000000.02 0 0 1000000.02 1 0 1000000.02 0 1 | "

@@ -46,10 +46,11 @@ TEST_F(ForeignCode, SigtermEndsACampaignInOrderWhileASubjectHangs) {
 TEST_F(ForeignCode, AQueryOfASlowSubjectIsInterrupted) {
   ASSERT_EQ(shell("printf '#include <unistd.h>\nint intersects(const float a[9], const float b[9]) { usleep(200000); "
                   "return a[0] < b[0]; }' > s.c && cc -shared -fPIC s.c -o s.so && "
-                  "for i in $(seq 900); do echo 0 0 0 1 0 0 0 1 0; done > many.txt && echo 0 0 0 1 0 0 0 1 0 > one.txt")
+                  "(printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\n'; for i in $(seq 900); do echo f 1 2 3; done) > many.obj && "
+                  "echo 0 0 0 1 0 0 0 1 0 > one.txt")
                 .status,
             0);
-  const Ran ran = signalled("timeout -s KILL 120 graze query one.txt many.txt --subject s=./s.so", "INT", "sleep 1");
+  const Ran ran = signalled("timeout -s KILL 120 graze query one.txt many.obj --subject s=./s.so", "INT", "sleep 1");
   EXPECT_EQ(ran.status, 130) << ran.err;
   EXPECT_NE(ran.err.find("interrupted"), std::string::npos) << ran.err;
   EXPECT_EQ(ran.err.find("callback"), std::string::npos) << ran.err;

@@ -386,7 +386,7 @@ void add_fuzz(CLI::App& app, int& status) {
           "--fail-above", options->fail_above,
           "Number of wrong pairs above which the exit status is 1. Counts, for each subject of --subject or else for "
           "each algorithm, the pairs on which some build of it is wrong. Standard error then has its simplest "
-          "minimised case")
+          "minimised case; of pairs of doubles its first one")
       ->transform(whole_number(0, kMostWhole))
       ->excludes("--shard")
       ->option_text("N");

@@ -114,6 +114,11 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
       std::cout << reports::wrapped(note, output_screen().columns, 2, 4);
     const std::vector<Verdict> counted =
         corpus::visit(entry, [&](const auto& pair) { return analysis::excused(under_test.lanes, verdicts, pair, t); });
+    if (!fuzz::is_drawn(entry)) {
+      std::cout << "  CHANGED, recorded: " << printable(corpus::numbers_of(entry).value_or("its stratum"))
+                << ", which is another pair\n";
+      changed = true;
+    }
     changed = compare_truth(entry, t) || changed;
     if (t.verdict != Verdict::declined) changed = compare_signatures(entry, t, under_test.lanes, counted) || changed;
     wrong = wrong || some_is_wrong(counted, t.verdict);

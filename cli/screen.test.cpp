@@ -177,7 +177,7 @@ TEST_F(TerminalTest, StrataAreOneLineEachForProgramsAndWrappedForPeople) {
   EXPECT_LE(widest(shown), 80);
   EXPECT_LT(std::count(piped.begin(), piped.end(), '\n'), std::count(shown.begin(), shown.end(), '\n'));
   const auto lines =
-      std::count(piped.begin(), piped.end(), '\n') - 2;  // without "Next: …" and the empty line before it
+      std::count(piped.begin(), piped.end(), '\n') - 4;  // without "With …:", "Next: …" and the empty lines before them
   EXPECT_EQ(shell("graze strata | cut -c1-20 | grep -c '^[a-z]'").out, std::to_string(lines) + "\n");
 }
 

@@ -11,6 +11,7 @@
 
 #include "analysis/convention.h"
 #include "corpus/pair_format.h"
+#include "fuzz/campaign/recorded.h"
 #include "fuzz/counts_json.h"
 #include "reports/text_table.h"
 
@@ -85,7 +86,8 @@ void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
 }
 
 // Says which exact decisions support the counts. A campaign stops if two of them differ, so here they agree.
-std::string decided_by(std::uint64_t disagreements, const Json& oracle) {
+// doubles: some pairs are pairs of doubles; then GMP also decides those whose verdict float32 changes.
+std::string decided_by(std::uint64_t disagreements, const Json& oracle, bool doubles) {
   const std::uint64_t exact = oracle["exact"], gmp = oracle["gmp"];
   if (exact > 0) {
     return fmt::format(
@@ -94,9 +96,8 @@ std::string decided_by(std::uint64_t disagreements, const Json& oracle) {
         "agree on all.",
         grouped(exact), grouped(oracle["cgal"]), grouped(gmp));
   }
-  return fmt::format(
-      "CGAL decided all of them. GMP decided {} once more, the {} and a sample of {} others: they agree on all.",
-      grouped(gmp), grouped(disagreements), grouped(gmp - disagreements));
+  return fmt::format("CGAL decided all of them. GMP decided {} once more, the {} and {}{} others: they agree on all.",
+                     grouped(gmp), grouped(disagreements), doubles ? "" : "a sample of ", grouped(gmp - disagreements));
 }
 
 }  // namespace
@@ -129,7 +130,9 @@ void print_summary(std::ostream& out, const Json& summary, const Json& oracle, c
   const std::uint64_t disagreements = summary["disagreements"];
   const std::string found = fmt::format("{}: some lane is wrong on {}, in {}.", counted(pairs, "pair"),
                                         grouped(disagreements), counted(summary["signatures"].size(), "signature"));
-  out << '\n' << bold(screen, found) << '\n' << wrapped(decided_by(disagreements, oracle), screen.columns);
+  out << '\n'
+      << bold(screen, found) << '\n'
+      << wrapped(decided_by(disagreements, oracle, fuzz::has_doubles(summary["spec"])), screen.columns);
 }
 
 namespace {

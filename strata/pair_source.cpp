@@ -24,6 +24,11 @@ PairSource source_of(std::uint64_t seed, const StratumInfo& row) {
 
 Axis wide(Axis axis) { return axis == Axis::scale ? Axis::wide_scale : axis; }
 
+#ifdef __wasm__  // the module draws float32 alone, and every report carries its code
+PairSource double_source_of(std::uint64_t, const StratumInfo& row) {
+  throw UsageError("this build does not draw " + std::string(row.id) + std::string(kInDoubles));
+}
+#else
 PairSource double_source_of(std::uint64_t seed, const StratumInfo& row) {
   PairSource source{std::string(row.id) + std::string(kInDoubles), 0, nullptr, -1, wide(row.axis), seed};
   source.double_pair = [seed, stratum = row.stratum](std::uint64_t index) {
@@ -31,6 +36,7 @@ PairSource double_source_of(std::uint64_t seed, const StratumInfo& row) {
   };
   return source;
 }
+#endif
 
 void share_evenly(std::vector<PairSource>& sources, std::uint64_t pairs) {
   for (std::size_t s = 0; s < sources.size(); ++s)

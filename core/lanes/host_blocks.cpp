@@ -38,7 +38,7 @@ constexpr HostBlocks blocks(const std::tuple<Algorithm...>*) {
 }
 
 template <class... Algorithm>
-constexpr HostDoubleBlocks double_blocks(const std::tuple<Algorithm...>*) {
+[[maybe_unused]] constexpr HostDoubleBlocks double_blocks(const std::tuple<Algorithm...>*) {
   return {decide_block<Algorithm, double, DoublePair>...};
 }
 
@@ -59,16 +59,21 @@ constexpr HostPolicyBlocks policies(const std::tuple<Algorithm...>*) {
 }
 
 template <class... Algorithm>
-constexpr HostDoublePolicyBlocks double_policies(const std::tuple<Algorithm...>*) {
+[[maybe_unused]] constexpr HostDoublePolicyBlocks double_policies(const std::tuple<Algorithm...>*) {
   return {policy_blocks<Algorithm, double, DoublePair>()...};
 }
 
 constexpr const Algorithms* kAll = nullptr;
 
 extern const HostBlocks kHostBlocks = blocks(kAll);
-extern const HostDoubleBlocks kHostDoubleBlocks = double_blocks(kAll);
 extern const HostPolicyBlocks kHostPolicyBlocks = policies(kAll);
+#ifdef __wasm__  // the module takes float32 alone, and every report carries its code
+extern const HostDoubleBlocks kHostDoubleBlocks{};
+extern const HostDoublePolicyBlocks kHostDoublePolicyBlocks{};
+#else
+extern const HostDoubleBlocks kHostDoubleBlocks = double_blocks(kAll);
 extern const HostDoublePolicyBlocks kHostDoublePolicyBlocks = double_policies(kAll);
+#endif
 
 }  // namespace GRAZE_FP
 }  // namespace graze

@@ -33,10 +33,14 @@ void decide_exactly(const Pair* pairs, std::size_t count, std::uint64_t* interse
   exact::decide(reinterpret_cast<const float*>(pairs), count, intersects, declined);
 }
 
+#ifdef __wasm__  // see host_blocks.cpp
+constexpr DecideFunction<DoublePair> decide_doubles_exactly = nullptr;
+#else
 void decide_doubles_exactly(const DoublePair* pairs, std::size_t count, std::uint64_t* intersects,
                             std::uint64_t* declined) {
   exact::one_by_one(pairs, count, intersects, declined);
 }
+#endif
 
 template <class... Algorithm>
 std::vector<const AlgorithmInfo*> infos(const std::tuple<Algorithm...>*) {

@@ -48,18 +48,6 @@ bool has_its_truth(const corpus::Entry& entry, const analysis::Signature& signat
   return entry.doubles ? has_its_truth(*entry.doubles, entry, signature) : has_its_truth(entry.pair, entry, signature);
 }
 
-// Whether the pair is the one that its stratum draws. Also true if that is not known: for scenes, meshes and hunts.
-bool is_drawn(const corpus::Entry& entry) {
-  const std::string id = corpus::text_of(entry, "stratum");
-  const strata::StratumInfo* row = strata::stratum_info(id);
-  const auto seed = parse_whole(corpus::text_of(entry, "seed")), index = parse_whole(corpus::text_of(entry, "index"));
-  if (!row || corpus::field(entry, "scene")) return true;
-  if (!seed || !index || bool(entry.doubles) != bool(strata::stratum_in_doubles(id))) return false;
-  const auto same = [](const auto& drawn, const auto& pair) { return std::memcmp(&drawn, &pair, sizeof drawn) == 0; };
-  return entry.doubles ? same(strata::generate_doubles(*seed, row->stratum, *index), *entry.doubles)
-                       : same(strata::generate(*seed, row->stratum, *index), entry.pair);
-}
-
 std::string case_text(const Campaign& campaign, const std::string& key, const SignatureCount& found) {
   std::ostringstream out;
   corpus::write_header(out);
@@ -96,6 +84,17 @@ void leave_out_what_was_not_compared(Json& strata, const std::vector<std::string
 }
 
 }  // namespace
+
+bool is_drawn(const corpus::Entry& entry) {
+  const std::string id = corpus::text_of(entry, "stratum");
+  const strata::StratumInfo* row = strata::stratum_info(id);
+  const auto seed = parse_whole(corpus::text_of(entry, "seed")), index = parse_whole(corpus::text_of(entry, "index"));
+  if (!row || corpus::field(entry, "scene")) return true;
+  if (!seed || !index || bool(entry.doubles) != bool(strata::stratum_in_doubles(id))) return false;
+  const auto same = [](const auto& drawn, const auto& pair) { return std::memcmp(&drawn, &pair, sizeof drawn) == 0; };
+  return entry.doubles ? same(strata::generate_doubles(*seed, row->stratum, *index), *entry.doubles)
+                       : same(strata::generate(*seed, row->stratum, *index), entry.pair);
+}
 
 bool is_compared_with_cpu(const std::string& lane, const std::vector<std::string>& lanes) {
   const std::string cpu = cpu_lane_of(lane);

@@ -42,6 +42,10 @@ std::filesystem::path case_file(const std::filesystem::path& directory, const Js
 std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, const Json& row,
                                       PairTypes taken = PairTypes::f32);
 
+// Whether the pair is the one that its stratum, seed and index name. Also true if that is not known: for scenes, meshes
+// and hunts, and for a case without them.
+bool is_drawn(const corpus::Entry& entry);
+
 // Whether the file's text is `fresh`, as a campaign writes it, with or without results of the minimiser.
 bool is_minimised_from(const std::string& text, const std::string& fresh);
 

@@ -48,6 +48,12 @@ extern "C" int __cxa_thread_atexit(void (*)(void*), void*, void*) { return 0; }
 
 namespace graze {
 
+// The module takes float32 alone.
+namespace cpu {
+extern const HostDoubleBlocks kHostDoubleBlocks{};
+extern const HostDoublePolicyBlocks kHostDoublePolicyBlocks{};
+}  // namespace cpu
+
 // These lanes exist only in the native build, because another compiler contracts differently.
 namespace cpu_fma {
 extern const HostBlocks kHostBlocks{};

@@ -166,7 +166,9 @@ TEST(LanesInDouble, AgreeWithThemselvesOnFloat32) {
     if (*policy) add_policy_lanes("*/f64/cpu*/" + std::string(policy));
   }
   for (const Lane& lane : lanes()) {
-    if (lane.scalar != Scalar::f64 || !lane.decide || !runs_on_this_cpu(lane)) continue;
+    // What fast math makes of a function depends on what is compiled beside it.
+    if (lane.scalar != Scalar::f64 || !lane.decide || info_of(lane.variant).arithmetic == Arithmetic::fast) continue;
+    if (!runs_on_this_cpu(lane)) continue;
     ASSERT_TRUE(lane.decide.decides_doubles()) << lane.id;
     ++lanes_seen;
     for (const DoublePair& pair : near_contacts()) {
@@ -174,7 +176,7 @@ TEST(LanesInDouble, AgreeWithThemselvesOnFloat32) {
       ASSERT_EQ(decide_one(lane.decide, in_doubles(stored)), decide_one(lane.decide, stored)) << lane.id;
     }
   }
-  EXPECT_GT(lanes_seen, 5u * 3 * 3);
+  EXPECT_GT(lanes_seen, 5u * 2 * 3);
 }
 
 TEST(Policies, RefuseWhatTheyDoNotKnow) {

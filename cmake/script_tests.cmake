@@ -26,7 +26,7 @@ add_test(NAME scripts.test.results COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SO
 set_tests_properties(scripts.test.results PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped")
 # A minute on an idle machine; by hand for an hour: scripts/torture --minutes 60. The seed changes with each commit, so
 # ten commits kill campaigns and minimisations a hundred times, at different moments.
-add_test(NAME scripts.Torture COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/torture --rounds 1 --kills 6 --seed commits --graze $<TARGET_FILE:graze>)
+add_test(NAME scripts.Torture COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/torture --rounds 2 --kills 10 --seed commits --graze $<TARGET_FILE:graze>)
 set_tests_properties(scripts.Torture PROPERTIES TIMEOUT 1500)
 # Defects planted in our own sources. Each is compiled with Ninja's commands of this build.
 if(CMAKE_GENERATOR STREQUAL Ninja)
@@ -43,7 +43,7 @@ endif()
 add_test(NAME scripts.test.campaign COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/campaign.test.py ${CMAKE_BINARY_DIR} ${CMAKE_CXX_COMPILER})
 # Three seconds for each fuzz target, from another start each time, plus build time. By hand for an hour:
 # scripts/fuzz --seconds 400.
-add_test(NAME scripts.Fuzz COMMAND ${PROJECT_SOURCE_DIR}/scripts/fuzz --seconds 1 --build ${CMAKE_BINARY_DIR}/fuzz-targets)
+add_test(NAME scripts.Fuzz COMMAND ${PROJECT_SOURCE_DIR}/scripts/fuzz --seconds 3 --build ${CMAKE_BINARY_DIR}/fuzz-targets)
 set_tests_properties(scripts.Fuzz PROPERTIES TIMEOUT 900 SKIP_RETURN_CODE 77)
 # Tests of a minute or more start first.
 set_tests_properties(scripts.Fuzz scripts.Torture scripts.test.torture PROPERTIES COST 100)

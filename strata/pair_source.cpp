@@ -76,21 +76,14 @@ std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs,
   if (types != PairTypes::f32) {
     for (const StratumInfo& row : kDoubleStrata) all.push_back(double_source_of(seed, row));
   }
-  const auto names_of = [](const PairSource& source) {
-    std::vector<std::string> names{source.id};
-    if (const auto base = stratum_in_doubles(source.id)) names.emplace_back(*base);
-    return names;
-  };
-  const auto matches = [&](const PairSource& source, const std::string& glob) {
-    const std::vector<std::string> names = names_of(source);
-    return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return matches_any({glob}, name); });
-  };
-  bool any_wanted = false;
+  // A pattern with "/f64" behind it matches the names of strata of doubles that it matches without.
+  std::vector<std::string> patterns = globs;
   for (const std::string& glob : globs) {
-    const bool leaves_out = glob.starts_with('!');
-    any_wanted |= !leaves_out;
-    const std::string wanted = glob.substr(leaves_out);
-    if (std::none_of(all.begin(), all.end(), [&](const PairSource& source) { return matches(source, wanted); })) {
+    patterns.push_back(glob + std::string(kInDoubles));
+    const std::string wanted = glob.substr(glob.starts_with('!'));
+    const std::vector<std::string> either = {wanted, wanted + std::string(kInDoubles)};
+    if (std::none_of(all.begin(), all.end(),
+                     [&](const PairSource& source) { return matches_any(either, source.id); })) {
       std::vector<std::string> ids;
       for (const PairSource& source : all) ids.push_back(source.id);
       throw UsageError("no stratum matches '" + printable(glob) + "'; `graze strata` lists them" +
@@ -99,13 +92,7 @@ std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs,
   }
   std::vector<PairSource> sources;
   for (PairSource& source : all) {
-    bool wanted = !any_wanted, left_out = false;
-    for (const std::string& glob : globs) {
-      const bool leaves_out = glob.starts_with('!');
-      if (!matches(source, glob.substr(leaves_out))) continue;
-      (leaves_out ? left_out : wanted) = true;
-    }
-    if (wanted && !left_out) sources.push_back(std::move(source));
+    if (matches_any(patterns, source.id)) sources.push_back(std::move(source));
   }
   if (sources.empty()) {
     std::string names;

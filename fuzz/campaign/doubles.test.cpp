@@ -160,9 +160,21 @@ TEST_F(CampaignOfDoubles, RecordsAreReadBackAndChecked) {
   text[at] = text[at] == '4' ? '5' : '4';
   write_whole(file, text);
   EXPECT_THROW(read_cases(directory, summary["signatures"][0], PairTypes::both), corpus::FormatError);
-  // Errors of storing that are more than the errors.
+  // An exact lane that is wrong otherwise than by storing, and errors of storing that are more than the errors.
   std::filesystem::remove(directory / kDatabase);
   EXPECT_EQ(checked_summary(directory), summary);  // also without its database
+  for (const char* lane : {"exact/f32/cpu", "exact/f64/cpu"}) {
+    Json wrong = summary;
+    Json& row = wrong["strata"]["near_vertex_face/f64"];
+    row["lanes"][lane]["false_positive"] = row["lanes"][lane]["false_positive"].get<int>() + 1;
+    for (auto& [name, margin] : row["margins"].items()) {
+      if (!name.starts_with('+')) continue;
+      margin["wrong"][lane] = margin["wrong"].value(lane, 0) + 1;
+      break;
+    }
+    write_whole(directory / "summary.json", wrong.dump(1) + '\n');
+    EXPECT_THROW(checked_summary(directory), std::runtime_error) << lane;
+  }
   Json edited = summary;
   edited["strata"]["near_vertex_face/f64"]["lanes"]["moller_1997/f32/cpu"]["stored"] = 451;
   write_whole(directory / "summary.json", edited.dump(1) + '\n');

@@ -38,9 +38,6 @@ auto visit(const Entry& entry, const With& with) {
   return entry.doubles ? with(*entry.doubles) : with(entry.pair);
 }
 
-// A pair is one of doubles if it has the field coordinates=f64, if a number
-// is beyond float32's largest, or if a hexadecimal number has more digits than float32 holds.
-
 // Input that is not in the format; what() is one line: "FILE:LINE: expected 18 numbers, found 17".
 struct FormatError : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -49,9 +46,12 @@ struct FormatError : std::runtime_error {
 // Reads the entries of a stream one at a time, so that it can follow a pipe as it is written. Without a version line it
 // also accepts pasted text: commas, brackets, f suffixes, one vertex per line, arrays of C or Python, and an OBJ
 // fragment of two faces, or of six vertices without faces.
+//
+// A pair is one of doubles if it has the field coordinates=f64, if a number is beyond float32's largest, or if a
+// hexadecimal number has more digits than float32 holds.
 class PairReader {
  public:
-  // Requires: in outlives the reader. name: what error messages call the stream.
+  // Requires: in outlives the reader. name: what error messages call the stream. taken: f32 or both.
   PairReader(std::istream& in, std::string name, PairTypes taken = PairTypes::f32);
 
   // Returns: the next entry, or nothing at the end of the stream.

@@ -19,9 +19,8 @@ using Algorithms = std::tuple<ProjectedSat, IntervalOverlap, Moller1997, GuigueD
 inline constexpr int kAlgorithmCount = std::tuple_size_v<Algorithms>;
 
 // Widens the pair's stored bits to Real and decides them with decide(a, b).
-// Requires: Real holds the pair's coordinates.
-template <class Real, class AnyPair, class Decide>
-GRAZE_HD Verdict decide_widened(const AnyPair& pair, const Decide& decide) {
+template <class Real, class Decide>
+GRAZE_HD Verdict decide_widened(const Pair& pair, const Decide& decide) {
   Vec3<Real> a[3], b[3];
   for (int i = 0; i < 3; ++i) {
     a[i] = {Real(pair.a[i].x), Real(pair.a[i].y), Real(pair.a[i].z)};
@@ -31,8 +30,8 @@ GRAZE_HD Verdict decide_widened(const AnyPair& pair, const Decide& decide) {
 }
 
 // The decision of one algorithm in one scalar type.
-template <class Algorithm, class Real, class AnyPair>
-GRAZE_HD Verdict decide_widened(const AnyPair& pair) {
+template <class Algorithm, class Real>
+GRAZE_HD Verdict decide_widened(const Pair& pair) {
   return decide_widened<Real>(pair, [](const auto& a, const auto& b) { return Algorithm::decide(a, b); });
 }
 

@@ -280,11 +280,10 @@ TEST_F(Shards, StatusRefusesADamagedStatus) {
 TEST_F(Shards, AStatusOfAnotherProgramIsNotReplaced) {
   const std::string command = "graze fuzz --pairs 40 --strata uniform --lanes '*/f32/cpu' --out c";
   expect_done(command);
-  for (const char* foreign : {"{\"hello\": [1, 2, 3]}", "{}"}) {
-    std::ofstream(shell.folder / "c/status.json") << foreign;
-    expect_error(command, 2, {"c/status.json", "--force"});
-    EXPECT_EQ(contents(shell.folder / "c/status.json"), foreign);
-  }
+  const std::string foreign = "{\"hello\": [1, 2, 3]}";
+  std::ofstream(shell.folder / "c/status.json") << foreign;
+  expect_error(command, 2, {"c/status.json", "--force"});
+  EXPECT_EQ(contents(shell.folder / "c/status.json"), foreign);
   std::ofstream(shell.folder / "c/status.json") << "{\n \"state\": \"runn";  // cut short by a full disk
   expect_done(command);
 }

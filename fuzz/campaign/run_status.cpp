@@ -149,7 +149,8 @@ void remove_damaged_status(const fs::path& directory) {
     if (may_replace_foreign) return;
     if (fs::is_symlink(file))
       throw UsageError(cannot("replace", file, "it is a link to a file that is not a status; remove the link"));
-    if (const Json there = parse_shallow(read_whole(file)); there.is_object() && !there.contains("state"))
+    const Json there = parse_shallow(read_whole(file));
+    if (there.is_object() && !there.empty() && !there.contains("state"))
       expect_own(file, Json{{"state", ""}, {"pairs", 0}}.dump(1));  // another program's
     std::error_code later;                                          // where it cannot be removed, it cannot be written
     fs::remove(file, later);

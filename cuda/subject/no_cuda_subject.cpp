@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Replaces cuda_subject.cpp and everything that it needs in builds of scripts/campaign.
+// Replaces cuda_subject.cpp and everything that it needs in builds of scripts/campaign. Every build links
+// graze_campaign with it: a function of cuda_subject.h that is missing here would be taken from cuda_subject.cpp, and
+// then the others are defined twice, which the linker refuses.
 #include "core/error.h"
 #include "cuda/subject/cuda_subject.h"
 
@@ -8,7 +10,8 @@ namespace graze::cuda {
 std::string evidence(const CudaBuild&) { return "no twin: not in this build"; }
 
 std::vector<CudaBuild> build_cuda_subject(const std::filesystem::path&, const std::string&,
-                                          const std::vector<std::string>&, const std::filesystem::path&) {
+                                          const std::vector<std::string>&, const std::filesystem::path&,
+                                          std::optional<Variant>) {
   throw std::runtime_error(not_in_a_campaigns_build("a subject in CUDA"));
 }
 

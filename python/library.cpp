@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions that the Python package calls through ctypes (python/graze/_library.py). An array of pairs is float32
-// of shape (n, 2, 3, 3): Pair. Each function returns 0; 1 after a failure, which graze_py_error describes; or 2 if it
-// was asked to stop. No exception leaves this file.
+// The functions that the Python package calls through ctypes (python/graze/_library.py). An array of pairs has the shape
+// (n, 2, 3, 3): Pair, or with `doubles` DoublePair; one of triangles has the shape (n, 3, 3), likewise. Each function
+// returns 0; 1 after a failure, which graze_py_error describes; or 2 if it was asked to stop. No exception leaves this
+// file.
 #include <fmt/format.h>
 #include <graze/test.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <exception>
 #include <limits>
@@ -78,11 +80,54 @@ DecideBlock decider_of(const std::string& id) {
   return block;
 }
 
-using Triangle = std::array<Vec3<float>, 3>;
+// Calls f with the pairs as Pair or DoublePair.
+template <class F>
+void visit(const void* pairs, int doubles, F f) {
+  doubles ? f(static_cast<const DoublePair*>(pairs)) : f(static_cast<const Pair*>(pairs));
+}
 
-std::span<const Triangle> triangles_of(const float* numbers, std::uint64_t count) {
-  static_assert(sizeof(Triangle) == 9 * sizeof(float));
-  return {reinterpret_cast<const Triangle*>(numbers), count};
+template <class Real>
+Relation truth_of(const BasicPair<Real>& pair) {
+  return is_finite(pair) ? relation_of(pair) : Relation{};
+}
+
+// Decides up to kBlock pairs. A lane that takes no doubles decides them as float32 stores them.
+void decide_block(const DecideBlock& decide, const Pair* pairs, std::size_t count, std::uint64_t* intersects,
+                  std::uint64_t* declined) {
+  decide(pairs, count, intersects, declined);
+}
+
+void decide_block(const DecideBlock& decide, const DoublePair* pairs, std::size_t count, std::uint64_t* intersects,
+                  std::uint64_t* declined) {
+  if (decide.decides_doubles()) return decide(pairs, count, intersects, declined);
+  std::vector<Pair> stored(count);
+  std::transform(pairs, pairs + count, stored.begin(), stored_in_float32);
+  decide(stored.data(), count, intersects, declined);
+}
+
+template <class Real>
+using Triangle = std::array<Vec3<Real>, 3>;
+template <class Real>
+using Triangles = std::span<const Triangle<Real>>;
+
+template <class Real>
+Triangles<Real> triangles_of(const void* numbers, std::uint64_t count) {
+  static_assert(sizeof(Triangle<Real>) == 9 * sizeof(Real));
+  return {static_cast<const Triangle<Real>*>(numbers), count};
+}
+
+// For boxes. Rounding, also to the largest float32, keeps the order of coordinates, so the boxes of rounded triangles
+// miss no pair.
+std::vector<Triangle<float>> rounded(Triangles<double> triangles) {
+  static constexpr double kMost = std::numeric_limits<float>::max();
+  const auto round = [](double x) { return static_cast<float>(std::isfinite(x) ? std::clamp(x, -kMost, kMost) : x); };
+  std::vector<Triangle<float>> result(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    std::transform(triangles[i].begin(), triangles[i].end(), result[i].begin(), [&](const Vec3<double>& v) {
+      return Vec3<float>{round(v.x), round(v.y), round(v.z)};
+    });
+  }
+  return result;
 }
 
 // Whether no tiny translation separates the triangles, or they are coplanar and share an area.
@@ -96,6 +141,26 @@ std::vector<std::string> parts_of(std::string_view names) {
     begin = end + 1;
   }
   return parts;
+}
+
+// Finds the pairs of triangles that intersect within a mesh, or between two, sorted. boxes: those of the triangles.
+template <class Real>
+void find_intersections(Triangles<Real> first, Triangles<Real> second, const strata::BoxSlabs& boxes,
+                        bool only_piercing) {
+  tbb::enumerable_thread_specific<std::vector<std::array<std::uint32_t, 2>>> parts;
+  tbb::parallel_for(std::size_t{0}, boxes.size(), [&](std::size_t slab) {
+    std::vector<std::array<std::uint32_t, 2>>& part = parts.local();
+    boxes.pairs(slab, [&](std::uint32_t i, std::uint32_t j) {
+      if (stop_requested.load(std::memory_order_relaxed)) throw Stopped();
+      const Triangle<Real>&of_a = first[i], &of_b = second[j];
+      const BasicPair<Real> pair{{of_a[0], of_a[1], of_a[2]}, {of_b[0], of_b[1], of_b[2]}};
+      const Relation r = truth_of(pair);
+      if (only_piercing ? pierces(r) : r.intersects()) part.push_back({i, j});
+    });
+  });
+  found.clear();
+  for (const auto& part : parts) found.insert(found.end(), part.begin(), part.end());
+  std::sort(found.begin(), found.end());
 }
 
 }  // namespace
@@ -122,14 +187,21 @@ const char* graze_py_lanes() {
 
 // Draws the pairs [first, first + count) of `all` pairs of the strata.
 int graze_py_pairs(const char* names, std::uint64_t seed, std::uint64_t all, std::uint64_t first, std::uint64_t count,
-                   Pair* pairs) {
+                   void* pairs, int doubles) {
   return guarded([&] {
     std::uint64_t begin = 0;
-    for (const strata::PairSource& source : strata::stratum_sources(seed, all, parts_of(names))) {
+    const PairTypes types = doubles ? PairTypes::f64 : PairTypes::f32;
+    for (const strata::PairSource& source : strata::stratum_sources(seed, all, parts_of(names), types)) {
       const std::uint64_t from = std::max(first, begin), to = std::min(first + count, begin + source.pairs);
       if (from < to)
         in_blocks(to - from, [&](std::size_t at, std::size_t some) {
-          for (std::size_t i = at; i < at + some; ++i) pairs[from - first + i] = source.pair(from - begin + i);
+          for (std::size_t i = at; i < at + some; ++i) {
+            if (doubles) {
+              static_cast<DoublePair*>(pairs)[from - first + i] = source.double_pair(from - begin + i);
+            } else {
+              static_cast<Pair*>(pairs)[from - first + i] = source.pair(from - begin + i);
+            }
+          }
         });
       begin += source.pairs;
     }
@@ -138,19 +210,21 @@ int graze_py_pairs(const char* names, std::uint64_t seed, std::uint64_t all, std
 
 // The exact relation of each pair: verdict (1, 0, -1 declined), contact (0 none, 1 point, 2 segment, 3 area, 4
 // unknown), sign of the margin, dimension of both hulls, whether one plane holds all.
-int graze_py_relations(const Pair* pairs, std::uint64_t count, std::int8_t (*relations)[6]) {
+int graze_py_relations(const void* numbers, int doubles, std::uint64_t count, std::int8_t (*relations)[6]) {
   return guarded([&] {
-    in_blocks(count, [&](std::size_t first, std::size_t some) {
-      for (std::size_t i = first; i < first + some; ++i) {
-        const Relation r = truth(pairs[i]);
-        const std::int8_t row[6] = {code(r.verdict),
-                                    static_cast<std::int8_t>(r.contact),
-                                    static_cast<std::int8_t>(r.margin_sign),
-                                    static_cast<std::int8_t>(r.hulls.dimension_a),
-                                    static_cast<std::int8_t>(r.hulls.dimension_b),
-                                    static_cast<std::int8_t>(r.hulls.coplanar)};
-        std::memcpy(relations[i], row, sizeof row);
-      }
+    visit(numbers, doubles, [&](const auto* pairs) {
+      in_blocks(count, [&](std::size_t first, std::size_t some) {
+        for (std::size_t i = first; i < first + some; ++i) {
+          const Relation r = truth_of(pairs[i]);
+          const std::int8_t row[6] = {code(r.verdict),
+                                      static_cast<std::int8_t>(r.contact),
+                                      static_cast<std::int8_t>(r.margin_sign),
+                                      static_cast<std::int8_t>(r.hulls.dimension_a),
+                                      static_cast<std::int8_t>(r.hulls.dimension_b),
+                                      static_cast<std::int8_t>(r.hulls.coplanar)};
+          std::memcpy(relations[i], row, sizeof row);
+        }
+      });
     });
   });
 }
@@ -160,7 +234,7 @@ int graze_py_margins(const Pair* pairs, std::uint64_t count, double (*margins)[2
   return guarded([&] {
     in_blocks(count, [&](std::size_t first, std::size_t some) {
       for (std::size_t i = first; i < first + some; ++i) {
-        const Relation r = truth(pairs[i]);
+        const Relation r = truth_of(pairs[i]);
         double &least = margins[i][0], &most = margins[i][1];
         least = most = r.verdict == Verdict::declined ? std::numeric_limits<double>::quiet_NaN() : 0;
         if (r.verdict == Verdict::declined || r.margin_sign == 0) continue;
@@ -173,20 +247,26 @@ int graze_py_margins(const Pair* pairs, std::uint64_t count, double (*margins)[2
 }
 
 // The lane's verdict on each pair: 1, 0, or -1 declined.
-int graze_py_verdicts(const char* lane, const Pair* pairs, std::uint64_t count, std::int8_t* verdicts) {
+int graze_py_verdicts(const char* lane, const void* numbers, int doubles, std::uint64_t count, std::int8_t* verdicts) {
   return guarded([&] {
     const DecideBlock decide = decider_of(lane);
-    in_blocks(count, [&](std::size_t first, std::size_t some) {
-      std::uint64_t intersects[kBlock / 64], declined[kBlock / 64];
-      decide(pairs + first, some, intersects, declined);
-      for (std::size_t i = 0; i < some; ++i)
-        verdicts[first + i] = code(verdict_of_bits(intersects[i / 64] >> i % 64 & 1, declined[i / 64] >> i % 64 & 1));
+    const std::optional<LaneName> name = parse_lane_name(lane);
+    if (doubles && name->scalar != "f32" && !decide.decides_doubles())
+      throw std::invalid_argument(fmt::format("the lane {} takes float32 alone; round the pairs yourself", lane));
+    visit(numbers, doubles, [&](const auto* pairs) {
+      in_blocks(count, [&](std::size_t first, std::size_t some) {
+        std::uint64_t intersects[kBlock / 64], declined[kBlock / 64];
+        decide_block(decide, pairs + first, some, intersects, declined);
+        for (std::size_t i = 0; i < some; ++i)
+          verdicts[first + i] = code(verdict_of_bits(intersects[i / 64] >> i % 64 & 1, declined[i / 64] >> i % 64 & 1));
+      });
     });
   });
 }
 
 // Whether each triangle meets the reference: 1, 0, or -1 declined.
-int graze_py_meets(const float* reference, const float* triangles, std::uint64_t count, std::int8_t* verdicts) {
+int graze_py_meets(const void* reference, const void* triangles, int doubles, std::uint64_t count,
+                   std::int8_t* verdicts) {
   return guarded([&] {
     static graze_context* const context = graze_open();
     graze_triangles part{};
@@ -195,6 +275,7 @@ int graze_py_meets(const float* reference, const float* triangles, std::uint64_t
     part.rows = triangles;
     graze_query query{};
     query.size = sizeof query;
+    query.coordinates = doubles ? GRAZE_F64 : GRAZE_F32;
     query.references = reference;
     query.reference_count = query.part_count = 1;
     query.parts = &part;
@@ -209,24 +290,16 @@ int graze_py_meets(const float* reference, const float* triangles, std::uint64_t
 
 // The pairs of triangles that intersect within a mesh (b null), or between two; only_piercing: without those that only
 // touch. Sets their number; graze_py_take copies them, sorted, for the same thread.
-int graze_py_intersections(const float* a, std::uint64_t count_a, const float* b, std::uint64_t count_b,
+int graze_py_intersections(const void* a, std::uint64_t count_a, const void* b, std::uint64_t count_b, int doubles,
                            int only_piercing, std::uint64_t* count) {
   return guarded([&] {
-    const std::span<const Triangle> first = triangles_of(a, count_a), second = b ? triangles_of(b, count_b) : first;
-    const strata::BoxSlabs slabs(first, b ? std::optional(second) : std::nullopt);
-    tbb::enumerable_thread_specific<std::vector<std::array<std::uint32_t, 2>>> parts;
-    tbb::parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t slab) {
-      std::vector<std::array<std::uint32_t, 2>>& part = parts.local();
-      slabs.pairs(slab, [&](std::uint32_t i, std::uint32_t j) {
-        if (stop_requested.load(std::memory_order_relaxed)) throw Stopped();
-        const Triangle &of_a = first[i], &of_b = second[j];
-        const Relation r = relation_of({{of_a[0], of_a[1], of_a[2]}, {of_b[0], of_b[1], of_b[2]}});
-        if (only_piercing ? pierces(r) : r.intersects()) part.push_back({i, j});
-      });
-    });
-    found.clear();
-    for (const auto& part : parts) found.insert(found.end(), part.begin(), part.end());
-    std::sort(found.begin(), found.end());
+    const auto search = [&]<class Real>(Real, const auto& boxes_of) {
+      const auto first = triangles_of<Real>(a, count_a), second = b ? triangles_of<Real>(b, count_b) : first;
+      const auto boxes = boxes_of(first), others = b ? boxes_of(second) : decltype(boxes_of(second))();
+      const strata::BoxSlabs slabs(boxes, b ? std::optional<Triangles<float>>(others) : std::nullopt);
+      find_intersections<Real>(first, second, slabs, only_piercing != 0);
+    };
+    doubles ? search(double{}, rounded) : search(float{}, [](Triangles<float> t) { return t; });
     *count = found.size();
   });
 }

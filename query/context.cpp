@@ -49,13 +49,14 @@ void graze_context::answer(const graze_query& query, graze_answer& answer) {
   std::exception_ptr failed;
   if (question.devices.empty()) {
     try {
-      run_on_cpu({question.references, question.parts, &question.lane, query.mode == GRAZE_ANY}, question.threads,
-                 collector);
+      run_on_cpu({question.in_doubles, question.references, question.reference_count, question.parts, &question.lane,
+                  query.mode == GRAZE_ANY},
+                 question.threads, collector);
     } catch (...) {
       failed = std::current_exception();
     }
   } else {
-    graze::cuda::DeviceQuestion asked{question.references,
+    graze::cuda::DeviceQuestion asked{{static_cast<const float*>(question.references), question.reference_count * 9},
                                       question.parts,
                                       question.places,
                                       &question.lane,

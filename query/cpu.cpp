@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Works on blocks of 64 triangles. A block is transposed into columns, and each reference's slabs test four triangles
-// at a time. Undecided pairs are gathered until there are enough to decide side by side. Lanes other than exact get all
-// pairs.
+// Works on blocks of 64 triangles. A block is transposed into columns of floats, and each reference's slabs test four
+// triangles at a time. Undecided pairs are gathered until there are enough to decide side by side. Lanes other than
+// exact get all pairs. Triangles of doubles are rounded for the slabs alone, as seen from the reference's first vertex:
+// a difference of doubles has a small relative error wherever the triangles are.
 #include "query/cpu.h"
 
 #include <tbb/parallel_for.h>
@@ -11,9 +12,11 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "core/exact/exact.h"
 #include "core/exact/prepared_triangle.h"
 #include "core/exact_blocks/decide.h"
 #include "core/pair.h"
@@ -24,7 +27,7 @@
 namespace graze::query {
 namespace {
 
-constexpr std::size_t kBlock = 64;
+constexpr std::size_t kBlock = 64, kTogether = 256;
 constexpr std::uint64_t kFirstOfAny = 64, kMostOfRange = 1 << 15, kAlone = 1 << 13;
 
 using Four = float __attribute__((vector_size(16)));
@@ -50,26 +53,42 @@ Four load(const float* at) {
 
 void store(float* at, Four four) { std::memcpy(at, &four, sizeof four); }
 
-// Up to 64 triangles: as rows, which point into the array if it has rows, and as columns.
+template <class Real>
+bool is_finite(const Real* triangle) {
+  return std::all_of(triangle, triangle + 9, [](Real x) { return std::isfinite(x); });
+}
+
+// Up to 64 triangles: as rows, which point into the array if it has rows, and as columns, those of doubles once
+// look_from has filled them.
+template <class Real>
 struct Block {
   alignas(16) float columns[9][kBlock];
-  float copy[kBlock][9];
-  const float* rows[kBlock];
+  Real copy[kBlock][9];
+  const Real* rows[kBlock];
 
   void read(const cuda::TriangleArray& array, std::uint64_t first, std::size_t count) {
     for (std::size_t i = 0; i < kBlock; ++i) {
       const std::uint64_t place = first + std::min(i, count - 1);
       if (array.layout == cuda::Layout::rows) {
-        rows[i] = reinterpret_cast<const float*>(array.rows + place * array.stride);
+        rows[i] = reinterpret_cast<const Real*>(array.rows + place * array.stride);
       } else {
         array.load(place, copy[i]);
         rows[i] = copy[i];
       }
     }
-    for (std::size_t i = 0; i < kBlock; i += 4) {
-      transpose(i, 0);
-      transpose(i, 4);
-      for (std::size_t j = i; j < i + 4; ++j) columns[8][j] = rows[j][8];
+    if constexpr (std::is_same_v<Real, float>) {
+      for (std::size_t i = 0; i < kBlock; i += 4) {
+        transpose(i, 0);
+        transpose(i, 4);
+        for (std::size_t j = i; j < i + 4; ++j) columns[8][j] = rows[j][8];
+      }
+    }
+  }
+
+  // Differences beyond float32 become infinite.
+  void look_from(const double* origin) {
+    for (std::size_t k = 0; k < 9; ++k) {
+      for (std::size_t i = 0; i < kBlock; ++i) columns[k][i] = static_cast<float>(rows[i][k] - origin[k % 3]);
     }
   }
 
@@ -86,6 +105,10 @@ struct Block {
 
   std::uint64_t not_finite() const {
     std::uint64_t result = 0;
+    if constexpr (std::is_same_v<Real, double>) {
+      for (std::size_t i = 0; i < kBlock; ++i) result |= std::uint64_t{!is_finite(rows[i])} << i;
+      return result;
+    }
     for (std::size_t i = 0; i < kBlock; i += 4) {
       Four all = {};  // becomes NaN at the first coordinate that is not finite
       for (std::size_t k = 0; k < 9; ++k) all += load(columns[k] + i) * 0.0f;
@@ -122,15 +145,28 @@ struct Block {
   }
 };
 
+void decide_exactly(const std::vector<Pair>& pairs, std::size_t count, std::uint64_t* hits) {
+  std::uint64_t declined[kTogether / 64];
+  exact::decide(coordinates(pairs[0]), count, hits, declined);
+}
+
+void decide_exactly(const std::vector<DoublePair>& pairs, std::size_t count, std::uint64_t* hits) {
+  std::fill_n(hits, kTogether / 64, 0);
+  for (std::size_t i = 0; i < count; ++i)
+    hits[i / 64] |= std::uint64_t{exact::intersects(&pairs[i].a[0].x, &pairs[i].b[0].x)} << i % 64;
+}
+
+template <class Real>
 class Worker {
  public:
   explicit Worker(const CpuQuestion& question)
       : question_(question), pairs_(question.lane->exact ? kTogether : kBlock) {
     open_.reserve(kTogether);
-    for (std::size_t r = 0; r < question.references.size() / 9; ++r) {
-      const float* reference = question.references.data() + 9 * r;
-      finite_.push_back(std::all_of(reference, reference + 9, [](float x) { return std::isfinite(x); }));
-      references_.push_back(exact::prepare(finite_.back() ? reference : kOrigin));
+    for (std::uint64_t r = 0; r < question.reference_count; ++r) {
+      const Real* reference = static_cast<const Real*>(question.references) + 9 * r;
+      finite_.push_back(is_finite(reference));
+      at_.push_back(finite_.back() ? reference : kOrigin);
+      references_.push_back(seen_from_itself(at_.back()));
     }
   }
 
@@ -149,7 +185,8 @@ class Worker {
         declined = all;
         if (!finite_[r]) continue;
         if (question_.lane->exact) {
-          const Block::Sights sights = block_.look_past(references_[r]);
+          if constexpr (std::is_same_v<Real, double>) block_.look_from(at_[r]);
+          const typename Block<Real>::Sights sights = block_.look_past(references_[r]);
           declined = all & sights.large ? all & block_.not_finite() : 0;
           gather(r, all & ~(declined | sights.beyond), hits);
         } else {
@@ -164,24 +201,29 @@ class Worker {
   }
 
  private:
-  static constexpr float kOrigin[9] = {};
+  static constexpr Real kOrigin[9] = {};
 
-  static constexpr std::size_t kTogether = 256;
+  static exact::PreparedTriangle seen_from_itself(const float* reference) { return exact::prepare(reference); }
+  static exact::PreparedTriangle seen_from_itself(const double* reference) {
+    float seen[9];
+    for (int k = 0; k < 9; ++k) seen[k] = static_cast<float>(reference[k] - reference[k % 3]);
+    return exact::prepare(seen, true);
+  }
 
   // Adds the pairs that the slabs leave open. Their bits are set when they are decided.
   void gather(std::size_t r, std::uint64_t open, std::uint64_t& hits) {
     for (std::uint64_t left = open; left != 0; left &= left - 1) {
-      float* pair = coordinates(pairs_[open_.size()]);
-      std::memcpy(pair, references_[r].v, sizeof references_[r].v);
-      std::memcpy(pair + 9, block_.rows[std::countr_zero(left)], sizeof references_[r].v);
+      Real* pair = coordinates(pairs_[open_.size()]);
+      std::copy_n(at_[r], 9, pair);
+      std::copy_n(block_.rows[std::countr_zero(left)], 9, pair + 9);
       open_.push_back({&hits, left & -left});
       if (open_.size() == kTogether) decide_open();
     }
   }
 
   void decide_open() {
-    std::uint64_t hits[kTogether / 64], declined[kTogether / 64];
-    if (!open_.empty()) exact::decide(coordinates(pairs_[0]), open_.size(), hits, declined);
+    std::uint64_t hits[kTogether / 64];
+    if (!open_.empty()) decide_exactly(pairs_, open_.size(), hits);
     for (std::size_t i = 0; i < open_.size(); ++i) {
       if (hits[i / 64] >> i % 64 & 1) *open_[i].word |= open_[i].bit;
     }
@@ -190,10 +232,9 @@ class Worker {
 
   // Decides the wanted triangles by another lane.
   void decide(std::size_t r, std::uint64_t wanted, std::uint64_t& hits, std::uint64_t& declined) {
-    const exact::PreparedTriangle& reference = references_[r];
     for (std::size_t i = 0; i < kBlock; ++i) {
-      std::memcpy(coordinates(pairs_[i]), reference.v, sizeof reference.v);
-      std::memcpy(coordinates(pairs_[i]) + 9, block_.rows[i], sizeof reference.v);
+      std::copy_n(at_[r], 9, coordinates(pairs_[i]));
+      std::copy_n(block_.rows[i], 9, coordinates(pairs_[i]) + 9);
     }
     question_.lane->decide(pairs_.data(), kBlock, &hits, &declined);
     declined &= wanted;
@@ -201,10 +242,11 @@ class Worker {
   }
 
   const CpuQuestion& question_;
+  std::vector<const Real*> at_;  // the references, or kOrigin for those that are not finite
   std::vector<exact::PreparedTriangle> references_;
   std::vector<char> finite_;
-  Block block_;
-  std::vector<Pair> pairs_;
+  Block<Real> block_;
+  std::vector<BasicPair<Real>> pairs_;
   struct Open {
     std::uint64_t *word, bit;  // where its hit belongs in hits_
   };
@@ -212,12 +254,11 @@ class Worker {
   std::vector<std::uint64_t> hits_, declined_;
 };
 
-}  // namespace
-
-void run_on_cpu(const CpuQuestion& question, int threads, cuda::QueryWork& work) {
+template <class Real>
+void run(const CpuQuestion& question, int threads, cuda::QueryWork& work) {
   const std::uint64_t most =
-      std::max<std::uint64_t>(kBlock, kMostOfRange / (question.references.size() / 9) / kBlock * kBlock);
-  Worker here(question);
+      std::max<std::uint64_t>(kBlock, kMostOfRange / question.reference_count / kBlock * kBlock);
+  Worker<Real> here(question);
   cuda::QueryRange range;
   std::uint64_t done = 0, wanted = question.any ? std::min(kFirstOfAny, most) : std::min(kAlone, most);
   for (; threads == 1 || done < kAlone; wanted = std::min(most, wanted * 2)) {
@@ -225,12 +266,12 @@ void run_on_cpu(const CpuQuestion& question, int threads, cuda::QueryWork& work)
     here(range, work);
     done += range.count;
   }
-  const auto run = [&](Worker& worker) {
+  const auto go_on = [&](Worker<Real>& worker) {
     for (cuda::QueryRange next; work.next(-1, most, next);) worker(next, work);
   };
   const auto start = [&] {
-    Worker worker(question);
-    run(worker);
+    Worker<Real> worker(question);
+    go_on(worker);
   };
   // One task for each thread. A task that finds no free thread starts later and finds no range left.
   tbb::task_arena arena(threads);
@@ -239,7 +280,7 @@ void run_on_cpu(const CpuQuestion& question, int threads, cuda::QueryWork& work)
         0, threads,
         [&](int t) {
           try {
-            t == 0 ? run(here) : start();
+            t == 0 ? go_on(here) : start();
           } catch (...) {
             work.stop();
             throw;
@@ -247,6 +288,12 @@ void run_on_cpu(const CpuQuestion& question, int threads, cuda::QueryWork& work)
         },
         tbb::simple_partitioner());
   });
+}
+
+}  // namespace
+
+void run_on_cpu(const CpuQuestion& question, int threads, cuda::QueryWork& work) {
+  question.in_doubles ? run<double>(question, threads, work) : run<float>(question, threads, work);
 }
 
 }  // namespace graze::query

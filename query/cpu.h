@@ -10,9 +10,11 @@
 namespace graze::query {
 
 struct CpuQuestion {
-  std::span<const float> references;  // nine each
+  bool in_doubles = false;           // the coordinates of references and triangles; otherwise in floats
+  const void* references = nullptr;  // nine coordinates each
+  std::uint64_t reference_count = 0;
   std::span<const cuda::TriangleArray> parts;
-  const Lane* lane = nullptr;  // a host lane
+  const Lane* lane = nullptr;  // a host lane; the exact one for doubles
   bool any = false;
 };
 

@@ -63,6 +63,13 @@ Outputs all_of(graze_query query, std::size_t count, std::size_t room) {
   return outputs;
 }
 
+void expect_refused(const graze_query& query, const std::string& message) {
+  const Answer answer = Context().run(query);
+  EXPECT_EQ(answer.status, GRAZE_BAD_ARGUMENT);
+  EXPECT_EQ(answer.what(), message);
+  EXPECT_EQ(answer.hits + answer.position, 0u);
+}
+
 TEST(Query, OutputsTellTheSameOnOneCoreAndOnAll) {
   std::vector<Triangle> triangles = thesis_triangles(kCount);
   triangles[5][3] = NAN;
@@ -143,10 +150,80 @@ TEST(Query, LayoutsTellTheSame) {
   parts[0].count = 64 * 100;
   parts[1].count = 0;
   parts[2].count -= 64 * 100;
-  parts[2].rows += 9 * 64 * 100;
+  parts[2].rows = triangles.data() + 64 * 100;
   graze_query query = query_of(kThesisReference, parts[0]);
   query.part_count = 3;
   EXPECT_EQ(all_of(query, kCount, 0).bytes, rows.bytes);
+}
+
+// Doubles in every layout, with the results of the same numbers as floats.
+TEST(Query, DoublesInEveryLayoutTellTheSame) {
+  const std::vector<Triangle> floats = thesis_triangles(kCount);
+  const std::vector<std::uint8_t> bytes = all_of(query_of(kThesisReference, part_of(floats)), kCount, 0).bytes;
+  const auto doubled = [](const Triangle& t) {
+    DoubleTriangle result;
+    std::copy(t.begin(), t.end(), result.begin());
+    return result;
+  };
+  struct Wide {
+    DoubleTriangle triangle;
+    double number;
+  };
+  const DoubleTriangle reference = doubled(kThesisReference);
+  std::vector<DoubleTriangle> rows;
+  std::vector<Wide> wide;
+  std::vector<double> columns[9];
+  std::array<const double*, 9> at;
+  std::vector<std::array<double, 3>> vertices;
+  std::vector<std::array<std::uint32_t, 3>> faces;
+  for (const Triangle& t : floats) {
+    rows.push_back(doubled(t));
+    wide.push_back({rows.back(), 1});
+    const auto v = static_cast<std::uint32_t>(vertices.size());
+    for (std::size_t k = 0; k < 9; k += 3) vertices.push_back({t[k], t[k + 1], t[k + 2]});
+    faces.push_back({v, v + 1, v + 2});
+  }
+  for (std::size_t k = 0; k < 9; ++k) {
+    for (const Triangle& t : floats) columns[k].push_back(t[k]);
+    at[k] = columns[k].data();
+  }
+  for (const graze_triangles& part :
+       {rows_of(std::span<const DoubleTriangle>(rows)), rows_of(std::span<const Wide>(wide)), columns_of(at, kCount),
+        mesh_of(vertices, faces)}) {
+    for (const int executor : {GRAZE_ONE_CORE, GRAZE_ALL_CORES, GRAZE_AUTO}) {
+      graze_query query = query_of(reference, part);
+      query.executor = executor;
+      EXPECT_EQ(all_of(query, kCount, 0).bytes, bytes);
+    }
+    graze_query query = query_of(reference, part);
+    query.mode = GRAZE_ANY;
+    EXPECT_EQ(bytes[Context().run(query).first], 1);
+  }
+}
+
+TEST(Query, DoublesAreForTheExactLaneOnCores) {
+  const std::vector<DoubleTriangle> triangles(10, DoubleTriangle{0, 0, 0, 1, 0, 0, 0, 1, 0});
+  graze_triangles part = rows_of(std::span<const DoubleTriangle>(triangles));
+  const auto wrong = [&](const auto& change, const std::string& message) {
+    part = rows_of(std::span<const DoubleTriangle>(triangles));
+    graze_query query = query_of(triangles[0], part);
+    change(query);
+    expect_refused(query, message);
+  };
+  wrong([](auto& q) { q.coordinates = 2; }, "coordinates: expected 0 or 1, found 2");
+  wrong([](auto& q) { q.lane = "moller_1997/f64/cpu"; }, "lane: expected exact for doubles, found 'moller_1997/f64/cpu'");
+  for (const int executor : {GRAZE_ONE_GPU, GRAZE_ALL_GPUS}) {
+    wrong([&](auto& q) { q.executor = executor; },
+          "coordinates: expected floats for GPUs, found doubles, which are decided on cores");
+  }
+  wrong([&](auto&) { part.device = 0; },
+        "coordinates: expected floats for GPUs, found doubles, which are decided on cores");
+  wrong([&](auto&) { part.stride = 76; },
+        "parts[0]: expected a stride of 72 to 9223372036854775807 bytes that is a multiple of 8, found 76");
+  wrong([&](auto&) { part.rows = static_cast<const float*>(part.rows) + 1; },
+        "parts[0].rows: expected a pointer that is a multiple of 8");
+  wrong([](auto& q) { q.references = static_cast<const float*>(q.references) + 1; },
+        "references: expected a pointer that is a multiple of 8");
 }
 
 TEST(Query, AnyFindsTheFirstOnAnyNumberOfCores) {
@@ -185,13 +262,6 @@ TEST(Query, NothingIsNoTriangle) {
     EXPECT_TRUE(answer);
     EXPECT_EQ(answer.hits + answer.triangles + answer.declined, 0u);
   }
-}
-
-void expect_refused(const graze_query& query, const std::string& message) {
-  const Answer answer = Context().run(query);
-  EXPECT_EQ(answer.status, GRAZE_BAD_ARGUMENT);
-  EXPECT_EQ(answer.what(), message);
-  EXPECT_EQ(answer.hits + answer.position, 0u);
 }
 
 TEST(Query, WrongArgumentsAreNamed) {

@@ -187,7 +187,7 @@ TEST_F(QueryDevice, LayoutsAreTheCores) {
   device[2].rows = static_cast<const float*>(of_wide->data);
   device[3].rows = static_cast<const float*>(of_rows->data) + 9;  // not aligned for vector loads
   device[3].count = host[3].count -= 1;
-  host[3].rows += 9;
+  host[3].rows = static_cast<const float*>(host[3].rows) + 9;
   for (int k = 0; k < 4; ++k) {
     SCOPED_TRACE(k);
     graze_query query = query_of(kThesisReference, host[k]);

@@ -65,6 +65,88 @@ TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
   EXPECT_GT(filtered, 300'000u);
 }
 
+// The same for doubles. Rounded slabs must not lose a hit either, and must show most of what is apart.
+TEST(QueryVerdicts, OfDoublesAreTheOraclesOverAllStrata) {
+  constexpr std::size_t kTogether = 8, kPairsOfDoubles = 1'200;
+  std::size_t looked_past = 0, hits = 0, apart = 0;
+  for (const strata::StratumInfo& row : strata::kDoubleStrata) {
+    for (std::size_t begin = 0; begin < kPairsOfDoubles; begin += kTogether) {
+      std::vector<DoubleTriangle> references, triangles;
+      for (std::size_t i = begin; i < begin + kTogether; ++i) {
+        const DoublePair pair = strata::generate_doubles(7, row.stratum, i);
+        references.push_back(triangle(pair.a));
+        triangles.push_back(triangle(pair.b));
+      }
+      const graze_triangles part = rows_of(std::span<const DoubleTriangle>(triangles));
+      graze_query query = query_of(references[0], part);
+      query.reference_count = kTogether;
+      query.executor = GRAZE_ONE_CORE;
+      const std::vector<std::uint8_t> bytes = bytes_of(query, kTogether * kTogether);
+      for (std::size_t r = 0; r < kTogether; ++r) {
+        const auto seen_from = [&](const DoubleTriangle& t) {
+          Triangle seen;
+          for (std::size_t k = 0; k < 9; ++k) seen[k] = static_cast<float>(t[k] - references[r][k % 3]);
+          return seen;
+        };
+        const exact::PreparedTriangle prepared = exact::prepare(seen_from(references[r]).data(), true);
+        for (std::size_t t = 0; t < kTogether; ++t) {
+          DoublePair pair;
+          std::memcpy(pair.a, references[r].data(), sizeof pair.a);
+          std::memcpy(pair.b, triangles[t].data(), sizeof pair.b);
+          const bool meets = oracle::cgal_verdict(pair) == Verdict::intersects;
+          ASSERT_EQ(meets, oracle::gmp_contact(pair) != Contact::none);
+          ASSERT_EQ(bytes[r * kTogether + t], meets) << row.id << " 7 " << begin + r << ' ' << begin + t;
+          const bool beyond = exact::is_beyond(prepared, seen_from(triangles[t]).data());
+          ASSERT_FALSE(meets && beyond) << row.id << " 7 " << begin + r << ' ' << begin + t;
+          looked_past += beyond;
+          hits += meets;
+          apart += !meets;
+        }
+      }
+    }
+  }
+  EXPECT_GT(hits, 30'000u);
+  EXPECT_GT(looked_past, apart / 2);
+}
+
+// Where float32 stores both triangles in one plane.
+TEST(QueryVerdicts, OfDoublesAreNotThoseOfFloats) {
+  const auto at = [](double x) { return DoubleTriangle{x, 0, 0, x, 1, 0, x, 0, 1}; };
+  const std::vector<DoubleTriangle> triangles = {at(1000000.02), at(1000000.01)};
+  const graze_triangles part = rows_of(std::span<const DoubleTriangle>(triangles));
+  const std::vector<std::uint8_t> bytes = bytes_of(query_of(at(1000000.01), part), 2);
+  EXPECT_EQ(bytes[0], 0);
+  EXPECT_EQ(bytes[1], 1);
+}
+
+// Differences of coordinates overflow, round to zero as floats, or are not finite.
+TEST(QueryVerdicts, HoldAtTheEndsOfTheDoubles) {
+  constexpr double kMost = 0x1.fffffffffffffp+1023;
+  for (const double unit : {0x1p-1074, 0x1p-1022, 0x1p-160, 0x1p-149, 1.0, 0x1p127, 0x1p128, 0x1p1022}) {
+    const DoubleTriangle reference = {0, 0, 0, unit, 0, 0, 0, unit, 0};
+    const std::vector<DoubleTriangle> triangles = {{0, 0, 0, 0, 0, unit, unit, 0, unit},
+                                                   {unit, unit, 0, 0, unit, 0, unit, unit, unit},
+                                                   {0, 0, unit, unit, 0, unit, 0, unit, unit},
+                                                   {0, 0, -kMost, unit, 0, kMost, 0, unit, kMost},
+                                                   {0, NAN, 0, 0, 0, 0, 0, 0, 0},
+                                                   {0, 0, 0, 0, 0, 0, 0, 0, INFINITY}};
+    const graze_triangles part = rows_of(std::span<const DoubleTriangle>(triangles));
+    EXPECT_EQ(bytes_of(query_of(reference, part), 6), (std::vector<std::uint8_t>{1, 1, 0, 1, 2, 2})) << unit;
+  }
+  const std::vector<DoubleTriangle> corners = {{kMost, -kMost, kMost, -kMost, kMost, kMost, kMost, kMost, -kMost},
+                                               {-kMost, -kMost, -kMost, -kMost, -kMost, kMost, kMost, -kMost, -kMost}};
+  const graze_triangles part = rows_of(std::span<const DoubleTriangle>(corners));
+  for (const DoubleTriangle& reference : corners) {
+    const std::vector<std::uint8_t> bytes = bytes_of(query_of(reference, part), 2);
+    for (std::size_t t = 0; t < 2; ++t) {
+      DoublePair pair;
+      std::memcpy(pair.a, reference.data(), sizeof pair.a);
+      std::memcpy(pair.b, corners[t].data(), sizeof pair.b);
+      EXPECT_EQ(bytes[t], oracle::cgal_verdict(pair) == Verdict::intersects);
+    }
+  }
+}
+
 TEST(QueryVerdicts, AreTheOraclesOnTheThesissTriangles) {
   const std::vector<Triangle> triangles = thesis_triangles(300'000);
   const graze_triangles part = part_of(triangles);

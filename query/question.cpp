@@ -30,7 +30,7 @@ void expect(bool holds, const std::string& what) {
   if (!holds) refuse(what);
 }
 
-void expect_aligned(const void* at, const std::string& name, std::size_t alignment = 4) {
+void expect_aligned(const void* at, const std::string& name, std::size_t alignment = alignof(std::uint32_t)) {
   expect(at != nullptr, name + ": expected a pointer, found NULL");
   expect(reinterpret_cast<std::uintptr_t>(at) % alignment == 0,
          name + ": expected a pointer that is a multiple of " + std::to_string(alignment));
@@ -49,45 +49,46 @@ void expect_fits(const void* at, std::uint64_t count, std::size_t stride, std::s
                                             " bytes");
 }
 
-std::size_t stride_of(std::size_t stride, std::size_t least, const std::string& name) {
+std::size_t stride_of(std::size_t stride, std::size_t least, std::size_t alignment, const std::string& name) {
   if (stride == 0) return least;
-  expect(stride >= least && stride <= PTRDIFF_MAX && stride % 4 == 0,
+  expect(stride >= least && stride <= PTRDIFF_MAX && stride % alignment == 0,
          name + ": expected a stride of " + std::to_string(least) + " to " + std::to_string(PTRDIFF_MAX) +
-             " bytes that is a multiple of 4, found " + std::to_string(stride));
+             " bytes that is a multiple of " + std::to_string(alignment) + ", found " + std::to_string(stride));
   return stride;
 }
 
-cuda::TriangleArray array_of(const graze_triangles& part, const std::string& name) {
-  constexpr std::size_t kElement[] = {36, 4, 12};  // bytes, by layout
+// real: the size of a coordinate in bytes.
+cuda::TriangleArray array_of(const graze_triangles& part, std::size_t real, const std::string& name) {
+  const std::size_t element[] = {9 * real, real, 3 * sizeof(std::uint32_t)};  // bytes, by layout
   expect(part.count <= kMostTriangles, name + ": expected at most 2^48 triangles, found " + std::to_string(part.count));
   expect(part.layout >= GRAZE_ROWS && part.layout <= GRAZE_MESH,
          name + ": expected a layout of 0 to 2, found " + std::to_string(part.layout));
   cuda::TriangleArray array;
-  array.stride = stride_of(part.stride, kElement[part.layout], name);
-  if (part.layout == GRAZE_MESH) array.vertex_stride = stride_of(part.vertex_stride, 12, name + ".vertices");
+  array.stride = stride_of(part.stride, element[part.layout], part.layout == GRAZE_MESH ? 4 : real, name);
+  if (part.layout == GRAZE_MESH) array.vertex_stride = stride_of(part.vertex_stride, 3 * real, real, name + ".vertices");
   if (part.count == 0) return {};
   array.count = part.count;
   if (part.layout == GRAZE_ROWS) {
-    expect_aligned(part.rows, name + ".rows");
-    array.rows = reinterpret_cast<const char*>(part.rows);
-    expect_fits(array.rows, part.count, array.stride, 36, name + ".rows");
+    expect_aligned(part.rows, name + ".rows", real);
+    array.rows = static_cast<const char*>(part.rows);
+    expect_fits(array.rows, part.count, array.stride, 9 * real, name + ".rows");
   } else if (part.layout == GRAZE_COLUMNS) {
     array.layout = cuda::Layout::columns;
     for (int k = 0; k < 9; ++k) {
       const std::string column = name + ".columns[" + std::to_string(k) + "]";
-      expect_aligned(part.columns[k], column);
-      expect_fits(part.columns[k], part.count, array.stride, 4, column);
-      array.columns[k] = part.columns[k];
+      expect_aligned(part.columns[k], column, real);
+      expect_fits(part.columns[k], part.count, array.stride, real, column);
+      array.columns[k] = static_cast<const char*>(part.columns[k]);
     }
   } else {
     array.layout = cuda::Layout::mesh;
     expect_aligned(part.faces, name + ".faces");
-    expect_aligned(part.vertices, name + ".vertices");
+    expect_aligned(part.vertices, name + ".vertices", real);
     array.faces = reinterpret_cast<const char*>(part.faces);
-    array.vertices = reinterpret_cast<const char*>(part.vertices);
+    array.vertices = static_cast<const char*>(part.vertices);
     array.vertex_count = part.vertex_count;
     expect_fits(array.faces, part.count, array.stride, 12, name + ".faces");
-    expect_fits(array.vertices, part.vertex_count, array.vertex_stride, 12, name + ".vertices");
+    expect_fits(array.vertices, part.vertex_count, array.vertex_stride, 3 * real, name + ".vertices");
   }
   return array;
 }
@@ -143,7 +144,7 @@ bool has_device() {
 // Whether a device would answer sooner, including its start-up time.
 bool device_is_faster(const Question& question, int threads) {
   const double triangles = static_cast<double>(question.triangles);
-  const double by_cores = triangles * static_cast<double>(question.references.size() / 9) * kOnCore / threads;
+  const double by_cores = triangles * static_cast<double>(question.reference_count) * kOnCore / threads;
   return by_cores > kStart + triangles * kToDevice && has_device();
 }
 
@@ -153,9 +154,9 @@ void choose_executor(const graze_query& query, bool any_lane, Question& question
   const DecideBlock decide = on_cores(question.lane);
   auto executor = static_cast<graze_executor>(query.executor);
   if (executor == GRAZE_AUTO) {
-    const bool small = question.triangles * (question.references.size() / 9) < kWorthThreads;
+    const bool small = question.triangles * question.reference_count < kWorthThreads;
     const bool on_device = resident || (is_of_device(question.lane) && (!decide || has_device())) ||
-                           (any_lane && device_is_faster(question, cores));
+                           (any_lane && !question.in_doubles && device_is_faster(question, cores));
     executor = on_device ? GRAZE_ALL_GPUS : small ? GRAZE_ONE_CORE : GRAZE_ALL_CORES;
   }
   question.executor = executor;
@@ -166,6 +167,7 @@ void choose_executor(const graze_query& query, bool any_lane, Question& question
     question.threads = executor == GRAZE_ONE_CORE ? 1 : cores;
     return;
   }
+  expect(!question.in_doubles, "coordinates: expected floats for GPUs, found doubles, which are decided on cores");
   expect(any_lane || is_of_device(question.lane),
          "lane: expected a CUDA lane for GPUs, found '" + question.lane.id + "'");
   const int count = device_count("executor");
@@ -198,20 +200,25 @@ Question question_of(const graze_query& query) {
          "mode: expected 0 or 1, found " + std::to_string(query.mode));
   expect(query.executor >= GRAZE_AUTO && query.executor <= GRAZE_ALL_GPUS,
          "executor: expected 0 to 4, found " + std::to_string(query.executor));
+  expect(query.coordinates == GRAZE_F32 || query.coordinates == GRAZE_F64,
+         "coordinates: expected 0 or 1, found " + std::to_string(query.coordinates));
+  question.in_doubles = query.coordinates == GRAZE_F64;
+  const std::size_t real = question.in_doubles ? sizeof(double) : sizeof(float);
   expect(query.launch_seconds >= 0,
          "launch_seconds: expected at least 0, found " + std::to_string(query.launch_seconds));
   expect(query.reference_count >= 1 && query.reference_count <= kMostReferences,
          "references: expected 1 to 65536, found " + std::to_string(query.reference_count));
-  expect_aligned(query.references, "references");
-  expect_fits(query.references, query.reference_count, 36, 36, "references");
-  question.references = {query.references, query.reference_count * 9};
+  expect_aligned(query.references, "references", real);
+  expect_fits(query.references, query.reference_count, 9 * real, 9 * real, "references");
+  question.references = query.references;
+  question.reference_count = query.reference_count;
   expect(query.part_count >= 1 && query.parts, "parts: expected at least one, found none");
   expect(query.part_count <= kMostParts, "parts: expected at most 65536, found " + std::to_string(query.part_count));
   expect_aligned(query.parts, "parts", alignof(graze_triangles));
   expect_fits(query.parts, query.part_count, sizeof *query.parts, sizeof *query.parts, "parts");
   for (std::uint64_t p = 0; p < query.part_count; ++p) {
     const graze_triangles& part = query.parts[p];
-    question.parts.push_back(array_of(part, "parts[" + std::to_string(p) + "]"));
+    question.parts.push_back(array_of(part, real, "parts[" + std::to_string(p) + "]"));
     expect(part.device >= -1, "parts: expected a device, or -1, found " + std::to_string(part.device));
     question.counts.push_back(part.count);
     question.places.push_back(part.device);
@@ -223,6 +230,8 @@ Question question_of(const graze_query& query) {
   question.lane = lane_of(query.lane);
   expect(question.lane.is_cuda() || runs_on_this_cpu(question.lane),
          "lane: expected a lane that this processor can run, found '" + question.lane.id + "'");
+  expect(!question.in_doubles || question.lane.exact,
+         "lane: expected exact for doubles, found '" + question.lane.id + "'");
   check_outputs(query, question);
   choose_executor(query, question.lane.exact && !question.lane.is_cuda(), question);
   return question;

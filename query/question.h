@@ -2,7 +2,6 @@
 // A query after validation, with its arrays, its lane and its executor.
 #pragma once
 
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -19,7 +18,9 @@ struct QueryError : std::runtime_error {
 };
 
 struct Question {
-  std::span<const float> references;
+  bool in_doubles = false;           // the coordinates of references and triangles; otherwise in floats
+  const void* references = nullptr;  // nine coordinates each
+  std::uint64_t reference_count = 0;
   std::vector<cuda::TriangleArray> parts;
   std::vector<std::uint64_t> counts;  // of triangles in each part
   std::vector<int> places;            // of each part: a device, or -1

@@ -2,6 +2,7 @@
 // For tests: arrays of triangles, and queries on them.
 #pragma once
 
+#include <array>
 #include <cstring>
 #include <vector>
 
@@ -12,8 +13,9 @@
 
 namespace graze::query {
 
-inline Triangle triangle(const Vec3<float>* v) {
-  Triangle t;
+template <class Real>
+std::array<Real, 9> triangle(const Vec3<Real>* v) {
+  std::array<Real, 9> t;
   std::memcpy(t.data(), v, sizeof t);
   return t;
 }

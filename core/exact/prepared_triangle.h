@@ -59,7 +59,7 @@ GRAZE_HD inline float greater(float x, float y) {
 #endif
 }
 
-inline Slab slab_along(const Vec<double>& direction, const float* v) {
+inline Slab slab_along(const Vec<double>& direction, const float* v, bool rounded) {
   const auto size_of = [](double x) { return x < 0 ? -x : x; };
   const double size = 4 * (size_of(direction.x) + size_of(direction.y) + size_of(direction.z));
   Slab s{static_cast<float>(direction.x / size),
@@ -80,16 +80,20 @@ inline Slab slab_along(const Vec<double>& direction, const float* v) {
   const double half = std::max(high - s.middle, s.middle - low);
   // Covers the sums in doubles, the rounding to float, the part of `middle` in a height's error, and the addition of
   // the triangle's error in float.
-  const double slack = terms * 0x1p-50 + size_of(s.middle) * 0x1p-20 + 0x1p-140;
+  double slack = terms * 0x1p-50 + size_of(s.middle) * 0x1p-20 + 0x1p-140;
+  // Rounding a vertex moves its height by at most 2^-23 |d| m, in any rounding mode, and 2^-149 where it underflows.
+  if (rounded) slack += terms * 0x1p-22 + 0x1p-140;
   s.half = static_cast<float>(half + half * 0x1p-20 + slack);
-  s.error = static_cast<float>(12 * 0x1p-24 * (size_of(s.x) + size_of(s.y) + size_of(s.z)));
+  s.error = static_cast<float>((rounded ? 16 : 12) * 0x1p-24 * (size_of(s.x) + size_of(s.y) + size_of(s.z)));
   return s;
 }
 
 }  // namespace detail
 
 // If the reference is not finite, no slab shows anything and the filter in floats is unsure.
-inline PreparedTriangle prepare(const float* v) {
+// rounded: the coordinates of the reference, and of the triangles that is_beyond takes, are others rounded to float32,
+// and the slabs show what holds for those. Then the filter in floats does not apply.
+inline PreparedTriangle prepare(const float* v, bool rounded = false) {
   using Direction = detail::Vec<double>;
   PreparedTriangle r;
   Direction at[3];
@@ -115,8 +119,8 @@ inline PreparedTriangle prepare(const float* v) {
   }
   const Direction n = detail::cross<double>(at[1] - at[0], at[2] - at[0]);
   const bool flat = is_zero(n);  // a segment or a point: any direction does
-  r.slabs[0] = detail::slab_along(flat ? Direction{1, 0, 0} : n, v);
-  r.slabs[1] = detail::slab_along(flat ? Direction{0, 1, 0} : detail::cross<double>(n, longest), v);
+  r.slabs[0] = detail::slab_along(flat ? Direction{1, 0, 0} : n, v, rounded);
+  r.slabs[1] = detail::slab_along(flat ? Direction{0, 1, 0} : detail::cross<double>(n, longest), v, rounded);
   return r;
 }
 

@@ -79,53 +79,64 @@ def lanes() -> list[str]:
     return _library.names("lanes")
 
 
-def pairs(strata: str = "*", *, seed: int = 1, count: int = 1000) -> np.ndarray:
+def pairs(strata: str = "*", *, seed: int = 1, count: int = 1000, coordinates: str = "f32") -> np.ndarray:
     """Draws pairs of the strata, in order of their names; the strata share them evenly.
 
     strata: names with * and ?, separated by commas; "!x" leaves out x. A pair depends on seed, stratum and its place
-    alone; it is the same on every machine.
-    Returns: float32, shape (count, 2, 3, 3).   Raises: ValueError.
+    alone; it is the same on every machine. coordinates: "f32", or "f64" for pairs of doubles, of which there are more
+    strata.
+    Returns: float32 or float64, shape (count, 2, 3, 3).   Raises: ValueError.
     """
+    if coordinates not in ("f32", "f64"):
+        raise ValueError(f"coordinates: 'f32' or 'f64' is needed, not {coordinates!r}")
+    doubles = ctypes.c_int(coordinates == "f64")
     seed, count = _library.count_of(seed, "seed"), _library.count_of(count, "count")
     names = _library.name_of(strata, "strata")
     _library.call(
-        "pairs", names, ctypes.c_uint64(seed), ctypes.c_uint64(count), ctypes.c_uint64(0), ctypes.c_uint64(0), None
+        "pairs",
+        names,
+        ctypes.c_uint64(seed),
+        ctypes.c_uint64(count),
+        ctypes.c_uint64(0),
+        ctypes.c_uint64(0),
+        None,
+        doubles,
     )
-    drawn = np.empty((count, 2, 3, 3), np.float32)
+    drawn = np.empty((count, 2, 3, 3), np.float64 if coordinates == "f64" else np.float32)
 
     def draw(first: int, some: int) -> None:
         to = _library.pointer(drawn[first:])
         numbers = (ctypes.c_uint64(n) for n in (seed, count, first, some))
-        _library.call("pairs", names, *numbers, to)
+        _library.call("pairs", names, *numbers, to, doubles)
 
     _library.in_pieces(count, draw)
     return drawn
 
 
-def _of_pairs(function: str, pairs: Any, result: np.ndarray, *before: Any) -> np.ndarray:
+def _of_pairs(function: str, pairs: Any, result: np.ndarray, *before: Any, after: tuple = ()) -> np.ndarray:
     """Calls a function of the library on pieces of the pairs and of the result."""
 
     def one(first: int, some: int) -> None:
-        arguments = (_library.pointer(pairs[first:]), ctypes.c_uint64(some), _library.pointer(result[first:]))
-        _library.call(function, *before, *arguments)
+        arguments = (ctypes.c_uint64(some), _library.pointer(result[first:]))
+        _library.call(function, *before, _library.pointer(pairs[first:]), *after, *arguments)
 
     _library.in_pieces(len(pairs), one)
     return result
 
 
-def _checked(pairs: Any) -> np.ndarray:
-    return _library.floats(pairs.array if isinstance(pairs, Pair) else pairs, (2, 3, 3), "pairs")
+def _checked(pairs: Any, doubles: bool = True) -> np.ndarray:
+    return _library.floats(pairs.array if isinstance(pairs, Pair) else pairs, (2, 3, 3), "pairs", doubles)
 
 
 def relation(pairs: Any) -> np.ndarray:
-    """How the triangles of each pair lie. Exact.
+    """How the triangles of each pair lie, float32 or float64. Exact: nothing is rounded.
 
     Returns: a structured array of int8: verdict (1 intersects, 0 disjoint, -1 a coordinate is not finite), contact (an
     index of CONTACTS), margin_sign (1: disjoint; -1: no tiny translation separates them; else 0), dimension_a and
     dimension_b (of the hulls, 0 to 2), coplanar.
     """
     checked = _checked(pairs)
-    return _of_pairs("relations", checked, np.empty(len(checked), _RELATION))
+    return _of_pairs("relations", checked, np.empty(len(checked), _RELATION), after=(_library.in_doubles(checked),))
 
 
 def truth(pairs: Any) -> np.ndarray:
@@ -134,29 +145,36 @@ def truth(pairs: Any) -> np.ndarray:
 
 
 def margin(pairs: Any) -> np.ndarray:
-    """Certified bounds of each pair's margin: its distance, or minus the shortest translation that separates it.
+    """Certified bounds of each pair's margin: its distance, or minus the shortest translation that separates it. Pairs
+    are float32 here.
 
     Returns: float64, shape (n, 2): at least, at most. NaN where a coordinate is not finite.
     """
-    checked = _checked(pairs)
+    checked = _checked(pairs, doubles=False)
     return _of_pairs("margins", checked, np.empty((len(checked), 2)))
 
 
 def verdicts(lane: str, pairs: Any) -> np.ndarray:
     """What the lane says of each pair: 1 intersects, 0 disjoint, -1 declined. int8. CUDA lanes run as twins, which
-    replay the kernels on this processor.   Raises: ValueError for a lane that is not there."""
+    replay the kernels on this processor. A float32 lane decides pairs of doubles as a program does that stores them in
+    float32: each coordinate rounded once.
+    Raises: ValueError for a lane that is not there, and for doubles where a float64 lane reads float32 alone."""
     checked = _checked(pairs)
-    return _of_pairs("verdicts", checked, np.empty(len(checked), np.int8), _library.name_of(lane, "lane"))
+    doubles, name = _library.in_doubles(checked), _library.name_of(lane, "lane")
+    return _of_pairs("verdicts", checked, np.empty(len(checked), np.int8), name, after=(doubles,))
 
 
-def _triangles(triangles: Any) -> np.ndarray:
-    return _library.floats(triangles, (3, 3), "triangles")
+def _triangles(*arrays: Any) -> list[np.ndarray]:
+    """The arrays of triangles, all as doubles if one of them has doubles: that changes no number."""
+    found = [_library.floats(array, (3, 3), "triangles") for array in arrays]
+    doubles = any(array.dtype == np.float64 for array in found)
+    return [np.ascontiguousarray(array, np.float64) if doubles else array for array in found]
 
 
 def meets(reference: Any, triangles: Any) -> np.ndarray:
     """Whether each triangle intersects the reference, of shape (3, 3): 1, 0, or -1 where a coordinate is not finite.
     Exact. int8, shape (n,)."""
-    one, many = _triangles(reference), _triangles(triangles)
+    one, many = _triangles(reference, triangles)
     if len(one) != 1:
         raise ValueError(f"reference: one triangle of shape (3, 3) is needed, not {np.shape(reference)}")
     result = np.empty(len(many), np.int8)
@@ -166,6 +184,7 @@ def meets(reference: Any, triangles: Any) -> np.ndarray:
             "meets",
             _library.pointer(one),
             _library.pointer(many[first:]),
+            _library.in_doubles(many),
             ctypes.c_uint64(count),
             _library.pointer(result[first:]),
         )
@@ -184,17 +203,18 @@ def _found(a: np.ndarray, b: "np.ndarray | None", touching: bool) -> np.ndarray:
 
     second = (None, ctypes.c_uint64(0)) if b is None else (_library.pointer(b), ctypes.c_uint64(len(b)))
     first = (_library.pointer(a), ctypes.c_uint64(len(a)))
-    _library.call_in_thread("intersections", *first, *second, int(not touching), ctypes.byref(count), then=take)
+    arguments = (*first, *second, _library.in_doubles(a), int(not touching), ctypes.byref(count))
+    _library.call_in_thread("intersections", *arguments, then=take)
     return indices[0]
 
 
 def self_intersections(triangles: Any, *, touching: bool = False) -> np.ndarray:
     """The pairs of triangles of one mesh that pierce each other. Exact. touching: also those that only touch, such as
     neighbours.   Returns: uint32, shape (k, 2), sorted; i < j."""
-    return _found(_triangles(triangles), None, touching)
+    return _found(*_triangles(triangles), None, touching)
 
 
 def intersections(a: Any, b: Any, *, touching: bool = True) -> np.ndarray:
     """The pairs of a triangle of `a` and one of `b` that intersect. Exact. touching=False: those that pierce each other
     alone.   Returns: uint32, shape (k, 2), sorted."""
-    return _found(_triangles(a), _triangles(b), touching)
+    return _found(*_triangles(a, b), touching)

@@ -92,21 +92,25 @@ def pointer(array: np.ndarray) -> ctypes.c_void_p:
     return ctypes.c_void_p(array.ctypes.data)
 
 
+def in_doubles(array: np.ndarray) -> ctypes.c_int:
+    return ctypes.c_int(array.dtype == np.float64)
+
+
 def in_pieces(count: int, f: Callable[[int, int], None]) -> None:
     """Calls f(first, count) for consecutive pieces, between which Python handles signals."""
     for first in range(0, count, _PIECE):
         f(first, min(_PIECE, count - first))
 
 
-def floats(array: Any, shape: tuple[int, ...], what: str) -> np.ndarray:
-    """The array as contiguous float32 of shape (n, *shape); one element may lack the first axis. Without a copy if it
-    is that already. Raises TypeError for other numbers, which would have to be rounded, and ValueError for another
-    shape."""
+def floats(array: Any, shape: tuple[int, ...], what: str, doubles: bool = True) -> np.ndarray:
+    """The array as contiguous float32, or float64 if it is that and `doubles`, of shape (n, *shape); one element may
+    lack the first axis. Without a copy if it is that already. Raises TypeError for other numbers, which would have to
+    be rounded, and ValueError for another shape."""
     found = np.asarray(array)
-    if found.dtype != np.float32:
+    if found.dtype != np.float32 and not (doubles and found.dtype == np.float64):
         raise TypeError(
-            f"{what}: the numbers are {found.dtype}, but Graze decides float32; round them yourself: "
-            "numpy.asarray(x, numpy.float32)"
+            f"{what}: the numbers are {found.dtype}, but Graze decides float32{' and float64' if doubles else ' here'}; "
+            "convert them yourself: numpy.asarray(x, numpy.float32)"
         )
     if found.shape == shape:
         found = found[np.newaxis]

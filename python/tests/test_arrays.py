@@ -41,6 +41,56 @@ class Arrays(unittest.TestCase):
             slack = 1e-14 * np.abs(said)
             self.assertTrue(((least <= said + slack) & (said - slack <= most)).all(), stratum)
 
+    def test_doubles_are_those_of_the_program(self):
+        for stratum in ("near_edge_edge", "large_offset", "stored", "mixed_scale"):
+            words = [os.environ["GRAZE"], "dump", stratum + "/f64:3", "--pairs", "40"]
+            table = csv.DictReader(
+                subprocess.run(words, capture_output=True, text=True, check=True).stdout.splitlines()
+            )
+            rows = list(table)
+            drawn = graze.pairs(stratum, seed=3, count=40, coordinates="f64")
+            columns = [name for name in table.fieldnames if re.fullmatch("[ab][0-2][xyz]", name)]
+            known = np.array([[row[name] for name in columns] for row in rows], float)
+            self.assertEqual((drawn.dtype, known.tobytes()), (np.float64, drawn.tobytes()), stratum)
+            relation = graze.relation(drawn)
+            self.assertEqual([row["truth"] == "intersects" for row in rows], (relation["verdict"] == 1).tolist())
+            self.assertEqual([row["contact"] for row in rows], [graze.CONTACTS[c] for c in relation["contact"]])
+
+    def test_truth_of_doubles_is_that_of_fractions(self):
+        drawn = graze.pairs("decimal_born,lattice_15,large_offset,stored,degenerate", count=300, coordinates="f64")
+        said = graze.truth(drawn)
+        self.assertTrue(50 < said.sum() < 250)
+        for pair, verdict in zip(drawn, said):
+            self.assertEqual(verdict, intersect(pair), pair)
+
+    def test_verdicts_on_doubles(self):
+        drawn = graze.pairs("stored,near_*", count=6000, coordinates="f64")
+        right, stored = graze.truth(drawn), graze.truth(drawn.astype(np.float32))
+        self.assertTrue((right != stored).sum() > 900)
+        for lane, expected in (("exact/f64/cpu", right), ("exact/f32/cpu", stored)):
+            self.assertTrue((graze.verdicts(lane, drawn) == expected).all(), lane)
+        for lane in ("moller_1997/f32/cpu", "moller_1997/f32/cuda-fma"):
+            of_stored = graze.verdicts(lane, drawn.astype(np.float32))
+            self.assertTrue((graze.verdicts(lane, drawn) == of_stored).all(), lane)
+        wrong = {lane: (graze.verdicts(f"moller_1997/{lane}", drawn) != right).mean() for lane in ("f32/cpu", "f64/cpu")}
+        self.assertTrue(0 < wrong["f64/cpu"] < wrong["f32/cpu"], wrong)
+
+    def test_meshes_of_doubles(self):
+        near, far = graze.pairs("large_offset,stored,uniform", count=90, coordinates="f64")[:, :, :, :].swapaxes(0, 1)
+        expected = [(i, j) for i in range(90) for j in np.flatnonzero(graze.meets(near[i], far) == 1)]
+        for i in range(0, 90, 7):
+            pairs = np.stack([np.broadcast_to(near[i], far.shape), far], 1)
+            self.assertEqual(graze.meets(near[i], far).tolist(), graze.truth(pairs).tolist())
+        self.assertEqual([tuple(row) for row in graze.intersections(near, far)], expected)
+        self.assertNotEqual(graze.intersections(near.astype(np.float32), far.astype(np.float32)).tolist(), expected)
+        walls = np.array([[[x, 0, 0], [x, 1, 0], [x, 0, 1]] for x in (1000000.01, 1000000.02)])
+        self.assertEqual(len(graze.self_intersections(walls, touching=True)), 0)
+        self.assertEqual(len(graze.self_intersections(walls.astype(np.float32))), 1)
+        huge = walls * 1e300
+        self.assertEqual(graze.self_intersections(np.concatenate([huge, huge])).tolist(), [[0, 2], [1, 3]])
+        mixed = graze.intersections(walls, walls.astype(np.float32))
+        self.assertEqual(len(mixed), 0)
+
     def test_a_range_of_pairs_does_not_depend_on_the_pieces(self):
         piece = graze._library._PIECE
         whole = graze.pairs("uniform,lattice", count=1000)
@@ -109,7 +159,12 @@ class Arrays(unittest.TestCase):
     def test_wrong_arguments(self):
         drawn = graze.pairs(count=10)
         for error, words, call in (
-            (TypeError, "float64", lambda: graze.truth(drawn.astype(float))),
+            (TypeError, "int64", lambda: graze.truth(drawn.astype(np.int64))),
+            (TypeError, "float16", lambda: graze.meets(drawn[0, 0].astype(np.float16), drawn[:, 1])),
+            (TypeError, "float64", lambda: graze.margin(drawn.astype(float))),
+            (ValueError, "coordinates", lambda: graze.pairs(coordinates="f16")),
+            (ValueError, "large_offset", lambda: graze.pairs("large_offset")),
+            (ValueError, "float32", lambda: graze.verdicts("moller_1997/f64/cuda-fma", drawn.astype(float))),
             (ValueError, r"\(n, 2, 3, 3\)", lambda: graze.truth(drawn[0, 0])),
             (ValueError, "no_such", lambda: graze.pairs("no_such")),
             (ValueError, "seed", lambda: graze.pairs(seed=-1)),

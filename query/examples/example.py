@@ -45,6 +45,7 @@ class Query(ctypes.Structure):
         ("list", ctypes.c_void_p),
         ("list_room", ctypes.c_uint64),
         ("outputs_on_device", ctypes.c_int),
+        ("coordinates", ctypes.c_int),
         ("stream", ctypes.c_void_p),
         ("launch_seconds", ctypes.c_double),
         ("progress", ctypes.c_void_p),

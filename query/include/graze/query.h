@@ -7,8 +7,10 @@
 #include <cstdint>
 #include <memory>
 #include <new>
+#include <ranges>
 #include <span>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <graze/query_c.h>
@@ -16,21 +18,23 @@
 namespace graze::query {
 
 using Triangle = std::array<float, 9>;  // x y z of each vertex
+using DoubleTriangle = std::array<double, 9>;
 
-// An array of a type whose first nine floats are a triangle's coordinates.
+// An array of a type whose first nine floats, or doubles for a query of doubles, are a triangle's coordinates.
 template <class T>
 graze_triangles rows_of(std::span<const T> triangles) {
   static_assert(sizeof(T) >= sizeof(Triangle) && alignof(T) % alignof(float) == 0);
   graze_triangles part = {};
   part.device = -1;
   part.count = triangles.size();
-  part.rows = reinterpret_cast<const float*>(triangles.data());
+  part.rows = triangles.data();
   part.stride = sizeof(T);
   return part;
 }
 
 // Triangles whose nine coordinates lie in nine arrays.
-inline graze_triangles columns_of(const std::array<const float*, 9>& columns, std::uint64_t count) {
+template <class Real>
+graze_triangles columns_of(const std::array<const Real*, 9>& columns, std::uint64_t count) {
   graze_triangles part = {};
   part.layout = GRAZE_COLUMNS;
   part.device = -1;
@@ -39,15 +43,17 @@ inline graze_triangles columns_of(const std::array<const float*, 9>& columns, st
   return part;
 }
 
-// The faces of a mesh, each with the indices of three vertices.
-inline graze_triangles mesh_of(std::span<const std::array<float, 3>> vertices,
-                               std::span<const std::array<std::uint32_t, 3>> faces) {
+// The faces of a mesh, each with the indices of three vertices, an array of std::array<float, 3> or <double, 3>.
+template <std::ranges::contiguous_range Vertices>
+graze_triangles mesh_of(const Vertices& vertices, std::span<const std::array<std::uint32_t, 3>> faces) {
+  using Vertex = std::ranges::range_value_t<Vertices>;
+  static_assert(std::is_same_v<Vertex, std::array<float, 3>> || std::is_same_v<Vertex, std::array<double, 3>>);
   graze_triangles part = {};
   part.layout = GRAZE_MESH;
   part.device = -1;
   part.count = faces.size();
-  part.vertices = vertices.empty() ? nullptr : vertices.data()->data();
-  part.vertex_count = vertices.size();
+  part.vertices = std::ranges::data(vertices);
+  part.vertex_count = std::ranges::size(vertices);
   part.faces = faces.empty() ? nullptr : faces.data()->data();
   return part;
 }
@@ -58,9 +64,13 @@ struct Answer : graze_answer {
   std::string_view what() const { return message; }
 };
 
-// A query for all triangles of a part, which may then be changed.   Requires: reference and part outlive the query.
-inline graze_query query_of(const Triangle& reference, const graze_triangles& part) {
+// A query for all triangles of a part, which may then be changed. The part's coordinates have the reference's type.
+// Requires: reference and part outlive the query.
+template <class Real>
+graze_query query_of(const std::array<Real, 9>& reference, const graze_triangles& part) {
+  static_assert(std::is_same_v<Real, float> || std::is_same_v<Real, double>);
   graze_query query = {};
+  query.coordinates = std::is_same_v<Real, double> ? GRAZE_F64 : GRAZE_F32;
   query.size = sizeof query;
   query.references = reference.data();
   query.reference_count = 1;
@@ -84,19 +94,23 @@ class Context {
   }
 
   // Whether any triangle meets the reference: hits is 0 or 1; first is the first triangle that meets it.
-  Answer any(const Triangle& reference, const graze_triangles& part) const noexcept {
+  template <class Real>
+  Answer any(const std::array<Real, 9>& reference, const graze_triangles& part) const noexcept {
     graze_query query = query_of(reference, part);
     query.mode = GRAZE_ANY;
     return run(query);
   }
 
   // How many triangles meet the reference.
-  Answer count(const Triangle& reference, const graze_triangles& part) const noexcept {
+  template <class Real>
+  Answer count(const std::array<Real, 9>& reference, const graze_triangles& part) const noexcept {
     return run(query_of(reference, part));
   }
 
   // For each triangle: 1 if it meets the reference, 0 if not, 2 if declined.   Throws: std::bad_alloc for the vector.
-  Answer all(const Triangle& reference, const graze_triangles& part, std::vector<std::uint8_t>& bytes) const {
+  template <class Real>
+  Answer all(const std::array<Real, 9>& reference, const graze_triangles& part,
+             std::vector<std::uint8_t>& bytes) const {
     graze_query query = query_of(reference, part);
     if (part.count > GRAZE_MOST_TRIANGLES) return run(query);  // which rejects it
     bytes.resize(part.count);

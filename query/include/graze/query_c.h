@@ -3,8 +3,9 @@
    decision is exact, or made by a lane of your choice, on one core, all cores, one GPU or all GPUs. For C and, through
    C, for every language; C++ has <graze/query.h>. docs/query.md has examples.
 
-   A triangle is nine floats, x y z of each vertex. It is the closed hull of its vertices: touching counts as meeting,
-   and a degenerate triangle is a segment or a point. A triangle that is not finite is declined and counted as such. */
+   A triangle is nine floats, or nine doubles, x y z of each vertex. Nothing rounds them. It is the closed hull of its
+   vertices: touching counts as meeting, and a degenerate triangle is a segment or a point. A triangle that is not
+   finite is declined and counted as such. */
 #ifndef GRAZE_QUERY_C_H
 #define GRAZE_QUERY_C_H
 
@@ -26,8 +27,14 @@ enum graze_status {
   GRAZE_FAILED = 6
 };
 
+/* The type of coordinates. */
+enum graze_coordinates {
+  GRAZE_F32 = 0, /* float */
+  GRAZE_F64 = 1  /* double: only exact, and on cores */
+};
+
 enum graze_layout {
-  GRAZE_ROWS = 0,    /* rows: nine floats for each triangle */
+  GRAZE_ROWS = 0,    /* rows: nine coordinates for each triangle */
   GRAZE_COLUMNS = 1, /* columns: an array for each of the nine coordinates */
   GRAZE_MESH = 2     /* faces: three uint32_t indices of vertices; a face with an index out of range is declined */
 };
@@ -35,17 +42,18 @@ enum graze_layout {
 /* The maximum number of triangles in all parts of a query together. */
 #define GRAZE_MOST_TRIANGLES ((uint64_t)1 << 48)
 
-/* An array of triangles, aligned like floats. Strides are in bytes; 0 means that elements are contiguous. The following
-   is checked, and GRAZE_BAD_ARGUMENT results if it fails. A stride is a multiple of 4, at least an element's size, and
-   not negative. An array takes at most PTRDIFF_MAX bytes from its first element to its last, and does not wrap around
-   the end of the address space. Not checked: the caller guarantees that the pointers refer to such memory. */
+/* An array of triangles. rows, columns and vertices point to coordinates of the query's type, and are aligned like it.
+   Strides are in bytes; 0 means that elements are contiguous. The following is checked, and GRAZE_BAD_ARGUMENT results
+   if it fails. A stride is a multiple of the alignment, at least an element's size, and not negative. An array takes at
+   most PTRDIFF_MAX bytes from its first element to its last, and does not wrap around the end of the address space. Not
+   checked: the caller guarantees that the pointers refer to such memory. */
 typedef struct graze_triangles {
   uint64_t count;
   int layout;
   int device; /* -1: in host memory; else in the memory of this CUDA device */
-  const float* rows;
-  const float* columns[9];
-  const float* vertices;
+  const void* rows;
+  const void* columns[9];
+  const void* vertices;
   const uint32_t* faces;
   uint64_t vertex_count;
   size_t stride;        /* from one row, element of a column, or face to the next */
@@ -67,7 +75,7 @@ typedef int (*graze_progress)(void* user, uint64_t done, uint64_t triangles);
 
 typedef struct graze_query {
   size_t size;                  /* sizeof(graze_query) */
-  const float* references;      /* nine floats each, in host memory */
+  const void* references;       /* nine coordinates each, in host memory */
   uint64_t reference_count;     /* 1 to 65536 */
   const graze_triangles* parts; /* one part, or up to 65536 consecutive ones, such as on several GPUs */
   uint64_t part_count;
@@ -84,6 +92,7 @@ typedef struct graze_query {
   uint64_t* list;
   uint64_t list_room;
   int outputs_on_device; /* bytes and bits are on the device of the triangles, which are one part */
+  int coordinates;       /* the type of the coordinates of all triangles and references */
   void* stream; /* a cudaStream_t that orders the work on triangles in device memory; NULL: our own stream, after
                    the work that was given to the default stream */
   double launch_seconds; /* how long kernels may run without a pause; 0 means 0.5 */

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs of doubles as users meet them: drawn, run, written, read, repeated; and refused by name where a verb takes
 // pairs of float32 alone.
+#include <fmt/format.h>
+
 #include <map>
 
 #include "cli/run_graze.h"
@@ -85,6 +87,64 @@ TEST_F(Doubles, ATableIsReadBackWithTheSameTruth) {
   }
 }
 
+// Walls of a model in metres, far from the origin: each second one is one centimetre behind the first.
+std::string walls(int count) {
+  std::string text = fmt::format("OFF\n{} {} 0\n", 3 * count, count), faces;
+  for (int i = 0; i < count; ++i) {
+    const double x = 1000000 + 3 * (i / 2) + 0.01 * (1 + i % 2);
+    text += fmt::format("{0:.2f} 0 0\n{0:.2f} 1 0\n{0:.2f} 0 1\n", x);
+    faces += fmt::format("3 {} {} {}\n", 3 * i, 3 * i + 1, 3 * i + 2);
+  }
+  return text + faces;
+}
+
+TEST_F(Doubles, AMeshIsDrawnInItsDoubles) {
+  std::ofstream(shell.folder / "walls.off") << walls(40);
+  const std::string lanes = " --lanes 'exact/*/cpu,moller_1997/*/cpu' ";
+  const Ran ran = shell("graze fuzz --mesh walls.off --coordinates f64" + lanes + "--out c");
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.err.find("walls.off: decided in doubles, because 120 of 360 coordinates have more digits"),
+            std::string::npos)
+      << ran.err;
+  const Json summary = Json::parse(contents(shell.folder / "c/summary.json"));
+  const Json& mesh = summary["strata"]["mesh/f64"];
+  EXPECT_EQ(mesh["pairs"], 20);  // float32 puts both walls into one plane
+  EXPECT_EQ(mesh["intersects"], 0);
+  EXPECT_EQ(mesh["lanes"]["exact/f64/cpu"]["false_positive"], 0);
+  EXPECT_EQ(mesh["lanes"]["exact/f32/cpu"]["false_positive"], 20);
+  EXPECT_EQ(mesh["lanes"]["exact/f32/cpu"]["stored"], 20);
+  // The command that the summary tells draws the same again; so do shards.
+  const std::string bytes = contents(shell.folder / "c/summary.json");
+  expect_done("graze fuzz --mesh walls.off --coordinates f64" + lanes + "--out c > again && graze report c > told");
+  EXPECT_EQ(contents(shell.folder / "c/summary.json"), bytes);
+  EXPECT_NE(contents(shell.folder / "c/report.html").find("--coordinates f64"), std::string::npos);
+  expect_done("graze dump c --format pairs > c.pairs && graze check c.pairs --exact-input | grep -c disjoint");
+  const std::string file = "c/" + summary["signatures"][0]["case"].get<std::string>();
+  expect_done("graze repro " + file + lanes);
+  for (const char* k : {"1", "2"})
+    expect_done(fmt::format("graze fuzz --mesh walls.off --coordinates both --strata uniform --pairs 60{}--shard {}/2 "
+                            "--out s-{}",
+                            lanes, k, k));
+  expect_done("graze merge s-1 s-2 --out both && graze fuzz --mesh walls.off --coordinates both --strata uniform "
+              "--pairs 60" + lanes + "--out whole");
+  Json both = Json::parse(contents(shell.folder / "both/summary.json"));
+  EXPECT_EQ(both["strata"], Json::parse(contents(shell.folder / "whole/summary.json"))["strata"]);
+  for (const char* source : {"uniform", "uniform/f64", "mesh", "mesh/f64"})
+    EXPECT_TRUE(both["strata"].contains(source)) << source;
+  EXPECT_EQ(both["strata"]["mesh"]["intersects"], 20);
+  // A scene says what storing changes.
+  const Ran scene = shell("graze scene walls.off --out walls.toml");
+  EXPECT_EQ(scene.status, 0) << scene.err;
+  EXPECT_NE(scene.err.find("20 of 20 pairs have another verdict"), std::string::npos) << scene.err;
+  expect_done("graze fuzz --scene walls.toml --pairs 100" + lanes + "--out s > out");
+  // Numbers that float32 holds are the same in doubles.
+  std::ofstream(shell.folder / "plain.off") << "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n";
+  expect_done("graze fuzz --mesh plain.off --coordinates both" + lanes + "--out p > out 2> err && test ! -s err");
+  const Json plain = Json::parse(contents(shell.folder / "p/summary.json"))["strata"];
+  EXPECT_EQ(plain["mesh"]["contacts"], plain["mesh/f64"]["contacts"]);
+  expect_done("graze scene plain.off > plain.toml 2> err && test ! -s err");
+}
+
 TEST_F(Doubles, ACaseThatNamesAnotherPairHasChanged) {
   for (const char* stratum : {"near_edge_edge", "near_edge_edge/f64"}) {
     expect_done("graze dump " + std::string(stratum) + " --pairs 2 --format pairs > two.pairs");
@@ -125,7 +185,7 @@ TEST_F(Doubles, VerbsThatTakeFloat32AloneSaySo) {
            {"graze discrepancy moller_1997/f32/cpu moller_1997/f32/cpu-fma --campaign c", "discrepancy"},
            {"graze map stored/f64:1:3", "stored/f64:1:3"},
            {"graze explain stored/f64:1:3", "stored/f64:1:3"},
-           {"graze fuzz --coordinates f64 --mesh a.off --out m", "--coordinates"}})
+           {"graze fuzz --coordinates f64 --scene a.toml --out m", "--coordinates"}})
     expect_error(command, 2, {word});
   for (const char* command : {"graze explain ", "graze map ", "graze minimize ", "graze view "})
     expect_error(command + file, 1, {file, "doubles"});

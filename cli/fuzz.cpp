@@ -176,8 +176,10 @@ fuzz::Campaign campaign_of(const FuzzOptions& options, const fuzz::SelectedLanes
     const auto mesh = std::make_shared<strata::MeshPairs>(strata::read_mesh_pairs(
         options.mesh[0],
         options.mesh.size() > 1 ? std::optional<std::filesystem::path>(options.mesh[1]) : std::nullopt));
-    say_notes(mesh->notes, mesh->rounding, options.exact_input);
-    campaign.sources.push_back({"mesh", mesh->size(), [mesh](std::uint64_t index) { return mesh->pair(index); }});
+    const bool rounds = options.coordinates != PairTypes::f64 || options.exact_input;
+    say_notes(rounds ? mesh->notes : mesh->notes_of_doubles, mesh->rounding, options.exact_input);
+    for (strata::PairSource& source : strata::mesh_sources(mesh, options.coordinates))
+      campaign.sources.push_back(std::move(source));
     mesh_spec = {{"files", options.mesh}, {"content", fmt::format("{:016x}", mesh->content_hash)}};
   }
   campaign.spec = fuzz::campaign_spec(campaign);
@@ -250,8 +252,8 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
 int start(const FuzzOptions& options) {
   if (!options.junit.empty() && !options.shard.whole())
     throw UsageError("--junit is for whole campaigns; a shard has a part of the pairs alone");
-  if (options.coordinates != PairTypes::f32 && !(options.scene.empty() && options.mesh.empty()))
-    throw UsageError("--coordinates is for strata; scenes and meshes are read as float32");
+  if (options.coordinates != PairTypes::f32 && !options.scene.empty())
+    throw UsageError("--coordinates is for strata and meshes; scenes are read as float32");
   if (!options.scratch.empty() && options.shard.whole())
     throw UsageError("--scratch is for shards alone; add --shard K/N");
   if (!fuzz::started_by_mpirun()) return fuzz(options, nullptr);

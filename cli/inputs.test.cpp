@@ -189,7 +189,8 @@ TEST_F(Inputs, WhatFloat32MakesOfMeshesIsSaid) {
                                              "1000000.02 0 0\n1000000.02 1 0\n1000000.02 0 1\n3 0 1 2\n3 3 4 5\n";
   std::ofstream(shell.folder / "first.txt") << "1000000.01 0 0 1000000.01 1 0 1000000.01 0 1\n";
   const std::string note = "far.off: float32 rounded 6 of 18 coordinates, by at most 0.021";
-  for (const std::string command : {"graze query far.off#0 far.off", "graze query first.txt far.off",
+  for (const std::string command : {"graze query far.off#0 far.off --lanes 'exact,moller_1997/f32/cpu'",
+                                    "graze query first.txt far.off --lanes moller_1997/f32/cpu",
                                     "graze scene far.off", "graze fuzz --mesh far.off --lanes '*/f32/cpu' --out c",
                                     "graze view far.off --out v.html", "graze view far.off#0 far.off --out v.html"}) {
     const Ran ran = shell(command);
@@ -201,9 +202,11 @@ TEST_F(Inputs, WhatFloat32MakesOfMeshesIsSaid) {
     expect_error(again + " --exact-input", 2, {"float32", "6 of", "--exact-input"});
     EXPECT_FALSE(std::filesystem::exists(shell.folder / "c2"));
   }
-  EXPECT_NE(shell("graze query first.txt far.off").err.find("first.txt: float32 rounded 3 of 9"), std::string::npos);
+  EXPECT_NE(shell("graze query first.txt far.off --lanes 'exact*/f32/cpu'").err.find("first.txt: float32 rounded 3 of 9"),
+            std::string::npos);
   std::ofstream(shell.folder / "near.off") << "OFF\n3 1 0\n0 0 0\n1 0 0\n0.5 1 0\n3 0 1 2\n";
-  for (const std::string command : {"graze query --self far.off", "graze query far.off far.off --between"}) {
+  for (const std::string command : {"graze query --self far.off", "graze query far.off far.off --between",
+                                    "graze query first.txt far.off", "graze query far.off#1 far.off --any"}) {
     expect_error(command + " --exact-input", 2, {"float32", "6 of", "--exact-input"});
     const Ran ran = shell(command);
     EXPECT_NE(
@@ -211,6 +214,11 @@ TEST_F(Inputs, WhatFloat32MakesOfMeshesIsSaid) {
         std::string::npos);
     EXPECT_EQ(ran.err.find("rounded"), std::string::npos) << ran.err;
   }
+  expect_done("graze query first.txt far.off --csv h.csv --obj h.obj --pairs h.pairs > out; grep -q '^1 of 2' out");
+  expect_done("graze query far.off#1 near.off 2> err; grep -q 'far.off: decided in doubles' err");
+  expect_done("grep -q 'coordinates=f64' h.pairs && graze check h.pairs --exact-input | grep -q intersect");
+  expect_done("grep -q 'v 1000000.01 0 0' h.obj && grep -q 0,0,area,pierces h.csv");
+  expect_done("graze query --between far.off far.off --pairs b.pairs > out && graze check b.pairs --exact-input > out");
   const Ran exact = shell("graze query --self near.off --exact-input");
   EXPECT_EQ(exact.status, 0) << exact.err;
   EXPECT_EQ(exact.err.find("float32"), std::string::npos);

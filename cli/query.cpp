@@ -73,17 +73,21 @@ int tell(void* user, std::uint64_t done, std::uint64_t triangles) {
   return told.interrupted;
 }
 
+template <class Real>
+using TrianglesOf = std::vector<std::array<Real, 9>>;
+
 // The triangles on which some run differs from the first one, with the verdict of each run.
-std::vector<corpus::Entry> mismatches_of(const std::vector<Run>& runs, const std::vector<query::Triangle>& references,
-                                         const std::vector<query::Triangle>& triangles, std::uint64_t& count) {
+template <class Real>
+std::vector<corpus::Entry> mismatches_of(const std::vector<Run>& runs, const TrianglesOf<Real>& references,
+                                         const TrianglesOf<Real>& triangles, std::uint64_t& count) {
   std::vector<corpus::Entry> entries;
   for (std::size_t p = 0; p < runs[0].bytes.size(); ++p) {
     if (std::all_of(runs.begin(), runs.end(), [&](const Run& run) { return run.bytes[p] == runs[0].bytes[p]; }))
       continue;
     if (count++ >= kMostMismatches) continue;
     const std::size_t triangle = p % triangles.size(), reference = p / triangles.size();
-    corpus::Entry entry{pair_of(references[reference], triangles[triangle]),
-                        {{"name", fmt::format("reference_{}_triangle_{}", reference, triangle)}}};
+    corpus::Entry entry = corpus::entry_of(pair_of(references[reference], triangles[triangle]),
+                                           {{"name", fmt::format("reference_{}_triangle_{}", reference, triangle)}});
     for (const Run& run : runs) {
       std::string key = "said_by_" + run.lane + (run.executor == "auto" ? "" : "_" + run.executor);
       for (char& c : key) c = std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.' ? c : '_';
@@ -102,16 +106,18 @@ void write_pairs(const std::string& file, const std::vector<corpus::Entry>& entr
 }
 
 // Writes the hits of the first run to files.
-void write_hits(const QueryOptions& options, const Run& run, const std::vector<query::Triangle>& references,
-                const std::vector<query::Triangle>& triangles) {
+template <class Real>
+void write_hits(const QueryOptions& options, const Run& run, const TrianglesOf<Real>& references,
+                const TrianglesOf<Real>& triangles) {
   std::vector<corpus::Entry> entries;
   std::vector<FoundPair> rows;
   ObjGroup hits{"hits", {}};
   for (std::size_t p = 0; p < run.bytes.size(); ++p) {
     if (run.bytes[p] != 1) continue;
     const std::size_t triangle = p % triangles.size(), reference = p / triangles.size();
-    const Pair pair = pair_of(references[reference], triangles[triangle]);
-    entries.push_back({pair, {{"name", fmt::format("reference_{}_triangle_{}", reference, triangle)}}});
+    const BasicPair<Real> pair = pair_of(references[reference], triangles[triangle]);
+    entries.push_back(
+        corpus::entry_of(pair, {{"name", fmt::format("reference_{}_triangle_{}", reference, triangle)}}));
     rows.push_back(related(static_cast<std::uint32_t>(reference), static_cast<std::uint32_t>(triangle), pair));
     hits.triangles.push_back(in_doubles(triangles[triangle]));
   }
@@ -119,7 +125,7 @@ void write_hits(const QueryOptions& options, const Run& run, const std::vector<q
   if (!options.pairs.empty()) write_pairs(options.pairs, entries);
   if (options.obj.empty()) return;
   ObjGroup asked{"reference", {}};
-  for (const query::Triangle& reference : references) asked.triangles.push_back(in_doubles(reference));
+  for (const auto& reference : references) asked.triangles.push_back(in_doubles(reference));
   write_result(options.obj, obj_of({asked, hits}), fuzz::NamedBy::user);
 }
 
@@ -131,13 +137,13 @@ std::string evidence_of(const Run& run) {
 }
 
 // A query counts failures of a user's code as declined; this tells them apart.
-void find_failures(Run& run, const std::vector<query::Triangle>& references,
-                   const std::vector<query::Triangle>& triangles) {
+template <class Real>
+void find_failures(Run& run, const TrianglesOf<Real>& references, const TrianglesOf<Real>& triangles) {
   const Lane* lane = find_lane(run.lane);
   if (!lane || !lane->foreign) return;
   for (std::size_t p = 0; p < run.bytes.size(); ++p) {
     if (run.bytes[p] != static_cast<std::uint8_t>(Verdict::declined)) continue;
-    const Pair pair = pair_of(references[p / triangles.size()], triangles[p % triangles.size()]);
+    const BasicPair<Real> pair = pair_of(references[p / triangles.size()], triangles[p % triangles.size()]);
     if (!is_finite(pair)) continue;
     const Verdict verdict = decide_one(lane->decide, pair);
     run.bytes[p] = static_cast<std::uint8_t>(verdict);
@@ -216,9 +222,9 @@ std::string words_of(const Run& run, bool any, std::size_t references) {
                             evidence_of(run).empty() ? "" : ", by its twin");
 }
 
-std::vector<Run> runs_of(const QueryOptions& options, const QueryLanes& lanes,
-                         const std::vector<query::Triangle>& references, const std::vector<query::Triangle>& triangles,
-                         int& status) {
+template <class Real>
+std::vector<Run> runs_of(const QueryOptions& options, const QueryLanes& lanes, const TrianglesOf<Real>& references,
+                         const TrianglesOf<Real>& triangles, int& status) {
   std::vector<Run> runs;
   for (const std::string& lane : lanes.ids) {
     for (const std::string& executor : options.executors) runs.push_back({lane, executor, {}, {}});
@@ -231,7 +237,7 @@ std::vector<Run> runs_of(const QueryOptions& options, const QueryLanes& lanes,
   const std::atomic<bool>& interrupted = catch_interrupts();
   for (Run& run : runs) {
     Told told{interrupted, Progress("triangles", triangles.size(), isatty(STDERR_FILENO), error_screen())};
-    const graze_triangles part = query::rows_of(std::span<const query::Triangle>(triangles));
+    const graze_triangles part = query::rows_of(std::span(triangles));
     graze_query query = query::query_of(references[0], part);
     query.references = references[0].data();
     query.reference_count = references.size();
@@ -280,17 +286,9 @@ void query_all_pairs(const QueryOptions& options, int& status) {
                status);
 }
 
-void query_mesh(const QueryOptions& options, int& status) {
-  if (options.files.size() != 2)
-    throw UsageError(
-        fmt::format("graze query needs two files, a reference and a mesh, but got {}", options.files.size()));
-  if (options.any && (!options.csv.empty() || !options.obj.empty() || !options.pairs.empty()))
-    throw UsageError("--any does not work with --csv, --obj or --pairs, which write all hits");
-  const Input of_references = read_references(options.files[0]),
-              of_mesh = read_mesh(options.files[1], strata::Coordinates::any);
-  const std::vector<query::Triangle>&references = of_references.triangles, &triangles = of_mesh.triangles;
-  const QueryLanes lanes = query_lanes(options.lanes, {"exact"});
-  say_notes(of_references, of_mesh, options.exact_input);
+template <class Real>
+void answer(const QueryOptions& options, const QueryLanes& lanes, const TrianglesOf<Real>& references,
+            const TrianglesOf<Real>& triangles, int& status) {
   const std::vector<Run> runs = runs_of(options, lanes, references, triangles, status);
   if (runs.empty()) return;
   write_hits(options, runs[0], references, triangles);
@@ -324,6 +322,24 @@ void query_mesh(const QueryOptions& options, int& status) {
   fmt::print("{} mismatch{}, {} of them kept in {}\n", reports::grouped(count), count == 1 ? "" : "es",
              mismatches.size(), printable(kept));
   fmt::print("Next: graze explain {}\n", path_word(kept));
+}
+void query_mesh(const QueryOptions& options, int& status) {
+  if (options.files.size() != 2)
+    throw UsageError(
+        fmt::format("graze query needs two files, a reference and a mesh, but got {}", options.files.size()));
+  if (options.any && (!options.csv.empty() || !options.obj.empty() || !options.pairs.empty()))
+    throw UsageError("--any does not work with --csv, --obj or --pairs, which write all hits");
+  const Input of_references = read_references(options.files[0]),
+              of_mesh = read_mesh(options.files[1], strata::Coordinates::any);
+  const QueryLanes lanes = query_lanes(options.lanes, {"exact"});
+  // Other lanes, and GPUs, take float32.
+  const bool on_cores = std::none_of(options.executors.begin(), options.executors.end(),
+                                     [](const std::string& executor) { return executor.ends_with("gpu") || executor.ends_with("gpus"); });
+  const bool are_doubles = !(of_references.in_doubles.empty() && of_mesh.in_doubles.empty()) && on_cores &&
+                           lanes.ids == std::vector<std::string>{"exact"};
+  say_notes(of_references, of_mesh, options.exact_input, are_doubles);
+  are_doubles ? answer<double>(options, lanes, in_doubles(of_references), in_doubles(of_mesh), status)
+              : answer<float>(options, lanes, of_references.triangles, of_mesh.triangles, status);
 }
 
 }  // namespace

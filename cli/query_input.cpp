@@ -27,17 +27,23 @@ Input read_numbers(const std::string& file) {
   std::replace(text.begin(), text.end(), ',', ' ');
   strata::Lines lines({file, text}, '#');
   Input references;
-  std::vector<float> numbers;
+  std::vector<strata::Coordinate> numbers;
   while (lines.next()) {
     for (std::size_t i = 0; i < lines.words().size(); ++i)
-      numbers.push_back(lines.coordinate(i, references.rounding).stored);
+      numbers.push_back(lines.coordinate(i, references.rounding));
   }
   if (numbers.empty() || numbers.size() % 9 != 0)
     throw std::runtime_error(
         fmt::format("{}: expected nine numbers for each reference, found {}", file, numbers.size()));
   references.triangles.resize(numbers.size() / 9);
-  std::memcpy(references.triangles.data(), numbers.data(), numbers.size() * sizeof(float));
-  references.notes = strata::rounding_note(file, references.rounding);
+  if (references.rounding.beyond > 0) references.in_doubles.resize(numbers.size() / 9);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    references.triangles[i / 9][i % 9] = numbers[i].stored;
+    if (references.rounding.beyond > 0) references.in_doubles[i / 9][i % 9] = numbers[i].written;
+  }
+  references.notes = references.notes_of_doubles = strata::rounding_note(file, references.rounding);
+  if (references.rounding.beyond > 0)
+    references.notes_of_doubles = strata::doubles_note(file, references.rounding);
   return references;
 }
 
@@ -95,34 +101,34 @@ Input read_references(const std::string& name) {
     throw std::runtime_error(
         fmt::format("{} has no face {}: it has {}, numbered from 0", file, *face, mesh.triangles.size()));
   mesh.triangles = {mesh.triangles[*face]};
+  if (!mesh.in_doubles.empty()) mesh.in_doubles = {mesh.in_doubles[*face]};
   return mesh;
 }
 
 Input read_mesh(const std::string& file, strata::Coordinates coordinates) {
   const strata::MeshPairs mesh = strata::read_triangles(file, coordinates);
-  Input result{std::vector<query::Triangle>(mesh.triangles.size()), mesh.notes, mesh.rounding};
+  Input result{std::vector<query::Triangle>(mesh.triangles.size()),
+               std::vector<query::DoubleTriangle>(mesh.in_doubles.size()), mesh.notes, mesh.notes_of_doubles,
+               mesh.rounding};
   std::memcpy(result.triangles.data(), mesh.triangles.data(), mesh.triangles.size() * sizeof(query::Triangle));
+  std::memcpy(result.in_doubles.data(), mesh.in_doubles.data(),
+              mesh.in_doubles.size() * sizeof(query::DoubleTriangle));
   return result;
 }
 
-void say_notes(const Input& references, const Input& mesh, bool exact_input) {
-  std::vector<std::string> notes = references.notes;
-  notes.insert(notes.end(), mesh.notes.begin(), mesh.notes.end());
+std::vector<query::DoubleTriangle> in_doubles(const Input& input) {
+  if (!input.in_doubles.empty()) return input.in_doubles;
+  std::vector<query::DoubleTriangle> result;
+  for (const query::Triangle& triangle : input.triangles) result.push_back(in_doubles(triangle));
+  return result;
+}
+
+void say_notes(const Input& references, const Input& mesh, bool exact_input, bool are_doubles) {
+  const auto which = are_doubles && !exact_input ? &Input::notes_of_doubles : &Input::notes;
+  std::vector<std::string> notes = references.*which;
+  notes.insert(notes.end(), (mesh.*which).begin(), (mesh.*which).end());
   strata::Rounding rounding = references.rounding;
   say_notes(notes, rounding += mesh.rounding, exact_input);
-}
-
-Pair pair_of(const query::Triangle& a, const query::Triangle& b) {
-  Pair pair;
-  std::memcpy(pair.a, a.data(), sizeof a);
-  std::memcpy(pair.b, b.data(), sizeof b);
-  return pair;
-}
-
-std::array<double, 9> in_doubles(const query::Triangle& triangle) {
-  std::array<double, 9> result;
-  std::copy(triangle.begin(), triangle.end(), result.begin());
-  return result;
 }
 
 std::string obj_of(const std::vector<ObjGroup>& groups) {

@@ -2,6 +2,7 @@
 // The inputs of `graze query`: reference triangles, and the triangles of a mesh.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -26,9 +27,13 @@ QueryLanes query_lanes(const LaneOptions& options, const std::vector<std::string
 
 struct Input {
   std::vector<query::Triangle> triangles;
-  std::vector<std::string> notes;  // see strata::MeshPairs
+  std::vector<query::DoubleTriangle> in_doubles;  // the same, if a coordinate is beyond float32; else empty
+  std::vector<std::string> notes, notes_of_doubles;  // see strata::MeshPairs
   strata::Rounding rounding;
 };
+
+// The triangles in doubles, in which float32 is exact.
+std::vector<query::DoubleTriangle> in_doubles(const Input& input);
 
 // Reads a text file with nine numbers for each reference, or MESH#FACE, one triangle of a mesh; faces count from 0.
 // Throws: std::runtime_error that names the file and the line; UsageError if FACE is not a whole number.
@@ -37,11 +42,22 @@ Input read_references(const std::string& name);
 Input read_mesh(const std::string& file, strata::Coordinates coordinates = strata::Coordinates::finite);
 
 // As in cli/cases.h, of both.
-void say_notes(const Input& references, const Input& mesh, bool exact_input);
+void say_notes(const Input& references, const Input& mesh, bool exact_input, bool are_doubles = false);
 
-Pair pair_of(const query::Triangle& a, const query::Triangle& b);
+template <class Real>
+BasicPair<Real> pair_of(const std::array<Real, 9>& a, const std::array<Real, 9>& b) {
+  BasicPair<Real> pair;
+  std::copy(a.begin(), a.end(), coordinates(pair));
+  std::copy(b.begin(), b.end(), coordinates(pair) + 9);
+  return pair;
+}
 
-std::array<double, 9> in_doubles(const query::Triangle& triangle);
+template <class Real>
+query::DoubleTriangle in_doubles(const std::array<Real, 9>& triangle) {
+  query::DoubleTriangle result;
+  std::copy(triangle.begin(), triangle.end(), result.begin());
+  return result;
+}
 
 // The triangles as an OBJ file, in named groups. Each number has the digits that tell it from others of its type:
 // float32 if that holds it, else double.

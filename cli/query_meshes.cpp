@@ -49,21 +49,10 @@ struct Search {
   }
 };
 
-// Says what is special about the mesh: content that is not used, and that doubles are decided.
-void say_notes_of(const std::string& file, const strata::MeshPairs& mesh, bool exact_input) {
-  if (mesh.rounding.beyond == 0 || exact_input) return say_notes(mesh.notes, mesh.rounding, exact_input);
-  std::vector<std::string> notes = mesh.notes;
-  for (const std::string& rounding : strata::rounding_note(file, mesh.rounding)) std::erase(notes, rounding);
-  notes.push_back(
-      fmt::format("{}: decided in doubles, because {} of {} coordinates have more digits than float32 holds",
-                  printable(file), mesh.rounding.beyond, mesh.rounding.coordinates));
-  say_notes(notes, {}, false);
-}
-
 Search opened(const MeshQuestion& question) {
   const auto read = [&](const std::string& file) {
     strata::MeshPairs mesh = strata::read_triangles(file, strata::Coordinates::any);
-    say_notes_of(file, mesh, question.exact_input);
+    say_notes(question.exact_input ? mesh.notes : mesh.notes_of_doubles, mesh.rounding, question.exact_input);
     return MeshTriangles{std::move(mesh.triangles), std::move(mesh.in_doubles)};
   };
   Search search{question, {read(question.files[0]), {}}};
@@ -99,21 +88,18 @@ void write_files(const Search& search) {
   std::ostringstream pairs;
   corpus::write_header(pairs);
   ObjGroup hits{search.self() ? "piercing" : "hits", {}};
-  strata::Rounding rounding;
   for (const FoundPair& hit : search.list()) {
     const DoublePair exact = search.meshes.pair_of_doubles(hit.i, hit.j);
-    const Pair pair = search.meshes.pair(hit.i, hit.j);
-    corpus::write_entry(pairs, {pair, {{"name", fmt::format("triangles_{}_{}", hit.i, hit.j)}}});
-    for (int k = 0; k < kCoordinates; ++k) rounding.add(coordinates(exact)[k], coordinates(pair)[k]);
+    corpus::Entry entry = search.meshes.are_doubles() ? corpus::entry_of(exact, {})
+                                                      : corpus::entry_of(search.meshes.pair(hit.i, hit.j), {});
+    entry.fields.push_back({"name", fmt::format("triangles_{}_{}", hit.i, hit.j)});
+    corpus::write_entry(pairs, entry);
     for (const double* from : {&exact.a[0].x, &exact.b[0].x}) {
       hits.triangles.emplace_back();
       std::copy_n(from, 9, hits.triangles.back().begin());
     }
   }
-  if (!question.pairs.empty()) {
-    write_result(question.pairs, pairs.str(), fuzz::NamedBy::user);
-    say_notes(strata::rounding_note(question.pairs, rounding), rounding, false);
-  }
+  if (!question.pairs.empty()) write_result(question.pairs, pairs.str(), fuzz::NamedBy::user);
   if (!question.obj.empty()) write_result(question.obj, obj_of({hits}), fuzz::NamedBy::user);
 }
 

@@ -2,6 +2,11 @@
 // `graze scene`: writes a scene file from meshes or pairs. Also adds --scene to the verbs that draw from a scene.
 #include <fmt/format.h>
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <cctype>
+#include <functional>
 #include <iostream>
 
 #include "analysis/measure_scene.h"
@@ -9,6 +14,7 @@
 #include "cli/commands.h"
 #include "cli/results.h"
 #include "core/error.h"
+#include "core/relation_of.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
 #include "fuzz/files.h"
@@ -43,6 +49,19 @@ analysis::SceneSample sample_of_pairs(const std::string& file, bool exact_input)
   return analysis::sample_of(pairs);
 }
 
+// How many pairs have another verdict as float32 stores them.
+std::uint64_t changed_by_storing(const strata::MeshPairs& mesh) {
+  if (mesh.in_doubles.empty()) return 0;
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, mesh.size()), std::uint64_t{0},
+      [&](const auto& range, std::uint64_t count) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+          count += relation_of(mesh.double_pair(i)).verdict != relation_of(mesh.pair(i)).verdict;
+        return count;
+      },
+      std::plus<>());
+}
+
 // Measures, and writes the scene to the file of --out, or to standard output without one.
 analysis::SceneSample write_scene(const SceneVerb& options) {
   for (const std::string& file : options.files) expect_utf8("graze scene", file);
@@ -56,12 +75,14 @@ analysis::SceneSample write_scene(const SceneVerb& options) {
                      (pairs ? "pairs" : fmt::format("{} files", options.files.size())));
   analysis::SceneSample sample;
   strata::SceneMeshes meshes;
+  std::uint64_t changed = 0;
   if (pairs) {
     sample = sample_of_pairs(options.files[0], options.exact_input);
   } else {
     auto found = std::make_shared<strata::MeshPairs>(
         strata::read_bodies({options.files.begin(), options.files.end()}, options.poses));
     say_notes(found->notes, found->rounding, options.exact_input);
+    changed = changed_by_storing(*found);
     sample = {found->triangles, found->size(), [found](std::uint64_t index) { return found->pair(index); }};
     const fs::path folder = fs::path(options.out).parent_path();
     for (const std::string& file : options.files) meshes.files.push_back(relative_to(folder, file));
@@ -74,6 +95,13 @@ analysis::SceneSample write_scene(const SceneVerb& options) {
   std::string text =
       "# Where graze draws pairs from. Edit it as you like: extent and edges are needed, all else has a default.\n";
   text += fmt::format("# Of {} triangles, {} pairs whose boxes overlap.\n", sample.triangles.size(), sample.pairs);
+  if (changed > 0) {
+    const std::string stored =
+        fmt::format("stored in float32, as the scene has them, {} of {} pairs have another verdict", changed, sample.pairs);
+    fmt::print(stderr, "graze: {}\n", stored);
+    text += fmt::format("# {}; `graze fuzz --mesh --coordinates f64` draws their doubles.\n",
+                        static_cast<char>(std::toupper(stored[0])) + stored.substr(1));
+  }
   text += strata::scene_text(measured);
   try {
     strata::parse_scene("scene", text);

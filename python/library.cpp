@@ -88,7 +88,7 @@ void visit(const void* pairs, int doubles, F f) {
 
 template <class Real>
 Relation truth_of(const BasicPair<Real>& pair) {
-  return is_finite(pair) ? relation_of(pair) : Relation{};
+  return is_finite(pair) ? relation_of(pair) : Relation{Verdict::declined, Contact::unknown, 0, {}};
 }
 
 // Decides up to kBlock pairs. A lane that takes no doubles decides them as float32 stores them.
@@ -153,8 +153,7 @@ void find_intersections(Triangles<Real> first, Triangles<Real> second, const str
     boxes.pairs(slab, [&](std::uint32_t i, std::uint32_t j) {
       if (stop_requested.load(std::memory_order_relaxed)) throw Stopped();
       const Triangle<Real>&of_a = first[i], &of_b = second[j];
-      const BasicPair<Real> pair{{of_a[0], of_a[1], of_a[2]}, {of_b[0], of_b[1], of_b[2]}};
-      const Relation r = truth_of(pair);
+      const Relation r = relation_of(BasicPair<Real>{{of_a[0], of_a[1], of_a[2]}, {of_b[0], of_b[1], of_b[2]}});
       if (only_piercing ? pierces(r) : r.intersects()) part.push_back({i, j});
     });
   });

@@ -53,7 +53,7 @@ constexpr std::optional<Group> group_of_name(std::string_view id) {
   for (const StratumInfo& row : kDoubleStrata) {
     if (row.id == stratum) return group_of(row.stratum);
   }
-  return id == "mesh" || id.starts_with("mesh_") ? std::optional(Group::mesh) : std::nullopt;
+  return stratum == "mesh" || id.starts_with("mesh_") ? std::optional(Group::mesh) : std::nullopt;
 }
 
 }  // namespace graze::strata

@@ -77,27 +77,44 @@ Soup read_soup(const std::filesystem::path& file, std::string_view bytes, Coordi
 
 void add_rounding(MeshPairs& pairs, const Rounding& rounding, const std::filesystem::path& file) {
   pairs.rounding += rounding;
-  for (std::string& note : rounding_note(file.string(), rounding)) pairs.notes.push_back(std::move(note));
+  for (const std::string& note : rounding_note(file.string(), rounding)) {
+    pairs.notes.push_back(note);
+    if (rounding.beyond == 0) pairs.notes_of_doubles.push_back(note);
+  }
+  for (const std::string& note : doubles_note(file.string(), rounding)) pairs.notes_of_doubles.push_back(note);
 }
 
-// Adds the file's triangles, and its bytes to the hash.   Returns: what was read.
-Soup add_mesh(MeshPairs& pairs, const std::filesystem::path& file, Coordinates coordinates = Coordinates::finite) {
+std::array<Vec3<double>, 3> in_doubles(const Triangle& t) {
+  const auto wide = [](const Vec3<float>& v) { return Vec3<double>{v.x, v.y, v.z}; };
+  return {wide(t[0]), wide(t[1]), wide(t[2])};
+}
+
+// Adds the file's triangles, and its bytes to the hash.
+void add_mesh(MeshPairs& pairs, const std::filesystem::path& file, Coordinates coordinates = Coordinates::finite) {
   const std::string bytes = read_bytes(file);
   pairs.content_hash = fnv1a(bytes, pairs.content_hash);
   Soup soup = read_soup(file, bytes, coordinates);
   if (soup.triangles.empty()) throw std::runtime_error("there is no triangle in " + file.string());
+  const std::size_t before = pairs.triangles.size();
   for (const auto& [i, j, k] : soup.triangles)
     pairs.triangles.push_back({soup.vertices[i], soup.vertices[j], soup.vertices[k]});
+  if (soup.rounding.beyond > 0 || !pairs.in_doubles.empty()) {
+    for (std::size_t t = pairs.in_doubles.size(); t < before; ++t)  // of files before it, which float32 holds
+      pairs.in_doubles.push_back(in_doubles(pairs.triangles[t]));
+    for (const auto& [i, j, k] : soup.triangles)
+      pairs.in_doubles.push_back({soup.in_doubles[i], soup.in_doubles[j], soup.in_doubles[k]});
+  }
   if (pairs.triangles.size() > std::numeric_limits<std::uint32_t>::max())
     throw std::runtime_error(cannot("use", file, "there are 2^32 triangles or more"));
   std::string skipped;
   for (const auto& [what, count] : soup.skipped)
     skipped += (skipped.empty() ? "" : ", ") + std::to_string(count) + ' ' + what;
-  if (!skipped.empty())
+  if (!skipped.empty()) {
     pairs.notes.push_back(printable(file.string()) + ": " + std::to_string(soup.triangles.size()) +
                           " triangles; not used: " + skipped);
+    pairs.notes_of_doubles.push_back(pairs.notes.back());
+  }
   add_rounding(pairs, soup.rounding, file);
-  return soup;
 }
 
 using Pose = std::array<double, 12>;
@@ -148,6 +165,7 @@ std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path
                                     std::to_string(poses.size()) + " poses of " + std::to_string(mesh.size()) +
                                         " triangles are more than 2^26 triangles"));
   pairs.triangles.clear();
+  pairs.in_doubles.clear();  // poses move the triangles as float32 stores them
   std::vector<std::size_t> ends;
   Rounding rounding;
   for (const Pose& pose : poses) {
@@ -193,6 +211,23 @@ Pair MeshPairs::pair(std::size_t index) const {
   return {{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
 }
 
+DoublePair MeshPairs::double_pair(std::size_t index) const {
+  if (in_doubles.empty()) return graze::in_doubles(pair(index));
+  const std::array<Vec3<double>, 3>&a = in_doubles[candidates[index].first], &b = in_doubles[candidates[index].second];
+  return {{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
+}
+
+std::vector<PairSource> mesh_sources(const std::shared_ptr<const MeshPairs>& mesh, PairTypes types) {
+  std::vector<PairSource> sources;
+  if (types != PairTypes::f64)
+    sources.push_back({"mesh", mesh->size(), [mesh](std::uint64_t index) { return mesh->pair(index); }});
+  if (types != PairTypes::f32) {
+    sources.push_back({"mesh" + std::string(kInDoubles), mesh->size(), nullptr});
+    sources.back().double_pair = [mesh](std::uint64_t index) { return mesh->double_pair(index); };
+  }
+  return sources;
+}
+
 MeshPairs read_bodies(const std::vector<std::filesystem::path>& files, const std::filesystem::path& poses) {
   MeshPairs result;
   result.content_hash = fnv1a("");
@@ -211,11 +246,7 @@ MeshPairs read_bodies(const std::vector<std::filesystem::path>& files, const std
 MeshPairs read_triangles(const std::filesystem::path& file, Coordinates coordinates) {
   MeshPairs result;
   result.content_hash = fnv1a("");
-  const Soup soup = add_mesh(result, file, coordinates);
-  if (soup.rounding.beyond > 0) {
-    for (const auto& [i, j, k] : soup.triangles)
-      result.in_doubles.push_back({soup.in_doubles[i], soup.in_doubles[j], soup.in_doubles[k]});
-  }
+  add_mesh(result, file, coordinates);
   return result;
 }
 

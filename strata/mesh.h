@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,24 +15,30 @@
 
 #include "core/pair.h"
 #include "strata/mesh_readers/soup.h"
+#include "strata/pair_source.h"
 
 namespace graze::strata {
 
 struct MeshPairs {
   std::vector<std::array<Vec3<float>, 3>> triangles;  // of the first file, then of the second, in file order
-  // The same triangles in doubles, of read_triangles, if the file has a coordinate beyond float32; else empty.
+  // The same triangles in doubles, if a file has a coordinate beyond float32; else empty.
   std::vector<std::array<Vec3<double>, 3>> in_doubles;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> candidates;  // indices into triangles, sorted, first < second
   std::uint64_t content_hash = 0;  // FNV-1a of the bytes of the first file, then of the second
   // One line for each file with unused content, such as normals, and for each whose coordinates float32 rounded.
   std::vector<std::string> notes;
-  Rounding rounding;  // of the coordinates in all files
+  std::vector<std::string> notes_of_doubles;  // the same for who decides doubles
+  Rounding rounding;                          // of the coordinates in all files
 
   std::size_t size() const { return candidates.size(); }
 
   // Requires: index < size().
   Pair pair(std::size_t index) const;
+  DoublePair double_pair(std::size_t index) const;
 };
+
+// The candidate pairs as sources: "mesh", and "mesh/f64" for their doubles.
+std::vector<PairSource> mesh_sources(const std::shared_ptr<const MeshPairs>& mesh, PairTypes types);
 
 // Whether the file's extension is that of a mesh format.
 bool is_mesh(const std::filesystem::path& file);

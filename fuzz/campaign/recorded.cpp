@@ -27,7 +27,7 @@ std::vector<strata::PairSource> recorded_sources(const Json& spec) {
     return sources_of(recorded_scene(scene), seed, scene.at("pairs"), strata).sources;
   }
   std::uint64_t pairs = spec.at("pairs");
-  std::optional<strata::PairSource> of_mesh;
+  std::vector<strata::PairSource> of_mesh;
   if (spec.contains("mesh")) {
     const std::vector<std::string> files = spec["mesh"].at("files");
     const auto mesh = std::make_shared<strata::MeshPairs>(strata::read_mesh_pairs(
@@ -35,15 +35,20 @@ std::vector<strata::PairSource> recorded_sources(const Json& spec) {
     if (fmt::format("{:016x}", mesh->content_hash) != spec["mesh"].at("content").get<std::string>())
       throw std::runtime_error(
           cannot("draw the campaign's pairs from", files[0], "the mesh has changed since the campaign ran"));
-    of_mesh = {"mesh", mesh->size(), [mesh](std::uint64_t index) { return mesh->pair(index); }};
-    pairs -= std::min(pairs, of_mesh->pairs);
+    for (const strata::PairSource& source : strata::mesh_sources(mesh, PairTypes::both)) {
+      if (std::erase(strata, source.id) == 0) continue;
+      of_mesh.push_back(source);
+      pairs -= std::min(pairs, source.pairs);
+    }
   }
-  std::erase(strata, "mesh");
   std::vector<strata::PairSource> sources;
   if (!strata.empty()) sources = strata::named_sources(seed, pairs, strata);
-  if (of_mesh) sources.push_back(*of_mesh);
+  sources.insert(sources.end(), of_mesh.begin(), of_mesh.end());
   return sources;
 }
+
+// Whether a source of this name draws from a mesh as it is.
+bool is_of_mesh(const std::string& source) { return strata::stratum_in_doubles(source).value_or(source) == "mesh"; }
 
 bool has_doubles(const Json& spec) {
   const Json strata = spec.value("strata", Json::array());
@@ -76,12 +81,15 @@ namespace {
 
 // The pairs of the mesh: from the summary, if it has them, else from the mesh itself.
 std::uint64_t mesh_pairs(const Json& spec, const Json& summary) {
+  std::uint64_t found = 0;
   const Json strata = summary.value("strata", Json::object());
-  const std::uint64_t found = strata.contains("mesh") ? strata["mesh"].at("pairs").get<std::uint64_t>() : 0;
+  for (const auto& [id, counts] : strata.items()) {
+    if (is_of_mesh(id)) found += counts.at("pairs").get<std::uint64_t>();
+  }
   if (summary.value("complete", false) && found > 0) return found;
   try {
     std::uint64_t pairs = 0;
-    for (const strata::PairSource& source : recorded_sources(spec)) pairs += source.stratum < 0 ? source.pairs : 0;
+    for (const strata::PairSource& source : recorded_sources(spec)) pairs += is_of_mesh(source.id) ? source.pairs : 0;
     return pairs;
   } catch (const std::runtime_error&) {  // the mesh is gone
     return found;
@@ -118,16 +126,16 @@ std::vector<std::string> command_words(const Json& spec, const Shard& shard, con
   if (scene) add("--scene", spec["scene"].at("file"));
   if (mesh) {
     for (const std::string file : spec["mesh"].at("files")) add("--mesh", file);
-    std::erase(strata, "mesh");
     pairs -= std::min(pairs, mesh_pairs(spec, summary));
   }
-  if (!mesh || !strata.empty()) add(hunt ? "--runs" : "--pairs", std::to_string(pairs));
-  add("--seed", std::to_string(spec.at("seed").get<std::uint64_t>()));
   const auto of_doubles =
       std::count_if(strata.begin(), strata.end(), [](const std::string& id) { return strata::stratum_in_doubles(id); });
   const PairTypes coordinates = of_doubles == 0                    ? PairTypes::f32
                                 : of_doubles == std::ssize(strata) ? PairTypes::f64
                                                                    : PairTypes::both;
+  if (mesh) std::erase_if(strata, is_of_mesh);
+  if (!mesh || !strata.empty()) add(hunt ? "--runs" : "--pairs", std::to_string(pairs));
+  add("--seed", std::to_string(spec.at("seed").get<std::uint64_t>()));
   for (const strata::PairSource& source : strata::stratum_sources(0, 0, {}, coordinates))
     all_strata.push_back(source.id);
   if (scene) {  // the user also asked for strata that the scene excludes

@@ -21,6 +21,12 @@ void fail(const std::string& where, const std::string& expected, const std::stri
 std::string at_line(const MeshBytes& file, std::size_t line) { return file.name + ':' + std::to_string(line); }
 std::string at_byte(const MeshBytes& file, std::size_t byte) { return file.name + ": byte " + std::to_string(byte); }
 
+std::vector<std::string> doubles_note(const std::string& file, const Rounding& rounding) {
+  if (rounding.beyond == 0) return {};
+  return {printable(file) + ": decided in doubles, because " + std::to_string(rounding.beyond) + " of " +
+          std::to_string(rounding.coordinates) + " coordinates have more digits than float32 holds"};
+}
+
 std::vector<std::string> rounding_note(const std::string& file, const Rounding& rounding) {
   if (rounding.rounded == 0) return {};
   return {printable(file) + ": float32 rounded " + std::to_string(rounding.rounded) + " of " +

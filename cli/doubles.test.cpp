@@ -35,6 +35,18 @@ TEST_F(Doubles, ACampaignIsRepeatedByItsFiles) {
   EXPECT_EQ(report.status, 0) << report.err;
   EXPECT_EQ(report.out.find("Next:"), std::string::npos) << report.out;
   EXPECT_NE(contents(shell.folder / "c/report.html").find("stored/f64"), std::string::npos);
+  const Json told = Json::parse(contents(shell.folder / "c/report.json"));
+  int of_float = 0;
+  for (const Json& row : told["rates"]) {
+    const std::string lane = told["lanes"][row["lane"].get<std::size_t>()]["id"];
+    EXPECT_EQ(row.contains("stored"), lane.find("/f32/") != std::string::npos) << row;
+    if (!row.contains("stored") || row["stratum"].is_null()) continue;
+    const std::string stratum = told["strata"][row["stratum"].get<std::size_t>()]["id"];
+    EXPECT_EQ(row["stored"], summary["strata"][stratum]["lanes"][lane]["stored"]) << row;
+    ++of_float;
+  }
+  EXPECT_GT(of_float, 8);
+  EXPECT_NE(contents(shell.folder / "c/rates.csv").find("exact/f32/cpu,general,stored/f64,stored,"), std::string::npos);
   expect_done("graze fuzz --coordinates f64 --strata 'stored,near_vertex_face' --pairs 600 --lanes '*/cpu' --out c");
   expect_done(
       "graze fuzz --coordinates f64 --strata stored --pairs 100 --lanes 'moller_1997/*/cpu' --out j "

@@ -60,6 +60,8 @@ std::string rates_csv(const Json& report) {
       table.row(cells);
     }
     table.row({lane_id(report, row), group, stratum, "declined", row["declined"], nullptr, nullptr, nullptr, nullptr});
+    if (row.contains("stored"))
+      table.row({lane_id(report, row), group, stratum, "stored", row["stored"], nullptr, nullptr, nullptr, nullptr});
   }
   for (const Json& row : report["group_rates"]) {
     for (const char* kind : {"false_positive", "false_negative", "wrong"}) {

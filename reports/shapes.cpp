@@ -81,7 +81,7 @@ constexpr const char* kShapes = R"({
   "answer": ["text"], "groups": [{"id": "text", "describes": "text", "strata": ["count"]}],
   "rates": [{"lane": "count", "stratum": "count?", "false_positive": "share", "false_negative": "share",
     "wrong": "share", "declined": "count", "differs_from_cpu": "share?", "crashed?": "count", "timed_out?": "count",
-    "unstable?": "count", "by_convention?": "count"}],
+    "unstable?": "count", "by_convention?": "count", "stored?": "count"}],
   "group_rates": [{"lane": "count", "group": "count", "wrong": "share",
   "false_positive?": "share", "false_negative?": "share"}],
   "side_by_side": [{"kind": "text", "left": "count", "right": "count",

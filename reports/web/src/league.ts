@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The league table: lanes × strata, with false positives and false negatives.
 import { breakable, choice, h, section } from './dom';
-import { bare_percent, in_full } from './format';
+import { bare_percent, count, in_full } from './format';
 import { heat_class, heat_legend } from './heat';
 import { lane_picker } from './lane_picker';
 import { cell_text, cell_words, kErrors, type Kind } from './pairs_of_cell';
@@ -30,6 +30,7 @@ function words(report: Report, rate: Rate): string {
     `false negatives ${in_full(rate.false_negative)}`,
     rate.declined ? `declined ${rate.declined}` : '',
     rate.differs_from_cpu ? `differs from cpu ${in_full(rate.differs_from_cpu)}` : '',
+    rate.stored === undefined ? '' : `wrong by storing in float32 ${count(rate.stored)}`,
   ]
     .filter(Boolean)
     .join('; ');
@@ -38,8 +39,12 @@ function words(report: Report, rate: Rate): string {
 export function league_section(report: Report) {
   const rates = new Map(report.rates.map((rate) => [`${rate.lane}/${rate.stratum}`, rate]));
   const find = (lane: number, stratum: number | null) => rates.get(`${lane}/${stratum}`);
+  const in_doubles = (stratum: number) => report.strata[stratum].id.endsWith('/f64');
+  const places = report.strata.map((_, i) => i);
+  const both_types = places.some(in_doubles) && !places.every(in_doubles);
   let show: Show = 'both',
-    only = 'all';
+    only = 'all',
+    type = 'all';
 
   const readout = h('p', { class: 'readout', 'aria-live': 'polite' });
   const kHint =
@@ -93,7 +98,8 @@ export function league_section(report: Report) {
   }
 
   function columns(): Column<number>[] {
-    const shown = only === 'all' ? report.strata.map((_, i) => i) : [Number(only)];
+    const shown =
+      only !== 'all' ? [Number(only)] : places.filter((i) => type === 'all' || in_doubles(i) === (type === 'f64'));
     const column = (stratum: number | null, label: string): Column<number> => ({
       label,
       numeric: true,
@@ -143,7 +149,22 @@ export function league_section(report: Report) {
       redraw();
     },
   );
+  const types = choice(
+    'Coordinates',
+    [
+      ['all', 'float32 and double'],
+      ['f32', 'float32'],
+      ['f64', 'double'],
+    ],
+    type,
+    (value) => {
+      choose('type', value === 'all' ? '' : value);
+      redraw();
+    },
+  );
   const redraw = () => {
+    type = both_types && ['f32', 'f64'].includes(chosen('type')) ? chosen('type') : 'all';
+    types.querySelector('select')!.value = type;
     const place = report.strata.findIndex((stratum) => stratum.id === chosen('stratum'));
     only = place < 0 ? 'all' : String(place);
     show = chosen('show') in kErrors ? (chosen('show') as Kind) : 'both';
@@ -175,6 +196,7 @@ export function league_section(report: Report) {
       h('label', { class: 'field' }, h('span', {}, 'Find a lane'), search),
       shows,
       strata,
+      ...(both_types ? [types] : []),
     ),
     picker.element,
     h('div', { class: 'between' }, heat_legend(), readout),

@@ -154,6 +154,7 @@ export interface Report {
     wrong: Share;
     declined: number;
     differs_from_cpu: Share | null;
+    stored?: number; // pairs of doubles that are wrong by storing them in float32
   }[];
   group_rates: { lane: number; group: number; wrong: Share; false_positive?: Share; false_negative?: Share }[];
   // Pairs of lanes of one algorithm. `differs` counts pair by pair if known, otherwise it is null. A null stratum means

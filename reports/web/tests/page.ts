@@ -6,6 +6,7 @@ import type { Costs, Report } from '../src/report';
 
 export const url = () => pathToFileURL(process.env.GRAZE_REPORT!).href;
 export const compare_url = () => pathToFileURL(process.env.GRAZE_COMPARE || process.env.GRAZE_REPORT!).href;
+export const doubles_url = () => pathToFileURL(process.env.GRAZE_DOUBLES || process.env.GRAZE_REPORT!).href;
 
 // Without WebGL, except in tests that ask for it, because it takes most of the time if there is no GPU.
 export const test = base.extend<{ webgl: boolean; report: Report; costs: Costs | null; watched: void }>({
@@ -17,7 +18,7 @@ export const test = base.extend<{ webgl: boolean; report: Report; costs: Costs |
         said: string[] = [];
       page.on('request', (request) => {
         const asked = request.url().split('#')[0];
-        if (asked !== url() && asked !== compare_url() && !/^(data|blob):/.test(asked)) fetched.push(asked);
+        if (![url(), compare_url(), doubles_url()].includes(asked) && !/^(data|blob):/.test(asked)) fetched.push(asked);
       });
       page.on('console', (message) => said.push(`${message.type()}: ${message.text()}`));
       page.on('pageerror', (error) => said.push(`error: ${error.message}`));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-import { expect, test } from './page';
+import type { Report } from '../src/report';
+import { doubles_url, expect, test } from './page';
 
 const column_of = (title: string) => `//thead//th[.//span[normalize-space()="${title}"]]`;
 
@@ -21,6 +22,33 @@ test('the league table holds the report’s numbers, with intervals', async ({ p
   expect(title).toMatch(/95 %: [<0-9.]/);
   await cell.hover();
   await expect(page.locator('#league .readout')).toHaveText(title);
+});
+
+test('a campaign of both coordinate types has a switch, and says what storing costs', async ({ page }) => {
+  test.skip(!process.env.GRAZE_DOUBLES, 'no such campaign');
+  await expect(page.locator('#league label', { hasText: 'Coordinates' })).toHaveCount(0); // float32 alone
+  await page.goto(doubles_url());
+  await page.waitForSelector('#league');
+  const report = JSON.parse((await page.locator('#report').textContent())!) as Report;
+  const heads = () => page.locator('.league thead .upright').allTextContents();
+  const names = report.strata.map((stratum) => stratum.id);
+  expect(names).toContain('stored/f64');
+  expect(await heads()).toEqual(['all strata', ...names]);
+  const types = page.locator('#league label', { hasText: 'Coordinates' }).locator('select');
+  await types.selectOption('f64');
+  expect(await heads()).toEqual(['all strata', ...names.filter((name) => name.endsWith('/f64'))]);
+  const stratum = names.indexOf('stored/f64');
+  const rate = report.rates.find(
+    (row) => row.stratum === stratum && report.lanes[row.lane].id === 'moller_1997/f32/cpu',
+  )!;
+  expect(rate.stored).toBeGreaterThan(80);
+  expect(rate.stored).toBeLessThanOrEqual(rate.wrong.count);
+  await expect(page.locator(`.league td[title*="moller_1997/f32/cpu on stored/f64"]`)).toHaveAttribute(
+    'title',
+    new RegExp(`wrong by storing in float32 ${rate.stored}$`),
+  );
+  await types.selectOption('f32');
+  expect(await heads()).toEqual(['all strata', ...names.filter((name) => !name.endsWith('/f64'))]);
 });
 
 test('the league table sorts by a column, down and up', async ({ page, report }) => {

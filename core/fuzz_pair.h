@@ -7,32 +7,46 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <string_view>
+#include <type_traits>
 
 #include "core/pair.h"
 
 namespace graze {
 
-// First byte even: the next 72 bytes are the coordinates' bits. First byte odd: the second byte is an exponent and the
-// next 18 are small whole numbers, scaled by that power of two so that contacts are common. Missing bytes are zeros.
-inline Pair pair_of(std::string_view bytes) {
-  unsigned char all[1 + sizeof(Pair)] = {};
+// First byte even: the next 72 or 144 bytes are the coordinates' bits. First byte odd: the second byte is an exponent,
+// eight times as large for doubles, and the next 18 are small whole numbers, scaled by that power of two so that contacts
+// are common. Of doubles, the next 18 bytes then say by how many ulps each is moved. Missing bytes are zeros.
+template <class Real = float>
+BasicPair<Real> pair_of(std::string_view bytes) {
+  constexpr bool kDoubles = sizeof(Real) == sizeof(double);
+  unsigned char all[1 + sizeof(BasicPair<Real>)] = {};
   std::copy_n(bytes.begin(), std::min(bytes.size(), sizeof all), all);
-  Pair pair;
+  BasicPair<Real> pair;
   std::memcpy(&pair, all + 1, sizeof pair);
   if (all[0] % 2 == 0) return pair;
-  for (int i = 0; i < kCoordinates; ++i)
-    coordinates(pair)[i] =
-        std::ldexp(static_cast<float>(static_cast<signed char>(all[i + 2])), static_cast<signed char>(all[1]));
+  const int exponent = static_cast<signed char>(all[1]) * (kDoubles ? 8 : 1);
+  for (int i = 0; i < kCoordinates; ++i) {
+    Real& x = coordinates(pair)[i];
+    x = std::ldexp(static_cast<Real>(static_cast<signed char>(all[i + 2])), exponent);
+    if constexpr (kDoubles) {
+      const auto ulps = static_cast<std::uint64_t>(std::int64_t{static_cast<signed char>(all[i + 20])});
+      if (x != 0) x = std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) + ulps);
+    }
+  }
   return pair;
 }
 
 // Like pair_of, but the exponent of a coordinate that is not finite is one less, which makes it finite.
-inline Pair finite_pair_of(std::string_view bytes) {
-  Pair pair = pair_of(bytes);
+template <class Real = float>
+BasicPair<Real> finite_pair_of(std::string_view bytes) {
+  using Bits = std::conditional_t<sizeof(Real) == sizeof(float), std::uint32_t, std::uint64_t>;
+  BasicPair<Real> pair = pair_of<Real>(bytes);
   for (int i = 0; i < kCoordinates; ++i) {
-    float& x = coordinates(pair)[i];
-    if (!std::isfinite(x)) x = std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) ^ 0x800000u);
+    Real& x = coordinates(pair)[i];
+    constexpr Bits kLeastOfExponent = Bits{1} << (std::numeric_limits<Real>::digits - 1);
+    if (!std::isfinite(x)) x = std::bit_cast<Real>(std::bit_cast<Bits>(x) ^ kLeastOfExponent);
   }
   return pair;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For pairs of any bits, the exact decision, GMP's and CGAL's must agree. The certified bounds of the margin must
+// For pairs of any bits, of floats and of doubles, the exact decision, GMP's and CGAL's must agree. The certified bounds of the margin must
 // contain the exact margin, rounded once by MPFR.
 #include <cmath>
 
@@ -7,6 +7,7 @@
 #include "core/fuzz_pair.h"
 #include "core/fuzz_target.h"
 #include "core/margin/margin.h"
+#include "core/relation_of.h"
 #include "oracle/truth.h"
 
 namespace graze::oracle {
@@ -20,6 +21,18 @@ const RegisterFuzzTarget kExact("exact", [](std::string_view bytes) {
   must_hold(intersects == (cgal_verdict(pair) == Verdict::intersects), "the exact decision and CGAL's are the same");
   must_hold(intersects == (contact != Contact::none), "the exact decision and GMP's are the same");
   reached(static_cast<std::size_t>(stage) * 8 + static_cast<std::size_t>(contact));
+});
+
+const RegisterFuzzTarget kExactDoubles("exact_doubles", [](std::string_view bytes) {
+  const DoublePair pair = finite_pair_of<double>(bytes);
+  exact::Stage stage;
+  const bool intersects = exact::intersects(coordinates(pair), coordinates(pair) + 9, &stage);
+  const Relation relation = relation_of(pair);
+  must_hold(intersects == (cgal_verdict(pair) == Verdict::intersects), "the exact decision and CGAL's are the same");
+  must_hold(intersects == relation.intersects(), "the exact decision and the exact relation are the same");
+  must_hold(relation.contact == gmp_contact(pair), "the exact contact and GMP's are the same");
+  must_hold(relation.hulls == hulls(pair), "the exact hulls and GMP's are the same");
+  reached(static_cast<std::size_t>(stage) * 8 + static_cast<std::size_t>(relation.contact));
 });
 
 const RegisterFuzzTarget kMargin("margin", [](std::string_view bytes) {

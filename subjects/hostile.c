@@ -21,6 +21,7 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <sys/sysmacros.h>
 #include <sys/uio.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -322,6 +323,12 @@ static void keep_memory(void) {
   abort();
 }
 ATTACK(keeps_memory, keep_memory())
+// Whether the device can be opened. In its place may be the null device, which holds nothing.
+static int can_open_device(const char* name) {
+  struct stat at;
+  int fd = open(name, O_RDONLY | O_NOCTTY | O_NONBLOCK);
+  return fd >= 0 && !(fstat(fd, &at) == 0 && S_ISCHR(at.st_mode) && at.st_rdev == makedev(1, 3));
+}
 // Devices that make others, hold memory or are terminals, and settings of the system.
 static void open_devices(void) {
   const char* closed[] = {"/dev/loop-control",
@@ -340,7 +347,7 @@ static void open_devices(void) {
   const char* settings[] = {"/proc/sysrq-trigger", "/proc/sys/kernel/core_pattern",
                             "/sys/kernel/mm/transparent_hugepage/enabled"};
   for (unsigned i = 0; i < sizeof closed / sizeof *closed; ++i) {
-    if (open(closed[i], O_RDONLY | O_NOCTTY | O_NONBLOCK) >= 0) return;  // then the pair has an answer
+    if (can_open_device(closed[i])) return;  // then the pair has an answer
   }
   for (int i = 0; i < 3; ++i) {
     if (open(settings[i], O_WRONLY) >= 0) return;

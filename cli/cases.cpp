@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include "analysis/signature.h"
 #include "core/error.h"
@@ -27,7 +28,9 @@ std::uint64_t number(const std::string& text, const std::string& name) {
 // "disjoint, 1e-11 apart", "they share a segment, 0.25 deep"
 std::string words(const oracle::Truth& truth) {
   if (truth.verdict == Verdict::disjoint)
-    return truth.margin > 0 ? fmt::format("disjoint, {:.3g} apart", truth.margin) : "disjoint, less than 5e-324 apart";
+    return truth.margin > std::numeric_limits<double>::denorm_min()
+               ? fmt::format("disjoint, {:.3g} apart", truth.margin)
+               : "disjoint, less than 1e-323 apart";
   const char* contact = truth.contact == Contact::point     ? "they touch in a point"
                         : truth.contact == Contact::segment ? "they share a segment"
                                                             : "they share an area";

@@ -80,6 +80,11 @@ TEST_F(DiscrepancyCommand, ACampaignsColumnIsTheSumOfItsVerdicts) {
   expect_done(compare + "--strata lattice --seed 7 --out c");
   expect_done("graze report c");
   EXPECT_NE(contents(shell.folder / "c/report.html").find(other_pairs), std::string::npos);
+  // More pairs of a stratum than the campaign drew.
+  expect_done("graze discrepancy " + first + " " + second + " --executor twin --pairs 2000 --strata thesis --out c");
+  expect_done("graze report c");
+  EXPECT_NE(contents(shell.folder / "c/report.html").find("that the campaign did not draw (seed 1)"),
+            std::string::npos);
   // An edited count is refused.
   auto forged = found;
   forged["lanes"][0]["strata"]["thesis"]["verdict"] = 5004;
@@ -102,6 +107,11 @@ TEST_F(DiscrepancyCommand, ACampaignsPairsAreThoseOfItsScene) {
   EXPECT_NE(contents(shell.folder / "c/discrepancy.html").find("scene hall.toml"), std::string::npos);
   expect_done(compare + "--pairs 600 --out e");
   expect_error("graze discrepancy --compare c e", 2, {"scene"});
+  const std::string other_pairs = "that the campaign did not draw";
+  expect_done("graze report c");
+  EXPECT_EQ(contents(shell.folder / "c/report.html").find(other_pairs), std::string::npos);
+  expect_done("cp e/discrepancy.json c && graze report c");
+  EXPECT_NE(contents(shell.folder / "c/report.html").find(other_pairs), std::string::npos);
 }
 
 // Of a user's code the verdicts are compared, and the output says why no value is.

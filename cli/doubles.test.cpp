@@ -130,15 +130,19 @@ TEST_F(Doubles, AMeshIsDrawnInItsDoubles) {
   expect_done("graze fuzz --mesh walls.off --coordinates f64" + lanes + "--out c > again && graze report c > told");
   EXPECT_EQ(contents(shell.folder / "c/summary.json"), bytes);
   EXPECT_NE(contents(shell.folder / "c/report.html").find("--coordinates f64"), std::string::npos);
-  expect_done("graze dump c --format pairs > c.pairs && graze check c.pairs --lanes exact/f64/cpu | grep -q 'truth: disjoint'");
+  expect_done(
+      "graze dump c --format pairs > c.pairs && graze check c.pairs --lanes exact/f64/cpu | grep -q 'truth: disjoint'");
   const std::string file = "c/" + summary["signatures"][0]["case"].get<std::string>();
   expect_done("graze repro " + file + lanes);
   for (const char* k : {"1", "2"})
-    expect_done(fmt::format("graze fuzz --mesh walls.off --coordinates both --strata uniform --pairs 60{}--shard {}/2 "
-                            "--out s-{}",
-                            lanes, k, k));
-  expect_done("graze merge s-1 s-2 --out both && graze fuzz --mesh walls.off --coordinates both --strata uniform "
-              "--pairs 60" + lanes + "--out whole");
+    expect_done(
+        fmt::format("graze fuzz --mesh walls.off --coordinates both --strata uniform --pairs 60{}--shard {}/2 "
+                    "--out s-{}",
+                    lanes, k, k));
+  expect_done(
+      "graze merge s-1 s-2 --out both && graze fuzz --mesh walls.off --coordinates both --strata uniform "
+      "--pairs 60" +
+      lanes + "--out whole");
   Json both = Json::parse(contents(shell.folder / "both/summary.json"));
   EXPECT_EQ(both["strata"], Json::parse(contents(shell.folder / "whole/summary.json"))["strata"]);
   for (const char* source : {"uniform", "uniform/f64", "mesh", "mesh/f64"})
@@ -183,6 +187,26 @@ TEST_F(Doubles, WhatStoringChangesIsSaid) {
   const Ran large = shell("graze check large.pairs --lanes 'exact/*/cpu,moller_1997/*/cpu' | tr -s ' \\n' ' '");
   EXPECT_EQ(large.status, 0) << large.err;
   EXPECT_NE(large.out.find("float32 cannot store it: number 1, 1e+300"), std::string::npos) << large.out;
+}
+
+// A margin below the least double or above the largest is told as that, and never as a contact or as infinite.
+TEST_F(Doubles, NoMarginIsZeroOrInfiniteByRounding) {
+  std::ofstream(shell.folder / "ends.pairs")
+      << "0x1p-1074 0 -0x1p-1074 0 0x1p-1074 -0x1p-1074 0 0 0x1p-1074  "
+         "0 0 0 -0x1p-1074 -0x1p-1074 0 -0x1p-1074 0 -0x1p-1074 | coordinates=f64\n"
+         "1e308 1e308 1e308 1e308 -1e308 1e308 1e308 0 -1e308  "
+         "-1.7e308 -1.7e308 -1.7e308 -1.7e308 1.7e308 1.7e308 -1.7e308 0 -1.7e308 | coordinates=f64\n";
+  const Ran ran = shell("graze check ends.pairs --lanes 'exact/f64/cpu' --json");
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  std::istringstream lines(ran.out);
+  for (const double margin : {0x1p-1074, 0x1.fffffffffffffp+1023}) {
+    std::string line;
+    ASSERT_TRUE(std::getline(lines, line));
+    const Json truth = Json::parse(line)["truth"];
+    EXPECT_EQ(truth["verdict"], "disjoint");
+    EXPECT_EQ(truth["margin"], margin) << line;
+    EXPECT_GT(truth["margin_ulps"], 0.3);
+  }
 }
 
 TEST_F(Doubles, VerbsThatTakeFloat32AloneSaySo) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/own_files.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"
 #include "reports/ulp_map_picture.h"
@@ -96,10 +98,19 @@ void write_pictures(const analysis::UlpMap& map, const fs::path& out) {
     write_result(out, reports::sheet_png(map), fuzz::NamedBy::user);
   } else {
     const ResultFolder folder(out, "truth.png");
+    std::set<fs::path> panels;
     for (const analysis::UlpPanel& panel : map.panels) {
       std::string name = panel.name();
       std::replace(name.begin(), name.end(), '/', '-');
+      panels.insert(out / (name + ".png"));
       write_result(out / (name + ".png"), reports::panel_png(panel));
+    }
+    // Panels of another case would seem to belong to this one.
+    for (const fs::directory_entry& file : fs::directory_iterator(out)) {
+      if (file.path().extension() == ".png" && !panels.contains(file.path()) && file.is_regular_file() &&
+          !file.is_symlink() && file.file_size() > 0 &&
+          fuzz::may_replace(file.path(), reports::panel_png(map.panels.front())))
+        fs::remove(file.path());
     }
   }
   fmt::print("Wrote {}\n", printable(out.string()));

@@ -33,6 +33,11 @@ TEST_F(MapCommand, SameBytesTwiceAndAPictureAPanelInADirectory) {
   expect_done(
       "graze map near_edge_edge:1:7 --lanes 'moller_1997/f32/cpu,exact/*' --out panels && "
       "test \"$(cd panels; echo *)\" = 'moller_1997-f32-cpu.png truth.png'");
+  // Panels of another case do not stay; other pictures do.
+  expect_done(
+      "printf 'a picture of mine' > panels/mine.png && "
+      "graze map near_edge_edge:1:8 --lanes 'projected_sat/f32/cpu' --out panels && "
+      "test \"$(cd panels; echo *)\" = 'mine.png projected_sat-f32-cpu.png truth.png'");
 }
 
 TEST_F(MapCommand, BadInputGetsOneLine) {

@@ -116,8 +116,7 @@ void write_hits(const QueryOptions& options, const Run& run, const TrianglesOf<R
     if (run.bytes[p] != 1) continue;
     const std::size_t triangle = p % triangles.size(), reference = p / triangles.size();
     const BasicPair<Real> pair = pair_of(references[reference], triangles[triangle]);
-    entries.push_back(
-        corpus::entry_of(pair, {{"name", fmt::format("reference_{}_triangle_{}", reference, triangle)}}));
+    entries.push_back(corpus::entry_of(pair, {{"name", fmt::format("reference_{}_triangle_{}", reference, triangle)}}));
     rows.push_back(related(static_cast<std::uint32_t>(reference), static_cast<std::uint32_t>(triangle), pair));
     hits.triangles.push_back(in_doubles(triangles[triangle]));
   }
@@ -333,8 +332,9 @@ void query_mesh(const QueryOptions& options, int& status) {
               of_mesh = read_mesh(options.files[1], strata::Coordinates::any);
   const QueryLanes lanes = query_lanes(options.lanes, {"exact"});
   // Other lanes, and GPUs, take float32.
-  const bool on_cores = std::none_of(options.executors.begin(), options.executors.end(),
-                                     [](const std::string& executor) { return executor.ends_with("gpu") || executor.ends_with("gpus"); });
+  const bool on_cores =
+      std::none_of(options.executors.begin(), options.executors.end(),
+                   [](const std::string& executor) { return executor.ends_with("gpu") || executor.ends_with("gpus"); });
   const bool are_doubles = !(of_references.in_doubles.empty() && of_mesh.in_doubles.empty()) && on_cores &&
                            lanes.ids == std::vector<std::string>{"exact"};
   say_notes(of_references, of_mesh, options.exact_input, are_doubles);

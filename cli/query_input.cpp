@@ -29,8 +29,7 @@ Input read_numbers(const std::string& file) {
   Input references;
   std::vector<strata::Coordinate> numbers;
   while (lines.next()) {
-    for (std::size_t i = 0; i < lines.words().size(); ++i)
-      numbers.push_back(lines.coordinate(i, references.rounding));
+    for (std::size_t i = 0; i < lines.words().size(); ++i) numbers.push_back(lines.coordinate(i, references.rounding));
   }
   if (numbers.empty() || numbers.size() % 9 != 0)
     throw std::runtime_error(
@@ -42,8 +41,7 @@ Input read_numbers(const std::string& file) {
     if (references.rounding.beyond > 0) references.in_doubles[i / 9][i % 9] = numbers[i].written;
   }
   references.notes = references.notes_of_doubles = strata::rounding_note(file, references.rounding);
-  if (references.rounding.beyond > 0)
-    references.notes_of_doubles = strata::doubles_note(file, references.rounding);
+  if (references.rounding.beyond > 0) references.notes_of_doubles = strata::doubles_note(file, references.rounding);
   return references;
 }
 
@@ -111,8 +109,7 @@ Input read_mesh(const std::string& file, strata::Coordinates coordinates) {
                std::vector<query::DoubleTriangle>(mesh.in_doubles.size()), mesh.notes, mesh.notes_of_doubles,
                mesh.rounding};
   std::memcpy(result.triangles.data(), mesh.triangles.data(), mesh.triangles.size() * sizeof(query::Triangle));
-  std::memcpy(result.in_doubles.data(), mesh.in_doubles.data(),
-              mesh.in_doubles.size() * sizeof(query::DoubleTriangle));
+  std::memcpy(result.in_doubles.data(), mesh.in_doubles.data(), mesh.in_doubles.size() * sizeof(query::DoubleTriangle));
   return result;
 }
 

@@ -175,7 +175,7 @@ TEST_F(QueryMeshes, DecideDoublesAsTheOracleDoes) {
   EXPECT_EQ(wrote.status, 0) << wrote.err;
   std::istringstream hits(contents(shell.folder / "hits.pairs"));
   std::string first, number;
-  std::getline(hits, first);  // the version
+  std::getline(hits, first);                // the version
   for (int k = 0; k < kCoordinates; ++k) {  // the first triangle and itself
     ASSERT_TRUE(hits >> number);
     EXPECT_EQ(std::strtod(number.c_str(), nullptr), component(a[0][static_cast<std::size_t>(k % 9 / 3)], k % 3));

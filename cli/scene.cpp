@@ -96,8 +96,8 @@ analysis::SceneSample write_scene(const SceneVerb& options) {
       "# Where graze draws pairs from. Edit it as you like: extent and edges are needed, all else has a default.\n";
   text += fmt::format("# Of {} triangles, {} pairs whose boxes overlap.\n", sample.triangles.size(), sample.pairs);
   if (changed > 0) {
-    const std::string stored =
-        fmt::format("stored in float32, as the scene has them, {} of {} pairs have another verdict", changed, sample.pairs);
+    const std::string stored = fmt::format(
+        "stored in float32, as the scene has them, {} of {} pairs have another verdict", changed, sample.pairs);
     fmt::print(stderr, "graze: {}\n", stored);
     text += fmt::format("# {}; `graze fuzz --mesh --coordinates f64` draws their doubles.\n",
                         static_cast<char>(std::toupper(stored[0])) + stored.substr(1));

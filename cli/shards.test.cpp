@@ -277,6 +277,13 @@ TEST_F(Shards, StatusRefusesADamagedStatus) {
   expect_done("graze status c | grep ' done '");
 }
 
+TEST_F(Shards, AShardIsNoRank) {
+  const std::string of = "graze fuzz --pairs 200 --strata uniform --lanes '*/f32/cpu' ";
+  expect_done(of + "--shard 1/2 --out s && mkdir -p r/rank-0 && cp s/* r/rank-0");
+  expect_error(of + "--out r", 1, {"r/rank-0", "shard 1/2", "graze merge"});
+  expect_done("cmp s/campaign.sqlite r/rank-0/campaign.sqlite");
+}
+
 TEST_F(Shards, AStatusOfAnotherProgramIsNotReplaced) {
   const std::string command = "graze fuzz --pairs 40 --strata uniform --lanes '*/f32/cpu' --out c";
   expect_done(command);

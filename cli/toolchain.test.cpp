@@ -125,7 +125,8 @@ TEST_F(Toolchain, EmulatorsDivideAndTakeRootsExactly) {
 // fmaf() of Debian 12's wasi-libc rounds wrongly near the middle between two numbers. Nothing else of wasm is wrong.
 TEST_F(Toolchain, TheLibrarysOwnFmaIsTested) {
   if (shell("graze toolchain | grep -q '^wasm .* yes$'").status != 0) GTEST_SKIP() << "no wasm";
-  shell("graze toolchain wasm --json r.json");
+  const Ran ran = shell("graze toolchain wasm --json r.json");
+  ASSERT_TRUE(std::filesystem::exists(shell.folder / "r.json")) << ran.out << ran.err;
   const nlohmann::json json = nlohmann::json::parse(contents(shell.folder / "r.json"));
   EXPECT_EQ(json["measured"], "rounded");
   for (const auto& result : json["results"]) {

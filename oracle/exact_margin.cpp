@@ -5,6 +5,7 @@
 #include <mpfr.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace graze::oracle {
 namespace {
@@ -134,7 +135,8 @@ double rounded(const SquaredMargin& margin) {
   mpfr_set_z_2exp(value, root.get_mpz_t(), margin.exponent - shift - 1, MPFR_RNDN);
   const double result = mpfr_get_d(value, MPFR_RNDN);
   mpfr_clear(value);
-  return result;
+  using Limits = std::numeric_limits<double>;
+  return std::clamp(result, Limits::denorm_min(), Limits::max());
 }
 
 Truth truth_of(Verdict verdict, Contact contact, const Hulls& hulls, const SquaredMargin& size, int log2_ulp) {

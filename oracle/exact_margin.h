@@ -35,8 +35,8 @@ SquaredMargin exact_separation(const LargePair& pair, int exponent, int d);
 // floor(log2(|margin|)).   Requires: margin is not zero.   Exact: always.
 int floor_log2(const SquaredMargin& margin);
 
-// |margin|, rounded to nearest once. Nonzero margins of float32 lie in [2^-705, 2^130]; those of doubles may round to 0
-// or to infinity.
+// |margin|, rounded once to the nearest positive finite double, or 0 if it is 0. Nonzero margins of float32 lie in
+// [2^-705, 2^130].
 double rounded(const SquaredMargin& margin);
 
 // The truth of a pair with this distance or depth. log2_ulp: log2 of the ulp of its largest coordinate.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions that the Python package calls through ctypes (python/graze/_library.py). An array of pairs has the shape
-// (n, 2, 3, 3): Pair, or with `doubles` DoublePair; one of triangles has the shape (n, 3, 3), likewise. Each function
-// returns 0; 1 after a failure, which graze_py_error describes; or 2 if it was asked to stop. No exception leaves this
-// file.
+// The functions that the Python package calls through ctypes (python/graze/_library.py). An array of pairs has the
+// shape (n, 2, 3, 3): Pair, or with `doubles` DoublePair; one of triangles has the shape (n, 3, 3), likewise. Each
+// function returns 0; 1 after a failure, which graze_py_error describes; or 2 if it was asked to stop. No exception
+// leaves this file.
 #include <fmt/format.h>
 #include <graze/test.h>
 #include <tbb/enumerable_thread_specific.h>

@@ -256,8 +256,7 @@ class Worker {
 
 template <class Real>
 void run(const CpuQuestion& question, int threads, cuda::QueryWork& work) {
-  const std::uint64_t most =
-      std::max<std::uint64_t>(kBlock, kMostOfRange / question.reference_count / kBlock * kBlock);
+  const std::uint64_t most = std::max<std::uint64_t>(kBlock, kMostOfRange / question.reference_count / kBlock * kBlock);
   Worker<Real> here(question);
   cuda::QueryRange range;
   std::uint64_t done = 0, wanted = question.any ? std::min(kFirstOfAny, most) : std::min(kAlone, most);

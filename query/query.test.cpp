@@ -211,7 +211,8 @@ TEST(Query, DoublesAreForTheExactLaneOnCores) {
     expect_refused(query, message);
   };
   wrong([](auto& q) { q.coordinates = 2; }, "coordinates: expected 0 or 1, found 2");
-  wrong([](auto& q) { q.lane = "moller_1997/f64/cpu"; }, "lane: expected exact for doubles, found 'moller_1997/f64/cpu'");
+  wrong([](auto& q) { q.lane = "moller_1997/f64/cpu"; },
+        "lane: expected exact for doubles, found 'moller_1997/f64/cpu'");
   for (const int executor : {GRAZE_ONE_GPU, GRAZE_ALL_GPUS}) {
     wrong([&](auto& q) { q.executor = executor; },
           "coordinates: expected floats for GPUs, found doubles, which are decided on cores");

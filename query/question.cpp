@@ -65,7 +65,8 @@ cuda::TriangleArray array_of(const graze_triangles& part, std::size_t real, cons
          name + ": expected a layout of 0 to 2, found " + std::to_string(part.layout));
   cuda::TriangleArray array;
   array.stride = stride_of(part.stride, element[part.layout], part.layout == GRAZE_MESH ? 4 : real, name);
-  if (part.layout == GRAZE_MESH) array.vertex_stride = stride_of(part.vertex_stride, 3 * real, real, name + ".vertices");
+  if (part.layout == GRAZE_MESH)
+    array.vertex_stride = stride_of(part.vertex_stride, 3 * real, real, name + ".vertices");
   if (part.count == 0) return {};
   array.count = part.count;
   if (part.layout == GRAZE_ROWS) {

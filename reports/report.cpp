@@ -14,6 +14,7 @@
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/files.h"
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/sealed.h"
 #include "reports/costs.h"
@@ -202,11 +203,16 @@ std::string other_pairs(const std::filesystem::path& directory, const Json& disc
   const Json spec = fuzz::recorded_spec(directory);
   if (!spec.is_object()) return "";
   const std::vector<std::string> drawn = spec.at("strata");
-  bool other = spec.at("seed") != discrepancy.at("seed");
+  const std::string scene = spec.contains("scene") ? spec["scene"].at("name") : "";
+  bool other = spec.at("seed") != discrepancy.at("seed") || discrepancy.value("scene", "") != scene;
+  const Json counted_there = fuzz::parse_shallow(fuzz::read_whole(directory / "summary.json"));
   for (const char* kind : {"lanes", "verdicts"}) {
     for (const Json& of : discrepancy.value(kind, Json::array())) {
-      for (const auto& [stratum, unused] : of.at("strata").items())
+      for (const auto& [stratum, found] : of.at("strata").items()) {
         other |= std::find(drawn.begin(), drawn.end(), stratum) == drawn.end();
+        const Json::json_pointer place = Json::json_pointer() / "strata" / stratum / "pairs";
+        other |= counted_there.contains(place) && found.value("pairs", std::uint64_t{0}) > counted_there.at(place);
+      }
     }
   }
   if (!other) return "";

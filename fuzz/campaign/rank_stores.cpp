@@ -34,9 +34,14 @@ void take_in_ranks(const Campaign& campaign, Store& store) {
       of_rank.directory = directory;
       std::uint64_t pairs = 0;
       try {
-        if (const StoreSpec found = recorded_store(directory);
-            found.spec != of_rank.spec || found.build != of_rank.build)
+        const StoreSpec found = recorded_store(directory);
+        if (found.spec != of_rank.spec || found.build != of_rank.build)
           throw std::runtime_error(cannot("use", directory, "it holds a rank of another campaign; remove it"));
+        if (!found.shard.whole())
+          throw std::runtime_error(cannot("use", directory,
+                                          "it holds shard " + found.shard.name() +
+                                              " of the campaign and no rank; move it away, and join shards by "
+                                              "`graze merge`"));
         for_each_row(of_rank, [&](const PairRange& range, const StoredCounts& counts) {
           if (!store.holds(range)) store.commit(range, counts);  // a killed run may have committed it already
           pairs += range.pairs;

@@ -180,6 +180,10 @@ TEST(FirstDifference, NamesThePlaceAndBothValues) {
   EXPECT_EQ(first_difference({{"scene", "B\u00e4r"}}, {{"scene", 7}}), "scene is 7, not \"B\u00e4r\"");
   EXPECT_EQ(first_difference({{"lanes", {"a", "b"}}}, {{"lanes", {"a"}}}), "lanes/1 is none, not \"b\"");
   EXPECT_EQ(first_difference({{"a", 1}}, {{"a", 1}, {"b", true}}), "b is true, not none");
+  const Json none = {{"flags", Json::array()}}, some = {{"flags", {"-O0"}}};
+  EXPECT_EQ(first_difference(none, some), "flags/0 is \"-O0\", not none");
+  EXPECT_EQ(first_difference(some, none), "flags/0 is none, not \"-O0\"");
+  EXPECT_EQ(first_difference(Json::object(), none), "flags is null, not none");
 }
 
 // Somebody's file, link, pipe or folder may have the name under which a database is set aside or prepared.

@@ -145,10 +145,13 @@ std::string first_difference(const Json& expected, const Json& found) {
   const auto value = [](const Json& of, const std::string& place) {
     return of.contains(place) ? of[place].dump(-1, ' ', false, Json::error_handler_t::replace) : "none";
   };
-  for (const Json& side : {ours, theirs}) {
-    for (const auto& [place, unused] : side.items()) {
-      if (ours.contains(place) && theirs.contains(place) && ours[place] == theirs[place]) continue;
-      return fmt::format("{} is {}, not {}", place.substr(1), value(theirs, place), value(ours, place));
+  for (const bool empty : {false, true}) {  // an empty list is null there; what the other side has in it tells more
+    for (const Json& side : {ours, theirs}) {
+      for (const auto& [place, one] : side.items()) {
+        if (one.is_null() != empty || (ours.contains(place) && theirs.contains(place) && ours[place] == theirs[place]))
+          continue;
+        return fmt::format("{} is {}, not {}", place.substr(1), value(theirs, place), value(ours, place));
+      }
     }
   }
   return "the keys are in another order";

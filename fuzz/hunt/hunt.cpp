@@ -20,7 +20,9 @@
 #include "fuzz/campaign/run_status.h"
 #include "fuzz/hunt/hunt_rounds.h"
 #include "fuzz/hunt/round.h"
+#include "fuzz/hunt/round_bytes.h"
 #include "fuzz/minimise/kinds.h"
+#include "fuzz/own_files.h"
 
 namespace graze::fuzz {
 namespace {
@@ -61,7 +63,8 @@ bool is_of_killed_round(const fs::directory_entry& file) {
   const std::size_t digits = name.find_first_not_of("0123456789");
   const std::string rest = digits >= 6 && digits != name.npos ? name.substr(digits) : "";
   return file.symlink_status().type() == fs::file_type::regular &&
-         (rest == ".result" || rest == std::string(".result") + kPart || rest == std::string(".round") + kPart);
+         ((rest == ".result" && are_of_result(read_whole(file.path()))) || rest == std::string(".result") + kPart ||
+          rest == std::string(".round") + kPart);
 }
 
 class Hunter {
@@ -151,6 +154,8 @@ class Hunter {
         processes.wait_for_one();
       }
       const fs::path file = result_file_of(round.range);
+      if (fs::is_regular_file(fs::symlink_status(file)) && !may_replace_foreign && !are_of_result(read_whole(file)))
+        throw UsageError(cannot("replace", file, kForeign));
       fs::remove(file);
       processes.add(start_round(task_of(round), file));
     }

@@ -244,7 +244,8 @@ TEST_F(HuntFiles, RemovesNothingThatItDidNotWrite) {
   const std::filesystem::path folder = root_ / "tidy/hunt", others = root_ / "others";
   write_whole(folder / "notes.txt", "kept");
   write_whole(folder / "000004.result.txt", "kept");
-  write_whole(folder / "000004.result", "of a killed process");
+  write_whole(folder / "000004.result", error_bytes("of a killed process", false));
+  write_whole(folder / "000099.result", "kept");
   std::filesystem::create_directories(others);
   write_whole(others / "a", "kept");
   std::filesystem::create_directory_symlink(others, folder / "000005.result");
@@ -252,6 +253,7 @@ TEST_F(HuntFiles, RemovesNothingThatItDidNotWrite) {
   EXPECT_EQ(read_whole(folder / "notes.txt"), "kept");
   EXPECT_EQ(read_whole(folder / "000004.result.txt"), "kept");
   EXPECT_FALSE(std::filesystem::exists(folder / "000004.result"));
+  EXPECT_EQ(read_whole(folder / "000099.result"), "kept");
   EXPECT_EQ(read_whole(others / "a"), "kept");
 }
 

@@ -83,6 +83,11 @@ std::string hash_of(const std::string& bytes, std::uint64_t campaign) {
 
 }  // namespace
 
+bool are_of_result(const std::string& bytes) {
+  const Json json = Json::from_cbor(bytes, true, false);
+  return json.is_object() && (json.contains("counts") || json.contains("error"));
+}
+
 std::string error_bytes(const std::string& what, bool apart) { return cbor({{"error", what}, {"apart", apart}}); }
 
 std::string result_bytes(const RoundResult& result) {

@@ -12,6 +12,7 @@ namespace graze::fuzz {
 
 std::string error_bytes(const std::string& what, bool apart);
 std::string result_bytes(const RoundResult& result);
+bool are_of_result(const std::string& bytes);  // whether result_bytes or error_bytes made them
 // Throws: the error that error_bytes encoded; Damaged.
 RoundResult parse_result(const std::string& bytes, const RoundTask& task);
 

@@ -72,7 +72,9 @@ class Arrays(unittest.TestCase):
         for lane in ("moller_1997/f32/cpu", "moller_1997/f32/cuda-fma"):
             of_stored = graze.verdicts(lane, drawn.astype(np.float32))
             self.assertTrue((graze.verdicts(lane, drawn) == of_stored).all(), lane)
-        wrong = {lane: (graze.verdicts(f"moller_1997/{lane}", drawn) != right).mean() for lane in ("f32/cpu", "f64/cpu")}
+        wrong = {
+            lane: (graze.verdicts(f"moller_1997/{lane}", drawn) != right).mean() for lane in ("f32/cpu", "f64/cpu")
+        }
         self.assertTrue(0 < wrong["f64/cpu"] < wrong["f32/cpu"], wrong)
 
     def test_meshes_of_doubles(self):

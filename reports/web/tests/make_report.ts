@@ -44,7 +44,14 @@ export default function make_report() {
   const lanes = '*/f32/cpu,moller_1997/f32/cuda*,interval_overlap/f32/x*';
   campaign('other', '2', '300', lanes, '--toolchains', 'x86-gcc,x87');
   run('report', '--compare', 'campaign', 'other');
-  const of_doubles = ['--coordinates', 'both', '--strata', 'uniform,stored', '--lanes', 'moller_1997/*/cpu,exact/*/cpu'];
+  const of_doubles = [
+    '--coordinates',
+    'both',
+    '--strata',
+    'uniform,stored',
+    '--lanes',
+    'moller_1997/*/cpu,exact/*/cpu',
+  ];
   run('fuzz', '--pairs', '300', ...of_doubles, '--out', 'doubles');
   run('report', 'doubles');
   process.env.GRAZE_DOUBLES = join(folder, 'doubles', 'report.html');

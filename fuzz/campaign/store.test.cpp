@@ -183,7 +183,7 @@ TEST(FirstDifference, NamesThePlaceAndBothValues) {
   const Json none = {{"flags", Json::array()}}, some = {{"flags", {"-O0"}}};
   EXPECT_EQ(first_difference(none, some), "flags/0 is \"-O0\", not none");
   EXPECT_EQ(first_difference(some, none), "flags/0 is none, not \"-O0\"");
-  EXPECT_EQ(first_difference(Json::object(), none), "flags is null, not none");
+  EXPECT_EQ(first_difference({{"a", 1}}, {{"a", 1}, {"flags", Json::array()}}), "flags is null, not none");
 }
 
 // Somebody's file, link, pipe or folder may have the name under which a database is set aside or prepared.

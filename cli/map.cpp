@@ -16,7 +16,6 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/result_files.h"
-#include "fuzz/own_files.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"
 #include "reports/ulp_map_picture.h"
@@ -106,11 +105,11 @@ void write_pictures(const analysis::UlpMap& map, const fs::path& out) {
       write_result(out / (name + ".png"), reports::panel_png(panel));
     }
     // Panels of another case would seem to belong to this one.
+    const std::string own = reports::panel_png(map.panels.front());
     for (const fs::directory_entry& file : fs::directory_iterator(out)) {
-      if (file.path().extension() == ".png" && !panels.contains(file.path()) && file.is_regular_file() &&
-          !file.is_symlink() && file.file_size() > 0 &&
-          fuzz::may_replace(file.path(), reports::panel_png(map.panels.front())))
-        fs::remove(file.path());
+      if (file.path().extension() == ".png" && !panels.contains(file.path()) && !file.is_symlink() &&
+          !fs::is_empty(file.path()))
+        remove_result(file.path(), own);
     }
   }
   fmt::print("Wrote {}\n", printable(out.string()));

@@ -76,6 +76,18 @@ int tell(void* user, std::uint64_t done, std::uint64_t triangles) {
 template <class Real>
 using TrianglesOf = std::vector<std::array<Real, 9>>;
 
+// The pair whose verdict is byte p of a run.
+template <class Real>
+BasicPair<Real> pair_at(std::size_t p, const TrianglesOf<Real>& references, const TrianglesOf<Real>& triangles) {
+  return pair_of(references[p / triangles.size()], triangles[p % triangles.size()]);
+}
+
+template <class Real>
+corpus::Entry case_at(std::size_t p, const TrianglesOf<Real>& references, const TrianglesOf<Real>& triangles) {
+  const std::string name = fmt::format("reference_{}_triangle_{}", p / triangles.size(), p % triangles.size());
+  return corpus::entry_of(pair_at(p, references, triangles), {{"name", name}});
+}
+
 // The triangles on which some run differs from the first one, with the verdict of each run.
 template <class Real>
 std::vector<corpus::Entry> mismatches_of(const std::vector<Run>& runs, const TrianglesOf<Real>& references,
@@ -85,9 +97,7 @@ std::vector<corpus::Entry> mismatches_of(const std::vector<Run>& runs, const Tri
     if (std::all_of(runs.begin(), runs.end(), [&](const Run& run) { return run.bytes[p] == runs[0].bytes[p]; }))
       continue;
     if (count++ >= kMostMismatches) continue;
-    const std::size_t triangle = p % triangles.size(), reference = p / triangles.size();
-    corpus::Entry entry = corpus::entry_of(pair_of(references[reference], triangles[triangle]),
-                                           {{"name", fmt::format("reference_{}_triangle_{}", reference, triangle)}});
+    corpus::Entry entry = case_at(p, references, triangles);
     for (const Run& run : runs) {
       std::string key = "said_by_" + run.lane + (run.executor == "auto" ? "" : "_" + run.executor);
       for (char& c : key) c = std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.' ? c : '_';
@@ -115,9 +125,9 @@ void write_hits(const QueryOptions& options, const Run& run, const TrianglesOf<R
   for (std::size_t p = 0; p < run.bytes.size(); ++p) {
     if (run.bytes[p] != 1) continue;
     const std::size_t triangle = p % triangles.size(), reference = p / triangles.size();
-    const BasicPair<Real> pair = pair_of(references[reference], triangles[triangle]);
-    entries.push_back(corpus::entry_of(pair, {{"name", fmt::format("reference_{}_triangle_{}", reference, triangle)}}));
-    rows.push_back(related(static_cast<std::uint32_t>(reference), static_cast<std::uint32_t>(triangle), pair));
+    entries.push_back(case_at(p, references, triangles));
+    rows.push_back(related(static_cast<std::uint32_t>(reference), static_cast<std::uint32_t>(triangle),
+                           pair_at(p, references, triangles)));
     hits.triangles.push_back(in_doubles(triangles[triangle]));
   }
   if (!options.csv.empty()) write_result(options.csv, csv_of(rows), fuzz::NamedBy::user);
@@ -142,7 +152,7 @@ void find_failures(Run& run, const TrianglesOf<Real>& references, const Triangle
   if (!lane || !lane->foreign) return;
   for (std::size_t p = 0; p < run.bytes.size(); ++p) {
     if (run.bytes[p] != static_cast<std::uint8_t>(Verdict::declined)) continue;
-    const BasicPair<Real> pair = pair_of(references[p / triangles.size()], triangles[p % triangles.size()]);
+    const BasicPair<Real> pair = pair_at(p, references, triangles);
     if (!is_finite(pair)) continue;
     const Verdict verdict = decide_one(lane->decide, pair);
     run.bytes[p] = static_cast<std::uint8_t>(verdict);

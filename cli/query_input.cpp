@@ -40,8 +40,8 @@ Input read_numbers(const std::string& file) {
     references.triangles[i / 9][i % 9] = numbers[i].stored;
     if (references.rounding.beyond > 0) references.in_doubles[i / 9][i % 9] = numbers[i].written;
   }
-  references.notes = references.notes_of_doubles = strata::rounding_note(file, references.rounding);
-  if (references.rounding.beyond > 0) references.notes_of_doubles = strata::doubles_note(file, references.rounding);
+  references.notes = strata::rounding_note(file, references.rounding);
+  references.notes_of_doubles = strata::doubles_note(file, references.rounding);
   return references;
 }
 

@@ -5,7 +5,6 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
-#include <cctype>
 #include <functional>
 #include <iostream>
 
@@ -14,7 +13,7 @@
 #include "cli/commands.h"
 #include "cli/results.h"
 #include "core/error.h"
-#include "core/relation_of.h"
+#include "core/exact/exact.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
 #include "fuzz/files.h"
@@ -49,6 +48,11 @@ analysis::SceneSample sample_of_pairs(const std::string& file, bool exact_input)
   return analysis::sample_of(pairs);
 }
 
+template <class Real>
+bool intersects(const BasicPair<Real>& pair) {
+  return exact::intersects(&pair.a[0].x, &pair.b[0].x);
+}
+
 // How many pairs have another verdict as float32 stores them.
 std::uint64_t changed_by_storing(const strata::MeshPairs& mesh) {
   if (mesh.in_doubles.empty()) return 0;
@@ -56,7 +60,7 @@ std::uint64_t changed_by_storing(const strata::MeshPairs& mesh) {
       tbb::blocked_range<std::size_t>(0, mesh.size()), std::uint64_t{0},
       [&](const auto& range, std::uint64_t count) {
         for (std::size_t i = range.begin(); i < range.end(); ++i)
-          count += relation_of(mesh.double_pair(i)).verdict != relation_of(mesh.pair(i)).verdict;
+          count += intersects(mesh.double_pair(i)) != intersects(mesh.pair(i));
         return count;
       },
       std::plus<>());
@@ -96,11 +100,11 @@ analysis::SceneSample write_scene(const SceneVerb& options) {
       "# Where graze draws pairs from. Edit it as you like: extent and edges are needed, all else has a default.\n";
   text += fmt::format("# Of {} triangles, {} pairs whose boxes overlap.\n", sample.triangles.size(), sample.pairs);
   if (changed > 0) {
-    const std::string stored = fmt::format(
-        "stored in float32, as the scene has them, {} of {} pairs have another verdict", changed, sample.pairs);
-    fmt::print(stderr, "graze: {}\n", stored);
-    text += fmt::format("# {}; `graze fuzz --mesh --coordinates f64` draws their doubles.\n",
-                        static_cast<char>(std::toupper(stored[0])) + stored.substr(1));
+    const std::string count = fmt::format("{} of {} pairs have another verdict", changed, sample.pairs);
+    fmt::print(stderr, "graze: stored in float32, as the scene has them, {}\n", count);
+    text += fmt::format(
+        "# Stored in float32, as the scene has them, {}; `graze fuzz --mesh --coordinates f64` draws their doubles.\n",
+        count);
   }
   text += strata::scene_text(measured);
   try {

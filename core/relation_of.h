@@ -11,4 +11,10 @@ namespace graze {
 GRAZE_HD inline Relation relation_of(const Pair& pair) { return exact::relation(&pair.a[0].x, &pair.b[0].x); }
 GRAZE_HD inline Relation relation_of(const DoublePair& pair) { return exact::relation(&pair.a[0].x, &pair.b[0].x); }
 
+// The same, declined if a coordinate is not finite.
+template <class Real>
+Relation relation_or_declined(const BasicPair<Real>& pair) {
+  return is_finite(pair) ? relation_of(pair) : Relation{Verdict::declined, Contact::unknown, 0, {}};
+}
+
 }  // namespace graze

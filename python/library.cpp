@@ -86,11 +86,6 @@ void visit(const void* pairs, int doubles, F f) {
   doubles ? f(static_cast<const DoublePair*>(pairs)) : f(static_cast<const Pair*>(pairs));
 }
 
-template <class Real>
-Relation truth_of(const BasicPair<Real>& pair) {
-  return is_finite(pair) ? relation_of(pair) : Relation{Verdict::declined, Contact::unknown, 0, {}};
-}
-
 // Decides up to kBlock pairs. A lane that takes no doubles decides them as float32 stores them.
 void decide_block(const DecideBlock& decide, const Pair* pairs, std::size_t count, std::uint64_t* intersects,
                   std::uint64_t* declined) {
@@ -214,7 +209,7 @@ int graze_py_relations(const void* numbers, int doubles, std::uint64_t count, st
     visit(numbers, doubles, [&](const auto* pairs) {
       in_blocks(count, [&](std::size_t first, std::size_t some) {
         for (std::size_t i = first; i < first + some; ++i) {
-          const Relation r = truth_of(pairs[i]);
+          const Relation r = relation_or_declined(pairs[i]);
           const std::int8_t row[6] = {code(r.verdict),
                                       static_cast<std::int8_t>(r.contact),
                                       static_cast<std::int8_t>(r.margin_sign),
@@ -233,7 +228,7 @@ int graze_py_margins(const Pair* pairs, std::uint64_t count, double (*margins)[2
   return guarded([&] {
     in_blocks(count, [&](std::size_t first, std::size_t some) {
       for (std::size_t i = first; i < first + some; ++i) {
-        const Relation r = truth_of(pairs[i]);
+        const Relation r = relation_or_declined(pairs[i]);
         double &least = margins[i][0], &most = margins[i][1];
         least = most = r.verdict == Verdict::declined ? std::numeric_limits<double>::quiet_NaN() : 0;
         if (r.verdict == Verdict::declined || r.margin_sign == 0) continue;

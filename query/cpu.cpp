@@ -163,10 +163,8 @@ class Worker {
       : question_(question), pairs_(question.lane->exact ? kTogether : kBlock) {
     open_.reserve(kTogether);
     for (std::uint64_t r = 0; r < question.reference_count; ++r) {
-      const Real* reference = static_cast<const Real*>(question.references) + 9 * r;
-      finite_.push_back(is_finite(reference));
-      at_.push_back(finite_.back() ? reference : kOrigin);
-      references_.push_back(seen_from_itself(at_.back()));
+      finite_.push_back(is_finite(at(r)));
+      references_.push_back(seen_from_itself(at(r)));
     }
   }
 
@@ -185,7 +183,7 @@ class Worker {
         declined = all;
         if (!finite_[r]) continue;
         if (question_.lane->exact) {
-          if constexpr (std::is_same_v<Real, double>) block_.look_from(at_[r]);
+          if constexpr (std::is_same_v<Real, double>) block_.look_from(at(r));
           const typename Block<Real>::Sights sights = block_.look_past(references_[r]);
           declined = all & sights.large ? all & block_.not_finite() : 0;
           gather(r, all & ~(declined | sights.beyond), hits);
@@ -201,7 +199,8 @@ class Worker {
   }
 
  private:
-  static constexpr Real kOrigin[9] = {};
+  // A reference's coordinates.
+  const Real* at(std::size_t r) const { return static_cast<const Real*>(question_.references) + 9 * r; }
 
   static exact::PreparedTriangle seen_from_itself(const float* reference) { return exact::prepare(reference); }
   static exact::PreparedTriangle seen_from_itself(const double* reference) {
@@ -214,7 +213,7 @@ class Worker {
   void gather(std::size_t r, std::uint64_t open, std::uint64_t& hits) {
     for (std::uint64_t left = open; left != 0; left &= left - 1) {
       Real* pair = coordinates(pairs_[open_.size()]);
-      std::copy_n(at_[r], 9, pair);
+      std::copy_n(at(r), 9, pair);
       std::copy_n(block_.rows[std::countr_zero(left)], 9, pair + 9);
       open_.push_back({&hits, left & -left});
       if (open_.size() == kTogether) decide_open();
@@ -233,7 +232,7 @@ class Worker {
   // Decides the wanted triangles by another lane.
   void decide(std::size_t r, std::uint64_t wanted, std::uint64_t& hits, std::uint64_t& declined) {
     for (std::size_t i = 0; i < kBlock; ++i) {
-      std::copy_n(at_[r], 9, coordinates(pairs_[i]));
+      std::copy_n(at(r), 9, coordinates(pairs_[i]));
       std::copy_n(block_.rows[i], 9, coordinates(pairs_[i]) + 9);
     }
     question_.lane->decide(pairs_.data(), kBlock, &hits, &declined);
@@ -242,8 +241,7 @@ class Worker {
   }
 
   const CpuQuestion& question_;
-  std::vector<const Real*> at_;  // the references, or kOrigin for those that are not finite
-  std::vector<exact::PreparedTriangle> references_;
+  std::vector<exact::PreparedTriangle> references_;  // those that are not finite are not asked
   std::vector<char> finite_;
   Block<Real> block_;
   std::vector<BasicPair<Real>> pairs_;

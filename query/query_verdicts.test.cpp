@@ -20,31 +20,47 @@ std::vector<std::uint8_t> bytes_of(graze_query query, std::size_t count) {
   return bytes;
 }
 
-// The first triangles of eight pairs are the references, and their second triangles the array. The slabs must not
-// lose a hit, on any side of any triangle.
+// The first triangles of eight pairs are the references, and their second triangles the array.
+template <class Real>
+struct Eight {
+  static constexpr std::size_t kTogether = 8;
+  std::vector<std::array<Real, 9>> references, triangles;
+  std::vector<std::uint8_t> bytes;  // of each pair
+
+  template <class Draw>
+  Eight(const Draw& draw, std::size_t begin) {
+    for (std::size_t i = begin; i < begin + kTogether; ++i) {
+      const BasicPair<Real> pair = draw(i);
+      references.push_back(triangle(pair.a));
+      triangles.push_back(triangle(pair.b));
+    }
+    const graze_triangles part = rows_of(std::span<const std::array<Real, 9>>(triangles));
+    graze_query query = query_of(references[0], part);
+    query.reference_count = kTogether;
+    query.executor = GRAZE_ONE_CORE;
+    bytes = bytes_of(query, kTogether * kTogether);
+  }
+
+  BasicPair<Real> pair(std::size_t r, std::size_t t) const {
+    BasicPair<Real> pair;
+    std::memcpy(pair.a, references[r].data(), sizeof pair.a);
+    std::memcpy(pair.b, triangles[t].data(), sizeof pair.b);
+    return pair;
+  }
+};
+
+// The slabs must not lose a hit, on any side of any triangle.
 TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
-  constexpr std::size_t kTogether = 8;
+  constexpr std::size_t kTogether = Eight<float>::kTogether;
   std::size_t looked_past = 0, filtered = 0, hits = 0;
   for (const strata::StratumInfo& row : strata::kStrata) {
     for (std::size_t begin = 0; begin < kPairs; begin += kTogether) {
-      std::vector<Triangle> references, triangles;
-      for (std::size_t i = begin; i < begin + kTogether; ++i) {
-        const Pair pair = strata::generate(7, row.stratum, i);
-        references.push_back(triangle(pair.a));
-        triangles.push_back(triangle(pair.b));
-      }
-      const graze_triangles part = part_of(triangles);
-      graze_query query = query_of(references[0], part);
-      query.references = references[0].data();
-      query.reference_count = kTogether;
-      query.executor = GRAZE_ONE_CORE;
-      const std::vector<std::uint8_t> bytes = bytes_of(query, kTogether * kTogether);
+      const Eight<float> eight([&](std::size_t i) { return strata::generate(7, row.stratum, i); }, begin);
+      const auto& [references, triangles, bytes] = eight;
       for (std::size_t r = 0; r < kTogether; ++r) {
         const exact::PreparedTriangle prepared = exact::prepare(references[r].data());
         for (std::size_t t = 0; t < kTogether; ++t) {
-          Pair pair;
-          std::memcpy(pair.a, references[r].data(), sizeof pair.a);
-          std::memcpy(pair.b, triangles[t].data(), sizeof pair.b);
+          const Pair pair = eight.pair(r, t);
           const bool meets = oracle::cgal_verdict(pair) == Verdict::intersects;
           ASSERT_EQ(meets, oracle::gmp_contact(pair) != Contact::none);
           ASSERT_EQ(bytes[r * kTogether + t], meets) << row.id << " 7 " << begin + r << ' ' << begin + t;
@@ -67,21 +83,12 @@ TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
 
 // The same for doubles. Rounded slabs must not lose a hit either, and must show most of what is apart.
 TEST(QueryVerdicts, OfDoublesAreTheOraclesOverAllStrata) {
-  constexpr std::size_t kTogether = 8, kPairsOfDoubles = 1'200;
+  constexpr std::size_t kTogether = Eight<double>::kTogether, kPairsOfDoubles = 1'200;
   std::size_t looked_past = 0, hits = 0, apart = 0;
   for (const strata::StratumInfo& row : strata::kDoubleStrata) {
     for (std::size_t begin = 0; begin < kPairsOfDoubles; begin += kTogether) {
-      std::vector<DoubleTriangle> references, triangles;
-      for (std::size_t i = begin; i < begin + kTogether; ++i) {
-        const DoublePair pair = strata::generate_doubles(7, row.stratum, i);
-        references.push_back(triangle(pair.a));
-        triangles.push_back(triangle(pair.b));
-      }
-      const graze_triangles part = rows_of(std::span<const DoubleTriangle>(triangles));
-      graze_query query = query_of(references[0], part);
-      query.reference_count = kTogether;
-      query.executor = GRAZE_ONE_CORE;
-      const std::vector<std::uint8_t> bytes = bytes_of(query, kTogether * kTogether);
+      const Eight<double> eight([&](std::size_t i) { return strata::generate_doubles(7, row.stratum, i); }, begin);
+      const auto& [references, triangles, bytes] = eight;
       for (std::size_t r = 0; r < kTogether; ++r) {
         const auto seen_from = [&](const DoubleTriangle& t) {
           Triangle seen;
@@ -90,9 +97,7 @@ TEST(QueryVerdicts, OfDoublesAreTheOraclesOverAllStrata) {
         };
         const exact::PreparedTriangle prepared = exact::prepare(seen_from(references[r]).data(), true);
         for (std::size_t t = 0; t < kTogether; ++t) {
-          DoublePair pair;
-          std::memcpy(pair.a, references[r].data(), sizeof pair.a);
-          std::memcpy(pair.b, triangles[t].data(), sizeof pair.b);
+          const DoublePair pair = eight.pair(r, t);
           const bool meets = oracle::cgal_verdict(pair) == Verdict::intersects;
           ASSERT_EQ(meets, oracle::gmp_contact(pair) != Contact::none);
           ASSERT_EQ(bytes[r * kTogether + t], meets) << row.id << " 7 " << begin + r << ' ' << begin + t;

@@ -2,6 +2,7 @@
 #include "reports/counts.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "fuzz/counts_json.h"
 #include "strata/groups.h"
@@ -105,8 +106,8 @@ CampaignCounts counts_of(const Json& summary) {
     add(stratum, row, place);
     add(counts.total, row, place);
   }
-  const auto in_doubles = [&](const StratumCounts& stratum) { return bool(strata::stratum_in_doubles(stratum.id)); };
-  const auto doubles = std::count_if(counts.strata.begin(), counts.strata.end(), in_doubles);
+  const auto doubles =
+      std::count_if(counts.strata.begin(), counts.strata.end(), std::mem_fn(&StratumCounts::in_doubles));
   for (ReportLane& lane : counts.lanes)
     lane.exact = lane.exact && (doubles == 0 || lane.row->scalar == Scalar::f64);  // the other decides what is stored
   // Where a campaign has both, strata of doubles have groups of their own.
@@ -120,7 +121,7 @@ CampaignCounts counts_of(const Json& summary) {
       for (std::size_t s = 0; s < counts.strata.size(); ++s) {
         const std::string& id = counts.strata[s].id;
         if (strata::group_of_name(id) != info.group || counts.strata[s].pairs == 0 ||
-            in_doubles(counts.strata[s]) != of_doubles)
+            counts.strata[s].in_doubles() != of_doubles)
           continue;
         group.strata.push_back(s);
         add(group.counts, summary["strata"][id], place);

@@ -10,6 +10,7 @@
 
 #include "analysis/tally.h"
 #include "core/lanes/lanes.h"
+#include "strata/pair_source.h"
 
 namespace graze::reports {
 
@@ -34,6 +35,7 @@ struct StratumCounts {
   std::map<std::string, std::map<int, WrongCounts>> extremes;  // by axis ("scale", "offset") and exponent
 
   std::uint64_t wrong(std::size_t lane) const { return lanes[lane].wrong(); }
+  bool in_doubles() const { return strata::stratum_in_doubles(id).has_value(); }
 };
 
 // Strata that are reported together (strata/groups.h).

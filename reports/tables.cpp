@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "core/text.h"
 #include "fuzz/counts_json.h"
 #include "reports/extremes.h"
-#include "strata/pair_source.h"
 
 namespace graze::reports {
 
@@ -56,8 +56,8 @@ Json to_json(const Share& share) {
 
 Json rates(const CampaignCounts& counts) {
   Json rows = Json::array();
-  const auto in_doubles = [](const StratumCounts& stratum) { return bool(strata::stratum_in_doubles(stratum.id)); };
-  const bool any_doubles = std::any_of(counts.strata.begin(), counts.strata.end(), in_doubles);
+  const bool any_doubles =
+      std::any_of(counts.strata.begin(), counts.strata.end(), std::mem_fn(&StratumCounts::in_doubles));
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
     for_each_stratum(counts, [&](const Json& place, const StratumCounts& stratum) {
       const analysis::LaneCounts& lane = stratum.lanes[l];
@@ -66,7 +66,7 @@ Json rates(const CampaignCounts& counts) {
       rows.back().update({{"declined", lane.declined}, {"differs_from_cpu", nullptr}});
       if (counts.lanes[l].cpu >= 0)
         rows.back()["differs_from_cpu"] = to_json(share_of(lane.differs_from_cpu, stratum.pairs));
-      if (counts.lanes[l].name.scalar == "f32" && (place.is_null() ? any_doubles : in_doubles(stratum)))
+      if (counts.lanes[l].name.scalar == "f32" && (place.is_null() ? any_doubles : stratum.in_doubles()))
         rows.back()["stored"] = lane.stored;
       if (!lane.any_foreign()) return;
       for (const fuzz::CountField& field : fuzz::kCountFields) {

@@ -77,11 +77,8 @@ Soup read_soup(const std::filesystem::path& file, std::string_view bytes, Coordi
 
 void add_rounding(MeshPairs& pairs, const Rounding& rounding, const std::filesystem::path& file) {
   pairs.rounding += rounding;
-  for (const std::string& note : rounding_note(file.string(), rounding)) {
-    pairs.notes.push_back(note);
-    if (rounding.beyond == 0) pairs.notes_of_doubles.push_back(note);
-  }
-  for (const std::string& note : doubles_note(file.string(), rounding)) pairs.notes_of_doubles.push_back(note);
+  for (std::string& note : rounding_note(file.string(), rounding)) pairs.notes.push_back(std::move(note));
+  for (std::string& note : doubles_note(file.string(), rounding)) pairs.notes_of_doubles.push_back(std::move(note));
 }
 
 std::array<Vec3<double>, 3> in_doubles(const Triangle& t) {

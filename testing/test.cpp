@@ -242,10 +242,7 @@ void for_each_pair(std::string_view strata, std::uint64_t seed, std::uint64_t co
   }
 }
 
-Relation truth(const Pair& pair) {
-  if (!is_finite(pair)) return {Verdict::declined, Contact::unknown, 0, {}};
-  return relation_of(pair);
-}
+Relation truth(const Pair& pair) { return relation_or_declined(pair); }
 
 TestResult test_pairs(std::string_view name, const DecidePairs& decide, const TestOptions& options) {
   TestOptions used = options;

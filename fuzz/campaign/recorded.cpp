@@ -47,9 +47,6 @@ std::vector<strata::PairSource> recorded_sources(const Json& spec) {
   return sources;
 }
 
-// Whether a source of this name draws from a mesh as it is.
-bool is_of_mesh(const std::string& source) { return strata::stratum_in_doubles(source).value_or(source) == "mesh"; }
-
 bool has_doubles(const Json& spec) {
   const Json strata = spec.value("strata", Json::array());
   return std::any_of(strata.begin(), strata.end(), [](const Json& id) {
@@ -78,6 +75,9 @@ SelectedLanes recorded_lanes(const Json& spec) {
 }
 
 namespace {
+
+// Whether a source of this name draws from a mesh as it is.
+bool is_of_mesh(const std::string& source) { return strata::stratum_in_doubles(source).value_or(source) == "mesh"; }
 
 // The pairs of the mesh: from the summary, if it has them, else from the mesh itself.
 std::uint64_t mesh_pairs(const Json& spec, const Json& summary) {

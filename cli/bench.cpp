@@ -213,14 +213,12 @@ void add_bench(CLI::App& app, int& status) {
   command
       ->add_option("--mesh", options->mesh,
                    "Mesh to test as well: all its triangles against the middle one of the file")
-      ->check(not_empty())
       ->option_text("FILE");
   command
       ->add_option("--between", options->between,
                    "Two meshes to test against each other, exactly and by CGAL's do_intersect; without --triangles "
                    "nothing else is timed")
       ->expected(2)
-      ->check(not_empty())
       ->option_text("MESH MESH");
   add_globs(*command, "--lanes", options->lanes.globs,
             "Patterns of the lanes to time besides the exact one: host lanes on cores, CUDA lanes on GPUs, or by twins "
@@ -228,7 +226,6 @@ void add_bench(CLI::App& app, int& status) {
       ->default_str("six common ones, and those of --subject");
   add_subject_options(*command, options->lanes);
   command->add_option("--plot", options->plot, "Picture to write: verdicts per second against array size")
-      ->check(not_empty())
       ->option_text("FILE.svg");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->callback([options, &status, command] {

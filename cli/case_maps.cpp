@@ -24,12 +24,11 @@ Json stored(const std::filesystem::path& file) {
 
 // Whether the stored maps belong to this pair and these lanes.
 bool is_current(const Json& maps, const Pair& pair, const std::vector<const Lane*>& lanes) {
-  if (!reports::is_map_of(maps, pair) || !maps.contains("panels") || !maps["panels"].is_array() ||
-      maps["panels"].size() != lanes.size() + 1)
-    return false;
+  std::vector<std::string> ids;
+  for (const Lane* lane : lanes) ids.push_back(lane->id);
+  if (!reports::is_map_of(maps, pair, ids) || maps["panels"].size() != lanes.size() + 1) return false;
   for (std::size_t l = 0; l < lanes.size(); ++l) {
-    const Json& panel = maps["panels"][l + 1];
-    if (!panel.is_object() || panel.value("name", Json()) != lanes[l]->id || !panel.contains("shows")) return false;
+    if (maps["panels"][l + 1]["name"] != ids[l]) return false;
   }
   return true;
 }

@@ -119,7 +119,9 @@ std::string written_note(const corpus::Entry& entry, const oracle::Truth& truth)
   DoublePair pair;
   for (std::size_t i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = std::strtod(entry.written[i].c_str(), nullptr);
   const oracle::Truth in_doubles = is_finite(pair) ? oracle::truth(pair) : *written;
-  const bool double_differs = !alike(*written, in_doubles), float_differs = !alike(in_doubles, truth);
+  const bool double_differs = !alike(*written, in_doubles);
+  // One sentence for both only where it says the same of both.
+  const bool float_differs = !alike(in_doubles, truth) || (double_differs && words(in_doubles) != words(truth));
   if (!double_differs && !float_differs) return "";
   std::string text = "as written: " + words(*written);
   if (double_differs)

@@ -166,6 +166,35 @@ TEST_F(Cli, OutGoesIntoWhatStandsThere) {
     expect_error("graze " + std::string(verb), 2, {"''"});
 }
 
+// An empty text is not the same as none.
+TEST_F(Cli, EmptyTextsAreRefusedByTheirOption) {
+  for (const auto& [verb, option] :
+       std::vector<std::pair<std::string, std::string>>{{"tune moller_1997/f32/cpu --from ''", "--from"},
+                                                        {"fuzz --toolchains ''", "--toolchains"},
+                                                        {"map lattice:1:1 --x '' --y ''", "--x"},
+                                                        {"map lattice:1:1 --x 'a[0].x' --y ''", "--y"},
+                                                        {"check ''", "FILE"},
+                                                        {"fuzz --mesh ''", "--mesh"},
+                                                        {"fuzz --subject ''", "--subject"}})
+    expect_error("graze " + verb, 2, {option, "''"});
+}
+
+TEST_F(Cli, OptionsThatCannotActAreRefused) {
+  const std::string tune = "graze tune moller_1997/f32/cpu --max-other 0.5";
+  expect_error(tune, 2, {"--max-other", "--forbid"});
+  expect_error(tune + " --forbid any", 2, {"--max-other", "--forbid"});
+  expect_error("graze tune moller_1997/f32/cpu moller_1997/f32/cuda-fma --agree --max-other 0.5", 2, {"--max-other"});
+  expect_error("graze plan --gpus 2 --rate 1e6 --lanes '*/f32/cpu'", 2, {"--gpus", "projected_sat/f32/cpu"});
+  const std::string toolchains = " --toolchains x86-gcc";
+  for (const std::string verb :
+       {"fuzz --lanes moller_1997/f32/cpu", "explain lattice:1:1 --lanes moller_1997/f32/cpu",
+        "invariants --lanes moller_1997/f32/cpu", "bench", "tune moller_1997/f32/cpu", "lanes --lanes '*/f32/cpu'",
+        "discrepancy moller_1997/f32/cpu moller_1997/f32/cuda-fma", "query --self none.off", "prove-twin"})
+    expect_error("graze " + verb + toolchains, 2, {"--toolchains"});
+  expect_done("echo 0 0 0 1 0 0 0 1 0 > r.txt && printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > m.obj");
+  expect_error("graze query r.txt m.obj" + toolchains, 2, {"--toolchains"});
+}
+
 // The error must be a message of Graze, never one of a library.
 TEST_F(Cli, WhatIsNoSummaryAndNoReportIsNamed) {
   expect_error("mkdir a; echo '{\"signatures\":[{}],\"spec\":{\"lanes\":5}}' > a/summary.json; graze minimize a", 1,

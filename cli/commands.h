@@ -59,8 +59,9 @@ std::string own_words(const LaneOptions& options);
 // " --toolchains arm64-gcc": those of the options, or else of the lanes; empty for none.
 std::string toolchain_words(const LaneOptions& options, std::initializer_list<const Lane*> lanes);
 
-// Throws: UsageError if no lane of a subject is among these, so that no verb drops it. where: the option or argument.
-void expect_subjects_among(const LaneOptions& options, const std::vector<std::string>& ids, const char* where);
+// Throws: UsageError if no lane of a subject, or of --toolchains, is among these, so that no verb drops it.
+// where: the option or argument.
+void expect_own_code_among(const LaneOptions& options, const std::vector<std::string>& ids, const char* where);
 
 // The spec that a campaign recorded. `name` is its directory or one of its case files; for other names an empty object.
 fuzz::Json recorded_spec_of(const std::filesystem::path& name);
@@ -151,9 +152,6 @@ CLI::Validator number(double least, double most);
 
 // Throws: UsageError for a file name that is not UTF-8, because results are UTF-8 and could not record it.
 void expect_utf8(const std::string& what, const std::string& file);
-
-// Rejects empty text, which names no file.
-CLI::Validator not_empty();
 
 // Accepts only these words. To be used by transform(), which leaves the word or its index.
 enum class Chosen { word, place };

@@ -208,10 +208,7 @@ CLI::App* add_verb(CLI::App& corpus, const char* name, const char* what, const c
                    const std::shared_ptr<CorpusOptions>& options) {
   CLI::App* command = corpus.add_subcommand(name, what)->group("Verbs");
   command->footer(example);
-  command->add_option("--corpus", options->folder, "Folder of the corpus")
-      ->check(not_empty())
-      ->capture_default_str()
-      ->option_text("DIR");
+  command->add_option("--corpus", options->folder, "Folder of the corpus")->capture_default_str()->option_text("DIR");
   return command;
 }
 

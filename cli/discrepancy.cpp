@@ -97,7 +97,7 @@ Comparisons comparisons_of_subjects(const std::vector<std::string>& names, fuzz:
 Comparisons comparisons_of(const DiscrepancyOptions& options) {
   if (const auto names = names_of_subjects(options); options.lanes.empty() && !names.empty())
     return comparisons_of_subjects(names, options.subjects.executor);
-  expect_subjects_among(options.subjects, options.lanes, "LANE LANE");
+  expect_own_code_among(options.subjects, options.lanes, "LANE LANE");
   Comparisons comparisons;
   std::vector<analysis::LanesCompared>& lanes = comparisons.values;
   std::set<std::set<const Lane*>> named;
@@ -294,7 +294,6 @@ void add_discrepancy(CLI::App& app, int& status) {
   command
       ->add_option("--campaign", options->campaign,
                    "Compare on the first pairs of this campaign; without --out, its report shows the results")
-      ->check(not_empty())
       ->excludes("--strata")
       ->excludes("--scene")
       ->option_text("DIR");
@@ -312,7 +311,6 @@ void add_discrepancy(CLI::App& app, int& status) {
   command
       ->add_option("--out", options->out,
                    "Folder for discrepancy.html, .json and .csv (default: the campaign's, else discrepancy)")
-      ->check(not_empty())
       ->option_text("DIR");
   for (const char* silenced :
        {"--strata", "--scene", "--campaign", "--pairs", "--seed", "--threads", "--executor", "--out", "--subject"})

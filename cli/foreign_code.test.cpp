@@ -110,6 +110,21 @@ TEST_F(ForeignCode, ACampaignWhoseProgramChangesFailsAndGoesOnWithTheOldOne) {
 }
 
 // The results of minimize count as the campaign's, so they must come from the code that the campaign ran.
+TEST_F(ForeignCode, ACampaignIsNotDoneIfItsCodeOverwritesTheDatabase) {
+  std::ofstream(shell.folder / "w.c") << "#include <stdio.h>\n#define DATABASE \"" +
+                                             (shell.folder / "c/campaign.sqlite").string() + R"("
+int intersects(const float a[9], const float b[9]) {
+  static int calls;
+  FILE* f = ++calls == 90 && !remove(DATABASE) ? fopen(DATABASE, "w") : 0;
+  if (f) fclose(f);
+  return a[0] < b[0];
+}
+)";
+  expect_error("graze fuzz --subject w=./w.c --lanes 'w/f32/cpu' --strata uniform --pairs 100 --out c", 1,
+               {"c/campaign.sqlite"});
+  expect_done("graze fuzz --lanes 'moller_1997/f32/cpu' --strata uniform --pairs 100 --out d");
+}
+
 TEST_F(ForeignCode, MinimizeRefusesCodeThatTheCampaignDidNotRun) {
   const std::string always = "echo 'int meet(const float a[9], const float b[9]) { return 1; }' > a.c";
   expect_done(always +

@@ -28,6 +28,7 @@
 #include "core/lanes/lanes.h"
 #include "core/text.h"
 #include "fuzz/campaign/campaign.h"
+#include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/campaign/scratch.h"
@@ -238,6 +239,9 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
     fmt::print(stderr, "graze: interrupted; finished work is kept, and the same command resumes the campaign\n");
     return kInterrupted;
   }
+  // Foreign code can write into the folder too. So what it may have changed is read back before it is told.
+  if (campaign.spec.contains("subjects"))
+    campaign.shard.whole() ? void(fuzz::checked_summary(options.out)) : void(fuzz::counts_of_database(options.out));
   if (!campaign.shard.whole()) {
     print_shard(options.out, campaign.spec, outcome.summary, options.json);
     return 0;
@@ -329,7 +333,6 @@ void add_fuzz(CLI::App& app, int& status) {
       ->add_option("--out", options->out,
                    "Campaign directory; an unfinished campaign in it is resumed; the last --out counts")
       ->take_last()
-      ->check(not_empty())
       ->capture_default_str()
       ->option_text("DIR");
   add_shard_option(
@@ -339,7 +342,6 @@ void add_fuzz(CLI::App& app, int& status) {
   command
       ->add_option("--scratch", options->scratch,
                    "Folder on a local disk for a shard's database while it runs; it is then copied to --out")
-      ->check(not_empty())
       ->option_text("DIR");
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   static_assert(static_cast<int>(PairTypes::f32) == 0 && static_cast<int>(PairTypes::f64) == 1 &&

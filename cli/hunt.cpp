@@ -152,7 +152,6 @@ void add_hunt(CLI::App& app, int& status) {
   add_count(*command, "--threads", options->threads, 0, kMostThreads,
             "Number of rounds at once, at most four; 0 means one per core. Results do not depend on it");
   command->add_option("--out", options->out, "Directory of the search; an unfinished search in it is resumed")
-      ->check(not_empty())
       ->capture_default_str()
       ->option_text("DIR");
   add_shard_option(

@@ -177,6 +177,13 @@ TEST_F(Inputs, WhatFloat32MakesOfDecimalsIsSaid) {
             std::string::npos)
       << finer.out;
   EXPECT_EQ(finer.out.find("it rounds"), std::string::npos);
+  // Doubles and float32 each round it to another distance.
+  const Ran apart = shell(
+      "echo '9.3 0.4 16.2 2.6 2.1 21.2 7.6 5.7 12.6  6.11 2.67 17.12 10.21 7.27 17.42 9.21 4.17 18.22' | graze check - "
+      "--json");
+  for (const char* words : {"as written: they touch in a point; as doubles: disjoint, 9.29e-16 apart;",
+                            "as stored in float32: disjoint, 2.91e-07 apart (it rounds number 1, 9.3)"})
+    EXPECT_NE(apart.out.find(words), std::string::npos) << apart.out;
   EXPECT_NE(shell("graze check near.pairs").out.find("(it rounds number 12, 1.00000000001)"), std::string::npos);
   // Rounding that does not change the truth is not reported.
   expect_done("echo '0.1 0 0 4 0 0 0 4 0  1 1 0.3 1 2 4 2 1 4' > p; graze check p > out; ! grep -q written out");

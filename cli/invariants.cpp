@@ -78,7 +78,6 @@ void add_invariants(CLI::App& app, int& status) {
   add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of the pairs");
   add_threads_option(*command, options->threads);
   command->add_option("--out", options->out, "Folder for invariants.json and the simplest cases")
-      ->check(not_empty())
       ->capture_default_str()
       ->option_text("DIR");
   command->callback([options, &status] { status = invariants(*options); });

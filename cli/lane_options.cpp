@@ -160,11 +160,20 @@ std::vector<std::string> with_subjects(std::vector<std::string> globs, const Lan
   return globs;
 }
 
-void expect_subjects_among(const LaneOptions& options, const std::vector<std::string>& ids, const char* where) {
+void expect_own_code_among(const LaneOptions& options, const std::vector<std::string>& ids, const char* where) {
   for (const std::string& name : subject_names(options)) {
     if (std::none_of(ids.begin(), ids.end(), [&](const std::string& id) { return id.starts_with(name + '/'); }))
       throw UsageError(fmt::format("--subject {0}: {1} has no lane of it; add '{0}/*' there", name, where));
   }
+  if (options.toolchains.empty()) return;
+  const std::vector<subjects::Toolchain> toolchains = subjects::selected_toolchains(options.toolchains);
+  const auto is_of_one = [&](const std::string& id) {
+    return std::any_of(toolchains.begin(), toolchains.end(),
+                       [&](const subjects::Toolchain& toolchain) { return id.ends_with('/' + toolchain.name); });
+  };
+  if (std::none_of(ids.begin(), ids.end(), is_of_one))
+    throw UsageError(fmt::format("--toolchains {0}: {1} has no lane of it; add '*/{2}' there",
+                                 printable(options.toolchains), where, toolchains.front().name));
 }
 
 fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesystem::path& about,
@@ -177,7 +186,7 @@ fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesy
   std::vector<std::string> ids;
   for (const Lane* lane : under_test.lanes) ids.push_back(lane->id);
   for (const fuzz::LaneLeftOut& row : under_test.left_out) ids.push_back(row.id);
-  expect_subjects_among(options, ids, "--lanes");
+  expect_own_code_among(options, ids, "--lanes");
   say_left_out(under_test.left_out);
   return under_test;
 }

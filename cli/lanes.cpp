@@ -81,7 +81,7 @@ void add_lanes(CLI::App& app, int&) {
     for (const Lane& lane : graze::lanes()) {
       if (matches_any(lanes->globs, lane.id)) ids.push_back(lane.id);
     }
-    expect_subjects_among(*lanes, ids, "--lanes");
+    expect_own_code_among(*lanes, ids, "--lanes");
     print_lanes(*json, lanes->globs);
   });
 }

@@ -162,7 +162,6 @@ void add_league(CLI::App& app, int& status) {
       ->add_option("--subjects", options->subjects,
                    "File of libraries, one NAME=WHAT per line as for --subject; `scripts/league` writes one")
       ->required()
-      ->check(not_empty())
       ->option_text("FILE");
   add_count(*command, "--pairs", options->pairs, 1, kMostWhole,
             "Number of pairs in total, shared evenly by the strata");
@@ -176,7 +175,6 @@ void add_league(CLI::App& app, int& status) {
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
   command->add_option("--out", options->out, "Directory for league.json, league.md and drawings")
-      ->check(not_empty())
       ->capture_default_str()
       ->option_text("DIR");
   command->callback([options, &status] { status = league(*options); });

@@ -37,6 +37,16 @@ void add_verbs(CLI::App& app, int& status) {
 #undef GRAZE_TASK
 }
 
+// Rejects empty texts, which name nothing. Only compiler flags may be empty.
+void refuse_empty_texts(CLI::App& app) {
+  const CLI::Validator not_empty(
+      [](std::string& text) { return text.empty() ? "expected a name, found ''" : std::string(); }, "");
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_type_size_max() > 0 && option->get_name() != "--flags") option->check(not_empty);
+  }
+  for (CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) refuse_empty_texts(*verb);
+}
+
 // Expects a verb as the first word, or one of the flags that stand without a verb.
 void expect_verb(const CLI::App& app, const std::string& word) {
   if (word == "--help" || word == "-h" || word == "--version") return;
@@ -97,6 +107,7 @@ int main(int argc, char** argv) {
   add_verbs(app, status);
   app.footer("Run `graze VERB --help` for the options of a verb.");  // verbs that exist already keep their own footers
   graze::cli::add_force(app);
+  refuse_empty_texts(app);
   try {
     std::cout.exceptions(std::ios_base::badbit);
     expect_verb(app, argc > 1 ? argv[1] : "");

@@ -151,7 +151,6 @@ void add_map(CLI::App& app, int&) {
   command
       ->add_option("--out", options->out,
                    "Picture with a panel for the truth and one per lane, or a directory for one picture per panel")
-      ->check(not_empty())
       ->option_text("FILE.png|DIR")
       ->capture_default_str();
   command

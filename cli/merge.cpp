@@ -46,7 +46,6 @@ void add_merge(CLI::App& app, int& status) {
       ->required();
   command->add_option("--out", options->out, "Directory for the campaign, new or empty")
       ->required()
-      ->check(not_empty())
       ->option_text("DIR");
   command->add_flag("--partial", options->partial,
                     "Merge the shards that there are into an unfinished campaign, which `graze fuzz` resumes");

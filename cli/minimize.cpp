@@ -309,7 +309,6 @@ void add_minimize(CLI::App& app, int& status) {
           "Campaign directory, file of pairs, or STRATUM:SEED:INDEX; the results of a campaign go into its cases/")
       ->required();
   command->add_option("--out", options->out, "File for the minimised pairs, each followed by its original")
-      ->check(not_empty())
       ->option_text("FILE");
   add_exact_input(*command, options->exact_input);
   command->add_flag("--again", options->again, "Minimise every case again, even those that have a result");

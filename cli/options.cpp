@@ -130,11 +130,6 @@ void expect_utf8(const std::string& what, const std::string& file) {
     throw UsageError(what + ": the file name " + text + " is not UTF-8, as the results must be; rename the file");
 }
 
-CLI::Validator not_empty() {
-  return CLI::Validator([](std::string& text) { return text.empty() ? "expected a name, found ''" : std::string(); },
-                        "");
-}
-
 const Lane& published_lane(const std::string& id) {
   const Lane* lane = find_lane(id);
   if (lane && lane->algorithm >= 0) return *lane;

@@ -190,7 +190,6 @@ void add_pareto(CLI::App& app, int& status) {
                  "Measure the CUDA lanes on the first device, with pairs in its memory and with copies")
       ->excludes("--subject");
   command->add_option("--out", options->out, "Folder for pareto.json and the pictures")
-      ->check(not_empty())
       ->capture_default_str()
       ->option_text("DIR");
   command->callback([options, &status] { status = pareto(*options); });

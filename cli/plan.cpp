@@ -4,8 +4,10 @@
 
 #include <iostream>
 
+#include "backends/backends.h"
 #include "cli/commands.h"
 #include "cli/progress.h"
+#include "core/error.h"
 #include "fuzz/campaign/plan.h"
 #include "reports/terminal.h"
 
@@ -48,6 +50,13 @@ int plan(const PlanOptions& options) {
   campaign.spec = fuzz::campaign_spec(campaign);
   if (!scene.is_null()) campaign.spec["scene"] = scene;
   const bool gpu = options.gpus > 0;
+  if (gpu) {
+    for (const Lane* lane : under_test.lanes) {
+      if (!backends::backend_of(*lane).has_device)
+        throw UsageError("--gpus runs lanes on GPUs alone, and " + lane->id +
+                         " runs on cores; choose other --lanes, or give --cores");
+    }
+  }
   // A given rate needs no device; the store's rows are then measured on the CPU.
   if (gpu && options.rate == 0) campaign.engines = fuzz::choose_engines(campaign, fuzz::EngineChoice::gpu);
   if (campaign.engines.size() > 1) campaign.engines.resize(1);

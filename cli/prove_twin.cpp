@@ -20,6 +20,8 @@ namespace {
 
 // Proves the twins of the subjects if there are any; otherwise those of the published algorithms.
 cuda::ProofRecord record_of(const cuda::ProofOptions& options, const LaneOptions& lanes, std::string& out) {
+  if (!lanes.toolchains.empty())
+    throw UsageError("--toolchains: twins are of CUDA lanes, which no other toolchain builds; leave it out");
   open_subjects(lanes);
   std::vector<cuda::NamedBuild> builds = subjects::cuda_builds();
   std::erase_if(builds, [&](const cuda::NamedBuild& named) {
@@ -72,7 +74,6 @@ void add_prove_twin(CLI::App& app, int& status) {
       ->add_option(
           "--out", *out,
           "File for the record (default: proof.json; for a subject FILE.cu.proof.json, where graze looks for it)")
-      ->check(not_empty())
       ->option_text("FILE");
   command->callback([options, lanes, out, &status] {
     options->lanes = lanes->globs;

@@ -283,11 +283,11 @@ void expect_different_files(const QueryOptions& options) {
 
 // --self and --between.
 void query_all_pairs(const QueryOptions& options, int& status) {
-  if (options.any || !options.lanes.globs.empty() || !options.lanes.subjects.empty() || !options.mismatches.empty() ||
-      options.executors.size() > 1)
+  if (options.any || !options.lanes.globs.empty() || !options.lanes.subjects.empty() ||
+      !options.lanes.toolchains.empty() || !options.mismatches.empty() || options.executors.size() > 1)
     throw UsageError(
-        "--self and --between are exact and use one executor; leave out --any, --lanes, --subject and --mismatches, "
-        "and name one --executor");
+        "--self and --between are exact and use one executor; leave out --any, --lanes, --subject, --toolchains and "
+        "--mismatches, and name one --executor");
   if (options.between && options.files.size() != 2)
     throw UsageError(fmt::format("--between needs two meshes, but got {}", options.files.size()));
   query_meshes({options.between ? options.files : std::vector{options.self}, options.json, options.executors[0],
@@ -374,7 +374,6 @@ void add_query(CLI::App& app, int& status) {
   command
       ->add_option("--self", options->self,
                    "Mesh to test against itself: the triangles that pierce each other are found instead")
-      ->check(not_empty())
       ->excludes("files")
       ->option_text("MESH");
   command
@@ -396,14 +395,10 @@ void add_query(CLI::App& app, int& status) {
   command
       ->add_option("--csv", options->csv,
                    "CSV file for the pairs that intersect: indices of the faces, contact and kind")
-      ->check(not_empty())
       ->option_text("FILE");
-  command->add_option("--obj", options->obj, "OBJ file for the reference and the hits")
-      ->check(not_empty())
-      ->option_text("FILE");
-  command->add_option("--pairs", options->pairs, "File of pairs for the hits")->check(not_empty())->option_text("FILE");
+  command->add_option("--obj", options->obj, "OBJ file for the reference and the hits")->option_text("FILE");
+  command->add_option("--pairs", options->pairs, "File of pairs for the hits")->option_text("FILE");
   command->add_option("--mismatches", options->mismatches, "File for triangles on which lanes or executors disagree")
-      ->check(not_empty())
       ->default_str("mismatches.pairs")
       ->option_text("FILE");
   command->callback([options, &status] {

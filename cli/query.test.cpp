@@ -210,6 +210,8 @@ TEST_F(QueryCommand, ErrorsAreOneLine) {
   expect_error("graze query ref.txt", 2, {"two files", "1"});
   expect_error("graze query ref.txt no.obj", 1, {"no.obj", "No such file or directory"});
   expect_error("graze query no.txt mesh.obj", 1, {"no.txt", "No such file or directory"});
+  expect_error("mkfifo pipe; timeout 60 graze query pipe mesh.obj", 1, {"pipe", "not a regular file"});
+  expect_error("graze query /dev/null mesh.obj", 1, {"/dev/null", "not a regular file"});
   expect_error("echo 1 2 3 > r; graze query r mesh.obj", 1, {"r", "3"});
   expect_error("echo 1 2 x > r; graze query r mesh.obj", 1, {"r:1", "\"x\""});
   expect_error("graze query mesh.obj#6 mesh.obj", 1, {"mesh.obj", "6", "6"});

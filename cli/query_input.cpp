@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 #include <filesystem>
 
@@ -12,6 +11,7 @@
 #include "cli/cases.h"
 #include "core/cannot.h"
 #include "core/error.h"
+#include "core/plain_file.h"
 #include "core/text.h"
 #include "fuzz/files.h"
 #include "strata/mesh.h"
@@ -21,9 +21,10 @@ namespace graze::cli {
 namespace {
 
 Input read_numbers(const std::string& file) {
-  if (!std::filesystem::is_regular_file(file))
-    throw std::runtime_error(cannot("read", file, std::filesystem::is_directory(file) ? EISDIR : ENOENT));
-  std::string text = fuzz::read_whole(file);
+  std::string why;
+  std::optional<std::string> read = plain_file(file, why);
+  if (!read) throw std::runtime_error(cannot("read", file, why));
+  std::string text = std::move(*read);
   std::replace(text.begin(), text.end(), ',', ' ');
   strata::Lines lines({file, text}, '#');
   Input references;
@@ -78,7 +79,7 @@ QueryLanes query_lanes(const LaneOptions& options, const std::vector<std::string
   }
   if (result.ids.empty() && under_test.left_out.empty()) throw UsageError("the patterns of --lanes leave no lane");
   fuzz::expect_each_runs(under_test);
-  expect_subjects_among(options, result.ids, "--lanes");
+  expect_own_code_among(options, result.ids, "--lanes");
   say_left_out(under_test.left_out);
   return result;
 }

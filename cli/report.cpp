@@ -157,7 +157,7 @@ void add_report(CLI::App& app, int&) {
       ->option_text("DIR1 DIR2");
   command->add_option("--from", options->from, "Existing report.json; writes only its page, into the file of --out")
       ->option_text("FILE");
-  command->add_option("--out", options->out, "File for the page of --from")->check(not_empty())->option_text("FILE");
+  command->add_option("--out", options->out, "File for the page of --from")->option_text("FILE");
   command->callback([options] { report(*options); });
 }
 

@@ -156,15 +156,16 @@ void add_scene(CLI::App& app, int&) {
   command
       ->add_option("--poses", options->poses,
                    "CSV file of poses of the mesh, one per line: twelve numbers, the three rows of a matrix (R | t)")
-      ->check(not_empty())
       ->option_text("FILE");
   command->add_option("--units", options->units, "Unit of the coordinates")
-      ->check(not_empty())
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            return strata::is_units(text) ? "" : "expected units of " + strata::kUnits + ", found " + shown(text);
+          },
+          ""))
       ->capture_default_str()
       ->option_text("NAME");
-  command->add_option("--out", options->out, "File for the scene (default: standard output)")
-      ->check(not_empty())
-      ->option_text("FILE");
+  command->add_option("--out", options->out, "File for the scene (default: standard output)")->option_text("FILE");
   add_exact_input(*command, options->exact_input);
   command
       ->add_option("--sufficient", options->sufficient,
@@ -186,7 +187,6 @@ void add_scene(CLI::App& app, int&) {
 
 void add_scene_option(CLI::App& command, std::string& file) {
   command.add_option("--scene", file, "Scene to draw pairs in, a file that `graze scene` or a person has written")
-      ->check(not_empty())
       ->option_text("FILE");
 }
 

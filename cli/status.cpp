@@ -222,7 +222,6 @@ void add_status(CLI::App& app, int& status) {
       ->capture_default_str()
       ->option_text("SECONDS");
   command->add_option("--prometheus", options->prometheus, "File for the same figures in Prometheus' text format")
-      ->check(not_empty())
       ->option_text("FILE");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->callback([options, &status] { status = status_command(*options); });

@@ -303,12 +303,10 @@ void add_toolchain(CLI::App& app, int& status) {
       ->add_option("toolchain", options->what,
                    "Name of a toolchain, the command of a compiler with its flags, or hip: what hipcc fuses for AMD's "
                    "GPUs (default: list the toolchains)")
-      ->check(not_empty())
       ->option_text("NAME|COMMAND|hip");
   CLI::Option* run = command
                          ->add_option("--run", options->run,
                                       "Command that runs the result, such as qemu-aarch64; {} stands for its file")
-                         ->check(not_empty())
                          ->option_text("COMMAND");
   CLI::Option* claims =
       command
@@ -321,10 +319,8 @@ void add_toolchain(CLI::App& app, int& status) {
       ->add_option_function<std::string>(
           "--toolchains", [options](const std::string& file) { options->list += ',' + file; },
           "File with further toolchains; see docs/toolchains.md")
-      ->check(not_empty())
       ->option_text("FILE.toml");
-  CLI::Option* json =
-      command->add_option("--json", options->json, "File for the results")->check(not_empty())->option_text("FILE");
+  CLI::Option* json = command->add_option("--json", options->json, "File for the results")->option_text("FILE");
   CLI::Option* subject = command
                              ->add_option("--subject", options->subjects,
                                           "C or C++ source whose fused products to list, instead of those of the "

@@ -33,9 +33,14 @@ std::string name_for(const fs::path& file) {
   return std::any_of(lanes().begin(), lanes().end(), is_taken) ? "my_" + name : name;
 }
 
-constexpr const char* kCallsPython =
+constexpr const char* kWritten =
     R"(# Written by graze try: answers lines of 18 numbers by a function of two triangles of three points each.
 # python3 THIS_FILE FILE FUNCTION
+)";
+constexpr char kVerdictOfPython[] = {
+#include "cli/verdict_py.inc"
+};
+constexpr const char* kCallsPython = R"(
 import importlib.util, operator, os, sys
 
 file, function = sys.argv[1:3]
@@ -60,7 +65,11 @@ for line in sys.stdin:
         break
     x = [float.fromhex(word) for word in line.split()]
     answer = meet(triangle(x[:9]), triangle(x[9:]))
-    print("?" if answer is None else int(bool(answer)), file=answers, flush=True)
+    try:
+        print("01?"[verdict_of(answer, function)], file=answers, flush=True)
+    except TypeError as error:
+        print(error, file=sys.stderr, flush=True)
+        os._exit(1)  # without Python's warnings of coroutines
 )";
 
 void expect_program(const std::string& file) {
@@ -75,7 +84,8 @@ TriedCode code_of_python(const std::string& file, const std::string& function, c
   if (function.empty() || !std::all_of(function.begin(), function.end(), fits))
     throw UsageError(fmt::format("expected FILE.py:FUNCTION, found {}", shown(file + ':' + function)));
   const std::string wrapper = out + ".py";
-  write_result(wrapper, kCallsPython);
+  write_result(wrapper,
+               std::string(kWritten).append(std::begin(kVerdictOfPython), std::end(kVerdictOfPython)) + kCallsPython);
   return {name_for(file), fmt::format("cmd:python3 {} {} {}", path_word(wrapper), path_word(file), function), true,
           wrapper};
 }

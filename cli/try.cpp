@@ -25,6 +25,7 @@
 #include "cli/try_answer.h"
 #include "core/cannot.h"
 #include "core/error.h"
+#include "core/programs/run_program.h"
 #include "core/text.h"
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/result_files.h"
@@ -35,6 +36,7 @@
 #include "reports/margin_figure.h"
 #include "reports/own_code.h"
 #include "strata/mesh.h"
+#include "subjects/source_build.h"
 #include "subjects/subjects.h"
 
 namespace graze::cli {
@@ -195,9 +197,43 @@ int interrupted() {
   return kInterrupted;
 }
 
+// The command by which a person asks a program about a pair.
+std::string by_hand(const TriedCode& code, const std::string& pair) {
+  return fmt::format("echo {} | {}", pair, code.what.substr(kCommand.size()));
+}
+
+// The last line on stderr of a program that fails on the pair; empty if it does not fail by hand, or says nothing.
+std::string last_words(const TriedCode& code, const std::string& pair, double seconds) {
+  const Scratch scratch(subjects::cache_folder());
+  int status = 0;
+  std::string said;
+  try {
+    const std::string run = "sh -c " + shell_word(code.what.substr(kCommand.size()));
+    said = shell_output(fmt::format("echo {} | {} 2>&1 > /dev/null", pair, run), scratch.path(), status, seconds);
+  } catch (const std::runtime_error&) {  // it takes too long
+    return "";
+  }
+  said.erase(said.find_last_not_of(" \r\n") + 1);
+  return status == 0 ? "" : printable(said.substr(said.rfind('\n') + 1));
+}
+
+// Says on stderr why a program crashes on one of the pairs, once.
+void tell_crash(const Answer& answer, const std::string& lane, double seconds) {
+  if (!answer.code.is_program) return;
+  for (const Json& kind : answer.kinds) {
+    const Json& simplest = kind.at("simplest");
+    if (simplest.at("verdicts").value(lane, "") != name(Verdict::crashed)) continue;
+    const std::string pair = simplest.at("pair"), words = last_words(answer.code, pair, seconds);
+    if (words.empty()) continue;
+    return fmt::print(stderr, "graze: {} crashes on some pairs: {}; to see all of it: {}\n", lane, words,
+                      by_hand(answer.code, pair));
+  }
+}
+
 // Asks the code about a few pairs first: of code that always fails, as a program that does not start, there is nothing
 // to find, and each pair would start it again.   Throws: std::runtime_error.
-void expect_answers(const TriedCode& code, const fuzz::SelectedLanes& under_test, const strata::PairSource& source) {
+void expect_answers(const TriedCode& code, const fuzz::SelectedLanes& under_test, const strata::PairSource& source,
+                    double seconds) {
   constexpr std::uint64_t kAsked = 3;
   const auto own = std::find_if(under_test.lanes.begin(), under_test.lanes.end(),
                                 [&](const Lane* lane) { return lane->lane_name().subject == code.name; });
@@ -205,20 +241,29 @@ void expect_answers(const TriedCode& code, const fuzz::SelectedLanes& under_test
   const DecideBlock& decide = under_test.on_host[static_cast<std::size_t>(own - under_test.lanes.begin())];
   if (!decide) return;
   std::string failed;
+  bool all_crashed = true, unstable = false;
   for (std::uint64_t i = 0; i < std::min(kAsked, source.pairs); ++i) {
     const Verdict verdict = decide_one(decide, source.pair(i));
     if (!is_failure(verdict)) return;
+    all_crashed &= verdict == Verdict::crashed;
+    unstable |= verdict == Verdict::unstable;
     failed += fmt::format("{}{}", failed.empty() ? "" : ", ", name(verdict));
   }
-  const std::string by_hand =
-      code.is_program ? fmt::format(
-                            "a program must answer each line of 18 numbers by a line 1, 0 or ?, and a Python "
-                            "function is named as mine.py:meet (docs/your_own_code.md); to see why: echo {} | "
-                            "{}",
-                            fuzz::pair_text(source.pair(0)), code.what.substr(kCommand.size()))
-                      : "call it by hand to see why; a function of a shared object must return int, not bool";
+  std::string hint = "call it by hand to see why";
+  if (code.is_program) {
+    const std::string pair = fuzz::pair_text(source.pair(0)),
+                      words = all_crashed ? last_words(code, pair, seconds) : "";
+    hint =
+        fmt::format("{}; to see {}: {}",
+                    words.empty() ? "a program must answer each line of 18 numbers by a line 1, 0 or ?, and a Python "
+                                    "function is named as mine.py:meet (docs/your_own_code.md)"
+                                  : "it says: " + words,
+                    words.empty() ? "why" : "all of it", by_hand(code, pair));
+  } else if (unstable && subjects::opened(code.name)->kind == "library") {
+    hint += "; a function of a shared object must return int, not bool";
+  }
   throw std::runtime_error(
-      cannot("try", code.what, fmt::format("it fails on each of the first pairs ({}); {}", failed, by_hand)));
+      cannot("try", code.what, fmt::format("it fails on each of the first pairs ({}); {}", failed, hint)));
 }
 
 int try_source(const TryOptions& options) {
@@ -237,7 +282,8 @@ int try_source(const TryOptions& options) {
     write_scene_of(options.where, fuzz.scene);
   }
   const fuzz::Campaign campaign = campaign_of(fuzz, under_test, answer.left_out);
-  expect_answers(answer.code, under_test, campaign.sources.front());
+  catch_interrupts();
+  expect_answers(answer.code, under_test, campaign.sources.front(), fuzz.lanes.timeout);
   answer.directory = fuzz.out;
   answer.earlier = put_aside(fuzz.out, campaign.spec);
   const fuzz::Outcome outcome = run_with_progress(campaign);
@@ -261,6 +307,7 @@ int try_source(const TryOptions& options) {
     });
     if (answer.kinds.is_null()) return interrupted();
     fuzz::write_kinds(campaign.directory, under_test, answer.kinds);
+    tell_crash(answer, own.id, fuzz.lanes.timeout);
     answer.told = reports::first_kinds(answer.kinds, lane, kMostTold);
     answer.test = write_test(answer, under_test);
   }
@@ -308,7 +355,6 @@ void add_try(CLI::App& app, int& status) {
   command
       ->add_option("--out", options->fuzz.out,
                    "Campaign directory; an earlier run on the same file is renamed to DIR.1, DIR.2, …")
-      ->check(not_empty())
       ->capture_default_str()
       ->option_text("DIR");
   command->add_flag("--json", options->json, "Print the answer as JSON");

@@ -2,6 +2,8 @@
 // `graze try` as users run it: on each kind of code, again after an edit, in a mesh, and interrupted.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include "cli/run_graze.h"
 #include "reports/screen.h"
 
@@ -114,6 +116,47 @@ TEST_F(TryCommand, CodeThatAlwaysFailsIsSaidAtOnce) {
                  {"dead", "crashed, crashed, crashed", is_program ? "echo" : "by hand"});
     EXPECT_FALSE(std::filesystem::exists(shell.folder / "d"));
   }
+}
+
+TEST_F(TryCommand, AShouldBeIntOnlyForAnUnstableSharedObject) {
+  write("wavers.c", "static int n;\nint meet(const float a[9], const float b[9]) { return ++n & 1; }\n");
+  write("hangs.c", "int meet(const float a[9], const float b[9]) { for (;;) ; }\n");
+  expect_done("for name in wavers hangs; do cc -shared -fPIC $name.c -o $name.so; done");
+  for (const auto& [file, failure, told] : {std::tuple{"./wavers.so", "unstable", true},
+                                            {"wavers.c", "unstable", false},
+                                            {"./hangs.so", "timed_out", false},
+                                            {"hangs.c", "timed_out", false}}) {
+    const std::string command = fmt::format("graze try {}:meet --subject-timeout 0.2 --out d", file);
+    expect_error(command, 1, {file, failure, "by hand"});
+    EXPECT_EQ(shell(command).err.find("must return int") != std::string::npos, told) << file;
+  }
+}
+
+TEST_F(TryCommand, OnlyBoolsAndIntsOfPythonAreVerdicts) {
+  if (shell("command -v python3").status != 0) GTEST_SKIP() << "no python3";
+  write("shapes.py",
+        "def never(a, b):\n    return -7\n"
+        "def text(a, b):\n    return 'yes'\n"
+        "def number(a, b):\n    return float('nan')\n"
+        "def nothing(a, b):\n    pass\n"
+        "def generator(a, b):\n    yield True\n"
+        "async def coroutine(a, b):\n    return True\n"
+        "def raises(a, b):\n    raise ValueError('no area')\n");
+  const Json never = answer_of("shapes.py:never --pairs 30");
+  EXPECT_EQ(never["wrong"]["count"], 0);
+  const Json summary = Json::parse(contents(shell.folder / "try/summary.json"));
+  int declined = 0;
+  for (const Json& row : summary["strata"]) declined += row["lanes"]["shapes/f32/cpu"]["declined"].get<int>();
+  EXPECT_EQ(declined, 30);
+  for (const auto& [function, found] : {std::pair{"text", "a str"},
+                                        {"number", "a float"},
+                                        {"nothing", "None"},
+                                        {"generator", "a generator"},
+                                        {"coroutine", "a coroutine"}}) {
+    expect_error(fmt::format("graze try shapes.py:{} --out d", function), 1,
+                 {"shapes.py", fmt::format("says: {} returned {}", function, found), "bool", "int", "below 0", "echo"});
+  }
+  expect_error("graze try shapes.py:raises --out d", 1, {"says: ValueError: no area"});
 }
 
 TEST_F(TryCommand, WorksOnEachKindOfCode) {
@@ -294,6 +337,16 @@ TEST_F(TryCommand, NoOtherProcessMayUseTheFolderWhileItMinimises) {
   EXPECT_EQ(seen.find("free"), std::string::npos) << seen;
   expect_error("flock try graze try 'cmd:bash own.sh' --pairs 90", 1, {"try", "another process"});
   expect_done("test -f try/summary.json && test ! -e try.1");
+}
+
+TEST_F(TryCommand, EndsInOrderWhileItAsksTheFirstPairs) {
+  write("waits.sh",
+        "while read line; do\n  [ \"$line\" = describe ] && { echo; continue; }\n  touch asked\n  sleep 3600\ndone\n");
+  const Ran ran =
+      signalled("timeout -s KILL 120 graze try 'cmd:bash waits.sh' --subject-timeout 3600", "TERM", "test -f asked");
+  EXPECT_EQ(ran.status, 130) << ran.err;
+  EXPECT_EQ(ran.err, "graze: interrupted\n");
+  EXPECT_FALSE(std::filesystem::exists(shell.folder / "try"));
 }
 
 TEST_F(TryCommand, GoesOnWhereItWasInterrupted) {

@@ -178,7 +178,7 @@ const Lane& lane_to_tune(const TuneOptions& options) {
   open_subjects(options.own_code);
   if (!options.from.empty()) open_subjects_of(options.from, options.own_code.resubject);
   const Lane& lane = named_lane(options.lanes.front());
-  expect_subjects_among(options.own_code, {lane.id}, "LANE");
+  expect_own_code_among(options.own_code, {lane.id}, "LANE");
   if (!lane.foreign && !options.epsilon.empty())
     throw UsageError("--epsilon names a constant of your own code, and " + lane.id + " is a published lane");
   return lane;
@@ -285,7 +285,6 @@ void add_tune(CLI::App& app, int& status) {
       ->add_option("--epsilon", options->epsilon,
                    "Epsilon of your own C, C++ or CUDA source: the name of a constant, or a number as it is written "
                    "there; the source is built again with values of it")
-      ->check(not_empty())
       ->option_text("NAME")
       ->default_str("the obvious one");
   for (const char* of_own_code : {"--resubject", "--epsilon"}) command->get_option("--agree")->excludes(of_own_code);
@@ -313,26 +312,27 @@ void add_tune(CLI::App& app, int& status) {
       ->check(number(1e-15, 1.0))
       ->capture_default_str()
       ->option_text("RATE");
-  command
-      ->add_option("--max-other", options->max_other,
-                   "With --forbid of one kind: highest rate of the other kind at which a tolerance is useful")
-      ->check(number(0.0, 1.0))
-      ->capture_default_str()
-      ->option_text("RATE");
+  CLI::Option* const max_other =
+      command->add_option("--max-other", options->max_other,
+                          "With --forbid of one kind: highest rate of the other kind at which a tolerance is useful");
+  max_other->check(number(0.0, 1.0))->capture_default_str()->option_text("RATE");
   add_threads_option(*command, options->threads);
   command
       ->add_option("--out", options->out,
                    "Folder for the JSON file, curves.svg, policy.h (without --agree) and the smallest cases")
-      ->check(not_empty())
       ->default_str("tuned; with --agree: agreed")
       ->option_text("DIR");
-  command->callback([options, forbid, &status] {
+  command->callback([options, forbid, max_other, &status] {
     if (options->agree != (options->lanes.size() == 2) || options->lanes.size() > 2)
       throw UsageError(fmt::format("give one lane, or two lanes with --agree; got {} lane{} {} --agree",
                                    options->lanes.size(), options->lanes.size() == 1 ? "" : "s",
                                    options->agree ? "with" : "without"));
     if (options->agree && forbid->count() > 0)
       throw UsageError("--forbid does not work with --agree, which only forbids differing verdicts; leave it out");
+    if (max_other->count() > 0 &&
+        (options->agree || static_cast<analysis::Forbid>(options->forbid) == analysis::Forbid::any))
+      throw UsageError(
+          "--max-other limits the other kind of error; it needs --forbid false-negative or false-positive");
     status = options->agree ? agree(*options) : tune(*options);
   });
 }

@@ -239,12 +239,10 @@ void add_view(CLI::App& app, int&) {
       command->add_option("WHAT", *what,
                           "File of pairs, campaign directory or folder of such files, mesh (" + strata::mesh_formats() +
                               "), or STRATUM:SEED:INDEX (default: the special cases of the thesis of 2012)");
-  command
-      ->add_option("MESH", *mesh,
-                   "Mesh whose triangles are shown against WHAT, which is then a reference triangle as for `graze "
-                   "query`: a file of "
-                   "nine numbers, or MESH#FACE")
-      ->check(not_empty());
+  command->add_option("MESH", *mesh,
+                      "Mesh whose triangles are shown against WHAT, which is then a reference triangle as for `graze "
+                      "query`: a file of "
+                      "nine numbers, or MESH#FACE");
   command
       ->add_option("--random", *random,
                    "Number of random triangles of the thesis of 2012 that are shown first, against its reference")
@@ -256,10 +254,7 @@ void add_view(CLI::App& app, int&) {
   const auto own_code = std::make_shared<LaneOptions>();
   add_subject_options(*command, *own_code);
   add_resubject_option(*command, *own_code);
-  command->add_option("--out", *out, "File for the page")
-      ->check(not_empty())
-      ->capture_default_str()
-      ->option_text("FILE");
+  command->add_option("--out", *out, "File for the page")->capture_default_str()->option_text("FILE");
   command->callback([=] { view(*own_code, *what, *mesh, *exact_input, *random, *out); });
 }
 

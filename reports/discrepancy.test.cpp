@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <regex>
 
 #include "analysis/tuning.h"
@@ -129,6 +130,19 @@ TEST_F(DiscrepancyResult, ThePageDrawsTheExtremes) {
     }
   }
   EXPECT_GT(drawn, 100);
+}
+
+// Rows are matched by their names. What only one result has is told.
+TEST_F(DiscrepancyResult, RowsOfOneResultAloneAreTold) {
+  const std::string same = discrepancy_changes(json_, json_, {});
+  EXPECT_EQ(same.find("in one result alone"), std::string::npos) << same;
+  Json other = json_;
+  Json& questions = other["lanes"][0]["total"]["questions"];
+  std::reverse(questions.begin(), questions.end());
+  EXPECT_EQ(discrepancy_changes(json_, other, {}), same);
+  questions[0]["question"] = "another";
+  EXPECT_NE(discrepancy_changes(json_, other, {}).find("and 2 of lines and questions are in one"), std::string::npos)
+      << discrepancy_changes(json_, other, {});
 }
 
 TEST_F(DiscrepancyResult, ThePageNamesEveryQuestionThatDiffers) {

@@ -19,7 +19,7 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
   const auto lanes_of = [](const Json& of) { return text_at(of, "first") + " against " + text_at(of, "second"); };
   std::string text;
   for (const std::string& sentence : code_differences(before, after)) text += wrapped(sentence, screen.columns);
-  std::size_t same = 0;
+  std::size_t same = 0, alone = 0;  // alone: rows that one result has and the other has not
   TextTable table({{"lanes", Align::left}, {"question", Align::left}, {"count", Align::left}, {"before"}, {"after"}});
   // Calls with_both(old, now) for each comparison that is in both results.
   const auto match = [&](const char* kind, const auto& with_both) {
@@ -55,12 +55,15 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
   // Compares the rows of two lists that have the same values at both keys. The first key names the row.
   const auto compare_rows = [&](const Json& of, const std::string& what, const Json& old_rows, const Json& new_rows,
                                 const char* name, const char* key) {
+    std::size_t both = 0;
     for (const Json& row : old_rows) {
       for (const Json& other : new_rows) {
-        if (row.at(name) == other.at(name) && row.at(key) == other.at(key))
-          compare(of, what + text_at(row, name), row, other);
+        if (row.at(name) != other.at(name) || row.at(key) != other.at(key)) continue;
+        compare(of, what + text_at(row, name), row, other);
+        ++both;
       }
     }
+    alone += old_rows.size() + new_rows.size() - 2 * both;
   };
   match("lanes", [&](const Json& of, const Json& now) {
     compare(of, "", of.at("total"), now.at("total"));
@@ -83,8 +86,9 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
       compare_rows(of, "", of.at("operands").at("lines"), now.at("operands").at("lines"), "line", "within");
   });
   if (table.rows() > 0) text += table.text(screen);
-  return text + wrapped(fmt::format("{} counts differ, {} are the same.", grouped(table.rows()), grouped(same)),
-                        screen.columns);
+  std::string counts = fmt::format("{} counts differ, {} are the same", grouped(table.rows()), grouped(same));
+  if (alone > 0) counts += fmt::format(", and {} of lines and questions are in one result alone", grouped(alone));
+  return text + wrapped(counts + '.', screen.columns);
 }
 
 }  // namespace graze::reports

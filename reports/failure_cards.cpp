@@ -145,11 +145,12 @@ struct Lacking {
 };
 
 // The maps stored with a case if there is room for them; otherwise null.
-Json maps_of(const std::filesystem::path& case_file, const Pair& pair, std::size_t& room, Lacking& lacking) {
+Json maps_of(const std::filesystem::path& case_file, const Pair& pair, const std::vector<std::string>& lanes,
+             std::size_t& room, Lacking& lacking) {
   const std::filesystem::path file = std::filesystem::path(case_file).replace_extension(".maps.json");
   const std::string directory = case_file.parent_path().parent_path().string();
   Json maps = fuzz::read_sealed(file, "remove it, then run: graze minimize " + path_word(directory));
-  if (!is_map_of(maps, pair)) {
+  if (!is_map_of(maps, pair, lanes)) {
     ++lacking.mapped;
     return nullptr;
   }
@@ -187,6 +188,10 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
   lacking.minimised += !minimised;
   const std::string from = corpus::origin_of(entry);
   const Json verdicts = verdicts_of(counts, truth, simplest.at("verdicts"));
+  std::vector<std::string> lanes;
+  for (const ReportLane& lane : counts.lanes) {
+    if (lane.name.subject == subject) lanes.push_back(lane.id);
+  }
   Json card = {{"file", simplest.at("case")}};
   for (const char* field : {"key", "subject", "cause", "line", "shape", "pairs", "intersecting", "signatures", "lanes",
                             "settled", "strata", "margins", "worst"})
@@ -202,7 +207,7 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
                {"drawing", drawing_of(entry.pair)},
                {"verdicts", verdicts},
                {"sentences", simplest.at("sentences")},
-               {"maps", maps_of(file, entry.pair, room, lacking)},
+               {"maps", maps_of(file, entry.pair, lanes, room, lacking)},
                {"commands", commands_of(entry, subject, from, spec)},
                {"snippets", snippets_of(counts, entry, kind, truth, verdicts, from)}});
   return card;

@@ -17,6 +17,7 @@
 #include "reports/report.h"
 #include "reports/snippet.h"
 #include "reports/test_campaign.h"
+#include "reports/ulp_map_picture.h"
 
 namespace graze::reports {
 namespace {
@@ -153,23 +154,26 @@ TEST_F(FailureCards, TheWorstPairIsOfTheKindToo) {
   }
 }
 
+Json map_of(const Pair& pair) {
+  const std::vector<analysis::Cell> cells(analysis::kMapSize * analysis::kMapSize, analysis::Cell::disjoint);
+  return to_json(analysis::UlpMap{pair, {9, 10}, {{nullptr, cells}}});
+}
+
 TEST_F(FailureCards, HaveTheirProgramsAndTheStoredMaps) {
   run("mapped", 2);
   store_kinds("mapped");
   for (const Json& kind : fuzz::read_kinds(root_ / "mapped")) {
-    Json pair = Json::array();
     std::istringstream in("graze-pairs 1\n" + kind["simplest"]["pair"].get<std::string>() + "\n");
     const Pair shown = corpus::PairReader(in, "simplest").next()->pair;
-    for (int i = 0; i < kCoordinates; ++i) pair.push_back(fmt::format("{:a}", coordinates(shown)[i]));
     fuzz::write_whole(
         fs::path(root_ / "mapped" / kind["simplest"]["case"].get<std::string>()).replace_extension(".maps.json"),
-        fuzz::sealed({{"pair", pair}, {"title", "t"}}).dump());
+        fuzz::sealed(map_of(shown)).dump());
   }
   const Json report = make_report(root_ / "mapped");
   const fs::path one =
       root_ / "mapped" / fs::path(report["cards"][0]["file"].get<std::string>()).replace_extension(".maps.json");
   const std::string maps = fuzz::read_whole(one);
-  for (const std::string& text : {std::string("{}"), std::string(maps).replace(maps.find("\"t\""), 3, "\"u\"")}) {
+  for (const std::string& text : {std::string("{}"), std::string(maps).replace(maps.find("b[0].x"), 6, "b[0].z")}) {
     std::ofstream(one) << text;
     try {
       make_report(root_ / "mapped");
@@ -179,11 +183,19 @@ TEST_F(FailureCards, HaveTheirProgramsAndTheStoredMaps) {
       EXPECT_TRUE(contains(error.what(), "graze minimize")) << error.what();
     }
   }
+  // Sealed again, it must still be possible: a lane that did not run is none.
+  Json other = Json::parse(maps);
+  other.erase("checksum");
+  other["panels"].push_back({{"name", "never_ran/f32/cpu"}, {"shows", "right everywhere"}, {"png", ""}});
+  std::ofstream(one) << fuzz::sealed(other).dump();
+  EXPECT_TRUE(make_report(root_ / "mapped")["cards"][0]["maps"].is_null());
   std::ofstream(one) << maps;
   std::set<std::string> files;
   for (const Json& card : report["cards"]) {
     if (files.insert(card["file"]).second) {
-      EXPECT_EQ(card["maps"], Json({{"title", "t"}}));
+      EXPECT_EQ(card["maps"]["title"], "b[0].x and b[0].y moved by up to 128 ulps");
+      EXPECT_EQ(card["maps"]["panels"][0]["shows"], "65,536 disjoint");
+      EXPECT_FALSE(card["maps"].contains("pair"));
     }
     EXPECT_TRUE(contains(card["snippets"][0]["text"], "g++") || contains(card["snippets"][0]["text"], "nvcc"));
     // The report contains the algorithm's source once.

@@ -17,6 +17,7 @@
 #include "reports/failure_cards.h"
 #include "reports/report.h"
 #include "reports/test_campaign.h"
+#include "reports/ulp_map_picture.h"
 
 namespace graze::reports {
 namespace {
@@ -175,10 +176,11 @@ TEST(Page, OfManySignaturesIsUnderTenMebibytes) {
   };
   constexpr std::uint64_t kOfAKind = 9;  // each kind has every ninth signature
   ASSERT_EQ(truth.verdict, Verdict::intersects);
-  Json pair_hex = Json::array(), kinds = Json::array();
-  for (int i = 0; i < kCoordinates; ++i) pair_hex.push_back(fmt::format("{:a}", coordinates(pair)[i]));
-  const std::string maps =
-      fuzz::sealed({{"pair", pair_hex}, {"panels", Json::array({{{"png", std::string(100'000, 'A')}}})}}).dump();
+  Json kinds = Json::array();
+  const std::vector<analysis::Cell> cells(analysis::kMapSize * analysis::kMapSize, analysis::Cell::disjoint);
+  Json map = to_json(analysis::UlpMap{pair, {9, 10}, {{nullptr, cells}}});
+  map["panels"][0]["png"] = std::string(100'000, 'A');
+  const std::string maps = fuzz::sealed(map).dump();
   summary["disagreements"] = kSignatures * kOfSignature;
   for (std::uint64_t i = 0; i < kSignatures; ++i) {
     const std::string key = fmt::format("{}/22/skew/{}/guigue_devillers_2003:{};-f64/cuda-fma/abs:{}",

@@ -10,6 +10,7 @@
 #include <boost/archive/iterators/transform_width.hpp>
 #include <stdexcept>
 
+#include "core/text.h"
 #include "reports/terminal.h"
 
 namespace graze::reports {
@@ -31,6 +32,7 @@ constexpr int kMargin = 16;
 constexpr int kLine = 24;  // of text
 constexpr int kSide = kZoom * analysis::kMapSize;
 constexpr int kLanesARow = 4;
+constexpr int kMapCells = analysis::kMapSize * analysis::kMapSize;
 
 struct Image {
   int width, height;
@@ -91,15 +93,40 @@ Image picture(const analysis::UlpPanel& panel) {
   return image;
 }
 
-std::string counts_of(const analysis::UlpPanel& panel) {
-  const std::array<int, analysis::kCellKinds> counts = panel.counts();
+using CellCounts = std::array<int, analysis::kCellKinds>;
+
+constexpr std::size_t kFirstOfLanes = 2;  // right verdicts of a lane are not written
+
+std::string words_of(const CellCounts& counts, std::size_t first) {
   std::string text;
-  for (std::size_t kind = panel.lane ? 2 : 0; kind < analysis::kCellKinds; ++kind) {
+  for (std::size_t kind = first; kind < analysis::kCellKinds; ++kind) {
     if (counts[kind] > 0)
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(static_cast<std::uint64_t>(counts[kind])),
                           kCellNames[kind]);
   }
   return text.empty() ? "right everywhere" : text;
+}
+
+std::string counts_of(const analysis::UlpPanel& panel) {
+  return words_of(panel.counts(), panel.lane ? kFirstOfLanes : 0);
+}
+
+// Whether counts_of writes this text for some panel, of the truth or of a lane.
+bool are_counts(const std::string& text, bool of_truth) {
+  CellCounts counts{};
+  int all = 0;
+  for (std::size_t begin = 0; begin < text.size() && text != words_of({}, 0);) {
+    const std::size_t end = std::min(text.find(", ", begin), text.size()), space = std::min(text.find(' ', begin), end);
+    std::string digits = text.substr(begin, space - begin);
+    std::erase(digits, ',');
+    const std::string name = text.substr(std::min(space + 1, end), end - std::min(space + 1, end));
+    const auto kind = std::find(std::begin(kCellNames), std::end(kCellNames), name) - std::begin(kCellNames);
+    const std::uint64_t count = parse_whole(digits).value_or(0);
+    if (kind == analysis::kCellKinds || count > static_cast<std::uint64_t>(kMapCells - all)) return false;
+    all += counts[static_cast<std::size_t>(kind)] = static_cast<int>(count);
+    begin = end + 2;
+  }
+  return words_of(counts, of_truth ? 0 : kFirstOfLanes) == text && (!of_truth || all == kMapCells);
 }
 
 // For each kind, whether some panel contains it.
@@ -166,29 +193,64 @@ std::string sheet_png(const analysis::UlpMap& map) {
   return sheet.png();
 }
 
-nlohmann::ordered_json to_json(const analysis::UlpMap& map) {
-  const std::string x = analysis::name_of_coordinate(map.moved.x), y = analysis::name_of_coordinate(map.moved.y);
-  nlohmann::ordered_json panels = nlohmann::ordered_json::array();
-  for (const analysis::UlpPanel& panel : map.panels)
-    panels.push_back({{"name", panel.name()}, {"shows", counts_of(panel)}, {"png", base64(panel_png(panel))}});
-  nlohmann::ordered_json legend = nlohmann::ordered_json::array();
-  const std::array<bool, analysis::kCellKinds> found = kinds_in(map);
-  for (std::size_t kind = 0; kind < analysis::kCellKinds; ++kind) {
-    const auto& [red, green, blue] = kPalette[colour_of(kind)];
-    if (found[kind])
-      legend.push_back({{"colour", fmt::format("#{:02x}{:02x}{:02x}", red, green, blue)}, {"means", kCellNames[kind]}});
-  }
+namespace {
+
+nlohmann::ordered_json legend_of(std::size_t kind) {
+  const auto& [red, green, blue] = kPalette[colour_of(kind)];
+  return {{"colour", fmt::format("#{:02x}{:02x}{:02x}", red, green, blue)}, {"means", kCellNames[kind]}};
+}
+
+// What a map says of its coordinates.
+nlohmann::ordered_json frame_of(const std::string& x, const std::string& y) {
   return {{"title", fmt::format("{} and {} moved by up to {} ulps", x, y, analysis::kMapCentre)},
           {"x", x},
           {"y", y},
-          {"size", analysis::kMapSize},
-          {"legend", legend},
-          {"pair", hex(map.pair)},
-          {"panels", panels}};
+          {"size", analysis::kMapSize}};
 }
 
-bool is_map_of(const nlohmann::ordered_json& json, const Pair& pair) {
-  return json.is_object() && json.value("pair", nlohmann::ordered_json()) == hex(pair);
+}  // namespace
+
+nlohmann::ordered_json to_json(const analysis::UlpMap& map) {
+  nlohmann::ordered_json json =
+      frame_of(analysis::name_of_coordinate(map.moved.x), analysis::name_of_coordinate(map.moved.y));
+  json["legend"] = nlohmann::ordered_json::array();
+  const std::array<bool, analysis::kCellKinds> found = kinds_in(map);
+  for (std::size_t kind = 0; kind < analysis::kCellKinds; ++kind) {
+    if (found[kind]) json["legend"].push_back(legend_of(kind));
+  }
+  json["pair"] = hex(map.pair);
+  for (const analysis::UlpPanel& panel : map.panels)
+    json["panels"].push_back({{"name", panel.name()}, {"shows", counts_of(panel)}, {"png", base64(panel_png(panel))}});
+  return json;
+}
+
+bool is_map_of(const nlohmann::ordered_json& json, const Pair& pair, const std::vector<std::string>& lanes) try {
+  const std::string x = json.at("x"), y = json.at("y");
+  if (!analysis::coordinate_of_name(x) || !analysis::coordinate_of_name(y) || json.at("pair") != hex(pair))
+    return false;
+  const nlohmann::ordered_json frame = frame_of(x, y);
+  for (const auto& [key, value] : frame.items()) {
+    if (json.at(key) != value) return false;
+  }
+  for (const nlohmann::ordered_json& row : json.at("legend")) {
+    std::size_t kind = 0;
+    while (kind < analysis::kCellKinds && row != legend_of(kind)) ++kind;
+    if (kind == analysis::kCellKinds) return false;
+  }
+  std::vector<std::string> names;
+  for (const nlohmann::ordered_json& panel : json.at("panels")) {
+    const std::string name = panel.at("name");
+    const bool of_truth = names.empty();
+    if (of_truth ? name != "truth"
+                 : std::find(lanes.begin(), lanes.end(), name) == lanes.end() ||
+                       std::find(names.begin(), names.end(), name) != names.end())
+      return false;
+    if (!panel.at("png").is_string() || !are_counts(panel.at("shows"), of_truth)) return false;
+    names.push_back(name);
+  }
+  return !names.empty();
+} catch (const nlohmann::ordered_json::exception&) {
+  return false;
 }
 
 }  // namespace graze::reports

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "analysis/ulp_map.h"
 
@@ -21,7 +22,8 @@ std::string sheet_png(const analysis::UlpMap& map);
 // report's page: counts in words, PNGs in base64, and the pair's 18 coordinates in hex.
 nlohmann::ordered_json to_json(const analysis::UlpMap& map);
 
-// Whether the map belongs to this pair.
-bool is_map_of(const nlohmann::ordered_json& json, const Pair& pair);
+// Whether the JSON can be a map of this pair with panels of the truth and of some of these lanes, each at most once:
+// its fields are of the right kinds, and no panel counts more cells than it has. The pictures are not read.
+bool is_map_of(const nlohmann::ordered_json& json, const Pair& pair, const std::vector<std::string>& lanes);
 
 }  // namespace graze::reports

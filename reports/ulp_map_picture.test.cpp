@@ -115,11 +115,48 @@ TEST(UlpMapPicture, JsonIsThePairsOwn) {
   EXPECT_EQ(png.substr(0, 11), "iVBORw0KGgo");  // "\x89PNG\r\n\x1a\n"
   EXPECT_EQ(png.size() % 4, 0u);
   EXPECT_EQ(png.size(), (panel_png(striped(2).panels[0]).size() + 2) / 3 * 4);
-  EXPECT_TRUE(is_map_of(json, kPair));
+}
+
+TEST(UlpMapPicture, OnlyAPossibleMapOfThePairIsTaken) {
+  const std::vector<std::string> ids{lanes()[0].id, lanes()[1].id, lanes()[2].id};
+  const nlohmann::ordered_json json = to_json(striped(2));
+  EXPECT_TRUE(is_map_of(json, kPair, ids));
+  EXPECT_FALSE(is_map_of(json, kPair, {ids[0]}));
   Pair other = kPair;
   other.b[2].z = -1;
-  EXPECT_FALSE(is_map_of(json, other));
-  EXPECT_FALSE(is_map_of({}, kPair));
+  EXPECT_FALSE(is_map_of(json, other, ids));
+  EXPECT_FALSE(is_map_of({}, kPair, ids));
+  using Pointer = nlohmann::ordered_json::json_pointer;
+  for (const auto& [at, value] : std::vector<std::pair<std::string, nlohmann::ordered_json>>{
+           {"/x", "c[0].x"},
+           {"/title", "mine"},
+           {"/size", 255},
+           {"/legend/0/colour", "#000000"},
+           {"/legend", 1},
+           {"/panels/0/name", ids[2]},
+           {"/panels/2/name", ids[0]},
+           {"/panels/1/name", "truth"},
+           {"/panels/1/png", 1},
+           {"/panels/0/shows", "32,768 disjoint"},
+           {"/panels/0/shows", "right everywhere"},
+           {"/panels/1/shows", "65,537 declined"},
+           {"/panels/1/shows", "1 mine"},
+           {"/panels/1/shows", "0 declined"},
+           {"/panels/1/shows", "1 declined, "},
+           {"/panels/1/shows", "1 declined, 1 false negative"},
+           {"/panels/1/shows", "40,000 false negative, 30,000 declined"},
+           {"/panels/1/shows", "5 disjoint"},
+           {"/panels/1/shows", ""},
+           {"/panels/1", nullptr}}) {
+    nlohmann::ordered_json changed = json;
+    changed.at(Pointer(at)) = value;
+    EXPECT_FALSE(is_map_of(changed, kPair, ids)) << at << ' ' << value;
+  }
+  for (const char* shows : {"right everywhere", "65,536 declined", "1 false positive, 12 not finite"}) {
+    nlohmann::ordered_json changed = json;
+    changed["panels"][1]["shows"] = shows;
+    EXPECT_TRUE(is_map_of(changed, kPair, ids)) << shows;
+  }
 }
 
 }  // namespace

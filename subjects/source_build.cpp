@@ -121,6 +121,17 @@ std::string first_error(const std::string& text) {
   return first.empty() ? "the compiler failed and said nothing" : first;
 }
 
+// The last flags may ask for something else than the file, such as --version.   Throws: std::runtime_error.
+void expect_made(const fs::path& file, const std::string& name, const Recipe& recipe,
+                 const std::vector<std::string>& flags) {
+  if (fs::exists(file)) return;
+  std::string command = recipe.compiler + ' ' + recipe.fixed;
+  if (!recipe.flags.empty()) command += ' ' + recipe.flags;
+  for (const std::string& flag : flags) command += ' ' + shell_word(flag);
+  throw std::runtime_error(
+      cannot("compile", name, fmt::format("the compiler reported no error and made no object file: {}", command)));
+}
+
 // Flags that stand in the compiler's name, as in CXX='c++ -Og', and variables that name its parts.
 std::vector<std::string> further_flags(const std::string& compiler) {
   std::vector<std::string> flags;
@@ -394,6 +405,7 @@ Built build_source(const fs::path& source, const std::string& function, const Re
       if (error.find(source.filename().string()) == error.npos) error = cannot("compile", name, error);
       throw std::runtime_error(error);
     }
+    expect_made(object, name, recipe, flags);
     assembled = lists() && fs::exists(list) ? listed_files(list, scratch.path()) : "";
     if (read() != before) continue;
     built.content = std::make_shared<SealedCopy>(built.file.filename().string(), code_in(object));
@@ -417,6 +429,7 @@ std::string assembly_of(const fs::path& source, const std::string& function, con
                                shell_word(assembly.string())),
                    scratch.path(), status);
   if (status != 0) throw std::runtime_error(cannot("compile", source, first_error(said)));
+  expect_made(assembly, source.string(), recipe, flags);
   return text_of(assembly);
 }
 

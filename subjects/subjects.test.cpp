@@ -661,6 +661,19 @@ int intersects(const float a[9], const float b[9]) { return data[0] == 'l' ? a[0
   }
 }
 
+TEST_F(Subjects, ACommandThatMakesNoObjectIsNamedWithItsFlags) {
+  const fs::path source =
+      write("quiet.c", "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }");
+  const Recipe recipe = recipe_of(kVariants[0], source), does_nothing{"true", "-O2", ""};
+  for (const std::string& error :
+       {error_of([&] { build_source(source, "intersects", recipe, {"--version"}); }),
+        error_of([&] { assembly_of(source, "intersects", recipe, {"--version"}); }),
+        error_of([&] { build_source(source, "intersects", does_nothing, {"--version"}); })}) {
+    EXPECT_TRUE(names(error, {"quiet.c", "made no object file", "-O2", "--version"})) << error;
+    EXPECT_EQ(error.find("unfinished"), std::string::npos) << error;
+  }
+}
+
 // This compiler also plays an editor: it runs the script `edits` when it compiles.
 TEST_F(Subjects, CodeThatChangesWhileItIsBuiltIsBuiltAgain) {
   const fs::path source = write("edited.c",

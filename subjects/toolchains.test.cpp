@@ -179,17 +179,18 @@ cc = "cc -O2"
 name = "no-flag"
 cxx = "c++ -O2 -fno-such-flag"
 [[toolchain]]
+name = "no-object"
+cxx = "true -O2"
+[[toolchain]]
 name = "no-program"
 cxx = "c++ -O2"
 run = "true"
 )");
   open_published("separating_axes", rows);
   const std::pair<const char*, const char*> cases[] = {
-      {"no-compiler", "no no-such-compiler (install a compiler)"},
-      {"no-emulator", "no no-such-emulator"},
-      {"no-language", "the toolchain no-language has no compiler for C++"},
-      {"no-flag", "-fno-such-flag"},
-      {"no-program", "the program ended"}};
+      {"no-compiler", "no no-such-compiler (install a compiler)"},          {"no-emulator", "no no-such-emulator"},
+      {"no-language", "the toolchain no-language has no compiler for C++"}, {"no-flag", "-fno-such-flag"},
+      {"no-object", "made no object file: true -O2 -std=gnu++20"},          {"no-program", "the program ended"}};
   for (const auto& [name, why] : cases) {
     const Lane* lane = find_lane(std::string("separating_axes/f32/") + name);
     ASSERT_TRUE(lane) << name;

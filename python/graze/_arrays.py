@@ -28,7 +28,11 @@ class Pair:
     """
 
     def __init__(self, numbers: Any):
-        found = np.array([np.float32(word) for word in numbers.split()] if isinstance(numbers, str) else numbers)
+        found = np.array(
+            [np.float32(word) for word in numbers.split()]
+            if isinstance(numbers, str)
+            else _library.unmasked(numbers, "pair")
+        )
         if found.size != 18:
             raise ValueError(f"a pair has 18 numbers, not {found.size}")
         self.array = np.asarray(found, np.float32).reshape(2, 3, 3)

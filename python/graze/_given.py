@@ -8,22 +8,17 @@ import numpy as np
 
 from graze import _library
 from graze._arrays import Pair
+from graze._verdict import DECLINED, verdict_of
 
-_DISJOINT, _INTERSECTS, _DECLINED, _RAISED = range(4)  # as the library numbers verdicts
+_RAISED = 3  # as the library numbers verdicts
 _EITHER = ("touching", "coplanar", "degenerate", "shared")
-
-
-def _verdict(answer: Any) -> int:
-    if not isinstance(answer, (bool, int, np.bool_, np.integer)):
-        raise TypeError(f"the function returns {answer!r}; True, False, or an int below 0 for declined is needed")
-    return _DECLINED if answer < 0 else _INTERSECTS if answer else _DISJOINT
 
 
 class _Tested:
     """The user's function, called by the library."""
 
-    def __init__(self, function: Callable[..., Any], vectorized: bool):
-        self.function, self.vectorized = function, vectorized
+    def __init__(self, function: Callable[..., Any], name: str, vectorized: bool):
+        self.function, self.name, self.vectorized = function, name, vectorized
         self.ended_by: Optional[BaseException] = None  # what ends the test
         self.raised: Optional[Exception] = None  # the first exception of the function, which is a wrong answer
 
@@ -31,18 +26,19 @@ class _Tested:
         if not self.vectorized:
             return np.fromiter((self._of_one(pair) for pair in pairs), np.uint8, len(pairs))
         try:
-            answers = np.asarray(self.function(pairs[:, 0], pairs[:, 1]))
+            answers = np.asanyarray(self.function(pairs[:, 0], pairs[:, 1]))
         except Exception as raised:  # of one of the pairs, or of all
             self.raised = self.raised or raised
             if len(pairs) == 1:
                 return np.array([_RAISED], np.uint8)
             return np.concatenate([self.of_pairs(half) for half in np.array_split(pairs, 2)])
+        answers = _library.unmasked(answers, f"the answers of {self.name}")
         if answers.shape != (len(pairs),) or answers.dtype.kind not in "biu":
             raise TypeError(
                 f"the function returns {answers.dtype} of shape {answers.shape}, not {len(pairs)} bools or ints"
             )
         return (
-            np.where(answers < 0, _DECLINED, answers != 0).astype(np.uint8)
+            np.where(answers < 0, DECLINED, answers != 0).astype(np.uint8)
             if answers.dtype.kind == "i"
             else (answers != 0).astype(np.uint8)
         )
@@ -53,7 +49,7 @@ class _Tested:
         except Exception as raised:
             self.raised = self.raised or raised
             return _RAISED
-        return _verdict(answer)
+        return verdict_of(answer, self.name)
 
     def decide(self, floats: Any, count: int, verdicts: Any) -> int:
         try:
@@ -137,7 +133,7 @@ def given(
 
         def test(*self: Any) -> None:  # of a method: its object
             __tracebackhide__ = True
-            tested = _Tested(functools.partial(function, *self), vectorized)
+            tested = _Tested(functools.partial(function, *self), name, vectorized)
             why = _check(tested, name, options, test._graze_examples)  # type: ignore[attr-defined]
             if why is not None:
                 failure = AssertionError(why)

@@ -102,11 +102,27 @@ def in_pieces(count: int, f: Callable[[int, int], None]) -> None:
         f(first, min(_PIECE, count - first))
 
 
+def _masked(array: Any) -> int:
+    """How many values are masked, also in lists of masked arrays."""
+    if isinstance(array, np.ma.MaskedArray):
+        return int(np.ma.getmaskarray(array).sum())
+    return sum(map(_masked, array)) if isinstance(array, (list, tuple)) else 0
+
+
+def unmasked(array: Any, what: str) -> np.ndarray:
+    """The array without a mask. Raises ValueError if values are masked, for NumPy would take what lies below them."""
+    if masked := _masked(array):
+        raise ValueError(
+            f"{what}: masked values ({masked}) are refused; fill them (x.filled) or leave out what they belong to"
+        )
+    return np.asarray(array)
+
+
 def floats(array: Any, shape: tuple[int, ...], what: str, doubles: bool = True) -> np.ndarray:
     """The array as contiguous float32, or float64 if it is that and `doubles`, of shape (n, *shape); one element may
     lack the first axis. Without a copy if it is that already. Raises TypeError for other numbers, which would have to
-    be rounded, and ValueError for another shape."""
-    found = np.asarray(array)
+    be rounded, and ValueError for another shape or masked values."""
+    found = unmasked(array, what)
     if found.dtype != np.float32 and not (doubles and found.dtype == np.float64):
         raise TypeError(
             f"{what}: the numbers are {found.dtype}, but Graze decides float32{' and float64' if doubles else ' here'}; "

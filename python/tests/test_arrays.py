@@ -191,6 +191,27 @@ class Arrays(unittest.TestCase):
         self.assertEqual(graze.truth(infinite).tolist(), [graze.DECLINED] * 2)
         self.assertEqual(len(graze.self_intersections(infinite[:, 0])), 0)
 
+    def test_masked_values_are_refused(self):
+        drawn = graze.pairs(count=10)
+        whole = np.ma.masked_array(drawn, mask=False)
+        self.assertEqual(graze.truth(whole).tolist(), graze.truth(drawn).tolist())
+        some = whole.copy()
+        some[3, 1, 2, 0] = some[4, 0] = np.ma.masked
+        one = some[3]
+        for what, count, call in (
+            ("pairs", 10, lambda: graze.truth(some)),
+            ("pairs", 10, lambda: graze.verdicts("exact/f32/cpu", some)),
+            ("pairs", 10, lambda: graze.margin(some)),
+            ("pairs", 1, lambda: graze.truth([[drawn[0, 0], drawn[0, 1]], [one[0], one[1]]])),
+            ("pair", 1, lambda: graze.Pair(one)),
+            ("triangles", 9, lambda: graze.meets(drawn[0, 0], some[:, 0])),
+            ("triangles", 1, lambda: graze.meets(one[1], drawn[:, 0])),
+            ("triangles", 9, lambda: graze.self_intersections(some[:, 0])),
+            ("triangles", 1, lambda: graze.intersections(drawn[:, 0], some[:, 1])),
+        ):
+            with self.assertRaisesRegex(ValueError, rf"^{what}: masked values \({count}\)"):
+                call()
+
     def test_ctrl_c_ends_long_calls(self):
         for call in (
             "graze.pairs(count=10**8)",

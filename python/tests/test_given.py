@@ -102,13 +102,30 @@ class Given(unittest.TestCase):
             graze.given("uniform", pairs=500)(raises)()
         self.assertIn("exceptions", str(failed.exception))
         self.assertIsInstance(failed.exception.__cause__, ZeroDivisionError)
-        for result in (None, "yes", 0.5, [True]):
-            with self.assertRaisesRegex(TypeError, "True, False"):
+        for result, found in (
+            (None, "None"),
+            ("yes", "a str"),
+            (0.5, "a float"),
+            (np.nan, "a float"),
+            ([True], "a list"),
+        ):
+            with self.assertRaisesRegex(TypeError, f"^<lambda> returned {found}; return a bool or an int"):
                 graze.given(pairs=10)(lambda a, b, result=result: result)()
+        with self.assertRaisesRegex(TypeError, "a generator"):
+            graze.given(pairs=10)(lambda a, b: (yield))()
         with self.assertRaisesRegex(TypeError, "of shape"):
             graze.given(pairs=10, vectorized=True)(lambda a, b: True)()
         with self.assertRaises(SystemExit):
             graze.given(pairs=10)(lambda a, b: sys.exit(3))()
+
+    def test_answers_of_numpy_and_masked_answers(self):
+        for kind in (bool, int, np.bool_, np.int8, np.uint64):
+            graze.given("uniform", pairs=20)(lambda a, b, kind=kind: kind(exact(a, b)))()
+        self.assertIn("declines every pair", failure_of(graze.given(pairs=10)(lambda a, b: np.int16(-1))))
+        with self.assertRaisesRegex(TypeError, "MaskedConstant"):
+            graze.given(pairs=10)(lambda a, b: np.ma.masked)()
+        with self.assertRaisesRegex(ValueError, "masked"):
+            graze.given(pairs=10, vectorized=True)(lambda a, b: np.ma.masked_less(a[:, 0, 0] > 0, 2))()
 
     def test_the_function_cannot_write_into_the_pairs(self):
         def writes(a, b):

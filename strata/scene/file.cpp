@@ -48,8 +48,7 @@ class Reader {
     SceneFile scene;
     if (const toml::node* node = root_.get("units")) {
       scene.units = text(*node);
-      if (scene.units.size() > 32 || std::any_of(scene.units.begin(), scene.units.end(), is_control))
-        fail(*node, "units of at most 32 bytes without control characters", shown(scene.units));
+      if (!is_units(scene.units)) fail(*node, "units of " + kUnits, shown(scene.units));
     }
     read_extent(scene);
     read_sizes(scene);
@@ -265,6 +264,8 @@ SceneFile read_scene(const std::filesystem::path& file) {
   if (const auto text = plain_file(file, why)) return parse_scene(file.string(), *text);
   throw std::runtime_error(cannot("read", file, why));
 }
+
+bool is_units(std::string_view text) { return text.size() <= 32 && std::none_of(text.begin(), text.end(), is_control); }
 
 std::string scene_text(const SceneFile& scene) {
   std::string text =

@@ -49,6 +49,10 @@ struct SceneFile {
   friend bool operator==(const SceneFile&, const SceneFile&) = default;
 };
 
+// What the units of a scene may be, in words and as a check.
+inline const std::string kUnits = "at most 32 bytes without control characters";
+bool is_units(std::string_view text);
+
 // Throws: std::runtime_error of one line: FILE:LINE: expected …, found ….
 SceneFile read_scene(const std::filesystem::path& file);
 SceneFile parse_scene(const std::string& name, std::string_view text);

@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What an answer of a function of two triangles means. `graze try` holds this file too, so it needs no NumPy."""
+import numbers
+from typing import Any
+
+DISJOINT, INTERSECTS, DECLINED = range(3)  # as the library numbers verdicts
+
+
+def verdict_of(answer: Any, function: str) -> int:
+    """The verdict of a bool or an int, also NumPy's. Raises TypeError for other answers."""
+    kind = type(answer)
+    is_bool = kind.__module__ == "numpy" and kind.__name__ in ("bool", "bool_")  # no numbers.Integral
+    if not is_bool and not isinstance(answer, numbers.Integral):
+        found = "None" if answer is None else f"a {kind.__name__}"
+        raise TypeError(f"{function} returned {found}; return a bool or an int, below 0 for declined")
+    return DECLINED if answer < 0 else INTERSECTS if answer else DISJOINT

@@ -22,6 +22,6 @@ namespace graze::analysis {
 // The audit runs the lane's source in other arithmetic. A contracted lane uses the contraction rule that reproduces the
 // lane's own run.
 // Requires: an explanation's lane for this pair, and the pair's truth. The function does not read `lane.settled`.
-Settled audit(const LaneExplanation& lane, const Pair& pair, Verdict truth);
+Settled audit(const LaneExplanation& lane, const AnyPair& pair, Verdict truth);
 
 }  // namespace graze::analysis

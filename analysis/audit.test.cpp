@@ -123,7 +123,7 @@ TEST(Deciding, IsTheSmallestSetAndOfEqualOnesTheFirst) {
     if (deciding.empty() || deciding.size() > 2) continue;
     const std::size_t first = deciding[0].before.size(), second = deciding.back().before.size();
     const auto exactly = [&](const Path& path) {
-      return oracle::exact_outcomes(wrong.lane.lane->algorithm, wrong.pair, path);
+      return oracle::exact_outcomes(wrong.lane.lane->algorithm, in_doubles(wrong.pair), path);
     };
     const Path path = corrected(wrong, {}).path, exact = exactly(path);
     for (std::size_t i = 0; i < (deciding.size() == 1 ? first : path.size()); ++i) {
@@ -155,7 +155,7 @@ TEST(Deciding, WhatIsToldOfARangeComesFromIt) {
     const Decider& first = wrong.lane.deciding.front();
     const Lane& lane = *wrong.lane.lane;
     const Trace<double> unlimited =
-        oracle::run_limited(lane.algorithm, lane.scalar, wrong.pair, {}, wrong.lane.rule, first.before);
+        oracle::run_limited(lane.algorithm, lane.scalar, in_doubles(wrong.pair), {}, wrong.lane.rule, first.before);
     const Seen<double>& seen = unlimited.seen[first.place];
     const oracle::Beside& difference = first.exact.difference;
     const bool lost = !std::isfinite(difference.lane) || (difference.lane == 0 && difference.decimal != "0");

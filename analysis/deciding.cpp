@@ -15,7 +15,7 @@ struct Corrected {
 
 class Search {
  public:
-  Search(const Lane& lane, const Pair& pair, Verdict truth, Contraction rule)
+  Search(const Lane& lane, const AnyPair& pair, Verdict truth, Contraction rule)
       : lane_(lane), pair_(pair), truth_(truth), rule_(rule) {}
 
   // Tries sets of one comparison first, then larger ones; sets of equal size in order of execution.
@@ -24,7 +24,7 @@ class Search {
     for (int size = 1; size <= kMostDeciding; ++size) {
       std::vector<Corrected> larger;
       for (const Corrected& set : sets) {
-        const Path exact = oracle::exact_outcomes(lane_.algorithm, pair_, set.path);
+        const Path exact = oracle::exact_outcomes(lane_.algorithm, pair_.doubles, set.path);
         for (std::size_t i = set.comparisons.empty() ? 0 : set.comparisons.back() + 1; i < exact.size(); ++i) {
           if (set.path[i] == exact[i]) continue;
           Path lead(set.path.begin(), set.path.begin() + static_cast<std::ptrdiff_t>(i));
@@ -52,7 +52,7 @@ class Search {
       for (std::size_t before = 0; before < comparison || !run.seen[place].compared; ++place)
         before += run.seen[place].compared;
       const Seen<double>& seen = run.seen[place];
-      const oracle::ExactStep exact = oracle::exact_steps(lane_.algorithm, lane_.scalar, pair_, run)[place];
+      const oracle::ExactStep exact = oracle::exact_steps(lane_.algorithm, lane_.scalar, pair_.doubles, run)[place];
       result.push_back(
           {place, seen, exact, path, Path(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(comparison)), true});
       result.back().by_cause = is_by_cause(result.back(), without_cause);
@@ -62,7 +62,7 @@ class Search {
 
  private:
   const Lane& lane_;
-  const Pair& pair_;
+  const AnyPair& pair_;
   Verdict truth_;
   Contraction rule_;
 };
@@ -74,7 +74,7 @@ bool is_by_cause(const Decider& decider, const WithoutCause& without_cause) {
   return without_cause(decider.path).seen[decider.place].held == decider.exact.held;
 }
 
-std::vector<Decider> deciding_comparisons(const Lane& lane, const Pair& pair, Verdict truth, const Replay& replay,
+std::vector<Decider> deciding_comparisons(const Lane& lane, const AnyPair& pair, Verdict truth, const Replay& replay,
                                           const WithoutCause& without_cause) {
   const Search search(lane, pair, truth, replay.rule);
   const std::optional<Corrected> found = search.smallest(path_of(replay.run));

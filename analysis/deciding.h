@@ -40,7 +40,7 @@ using WithoutCause = std::function<Trace<double>(const Path&)>;
 // kMostDeciding comparisons makes the verdict right.
 // Requires: a replay of the lane that has evidence; the algorithm in exact arithmetic returns `truth`.
 // without_cause: empty if removing the cause means exact arithmetic.
-std::vector<Decider> deciding_comparisons(const Lane& lane, const Pair& pair, Verdict truth, const Replay& replay,
+std::vector<Decider> deciding_comparisons(const Lane& lane, const AnyPair& pair, Verdict truth, const Replay& replay,
                                           const WithoutCause& without_cause);
 
 // Whether the comparison's outcome is right without the cause, or one of its operands is not finite. A non-finite

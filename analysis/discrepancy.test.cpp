@@ -265,7 +265,7 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
         const RunsBeside runs = runs_beside({*first, *second}, pair);
         const Replay run = replay(*first, pair);
         const std::vector<oracle::ExactStep> steps =
-            oracle::exact_steps(first->algorithm, first->scalar, pair, run.run);
+            oracle::exact_steps(first->algorithm, first->scalar, in_doubles(pair), run.run);
         std::size_t next = 0;
         for (std::size_t k = 0; k < steps.size(); ++k) {
           if (!run.run.seen[k].site) continue;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "analysis/audit.h"
 #include "analysis/convention.h"
@@ -45,42 +46,49 @@ std::string line_of(const std::source_location& where) {
 
 // Roots or quotients can leave a tie open in every precision. Then the verdict may alternate between right and wrong
 // for ever as bits are added. In that case a number of bits counts as enough only if it is at most half of kMostBits.
-int bits_needed(int algorithm, const oracle::Exactly& exactly, const Pair& pair, Verdict truth) {
-  const int bits = exactly.verdict == truth ? oracle::bits_needed(algorithm, pair, truth, 24) : 0;
+int bits_needed(int algorithm, const oracle::Exactly& exactly, const AnyPair& pair, Verdict truth) {
+  const int least = pair.floats ? 24 : 53;
+  const int bits = exactly.verdict == truth ? oracle::bits_needed(algorithm, pair.doubles, truth, least) : 0;
   return !exactly.certain && bits > oracle::kMostBits / 2 ? 0 : bits;
 }
 
 // The pair's neighbours. Nudged pairs may have another truth than the pair, so it is computed for each.
 struct Neighbours {
-  std::vector<Pair> orders, mirrored, scalings;
-  std::array<std::vector<Pair>, kCoordinates> nudged;
+  std::vector<AnyPair> orders, mirrored, scalings;
+  std::array<std::vector<AnyPair>, kCoordinates> nudged;
   std::array<bool, kCoordinates> truth_stays;
 
-  Neighbours(const Pair& pair, Verdict truth)
-      : orders(analysis::orders(pair)), mirrored(analysis::mirrored(pair)), scalings(analysis::scalings(pair)) {
-    for (std::size_t c = 0; c < kCoordinates; ++c) {
-      nudged[c] = analysis::nudged(pair, static_cast<int>(c));
-      truth_stays[c] = std::all_of(nudged[c].begin(), nudged[c].end(),
-                                   [truth](const Pair& moved) { return oracle::cgal_verdict(moved) == truth; });
-    }
+  Neighbours(const AnyPair& pair, Verdict truth) {
+    visit(pair, [&](const auto& own) {
+      const auto any = [](const auto& pairs) { return std::vector<AnyPair>(pairs.begin(), pairs.end()); };
+      orders = any(analysis::orders(own));
+      mirrored = any(analysis::mirrored(own));
+      scalings = any(analysis::scalings(own));
+      for (std::size_t c = 0; c < kCoordinates; ++c) {
+        const auto moved = analysis::nudged(own, static_cast<int>(c));
+        truth_stays[c] = std::all_of(moved.begin(), moved.end(),
+                                     [truth](const auto& one) { return oracle::cgal_verdict(one) == truth; });
+        nudged[c] = any(moved);
+      }
+    });
   }
 };
 
-WrongOf wrong_of(const Lane& lane, const std::vector<Pair>& pairs, Verdict truth) {
+WrongOf wrong_of(const Lane& lane, const std::vector<AnyPair>& pairs, Verdict truth) {
   const auto wrong =
-      std::count_if(pairs.begin(), pairs.end(), [&](const Pair& pair) { return decide_lane(lane, pair) != truth; });
+      std::count_if(pairs.begin(), pairs.end(), [&](const AnyPair& pair) { return decide_lane(lane, pair) != truth; });
   return {static_cast<int>(wrong), static_cast<int>(pairs.size())};
 }
 
 // The same source on the same kind of processor, with every operation rounded as written.
 const Lane& rounded_counterpart(const Lane& lane) { return *counterpart(lane, rounded_variant(lane.variant)); }
 
-Cause first_cause(const Lane& lane, const Pair& pair, Verdict truth, const oracle::Exactly& exactly) {
+Cause first_cause(const Lane& lane, const AnyPair& pair, Verdict truth, const oracle::Exactly& exactly) {
   if (exactly.verdict != truth) return Cause::logic;
   if (decide_lane(rounded_counterpart(lane), pair) == truth)
     return info_of(lane.variant).arithmetic == Arithmetic::fast ? Cause::fast_math : Cause::contraction;
   const auto limited = [&](bool upper, bool lower) {
-    return oracle::decide_limited(lane.algorithm, lane.scalar, pair, {upper, lower});
+    return oracle::decide_limited(lane.algorithm, lane.scalar, pair.doubles, {upper, lower});
   };
   if (limited(false, false).verdict != truth) return Cause::rounding;
   const bool overflow = limited(true, false).verdict != truth, underflow = limited(false, true).verdict != truth;
@@ -90,11 +98,11 @@ Cause first_cause(const Lane& lane, const Pair& pair, Verdict truth, const oracl
 
 // Some pairs need both more bits and wider exponents. The comparison that went wrong shows which limit was hit first.
 // If a value is no longer a number, or is lost because it is below the least normal number, rounding is not the cause.
-Cause refined(const LaneExplanation& lane, const Pair& pair) {
+Cause refined(const LaneExplanation& lane, const AnyPair& pair) {
   const Step* told = lane.told();
   if (lane.cause != Cause::rounding || !told) return lane.cause;
   const oracle::RangeEvent first =
-      oracle::decide_limited(lane.lane->algorithm, lane.lane->scalar, pair, {true, true}).first;
+      oracle::decide_limited(lane.lane->algorithm, lane.lane->scalar, pair.doubles, {true, true}).first;
   const double least =
       lane.lane->scalar == Scalar::f32 ? double{std::numeric_limits<float>::min()} : std::numeric_limits<double>::min();
   const oracle::Beside& difference = told->difference;
@@ -115,24 +123,24 @@ Step step_of(const Seen<double>& seen, const oracle::ExactStep& exact) {
 }
 
 // Returns a function that runs a path without the cause. Empty for rounding, because exact arithmetic shows that case.
-WithoutCause without(Cause cause, const Lane& lane, const Pair& pair, Contraction rule) {
+WithoutCause without(Cause cause, const Lane& lane, const AnyPair& pair, Contraction rule) {
   if (cause == Cause::contraction)
     return [&lane, &pair](const Path& path) { return run_led(lane, pair, Contraction::none, path); };
   if (cause == Cause::overflow || cause == Cause::underflow) {
     return [&lane, &pair, rule](const Path& path) {
-      return oracle::run_limited(lane.algorithm, lane.scalar, pair, {false, false}, rule, path);
+      return oracle::run_limited(lane.algorithm, lane.scalar, pair.doubles, {false, false}, rule, path);
     };
   }
   return {};
 }
 
-void add_steps(LaneExplanation& result, const Pair& pair, Verdict truth) {
+void add_steps(LaneExplanation& result, const AnyPair& pair, Verdict truth) {
   const Lane& lane = *result.lane;
   const Replay run = replay(lane, pair);
   result.evidence = run.evidence;
   result.rule = run.rule;
   if (run.evidence == Evidence::none) return;
-  const std::vector<oracle::ExactStep> exact = oracle::exact_steps(lane.algorithm, lane.scalar, pair, run.run);
+  const std::vector<oracle::ExactStep> exact = oracle::exact_steps(lane.algorithm, lane.scalar, pair.doubles, run.run);
   if (result.cause != Cause::logic)
     result.deciding = deciding_comparisons(lane, pair, truth, run, without(result.cause, lane, pair, run.rule));
   const std::vector<Decider>& deciding = result.deciding;
@@ -144,7 +152,7 @@ void add_steps(LaneExplanation& result, const Pair& pair, Verdict truth) {
   for (std::size_t i = 1; i < deciding.size(); ++i) result.then.push_back(step_of(deciding[i].seen, deciding[i].exact));
 }
 
-LaneExplanation account_of(const Lane& lane, Verdict verdict, const Pair& pair, Verdict truth,
+LaneExplanation account_of(const Lane& lane, Verdict verdict, const AnyPair& pair, Verdict truth,
                            const oracle::Exactly& exactly) {
   LaneExplanation result{};
   result.lane = &lane;
@@ -157,13 +165,15 @@ LaneExplanation account_of(const Lane& lane, Verdict verdict, const Pair& pair, 
     for (Decider& decider : result.deciding)
       decider.by_cause = is_by_cause(decider, without(cause, lane, pair, result.rule));
   }
-  if (!cuda::contraction_sites(lane).empty()) result.contractions = blame(lane, pair);
+  if (!cuda::contraction_sites(lane).empty()) result.contractions = blame(lane, pair.floats.value());
   result.settled = audit(result, pair, truth);
   return result;
 }
 
-LaneExplanation account_of_foreign(const Lane& lane, Verdict verdict, const Pair& pair, Verdict truth) {
-  Experiment found = known_experiment(lane, verdict, pair, truth);
+LaneExplanation account_of_foreign(const Lane& lane, Verdict verdict, const AnyPair& pair, Verdict truth) {
+  Experiment found = pair.floats
+                         ? known_experiment(lane, verdict, *pair.floats, truth)
+                         : Experiment{Cause::rounding, false, "Graze makes experiments on pairs of float32 alone"};
   LaneExplanation result{};
   result.lane = &lane;
   result.verdict = verdict;
@@ -174,11 +184,11 @@ LaneExplanation account_of_foreign(const Lane& lane, Verdict verdict, const Pair
   result.experiment = std::move(found.evidence);
   result.line = std::move(found.line);
   if (result.cause == Cause::contraction && !cuda::contraction_sites(lane).empty()) {
-    result.contractions = blame_apart(lane, pair, cuda::most_seconds(lane));
+    result.contractions = blame_apart(lane, pair.floats.value(), cuda::most_seconds(lane));
     if (!result.contractions.why_not.empty())
       result.experiment += "; which products matter is not known, for " + result.contractions.why_not;
     const Lane* cpu = counterpart(lane, Variant::cpu);
-    result.cpu_is_right = cpu && cpu->decide && decide_one(cpu->decide, pair) == truth;
+    result.cpu_is_right = cpu && cpu->decide && decide_lane(*cpu, pair) == truth;
   }
   result.slow = found.slow || is_failure(verdict);
   return result;
@@ -190,7 +200,7 @@ const Lane& without_policy(const Lane& lane) {
   return *find_lane(id_of(zero));
 }
 
-LaneExplanation account_of_policy(const Lane& lane, Verdict verdict, const Pair& pair, Verdict truth) {
+LaneExplanation account_of_policy(const Lane& lane, Verdict verdict, const AnyPair& pair, Verdict truth) {
   const Lane& zero = without_policy(lane);
   LaneExplanation result{};
   result.lane = &lane;
@@ -212,8 +222,60 @@ LaneExplanation account_of_policy(const Lane& lane, Verdict verdict, const Pair&
 }
 
 // Requires: finite coordinates; the verdict is not the truth.
-bool is_by_convention(const Lane& lane, Verdict verdict, const Pair& pair) {
-  return lane.outside != 0 && by_convention(lane, verdict, pair, relation_of(pair));
+bool is_by_convention(const Lane& lane, Verdict verdict, const AnyPair& pair) {
+  return lane.outside != 0 &&
+         visit(pair, [&](const auto& own) { return by_convention(lane, verdict, own, relation_of(own)); });
+}
+
+// "number 12 alone, had it been kept as a double, would make it right"; of no number alone: how many are rounded.
+std::string what_rounding_decides(const DoublePair& pair, const Pair& stored, Verdict truth) {
+  const float* c = coordinates(stored);
+  if (const auto beyond = std::find_if(c, c + kCoordinates, [](float x) { return std::isinf(x); });
+      beyond != c + kCoordinates)
+    return fmt::format("number {}, {}, is beyond its largest", beyond - c + 1, coordinates(pair)[beyond - c]);
+  int rounded = 0;
+  for (int i = 0; i < kCoordinates; ++i) {
+    if (double{c[i]} == coordinates(pair)[i]) continue;
+    ++rounded;
+    DoublePair kept = in_doubles(stored);
+    coordinates(kept)[i] = coordinates(pair)[i];
+    if (relation_of(kept).verdict == truth)
+      return fmt::format("with number {} alone kept as {} it would be {}", i + 1, coordinates(pair)[i], name(truth));
+  }
+  return fmt::format("it rounds {} numbers, of which none alone decides", rounded);
+}
+
+// Of a lane in float32 that is right about the pair that float32 stores.
+LaneExplanation account_of_stored(const Lane& lane, Verdict verdict, const DoublePair& pair, const Pair& stored,
+                                  Verdict truth) {
+  LaneExplanation result{};
+  result.lane = &lane;
+  result.verdict = verdict;
+  result.cause = Cause::stored;
+  result.exactly.verdict = Verdict::declined;
+  result.evidence = Evidence::none;
+  result.settled = Settled::yes;
+  result.experiment = what_rounding_decides(pair, stored, truth);
+  result.slow = true;  // neighbours of what it was not given would tell nothing
+  return result;
+}
+
+// What a lane decides of a pair: the truth of that is another where storing it in float32 changes the pair.
+struct Own {
+  AnyPair pair;
+  Verdict truth;
+
+  // Whether the lane is right about this pair, or float32 cannot hold it, and the given pair's truth is another.
+  bool explains(Verdict verdict, Verdict truth_of_given) const {
+    const bool ended = verdict == Verdict::crashed || verdict == Verdict::timed_out;
+    return truth != truth_of_given && (verdict == truth || (truth == Verdict::declined && !ended));
+  }
+};
+
+Own own_of(const Lane& lane, const AnyPair& pair, Verdict truth) {
+  Own own{seen_by(lane, pair), truth};
+  if (own.pair.floats && !pair.floats) own.truth = relation_or_declined(*own.pair.floats).verdict;
+  return own;
 }
 
 // Whether two lanes perform the same computation: they share their source, and every operation is rounded as written.
@@ -229,7 +291,7 @@ void add_surroundings(LaneExplanation& result, Verdict truth, int bits_needed, c
   result.mirrored = wrong_of(lane, neighbours.mirrored, truth);
   result.scalings = wrong_of(lane, neighbours.scalings, truth);
   for (std::size_t c = 0; c < kCoordinates; ++c) {
-    const std::vector<Pair>& nudged = neighbours.nudged[c];
+    const std::vector<AnyPair>& nudged = neighbours.nudged[c];
     result.matters[c] =
         !neighbours.truth_stays[c] || wrong_of(lane, nudged, truth).wrong < static_cast<int>(nudged.size());
   }
@@ -237,12 +299,16 @@ void add_surroundings(LaneExplanation& result, Verdict truth, int bits_needed, c
 
 }  // namespace
 
-Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth) {
-  if (lane.foreign) return known_experiment(lane, decide_lane(lane, pair), pair, truth).cause;
-  if (lane.under) return account_of_policy(lane, decide_lane(lane, pair), pair, truth).cause;
+Cause cause_of(const Lane& lane, const AnyPair& given, Verdict truth_of_given) {
+  const Own own = own_of(lane, given, truth_of_given);
+  const auto& [pair, truth] = own;
+  const Verdict verdict = decide_lane(lane, pair);
+  if (own.explains(verdict, truth_of_given)) return Cause::stored;
+  if (lane.foreign) return account_of_foreign(lane, verdict, pair, truth).cause;
+  if (lane.under) return account_of_policy(lane, verdict, pair, truth).cause;
   LaneExplanation result{};
   result.lane = &lane;
-  result.exactly = oracle::decide_exactly(lane.algorithm, pair);
+  result.exactly = oracle::decide_exactly(lane.algorithm, pair.doubles);
   result.cause = first_cause(lane, pair, truth, result.exactly);
   // If the cause is rounding, only the steps can tell whether the exponent range contributed.
   if (result.cause != Cause::rounding || !leaves_exponents(lane, pair)) return result.cause;
@@ -250,12 +316,12 @@ Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth) {
   return refined(result, pair);
 }
 
-bool leaves_exponents(const Lane& lane, const Pair& pair) {
+bool leaves_exponents(const Lane& lane, const AnyPair& pair) {
   if (lane.foreign || lane.under) return false;  // not known
   const DecideBlock block = block_of(rounded_counterpart(lane));
   std::uint64_t intersects, declined;
   std::feclearexcept(FE_OVERFLOW | FE_UNDERFLOW);
-  block(&pair, 1, &intersects, &declined);
+  visit(seen_by(lane, pair), [&](const auto& own) { block(&own, 1, &intersects, &declined); });
   return std::fetestexcept(FE_OVERFLOW | FE_UNDERFLOW) != 0;
 }
 
@@ -265,27 +331,42 @@ std::string_view name(Settled settled) {
 }
 
 std::string_view name(Cause cause) {
-  constexpr std::string_view kNames[] = {
-      "rounding",         "contraction",      "fast math",        "overflow",        "underflow",         "logic",
-      "absolute epsilon", "order-dependent",  "degenerate input", "crash",           "no answer in time", "unstable",
-      "policy",           "relative epsilon", "uninitialised",    "excess precision"};
+  constexpr std::string_view kNames[] = {"rounding",
+                                         "contraction",
+                                         "fast math",
+                                         "overflow",
+                                         "underflow",
+                                         "logic",
+                                         "absolute epsilon",
+                                         "order-dependent",
+                                         "degenerate input",
+                                         "crash",
+                                         "no answer in time",
+                                         "unstable",
+                                         "policy",
+                                         "relative epsilon",
+                                         "uninitialised",
+                                         "excess precision",
+                                         "stored"};
   return kNames[static_cast<int>(cause)];
 }
 
-std::vector<LaneExplanation> accounts(const Pair& pair, Verdict truth, std::span<const Lane* const> lanes) {
+std::vector<LaneExplanation> accounts(const AnyPair& pair, Verdict truth, std::span<const Lane* const> lanes) {
   std::vector<LaneExplanation> result;
   if (truth == Verdict::declined) return result;
-  std::map<const AlgorithmInfo*, oracle::Exactly> exactly;
+  std::map<std::pair<const AlgorithmInfo*, bool>, oracle::Exactly> exactly;
   for (const Lane* lane : lanes) {
     if (lane->exact) continue;
-    const Verdict verdict = decide_lane(*lane, pair);
-    if (verdict == truth) continue;
-    if (lane->foreign) {
-      if (!is_by_convention(*lane, verdict, pair)) result.push_back(account_of_foreign(*lane, verdict, pair, truth));
+    const Own own = own_of(*lane, pair, truth);
+    const Verdict verdict = decide_lane(*lane, own.pair);
+    if (verdict == truth || is_by_convention(*lane, verdict, pair)) continue;
+    if (own.explains(verdict, truth)) {
+      result.push_back(account_of_stored(*lane, verdict, pair.doubles, *own.pair.floats, truth));
       continue;
     }
-    if (lane->under) {
-      result.push_back(account_of_policy(*lane, verdict, pair, truth));
+    if (lane->foreign || lane->under) {
+      const auto account = lane->foreign ? account_of_foreign : account_of_policy;
+      result.push_back(account(*lane, verdict, own.pair, own.truth));
       continue;
     }
     const auto same = std::find_if(result.begin(), result.end(), [&](const LaneExplanation& other) {
@@ -297,15 +378,16 @@ std::vector<LaneExplanation> accounts(const Pair& pair, Verdict truth, std::span
       result.push_back(std::move(copy));
       continue;
     }
-    auto found = exactly.find(lane->info);
+    const std::pair key(lane->info, own.pair.floats.has_value());
+    auto found = exactly.find(key);
     if (found == exactly.end())
-      found = exactly.emplace(lane->info, oracle::decide_exactly(lane->algorithm, pair)).first;
-    result.push_back(account_of(*lane, verdict, pair, truth, found->second));
+      found = exactly.emplace(key, oracle::decide_exactly(lane->algorithm, own.pair.doubles)).first;
+    result.push_back(account_of(*lane, verdict, own.pair, own.truth, found->second));
   }
   return result;
 }
 
-Explanation explain(const Pair& pair, std::span<const Lane* const> lanes) {
+Explanation explain(const AnyPair& pair, std::span<const Lane* const> lanes) {
   Explanation result{pair, oracle::truth(pair), {}, {}};
   const Verdict truth = result.truth.verdict;
   result.lanes = accounts(pair, truth, lanes);
@@ -314,20 +396,26 @@ Explanation explain(const Pair& pair, std::span<const Lane* const> lanes) {
     const Verdict verdict = decide_lane(*lane, pair);
     if (verdict != truth && is_by_convention(*lane, verdict, pair)) result.outside.push_back(lane);
   }
-  if (result.lanes.empty()) return result;
-  const Neighbours neighbours(pair, truth);
-  std::map<const AlgorithmInfo*, int> bits;
+  // Of the pair as float32 stores it, and of the pair itself.
+  struct Around {
+    std::optional<Neighbours> neighbours;
+    std::map<const AlgorithmInfo*, int> bits;
+  } around[2];
   for (LaneExplanation& lane : result.lanes) {
-    if (lane.lane->foreign || lane.lane->under) {
-      // If each verdict may time out or need a new process, only the pair itself is tried.
-      if (!lane.slow) add_surroundings(lane, truth, 0, neighbours);
+    // If each verdict may time out or need a new process, only the pair itself is tried.
+    if (lane.slow) continue;
+    const AnyPair own = seen_by(*lane.lane, pair);
+    auto& [neighbours, bits] = around[own.floats ? 0 : 1];
+    if (!neighbours) neighbours.emplace(own, truth);
+    if (lane.by_experiment()) {
+      add_surroundings(lane, truth, 0, *neighbours);
       continue;
     }
     const bool f32 = lane.lane->scalar == Scalar::f32;
     auto found = bits.find(lane.lane->info);
     if (found == bits.end())
-      found = bits.emplace(lane.lane->info, bits_needed(lane.lane->algorithm, lane.exactly, pair, truth)).first;
-    add_surroundings(lane, truth, f32 || found->second == 0 ? found->second : std::max(found->second, 53), neighbours);
+      found = bits.emplace(lane.lane->info, bits_needed(lane.lane->algorithm, lane.exactly, own, truth)).first;
+    add_surroundings(lane, truth, f32 || found->second == 0 ? found->second : std::max(found->second, 53), *neighbours);
   }
   return result;
 }

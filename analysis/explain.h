@@ -15,14 +15,17 @@
 #include "analysis/deciding.h"
 #include "analysis/lane_trace.h"
 #include "analysis/neighbours.h"
+#include "core/any_pair.h"
 #include "core/lanes/lanes.h"
-#include "core/pair.h"
 #include "oracle/precise.h"
 #include "oracle/truth.h"
 
 namespace graze::analysis {
 
 // The first cause whose condition holds:
+//   stored       of doubles, for a lane in float32: the truth of the pair as float32 stores it is another, and the
+//                verdict is that, or float32 cannot hold a number. All other causes of such a lane are those on the
+//                stored pair
 //   logic        the algorithm gives the wrong verdict in exact arithmetic too
 //   contraction  the same source without contraction, on the same kind of processor, is right
 //   fast math    the same, for a lane whose operations the compiler may rewrite or approximate
@@ -51,7 +54,8 @@ enum class Cause {
   policy,
   relative_epsilon,
   uninitialised,
-  excess_precision
+  excess_precision,
+  stored
 };
 std::string_view name(Cause cause);
 
@@ -101,16 +105,19 @@ struct LaneExplanation {
                     // longer one up to kMostBits; 0 if there is none, or if it would be chance (see explain.cpp)
   std::array<bool, kCoordinates> matters;  // false: no nudge of the coordinate changes the truth or the lane's verdict
   WrongOf orders, mirrored, scalings;      // see neighbours.h
-  std::string experiment;  // for lanes without steps (foreign, or under a policy): the evidence for the cause
+  std::string experiment;  // for lanes without steps (foreign, under a policy, or `stored`): the evidence for the cause
   std::string line;        // of foreign code: "mine.cpp:9", the number in it that decides; empty if it is not known
   bool slow = false;       // for the same lanes: other pairs time out or fail, so no neighbours were tried
+
+  // Whether the account comes from experiments, because the lane has no steps.
+  bool by_experiment() const { return lane->foreign || lane->under || cause == Cause::stored; }
 
   // The comparison to report: the first deciding one. Null if there is none, and if the algorithm itself is to blame.
   const Step* told() const { return decisive < 0 ? nullptr : &steps[static_cast<std::size_t>(decisive)]; }
 };
 
 struct Explanation {
-  Pair pair;
+  AnyPair pair;
   oracle::Truth truth;
   std::vector<LaneExplanation> lanes;  // wrong lanes, in the given order
   std::vector<const Lane*> outside;    // lanes that differ from the truth because their convention excludes the pair
@@ -118,21 +125,21 @@ struct Explanation {
 
 // Explains each lane that is wrong on the pair; CUDA lanes run as twins. Deterministic.
 // Requires: lanes that run here or have a twin. For a pair with a non-finite coordinate, no lane is wrong.
-Explanation explain(const Pair& pair, std::span<const Lane* const> lanes);
+Explanation explain(const AnyPair& pair, std::span<const Lane* const> lanes);
 
 // The same for each wrong lane, but without the pair's neighbours: bits_needed, matters, orders, mirrored and scalings
 // are not set. Faster than `explain` by far. Lanes that differ only by their convention (convention.h) are not wrong.
-std::vector<LaneExplanation> accounts(const Pair& pair, Verdict truth, std::span<const Lane* const> lanes);
+std::vector<LaneExplanation> accounts(const AnyPair& pair, Verdict truth, std::span<const Lane* const> lanes);
 
 // The cause that `explain` gives, without the rest. Takes 1/20 of the time of `explain`, or 1/3 for rounding.
 // Requires: the lane runs here or has a twin, and is wrong on the pair; truth is the pair's.
-Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth);
+Cause cause_of(const Lane& lane, const AnyPair& pair, Verdict truth);
 
 // Whether a result leaves the scalar's exponents when the lane's source runs without contraction. If false, the cause
 // is neither overflow nor underflow. The check is fast because it reads the processor's floating-point flags; it may
 // also return true where no result does. Returns false for foreign code and for lanes under a policy, for which this is
 // not known.
-bool leaves_exponents(const Lane& lane, const Pair& pair);
+bool leaves_exponents(const Lane& lane, const AnyPair& pair);
 
 // Returns one English sentence about a wrong algorithm, for a bug report; empty if none of its lanes is wrong. It names
 // the lanes that are wrong in the same way, with the numbers of one of them.

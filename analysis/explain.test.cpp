@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
+#include "backends/backends.h"
+#include "core/relation_of.h"
 #include "corpus/pair_format.h"
+#include "strata/pair_source.h"
 #include "strata/strata.h"
 
 namespace graze::analysis {
@@ -127,7 +131,8 @@ TEST(Explain, ARangeThatIsNotAllThatLacksIsStillTheCause) {
   const Pair pair = strata::generate(1, strata::Stratum::extreme_scale, 2280);
   const Explanation explanation = explain(pair, lanes_here());
   const LaneExplanation& lane = lane_of(explanation, "interval_overlap/f32/cpu");
-  EXPECT_EQ(oracle::decide_limited(lane.lane->algorithm, Scalar::f32, pair, {false, false}).verdict, lane.verdict);
+  EXPECT_EQ(oracle::decide_limited(lane.lane->algorithm, Scalar::f32, in_doubles(pair), {false, false}).verdict,
+            lane.verdict);
   EXPECT_EQ(name(lane.cause), "overflow");
   EXPECT_GT(lane.bits_needed, 24);
   ASSERT_NE(lane.told(), nullptr);
@@ -318,7 +323,7 @@ TEST(CauseOf, IsWhatExplainSays) {
         if (leaves_exponents(*lane.lane, pair)) continue;
         ++in_range;
         EXPECT_TRUE(lane.cause != Cause::overflow && lane.cause != Cause::underflow) << stratum.id << i;
-        EXPECT_EQ(oracle::decide_limited(lane.lane->algorithm, lane.lane->scalar, pair, {true, true}).first,
+        EXPECT_EQ(oracle::decide_limited(lane.lane->algorithm, lane.lane->scalar, in_doubles(pair), {true, true}).first,
                   oracle::RangeEvent::none);
       }
     }
@@ -326,6 +331,73 @@ TEST(CauseOf, IsWhatExplainSays) {
   EXPECT_EQ(seen.size(), 6u);
   EXPECT_GT(in_range, wrong / 3);
   EXPECT_LT(in_range, wrong);
+}
+
+// The lanes that decide doubles: those in float32, by what it stores, and those in double that take them.
+std::vector<const Lane*> lanes_of_doubles() {
+  std::vector<const Lane*> result = lanes_here();
+  std::erase_if(result, [](const Lane* lane) {
+    return lane->scalar == Scalar::f64 && !backends::on_host(*lane).decides_doubles();
+  });
+  return result;
+}
+
+// Over all strata of doubles: each cause says what another computation confirms.
+TEST(ExplainDoubles, CausesAreTrue) {
+  std::map<Cause, int> seen;
+  int settled = 0, wrong = 0;
+  const std::vector<const Lane*> lanes = lanes_of_doubles();
+  for (const strata::PairSource& source : strata::stratum_sources(3, 28 * 12, {}, PairTypes::f64)) {
+    for (std::uint64_t i = 0; i < source.pairs; ++i) {
+      const DoublePair pair = source.double_pair(i);
+      if (!is_finite(pair)) continue;
+      const Pair stored = stored_in_float32(pair);
+      const Verdict truth = relation_of(pair).verdict, of_stored = relation_or_declined(stored).verdict;
+      SCOPED_TRACE(source.id + ' ' + std::to_string(i));
+      for (const LaneExplanation& lane : explain(pair, lanes).lanes) {
+        ++wrong;
+        ++seen[lane.cause];
+        settled += lane.settled == Settled::yes;
+        const bool f32 = lane.lane->scalar == Scalar::f32;
+        EXPECT_EQ(lane.verdict,
+                  f32 ? decide_one(block_of(*lane.lane), stored) : decide_one(block_of(*lane.lane), pair));
+        EXPECT_NE(lane.verdict, truth);
+        EXPECT_EQ(cause_of(*lane.lane, pair, truth), lane.cause) << lane.lane->id;
+        const bool is_right_about_stored = lane.verdict == of_stored || of_stored == Verdict::declined;
+        EXPECT_EQ(lane.cause == Cause::stored, f32 && of_stored != truth && is_right_about_stored);
+        if (lane.cause == Cause::stored) continue;
+        EXPECT_EQ(lane.cause == Cause::logic, lane.exactly.verdict != (f32 ? of_stored : truth)) << lane.lane->id;
+        if (f32) {  // as the stored pair is explained
+          EXPECT_EQ(cause_of(*lane.lane, stored, of_stored), lane.cause)
+              << lane.lane->id << ' ' << name(lane.verdict) << ' ' << name(truth) << ' ' << name(of_stored);
+        } else if (lane.cause == Cause::rounding && lane.bits_needed > 0) {
+          EXPECT_EQ(oracle::decide_with_bits(lane.lane->algorithm, pair, lane.bits_needed), truth);
+        }
+      }
+    }
+  }
+  EXPECT_GT(seen[Cause::stored], 100);
+  EXPECT_GT(seen[Cause::rounding], 50);
+  EXPECT_GT(seen[Cause::contraction], 5);
+  EXPECT_GT(seen[Cause::logic], 5);
+  EXPECT_GT(settled, wrong / 2);
+}
+
+// A number that decides alone is named, and so is one that float32 cannot hold.
+TEST(ExplainDoubles, TheNumberThatDecidesIsNamed) {
+  DoublePair pair{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{0, 0, 1}, {1, 0, 2}, {0, 1, 2}}};
+  pair.b[0].z = 1 + 0x1p-40;
+  const Explanation near = explain(pair, lanes_of_doubles());
+  const LaneExplanation& lane = lane_of(near, "guigue_devillers_2003/f32/cpu");
+  EXPECT_EQ(lane.cause, Cause::stored);
+  EXPECT_EQ(lane.settled, Settled::yes);
+  EXPECT_EQ(lane.experiment, "with number 12 alone kept as 1.0000000000009095 it would be disjoint");
+  EXPECT_NE(sentence(near, lane.lane->info).find("float32 stores another pair, of which that is right"),
+            std::string::npos);
+  for (const LaneExplanation& other : near.lanes) EXPECT_EQ(other.lane->scalar, Scalar::f32);
+  pair.b[1].z = 1e300;
+  const Explanation large = explain(pair, lanes_of_doubles());
+  EXPECT_EQ(lane_of(large, "guigue_devillers_2003/f32/cpu").experiment, "number 15, 1e+300, is beyond its largest");
 }
 
 }  // namespace

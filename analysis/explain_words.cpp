@@ -14,7 +14,7 @@ namespace graze::analysis {
 namespace {
 
 // "the triangles meet in a segment inside b, 0.5 deep", "b lies inside a, coplanar".
-std::string phrase(const Pair& pair, const oracle::Truth& truth) {
+std::string phrase(const AnyPair& pair, const oracle::Truth& truth) {
   if (truth.contact == Contact::none)
     return fmt::format("the triangles are {:.3g} apart ({:.3g} ulps of the largest coordinate)", truth.margin,
                        truth.margin_ulps);
@@ -188,9 +188,6 @@ std::string remedy(const LaneExplanation& lane) {
   return bits + (lane.bits_needed == 0 ? ", even with" : " with") + " exponents without limits";
 }
 
-// Whether the account comes from experiments, because the lane has no steps.
-bool by_experiment(const Lane& lane) { return lane.foreign || lane.under; }
-
 // "cuda-fma", "cpu/rel:8".
 std::string variant_of(const Lane& lane) {
   return std::string(lane.variant_name()) + (lane.policy.empty() ? "" : "/" + lane.policy);
@@ -231,6 +228,8 @@ std::string reason_by_experiment(const LaneExplanation& lane) {
         return "its verdict changes";
       case Cause::policy:
         return "the policy";
+      case Cause::stored:
+        return "float32 stores another pair, of which that is right";
       default:
         return "rounding";
     }
@@ -308,7 +307,7 @@ std::string sentence(const Explanation& explanation, const AlgorithmInfo* subjec
   }
   const Lane& lane = *first->lane;
   const std::string also = others.empty() ? "" : "; also wrong: " + others;
-  if (by_experiment(lane))
+  if (first->by_experiment())
     return fmt::format("{}/{} ({}) says {}, but {}: {}{}.", lane.info->id, name(lane.scalar), same,
                        name(first->verdict), phrase(explanation.pair, explanation.truth), reason_by_experiment(*first),
                        also);
@@ -421,7 +420,7 @@ nlohmann::ordered_json to_json(const LaneExplanation& lane) {
   json["orders"] = to_json(lane.orders);
   json["mirrored"] = to_json(lane.mirrored);
   json["scalings"] = to_json(lane.scalings);
-  if (by_experiment(*lane.lane)) json["experiment"] = lane.experiment;
+  if (lane.by_experiment()) json["experiment"] = lane.experiment;
   return json;
 }
 

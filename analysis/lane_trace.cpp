@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/lane_trace.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "backends/backends.h"
+#include "core/lanes/verdicts.h"
 #include "cuda/lanes/trace.h"
 #include "cuda/twin/twin.h"
 
@@ -24,19 +26,19 @@ std::uint64_t trace_hash(const Trace<double>& run) {
 }
 
 template <class Real>
-Trace<double> run_in(int algorithm, const Pair& pair, Contraction rule, const Path& lead) {
+Trace<double> run_in(int algorithm, const DoublePair& pair, Contraction rule, const Path& lead) {
   if (rule == Contraction::nvcc) return run_traced<Real, Contraction::nvcc>(algorithm, pair, lead);
   if (rule == Contraction::left) return run_traced<Real, Contraction::left>(algorithm, pair, lead);
   return run_traced<Real>(algorithm, pair, lead);
 }
 
 // The evidence that this run of a contracted lane is the lane's own.
-Evidence evidence(const Lane& lane, const Pair& pair, const Trace<double>& run) {
+Evidence evidence(const Lane& lane, const AnyPair& pair, const Trace<double>& run) {
   if (run.verdict != decide_lane(lane, pair)) return Evidence::none;
   const cuda::TraceBlock twin = cuda::twin_trace(lane);
-  if (!twin) return Evidence::verdict;
+  if (!twin || !pair.floats) return Evidence::verdict;
   std::uint64_t hash = 0;
-  twin(&pair, 1, &hash);
+  twin(&*pair.floats, 1, &hash);
   return hash == (lane.scalar == Scalar::f32 ? trace_hash<float>(run) : trace_hash<double>(run)) ? Evidence::hash
                                                                                                  : Evidence::verdict;
 }
@@ -53,12 +55,36 @@ std::string_view name(Contraction rule) {
   return kNames[static_cast<int>(rule)];
 }
 
-Trace<double> run_led(const Lane& lane, const Pair& pair, Contraction rule, const Path& lead) {
-  return lane.scalar == Scalar::f32 ? run_in<float>(lane.algorithm, pair, rule, lead)
-                                    : run_in<double>(lane.algorithm, pair, rule, lead);
+namespace {
+
+// Never inlined: where GCC 12 sees 18 doubles become floats and doubles again in one function, its vectorizer (-O3)
+// leaves the last two unrounded.
+[[gnu::noinline]] Pair stored_apart(const DoublePair& pair) { return stored_in_float32(pair); }
+
+}  // namespace
+
+AnyPair seen_by(const Lane& lane, const AnyPair& pair) {
+  if (pair.floats || lane.scalar == Scalar::f64) return pair;
+  return stored_apart(pair.doubles);
 }
 
-Replay replay(const Lane& lane, const Pair& pair) {
+std::vector<Verdict> verdicts_seen_by(const Lane&, const DecideBlock& block, std::span<const Pair> pairs) {
+  return verdicts_of(block, pairs);
+}
+
+std::vector<Verdict> verdicts_seen_by(const Lane& lane, const DecideBlock& block, std::span<const DoublePair> pairs) {
+  if (lane.scalar == Scalar::f64) return verdicts_of(block, pairs);
+  std::vector<Pair> stored(pairs.size());
+  std::transform(pairs.begin(), pairs.end(), stored.begin(), stored_in_float32);
+  return verdicts_of(block, stored);
+}
+
+Trace<double> run_led(const Lane& lane, const AnyPair& pair, Contraction rule, const Path& lead) {
+  return lane.scalar == Scalar::f32 ? run_in<float>(lane.algorithm, pair.doubles, rule, lead)
+                                    : run_in<double>(lane.algorithm, pair.doubles, rule, lead);
+}
+
+Replay replay(const Lane& lane, const AnyPair& pair) {
   if (info_of(lane.variant).arithmetic == Arithmetic::rounded)
     return {Contraction::none, Evidence::source, run_led(lane, pair, Contraction::none, {})};
   Replay best;
@@ -77,6 +103,9 @@ DecideBlock block_of(const Lane& lane) {
   return block;
 }
 
-Verdict decide_lane(const Lane& lane, const Pair& pair) { return decide_one(block_of(lane), pair); }
+Verdict decide_lane(const Lane& lane, const AnyPair& pair) {
+  const DecideBlock block = block_of(lane);
+  return visit(seen_by(lane, pair), [&](const auto& own) { return decide_one(block, own); });
+}
 
 }  // namespace graze::analysis

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/algorithms/traced.h"
+#include "core/any_pair.h"
 #include "core/lanes/lanes.h"
 
 namespace graze::analysis {
@@ -22,17 +23,25 @@ struct Replay {
   Trace<double> run;
 };
 
+// The pair that the lane decides: of doubles, lanes in float32 decide what float32 stores of it.
+AnyPair seen_by(const Lane& lane, const AnyPair& pair);
+
+// The lane's verdicts on the pairs, by its own block or its twin's; each on what it sees of the pair.
+std::vector<Verdict> verdicts_seen_by(const Lane& lane, const DecideBlock& block, std::span<const Pair> pairs);
+std::vector<Verdict> verdicts_seen_by(const Lane& lane, const DecideBlock& block, std::span<const DoublePair> pairs);
+
 // Replays the lane on the pair. A lane whose operations the compiler rewrites has no evidence.
-Replay replay(const Lane& lane, const Pair& pair);
+// Requires here and below: the pair is seen_by(lane, pair).
+Replay replay(const Lane& lane, const AnyPair& pair);
 
 // Runs the algorithm in the lane's scalar with the given contraction rule, and forces the outcomes of the path `lead`.
-Trace<double> run_led(const Lane& lane, const Pair& pair, Contraction rule, const Path& lead);
+Trace<double> run_led(const Lane& lane, const AnyPair& pair, Contraction rule, const Path& lead);
 
 // Returns the lane's own block on the host; for CUDA lanes, the twin's.   Throws: std::invalid_argument if there is
 // none.
 DecideBlock block_of(const Lane& lane);
 
 // Decides the pair on the host; CUDA lanes use the twin.   Throws: std::invalid_argument without either.
-Verdict decide_lane(const Lane& lane, const Pair& pair);
+Verdict decide_lane(const Lane& lane, const AnyPair& pair);
 
 }  // namespace graze::analysis

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -50,11 +51,12 @@ bool exact_middles(const Vec3<float> (&v)[3], Vec3<float> (&middles)[3]) {
 
 }  // namespace
 
-std::vector<Pair> orders(const Pair& pair) {
+template <class Real>
+std::vector<BasicPair<Real>> orders(const BasicPair<Real>& pair) {
   constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
-  std::vector<Pair> result;
+  std::vector<BasicPair<Real>> result;
   for (int order = 0; order < 72; ++order) {
-    Pair reordered;
+    BasicPair<Real> reordered;
     for (int i = 0; i < 3; ++i) {
       reordered.a[i] = pair.a[kOrders[order % 6][i]];
       reordered.b[i] = pair.b[kOrders[order / 6 % 6][i]];
@@ -65,20 +67,22 @@ std::vector<Pair> orders(const Pair& pair) {
   return result;
 }
 
-std::vector<Pair> mirrored(const Pair& pair) {
-  std::vector<Pair> result(8, pair);
+template <class Real>
+std::vector<BasicPair<Real>> mirrored(const BasicPair<Real>& pair) {
+  std::vector<BasicPair<Real>> result(8, pair);
   for (int way = 0; way < 8; ++way) {
-    float* c = coordinates(result[static_cast<std::size_t>(way)]);
+    Real* c = coordinates(result[static_cast<std::size_t>(way)]);
     for (int i = 0; i < kCoordinates; ++i) c[i] = way >> i % 3 & 1 ? -c[i] : c[i];
   }
   return result;
 }
 
-std::vector<Pair> scalings(const Pair& pair) {
-  std::vector<Pair> result{pair};
+template <class Real>
+std::vector<BasicPair<Real>> scalings(const BasicPair<Real>& pair) {
+  std::vector<BasicPair<Real>> result{pair};
   for (int k = -kMostScaling; k <= kMostScaling; ++k) {
     if (k == 0) continue;
-    if (const std::optional<Pair> image = exactly_scaled(pair, k)) result.push_back(*image);
+    if (const std::optional<BasicPair<Real>> image = exactly_scaled(pair, k)) result.push_back(*image);
   }
   return result;
 }
@@ -130,18 +134,28 @@ std::vector<Pair> parts(const Pair& pair) {
   return result;
 }
 
-std::vector<Pair> nudged(const Pair& pair, int coordinate) {
-  float largest = 0;
+template <class Real>
+std::vector<BasicPair<Real>> nudged(const BasicPair<Real>& pair, int coordinate) {
+  Real largest = 0;
   for (int i = 0; i < kCoordinates; ++i) largest = std::max(largest, std::abs(coordinates(pair)[i]));
-  const float c = coordinates(pair)[coordinate], size = c == 0 ? largest : std::abs(c);
-  const float ulp = std::nextafter(size, INFINITY) - size, more = size * 0x1p-10f;
-  std::vector<Pair> result;
-  for (const float step : {ulp, -ulp, more, -more}) {
-    Pair moved = pair;
+  const Real c = coordinates(pair)[coordinate], size = c == 0 ? largest : std::abs(c);
+  const Real ulp = std::nextafter(size, std::numeric_limits<Real>::infinity()) - size, more = size * Real{0x1p-10};
+  std::vector<BasicPair<Real>> result;
+  for (const Real step : {ulp, -ulp, more, -more}) {
+    BasicPair<Real> moved = pair;
     coordinates(moved)[coordinate] = c + step;
     if (std::isfinite(c + step) && c + step != c) result.push_back(moved);
   }
   return result;
 }
+
+template std::vector<Pair> orders(const Pair&);
+template std::vector<DoublePair> orders(const DoublePair&);
+template std::vector<Pair> mirrored(const Pair&);
+template std::vector<DoublePair> mirrored(const DoublePair&);
+template std::vector<Pair> scalings(const Pair&);
+template std::vector<DoublePair> scalings(const DoublePair&);
+template std::vector<Pair> nudged(const Pair&, int);
+template std::vector<DoublePair> nudged(const DoublePair&, int);
 
 }  // namespace graze::analysis

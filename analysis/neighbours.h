@@ -8,13 +8,18 @@
 
 namespace graze::analysis {
 
-// All images are exact in float32, so their truth is the pair's own (except for `parts`). The first one is the pair
-// itself.
-std::vector<Pair> orders(const Pair& pair);    // the 72: which triangle is first, and the order of each one's vertices
-std::vector<Pair> mirrored(const Pair& pair);  // the 8: each axis negated or not
+// All images are exact in the coordinate type, so their truth is the pair's own (except for `parts`). The first one is
+// the pair itself.
+// The 72: which triangle is first, and the order of each one's vertices.
+template <class Real>
+std::vector<BasicPair<Real>> orders(const BasicPair<Real>& pair);
+// The 8: each axis negated or not.
+template <class Real>
+std::vector<BasicPair<Real>> mirrored(const BasicPair<Real>& pair);
 // Scaled by 2^k, for each k from -kMostScaling to kMostScaling at which no coordinate overflows or loses bits.
 inline constexpr int kMostScaling = 64;
-std::vector<Pair> scalings(const Pair& pair);
+template <class Real>
+std::vector<BasicPair<Real>> scalings(const BasicPair<Real>& pair);
 std::vector<Pair> axes(const Pair& pair);  // the 6 orders of the axes
 // Translated so that a vertex is at the origin, and by plus and minus the power of two of the largest coordinate along
 // (1, 1, 1). Translations that would round a coordinate are left out.
@@ -25,7 +30,8 @@ std::vector<Pair> translated(const Pair& pair);
 std::vector<Pair> parts(const Pair& pair);
 
 // Moves one coordinate by an ulp and by 2^-10 of its size, up and down. A zero moves as far as the largest coordinate
-// would. Returns the finite results: four, except near the limits of float32.
-std::vector<Pair> nudged(const Pair& pair, int coordinate);
+// would. Returns the finite results: four, except near the limits of the type.
+template <class Real>
+std::vector<BasicPair<Real>> nudged(const BasicPair<Real>& pair, int coordinate);
 
 }  // namespace graze::analysis

@@ -69,7 +69,7 @@ TEST_P(PolicyOverStratum, AlgorithmsAreRightWithoutRoundingWhereTheySaySo) {
     const Verdict truth = oracle::cgal_verdict(pair);
     for (const Lane& row : published_lanes()) {
       if (row.scalar != Scalar::f32 || row.variant != Variant::cpu || !row.info->right_without_rounding) continue;
-      const oracle::Exactly found = oracle::decide_exactly(row.algorithm, pair);
+      const oracle::Exactly found = oracle::decide_exactly(row.algorithm, in_doubles(pair));
       ++asked;
       ASSERT_TRUE(found.verdict == truth || !found.certain) << row.id;
     }
@@ -85,7 +85,7 @@ TEST(PolicyLanes, AnAlgorithmThatIsWrongWithoutRoundingIsFound) {
   int wrong = 0;
   for (const Pair& pair : drawn(strata::Stratum::uniform, 300)) {
     const Lane& row = *find_lane("projected_sat/f32/cpu");
-    const oracle::Exactly found = oracle::decide_exactly(row.algorithm, pair);
+    const oracle::Exactly found = oracle::decide_exactly(row.algorithm, in_doubles(pair));
     wrong += found.verdict != oracle::cgal_verdict(pair);
   }
   EXPECT_GT(wrong, 5);

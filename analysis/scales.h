@@ -76,15 +76,17 @@ inline Scales scales_in_range(const Size& size, Scalar scalar, int factors) {
   return common({-(-limits.least / factors) - size.low, limits.most / factors - 2 - size.high}, exact_scales(size));
 }
 
-inline Pair scaled(const Pair& pair, int k) {
-  Pair result = pair;
+template <class Real>
+BasicPair<Real> scaled(const BasicPair<Real>& pair, int k) {
+  BasicPair<Real> result = pair;
   for (int i = 0; i < kCoordinates; ++i) coordinates(result)[i] = std::ldexp(coordinates(pair)[i], k);
   return result;
 }
 
 // Scales the pair by 2^k; returns nothing if a coordinate would lose bits or overflow.
-inline std::optional<Pair> exactly_scaled(const Pair& pair, int k) {
-  const Pair result = scaled(pair, k), back = scaled(result, -k);
+template <class Real>
+std::optional<BasicPair<Real>> exactly_scaled(const BasicPair<Real>& pair, int k) {
+  const BasicPair<Real> result = scaled(pair, k), back = scaled(result, -k);
   if (!std::equal(coordinates(pair), coordinates(pair) + kCoordinates, coordinates(back))) return std::nullopt;
   return result;
 }

@@ -51,6 +51,9 @@ std::string_view name(Nesting nesting);
 // Requires: finite coordinates; the truth is the pair's.   Exact: always.
 Nesting nesting_of(const Pair& pair, const Relation& truth);
 Nesting nesting_of(const DoublePair& pair, const Relation& truth);
+inline Nesting nesting_of(const AnyPair& pair, const Relation& truth) {
+  return visit(pair, [&](const auto& own) { return nesting_of(own, truth); });
+}
 
 // Requires: all lanes belong to one subject; verdicts[i] is that of lanes[i].
 Signature signature(const Relation& truth, Nesting nesting, Bucket bucket, std::span<const Lane* const> lanes,

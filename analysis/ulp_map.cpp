@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <tuple>
+#include <type_traits>
 
 #include "analysis/lane_trace.h"
 #include "core/lanes/verdicts.h"
@@ -15,25 +16,29 @@
 namespace graze::analysis {
 namespace {
 
-// Judges blocks of pairs: the truth and the lanes.
+// Judges blocks of pairs of one coordinate type: the truth and the lanes.
+template <class Real>
 class Panels {
  public:
-  explicit Panels(std::span<const Lane* const> lanes) : lanes_{nullptr} {
+  using PairOf = BasicPair<Real>;
+
+  explicit Panels(std::span<const Lane* const> lanes)
+      : lanes_{find_lane(std::is_same_v<Real, float> ? "exact/f32/cpu" : "exact/f64/cpu")} {
     for (const Lane* lane : lanes) {
       if (!lane->exact) lanes_.push_back(lane);
     }
-    for (const Lane* lane : lanes_) blocks_.push_back(lane ? block_of(*lane) : find_lane("exact/f32/cpu")->decide);
+    for (const Lane* lane : lanes_) blocks_.push_back(block_of(*lane));
     failed_.resize(blocks_.size());
   }
 
-  const std::vector<const Lane*>& lanes() const { return lanes_; }  // null for the truth
+  const std::vector<const Lane*>& lanes() const { return lanes_; }  // first the one that gives the truth
 
   // Foreign code that fails on this many pairs gets no panel, because each failure takes a new process or the full time
   // limit.
   bool given_up(std::size_t panel) const { return failed_[panel] >= kMostFailures; }
 
   // Appends the cells of these pairs to each panel that is not given up.
-  void judge(std::span<const Pair> pairs, std::span<std::vector<Cell>> cells) {
+  void judge(std::span<const PairOf> pairs, std::span<std::vector<Cell>> cells) {
     std::vector<Cell>& truth = cells.front();
     const std::size_t first = truth.size();
     for (const Verdict said : verdicts_of(blocks_.front(), pairs)) {
@@ -71,13 +76,13 @@ class Panels {
 
   // Asks the panel's lane about the pairs; foreign code gets eight pairs at a time.
   // Returns: false if the panel is given up.
-  bool ask(std::size_t p, std::span<const Pair> pairs) {
+  bool ask(std::size_t p, std::span<const PairOf> pairs) {
     const std::size_t at_once = lanes_[p]->foreign ? 8 : pairs.size();
     said_.clear();
     for (std::size_t begin = 0; begin < pairs.size(); begin += at_once) {
       if (given_up(p)) return false;
       const auto some = pairs.subspan(begin, std::min(at_once, pairs.size() - begin));
-      for (const Verdict said : verdicts_of(blocks_[p], some)) {
+      for (const Verdict said : verdicts_seen_by(*lanes_[p], blocks_[p], some)) {
         said_.push_back(said);
         failed_[p] += said == Verdict::timed_out ? kOfALate : is_failure(said) ? 1 : 0;
       }
@@ -92,9 +97,10 @@ class Panels {
 };
 
 // Throws: OracleMismatch.
-void confirm(const UlpMap& map, int cell) {
+template <class Real>
+void confirm(const UlpMap& map, const BasicPair<Real>& middle, int cell) {
   const int column = cell % kMapSize, row = cell / kMapSize;
-  const Pair pair = pair_at(map.pair, map.moved, column, row);
+  const BasicPair<Real> pair = pair_at(middle, map.moved, column, row);
   if (!is_finite(pair)) return;
   const Cell found = map.panels.front().cells[static_cast<std::size_t>(cell)];
   const bool intersects = found == Cell::intersects;
@@ -125,10 +131,11 @@ std::array<int, kCellKinds> UlpPanel::counts() const {
   return counts;
 }
 
-Pair pair_at(const Pair& pair, MovedCoordinates moved, int column, int row) {
-  Pair result = pair;
+template <class Real>
+BasicPair<Real> pair_at(const BasicPair<Real>& pair, MovedCoordinates moved, int column, int row) {
+  BasicPair<Real> result = pair;
   const auto move = [&](int coordinate, int ulps) {
-    float& c = coordinates(result)[coordinate];
+    Real& c = coordinates(result)[coordinate];
     if (ulps != 0) c = strata::nudged(c, ulps);  // a step of zero would turn -0 into +0
   };
   move(moved.x, column - kMapCentre);
@@ -136,7 +143,13 @@ Pair pair_at(const Pair& pair, MovedCoordinates moved, int column, int row) {
   return result;
 }
 
-MovedCoordinates liveliest_coordinates(const Pair& pair, std::span<const Lane* const> lanes) {
+template Pair pair_at(const Pair&, MovedCoordinates, int, int);
+template DoublePair pair_at(const DoublePair&, MovedCoordinates, int, int);
+
+namespace {
+
+template <class Real>
+MovedCoordinates liveliest_of(const BasicPair<Real>& pair, std::span<const Lane* const> lanes) {
   // Columns and rows at the distances 2^k from the middle, on both sides.
   std::vector<int> places{kMapCentre};
   for (int away = 1; away < kMapCentre; away *= 2) {
@@ -144,13 +157,13 @@ MovedCoordinates liveliest_coordinates(const Pair& pair, std::span<const Lane* c
     places.push_back(kMapCentre + away);
   }
   const std::size_t side = places.size();
-  Panels panels(lanes);
+  Panels<Real> panels(lanes);
   MovedCoordinates best{0, 1};
   std::tuple<bool, std::size_t, std::size_t> most{};
   for (int vertex = 0; vertex < kCoordinates; vertex += 3) {
     for (const MovedCoordinates& moved :
          {MovedCoordinates{vertex, vertex + 1}, {vertex, vertex + 2}, {vertex + 1, vertex + 2}}) {
-      std::vector<Pair> pairs;
+      std::vector<BasicPair<Real>> pairs;
       for (const int row : places) {
         for (const int column : places) pairs.push_back(pair_at(pair, moved, column, row));
       }
@@ -174,12 +187,13 @@ MovedCoordinates liveliest_coordinates(const Pair& pair, std::span<const Lane* c
   return best;
 }
 
-UlpMap ulp_map(const Pair& pair, std::span<const Lane* const> lanes, MovedCoordinates moved) {
+template <class Real>
+UlpMap map_of(const BasicPair<Real>& pair, std::span<const Lane* const> lanes, MovedCoordinates moved) {
   if (!is_finite(pair)) throw std::invalid_argument("expected finite coordinates for an ulp map");
   constexpr int kRowsAtOnce = 4;
-  Panels panels(lanes);
+  Panels<Real> panels(lanes);
   std::vector<std::vector<Cell>> cells(panels.lanes().size());
-  std::vector<Pair> pairs;
+  std::vector<BasicPair<Real>> pairs;
   for (int row = 0; row < kMapSize; row += kRowsAtOnce) {
     pairs.clear();
     for (int i = 0; i < kRowsAtOnce * kMapSize; ++i)
@@ -189,12 +203,22 @@ UlpMap ulp_map(const Pair& pair, std::span<const Lane* const> lanes, MovedCoordi
   UlpMap map{pair, moved, {}};
   for (std::size_t p = 0; p < cells.size(); ++p) {
     if (panels.given_up(p)) continue;
-    map.panels.push_back({panels.lanes()[p], std::move(cells[p])});
+    map.panels.push_back({p > 0 ? panels.lanes()[p] : nullptr, std::move(cells[p])});
   }
-  confirm(map, kMapCentre * kMapSize + kMapCentre);
+  confirm(map, pair, kMapCentre * kMapSize + kMapCentre);
   for (int first = 0, k = 0; first < kMapSize * kMapSize; first += kMapSample, ++k)
-    confirm(map, first + 389 * k % kMapSample);  // a different column each time
+    confirm(map, pair, first + 389 * k % kMapSample);  // a different column each time
   return map;
+}
+
+}  // namespace
+
+MovedCoordinates liveliest_coordinates(const AnyPair& pair, std::span<const Lane* const> lanes) {
+  return visit(pair, [&](const auto& own) { return liveliest_of(own, lanes); });
+}
+
+UlpMap ulp_map(const AnyPair& pair, std::span<const Lane* const> lanes, MovedCoordinates moved) {
+  return visit(pair, [&](const auto& own) { return map_of(own, lanes, moved); });
 }
 
 }  // namespace graze::analysis

@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/any_pair.h"
 #include "core/lanes/lanes.h"
-#include "core/pair.h"
 
 namespace graze::analysis {
 
@@ -54,26 +54,27 @@ struct UlpPanel {
 };
 
 struct UlpMap {
-  Pair pair;
+  AnyPair pair;
   MovedCoordinates moved;
   std::vector<UlpPanel> panels;  // the truth, then the lanes
 };
 
 // Returns the pair of a cell. x rises by an ulp from column to column, and y falls by an ulp from row to row, through
-// zero and the subnormals. At the limits of float32 the pair is not finite.
-Pair pair_at(const Pair& pair, MovedCoordinates moved, int column, int row);
+// zero and the subnormals. At the limits of the coordinate type the pair is not finite.
+template <class Real>
+BasicPair<Real> pair_at(const BasicPair<Real>& pair, MovedCoordinates moved, int column, int row);
 
 // Chooses the two coordinates of one vertex along which verdicts change most. The function samples some cells, near and
 // far, and counts those that differ from the cell before, in the truth and in each lane. It compares the smaller count
 // of the two directions first, then the sum, then the order of the coordinates. Around zero an ulp is 2^-149, which
-// tells little. So a zero moves only if no other choice changes verdicts in both directions.
-// Requires: finite coordinates; lanes that run here or have a twin.
-MovedCoordinates liveliest_coordinates(const Pair& pair, std::span<const Lane* const> lanes);
+// tells little. So a zero moves only if no other choice changes verdicts in both directions. An ulp is one of the
+// pair's coordinate type. Requires: finite coordinates; lanes that run here or have a twin.
+MovedCoordinates liveliest_coordinates(const AnyPair& pair, std::span<const Lane* const> lanes);
 
 // CUDA lanes run as twins. Exact lanes are left out, because their verdict is the truth. Foreign code is left out if it
 // times out on three pairs or crashes on 3000. Deterministic.
 // Requires: finite coordinates; lanes that run here or have a twin; two coordinates.   Exact: the truth.
 // Throws: OracleMismatch if the oracle does not confirm the truth.
-UlpMap ulp_map(const Pair& pair, std::span<const Lane* const> lanes, MovedCoordinates moved);
+UlpMap ulp_map(const AnyPair& pair, std::span<const Lane* const> lanes, MovedCoordinates moved);
 
 }  // namespace graze::analysis

@@ -23,7 +23,7 @@ Json stored(const std::filesystem::path& file) {
 }
 
 // Whether the stored maps belong to this pair and these lanes.
-bool is_current(const Json& maps, const Pair& pair, const std::vector<const Lane*>& lanes) {
+bool is_current(const Json& maps, const AnyPair& pair, const std::vector<const Lane*>& lanes) {
   std::vector<std::string> ids;
   for (const Lane* lane : lanes) ids.push_back(lane->id);
   if (!reports::is_map_of(maps, pair, ids) || maps["panels"].size() != lanes.size() + 1) return false;
@@ -38,7 +38,7 @@ bool is_current(const Json& maps, const Pair& pair, const std::vector<const Lane
 bool map_case(const fuzz::SelectedLanes& under_test, const std::filesystem::path& case_file, const std::string& subject,
               bool again) {
   const std::filesystem::path file = std::filesystem::path(case_file).replace_extension(".maps.json");
-  const Pair pair = corpus::read_pairs(case_file).at(0).pair;
+  const AnyPair pair = corpus::pair_of(corpus::read_pairs(case_file, PairTypes::both).at(0));
   std::vector<const Lane*> lanes;
   std::copy_if(under_test.lanes.begin(), under_test.lanes.end(), std::back_inserter(lanes),
                [&](const Lane* lane) { return lane->info->id == subject; });

@@ -48,7 +48,8 @@ void check(const CheckOptions& options) {
     if (options.exact_input) expect_exact_input(name_of_input, *entry);
     const oracle::Truth t = truth_of(*entry);
     const std::string note = written_note(*entry, t), stored = stored_verdicts(*entry, under_test.left_out, t.verdict);
-    const std::vector<Verdict> verdicts = options.truth_only ? std::vector<Verdict>() : decide(under_test, *entry);
+    const std::vector<Verdict> verdicts =
+        options.truth_only ? std::vector<Verdict>() : decide(under_test, corpus::pair_of(*entry));
     const std::vector<Verdict> counted =
         corpus::visit(*entry, [&](const auto& pair) { return analysis::excused(under_test.lanes, verdicts, pair, t); });
     wrong = wrong || some_is_wrong(counted, t.verdict);
@@ -84,7 +85,7 @@ void check(const CheckOptions& options) {
     throw std::runtime_error(
         fmt::format("cannot read standard input after {}: an input error", reports::counted(number_of_pair, "pair")));
   if (number_of_pair == 0) throw std::runtime_error("there is no pair in " + name_of_input);
-  if (wrong && !any_doubles && !from_stdin && !options.json)
+  if (wrong && !from_stdin && !options.json)
     fmt::print("Next: graze explain {}{}\n", path_word(options.file), own_words(options.lanes));
 }
 

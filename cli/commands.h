@@ -98,6 +98,8 @@ void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out);
 
 // Makes the lanes those of pairs of doubles, and says which it leaves out.   Throws: as fuzz::select_for_doubles.
 void take_doubles(fuzz::SelectedLanes& under_test);
+// The same if one of the pairs is a pair of doubles.
+void take_doubles_of(const std::vector<corpus::Entry>& entries, fuzz::SelectedLanes& under_test);
 
 // Adds an option for patterns, separated by commas in one argument.
 CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::string>& globs, const char* description);
@@ -158,8 +160,7 @@ enum class Chosen { word, place };
 CLI::Validator one_of(std::vector<std::string> words, Chosen chosen);
 
 // Each lane's verdict on one pair; reports on standard error where a device and its twin differ.
-std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const Pair& pair);
-std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const corpus::Entry& entry);
+std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const AnyPair& pair);
 
 // Whether a verdict is wrong; no verdict is wrong if the truth is declined.
 bool some_is_wrong(const std::vector<Verdict>& verdicts, Verdict truth);

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <set>
 
@@ -18,6 +19,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/files.h"
+#include "fuzz/minimise/kinds.h"
 #include "fuzz/regression/found_failure.h"
 #include "reports/junit.h"
 #include "reports/terminal.h"
@@ -97,6 +99,9 @@ void add(const CorpusOptions& options) {
   const Json build = fuzz::build_info(under_test);
   std::vector<std::pair<std::string, std::vector<fuzz::FoundFailure>>> found;
   for (const std::string& name : options.names) {
+    if (!std::filesystem::is_directory(name) && (!options.signatures.empty() || options.most != CorpusOptions().most))
+      throw UsageError("--signatures and --top choose signatures of campaigns, and " + name +
+                       " is a file of cases; leave them out");
     found.emplace_back(
         name, std::filesystem::is_directory(name)
                   ? fuzz::found_in_campaign(name, options.signatures, options.most)
@@ -112,7 +117,7 @@ void add(const CorpusOptions& options) {
   const fuzz::FolderLock lock(options.folder, fuzz::FolderLock::WhenTaken::wait);
   fuzz::RegressionCorpus corpus;
   if (std::filesystem::exists(options.file())) corpus = fuzz::read_regressions(options.file());
-  std::array<std::size_t, 3> count{};
+  std::array<std::size_t, 4> count{};
   for (const auto& [name, failures] : found) {
     for (const fuzz::FoundFailure& failure : failures) {
       try {
@@ -121,6 +126,12 @@ void add(const CorpusOptions& options) {
         throw std::runtime_error((failure.file.empty() ? name : failure.file) + ": " + error.what());
       }
     }
+  }
+  if (const std::size_t not_run = count[3]; not_run > 0) {
+    const std::string why = fmt::format("{} not added: of {} no lane that was wrong runs here; choose other --lanes",
+                                        reports::counted(not_run, "failure"), not_run == 1 ? "it" : "each");
+    if (not_run == std::accumulate(count.begin(), count.end(), std::size_t{0})) throw std::runtime_error(why);
+    fmt::print(stderr, "graze: {}\n", why);
   }
   write_corpus(options, corpus);
   fmt::print("{} new, {} seen again, {} known already; {} holds {}\n", reports::grouped(count[0]),

@@ -45,6 +45,20 @@ TEST_F(CorpusVerb, TakesACampaignListsItAndHolds) {
   EXPECT_EQ(again.out.find(" 0 seen again") == std::string::npos, true) << again.out;
 }
 
+// A failure whose wrong lanes do not run is not seen to fail, so it is not added, and that is said.
+TEST_F(CorpusVerb, WhatNoLaneCanConfirmIsNotAdded) {
+  campaign("c", "--pairs 1000 --strata near_edge_edge --lanes 'moller_1997/*/cpu,guigue_devillers_2003/f32/cpu'");
+  const std::string add = "graze corpus add c --lanes moller_1997/f32/cpu";
+  const Ran some = shell(add);
+  EXPECT_EQ(some.status, 0) << some.err;
+  EXPECT_NE(some.err.find(" not added: of each no lane that was wrong runs here"), std::string::npos) << some.err;
+  EXPECT_EQ(contents(shell.folder / "corpus/regression/cases.pairs").find("/guigue"), std::string::npos);
+  expect_error(add + " --corpus none --signatures '*guigue_devillers_2003:*'", 1, {"not added", "--lanes"});
+  EXPECT_FALSE(std::filesystem::exists(shell.folder / "none/cases.pairs"));
+  expect_error("graze corpus add c/cases/$(ls c/cases | head -n 1) --signatures nosuch --corpus none", 2,
+               {"--signatures", "--top"});
+}
+
 // Each signature of the summary is a case with the pairs of that signature, minimised or not.
 TEST_F(CorpusVerb, TakesEverySignatureWithItsCount) {
   campaign("c", "--pairs 3000 --strata 'lattice,near_edge_edge' --lanes '*/f32/cpu'");

@@ -149,7 +149,7 @@ bool meet(const float a[9], const float b[9]) { return crosses(a, b) && crosses(
     EXPECT_EQ(of["of_second"][error], counted["lanes"][second].value(error, 0)) << error;
   }
   const Ran same = shell("graze discrepancy --compare m m");
-  EXPECT_NE(same.out.find("0 counts differ, "), std::string::npos) << same.out << same.err;
+  EXPECT_NE(same.out.find("0 numbers differ, "), std::string::npos) << same.out << same.err;
   EXPECT_EQ(same.out.find(", 0 are the same"), std::string::npos) << same.out;
   // Results of other code say so.
   expect_done("sed -i 's/x > 0/x >= 0/' mine.cpp");

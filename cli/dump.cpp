@@ -104,7 +104,7 @@ void dump(const DumpOptions& options) {
       if (!dumped.scene.empty() && options.format == Format::pairs) entry.fields.emplace_back("scene", dumped.scene);
       for (auto& field : fuzz::truth_fields(truth_of(entry))) entry.fields.push_back(std::move(field));
       if (!under_test.lanes.empty()) {
-        const std::vector<Verdict> verdicts = decide(under_test, entry);
+        const std::vector<Verdict> verdicts = decide(under_test, corpus::pair_of(entry));
         for (std::size_t l = 0; l < verdicts.size(); ++l)
           entry.fields.emplace_back(key_of(*under_test.lanes[l]), name(verdicts[l]));
       }

@@ -35,11 +35,12 @@ std::string emit(reports::SnippetKind kind, const std::string& name, const std::
                  const fuzz::SelectedLanes& under_test) {
   std::optional<reports::SnippetCase> fallback;
   for (const corpus::Entry& entry : entries) {
-    const oracle::Truth t = oracle::truth(entry.pair);
+    const oracle::Truth t = truth_of(entry);
     if (t.verdict == Verdict::declined) continue;
-    const reports::SnippetCase found{described(name, entry, t), entry.pair, t.verdict, nullptr, t.verdict};
-    const std::vector<Verdict> verdicts = decide(under_test, entry.pair);
-    const std::vector<Verdict> counted = analysis::excused(under_test.lanes, verdicts, entry.pair, t);
+    const reports::SnippetCase found{described(name, entry, t), corpus::pair_of(entry), t.verdict, nullptr, t.verdict};
+    const std::vector<Verdict> verdicts = decide(under_test, corpus::pair_of(entry));
+    const std::vector<Verdict> counted =
+        corpus::visit(entry, [&](const auto& pair) { return analysis::excused(under_test.lanes, verdicts, pair, t); });
     const std::string* signature = corpus::field(entry, "signature");
     std::optional<std::size_t> wrong;
     for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {

@@ -120,7 +120,7 @@ std::string lane_text(const analysis::LaneExplanation& lane, const analysis::Lan
   };
   line(2, fmt::format("{}: {}, cause: {}{}", lane.lane->id, name(lane.verdict), name(lane.cause),
                       lane.settled == analysis::Settled::yes ? "" : " (not settled)"));
-  if (lane.lane->foreign || lane.lane->under) {
+  if (lane.by_experiment()) {
     line(4, "experiment: " + lane.experiment);
     contractions();
     if (!lane.slow) surroundings();
@@ -143,9 +143,11 @@ std::string lane_text(const analysis::LaneExplanation& lane, const analysis::Lan
 }
 
 // The runs of two lanes side by side, if the user named exactly two and both record their values; else empty.
-std::string side_by_side(const std::vector<const Lane*>& lanes, const Pair& pair, const reports::Screen& screen) {
-  if (lanes.size() != 2 || !is_finite(pair) || !analysis::why_not_compared(*lanes[0], *lanes[1]).empty()) return "";
-  return '\n' + reports::side_by_side({*lanes[0], *lanes[1]}, pair, screen);
+std::string side_by_side(const std::vector<const Lane*>& lanes, const AnyPair& pair, const reports::Screen& screen) {
+  if (lanes.size() != 2 || !pair.floats || !is_finite(*pair.floats) ||
+      !analysis::why_not_compared(*lanes[0], *lanes[1]).empty())
+    return "";
+  return '\n' + reports::side_by_side({*lanes[0], *lanes[1]}, *pair.floats, screen);
 }
 
 // What two kernels of the user's code cost: the lane's, and the one that -fmad=false makes.
@@ -202,8 +204,9 @@ std::vector<std::string> answer_of(const ExplainOptions& options, const fuzz::Se
 std::vector<std::string> details_of(const fuzz::SelectedLanes& under_test, const analysis::Explanation& explanation,
                                     const reports::Screen& screen) {
   std::ostringstream pair;
-  reports::print_pair(pair, explanation.pair, explanation.truth, under_test.lanes, decide(under_test, explanation.pair),
-                      screen);
+  visit(explanation.pair, [&](const auto& own) {
+    reports::print_pair(pair, own, explanation.truth, under_test.lanes, decide(under_test, explanation.pair), screen);
+  });
   std::vector<std::string> blocks = {'\n' + pair.str(), side_by_side(under_test.lanes, explanation.pair, screen)};
   const analysis::LaneExplanation* before = nullptr;
   for (const analysis::LaneExplanation& lane : explanation.lanes) {
@@ -215,7 +218,8 @@ std::vector<std::string> details_of(const fuzz::SelectedLanes& under_test, const
 
 void print_json(const ExplainOptions& options, const fuzz::SelectedLanes& under_test, const corpus::Entry& entry,
                 const analysis::Explanation& explanation) {
-  nlohmann::ordered_json line{{"case", options.name}, {"line", entry.line}, {"pair", fuzz::pair_text(entry.pair)}};
+  nlohmann::ordered_json line{
+      {"case", options.name}, {"line", entry.line}, {"pair", fuzz::pair_text(corpus::pair_of(entry))}};
   line.update(to_json(explanation));
   line["cuda"] = cuda_evidence(under_test);
   fuzz::add_left_out(line, under_test);
@@ -230,7 +234,8 @@ void explain_cases(const ExplainOptions& options) {
   std::stable_partition(under_test.lanes.begin(), under_test.lanes.end(),
                         [](const Lane* lane) { return lane->foreign; });
   const reports::Screen screen = output_screen();
-  const std::vector<corpus::Entry> entries = read_cases(options.name);
+  const std::vector<corpus::Entry> entries = read_cases(options.name, PairTypes::both);
+  take_doubles_of(entries, under_test);
   for (const corpus::Entry& entry : entries) {
     if (options.exact_input) expect_exact_input(options.name, entry);
   }
@@ -242,7 +247,7 @@ void explain_cases(const ExplainOptions& options) {
   bool wrong = false;
   for (std::size_t e = 0; e < entries.size() && limited.complete(); ++e) {
     const corpus::Entry& entry = entries[e];
-    const analysis::Explanation explanation = analysis::explain(entry.pair, under_test.lanes);
+    const analysis::Explanation explanation = analysis::explain(corpus::pair_of(entry), under_test.lanes);
     wrong = wrong || !explanation.lanes.empty();
     if (options.json) {
       print_json(options, under_test, entry, explanation);

@@ -58,45 +58,33 @@ std::vector<std::string> details(const fuzz::Progress& progress, const std::vect
           reports::grouped(static_cast<std::uint64_t>(rate)) + " pairs/s", "most in " + sources[best].id};
 }
 
-// The first kept case of the subject's commonest signature, and its file.
-std::pair<std::string, std::filesystem::path> first_case(const std::filesystem::path& campaign, const Json& summary,
-                                                         const std::string& subject) {
-  for (const Json& row : summary["signatures"]) {
-    if (analysis::subject_of(row["key"].get<std::string>()) == subject)
-      return {fuzz::pair_text(fuzz::read_cases(campaign, row, PairTypes::both).front()),
-              fuzz::case_file(campaign, row)};
-  }
-  return {};
-}
-
-// The subject's smallest case; with pairs of doubles its first one. Minimises, as `graze minimize` would, the
+// The subject's smallest case. Minimises, as `graze minimize` would, the
 // kMostShrunk signatures whose first kept pairs are the simplest. Returns the simplest result and its file; of equal
 // results, the one from the simpler kept pair.
 std::pair<std::string, std::filesystem::path> smallest_case(const std::filesystem::path& campaign,
                                                             const fuzz::SelectedLanes& under_test, const Json& summary,
                                                             const std::string& subject) {
-  if (fuzz::has_doubles(summary["spec"])) return first_case(campaign, summary, subject);
   std::vector<std::pair<Simplicity, std::filesystem::path>> kept;
   for (const Json& row : summary["signatures"]) {
     const auto signature = analysis::parse_signature(row["key"].get<std::string>());
     if (!signature || signature->subject != subject) continue;
     const std::vector<corpus::Entry> entries = fuzz::checked_cases(under_test, summary["spec"], campaign, row);
-    kept.emplace_back(simplicity(entries[0].pair), fuzz::case_file(campaign, row));
+    kept.emplace_back(simplicity(corpus::pair_of(entries[0])), fuzz::case_file(campaign, row));
   }
   std::sort(kept.begin(), kept.end());
   if (kept.size() > kMostShrunk) kept.resize(kMostShrunk);
   std::optional<Simplicity> least;
   std::pair<std::string, std::filesystem::path> smallest;
-  const auto take = [&](const Pair& pair, const std::filesystem::path& file) {
+  const auto take = [&](const AnyPair& pair, const std::filesystem::path& file) {
     const Simplicity how = simplicity(pair);
     if (least && how >= *least) return;
     least = how;
     smallest = {fuzz::pair_text(pair), file};
   };
   for (const auto& [how, file] : kept) {
-    const std::vector<corpus::Entry> entries = corpus::read_pairs(file);
+    const std::vector<corpus::Entry> entries = corpus::read_pairs(file, PairTypes::both);
     const std::vector<fuzz::MinimisedCase> results = fuzz::minimise_file(under_test, file, entries);
-    if (results.empty()) take(entries[0].pair, file);
+    if (results.empty()) take(corpus::pair_of(entries[0]), file);
     for (const fuzz::MinimisedCase& result : results) take(result.result.pair, file);
   }
   return smallest;
@@ -118,10 +106,9 @@ int fail_above(const FuzzOptions& options, const fuzz::SelectedLanes& under_test
       continue;
     const auto [pair, file] = smallest_case(options.out, under_test, summary, subject);
     fmt::print(stderr,
-               "graze: {} is wrong on {} pairs, above the limit {} of --fail-above; {} is {}; again: graze "
-               "repro {}\n",
-               subject, reports::grouped(count), reports::grouped(*options.fail_above),
-               fuzz::has_doubles(summary["spec"]) ? "one of them" : "the smallest", pair, path_word(file.string()));
+               "graze: {} is wrong on {} pairs, above the limit {} of --fail-above; the smallest is {}; again: "
+               "graze repro {}\n",
+               subject, reports::grouped(count), reports::grouped(*options.fail_above), pair, path_word(file.string()));
     return 1;
   }
   return 0;
@@ -317,7 +304,7 @@ void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool j
   if (summary["signatures"].empty()) return;
   const std::string first = out + '/' + summary["signatures"][0]["case"].get<std::string>();
   std::cout << fmt::format("The commonest disagreement again: graze repro {}\n", path_word(first));
-  if (!fuzz::has_doubles(summary["spec"])) std::cout << fmt::format("Next: graze minimize {}\n", path_word(out));
+  std::cout << fmt::format("Next: graze minimize {}\n", path_word(out));
 }
 
 void add_fuzz(CLI::App& app, int& status) {
@@ -390,7 +377,7 @@ void add_fuzz(CLI::App& app, int& status) {
           "--fail-above", options->fail_above,
           "Number of wrong pairs above which the exit status is 1. Counts, for each subject of --subject or else for "
           "each algorithm, the pairs on which some build of it is wrong. Standard error then has its simplest "
-          "minimised case; of pairs of doubles its first one")
+          "minimised case")
       ->transform(whole_number(0, kMostWhole))
       ->excludes("--shard")
       ->option_text("N");

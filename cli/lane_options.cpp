@@ -223,6 +223,11 @@ void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out) {
   for (const std::string& line : fuzz::left_out_in_words(left_out)) fmt::print(stderr, "graze: {}\n", line);
 }
 
+void take_doubles_of(const std::vector<corpus::Entry>& entries, fuzz::SelectedLanes& under_test) {
+  if (std::any_of(entries.begin(), entries.end(), [](const corpus::Entry& entry) { return bool(entry.doubles); }))
+    take_doubles(under_test);
+}
+
 void take_doubles(fuzz::SelectedLanes& under_test) { say_left_out(fuzz::select_for_doubles(under_test)); }
 
 }  // namespace graze::cli

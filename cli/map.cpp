@@ -117,13 +117,14 @@ void write_pictures(const analysis::UlpMap& map, const fs::path& out) {
 
 void draw_map(const MapOptions& options) {
   const std::optional<analysis::MovedCoordinates> asked = asked_for(options);
-  const fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
-  const corpus::Entry entry = read_cases(options.name).front();
-  if (!is_finite(entry.pair))
+  fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
+  const corpus::Entry entry = read_cases(options.name, PairTypes::both).front();
+  take_doubles_of({entry}, under_test);
+  const AnyPair pair = corpus::pair_of(entry);
+  if (!is_finite(pair.doubles))
     throw std::runtime_error("cannot draw " + options.name + ": a coordinate of its first pair is not finite");
-  const analysis::MovedCoordinates moved =
-      asked ? *asked : analysis::liveliest_coordinates(entry.pair, under_test.lanes);
-  const analysis::UlpMap map = analysis::ulp_map(entry.pair, under_test.lanes, moved);
+  const analysis::MovedCoordinates moved = asked ? *asked : analysis::liveliest_coordinates(pair, under_test.lanes);
+  const analysis::UlpMap map = analysis::ulp_map(pair, under_test.lanes, moved);
   const std::string what =
       fmt::format("{}{}: {} x {} cells, {} to the right and {} upwards by an ulp each{}", printable(options.name),
                   entry.line > 0 ? fmt::format(":{}", entry.line) : "", analysis::kMapSize, analysis::kMapSize,

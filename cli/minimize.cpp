@@ -69,7 +69,9 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
   fmt::print("{}, {}\n", printable(from), found.failure.lanes.front()->info->id);
   std::fflush(stdout);
   const reports::Screen screen = output_screen();
-  reports::print_pair(std::cout, found.result.pair, t, found.failure.lanes, found.failure.verdicts, screen);
+  visit(found.result.pair, [&](const auto& pair) {
+    reports::print_pair(std::cout, pair, t, found.failure.lanes, found.failure.verdicts, screen);
+  });
   const std::string minimal =
       found.result.one_minimal
           ? fmt::format("1-minimal: none of the {} single moves to a simpler pair keeps the failure and its cause",
@@ -97,11 +99,12 @@ std::string with_header(const std::string& text) {
 
 int minimize_case(const MinimizeOptions& options) {
   if (!options.out.empty()) expect_replaceable(options.out, kPairs);
-  const fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
-  std::vector<corpus::Entry> entries = read_cases(options.name);
+  fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
+  std::vector<corpus::Entry> entries = read_cases(options.name, PairTypes::both);
+  take_doubles_of(entries, under_test);
   for (const corpus::Entry& entry : entries) {
     if (options.exact_input) expect_exact_input(options.name, entry);
-    const std::string note = written_note(entry, oracle::truth(entry.pair));
+    const std::string note = written_note(entry, truth_of(entry));
     if (!note.empty()) fmt::print("{}:{}: {}\n", printable(options.name), entry.line, note);
   }
   std::string text;
@@ -163,7 +166,8 @@ Done minimize_file(const fuzz::SelectedLanes& under_test, const Json& spec, cons
   const double before = processor_seconds();
   const fs::path file = fuzz::case_file(directory, row);
   const std::vector<corpus::Entry> entries = fuzz::checked_cases(under_test, spec, directory, row);
-  if (!again && has_result(under_test, entries)) return {true, nontrivial_magnitudes(entries.front().pair), 0};
+  if (!again && has_result(under_test, entries))
+    return {true, nontrivial_magnitudes(corpus::pair_of(entries.front())), 0};
   const std::vector<fuzz::MinimisedCase> results = fuzz::minimise_file(under_test, file, entries);
   if (results.empty()) return {};
   const auto cases =
@@ -206,7 +210,6 @@ int minimize_directory(MinimizeOptions options) {
   // Reads the summary before the lock is taken, because reading the database of a killed run takes the lock itself.
   const std::string text = fuzz::read_whole(directory / "summary.json");
   const Json summary = fuzz::checked_summary(directory);
-  fuzz::expect_float32(summary["spec"], "minimize");
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
   open_subjects(options.lanes);
   if (!subjects::open_recorded(summary["spec"]).empty())
@@ -214,6 +217,7 @@ int minimize_directory(MinimizeOptions options) {
         cannot("minimise", options.name,
                "the campaign ran other code than this, and its results must come from that code; leave out --subject"));
   fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
+  if (fuzz::has_doubles(summary["spec"])) take_doubles(under_test);
   const auto ran = summary["spec"]["lanes"].get<std::set<std::string>>();
   leave_out(under_test, [&](const Lane& lane) { return ran.contains(lane.id) ? "" : "the campaign did not run it"; });
   const fuzz::FolderLock held(directory,

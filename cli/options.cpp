@@ -139,13 +139,9 @@ const Lane& published_lane(const std::string& id) {
                    did_you_mean(id, ids));
 }
 
-std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const Pair& pair) {
-  return decide(under_test, corpus::entry_of(pair, {}));
-}
-
-std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const corpus::Entry& entry) {
+std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const AnyPair& pair) {
   std::vector<const Lane*> apart;
-  std::vector<Verdict> verdicts = decide(under_test, entry.pair, apart, entry.doubles ? &*entry.doubles : nullptr);
+  std::vector<Verdict> verdicts = decide(under_test, pair, apart);
   for (const Lane* lane : apart) fmt::print(stderr, "graze: {}: device and twin differ\n", lane->id);
   return verdicts;
 }

@@ -73,7 +73,7 @@ std::optional<Pair> smallest_failure(const Lane& lane, const analysis::PolicyErr
   const Pair pair = sources[static_cast<std::size_t>(errors.first_broken->source)].pair(errors.first_broken->index);
   if (!backends::on_host(lane)) return pair;
   const auto failures = fuzz::failures_of(fuzz::select_lanes({lane.id}, fuzz::Executor::twin), pair);
-  return failures.empty() ? std::nullopt : std::optional(fuzz::minimise(failures[0], pair).pair);
+  return failures.empty() ? std::nullopt : fuzz::minimise(failures[0], pair).pair.floats;
 }
 
 analysis::Pareto offers_of(const ParetoOptions& options, const Measured& measured,

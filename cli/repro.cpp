@@ -87,10 +87,8 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
     return repro_pack(name);
   }
   fuzz::SelectedLanes under_test = selected_lanes(lanes, name);
-  const std::vector<corpus::Entry> entries = read_cases(name, emitted.empty() ? PairTypes::both : PairTypes::f32);
-  const bool in_doubles =
-      std::any_of(entries.begin(), entries.end(), [](const corpus::Entry& entry) { return bool(entry.doubles); });
-  if (in_doubles) take_doubles(under_test);
+  const std::vector<corpus::Entry> entries = read_cases(name, PairTypes::both);
+  take_doubles_of(entries, under_test);
   if (!emitted.empty()) {
     const auto kind = std::find(std::begin(reports::kSnippetKinds), std::end(reports::kSnippetKinds), emitted);
     std::cout << emit(static_cast<reports::SnippetKind>(kind - std::begin(reports::kSnippetKinds)), name, entries,
@@ -101,7 +99,7 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
   bool changed = false, wrong = false;
   for (const corpus::Entry& entry : entries) {
     const oracle::Truth t = truth_of(entry);
-    const std::vector<Verdict> verdicts = decide(under_test, entry);
+    const std::vector<Verdict> verdicts = decide(under_test, corpus::pair_of(entry));
     fmt::print("{}\n", printable(corpus::numbers_of(entry).value_or(name)));
     std::fflush(stdout);
     corpus::visit(entry, [&](const auto& pair) {
@@ -124,7 +122,7 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
     wrong = wrong || some_is_wrong(counted, t.verdict);
     std::cout.flush();
   }
-  if (wrong && !in_doubles) fmt::print("Next: graze minimize {}{}\n", path_word(name), own_words(lanes));
+  if (wrong) fmt::print("Next: graze minimize {}{}\n", path_word(name), own_words(lanes));
   return changed ? 1 : 0;
 }
 

@@ -83,8 +83,14 @@ Toolchain wanted(const Options& options) {
   const std::vector<Toolchain> all = subjects::selected_toolchains(options.list);
   const auto named = std::find_if(all.begin(), all.end(), [&](const Toolchain& t) { return t.name == options.what; });
   Toolchain toolchain = named != all.end() ? *named : Toolchain{"", options.what, ""};
-  if (!options.run.empty()) toolchain.run = options.run;
-  const std::string why_not = subjects::why_not_here(toolchain);
+  if (!options.run.empty()) toolchain.run.clear();
+  std::string why_not = subjects::why_not_here(toolchain);
+  if (why_not.empty() && !options.run.empty()) {  // the toolchain's packages do not have this program
+    toolchain.run = options.run;
+    Toolchain emulator = toolchain;
+    emulator.needs.clear();
+    why_not = subjects::why_not_here(emulator);
+  }
   if (why_not.empty()) return toolchain;
   const auto first_word =
       std::find_if(all.begin(), all.end(), [&](const Toolchain& t) { return options.what.starts_with(t.name + ' '); });

@@ -159,6 +159,27 @@ TEST_F(TryCommand, OnlyBoolsAndIntsOfPythonAreVerdicts) {
   expect_error("graze try shapes.py:raises --out d", 1, {"says: ValueError: no area"});
 }
 
+// A program that ends on some pairs: its own last words are told once.
+TEST_F(TryCommand, AProgramThatCrashesOnSomePairsIsToldWithItsReason) {
+  write("p.c", R"(#include <stdio.h>
+#include <string.h>
+int main(void) {
+  for (char line[2000]; fgets(line, sizeof line, stdin); fflush(stdout)) {
+    double x = 0;
+    sscanf(line, "%la", &x);
+    if (x > 0.5) return fprintf(stderr, "started\nno idea about %g\n", x), 3;
+    puts(strncmp(line, "describe", 8) ? "1" : "f32");
+  }
+})");
+  expect_done("cc p.c -o p");
+  const Ran ran = shell("graze try 'cmd:./p' --pairs 40");
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  const std::size_t told = ran.err.find("p/f32/cpu crashes on some pairs: no idea about ");
+  ASSERT_NE(told, ran.err.npos) << ran.err;
+  EXPECT_EQ(ran.err.find("crashes on some pairs", told + 20), ran.err.npos) << ran.err;
+  EXPECT_EQ(ran.err.find("started"), ran.err.npos);
+}
+
 TEST_F(TryCommand, WorksOnEachKindOfCode) {
   const std::string by_x = "int meet(const float a[9], const float b[9]) { return a[0] < b[0]; }\n";
   write("own.c", by_x);

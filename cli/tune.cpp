@@ -96,7 +96,8 @@ std::string smallest(const Lane& first, const Lane& second, const Pair& pair) {
   both.lanes = {&first, &second};
   both.on_host = {backends::on_host(first), backends::on_host(second)};
   Pair small = pair;
-  if (both.on_host[0] && both.on_host[1]) small = fuzz::minimise(fuzz::failures_of(both, pair).at(0), pair).pair;
+  if (both.on_host[0] && both.on_host[1])
+    small = fuzz::minimise(fuzz::failures_of(both, pair).at(0), pair).pair.floats.value();
   return file_of_pair(small, first.id + "," + second.id);
 }
 

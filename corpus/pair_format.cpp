@@ -239,14 +239,15 @@ bool is_bare(std::string_view value) {
 
 }  // namespace
 
-Entry entry_of(const Pair& pair, std::vector<std::pair<std::string, std::string>> fields) {
-  return {pair, std::move(fields)};
+Entry entry_of(const AnyPair& pair, std::vector<std::pair<std::string, std::string>> fields) {
+  if (pair.floats) return {*pair.floats, std::move(fields)};
+  Entry entry{stored_in_float32(pair.doubles), std::move(fields)};
+  entry.doubles = pair.doubles;
+  return entry;
 }
 
-Entry entry_of(const DoublePair& pair, std::vector<std::pair<std::string, std::string>> fields) {
-  Entry entry{stored_in_float32(pair), std::move(fields)};
-  entry.doubles = pair;
-  return entry;
+AnyPair pair_of(const Entry& entry) {
+  return visit(entry, [](const auto& pair) { return AnyPair(pair); });
 }
 
 PairReader::PairReader(std::istream& in, std::string name, PairTypes taken)

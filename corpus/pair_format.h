@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/pair.h"
+#include "core/any_pair.h"
 
 namespace graze::corpus {
 
@@ -28,15 +28,17 @@ struct Entry {
   std::optional<DoublePair> doubles = {};                        // the pair, if its coordinates are doubles
 };
 
-// The entry of a pair that was not read.
-Entry entry_of(const Pair& pair, std::vector<std::pair<std::string, std::string>> fields);
-Entry entry_of(const DoublePair& pair, std::vector<std::pair<std::string, std::string>> fields);
-
 // with(pair), for the pair in its own coordinate type.
 template <class With>
 auto visit(const Entry& entry, const With& with) {
   return entry.doubles ? with(*entry.doubles) : with(entry.pair);
 }
+
+// The entry's pair.
+AnyPair pair_of(const Entry& entry);
+
+// The entry of a pair that was not read.
+Entry entry_of(const AnyPair& pair, std::vector<std::pair<std::string, std::string>> fields);
 
 // Input that is not in the format; what() is one line: "FILE:LINE: expected 18 numbers, found 17".
 struct FormatError : std::runtime_error {

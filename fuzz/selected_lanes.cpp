@@ -249,16 +249,16 @@ std::span<const LaneVerdicts> BlockVerdicts::decide(std::span<const Pair> pairs,
   return verdicts_;
 }
 
-std::vector<Verdict> decide(const SelectedLanes& under_test, const Pair& pair, std::vector<const Lane*>& apart,
-                            const DoublePair* doubles) {
+std::vector<Verdict> decide(const SelectedLanes& under_test, const AnyPair& any, std::vector<const Lane*>& apart) {
   apart.clear();
+  const Pair pair = any.floats ? *any.floats : stored_in_float32(any.doubles);
   std::vector<VerdictBits> on_device;
   if (under_test.device) under_test.device->decide(std::span(&pair, 1), under_test.device_lanes(), on_device);
   BlockVerdicts block(under_test);
   std::vector<Verdict> verdicts;
   const auto differs = [&](std::size_t l, std::size_t) { apart.push_back(under_test.lanes[l]); };
   for (const LaneVerdicts& lane :
-       block.decide(std::span(&pair, 1), on_device, 0, differs, std::span(doubles, doubles ? 1 : 0)))
+       block.decide(std::span(&pair, 1), on_device, 0, differs, std::span(&any.doubles, any.floats ? 0 : 1)))
     verdicts.push_back(lane.at(0));
   return verdicts;
 }

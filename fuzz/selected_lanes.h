@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "backends/backends.h"
+#include "core/any_pair.h"
 #include "core/lanes/verdicts.h"
 #include "cuda/lanes/device.h"
 
@@ -108,8 +109,6 @@ class BlockVerdicts {
 
 // Each lane's verdict on one pair.
 // apart: receives the lanes that run on both and whose device and twin differ.
-// doubles: null; or the pair before it was stored in float32, which lanes in double decide.
-std::vector<Verdict> decide(const SelectedLanes& under_test, const Pair& pair, std::vector<const Lane*>& apart,
-                            const DoublePair* doubles = nullptr);
+std::vector<Verdict> decide(const SelectedLanes& under_test, const AnyPair& pair, std::vector<const Lane*>& apart);
 
 }  // namespace graze::fuzz

@@ -3,7 +3,7 @@
 #include "oracle/common_set.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdlib>
 
 #include "oracle/integer_pair.h"
 
@@ -77,7 +77,8 @@ struct Hulls {
   int exponent;
 };
 
-Hulls hulls_of(const Pair& pair) {
+template <class Real>
+Hulls hulls_of(const BasicPair<Real>& pair) {
   const Grid grid = grid_of(pair);
   const LargePair whole = large_integers(pair, grid);
   Hulls hulls{{}, {}, grid.exponent};
@@ -88,8 +89,16 @@ Hulls hulls_of(const Pair& pair) {
   return hulls;
 }
 
+Hulls hulls_of(const AnyPair& pair) {
+  return visit(pair, [](const auto& own) { return hulls_of(own); });
+}
+
 std::vector<Vec3<double>> rounded(const Polygon& points, int exponent) {
-  const auto round = [exponent](const mpq_class& x) { return std::ldexp(x.get_d(), exponent); };
+  // Whole numbers of the grid may be beyond the range of double.
+  const auto round = [exponent](const mpq_class& x) {
+    const auto shift = static_cast<mp_bitcnt_t>(std::abs(exponent));
+    return (exponent < 0 ? mpq_class(x >> shift) : mpq_class(x << shift)).get_d();
+  };
   std::vector<Vec3<double>> result;
   for (const Point& p : points) result.push_back({round(p.x), round(p.y), round(p.z)});
   return result;
@@ -97,14 +106,14 @@ std::vector<Vec3<double>> rounded(const Polygon& points, int exponent) {
 
 }  // namespace
 
-std::vector<Vec3<double>> common_set(const Pair& pair) {
+std::vector<Vec3<double>> common_set(const AnyPair& pair) {
   const Hulls hulls = hulls_of(pair);
   Polygon common = hull_of(hulls.a);
   for (const HalfSpace& half : half_spaces(hull_of(hulls.b))) common = clipped(common, half);
   return rounded(common, hulls.exponent);
 }
 
-std::vector<Vec3<double>> planes_line(const Pair& pair) {
+std::vector<Vec3<double>> planes_line(const AnyPair& pair) {
   const Hulls hulls = hulls_of(pair);
   const auto normal_of = [](const Point(&p)[3]) { return cross(Point(p[1] - p[0]), Point(p[2] - p[0])); };
   const Point na = normal_of(hulls.a), nb = normal_of(hulls.b), along = cross(na, nb);

@@ -4,17 +4,17 @@
 
 #include <vector>
 
-#include "core/pair.h"
+#include "core/any_pair.h"
 
 namespace graze::oracle {
 
 // The extreme points of the common set of the two closed hulls: none, one, two, or those of a convex polygon in order
 // around it.   Requires: finite coordinates.   Exact: except for the rounding to double.
-std::vector<Vec3<double>> common_set(const Pair& pair);
+std::vector<Vec3<double>> common_set(const AnyPair& pair);
 
 // Two points that bound a part of the line in both triangles' planes: the part within the pair's box, enlarged by a
 // tenth on each side. No points if a triangle is flat, the planes are parallel, or the line misses the box.
 // Requires: finite coordinates.   Exact: like common_set.
-std::vector<Vec3<double>> planes_line(const Pair& pair);
+std::vector<Vec3<double>> planes_line(const AnyPair& pair);
 
 }  // namespace graze::oracle

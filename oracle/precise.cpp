@@ -30,13 +30,20 @@ struct ExponentRange {
 };
 
 template <std::size_t... i>
-Verdict decide_in_multi(int algorithm, const Pair& pair, std::index_sequence<i...>) {
-  using Decide = Verdict (*)(const Pair&);
-  constexpr Decide kDecide[] = {decide_widened<std::tuple_element_t<i, Algorithms>, Multi>...};
-  return kDecide[algorithm](pair);
+Verdict decide_in_multi(int algorithm, const DoublePair& pair, std::index_sequence<i...>) {
+  Vec3<Multi> a[3], b[3];
+  for (int v = 0; v < 3; ++v) {
+    a[v] = {Multi(pair.a[v].x), Multi(pair.a[v].y), Multi(pair.a[v].z)};
+    b[v] = {Multi(pair.b[v].x), Multi(pair.b[v].y), Multi(pair.b[v].z)};
+  }
+  using Decide = Verdict (*)(const Vec3<Multi>(&)[3], const Vec3<Multi>(&)[3]);
+  constexpr Decide kDecide[] = {[](const Vec3<Multi>(&p)[3], const Vec3<Multi>(&q)[3]) {
+    return std::tuple_element_t<i, Algorithms>::decide(p, q);
+  }...};
+  return kDecide[algorithm](a, b);
 }
 
-Trace<Ball> run_exactly(int algorithm, const Pair& pair, int bits, const Path& lead = {}) {
+Trace<Ball> run_exactly(int algorithm, const DoublePair& pair, int bits, const Path& lead = {}) {
   Multi::precision = bits;
   Ball::untold = 0;
   return run_traced<Ball>(algorithm, pair, lead);
@@ -55,7 +62,7 @@ struct SettledRun {
   Trace<Ball> run;
   Exactly exactly;
 };
-SettledRun run_settled(int algorithm, const Pair& pair, const Path& lead = {}) {
+SettledRun run_settled(int algorithm, const DoublePair& pair, const Path& lead = {}) {
   Path last;
   long last_untold = 0;
   constexpr int kLeast = 256, kMost = 16384;
@@ -73,7 +80,7 @@ SettledRun run_settled(int algorithm, const Pair& pair, const Path& lead = {}) {
   }
 }
 
-Trace<Multi> run_multi(int algorithm, const Pair& pair, Contraction rule, const Path& lead) {
+Trace<Multi> run_multi(int algorithm, const DoublePair& pair, Contraction rule, const Path& lead) {
   if (rule == Contraction::nvcc) return run_traced<Multi, Contraction::nvcc>(algorithm, pair, lead);
   if (rule == Contraction::left) return run_traced<Multi, Contraction::left>(algorithm, pair, lead);
   return run_traced<Multi>(algorithm, pair, lead);
@@ -97,7 +104,7 @@ Beside beside(double lane, const Ball& exact, int bits) {
 
 }  // namespace
 
-Limited decide_limited(int algorithm, Scalar scalar, const Pair& pair, Limits limits) {
+Limited decide_limited(int algorithm, Scalar scalar, const DoublePair& pair, Limits limits) {
   const ExponentRange range(scalar, limits);
   Multi::precision = mantissa_bits(scalar);
   const Verdict verdict = decide_in_multi(algorithm, pair, std::make_index_sequence<kAlgorithmCount>());
@@ -105,7 +112,7 @@ Limited decide_limited(int algorithm, Scalar scalar, const Pair& pair, Limits li
   return {verdict, first > 0 ? RangeEvent::overflow : first < 0 ? RangeEvent::underflow : RangeEvent::none};
 }
 
-Trace<double> run_limited(int algorithm, Scalar scalar, const Pair& pair, Limits limits, Contraction rule,
+Trace<double> run_limited(int algorithm, Scalar scalar, const DoublePair& pair, Limits limits, Contraction rule,
                           const Path& lead) {
   const ExponentRange range(scalar, limits);
   Multi::precision = mantissa_bits(scalar);
@@ -118,25 +125,25 @@ Trace<double> run_limited(int algorithm, Scalar scalar, const Pair& pair, Limits
   return result;
 }
 
-Verdict decide_with_bits(int algorithm, const Pair& pair, int bits) {
+Verdict decide_with_bits(int algorithm, const DoublePair& pair, int bits) {
   Multi::precision = bits;
   return decide_in_multi(algorithm, pair, std::make_index_sequence<kAlgorithmCount>());
 }
 
-int bits_needed(int algorithm, const Pair& pair, Verdict verdict, int least) {
+int bits_needed(int algorithm, const DoublePair& pair, Verdict verdict, int least) {
   int bits = kMostBits + 1;
   while (bits > least && decide_with_bits(algorithm, pair, bits - 1) == verdict) --bits;
   return bits > kMostBits ? 0 : bits;
 }
 
-Exactly decide_exactly(int algorithm, const Pair& pair) { return run_settled(algorithm, pair).exactly; }
+Exactly decide_exactly(int algorithm, const DoublePair& pair) { return run_settled(algorithm, pair).exactly; }
 
-Verdict decide_exactly_but(int algorithm, Scalar scalar, const Pair& pair, int bits, Limits limits) {
+Verdict decide_exactly_but(int algorithm, Scalar scalar, const DoublePair& pair, int bits, Limits limits) {
   const ExponentRange range(scalar, limits);
   return run_exactly(algorithm, pair, bits).verdict;
 }
 
-std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const Pair& pair, const Trace<double>& run) {
+std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const DoublePair& pair, const Trace<double>& run) {
   const Trace<Ball> exact = run_settled(algorithm, pair, path_of(run)).run;
   if (exact.seen.size() != run.seen.size()) throw std::logic_error("exact_steps: the run is of another algorithm");
   const int mantissa = mantissa_bits(scalar);
@@ -150,7 +157,7 @@ std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const Pair& pai
   return steps;
 }
 
-Path exact_outcomes(int algorithm, const Pair& pair, const Path& path) {
+Path exact_outcomes(int algorithm, const DoublePair& pair, const Path& path) {
   return outcomes_of(run_settled(algorithm, pair, path).run);
 }
 

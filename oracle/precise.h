@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs the algorithms in other arithmetic than a lane's, with MPFR: with more bits, without limits of the exponent, or
-// exactly. An algorithm is given by its index in Algorithms (core/algorithms/algorithms.h).
+// exactly. An algorithm is given by its index in Algorithms (core/algorithms/algorithms.h). A pair of float32 is given
+// by the same numbers as doubles.
 #pragma once
 
 #include <string>
@@ -26,20 +27,21 @@ struct Limited {
 };
 
 // Runs the algorithm with the scalar's mantissa, round to nearest even. With both limits it equals the cpu lane.
-Limited decide_limited(int algorithm, Scalar scalar, const Pair& pair, Limits limits);
+// Requires: the scalar holds the coordinates.
+Limited decide_limited(int algorithm, Scalar scalar, const DoublePair& pair, Limits limits);
 
 // Like decide_limited, but traced, contracted by the rule, and led down the path. Values beyond the range of double are
 // rounded to it.
-Trace<double> run_limited(int algorithm, Scalar scalar, const Pair& pair, Limits limits, Contraction rule,
+Trace<double> run_limited(int algorithm, Scalar scalar, const DoublePair& pair, Limits limits, Contraction rule,
                           const Path& lead = {});
 
 // Runs the algorithm with a mantissa of `bits` bits and no exponent limits.
-Verdict decide_with_bits(int algorithm, const Pair& pair, int bits);
+Verdict decide_with_bits(int algorithm, const DoublePair& pair, int bits);
 
 // The least number of bits, at least `least`, that gives this verdict, as do all greater numbers up to kMostBits. 0 if
 // kMostBits bits do not give it.
 inline constexpr int kMostBits = 512;
-int bits_needed(int algorithm, const Pair& pair, Verdict verdict, int least);
+int bits_needed(int algorithm, const DoublePair& pair, Verdict verdict, int least);
 
 // The algorithm in exact arithmetic, with error bounds: two numbers count as equal if their bounds leave that open.
 struct Exactly {
@@ -48,11 +50,11 @@ struct Exactly {
   bool certain;  // no comparison was left open
   bool settled;  // certain, or a quarter of the bits left the same comparisons open
 };
-Exactly decide_exactly(int algorithm, const Pair& pair);
+Exactly decide_exactly(int algorithm, const DoublePair& pair);
 
 // Runs the algorithm in exact arithmetic, but with these exponent limits of the scalar.
 // Requires: bits as found by decide_exactly.
-Verdict decide_exactly_but(int algorithm, Scalar scalar, const Pair& pair, int bits, Limits limits);
+Verdict decide_exactly_but(int algorithm, Scalar scalar, const DoublePair& pair, int bits, Limits limits);
 
 // A lane's number and its exact value.
 struct Beside {
@@ -71,9 +73,9 @@ struct ExactStep {
 // The exact values of a lane's run, step by step, along the path that the lane took. It uses as many bits as that path
 // needs.
 // Requires: run is of that algorithm in that scalar.
-std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const Pair& pair, const Trace<double>& run);
+std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const DoublePair& pair, const Trace<double>& run);
 
 // Like exact_steps, but returns only the outcomes of the comparisons on the path.
-Path exact_outcomes(int algorithm, const Pair& pair, const Path& path);
+Path exact_outcomes(int algorithm, const DoublePair& pair, const Path& path);
 
 }  // namespace graze::oracle

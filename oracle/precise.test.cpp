@@ -96,7 +96,7 @@ TEST(Precise, WithBothLimitsIsTheCpuLane) {
       const Pair pair = source.next();
       for (const Lane& lane : published_lanes()) {
         if (lane.variant != Variant::cpu) continue;
-        const Limited limited = decide_limited(lane.algorithm, lane.scalar, pair, {true, true});
+        const Limited limited = decide_limited(lane.algorithm, lane.scalar, in_doubles(pair), {true, true});
         EXPECT_EQ(name(limited.verdict), name(decide(lane, pair))) << lane.id << hex(pair);
         overflows += limited.first == RangeEvent::overflow;
         underflows += limited.first == RangeEvent::underflow;
@@ -119,7 +119,7 @@ TEST(Precise, ExactlyIsWhatRationalsSay) {
     for (int i = 0; i < 200; ++i) {
       const Pair pair = source.next();
       for (const auto& [algorithm, rational] : algorithms) {
-        const Exactly exactly = decide_exactly(algorithm, pair);
+        const Exactly exactly = decide_exactly(algorithm, in_doubles(pair));
         EXPECT_TRUE(exactly.settled) << algorithm << hex(pair);
         EXPECT_EQ(name(exactly.verdict), name(rational(pair))) << algorithm << hex(pair);
       }
@@ -136,7 +136,7 @@ TEST(Precise, ExactlySettlesRootsAndQuotients) {
     for (int i = 0; i < 300; ++i) {
       const Pair pair = source.next();
       if (hulls(pair).dimension_a < 2 || hulls(pair).dimension_b < 2) continue;
-      const Exactly exactly = decide_exactly(1, pair);
+      const Exactly exactly = decide_exactly(1, in_doubles(pair));
       EXPECT_TRUE(exactly.settled) << hex(pair);
       EXPECT_EQ(name(exactly.verdict), name(cgal_verdict(pair))) << hex(pair);
       untold += !exactly.certain;
@@ -151,13 +151,13 @@ TEST(Precise, BitsNeededIsTheLeastFromWhichAllAreRight) {
   for (int i = 0; i < 60; ++i) {
     const Pair pair = source.next();
     const Verdict truth = cgal_verdict(pair);
-    const int bits = bits_needed(4, pair, truth, 24);
+    const int bits = bits_needed(4, in_doubles(pair), truth, 24);
     ASSERT_GE(bits, 24) << hex(pair);
     if (bits > 24) {
       ++more;
-      EXPECT_NE(decide_with_bits(4, pair, bits - 1), truth);
+      EXPECT_NE(decide_with_bits(4, in_doubles(pair), bits - 1), truth);
     }
-    for (int p = bits; p < bits + 40; ++p) EXPECT_EQ(decide_with_bits(4, pair, p), truth);
+    for (int p = bits; p < bits + 40; ++p) EXPECT_EQ(decide_with_bits(4, in_doubles(pair), p), truth);
   }
   EXPECT_GT(more, 0);
 }
@@ -166,7 +166,7 @@ TEST(Precise, BitsNeededIsTheLeastFromWhichAllAreRight) {
 TEST(Precise, ErrorsAreInUlpsOfTheExactNumberWithoutLimits) {
   const Pair pair{{{0, 0, 0}, {0x1p-60f, 0, 0}, {0, 0x1p-60f, 0}}, {{0, 0, 0x1p-60f}, {1, 0, 1}, {0, 1, 2}}};
   const Trace<double> run = run_traced<float>(2, pair);
-  const std::vector<ExactStep> steps = exact_steps(2, Scalar::f32, pair, run);
+  const std::vector<ExactStep> steps = exact_steps(2, Scalar::f32, in_doubles(pair), run);
   ASSERT_EQ(steps.size(), run.seen.size());
   const Beside& distance = steps[0].left;  // of b[0] to the plane of a, times the normal's length
   EXPECT_EQ(distance.lane, 0);

@@ -5,8 +5,8 @@
 #include <compare>
 #include <stdexcept>
 
+#include "core/any_pair.h"
 #include "core/margin/bucket.h"
-#include "core/pair.h"
 #include "core/verdict.h"
 
 namespace graze::oracle {
@@ -27,6 +27,9 @@ struct OracleMismatch : std::runtime_error {
 // Throws: OracleMismatch.   Returns: declined, unknown and NaN if a coordinate is not finite.
 Truth truth(const Pair& pair);
 Truth truth(const DoublePair& pair);
+inline Truth truth(const AnyPair& pair) {
+  return visit(pair, [](const auto& own) { return oracle::truth(own); });
+}
 
 // CGAL's decision: its triangle test for proper triangles, and its tests of segments and points for degenerate ones.
 // Requires: finite coordinates.   Exact: always.

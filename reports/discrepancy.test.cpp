@@ -132,17 +132,22 @@ TEST_F(DiscrepancyResult, ThePageDrawsTheExtremes) {
   EXPECT_GT(drawn, 100);
 }
 
-// Rows are matched by their names. What only one result has is told.
-TEST_F(DiscrepancyResult, RowsOfOneResultAloneAreTold) {
-  const std::string same = discrepancy_changes(json_, json_, {});
+// Rows are matched by their names. Every number counts, and what only one result has is told.
+TEST_F(DiscrepancyResult, EveryNumberIsCompared) {
+  const Screen wide{.columns = 200};
+  const std::string same = discrepancy_changes(json_, json_, wide);
+  EXPECT_EQ(same.find("0 numbers differ, "), 0u) << same;
   EXPECT_EQ(same.find("in one result alone"), std::string::npos) << same;
   Json other = json_;
   Json& questions = other["lanes"][0]["total"]["questions"];
   std::reverse(questions.begin(), questions.end());
-  EXPECT_EQ(discrepancy_changes(json_, other, {}), same);
+  EXPECT_EQ(discrepancy_changes(json_, other, wide), same);
+  Json changed = other;
+  changed["lanes"][0]["total"]["questions"][0]["largest_in_bounds"] = 7.5;  // in no table
+  EXPECT_EQ(discrepancy_changes(json_, changed, wide).find("1 numbers differ, "), 0u)
+      << discrepancy_changes(json_, changed, wide);
   questions[0]["question"] = "another";
-  EXPECT_NE(discrepancy_changes(json_, other, {}).find("and 2 of lines and questions are in one"), std::string::npos)
-      << discrepancy_changes(json_, other, {});
+  EXPECT_NE(discrepancy_changes(json_, other, wide).find(" are in one result alone"), std::string::npos);
 }
 
 TEST_F(DiscrepancyResult, ThePageNamesEveryQuestionThatDiffers) {

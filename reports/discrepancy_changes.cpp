@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "reports/discrepancy.h"
 #include "reports/discrepancy_reading.h"
@@ -13,13 +14,34 @@ namespace graze::reports {
 
 namespace {
 using Json = nlohmann::ordered_json;
+
+// All numbers below the value by their places, in which rows of lists stand by their names.
+void add_numbers(const Json& of, const std::string& place, std::map<std::string, Json>& to) {
+  if (of.is_number()) {
+    to.emplace(place, of);
+    return;
+  }
+  if (!of.is_structured()) return;
+  std::map<std::string, int> seen;
+  for (const auto& [key, value] : of.items()) {
+    std::string name = key;
+    if (of.is_array() && value.is_object()) {
+      name.clear();
+      for (const char* text : {"question", "line", "within", "value", "site"}) {
+        if (value.contains(text) && value[text].is_string()) name += value[text].get<std::string>() + ' ';
+      }
+      name += '#' + std::to_string(seen[name]++);
+    }
+    add_numbers(value, place + '/' + name, to);
+  }
 }
+}  // namespace
 
 std::string discrepancy_changes(const Json& before, const Json& after, const Screen& screen) {
   const auto lanes_of = [](const Json& of) { return text_at(of, "first") + " against " + text_at(of, "second"); };
   std::string text;
   for (const std::string& sentence : code_differences(before, after)) text += wrapped(sentence, screen.columns);
-  std::size_t same = 0, alone = 0;  // alone: rows that one result has and the other has not
+  std::size_t differ = 0, same = 0, alone = 0;  // alone: numbers that one result has and the other has not
   TextTable table({{"lanes", Align::left}, {"question", Align::left}, {"count", Align::left}, {"before"}, {"after"}});
   // Calls with_both(old, now) for each comparison that is in both results.
   const auto match = [&](const char* kind, const auto& with_both) {
@@ -33,6 +55,19 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
         text += wrapped(fmt::format("Only the first has {}.", lanes_of(of)), screen.columns);
       } else {
         with_both(of, *now);
+        std::map<std::string, Json> old_numbers, new_numbers;
+        add_numbers(of, "", old_numbers);
+        add_numbers(*now, "", new_numbers);
+        for (const auto& [place, number] : old_numbers) {
+          const auto found = new_numbers.find(place);
+          if (found == new_numbers.end()) {
+            ++alone;
+          } else {
+            ++(found->second == number ? same : differ);
+            new_numbers.erase(found);
+          }
+        }
+        alone += new_numbers.size();
       }
     }
     for (const Json& of : new_ones) {
@@ -44,26 +79,20 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
                            const Json& new_counts) {
     for (const auto& [name, count] : old_counts.items()) {
       if (!count.is_number_unsigned() || !new_counts.contains(name)) continue;
-      if (count == new_counts.at(name)) {
-        ++same;
-      } else {
+      if (count != new_counts.at(name))
         table.add(
             {lanes_of(of), question, name, grouped(count.get<std::uint64_t>()), grouped(number_at(new_counts, name))});
-      }
     }
   };
   // Compares the rows of two lists that have the same values at both keys. The first key names the row.
   const auto compare_rows = [&](const Json& of, const std::string& what, const Json& old_rows, const Json& new_rows,
                                 const char* name, const char* key) {
-    std::size_t both = 0;
     for (const Json& row : old_rows) {
       for (const Json& other : new_rows) {
-        if (row.at(name) != other.at(name) || row.at(key) != other.at(key)) continue;
-        compare(of, what + text_at(row, name), row, other);
-        ++both;
+        if (row.at(name) == other.at(name) && row.at(key) == other.at(key))
+          compare(of, what + text_at(row, name), row, other);
       }
     }
-    alone += old_rows.size() + new_rows.size() - 2 * both;
   };
   match("lanes", [&](const Json& of, const Json& now) {
     compare(of, "", of.at("total"), now.at("total"));
@@ -86,8 +115,9 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
       compare_rows(of, "", of.at("operands").at("lines"), now.at("operands").at("lines"), "line", "within");
   });
   if (table.rows() > 0) text += table.text(screen);
-  std::string counts = fmt::format("{} counts differ, {} are the same", grouped(table.rows()), grouped(same));
-  if (alone > 0) counts += fmt::format(", and {} of lines and questions are in one result alone", grouped(alone));
+  std::string counts = fmt::format("{} numbers differ, {} are the same", grouped(differ), grouped(same));
+  if (alone > 0) counts += fmt::format(", and {} are in one result alone", grouped(alone));
+  if (differ > table.rows()) counts += fmt::format("; the table shows the {} counts of totals", grouped(table.rows()));
   return text + wrapped(counts + '.', screen.columns);
 }
 

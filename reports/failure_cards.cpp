@@ -91,7 +91,7 @@ Json commands_of(const corpus::Entry& entry, const std::string& subject, const s
       foreign += fmt::format(" --subject-timeout {}", timeout);
   }
   const std::string lanes = fmt::format("--lanes '{}/*'{}", subject, foreign);
-  const std::string file = fmt::format("echo '{}' > case.pairs", fuzz::pair_text(entry.pair));
+  const std::string file = fmt::format("echo '{}' > case.pairs", fuzz::pair_text(corpus::pair_of(entry)));
   Json rows = Json::array();
   const auto add = [&](const char* label, const std::string& text) {
     rows.push_back({{"label", label}, {"text", text}});
@@ -118,7 +118,8 @@ Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const
     for (const Json& row : verdicts) {
       const ReportLane& lane = counts.lanes[row["lane"].get<std::size_t>()];
       if (!is_of_kind(lane.id) || !lane.row || !shows(language, *lane.row)) continue;
-      const SnippetCase found{name, entry.pair, truth, lane.row, verdict_of(row["verdict"].get<std::string>())};
+      const SnippetCase found{name, corpus::pair_of(entry), truth, lane.row,
+                              verdict_of(row["verdict"].get<std::string>())};
       std::string text = snippet(language, found);
       if (lane.row->foreign) {
         rows.push_back({{"label", kSnippetKinds[static_cast<int>(language)]}, {"text", text}});
@@ -134,7 +135,7 @@ Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const
   add_lane(SnippetKind::cuda);
   for (const SnippetKind language : {SnippetKind::python, SnippetKind::obj}) {
     rows.push_back({{"label", kSnippetKinds[static_cast<int>(language)]},
-                    {"text", snippet(language, {name, entry.pair, truth, nullptr, truth})}});
+                    {"text", snippet(language, {name, corpus::pair_of(entry), truth, nullptr, truth})}});
   }
   return rows;
 }
@@ -145,7 +146,7 @@ struct Lacking {
 };
 
 // The maps stored with a case if there is room for them; otherwise null.
-Json maps_of(const std::filesystem::path& case_file, const Pair& pair, const std::vector<std::string>& lanes,
+Json maps_of(const std::filesystem::path& case_file, const AnyPair& pair, const std::vector<std::string>& lanes,
              std::size_t& room, Lacking& lacking) {
   const std::filesystem::path file = std::filesystem::path(case_file).replace_extension(".maps.json");
   const std::string directory = case_file.parent_path().parent_path().string();
@@ -178,8 +179,8 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
   const Json& simplest = kind.at("simplest");
   const std::string subject = kind.at("subject");
   const std::filesystem::path file = fuzz::case_file(directory, simplest);
-  const std::vector<corpus::Entry> entries = corpus::read_pairs(file);
-  if (entries.empty() || fuzz::pair_text(entries.front().pair) != simplest.at("pair").get<std::string>())
+  const std::vector<corpus::Entry> entries = corpus::read_pairs(file, PairTypes::both);
+  if (entries.empty() || fuzz::pair_text(corpus::pair_of(entries.front())) != simplest.at("pair").get<std::string>())
     throw corpus::FormatError(
         cannot("use", file, "its first pair is not that of failures.json; run `graze minimize` again"));
   const corpus::Entry& entry = entries.front();
@@ -198,16 +199,16 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
     card["kind"][field] = kind.at(field);
   card.update({{"minimised", minimised},
                {"from", from},
-               {"pair", coordinates_of(entry.pair)},
+               {"pair", coordinates_of(corpus::pair_of(entry))},
                {"truth",
                 {{"verdict", name(truth)},
                  {"contact", corpus::text_of(entry, "contact")},
                  {"margin", number_in(file, entry, "margin")},
                  {"margin_ulps", number_in(file, entry, "margin_ulps")}}},
-               {"drawing", drawing_of(entry.pair)},
+               {"drawing", drawing_of(corpus::pair_of(entry))},
                {"verdicts", verdicts},
                {"sentences", simplest.at("sentences")},
-               {"maps", maps_of(file, entry.pair, lanes, room, lacking)},
+               {"maps", maps_of(file, corpus::pair_of(entry), lanes, room, lacking)},
                {"commands", commands_of(entry, subject, from, spec)},
                {"snippets", snippets_of(counts, entry, kind, truth, verdicts, from)}});
   return card;
@@ -254,9 +255,7 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
   const Json kinds = fuzz::read_kinds(directory);
   if (kinds.is_null() && !summary["signatures"].empty())
     report["missing"].push_back(
-        fuzz::has_doubles(summary["spec"])
-            ? "The kinds of failure are not known: `graze minimize` does not take pairs of doubles."
-            : "The kinds of failure are not known yet: `graze minimize DIR` finds and explains them.");
+        "The kinds of failure are not known yet: `graze minimize DIR` finds and explains them.");
   const std::size_t without = kinds.is_null() ? 0 : fuzz::signatures_without_kind(summary, kinds);
   if (without > 0)
     report["missing"].push_back(

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <regex>
 
+#include "analysis/lane_trace.h"
 #include "backends/backends.h"
 #include "core/plain_file.h"
 #include "core/text.h"
@@ -89,16 +90,17 @@ std::string flags_of(const Lane& lane, const subjects::Opened& opened) {
   return text;
 }
 
-std::string hex_line(const Pair& pair) {
+std::string hex_line(const AnyPair& pair) {
   std::string line;
-  for (int i = 0; i < kCoordinates; ++i) line += (i > 0 ? " " : "") + corpus::hex_float(coordinates(pair)[i]);
+  for (int i = 0; i < kCoordinates; ++i) line += (i > 0 ? " " : "") + corpus::hex_float(coordinates(pair.doubles)[i]);
   return line;
 }
 
 // For a CUDA lane in a test that also runs without a device: only Graze can replay the lane there. For a toolchain's
 // lane Graze compiles the source as the toolchain does.
-std::string by_graze(const Lane& lane, const Pair& pair, const subjects::Opened& opened, std::string_view real) {
-  std::string command = fmt::format("echo '{}' | graze check - --json --lanes {}", hex_line(pair), lane.id);
+std::string by_graze(const Lane& lane, const AnyPair& pair, const subjects::Opened& opened, std::string_view real) {
+  std::string command = fmt::format("echo '{}{}' | graze check - --json --lanes {}", hex_line(pair),
+                                    pair.floats ? "" : " | coordinates=f64", lane.id);
   if (opened.kind != "published")
     command += fmt::format(" --subject {} --subject-timeout {}",
                            shell_word(opened.wanted.name + '=' + opened.wanted.what), opened.wanted.timeout);
@@ -148,7 +150,7 @@ ForeignCall kernel_call(const Lane& lane) {
   return call;
 }
 
-ForeignCall foreign_call(const Lane& lane, const Pair& pair, std::string_view compiler, std::string_view libraries) {
+ForeignCall foreign_call(const Lane& lane, const AnyPair& pair, std::string_view compiler, std::string_view libraries) {
   const subjects::Opened& opened = *subjects::opened(lane.info->id);
   const std::string_view scalar = name(lane.scalar), real = lane.scalar == Scalar::f32 ? "float" : "double";
   ForeignCall call;
@@ -181,7 +183,7 @@ static int decide(const {}*, const {}*) {{
 )",
                     real, real,
                     cpp_string("cd " + shell_word(std::filesystem::current_path().string()) + " && echo '" +
-                               hex_line(pair) + "' | (" + opened.wanted.what.substr(4) + ")"));
+                               hex_line(analysis::seen_by(lane, pair)) + "' | (" + opened.wanted.what.substr(4) + ")"));
     return call;
   }
   const std::string file = opened.file.string();

@@ -5,8 +5,8 @@
 
 #include <string>
 
+#include "core/any_pair.h"
 #include "core/lanes/lanes.h"
-#include "core/pair.h"
 
 namespace graze::reports {
 
@@ -25,6 +25,6 @@ ForeignCall kernel_call(const Lane& lane);
 
 // For a program on the host. A CUDA lane is called through the graze command, which asks a device or the lane's twin.
 // Requires: shows_foreign(lane).
-ForeignCall foreign_call(const Lane& lane, const Pair& pair, std::string_view compiler, std::string_view libraries);
+ForeignCall foreign_call(const Lane& lane, const AnyPair& pair, std::string_view compiler, std::string_view libraries);
 
 }  // namespace graze::reports

@@ -72,8 +72,9 @@ std::map<std::pair<std::string, std::string>, Kept> simplest_of(const fs::path& 
                                         [](const auto& field) { return field.first == "stratum"; });
       if (stratum == entry.fields.end()) continue;  // a result of the minimiser, whose stratum is another pair's
       const fs::path file = fuzz::case_file(directory, row);
-      const std::string why = entry.doubles ? "" : "\nWhy: graze explain " + path_word(file.string());
-      const Kept kept{entry.doubles ? Simplicity() : simplicity(entry.pair), fuzz::pair_text(entry), file, why};
+      const AnyPair pair = corpus::pair_of(entry);
+      const Kept kept{simplicity(pair), fuzz::pair_text(pair), file,
+                      "\nWhy: graze explain " + path_word(file.string())};
       for (const analysis::WrongLane& lane : signature->wrong_lanes) {
         if (lane.mark == '?') continue;  // declined, which is not wrong
         for (const std::string& of : {stratum->second, std::string()}) {

@@ -100,18 +100,20 @@ std::string html(const std::string& text) {
   return escaped;
 }
 
-Json coordinates_of(const Pair& pair) {
+Json coordinates_of(const AnyPair& pair) {
   Json decimal = Json::array(), hex = Json::array(), value = Json::array();
-  for (int i = 0; i < kCoordinates; ++i) {
-    const float c = coordinates(pair)[i];
-    decimal.push_back(fmt::format("{}", c));
-    hex.push_back(corpus::hex_float(c));
-    value.push_back(static_cast<double>(c));
-  }
+  visit(pair, [&](const auto& own) {
+    for (int i = 0; i < kCoordinates; ++i) {
+      const auto c = coordinates(own)[i];
+      decimal.push_back(fmt::format("{}", c));
+      hex.push_back(corpus::hex_float(c));
+      value.push_back(double{c});
+    }
+  });
   return {{"decimal", decimal}, {"hex", hex}, {"value", value}};
 }
 
-Json drawing_of(const Pair& pair) {
+Json drawing_of(const AnyPair& pair) {
   const auto points = [](const std::vector<Vec3<double>>& all) {
     Json rows = Json::array();
     for (const Vec3<double>& p : all) rows.push_back({p.x, p.y, p.z});

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "core/pair.h"
+#include "core/any_pair.h"
 
 namespace graze::reports {
 
@@ -18,8 +18,8 @@ std::string page_head(const std::string& title, const std::string& style);
 
 // A card's "pair" has its coordinates in decimals, hex floats and values. Its "drawing" has the contact and the line of
 // both planes.   Requires: finite coordinates.
-nlohmann::ordered_json coordinates_of(const Pair& pair);
-nlohmann::ordered_json drawing_of(const Pair& pair);
+nlohmann::ordered_json coordinates_of(const AnyPair& pair);
+nlohmann::ordered_json drawing_of(const AnyPair& pair);
 
 // A share against the margin, for one row of the report's `margins`: that of verdicts that are "wrong", or that the
 // lane "differs" in from its cpu lane.

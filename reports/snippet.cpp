@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -114,19 +115,22 @@ std::string_view file_of(SnippetKind kind) {
 }
 
 // The vertices of one triangle in the kind's language; C++ shows decimals beside the exact values.
-std::string vertices(SnippetKind kind, const Vec3<float> (&triangle)[3], char label) {
+template <class Real>
+std::string vertices(SnippetKind kind, const Vec3<Real> (&triangle)[3], char label) {
+  constexpr bool kFloat = std::is_same_v<Real, float>;
   std::string text;
   for (int i = 0; i < 3; ++i) {
-    const Vec3<float>& v = triangle[i];
+    const Vec3<Real>& v = triangle[i];
     const std::string x = corpus::hex_float(v.x), y = corpus::hex_float(v.y), z = corpus::hex_float(v.z);
-    // Nine digits identify a float32, even if they are read as a double first.
-    const std::string decimals = fmt::format("{:.9g} {:.9g} {:.9g}", v.x, v.y, v.z);
+    // Nine digits identify a float32, even if they are read as a double first; seventeen identify a double.
+    const std::string decimals = fmt::format("{0:.{3}g} {1:.{3}g} {2:.{3}g}", v.x, v.y, v.z, kFloat ? 9 : 17);
     if (kind == SnippetKind::python) {
       text += fmt::format("{}\"{} {} {}\"", i > 0 ? ",\n     " : "", x, y, z);
     } else if (kind == SnippetKind::obj) {
       text += fmt::format("# {} {} {}\nv {}\n", x, y, z, decimals);
     } else {
-      text += fmt::format("    {}f, {}f, {}f,  // {}[{}]: {}\n", x, y, z, label, i, decimals);
+      const char* suffix = kFloat ? "f" : "";
+      text += fmt::format("    {0}{6}, {1}{6}, {2}{6},  // {3}[{4}]: {5}\n", x, y, z, label, i, decimals, suffix);
     }
   }
   return text;
@@ -218,8 +222,10 @@ std::string snippet(SnippetKind kind, const SnippetCase& found) {
       {"case", in_comment(found.name)},
       {"truth", std::string(name(found.truth))},
       {"intersects", found.truth == Verdict::intersects ? "true" : "false"},
-      {"vertices_a", vertices(kind, found.pair.a, 'a')},
-      {"vertices_b", vertices(kind, found.pair.b, 'b')}};
+      {"vertices_a", visit(found.pair, [&](const auto& pair) { return vertices(kind, pair.a, 'a'); })},
+      {"vertices_b", visit(found.pair, [&](const auto& pair) { return vertices(kind, pair.b, 'b'); })},
+      {"stored", found.pair.floats ? "float" : "double"},
+      {"type_of_number", found.pair.floats ? "float32" : "double"}};
   values.emplace_back("coordinates", values[4].second + values[5].second);
   if (foreign) {
     const bool test = kind == SnippetKind::gtest;

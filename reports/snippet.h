@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/any_pair.h"
 #include "core/lanes/lanes.h"
-#include "core/pair.h"
 #include "core/verdict.h"
 
 namespace graze::reports {
@@ -25,7 +25,7 @@ bool shows_lanes(SnippetKind kind);
 
 struct SnippetCase {
   std::string name;  // the pair's origin, for a comment
-  Pair pair;
+  AnyPair pair;
   Verdict truth;
   const Lane* lane;  // set if the kind shows a lane
   Verdict verdict;   // that lane's verdict

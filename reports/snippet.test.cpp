@@ -40,8 +40,8 @@ TEST(Snippet, HoldsNothingItDoesNotNeed) {
 }
 
 TEST(Snippet, ANameCannotEndItsComment) {
-  SnippetCase found{
-      "x\nsystem(\"rm\")\r#", {}, Verdict::intersects, find_lane("projected_sat/f32/cpu"), Verdict::disjoint};
+  SnippetCase found{"x\nsystem(\"rm\")\r#", Pair{}, Verdict::intersects, find_lane("projected_sat/f32/cpu"),
+                    Verdict::disjoint};
   for (std::size_t k = 0; k < std::size(kSnippetKinds); ++k) {
     const auto kind = static_cast<SnippetKind>(k);
     if (kind == SnippetKind::cuda) found.lane = find_lane("projected_sat/f32/cuda-fma");

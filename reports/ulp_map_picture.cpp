@@ -138,6 +138,8 @@ std::array<bool, analysis::kCellKinds> kinds_in(const analysis::UlpMap& map) {
   return found;
 }
 
+constexpr const char* kBase64 = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/=";
+
 std::string base64(std::string bytes) {
   namespace iterators = boost::archive::iterators;
   using Letters = iterators::base64_from_binary<iterators::transform_width<std::string::const_iterator, 6, 8>>;
@@ -148,9 +150,12 @@ std::string base64(std::string bytes) {
   return letters;
 }
 
-std::vector<std::string> hex(const Pair& pair) {
+std::vector<std::string> hex(const AnyPair& pair) {
   std::vector<std::string> texts;
-  for (int c = 0; c < kCoordinates; ++c) texts.push_back(fmt::format("{:a}", coordinates(pair)[c]));
+  visit(pair, [&](const auto& own) {
+    for (int c = 0; c < kCoordinates; ++c) texts.push_back(fmt::format("{:a}", coordinates(own)[c]));
+  });
+  if (!pair.floats) texts.push_back("f64");
   return texts;
 }
 
@@ -224,13 +229,16 @@ nlohmann::ordered_json to_json(const analysis::UlpMap& map) {
   return json;
 }
 
-bool is_map_of(const nlohmann::ordered_json& json, const Pair& pair, const std::vector<std::string>& lanes) try {
+bool is_map_of(const nlohmann::ordered_json& json, const AnyPair& pair, const std::vector<std::string>& lanes) try {
   const std::string x = json.at("x"), y = json.at("y");
   if (!analysis::coordinate_of_name(x) || !analysis::coordinate_of_name(y) || json.at("pair") != hex(pair))
     return false;
   const nlohmann::ordered_json frame = frame_of(x, y);
   for (const auto& [key, value] : frame.items()) {
     if (json.at(key) != value) return false;
+  }
+  for (const char* list : {"legend", "panels"}) {
+    if (!json.at(list).is_array()) return false;
   }
   for (const nlohmann::ordered_json& row : json.at("legend")) {
     std::size_t kind = 0;
@@ -245,7 +253,9 @@ bool is_map_of(const nlohmann::ordered_json& json, const Pair& pair, const std::
                  : std::find(lanes.begin(), lanes.end(), name) == lanes.end() ||
                        std::find(names.begin(), names.end(), name) != names.end())
       return false;
-    if (!panel.at("png").is_string() || !are_counts(panel.at("shows"), of_truth)) return false;
+    if (panel.at("png").get<std::string>().find_first_not_of(kBase64) != std::string::npos ||
+        !are_counts(panel.at("shows"), of_truth))
+      return false;
     names.push_back(name);
   }
   return !names.empty();

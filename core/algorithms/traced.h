@@ -225,9 +225,10 @@ struct TracingPolicy {
   }
 };
 
-// Runs the algorithm (an index into Algorithms) on the pair with these numbers, forced along the path.
-template <class Number, Contraction contraction = Contraction::none>
-Trace<typename Recorder<Number>::Kept> run_traced(int algorithm, const Pair& pair, const Path& lead = {}) {
+// Runs the algorithm (an index into Algorithms) on the pair, rounded to these numbers, forced along the path.
+template <class Number, Contraction contraction = Contraction::none, class Coordinate>
+Trace<typename Recorder<Number>::Kept> run_traced(int algorithm, const BasicPair<Coordinate>& pair,
+                                                  const Path& lead = {}) {
   using Real = Traced<Number, contraction>;
   const auto run = [&]<std::size_t... i>(Recorder<Number> & recorder, std::index_sequence<i...>) {
     recorder.lead = lead;

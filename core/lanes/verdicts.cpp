@@ -19,14 +19,27 @@ void decide(const DecideBlock& block, std::span<const DoublePair> pairs, Verdict
   decide_all(block, pairs, to);
 }
 
+namespace {
+
+std::vector<Verdict> list_of(const LaneVerdicts& said, std::size_t pairs) {
+  std::vector<Verdict> verdicts;
+  verdicts.reserve(pairs);
+  for (std::size_t i = 0; i < pairs; ++i) verdicts.push_back(said.at(i));
+  return verdicts;
+}
+
+}  // namespace
+
 std::vector<Verdict> verdicts_of(const DecideBlock& block, std::span<const Pair> pairs) {
   VerdictBits bits;
   decide(block, pairs, bits);
-  const LaneVerdicts said{bits.intersects, bits.declined, &block, pairs.data()};
-  std::vector<Verdict> verdicts;
-  verdicts.reserve(pairs.size());
-  for (std::size_t i = 0; i < pairs.size(); ++i) verdicts.push_back(said.at(i));
-  return verdicts;
+  return list_of({bits.intersects, bits.declined, &block, pairs.data()}, pairs.size());
+}
+
+std::vector<Verdict> verdicts_of(const DecideBlock& block, std::span<const DoublePair> pairs) {
+  VerdictBits bits;
+  decide(block, pairs, bits);
+  return list_of({bits.intersects, bits.declined, &block, nullptr, pairs.data()}, pairs.size());
 }
 
 std::optional<Verdict> verdict_named(std::string_view word) {

@@ -38,6 +38,7 @@ struct LaneVerdicts {
 
 // The verdict on each pair. Does not call the block function if there are no pairs.
 std::vector<Verdict> verdicts_of(const DecideBlock& block, std::span<const Pair> pairs);
+std::vector<Verdict> verdicts_of(const DecideBlock& block, std::span<const DoublePair> pairs);
 
 // The verdict of that name; nothing if there is none.
 std::optional<Verdict> verdict_named(std::string_view word);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums and products are computed in double and rounded to float32 once. If the result is not exact, the move leads to a
-// nearby pair.
+// Sums and products are computed in double and rounded to the coordinate type once. If the result is not exact, the
+// move leads to a nearby pair.
 #include "core/simplify/moves.h"
 
 #include <algorithm>
@@ -8,27 +8,39 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
-#include "core/margin/margin.h"
 #include "core/simplify/simplicity.h"
 
 namespace graze {
 namespace {
 
-using Pairs = std::vector<Pair>;
+template <class Real>
+using Pairs = std::vector<BasicPair<Real>>;
 
-const Vec3<float>& vertex(const Pair& pair, int i) { return i < 3 ? pair.a[i] : pair.b[i - 3]; }
-Vec3<float>& vertex(Pair& pair, int i) { return i < 3 ? pair.a[i] : pair.b[i - 3]; }
+// Bits of the finest lattice that coordinates are rounded to.
+template <class Real>
+constexpr int kLatticeBits = std::is_same_v<Real, float> ? 24 : 51;
 
-void append(Pairs& moved, const Pair& pair) {
+template <class Real>
+const Vec3<Real>& vertex(const BasicPair<Real>& pair, int i) {
+  return i < 3 ? pair.a[i] : pair.b[i - 3];
+}
+template <class Real>
+Vec3<Real>& vertex(BasicPair<Real>& pair, int i) {
+  return i < 3 ? pair.a[i] : pair.b[i - 3];
+}
+
+template <class Real>
+void append(Pairs<Real>& moved, const BasicPair<Real>& pair) {
   if (is_finite(pair)) moved.push_back(pair);
 }
 
-// Appends the pair whose coordinate i is make(i), rounded to float32. Coordinates that overflow are not finite.
-template <class Make>
-void append_each(Pairs& moved, Make make) {
-  Pair result;
-  for (int i = 0; i < kCoordinates; ++i) coordinates(result)[i] = static_cast<float>(make(i));
+// Appends the pair whose coordinate i is make(i), rounded. Coordinates that overflow are not finite.
+template <class Real, class Make>
+void append_each(Pairs<Real>& moved, Make make) {
+  BasicPair<Real> result;
+  for (int i = 0; i < kCoordinates; ++i) coordinates(result)[i] = static_cast<Real>(make(i));
   append(moved, result);
 }
 
@@ -46,7 +58,8 @@ double nearest_whole(double x) {
 }
 
 // Rounds the pair to lattices. origin: the vertex that is translated to the origin first; -1 for no translation.
-void lattices(const Pair& pair, int origin, Pairs& moved) {
+template <class Real>
+void lattices(const BasicPair<Real>& pair, int origin, Pairs<Real>& moved) {
   double seen[kCoordinates], largest = 0;
   for (int i = 0; i < kCoordinates; ++i) {
     const double from = origin < 0 ? 0.0 : double{component(vertex(pair, origin), i % 3)};
@@ -56,7 +69,7 @@ void lattices(const Pair& pair, int origin, Pairs& moved) {
   if (largest == 0) return;
   if (origin >= 0) append_each(moved, [&](int i) { return seen[i]; });
   const int top = std::ilogb(largest) + 1;
-  for (int bits = 1; bits <= 24; ++bits) {
+  for (int bits = 1; bits <= kLatticeBits<Real>; ++bits) {
     const double to_whole = power_of_two(bits - top), back = power_of_two(top - bits),
                  about_one = power_of_two(1 - bits);
     double whole[kCoordinates];
@@ -69,49 +82,58 @@ void lattices(const Pair& pair, int origin, Pairs& moved) {
 
 using Point = Vec3<double>;
 
-// Appends the pair as seen from `origin` with axes u, v and w, rounded to a lattice of 1 to 24 bits or not at all.
-void in_frame(const Pair& pair, const Point& origin, const Point& u, const Point& v, const Point& w, Pairs& moved) {
+template <class Real>
+Point point(const BasicPair<Real>& pair, int i) {
+  const Vec3<Real>& v = vertex(pair, i);
+  return {double{v.x}, double{v.y}, double{v.z}};
+}
+
+// Appends the pair as seen from `origin` with axes u, v and w, rounded to a lattice or not at all.
+template <class Real>
+void in_frame(const BasicPair<Real>& pair, const Point& origin, const Point& u, const Point& v, const Point& w,
+              Pairs<Real>& moved) {
   const Point vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
   const double volume = dot(u, vw);
   if (volume == 0) return;
   double seen[kCoordinates], largest = 0;
   for (int i = 0; i < kCoordinates; ++i) {
-    const Point from = widen(vertex(pair, i / 3)) - origin;
+    const Point from = point(pair, i / 3) - origin;
     seen[i] = dot(from, i % 3 == 0 ? vw : i % 3 == 1 ? wu : uv) / volume;
     largest = std::max(largest, std::fabs(seen[i]));
   }
   if (!std::isfinite(largest) || largest == 0) return;
   append_each(moved, [&](int i) { return seen[i]; });
   const int top = std::ilogb(largest) + 1;
-  if (top > 1000 || top < -900) return;  // outside float32
-  for (int bits = 1; bits <= 24; ++bits) {
+  if (top > 1000 || top < -900) return;  // near the ends of the exponents
+  for (int bits = 1; bits <= kLatticeBits<Real>; ++bits) {
     const double to_whole = power_of_two(bits - top), back = power_of_two(top - bits);
     append_each(moved, [&](int i) { return nearest_whole(seen[i] * to_whole) * back; });
   }
 }
 
 // Maps four vertices to the origin and the ends of the unit vectors.
-void frames(const Pair& pair, int origin, Pairs& moved) {
-  const auto from_origin = [&](int i) { return widen(vertex(pair, i)) - widen(vertex(pair, origin)); };
+template <class Real>
+void frames(const BasicPair<Real>& pair, int origin, Pairs<Real>& moved) {
+  const auto from_origin = [&](int i) { return point(pair, i) - point(pair, origin); };
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < i; ++j) {
       if (i == origin || j == origin) continue;
       for (int k = 0; k < j; ++k) {
-        if (k != origin)
-          in_frame(pair, widen(vertex(pair, origin)), from_origin(k), from_origin(j), from_origin(i), moved);
+        if (k != origin) in_frame(pair, point(pair, origin), from_origin(k), from_origin(j), from_origin(i), moved);
       }
     }
   }
 }
 
-void replace_vertex(const Pair& pair, int v, Pairs& moved) {
-  Pair result = pair;
+template <class Real>
+void replace_vertex(const BasicPair<Real>& pair, int v, Pairs<Real>& moved) {
+  BasicPair<Real> result = pair;
   for (int other = 0; other < 6; ++other) {
     vertex(result, v) = vertex(pair, other);
     moved.push_back(result);
   }
   for (int point = 0; point < 27; ++point) {
-    const auto digit = [point](int power) { return static_cast<float>(point / power % 3 - 1); };
+    const auto digit = [point](int power) { return static_cast<Real>(point / power % 3 - 1); };
     vertex(result, v) = {digit(1), digit(3), digit(9)};
     moved.push_back(result);
   }
@@ -130,13 +152,14 @@ void replace_vertex(const Pair& pair, int v, Pairs& moved) {
 }
 
 // Replaces two coordinates, each by 0, 1 or -1.
-void replace_two(const Pair& pair, int first, Pairs& moved) {
+template <class Real>
+void replace_two(const BasicPair<Real>& pair, int first, Pairs<Real>& moved) {
   for (int second = 0; second < first; ++second) {
-    for (const float one : {0.0f, 1.0f, -1.0f}) {
-      for (const float other : {0.0f, 1.0f, -1.0f}) {
-        Pair result = pair;
-        coordinates(result)[first] = one;
-        coordinates(result)[second] = other;
+    for (const int one : {0, 1, -1}) {
+      for (const int other : {0, 1, -1}) {
+        BasicPair<Real> result = pair;
+        coordinates(result)[first] = static_cast<Real>(one);
+        coordinates(result)[second] = static_cast<Real>(other);
         moved.push_back(result);
       }
     }
@@ -145,7 +168,8 @@ void replace_two(const Pair& pair, int first, Pairs& moved) {
 
 // Subtracts a multiple of one axis from another. The multiple makes a vertex's coordinate 0, or is the nearest whole
 // number.
-void shear(const Pair& pair, int axis, int other, Pairs& moved) {
+template <class Real>
+void shear(const BasicPair<Real>& pair, int axis, int other, Pairs<Real>& moved) {
   for (int v = 0; v < 6; ++v) {
     const double quotient = double{component(vertex(pair, v), axis)} / component(vertex(pair, v), other);
     for (const double times : {quotient, std::nearbyint(quotient)}) {
@@ -157,8 +181,9 @@ void shear(const Pair& pair, int axis, int other, Pairs& moved) {
   }
 }
 
-void change_axis(const Pair& pair, int axis, Pairs& moved) {
-  std::vector<float> values{0, 1, -1};
+template <class Real>
+void change_axis(const BasicPair<Real>& pair, int axis, Pairs<Real>& moved) {
+  std::vector<Real> values{0, 1, -1};
   for (int v = 0; v < 6; ++v) values.push_back(component(vertex(pair, v), axis));
   for (std::size_t i = 3; i < values.size(); ++i) {
     append_each(moved, [&](int c) { return double{coordinates(pair)[c]} - (c % 3 == axis ? double{values[i]} : 0.0); });
@@ -170,8 +195,8 @@ void change_axis(const Pair& pair, int axis, Pairs& moved) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
   for (unsigned vertices = 1; vertices < 64; ++vertices) {
     if (std::has_single_bit(vertices)) continue;
-    for (const float value : values) {
-      Pair result = pair;
+    for (const Real value : values) {
+      BasicPair<Real> result = pair;
       for (int v = 0; v < 6; ++v) {
         if (vertices >> v & 1u) component(vertex(result, v), axis) = value;
       }
@@ -181,40 +206,43 @@ void change_axis(const Pair& pair, int axis, Pairs& moved) {
 }
 
 // The candidates that may replace a value in its pair.
-std::vector<float> replacements(const Pair& pair, float value) {
-  std::vector<float> found{0, value / 2, value * 2};
-  for (int n = 1; n <= 9; ++n) found.push_back(static_cast<float>(n));
+template <class Real>
+std::vector<Real> replacements(const BasicPair<Real>& pair, Real value) {
+  using Bits = std::conditional_t<std::is_same_v<Real, float>, std::uint32_t, std::uint64_t>;
+  std::vector<Real> found{0, value / 2, value * 2};
+  for (int n = 1; n <= 9; ++n) found.push_back(static_cast<Real>(n));
   for (int i = 0; i < kCoordinates; ++i) found.push_back(coordinates(pair)[i]);
   const std::size_t either_sign = found.size();
   for (std::size_t i = 0; i < either_sign; ++i) found.push_back(-found[i]);
 
   found.push_back(std::trunc(value));
-  found.push_back(std::trunc(value) + std::copysign(1.0f, value));
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  for (std::uint32_t dropped = 1; dropped < 24; ++dropped) {
-    const std::uint32_t lower = bits >> dropped << dropped;
-    found.push_back(std::bit_cast<float>(lower));
-    found.push_back(std::bit_cast<float>(lower + (1u << dropped)));
+  found.push_back(std::trunc(value) + std::copysign(Real{1}, value));
+  const auto bits = std::bit_cast<Bits>(value);
+  for (int dropped = 1; dropped < std::numeric_limits<Real>::digits; ++dropped) {
+    const Bits lower = bits >> dropped << dropped;
+    found.push_back(std::bit_cast<Real>(lower));
+    found.push_back(std::bit_cast<Real>(static_cast<Bits>(lower + (Bits{1} << dropped))));
   }
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
   found.push_back(std::nextafter(value, kInfinity));
   found.push_back(std::nextafter(value, -kInfinity));
 
-  const auto rank = [](float x) { return std::rotl(std::bit_cast<std::uint32_t>(x), 1); };
-  std::erase_if(found, [](float x) { return !std::isfinite(x); });
-  std::sort(found.begin(), found.end(), [&](float l, float r) { return rank(l) < rank(r); });
-  const auto last = std::unique(found.begin(), found.end(), [&](float l, float r) { return rank(l) == rank(r); });
+  const auto rank = [](Real x) { return std::rotl(std::bit_cast<Bits>(x), 1); };
+  std::erase_if(found, [](Real x) { return !std::isfinite(x); });
+  std::sort(found.begin(), found.end(), [&](Real l, Real r) { return rank(l) < rank(r); });
+  const auto last = std::unique(found.begin(), found.end(), [&](Real l, Real r) { return rank(l) == rank(r); });
   found.erase(last, found.end());
   return found;
 }
 
-void replace_value(const Pair& pair, int at, Pairs& moved) {
-  const float* c = coordinates(pair);
-  const float value = c[at];
-  const auto same = [value](float x) { return std::fabs(x) == std::fabs(value); };
+template <class Real>
+void replace_value(const BasicPair<Real>& pair, int at, Pairs<Real>& moved) {
+  const Real* c = coordinates(pair);
+  const Real value = c[at];
+  const auto same = [value](Real x) { return std::fabs(x) == std::fabs(value); };
   if (std::any_of(c, c + at, same)) return;  // done at its first occurrence
-  for (const float with : replacements(pair, value)) {
-    Pair result = pair;
+  for (const Real with : replacements(pair, value)) {
+    BasicPair<Real> result = pair;
     for (int i = at; i < kCoordinates; ++i) {
       if (same(c[i])) coordinates(result)[i] = std::signbit(c[i]) == std::signbit(value) ? with : -with;
     }
@@ -222,18 +250,20 @@ void replace_value(const Pair& pair, int at, Pairs& moved) {
   }
 }
 
-void replace_coordinate(const Pair& pair, int at, Pairs& moved) {
-  for (const float with : replacements(pair, coordinates(pair)[at])) {
-    Pair result = pair;
+template <class Real>
+void replace_coordinate(const BasicPair<Real>& pair, int at, Pairs<Real>& moved) {
+  for (const Real with : replacements(pair, coordinates(pair)[at])) {
+    BasicPair<Real> result = pair;
     coordinates(result)[at] = with;
     moved.push_back(result);
   }
 }
 
-void rearrange(const Pair& pair, Pairs& moved) {
+template <class Real>
+void rearrange(const BasicPair<Real>& pair, Pairs<Real>& moved) {
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3;
-    Pair vertices_a = pair, vertices_b = pair, axes = pair, mirrored = pair;
+    BasicPair<Real> vertices_a = pair, vertices_b = pair, axes = pair, mirrored = pair;
     std::swap(vertices_a.a[i], vertices_a.a[j]);
     std::swap(vertices_b.b[i], vertices_b.b[j]);
     for (int v = 0; v < 6; ++v) {
@@ -251,7 +281,7 @@ void rearrange(const Pair& pair, Pairs& moved) {
       shear(pair, i, other, moved);
     }
   }
-  Pair exchanged = pair;
+  BasicPair<Real> exchanged = pair;
   std::swap(exchanged.a, exchanged.b);
   moved.push_back(exchanged);
   const auto scaled = [&](int exponent) {
@@ -265,56 +295,61 @@ void rearrange(const Pair& pair, Pairs& moved) {
 }
 
 // The kinds of moves in the order of moves.h: their number, and the function that appends the moves of the i-th kind.
-constexpr struct {
+template <class Real>
+struct Moves {
   int kinds;
-  void (*append)(const Pair& pair, int i, Pairs& moved);
-} kMoves[] = {
-    {7, [](const Pair& pair, int i, Pairs& moved) { lattices(pair, i - 1, moved); }},
-    {6, replace_vertex},
-    {3, change_axis},
-    {kCoordinates, replace_value},
-    {kCoordinates, replace_coordinate},
-    {kCoordinates, replace_two},
-    {1, [](const Pair& pair, int, Pairs& moved) { rearrange(pair, moved); }},
-    {6, frames},
+  void (*append)(const BasicPair<Real>& pair, int i, Pairs<Real>& moved);
+};
+template <class Real>
+constexpr Moves<Real> kMoves[] = {
+    {7, [](const BasicPair<Real>& pair, int i, Pairs<Real>& moved) { lattices(pair, i - 1, moved); }},
+    {6, replace_vertex<Real>},
+    {3, change_axis<Real>},
+    {kCoordinates, replace_value<Real>},
+    {kCoordinates, replace_coordinate<Real>},
+    {kCoordinates, replace_two<Real>},
+    {1, [](const BasicPair<Real>& pair, int, Pairs<Real>& moved) { rearrange(pair, moved); }},
+    {6, frames<Real>},
 };
 
 constexpr int sum_of_kinds() {
   int sum = 0;
-  for (const auto& row : kMoves) sum += row.kinds;
+  for (const auto& row : kMoves<float>) sum += row.kinds;
   return sum;
 }
 static_assert(sum_of_kinds() == kMoveKinds);
 
 }  // namespace
 
-void append_moves(const Pair& pair, int kind, Pairs& moved) {
-  for (const auto& row : kMoves) {
+template <class Real>
+void append_moves(const BasicPair<Real>& pair, int kind, Pairs<Real>& moved) {
+  for (const auto& row : kMoves<Real>) {
     if (kind < row.kinds) return row.append(pair, kind, moved);
     kind -= row.kinds;
   }
 }
 
-std::vector<Pair> simpler_moves(const Pair& pair, int kind, std::size_t& made) {
-  thread_local std::vector<Pair> moved;
+template <class Real>
+Pairs<Real> simpler_moves(const BasicPair<Real>& pair, int kind, std::size_t& made) {
+  thread_local Pairs<Real> moved;
   moved.clear();
   append_moves(pair, kind, moved);
   made += moved.size();
   const std::uint64_t now = simplicity_counts(pair);
   struct Simpler {
     std::uint64_t counts;
-    const Pair* pair;
+    const BasicPair<Real>* pair;
   };
   thread_local std::vector<Simpler> order;
   order.clear();
-  for (const Pair& m : moved) {
+  for (const BasicPair<Real>& m : moved) {
     const std::uint64_t counts = simplicity_counts(m, now);
     if (counts < now || (counts == now && simpler_coordinates(m, pair))) order.push_back({counts, &m});
   }
   std::sort(order.begin(), order.end(), [](const Simpler& l, const Simpler& r) {
     return l.counts != r.counts ? l.counts < r.counts : simpler_coordinates(*l.pair, *r.pair);
   });
-  std::vector<Pair> simpler;
+  Pairs<Real> simpler;
   simpler.reserve(order.size());
   for (const Simpler& next : order) {
     if (simpler.empty() || simpler_coordinates(simpler.back(), *next.pair) ||
@@ -323,5 +358,10 @@ std::vector<Pair> simpler_moves(const Pair& pair, int kind, std::size_t& made) {
   }
   return simpler;
 }
+
+template void append_moves(const Pair&, int, std::vector<Pair>&);
+template void append_moves(const DoublePair&, int, std::vector<DoublePair>&);
+template std::vector<Pair> simpler_moves(const Pair&, int, std::size_t&);
+template std::vector<DoublePair> simpler_moves(const DoublePair&, int, std::size_t&);
 
 }  // namespace graze

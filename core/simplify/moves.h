@@ -11,8 +11,8 @@
 namespace graze {
 
 // The moves come in kinds. The number of kinds and their moves, in order:
-//   7   a vertex to the origin (none, then each); all coordinates rounded to a lattice of 1 to 24 bits or not at
-//       all; then scaled to whole numbers, or to a size of about one, or not
+//   7   a vertex to the origin (none, then each); all coordinates rounded to a lattice of 1 to 24 bits (51 of
+//       doubles) or not at all; then scaled to whole numbers, or to a size of about one, or not
 //   6   a vertex replaced by another, by one of the 27 points with coordinates in {-1, 0, 1}, or by p + q - r of
 //       three vertices
 //   3   on one axis: several vertices given one value, 0, 1, -1 or one that occurs there; all translated by one
@@ -23,17 +23,19 @@ namespace graze {
 //   1   two axes or vertices exchanged, the triangles exchanged, an axis mirrored; a multiple of an axis added to
 //       another: once, twice, or so that a vertex's coordinate becomes 0 or the remainder of a division; all scaled
 //       by a power of two
-//   6   four vertices to the origin and the ends of the unit vectors, rounded to a lattice of 1 to 24 bits or not
+//   6   four vertices to the origin and the ends of the unit vectors, rounded to such a lattice or not
 // A value is replaced by 0, a value that occurs, its half or double, a whole number up to 9, each with either sign,
-// itself rounded towards and away from zero to 1 to 23 bits or to a whole number, or its neighbours.
+// itself rounded towards and away from zero to any smaller number of bits or to a whole number, or its neighbours.
 inline constexpr int kMoveKinds = 77;
 
 // Appends the results of the moves of a kind; only finite pairs, some of which may equal the original pair.
 // Requires: finite coordinates, 0 <= kind < kMoveKinds.
-void append_moves(const Pair& pair, int kind, std::vector<Pair>& moved);
+template <class Real>
+void append_moves(const BasicPair<Real>& pair, int kind, std::vector<BasicPair<Real>>& moved);
 
 // The pairs that moves of this kind make and that are simpler than the pair: each once, the simplest first. Adds the
 // number of all pairs made to `made`.   Requires: as append_moves.
-std::vector<Pair> simpler_moves(const Pair& pair, int kind, std::size_t& made);
+template <class Real>
+std::vector<BasicPair<Real>> simpler_moves(const BasicPair<Real>& pair, int kind, std::size_t& made);
 
 }  // namespace graze

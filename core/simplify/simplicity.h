@@ -6,7 +6,7 @@
 #include <compare>
 #include <cstdint>
 
-#include "core/pair.h"
+#include "core/any_pair.h"
 
 namespace graze {
 
@@ -22,24 +22,29 @@ namespace graze {
 //   9. the coordinates in order, by magnitude and then sign: two pairs are equal only if all their bits are equal.
 struct Simplicity {
   std::uint64_t counts = 0;  // the eight counts, the first in the highest bits
-  std::array<std::uint32_t, kCoordinates> ranks{};
+  std::array<std::uint64_t, kCoordinates> ranks{};
   auto operator<=>(const Simplicity&) const = default;
 };
 
-// Requires: finite coordinates.
-Simplicity simplicity(const Pair& pair);
+// Pairs of floats and of doubles are in one order.   Requires: finite coordinates.
+template <class Real>
+Simplicity simplicity(const BasicPair<Real>& pair);
 
 // Returns simplicity(pair).counts if that is at most `most`. Otherwise returns, faster, some number above `most`.
 // Requires: finite coordinates.
-std::uint64_t simplicity_counts(const Pair& pair, std::uint64_t most = ~std::uint64_t{0});
+template <class Real>
+std::uint64_t simplicity_counts(const BasicPair<Real>& pair, std::uint64_t most = ~std::uint64_t{0});
 
 // The count of a criterion, 1 to 8.
 int count_of(const Simplicity& simplicity, int criterion);
 
 // Whether l comes before r in the order of their coordinates alone, criterion 9.
-bool simpler_coordinates(const Pair& l, const Pair& r);
+template <class Real>
+bool simpler_coordinates(const BasicPair<Real>& l, const BasicPair<Real>& r);
+
+inline Simplicity simplicity(const AnyPair& pair) { return simplicity(pair.doubles); }
 
 // How many different magnitudes other than 0 and 1 the pair has.
-inline int nontrivial_magnitudes(const Pair& pair) { return count_of(simplicity(pair), 1); }
+inline int nontrivial_magnitudes(const AnyPair& pair) { return count_of(simplicity(pair), 1); }
 
 }  // namespace graze

@@ -219,7 +219,7 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
 
 namespace {
 
-// Of timings.json: texts, numbers that are not negative, yes or no; `costs` is checked where it is used.
+// Of timings.json: texts, times that are not negative, counts, yes or no; `costs` is checked where it is used.
 bool is_run(const Json& run) {
   if (!run.is_object()) return false;
   for (const auto& [name, value] : run.items()) {
@@ -228,6 +228,7 @@ bool is_run(const Json& run) {
     const bool fits = name == "costs"                          ? value.is_object()
                       : is_text                                ? value.is_string()
                       : name == "merged" && value.is_boolean() ? true
+                      : name.find("seconds") == name.npos      ? checked_later || value.is_number_unsigned()
                                                                : checked_later || (value.is_number() && value >= 0);
     if (!fits) return false;
   }

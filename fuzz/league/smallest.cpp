@@ -48,7 +48,7 @@ LeagueFailure minimised(const Candidate& candidate) {
     const Minimised found = minimise(failures.front(), candidate.pair, {}, most_moved(candidate));
     confirm(under_test, failures.front(), found.pair);
     if (candidate.shape == kClear && !is_clear(oracle::truth(found.pair))) return result;
-    result.pair = found.pair;
+    result.pair = found.pair.floats.value();
     result.minimised = true;
   } catch (const oracle::OracleMismatch&) {
     throw;

@@ -45,7 +45,7 @@ Case read_case(const SelectedLanes& under_test, const Json& spec, const std::fil
   Case c{*signature, row.at("case"), row.at("count"), {}, {}};
   c.entries = checked_cases(under_test, spec, directory, row);
   for (corpus::Entry& entry : c.entries) entry.written.clear();  // there are many
-  c.reasons = reasons_of(under_test, c.signature.subject, c.shown().pair, truth_of(c.shown()));
+  c.reasons = reasons_of(under_test, c.signature.subject, corpus::pair_of(c.shown()), truth_of(c.shown()));
   return c;
 }
 
@@ -100,12 +100,12 @@ std::size_t simplest_of(const Kind& kind, const std::vector<Case>& cases, std::s
                                     [&](const LaneReason& reason) { return is_of(kind, c, reason); });
     const bool open = std::any_of(c.reasons.begin(), c.reasons.end(),
                                   [&](const LaneReason& reason) { return is_of(kind, c, reason) && !reason.settled; });
-    return std::tuple(mixed, kind.is_rarer(c), open, shown.contains(pair_text(c.shown().pair)),
-                      simplicity(c.shown().pair));
+    return std::tuple(mixed, kind.is_rarer(c), open, shown.contains(pair_text(corpus::pair_of(c.shown()))),
+                      simplicity(corpus::pair_of(c.shown())));
   };
   const std::size_t best = *std::min_element(kind.places.begin(), kind.places.end(),
                                              [&](std::size_t l, std::size_t r) { return rank(l) < rank(r); });
-  shown.insert(pair_text(cases[best].shown().pair));
+  shown.insert(pair_text(corpus::pair_of(cases[best].shown())));
   return best;
 }
 
@@ -117,10 +117,14 @@ double ulps_of(const corpus::Entry& entry) {
 // The pair as users see it, with all lanes' verdicts, and the reasons why lanes of the kind are wrong.
 Json simplest_pair(const SelectedLanes& under_test, const Kind& kind, const Case& c) {
   std::vector<const Lane*> apart;
-  const std::vector<Verdict> verdicts = decide(under_test, c.shown().pair, apart);
+  const std::vector<Verdict> verdicts = decide(under_test, corpus::pair_of(c.shown()), apart);
   if (!apart.empty()) throw std::runtime_error(apart.front()->id + ": the verdicts of device and twin differ");
-  Json result = {{"case", c.file},         {"pair", pair_text(c.shown().pair)}, {"from", corpus::origin_of(c.shown())},
-                 {"lanes", Json::array()}, {"verdicts", Json::object()},        {"sentences", Json::array()}};
+  Json result = {{"case", c.file},
+                 {"pair", pair_text(corpus::pair_of(c.shown()))},
+                 {"from", corpus::origin_of(c.shown())},
+                 {"lanes", Json::array()},
+                 {"verdicts", Json::object()},
+                 {"sentences", Json::array()}};
   std::vector<const Lane*> own, others;
   for (const LaneReason& reason : c.reasons) {
     const bool is_own = is_of(kind, c, reason);
@@ -131,7 +135,7 @@ Json simplest_pair(const SelectedLanes& under_test, const Kind& kind, const Case
     result["verdicts"][under_test.lanes[l]->id] = name(verdicts[l]);
   Json& sentences = result["sentences"];
   const auto tell = [&](const std::vector<const Lane*>& some) {
-    for (const std::string& text : analysis::sentences(analysis::explain(c.shown().pair, some)))
+    for (const std::string& text : analysis::sentences(analysis::explain(corpus::pair_of(c.shown()), some)))
       sentences.push_back(text);
   };
   tell(own);
@@ -162,11 +166,11 @@ Json worst_pair(const SelectedLanes& under_test, const Kind& kind, const std::ve
   // The simplest was of the kind before; code whose verdicts change may be right about it now.
   const auto worst = std::find_if(candidates.begin(), candidates.end() - 1, [&](const Candidate& candidate) {
     const std::vector<LaneReason> reasons =
-        reasons_of(under_test, kind.subject, candidate.entry->pair, truth_of(*candidate.entry));
+        reasons_of(under_test, kind.subject, corpus::pair_of(*candidate.entry), truth_of(*candidate.entry));
     return std::any_of(reasons.begin(), reasons.end(), [&](const auto& r) { return is_of(kind, *candidate.of, r); });
   });
   return {{"case", worst->of->file},
-          {"pair", pair_text(worst->entry->pair)},
+          {"pair", pair_text(corpus::pair_of(*worst->entry))},
           {"from", corpus::origin_of(*worst->entry)},
           {"margin_ulps", std::strtod(corpus::text_of(*worst->entry, "margin_ulps").c_str(), nullptr)}};
 }
@@ -213,7 +217,7 @@ Verdict truth_of(const corpus::Entry& entry) {
   return corpus::text_of(entry, "truth") == name(Verdict::intersects) ? Verdict::intersects : Verdict::disjoint;
 }
 
-std::vector<LaneReason> reasons_of(const SelectedLanes& under_test, std::string_view subject, const Pair& pair,
+std::vector<LaneReason> reasons_of(const SelectedLanes& under_test, std::string_view subject, const AnyPair& pair,
                                    Verdict truth) {
   std::vector<const Lane*> lanes;
   std::copy_if(under_test.lanes.begin(), under_test.lanes.end(), std::back_inserter(lanes),
@@ -237,13 +241,9 @@ std::vector<LaneReason> reasons_of(const SelectedLanes& under_test, std::string_
   return result;
 }
 
-std::string pair_text(const Pair& pair) { return pair_text(corpus::entry_of(pair, {})); }
-
-std::string pair_text(const corpus::Entry& entry) {
+std::string pair_text(const AnyPair& pair) {
   std::ostringstream out;
-  corpus::Entry alone{entry.pair};
-  alone.doubles = entry.doubles;
-  corpus::write_entry(out, alone);
+  corpus::write_entry(out, corpus::entry_of(pair, {}));
   const std::string line = out.str();
   return line.substr(0, line.find('\n'));
 }

@@ -28,7 +28,7 @@ struct LaneReason {
 
 // Returns the reasons of the subject's lanes under test that are wrong on the pair. A lane whose run is not known gets
 // the reason of its source with every operation rounded as written, if that is wrong in the same way.
-std::vector<LaneReason> reasons_of(const SelectedLanes& under_test, std::string_view subject, const Pair& pair,
+std::vector<LaneReason> reasons_of(const SelectedLanes& under_test, std::string_view subject, const AnyPair& pair,
                                    Verdict truth);
 
 // The most kinds that are listed, put on cards, or mapped. There may be hundreds, most of them with a few pairs.
@@ -37,9 +37,8 @@ inline constexpr std::size_t kMostShown = 40;
 // The truth as a campaign's case records it.
 Verdict truth_of(const corpus::Entry& entry);
 
-// The 18 hex floats in the format of a file of pairs.
-std::string pair_text(const Pair& pair);
-std::string pair_text(const corpus::Entry& entry);  // in its own coordinate type, without its fields
+// The 18 hex floats in the format of a file of pairs, in their own coordinate type.
+std::string pair_text(const AnyPair& pair);
 
 // "degenerate" if a triangle is a segment or a point; "contained" if one triangle lies in the other, in one plane;
 // otherwise "coplanar" or "general".

@@ -45,7 +45,12 @@ struct Case {
 };
 
 Case read_case(const fs::path& directory, const Json& row) {
-  Case c{row.at("key"), row.at("case"), row.at("count"), {}, {}, corpus::read_pairs(case_file(directory, row))};
+  Case c{row.at("key"),
+         row.at("case"),
+         row.at("count"),
+         {},
+         {},
+         corpus::read_pairs(case_file(directory, row), PairTypes::both)};
   if (c.entries.empty()) throw wrong_cases(directory, row, "it has no case");
   for (corpus::Entry& entry : c.entries) entry.written.clear();  // there are many
   const auto signature = analysis::parse_signature(c.key),
@@ -179,7 +184,7 @@ void expect_pairs(const Known& known, const Json& kind) {
                      ", which belongs to none of the kind's signatures");
   };
   const auto is_shown = [](const Json& shown, const corpus::Entry& entry) {
-    return pair_text(entry.pair) == shown.at("pair").get<std::string>() &&
+    return pair_text(corpus::pair_of(entry)) == shown.at("pair").get<std::string>() &&
            corpus::origin_of(entry) == shown.at("from").get<std::string>();
   };
   const Case &simplest = case_of(kind.at("simplest")), &worst = case_of(kind.at("worst"));

@@ -25,21 +25,23 @@ constexpr int kMostLate = 3;                  // after so many a case ends
 
 // Returns those of at most 64 pairs that get the failure's verdict from every lane. Wrong lanes decide first, because
 // they leave the fewest pairs to the others. late: increased by the number of timeouts of foreign code.
-std::vector<Pair> decided_alike(const Failure& failure, std::vector<Pair> pairs, int* late = nullptr) {
+template <class Real>
+std::vector<BasicPair<Real>> decided_alike(const Failure& failure, std::vector<BasicPair<Real>> pairs,
+                                           int* late = nullptr) {
   for (const bool wrong : {true, false}) {
     for (std::size_t l = 0; l < failure.lanes.size() && !pairs.empty(); ++l) {
       if (is_wrong(failure.verdicts[l], failure.truth.verdict) != wrong) continue;
-      const std::vector<Verdict> said = verdicts_of(failure.on_host[l], pairs);
+      const std::vector<Verdict> said = analysis::verdicts_seen_by(*failure.lanes[l], failure.on_host[l], pairs);
       if (late) *late += static_cast<int>(std::count(said.begin(), said.end(), Verdict::timed_out));
       std::size_t i = 0;
-      std::erase_if(pairs, [&](const Pair&) { return said[i++] != failure.verdicts[l]; });
+      std::erase_if(pairs, [&](const auto&) { return said[i++] != failure.verdicts[l]; });
     }
   }
   return pairs;
 }
 
 // A device takes one thread at a time.
-std::vector<Verdict> decide_in_turn(const SelectedLanes& under_test, const Pair& pair) {
+std::vector<Verdict> decide_in_turn(const SelectedLanes& under_test, const AnyPair& pair) {
   static std::mutex mutex;
   std::vector<const Lane*> apart;
   std::unique_lock lock(mutex, std::defer_lock);
@@ -48,33 +50,41 @@ std::vector<Verdict> decide_in_turn(const SelectedLanes& under_test, const Pair&
 }
 
 // Replaces the worst pair so far by this one, if its margin is larger. Bounds decide nearly always.
-void keep_worst(Minimised& result, const Pair& pair, Verdict verdict) {
-  const MarginBounds bounds = margin_bounds(pair, verdict);
-  if (std::ldexp(bounds.hi, -log2_ulp(pair)) <= result.worst_ulps) return;
+template <class Real>
+void keep_worst(Minimised& result, const BasicPair<Real>& pair, Verdict verdict) {
+  if constexpr (std::is_same_v<Real, float>) {
+    const MarginBounds bounds = margin_bounds(pair, verdict);
+    if (std::ldexp(bounds.hi, -log2_ulp(pair)) <= result.worst_ulps) return;
+  }
   const double ulps = std::fabs(oracle::truth(pair).margin_ulps);
   if (ulps <= result.worst_ulps) return;
   result.worst = pair;
   result.worst_ulps = ulps;
 }
 
-bool in_range(const Failure& failure, const Pair& pair) {
+bool in_range(const Failure& failure, const AnyPair& pair) {
   return !analysis::leaves_exponents(failure.first_wrong(pair), pair);
 }
 
 // A quick check before the cause is computed: false if the pair cannot have the reason.
-bool may_have_reason(const Failure& failure, const Reason& reason, const Pair& pair) {
+bool may_have_reason(const Failure& failure, const Reason& reason, const AnyPair& pair) {
   const bool by_range = reason.cause == analysis::Cause::overflow || reason.cause == analysis::Cause::underflow;
   if (!reason.in_range && !by_range) return true;
   return in_range(failure, pair) == reason.in_range;
 }
 
-bool same_bits(const Pair& l, const Pair& r) { return !simpler_coordinates(l, r) && !simpler_coordinates(r, l); }
+template <class Real>
+bool same_bits(const BasicPair<Real>& l, const BasicPair<Real>& r) {
+  return !simpler_coordinates(l, r) && !simpler_coordinates(r, l);
+}
 
 // Applies the move from `before` to `after` `times` times. Where it scaled a coordinate by a
 // power of two, scales by that power `times` times; moves other coordinates `times` as far.   Returns: nothing if a
 // coordinate is not finite.
-std::optional<Pair> repeated(const Pair& before, const Pair& after, std::int64_t times) {
-  const float *from = coordinates(before), *to = coordinates(after);
+template <class Real>
+std::optional<BasicPair<Real>> repeated(const BasicPair<Real>& before, const BasicPair<Real>& after,
+                                        std::int64_t times) {
+  const Real *from = coordinates(before), *to = coordinates(after);
   std::optional<int> exponent;  // of the power of two; 0 when it is none
   for (int i = 0; i < kCoordinates; ++i) {
     if (to[i] == from[i]) continue;
@@ -83,13 +93,13 @@ std::optional<Pair> repeated(const Pair& before, const Pair& after, std::int64_t
     if (!exponent) exponent = apart;
   }
   const bool scaled = exponent && *exponent != 0;
-  if (scaled && times > 300) return {};  // float32 has no more exponents
-  Pair result = before;
+  if (scaled && times > (std::is_same_v<Real, float> ? 300 : 2200)) return {};  // there are no more exponents
+  BasicPair<Real> result = before;
   for (int i = 0; i < kCoordinates; ++i) {
     if (to[i] == from[i]) continue;
     const double there = scaled ? std::ldexp(double{from[i]}, *exponent * static_cast<int>(times))
                                 : from[i] + static_cast<double>(times) * (double{to[i]} - from[i]);
-    coordinates(result)[i] = static_cast<float>(there);
+    coordinates(result)[i] = static_cast<Real>(there);
   }
   if (!is_finite(result)) return {};
   return result;
@@ -97,7 +107,8 @@ std::optional<Pair> repeated(const Pair& before, const Pair& after, std::int64_t
 
 // The index of the first wrong lane, not counting lanes that differ only by their convention. The number of lanes if
 // there is none.
-std::size_t wrong_at(const Failure& failure, const Pair& pair) {
+template <class Real>
+std::size_t wrong_at(const Failure& failure, const BasicPair<Real>& pair) {
   const Relation& truth = failure.truth;
   std::size_t l = 0;
   while (l < failure.lanes.size() && (!is_wrong(failure.verdicts[l], truth.verdict) ||
@@ -106,34 +117,49 @@ std::size_t wrong_at(const Failure& failure, const Pair& pair) {
   return l;
 }
 
-bool counts(const Failure& failure, const Pair& pair) { return wrong_at(failure, pair) < failure.lanes.size(); }
+template <class Real>
+bool counts(const Failure& failure, const BasicPair<Real>& pair) {
+  return wrong_at(failure, pair) < failure.lanes.size();
+}
+
+// The pair, if this is its type.
+template <class Real>
+const BasicPair<Real>* pair_in(const AnyPair& pair) {
+  if constexpr (std::is_same_v<Real, float>)
+    return pair.floats ? &*pair.floats : nullptr;
+  else
+    return pair.floats ? nullptr : &pair.doubles;
+}
 
 struct FoundCause {
   analysis::Cause cause;
   bool settled;  // only foreign code is asked
 };
 
-FoundCause found_cause(const Lane& lane, const Pair& pair, Verdict truth) {
-  if (!lane.foreign) return {analysis::cause_of(lane, pair, truth), false};
-  const analysis::Experiment found = analysis::experiment(lane, analysis::decide_lane(lane, pair), pair, truth);
+FoundCause found_cause(const Lane& lane, const AnyPair& pair, Verdict truth) {
+  if (!lane.foreign || !pair.floats) return {analysis::cause_of(lane, pair, truth), false};
+  const analysis::Experiment found = analysis::experiment(lane, analysis::decide_lane(lane, pair), *pair.floats, truth);
   return {found.cause, found.settled};
 }
 
+template <class Real>
 struct Walk {
+  using PairOf = BasicPair<Real>;
+
   const Failure& failure;
   std::span<const Minimised> known;
   std::size_t most;
   Minimised result;
-  std::vector<Pair> way;  // from the first pair to the current one
-  std::size_t sure = 0;   // the last pair of the way that is known to have the cause
-  bool ask_all = false;   // every pair's cause, before it is taken
-  bool open;              // foreign code whose cause is not settled on the first pair
-  int late = 0;           // verdicts of foreign code that took all of their time
+  std::vector<PairOf> way;  // from the first pair to the current one
+  std::size_t sure = 0;     // the last pair of the way that is known to have the cause
+  bool ask_all = false;     // every pair's cause, before it is taken
+  bool open;                // foreign code whose cause is not settled on the first pair
+  int late = 0;             // verdicts of foreign code that took all of their time
 
-  Walk(const Failure& of, const Pair& pair, std::span<const Minimised> results, std::size_t limit)
+  Walk(const Failure& of, const PairOf& pair, std::span<const Minimised> results, std::size_t limit)
       : Walk(of, pair, results, limit, found_cause(of.first_wrong(pair), pair, of.truth.verdict)) {}
 
-  Walk(const Failure& of, const Pair& pair, std::span<const Minimised> results, std::size_t limit, FoundCause first)
+  Walk(const Failure& of, const PairOf& pair, std::span<const Minimised> results, std::size_t limit, FoundCause first)
       : failure(of),
         known(results),
         most(limit),
@@ -145,7 +171,7 @@ struct Walk {
 
   bool spent() const { return result.moved + kLeastMoved >= most || late >= kMostLate; }
 
-  bool has_cause(const Pair& pair) {
+  bool has_cause(const PairOf& pair) {
     result.moved += kMovedPerCause;
     const Lane& lane = failure.first_wrong(pair);
     const FoundCause found = found_cause(lane, pair, failure.truth.verdict);
@@ -159,7 +185,7 @@ struct Walk {
 
   // Makes the candidate the current pair if it fails in the same way for the same reason. Requires: its verdicts are
   // the failure's.
-  bool take(const Pair& candidate) {
+  bool take(const PairOf& candidate) {
     if (!failure.has_shape_of(candidate) || !counts(failure, candidate)) return false;
     if (!may_have_reason(failure, result.reason, candidate)) return false;
     if (ask_all && !has_cause(candidate)) return false;
@@ -169,18 +195,18 @@ struct Walk {
     return true;
   }
 
-  bool is_simpler(const Pair& candidate) const {
+  bool is_simpler(const PairOf& candidate) const {
     const std::uint64_t now = simplicity_counts(way.back()), counts = simplicity_counts(candidate, now);
     return counts < now || (counts == now && simpler_coordinates(candidate, way.back()));
   }
 
   // Repeats the last move 2, 4, 8, … times as far while the pair gets simpler, then bisects.
   void repeat() {
-    const Pair before = way[way.size() - 2], once = way.back();
+    const PairOf before = way[way.size() - 2], once = way.back();
     const auto works = [&](std::int64_t times) {
       ++result.moved;
-      const std::optional<Pair> candidate = repeated(before, once, times);
-      return candidate && is_simpler(*candidate) && !decided_alike(failure, {*candidate}, &late).empty() &&
+      const std::optional<PairOf> candidate = repeated(before, once, times);
+      return candidate && is_simpler(*candidate) && !decided_alike<Real>(failure, {*candidate}, &late).empty() &&
              take(*candidate);
     };
     constexpr std::int64_t kMostTimes = std::int64_t{1} << 52;
@@ -193,13 +219,13 @@ struct Walk {
 
   // Tries all moves of this kind on the current pair; takes the simplest result that fails in the same way, if any.
   bool improve(int kind) {
-    const std::vector<Pair> simpler = simpler_moves(way.back(), kind, result.moved);
+    const std::vector<PairOf> simpler = simpler_moves(way.back(), kind, result.moved);
     const std::ptrdiff_t at_first = failure.lanes.front()->foreign ? kForeignAtOnce : std::ptrdiff_t{kBlockPairs};
     std::ptrdiff_t at_once = at_first;
     for (auto first = simpler.begin(); first != simpler.end();) {
       if (spent()) return false;
       const auto last = first + std::min(at_once, simpler.end() - first);
-      for (const Pair& candidate : decided_alike(failure, {first, last}, &late)) {
+      for (const PairOf& candidate : decided_alike<Real>(failure, {first, last}, &late)) {
         if (spent()) return false;
         if (!take(candidate)) continue;
         repeat();
@@ -214,7 +240,8 @@ struct Walk {
 
   bool ends_in_known() {
     const auto met = std::find_if(known.begin(), known.end(), [&](const Minimised& other) {
-      return other.one_minimal && same_bits(other.pair, way.back());
+      const PairOf* pair = pair_in<Real>(other.pair);
+      return other.one_minimal && pair && same_bits(*pair, way.back());
     });
     if (met == known.end()) return false;
     result.single_moves = met->single_moves;
@@ -269,29 +296,34 @@ struct Walk {
 
 }  // namespace
 
-bool Failure::has_shape_of(const Pair& pair) const {
+template <class Real>
+bool Failure::has_shape_of(const BasicPair<Real>& pair) const {
   return relation_of(pair) == truth && analysis::nesting_of(pair, truth) == nesting;
 }
 
-const Lane& Failure::first_wrong(const Pair& pair) const { return *lanes.at(wrong_at(*this, pair)); }
+const Lane& Failure::first_wrong(const AnyPair& pair) const {
+  return *lanes.at(visit(pair, [&](const auto& own) { return wrong_at(*this, own); }));
+}
 
-Reason reason_of(const Failure& failure, const Pair& pair) {
+Reason reason_of(const Failure& failure, const AnyPair& pair) {
   return {analysis::cause_of(failure.first_wrong(pair), pair, failure.truth.verdict), in_range(failure, pair)};
 }
 
-bool fails_for_reason(const Failure& failure, const Reason& reason, const Pair& pair) {
+bool fails_for_reason(const Failure& failure, const Reason& reason, const AnyPair& pair) {
   return fails_alike(failure, pair) && may_have_reason(failure, reason, pair) &&
          analysis::cause_of(failure.first_wrong(pair), pair, failure.truth.verdict) == reason.cause;
 }
 
-std::vector<Failure> failures_of(const SelectedLanes& under_test, const Pair& pair) {
+std::vector<Failure> failures_of(const SelectedLanes& under_test, const AnyPair& pair) {
   std::vector<Failure> failures;
-  if (!is_finite(pair)) return failures;
-  const Relation truth = relation_of(pair);
-  const Nesting nesting = analysis::nesting_of(pair, truth);
+  if (!is_finite(pair.doubles)) return failures;
+  const auto of_pair = visit(pair, [](const auto& own) {
+    const Relation relation = relation_of(own);
+    return std::pair(relation, analysis::nesting_of(own, relation));
+  });
   const std::vector<Verdict> verdicts = decide_in_turn(under_test, pair);
   analysis::for_each_subject(under_test.lanes, [&](std::size_t first, std::size_t count) {
-    Failure failure{truth, nesting, {}, {}, {}};
+    Failure failure{of_pair.first, of_pair.second, {}, {}, {}};
     for (std::size_t l = first; l < first + count; ++l) {
       const Lane& lane = *under_test.lanes[l];
       const DecideBlock on_host = backends::on_host(lane);
@@ -301,7 +333,7 @@ std::vector<Failure> failures_of(const SelectedLanes& under_test, const Pair& pa
       failure.on_host.push_back(on_host);
       failure.verdicts.push_back(verdicts[l]);
     }
-    if (!counts(failure, pair)) return;
+    if (!visit(pair, [&](const auto& own) { return counts(failure, own); })) return;
     if (!failure.lanes.front()->foreign && !fails_alike(failure, pair)) {
       throw std::runtime_error("cannot minimise with the twins of " + std::string(failure.lanes.front()->info->id) +
                                ": their verdicts differ from the device's");
@@ -311,13 +343,18 @@ std::vector<Failure> failures_of(const SelectedLanes& under_test, const Pair& pa
   return failures;
 }
 
-bool fails_alike(const Failure& failure, const Pair& pair) {
-  return !decided_alike(failure, {pair}).empty() && failure.has_shape_of(pair);
+template bool Failure::has_shape_of(const Pair&) const;
+template bool Failure::has_shape_of(const DoublePair&) const;
+
+bool fails_alike(const Failure& failure, const AnyPair& pair) {
+  return visit(pair, [&](const auto& own) {
+    return !decided_alike(failure, std::vector{own}).empty() && failure.has_shape_of(own);
+  });
 }
 
-analysis::Signature signature_of(const Failure& failure, const Pair& pair) {
-  return analysis::signature(failure.truth, failure.nesting, oracle::margin_bucket(pair, failure.truth.verdict),
-                             failure.lanes, failure.verdicts);
+analysis::Signature signature_of(const Failure& failure, const AnyPair& pair) {
+  const Bucket bucket = visit(pair, [&](const auto& own) { return oracle::margin_bucket(own, failure.truth.verdict); });
+  return analysis::signature(failure.truth, failure.nesting, bucket, failure.lanes, failure.verdicts);
 }
 
 bool can_shrink(const Failure& failure) {
@@ -331,20 +368,23 @@ std::size_t most_moved(const Failure& failure) {
   return crashes ? kMostMovedCrashing : kMostMoved;
 }
 
-Minimised minimise(const Failure& failure, const Pair& pair, std::span<const Minimised> known,
+Minimised minimise(const Failure& failure, const AnyPair& pair, std::span<const Minimised> known,
                    std::optional<std::size_t> most) {
-  Walk walk(failure, pair, known, most.value_or(most_moved(failure)));
-  walk.result.one_minimal = false;
-  if (!can_shrink(failure)) return walk.result;
-  walk.run();
-  walk.result.pair = walk.way.back();
-  const Lane& lane = failure.first_wrong(walk.result.pair);
-  if (lane.foreign && walk.way.size() > 1)
-    walk.result.reason.cause = analysis::cause_of(lane, walk.result.pair, failure.truth.verdict);
-  return walk.result;
+  Minimised result = visit(pair, [&](const auto& own) {
+    Walk walk(failure, own, known, most.value_or(most_moved(failure)));
+    walk.result.one_minimal = false;
+    if (!can_shrink(failure)) return walk.result;
+    walk.run();
+    walk.result.pair = walk.way.back();
+    const Lane& lane = failure.first_wrong(walk.result.pair);
+    if (lane.foreign && walk.way.size() > 1)
+      walk.result.reason.cause = analysis::cause_of(lane, walk.result.pair, failure.truth.verdict);
+    return walk.result;
+  });
+  return result;
 }
 
-void confirm(const SelectedLanes& under_test, const Failure& failure, const Pair& pair) {
+void confirm(const SelectedLanes& under_test, const Failure& failure, const AnyPair& pair) {
   const Relation by_oracle = oracle::truth(pair);
   if (by_oracle != failure.truth) throw oracle::OracleMismatch("the minimiser's truth and the oracle's differ");
   if (!can_shrink(failure)) return;  // its pair is the first one, and to ask again would be of no use

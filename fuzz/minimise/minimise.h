@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The minimiser shrinks a pair while one algorithm's failure and its cause stay the same. It ends when no single move
-// makes the pair simpler. simplicity.h defines which pair is simpler, and moves.h the single moves.
+// makes the pair simpler. The coordinate type stays too. simplicity.h defines which pair is simpler, and moves.h the
+// single moves.
 #pragma once
 
 #include <optional>
@@ -27,21 +28,22 @@ struct Failure {
   bool operator==(const Failure&) const = default;
 
   // Whether the pair has this truth and nesting.
-  bool has_shape_of(const Pair& pair) const;
+  template <class Real>
+  bool has_shape_of(const BasicPair<Real>& pair) const;
 
   // The first lane that is wrong on the pair, not counting lanes that differ only by their convention.   Requires: one
   // is.
-  const Lane& first_wrong(const Pair& pair) const;
+  const Lane& first_wrong(const AnyPair& pair) const;
 };
 
 // The failures of a pair, one for each algorithm under test that is wrong on it. A pair with a coordinate that is not
 // finite has none.   Throws: OracleMismatch; std::runtime_error where a lane's device and the twin differ.
-std::vector<Failure> failures_of(const SelectedLanes& under_test, const Pair& pair);
+std::vector<Failure> failures_of(const SelectedLanes& under_test, const AnyPair& pair);
 
-bool fails_alike(const Failure& failure, const Pair& pair);
+bool fails_alike(const Failure& failure, const AnyPair& pair);
 
 // The signature of a pair that fails alike, with the bucket of its own margin.
-analysis::Signature signature_of(const Failure& failure, const Pair& pair);
+analysis::Signature signature_of(const Failure& failure, const AnyPair& pair);
 
 // Why a failure happens. Its lanes may be wrong for different reasons; only that of the first wrong lane in table order
 // counts. A pair fails for the same reason if the cause is the same. If no result of the lane's run was out of the
@@ -55,8 +57,8 @@ struct Reason {
 };
 
 // Requires: fails_alike(failure, pair).
-Reason reason_of(const Failure& failure, const Pair& pair);
-bool fails_for_reason(const Failure& failure, const Reason& reason, const Pair& pair);
+Reason reason_of(const Failure& failure, const AnyPair& pair);
+bool fails_for_reason(const Failure& failure, const Reason& reason, const AnyPair& pair);
 
 // The limit of pairs that moves may make of a case; it then ends even if it is not minimal. Each pair takes at most one
 // verdict of every lane and one exact decision. Finding the cause of a pair counts as kMovedPerCause pairs.
@@ -71,12 +73,12 @@ inline constexpr std::size_t kMostMovedCrashing = 100'000;
 bool can_shrink(const Failure& failure);
 
 struct Minimised {
-  Pair pair;                     // fails alike and for the same reason
+  AnyPair pair;                  // fails alike and for the same reason
   bool one_minimal = false;      // no single move makes it simpler and keeps that; otherwise the limit ended it
   std::size_t single_moves = 0;  // how many to a simpler pair were tried on it in vain, where it is minimal
   std::size_t moved = 0;         // pairs that moves made on the way, causes included
   Reason reason;                 // the pair's; the cause is that of the first pair
-  Pair worst;                    // of all pairs on the way, the first one included, that of the largest margin in ulps
+  AnyPair worst;                 // of all pairs on the way, the first one included, that of the largest margin in ulps
   double worst_ulps = 0;         // of either sign; the worst pair's cause may be another
 };
 
@@ -87,11 +89,11 @@ struct Minimised {
 // that. most: replaces most_moved.
 // Requires: fails_alike(failure, pair), most > kLeastMoved.   Throws: OracleMismatch.
 std::size_t most_moved(const Failure& failure);  // kMostMoved, or kMostMovedCrashing
-Minimised minimise(const Failure& failure, const Pair& pair, std::span<const Minimised> known = {},
+Minimised minimise(const Failure& failure, const AnyPair& pair, std::span<const Minimised> known = {},
                    std::optional<std::size_t> most = {});
 
 // Confirms a result with the oracle and, for CUDA lanes, on the device if there is one. Throws: OracleMismatch if CGAL
 // and GMP give another truth than the failure has; std::runtime_error if a lane gives another verdict.
-void confirm(const SelectedLanes& under_test, const Failure& failure, const Pair& pair);
+void confirm(const SelectedLanes& under_test, const Failure& failure, const AnyPair& pair);
 
 }  // namespace graze::fuzz

@@ -17,6 +17,7 @@
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/minimised_cases.h"
 #include "oracle/truth.h"
+#include "strata/pair_source.h"
 #include "strata/strata.h"
 
 namespace graze::fuzz {
@@ -29,13 +30,13 @@ const SelectedLanes& under_test() {
   return all;
 }
 
-std::string text(const Pair& pair) {
+std::string text(const AnyPair& pair) {
   std::ostringstream out;
-  corpus::write_entry(out, {pair, {}, 0});
+  corpus::write_entry(out, corpus::entry_of(pair, {}));
   return out.str();
 }
 
-bool same_bits(const Pair& l, const Pair& r) { return text(l) == text(r); }
+bool same_bits(const AnyPair& l, const AnyPair& r) { return text(l) == text(r); }
 
 Pair pair_of(std::initializer_list<float> values) {
   Pair pair{};
@@ -161,6 +162,32 @@ TEST(Moves, AreFiniteWhateverThePair) {
   }
 }
 
+// Pairs of floats and the same pairs in doubles are equally simple, and the moves of doubles reach those of floats.
+TEST(Simplicity, IsThatOfTheSameNumbersInDoubles) {
+  std::size_t reached = 0, of_floats = 0;
+  for (const strata::StratumInfo& stratum : strata::kStrata) {
+    for (std::uint64_t i = 0; i < 40; ++i) {
+      const Pair pair = strata::generate(kSeed, stratum.stratum, i);
+      const DoublePair doubles = in_doubles(pair);
+      ASSERT_EQ(simplicity(pair), simplicity(doubles)) << text(pair);
+      ASSERT_EQ(simplicity_counts(pair), simplicity_counts(doubles));
+      if (i > 0) continue;
+      std::set<std::string> there;
+      std::vector<DoublePair> moved;
+      std::vector<Pair> moved_floats;
+      for (int kind = 0; kind < kMoveKinds; ++kind) {
+        append_moves(doubles, kind, moved);
+        append_moves(pair, kind, moved_floats);
+      }
+      for (const DoublePair& m : moved) there.insert(text(m));
+      for (const Pair& m : moved_floats) reached += there.contains(text(in_doubles(m)));
+      of_floats += moved_floats.size();
+    }
+  }
+  EXPECT_GT(reached, of_floats / 2);  // other moves round to float32
+  EXPECT_LT(reached, of_floats);
+}
+
 class MinimiseStratum : public testing::TestWithParam<strata::StratumInfo> {};
 
 // The oracle confirms the same failure, the pair is not less simple, no move of any kind improves it, and minimising it
@@ -175,13 +202,13 @@ TEST_P(MinimiseStratum, MinimisesToAOneMinimalPairThatFailsAlike) {
 
     const oracle::Truth t = oracle::truth(found.pair);
     EXPECT_EQ(t.contact, oracle::gmp_contact(c.pair));
-    EXPECT_EQ(oracle::hulls(found.pair), oracle::hulls(c.pair));
+    EXPECT_EQ(oracle::hulls(*found.pair.floats), oracle::hulls(c.pair));
     EXPECT_EQ(std::signbit(t.margin), std::signbit(oracle::truth(c.pair).margin));
     EXPECT_EQ(t.margin == 0, oracle::truth(c.pair).margin == 0);
     for (std::size_t l = 0; l < c.failure.lanes.size(); ++l) {
       std::uint64_t before[2], after[2];
       c.failure.on_host[l](&c.pair, 1, &before[0], &before[1]);
-      c.failure.on_host[l](&found.pair, 1, &after[0], &after[1]);
+      c.failure.on_host[l](&*found.pair.floats, 1, &after[0], &after[1]);
       EXPECT_EQ(before[0], after[0]) << c.failure.lanes[l]->id;
       EXPECT_EQ(before[1], after[1]) << c.failure.lanes[l]->id;
     }
@@ -192,7 +219,7 @@ TEST_P(MinimiseStratum, MinimisesToAOneMinimalPairThatFailsAlike) {
     EXPECT_GE(found.worst_ulps, std::fabs(t.margin_ulps));
 
     std::vector<Pair> moved;
-    for (int kind = 0; kind < kMoveKinds; ++kind) append_moves(found.pair, kind, moved);
+    for (int kind = 0; kind < kMoveKinds; ++kind) append_moves(*found.pair.floats, kind, moved);
     std::size_t simpler = 0;
     for (const Pair& m : moved) {
       if (!(simplicity(m) < simplicity(found.pair))) continue;
@@ -217,6 +244,58 @@ TEST_P(MinimiseStratum, MinimisesToAOneMinimalPairThatFailsAlike) {
 
 INSTANTIATE_TEST_SUITE_P(Every, MinimiseStratum, testing::ValuesIn(strata::kStrata),
                          [](const auto& row) { return std::string(row.param.id); });
+
+const SelectedLanes& under_test_of_doubles() {
+  static const SelectedLanes all = [] {
+    SelectedLanes lanes = select_lanes({}, Executor::twin);
+    select_for_doubles(lanes);
+    return lanes;
+  }();
+  return all;
+}
+
+// The same promises for pairs of doubles of every stratum, which stay pairs of doubles.
+TEST(MinimiseDoubles, MinimisesToAOneMinimalPairThatFailsAlike) {
+  std::map<analysis::Cause, int> causes;
+  int minimal = 0, all = 0;
+  for (const strata::PairSource& source : strata::stratum_sources(kSeed, 28 * 300, {}, PairTypes::f64)) {
+    std::set<std::string_view> of_stratum;  // one failure of each algorithm
+    for (std::uint64_t index = 0; index < source.pairs; ++index) {
+      const DoublePair pair = source.double_pair(index);
+      for (const Failure& failure : failures_of(under_test_of_doubles(), pair)) {
+        if (!of_stratum.insert(failure.lanes.front()->info->id).second) continue;
+        SCOPED_TRACE(source.id + ' ' + std::to_string(index) + ' ' + std::string(failure.lanes.front()->info->id));
+        const Minimised found = minimise(failure, pair);
+        ASSERT_FALSE(found.pair.floats);
+        ASSERT_FALSE(found.worst.floats);
+        const DoublePair& small = found.pair.doubles;
+        EXPECT_LE(simplicity(small), simplicity(pair));
+        EXPECT_EQ(oracle::truth(small).contact, oracle::gmp_contact(pair));
+        EXPECT_EQ(oracle::hulls(small), oracle::hulls(pair));
+        EXPECT_NO_THROW(confirm(under_test_of_doubles(), failure, small));
+        EXPECT_NO_THROW(confirm(under_test_of_doubles(), failure, found.worst));
+        const Reason before = reason_of(failure, pair);
+        EXPECT_EQ(found.reason.cause, before.cause);
+        EXPECT_TRUE(found.reason == reason_of(failure, small));
+        ++causes[before.cause];
+        ++all;
+        minimal += found.one_minimal;
+        if (!found.one_minimal) continue;
+        std::vector<DoublePair> moved;
+        for (int kind = 0; kind < kMoveKinds; ++kind) append_moves(small, kind, moved);
+        for (const DoublePair& m : moved) {
+          if (!(simplicity(m) < simplicity(small))) continue;
+          ASSERT_FALSE(fails_for_reason(failure, found.reason, m)) << text(small) << text(m);
+        }
+        EXPECT_TRUE(same_bits(minimise(failure, small).pair, small));
+      }
+    }
+  }
+  EXPECT_GT(causes[analysis::Cause::stored], 10);
+  EXPECT_GT(causes[analysis::Cause::rounding], 3);
+  EXPECT_GT(all, 60);
+  EXPECT_GT(minimal, all * 9 / 10);
+}
 
 TEST(Minimise, ShrinksWhatFailsOnlyAtTheEndsOfTheRange) {
   // A crossing pair scaled to 1e-30 and to 1e38: products under- and overflow in float32.

@@ -40,8 +40,9 @@ bool is_of_algorithm(const std::string& key, const Failure& failure) {
   return key.find(fmt::format("/{}:", failure.lanes.front()->info->id)) != std::string::npos;
 }
 
-corpus::Entry result_entry(const MinimisedCase& result, const Pair& pair, const char* kind, const std::string& from) {
-  corpus::Entry entry{pair, {{"kind", kind}}, 0};
+corpus::Entry result_entry(const MinimisedCase& result, const AnyPair& pair, const char* kind,
+                           const std::string& from) {
+  corpus::Entry entry = corpus::entry_of(pair, {{"kind", kind}});
   if (!from.empty()) entry.fields.push_back({"from", from});
   for (auto& part : truth_fields(oracle::truth(pair))) entry.fields.push_back(std::move(part));
   entry.fields.push_back({"signature", analysis::key(signature_of(result.failure, pair))});
@@ -55,18 +56,18 @@ bool is_minimised(const corpus::Entry& entry) { return has_kind(entry, "minimise
 std::vector<corpus::Entry> checked_cases(const SelectedLanes& under_test, const Json& spec,
                                          const std::filesystem::path& directory, const Json& row) {
   const auto& ran = spec.at("lanes");
-  std::vector<corpus::Entry> entries = read_cases(directory, row);
+  std::vector<corpus::Entry> entries = read_cases(directory, row, PairTypes::both);
   for (const corpus::Entry& entry : entries) {
     const auto signature = analysis::parse_signature(corpus::text_of(entry, "signature")).value();
-    const Verdict truth = relation_of(entry.pair).verdict;
+    const Verdict truth = corpus::visit(entry, [](const auto& pair) { return relation_of(pair).verdict; });
     for (const Lane* lane : under_test.lanes) {
       if (lane->info->id != signature.subject || lane->foreign) continue;
       if (std::find(ran.begin(), ran.end(), lane->id) == ran.end()) continue;
-      const DecideBlock on_host = backends::on_host(*lane);
-      if (!on_host) continue;
+      if (!backends::on_host(*lane)) continue;
       const char recorded = signature.mark_of(lane->lane_name().within_subject());
       // A result may cover only some lanes.
-      if (recorded == analysis::mark(decide_one(on_host, entry.pair), truth) || (is_result(entry) && recorded == '.'))
+      if (recorded == analysis::mark(analysis::decide_lane(*lane, corpus::pair_of(entry)), truth) ||
+          (is_result(entry) && recorded == '.'))
         continue;
       throw wrong_cases(
           directory, row,
@@ -85,21 +86,21 @@ std::vector<MinimisedCase> minimise_cases(const SelectedLanes& under_test, const
   for (const corpus::Entry* entry : originals(entries)) {
     if (stop()) return {};
     const std::string* recorded = corpus::field(*entry, "signature");
-    for (const Failure& failure : failures_of(under_test, entry->pair)) {
+    for (const Failure& failure : failures_of(under_test, corpus::pair_of(*entry))) {
       if (recorded && !is_of_algorithm(*recorded, failure)) continue;
       const std::string from = name_of(*entry);
       const auto together = std::find_if(results.begin(), results.end(), [&](const MinimisedCase& other) {
         return recorded && other.recorded == *recorded && other.failure == failure;
       });
       if (together == results.end()) {
-        const Minimised result = minimise(failure, entry->pair);
+        const Minimised result = minimise(failure, corpus::pair_of(*entry));
         ended.push_back({result});
-        results.push_back({failure, result, recorded ? *recorded : "", from, from, entry->pair});
+        results.push_back({failure, result, recorded ? *recorded : "", from, from, corpus::pair_of(*entry)});
         continue;
       }
-      if (reason_of(failure, entry->pair).cause != together->result.reason.cause) continue;
+      if (reason_of(failure, corpus::pair_of(*entry)).cause != together->result.reason.cause) continue;
       std::vector<Minimised>& known = ended[static_cast<std::size_t>(together - results.begin())];
-      Minimised result = minimise(failure, entry->pair, known);
+      Minimised result = minimise(failure, corpus::pair_of(*entry), known);
       known.push_back(result);
       if (result.worst_ulps > together->result.worst_ulps) {
         together->worst_from = from;
@@ -110,7 +111,7 @@ std::vector<MinimisedCase> minimise_cases(const SelectedLanes& under_test, const
       if (simplicity(result.pair) < simplicity(together->result.pair)) {
         together->result = result;
         together->from = from;
-        together->original = entry->pair;
+        together->original = corpus::pair_of(*entry);
       } else {
         together->result.worst = result.worst;
         together->result.worst_ulps = result.worst_ulps;
@@ -181,9 +182,10 @@ bool has_result(const SelectedLanes& under_test, const std::vector<corpus::Entry
   const corpus::Entry &result = entries.front(), &first = *originals(entries).front();
   const std::string* recorded = corpus::field(result, "signature");
   if (!is_result(result) || is_result(first) || !recorded) return false;
-  const std::vector<Failure> failures = failures_of(under_test, first.pair);
+  const std::vector<Failure> failures = failures_of(under_test, corpus::pair_of(first));
+  const AnyPair minimised = corpus::pair_of(result);
   return std::any_of(failures.begin(), failures.end(), [&](const Failure& failure) {
-    return fails_alike(failure, result.pair) && key(signature_of(failure, result.pair)) == *recorded;
+    return fails_alike(failure, minimised) && key(signature_of(failure, minimised)) == *recorded;
   });
 }
 

@@ -19,7 +19,7 @@ struct MinimisedCase {
   Minimised result;
   std::string recorded;          // the signature that the originals share; empty for a single original
   std::string from, worst_from;  // the origins of the two pairs: "near_edge_edge:1:42", or empty
-  Pair original;
+  AnyPair original;
 };
 
 // As read_cases. Also checks that the lanes under test that ran in the campaign, except foreign code, have the verdicts

@@ -119,6 +119,11 @@ Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const
           const DecideLanes& decide) {
   const auto known = corpus.find(failure.signature);
   if (known != corpus.end() && known->second.last == failure.seen) return Added::known;
+  const auto signature = analysis::parse_signature(failure.signature);
+  const auto was_wrong = [&](const Lane* lane) {
+    return lane->info->id == signature->subject && signature->mark_of(lane->lane_name().within_subject()) != '.';
+  };
+  if (signature && std::none_of(run.begin(), run.end(), was_wrong)) return Added::not_run;
 
   const Replay now = replay(failure.entry.pair, run, decide);
   const std::string algorithm = analysis::subject_of(failure.signature);

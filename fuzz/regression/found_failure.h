@@ -31,11 +31,11 @@ std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directo
 std::vector<FoundFailure> found_in_cases(const std::vector<corpus::Entry>& entries, const Json& build,
                                          std::span<const Lane* const> lanes, const DecideLanes& decide);
 
-enum class Added { as_new, seen_again, known };
+enum class Added { as_new, seen_again, known, not_run };
 
 // Replays a failure and adds it as a case. If its signature already has a case, it is counted there instead.
 // A fixed case that is wrong again becomes failing, with the new pair. The same failure twice in a row counts
-// once, so that an interrupted command can be repeated.
+// once, so that an interrupted command can be repeated. If no lane that was wrong runs, nothing is added.
 // Throws: std::runtime_error if the pair does not have the signature.
 Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const Lane* const> lanes,
           const DecideLanes& decide);

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// A pair of either coordinate type.
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "core/pair.h"
+
+namespace graze {
+
+// Its coordinates as doubles, which are exact. A pair of float32 keeps its floats, for lanes decide it by them.
+struct AnyPair {
+  DoublePair doubles;
+  std::optional<Pair> floats;
+
+  AnyPair(const Pair& pair) : doubles(in_doubles(pair)), floats(pair) {}
+  AnyPair(const DoublePair& pair) : doubles(pair) {}
+};
+
+// Calls f with the pair in its own type.
+template <class F>
+decltype(auto) visit(const AnyPair& pair, F&& f) {
+  return pair.floats ? std::forward<F>(f)(*pair.floats) : std::forward<F>(f)(pair.doubles);
+}
+
+}  // namespace graze

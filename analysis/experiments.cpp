@@ -489,9 +489,12 @@ class Trial {
 }  // namespace
 
 Experiment experiment(const Lane& lane, Verdict verdict, const Pair& pair, Verdict truth) {
+  const subjects::Opened* code = subjects::opened(lane.info->id);
   switch (verdict) {
     case Verdict::crashed:
-      return {Cause::crash, true, "its process ended"};
+      return {
+          Cause::crash, true,
+          code && code->kind == "command" ? "its process ended, or its line was not 1, 0 or ?" : "its process ended"};
     case Verdict::timed_out:
       return {Cause::no_answer, true, "it exceeded its time limit"};
     default:

@@ -180,6 +180,14 @@ int main(void) {
   EXPECT_EQ(ran.err.find("started"), ran.err.npos);
 }
 
+// A program that lives and answers wrongly did not end.
+TEST_F(TryCommand, AnAnswerThatIsNoneIsToldByExplain) {
+  expect_done(
+      "graze fuzz --subject 'y=cmd:while read l; do echo yes; done' --lanes 'y/*' --strata uniform --pairs 3 --out y");
+  const Ran why = shell("graze explain y/cases/$(ls y/cases | head -n 1) --lanes 'y/*'");
+  EXPECT_NE(why.out.find("its line was not 1, 0 or ?"), why.out.npos) << why.out << why.err;
+}
+
 TEST_F(TryCommand, WorksOnEachKindOfCode) {
   const std::string by_x = "int meet(const float a[9], const float b[9]) { return a[0] < b[0]; }\n";
   write("own.c", by_x);

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <thread>
 
 #include "core/cannot.h"
 #include "core/programs/supervisor_process.h"
@@ -76,8 +77,12 @@ int run_program(const Program& program, const fs::path& scratch, std::string& ou
   std::string text;  // for a message
   for (const std::string& word : program.words) text += (text.empty() ? "" : " ") + word;
   int status = -1;
-  if (supervisor.receive(&status, sizeof status) != sizeof status)
+  if (supervisor.receive(&status, sizeof status) != sizeof status) {
+    // Ctrl+C goes to every process of the terminal. The supervisor's end may be seen before our own signal.
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    if (stop_requested) throw Stopped();
     throw std::runtime_error(shown(text) + ": its supervisor ended before it did");
+  }
   if (status == kTookTooMuchMemory)
     throw std::runtime_error(shown(text) + ": used more than " + std::to_string(program.mib) +
                              " MiB of memory, so it was killed");

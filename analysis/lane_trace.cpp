@@ -55,17 +55,9 @@ std::string_view name(Contraction rule) {
   return kNames[static_cast<int>(rule)];
 }
 
-namespace {
-
-// Never inlined: where GCC 12 sees 18 doubles become floats and doubles again in one function, its vectorizer (-O3)
-// leaves the last two unrounded.
-[[gnu::noinline]] Pair stored_apart(const DoublePair& pair) { return stored_in_float32(pair); }
-
-}  // namespace
-
 AnyPair seen_by(const Lane& lane, const AnyPair& pair) {
   if (pair.floats || lane.scalar == Scalar::f64) return pair;
-  return stored_apart(pair.doubles);
+  return stored_in_float32(pair.doubles);
 }
 
 std::vector<Verdict> verdicts_seen_by(const Lane&, const DecideBlock& block, std::span<const Pair> pairs) {

@@ -107,9 +107,7 @@ std::string note_of_doubles(const corpus::Entry& entry, const oracle::Truth& tru
 
 }  // namespace
 
-oracle::Truth truth_of(const corpus::Entry& entry) {
-  return corpus::visit(entry, [](const auto& pair) { return oracle::truth(pair); });
-}
+oracle::Truth truth_of(const corpus::Entry& entry) { return oracle::truth(corpus::pair_of(entry)); }
 
 std::string written_note(const corpus::Entry& entry, const oracle::Truth& truth) {
   if (entry.doubles) return note_of_doubles(entry, truth);

@@ -58,9 +58,8 @@ std::vector<std::string> details(const fuzz::Progress& progress, const std::vect
           reports::grouped(static_cast<std::uint64_t>(rate)) + " pairs/s", "most in " + sources[best].id};
 }
 
-// The subject's smallest case. Minimises, as `graze minimize` would, the
-// kMostShrunk signatures whose first kept pairs are the simplest. Returns the simplest result and its file; of equal
-// results, the one from the simpler kept pair.
+// The subject's smallest case. Minimises, as `graze minimize` would, the kMostShrunk signatures whose first kept pairs
+// are the simplest. Returns the simplest result and its file; of equal results, the one from the simpler kept pair.
 std::pair<std::string, std::filesystem::path> smallest_case(const std::filesystem::path& campaign,
                                                             const fuzz::SelectedLanes& under_test, const Json& summary,
                                                             const std::string& subject) {

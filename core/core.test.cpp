@@ -117,6 +117,17 @@ INSTANTIATE_TEST_SUITE_P(Lanes, EveryHostLane, testing::ValuesIn(host_lanes()), 
   return id;
 });
 
+// Both conversions in one function, compiled with -O3, as in its callers.
+TEST(Pair, StoringInFloat32RoundsEveryNumber) {
+  for (int n = 1; n < 100; ++n) {
+    DoublePair pair;
+    for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = 0.1 * (i + n);
+    const DoublePair stored = in_doubles(stored_in_float32(pair));
+    for (int i = 0; i < kCoordinates; ++i)
+      ASSERT_EQ(coordinates(stored)[i], static_cast<double>(static_cast<float>(coordinates(pair)[i]))) << n << ' ' << i;
+  }
+}
+
 TEST(LaneTable, IsTheProductOfAlgorithmsScalarsAndVariantsAndTheExactLanes) {
   std::set<std::string> ids;
   for (const Lane& lane : lanes()) {

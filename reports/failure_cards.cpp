@@ -184,6 +184,7 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
     throw corpus::FormatError(
         cannot("use", file, "its first pair is not that of failures.json; run `graze minimize` again"));
   const corpus::Entry& entry = entries.front();
+  const AnyPair pair = corpus::pair_of(entry);
   const Verdict truth = verdict_of(corpus::text_of(entry, "truth"));
   const bool minimised = corpus::field(entry, "kind") != nullptr;
   lacking.minimised += !minimised;
@@ -199,16 +200,16 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
     card["kind"][field] = kind.at(field);
   card.update({{"minimised", minimised},
                {"from", from},
-               {"pair", coordinates_of(corpus::pair_of(entry))},
+               {"pair", coordinates_of(pair)},
                {"truth",
                 {{"verdict", name(truth)},
                  {"contact", corpus::text_of(entry, "contact")},
                  {"margin", number_in(file, entry, "margin")},
                  {"margin_ulps", number_in(file, entry, "margin_ulps")}}},
-               {"drawing", drawing_of(corpus::pair_of(entry))},
+               {"drawing", drawing_of(pair)},
                {"verdicts", verdicts},
                {"sentences", simplest.at("sentences")},
-               {"maps", maps_of(file, corpus::pair_of(entry), lanes, room, lacking)},
+               {"maps", maps_of(file, pair, lanes, room, lacking)},
                {"commands", commands_of(entry, subject, from, spec)},
                {"snippets", snippets_of(counts, entry, kind, truth, verdicts, from)}});
   return card;

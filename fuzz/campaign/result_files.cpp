@@ -33,19 +33,15 @@ std::string signature_line(const std::string& key, std::uint64_t count) {
 }
 
 // Whether the entry's truth and its signature match its pair.
-template <class AnyPair>
-bool has_its_truth(const AnyPair& pair, const corpus::Entry& entry, const analysis::Signature& signature) {
+bool has_its_truth(const corpus::Entry& entry, const analysis::Signature& signature) {
+  const AnyPair pair = corpus::pair_of(entry);
   const oracle::Truth truth = oracle::truth(pair);
   for (const auto& [name, value] : truth_fields(truth)) {
     if (corpus::text_of(entry, name) != value) return false;
   }
   return truth.verdict != Verdict::declined && signature.contact == truth.contact && signature.hulls == truth.hulls &&
          signature.nesting == analysis::nesting_of(pair, truth) &&
-         signature.bucket == oracle::margin_bucket(pair, truth.verdict);
-}
-
-bool has_its_truth(const corpus::Entry& entry, const analysis::Signature& signature) {
-  return entry.doubles ? has_its_truth(*entry.doubles, entry, signature) : has_its_truth(entry.pair, entry, signature);
+         signature.bucket == visit(pair, [&](const auto& own) { return oracle::margin_bucket(own, truth.verdict); });
 }
 
 std::string case_text(const Campaign& campaign, const std::string& key, const SignatureCount& found) {
@@ -60,7 +56,7 @@ std::string case_text(const Campaign& campaign, const std::string& key, const Si
                                               : corpus::entry_of(source.pair(c.index), numbers);
     if (campaign.spec.contains("scene"))
       entry.fields.emplace_back("scene", campaign.spec["scene"]["name"].get<std::string>());
-    const oracle::Truth truth = entry.doubles ? oracle::truth(*entry.doubles) : oracle::truth(entry.pair);
+    const oracle::Truth truth = oracle::truth(corpus::pair_of(entry));
     for (auto& part : truth_fields(truth)) entry.fields.push_back(std::move(part));
     if (analysis::parse_signature(key)) entry.fields.push_back({"signature", key});
     corpus::write_entry(out, entry);
@@ -223,13 +219,14 @@ namespace {
 bool is_run(const Json& run) {
   if (!run.is_object()) return false;
   for (const auto& [name, value] : run.items()) {
-    const bool is_text = name == "machine" || name == "engine";
+    const bool is_text = name == "machine" || name == "engine", is_time = name.find("seconds") != name.npos;
     const bool checked_later = name == "pairs" || name == "seconds";  // expect_possible_run tells the value
-    const bool fits = name == "costs"                          ? value.is_object()
-                      : is_text                                ? value.is_string()
-                      : name == "merged" && value.is_boolean() ? true
-                      : name.find("seconds") == name.npos      ? checked_later || value.is_number_unsigned()
-                                                               : checked_later || (value.is_number() && value >= 0);
+    const bool fits = checked_later      ? true
+                      : name == "costs"  ? value.is_object()
+                      : is_text          ? value.is_string()
+                      : name == "merged" ? value.is_boolean() || value.is_number_unsigned()
+                      : is_time          ? value.is_number() && value >= 0
+                                         : value.is_number_unsigned();
     if (!fits) return false;
   }
   return true;

@@ -33,6 +33,7 @@ struct Case {
   std::vector<LaneReason> reasons;
 
   const corpus::Entry& shown() const { return entries.front(); }
+  AnyPair shown_pair() const { return corpus::pair_of(shown()); }
   bool intersects() const { return signature.contact != Contact::none; }
 };
 
@@ -45,7 +46,7 @@ Case read_case(const SelectedLanes& under_test, const Json& spec, const std::fil
   Case c{*signature, row.at("case"), row.at("count"), {}, {}};
   c.entries = checked_cases(under_test, spec, directory, row);
   for (corpus::Entry& entry : c.entries) entry.written.clear();  // there are many
-  c.reasons = reasons_of(under_test, c.signature.subject, corpus::pair_of(c.shown()), truth_of(c.shown()));
+  c.reasons = reasons_of(under_test, c.signature.subject, c.shown_pair(), truth_of(c.shown()));
   return c;
 }
 
@@ -96,16 +97,16 @@ bool is_of(const Kind& kind, const Case& c, const LaneReason& reason) {
 std::size_t simplest_of(const Kind& kind, const std::vector<Case>& cases, std::set<std::string>& shown) {
   const auto rank = [&](std::size_t place) {
     const Case& c = cases[place];
+    const AnyPair pair = c.shown_pair();
     const bool mixed = !std::all_of(c.reasons.begin(), c.reasons.end(),
                                     [&](const LaneReason& reason) { return is_of(kind, c, reason); });
     const bool open = std::any_of(c.reasons.begin(), c.reasons.end(),
                                   [&](const LaneReason& reason) { return is_of(kind, c, reason) && !reason.settled; });
-    return std::tuple(mixed, kind.is_rarer(c), open, shown.contains(pair_text(corpus::pair_of(c.shown()))),
-                      simplicity(corpus::pair_of(c.shown())));
+    return std::tuple(mixed, kind.is_rarer(c), open, shown.contains(pair_text(pair)), simplicity(pair));
   };
   const std::size_t best = *std::min_element(kind.places.begin(), kind.places.end(),
                                              [&](std::size_t l, std::size_t r) { return rank(l) < rank(r); });
-  shown.insert(pair_text(corpus::pair_of(cases[best].shown())));
+  shown.insert(pair_text(cases[best].shown_pair()));
   return best;
 }
 
@@ -117,14 +118,10 @@ double ulps_of(const corpus::Entry& entry) {
 // The pair as users see it, with all lanes' verdicts, and the reasons why lanes of the kind are wrong.
 Json simplest_pair(const SelectedLanes& under_test, const Kind& kind, const Case& c) {
   std::vector<const Lane*> apart;
-  const std::vector<Verdict> verdicts = decide(under_test, corpus::pair_of(c.shown()), apart);
+  const std::vector<Verdict> verdicts = decide(under_test, c.shown_pair(), apart);
   if (!apart.empty()) throw std::runtime_error(apart.front()->id + ": the verdicts of device and twin differ");
-  Json result = {{"case", c.file},
-                 {"pair", pair_text(corpus::pair_of(c.shown()))},
-                 {"from", corpus::origin_of(c.shown())},
-                 {"lanes", Json::array()},
-                 {"verdicts", Json::object()},
-                 {"sentences", Json::array()}};
+  Json result = {{"case", c.file},         {"pair", pair_text(c.shown_pair())}, {"from", corpus::origin_of(c.shown())},
+                 {"lanes", Json::array()}, {"verdicts", Json::object()},        {"sentences", Json::array()}};
   std::vector<const Lane*> own, others;
   for (const LaneReason& reason : c.reasons) {
     const bool is_own = is_of(kind, c, reason);
@@ -135,7 +132,7 @@ Json simplest_pair(const SelectedLanes& under_test, const Kind& kind, const Case
     result["verdicts"][under_test.lanes[l]->id] = name(verdicts[l]);
   Json& sentences = result["sentences"];
   const auto tell = [&](const std::vector<const Lane*>& some) {
-    for (const std::string& text : analysis::sentences(analysis::explain(corpus::pair_of(c.shown()), some)))
+    for (const std::string& text : analysis::sentences(analysis::explain(c.shown_pair(), some)))
       sentences.push_back(text);
   };
   tell(own);

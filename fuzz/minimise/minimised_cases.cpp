@@ -59,14 +59,15 @@ std::vector<corpus::Entry> checked_cases(const SelectedLanes& under_test, const 
   std::vector<corpus::Entry> entries = read_cases(directory, row, PairTypes::both);
   for (const corpus::Entry& entry : entries) {
     const auto signature = analysis::parse_signature(corpus::text_of(entry, "signature")).value();
-    const Verdict truth = corpus::visit(entry, [](const auto& pair) { return relation_of(pair).verdict; });
+    const AnyPair pair = corpus::pair_of(entry);
+    const Verdict truth = visit(pair, [](const auto& own) { return relation_of(own).verdict; });
     for (const Lane* lane : under_test.lanes) {
       if (lane->info->id != signature.subject || lane->foreign) continue;
       if (std::find(ran.begin(), ran.end(), lane->id) == ran.end()) continue;
       if (!backends::on_host(*lane)) continue;
       const char recorded = signature.mark_of(lane->lane_name().within_subject());
       // A result may cover only some lanes.
-      if (recorded == analysis::mark(analysis::decide_lane(*lane, corpus::pair_of(entry)), truth) ||
+      if (recorded == analysis::mark(analysis::decide_lane(*lane, pair), truth) ||
           (is_result(entry) && recorded == '.'))
         continue;
       throw wrong_cases(
@@ -85,22 +86,23 @@ std::vector<MinimisedCase> minimise_cases(const SelectedLanes& under_test, const
   std::vector<std::vector<Minimised>> ended;  // for each result, the minimised forms of its originals
   for (const corpus::Entry* entry : originals(entries)) {
     if (stop()) return {};
+    const AnyPair pair = corpus::pair_of(*entry);
     const std::string* recorded = corpus::field(*entry, "signature");
-    for (const Failure& failure : failures_of(under_test, corpus::pair_of(*entry))) {
+    for (const Failure& failure : failures_of(under_test, pair)) {
       if (recorded && !is_of_algorithm(*recorded, failure)) continue;
       const std::string from = name_of(*entry);
       const auto together = std::find_if(results.begin(), results.end(), [&](const MinimisedCase& other) {
         return recorded && other.recorded == *recorded && other.failure == failure;
       });
       if (together == results.end()) {
-        const Minimised result = minimise(failure, corpus::pair_of(*entry));
+        const Minimised result = minimise(failure, pair);
         ended.push_back({result});
-        results.push_back({failure, result, recorded ? *recorded : "", from, from, corpus::pair_of(*entry)});
+        results.push_back({failure, result, recorded ? *recorded : "", from, from, pair});
         continue;
       }
-      if (reason_of(failure, corpus::pair_of(*entry)).cause != together->result.reason.cause) continue;
+      if (reason_of(failure, pair).cause != together->result.reason.cause) continue;
       std::vector<Minimised>& known = ended[static_cast<std::size_t>(together - results.begin())];
-      Minimised result = minimise(failure, corpus::pair_of(*entry), known);
+      Minimised result = minimise(failure, pair, known);
       known.push_back(result);
       if (result.worst_ulps > together->result.worst_ulps) {
         together->worst_from = from;
@@ -111,7 +113,7 @@ std::vector<MinimisedCase> minimise_cases(const SelectedLanes& under_test, const
       if (simplicity(result.pair) < simplicity(together->result.pair)) {
         together->result = result;
         together->from = from;
-        together->original = corpus::pair_of(*entry);
+        together->original = pair;
       } else {
         together->result.worst = result.worst;
         together->result.worst_ulps = result.worst_ulps;

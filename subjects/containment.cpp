@@ -23,7 +23,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
@@ -31,6 +30,7 @@
 #include <fstream>
 #include <initializer_list>
 #include <iterator>
+#include <set>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -313,12 +313,7 @@ int open_process(pid_t process) { return static_cast<int>(syscall(SYS_pidfd_open
 
 bool is_descendant(pid_t process) {
   for (int steps = 0; steps < 1000 && process > 1; ++steps) {
-    std::ifstream in("/proc/" + std::to_string(process) + "/stat");
-    std::string line;
-    std::getline(in, line);
-    const std::size_t name_end = line.rfind(") ");
-    if (name_end == line.npos || line.size() < name_end + 5) return false;
-    process = static_cast<pid_t>(std::strtol(line.c_str() + name_end + 4, nullptr, 10));  // after ") S "
+    process = process_status(process).parent;
     if (process == getpid()) return true;
   }
   return false;
@@ -327,14 +322,16 @@ bool is_descendant(pid_t process) {
 namespace {
 
 // Kills all descendants but those by one child.   Returns: whether any of them had not ended.
-bool kill_descendants(pid_t except) {
+bool kill_descendants(pid_t except, void (*tell_alive)()) {
   bool found = false;
+  std::set<pid_t> known{getpid()};  // parents are listed before their children
   for (const pid_t process : descendants(~std::uint64_t{0}, except)) {
+    tell_alive();  // where each of these processes is given as much time, this loop may take long
     const int fd = open_process(process);  // first, so that the id stays this process's during the checks
-    const char state = process_state(process);
-    if (fd >= 0 && is_descendant(process) && state != 'Z' && state != '\0') {
-      syscall(SYS_pidfd_send_signal, fd, SIGKILL, nullptr, 0);
-      found = true;
+    const ProcessStatus status = process_status(process);
+    if (fd >= 0 && known.contains(status.parent)) {
+      known.insert(process);
+      if (status.state != 'Z' && syscall(SYS_pidfd_send_signal, fd, SIGKILL, nullptr, 0) == 0) found = true;
     }
     close(fd);
   }
@@ -344,10 +341,10 @@ bool kill_descendants(pid_t except) {
 }  // namespace
 
 bool end_children(pid_t except, void (*tell_alive)()) {
-  using Clock = std::chrono::steady_clock;
   const bool in_namespace = getpid() == 1;
-  const auto deadline = Clock::now() + std::chrono::seconds(in_namespace ? 5 : 60);
-  for (;;) {
+  // Counts rounds of a millisecond, not time: without a namespace, processes that are left now would never end, and
+  // they may leave this process little time.
+  for (int rounds = in_namespace ? 4'000 : 40'000; rounds > 0; --rounds) {
     tell_alive();
     if (except < 0 && in_namespace) kill(-1, SIGKILL);  // all processes at once, even those started meanwhile
     bool left = false;
@@ -359,16 +356,16 @@ bool end_children(pid_t except, void (*tell_alive)()) {
       kill(child, SIGKILL);
     }
     if (!left) return true;
-    if (Clock::now() > deadline) return false;
     // An ended process counts for the limit of tasks until it is collected. So while any of them runs, none is
     // collected, and soon no more can be started.
-    const bool running = kill_descendants(except);
+    const bool running = kill_descendants(except, tell_alive);
     poll(nullptr, 0, 1);
     if (running) continue;
     for (const pid_t child : own_children()) {
       if (child != except) waitpid(child, nullptr, WNOHANG);
     }
   }
+  return false;
 }
 
 namespace {

@@ -143,6 +143,7 @@ int leaves_children_silently(const float a[9], const float b[9]) {
 }
 ATTACK(forks_a_bomb, for (;;) fork())
 ATTACK(forks_a_bomb_of_sessions, for (;;) if (fork() == 0) setsid())
+ATTACK(forks_a_bomb_in_a_chain, for (;;) if (fork() == 0) setsid(); else for (;;);)
 ATTACK(forks_without_end, for (int i = 0; i < 2000; ++i) if (fork() == 0) for (;;) pause(); for (;;) pause())
 static void child_eats(void) {
   if (fork() == 0) {

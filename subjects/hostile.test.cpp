@@ -218,6 +218,7 @@ constexpr Attack kAttacks[] = {{"writes_zeros"},
                                {"forks_without_end"},
                                {"forks_a_bomb"},
                                {"forks_a_bomb_of_sessions"},
+                               {"forks_a_bomb_in_a_chain"},
                                {"children_eat"},
                                {"waits_uninterruptibly"},
                                {"eats_shared"},
@@ -252,7 +253,7 @@ TEST_F(Hostile, ABombOfAUserWithoutANamespaceEnds) {
   if (geteuid() != 0) GTEST_SKIP() << "EveryAttack tests it";
   fs::permissions(folder, fs::perms::all);
   const fs::path program = fs::read_symlink("/proc/self/exe");  // beside those that it runs
-  for (const char* bomb : {"forks_a_bomb", "forks_a_bomb_of_sessions"}) {
+  for (const char* bomb : {"forks_a_bomb", "forks_a_bomb_of_sessions", "forks_a_bomb_in_a_chain"}) {
     SCOPED_TRACE(bomb);
     const pid_t asking = fork();
     if (asking == 0) {

@@ -82,20 +82,28 @@ SupervisorProcess::SupervisorProcess(const std::string& program, const std::vect
 
 SupervisorProcess::~SupervisorProcess() {
   using Clock = std::chrono::steady_clock;
-  close(socket_);
-  const auto has_ended = [&](int seconds) {
-    const auto until = Clock::now() + std::chrono::seconds(seconds);
-    for (int wait = 0;; wait = 1) {
-      const pid_t ended = waitpid(process_, nullptr, WNOHANG);
-      if (ended != 0 && !(ended < 0 && errno == EINTR)) return true;
-      if (Clock::now() >= until) return false;
-      poll(nullptr, 0, wait);
-    }
+  shutdown(socket_, SHUT_WR);  // it still tells that it is alive
+  const Clock::time_point start = Clock::now();
+  const auto has_ended = [&] {
+    const pid_t ended = waitpid(process_, nullptr, WNOHANG);
+    return ended != 0 && !(ended < 0 && errno == EINTR);
   };
+  bool ended = has_ended(), left = false, closed = false;
   const bool hangs = silent_ || is_stopped(process_);
-  if (has_ended(hangs ? 0 : stop_requested ? 1 : 6) || (stop_requested && !hangs)) return;
+  for (int looks = 0; !ended && !left && !hangs && looks < kMostSilentLooks; ++looks) {
+    pollfd news{closed ? -1 : socket_, POLLIN, 0};
+    char alive;
+    if (poll(&news, 1, closed ? 1 : kLookEvery) > 0) {
+      closed = recv(socket_, &alive, sizeof alive, MSG_DONTWAIT) <= 0;
+      looks = 0;
+    }
+    ended = has_ended();
+    left = stop_requested && Clock::now() - start > std::chrono::seconds(1);
+  }
+  close(socket_);
+  if (ended || left) return;
   kill(process_, SIGKILL);
-  has_ended(1);  // a frozen one does not end: it is left
+  for (int times = 0; times < 1000 && !has_ended(); ++times) poll(nullptr, 0, 1);  // a frozen one does not end
 }
 
 bool SupervisorProcess::send(const void* message, std::size_t size) const {

@@ -4,6 +4,7 @@ lock during a call."""
 import ctypes
 import pathlib
 import threading
+import time
 from typing import Any, Callable
 
 import numpy as np
@@ -53,6 +54,7 @@ def call(function: str, *arguments: Any) -> None:
 def call_in_thread(function: str, *arguments: Any, then: Callable[[], None]) -> None:
     """As call, for one long call: Ctrl+C asks it to stop, and is raised when it has. `then` runs in the same thread
     after it, because what it found is kept for that thread."""
+    _library.graze_py_stop(0)
     failures: list[BaseException] = []
 
     def run() -> None:
@@ -63,14 +65,14 @@ def call_in_thread(function: str, *arguments: Any, then: Callable[[], None]) -> 
             failures.append(failure)
 
     thread = threading.Thread(target=run)
-    thread.start()
     try:
+        thread.start()
         while thread.is_alive():
             thread.join(0.1)
     except BaseException:
-        _library.graze_py_stop(1)
-        thread.join()
-        _library.graze_py_stop(0)
+        while thread in threading.enumerate():  # even one that is only about to start
+            _library.graze_py_stop(1)
+            time.sleep(0.01)
         raise
     if failures:
         raise failures[0]
@@ -89,7 +91,8 @@ def text() -> str:
 
 
 def pointer(array: np.ndarray) -> ctypes.c_void_p:
-    return ctypes.c_void_p(array.ctypes.data)
+    """The address of the array's numbers, which keeps the array alive."""
+    return array.ctypes.data_as(ctypes.c_void_p)
 
 
 def in_doubles(array: np.ndarray) -> ctypes.c_int:

@@ -8,8 +8,11 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
+import unittest.mock
+import weakref
 from fractions import Fraction
 
 import graze
@@ -226,6 +229,30 @@ class Arrays(unittest.TestCase):
                 time.sleep(0.3)
                 process.send_signal(signal.SIGINT)
                 self.assertIn("KeyboardInterrupt", process.communicate(timeout=120)[1], call)
+
+    def test_ctrl_c_while_a_search_begins_ends_it(self):
+        triangles = graze.pairs(count=20000).reshape(-1, 3, 3)
+
+        class Interrupted(threading.Thread):
+            def start(self):
+                super().start()
+                raise KeyboardInterrupt
+
+        threads = threading.active_count()
+        with unittest.mock.patch("threading.Thread", Interrupted), self.assertRaises(KeyboardInterrupt):
+            graze.self_intersections(triangles, touching=True)
+        self.assertEqual(threading.active_count(), threads)
+        self.assertGreater(len(graze.self_intersections(triangles[:2].repeat(2, axis=0), touching=True)), 0)
+
+    def test_arrays_live_as_long_as_their_address(self):
+        array = np.zeros(3, np.float32)
+        freed = []
+        weakref.finalize(array, freed.append, True)
+        address = graze._library.pointer(array)
+        del array
+        self.assertEqual(freed, [])
+        del address
+        self.assertEqual(freed, [True])
 
     def test_campaign_and_drawing(self):
         with tempfile.TemporaryDirectory() as folder:

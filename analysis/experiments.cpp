@@ -106,7 +106,7 @@ class Trial {
     std::optional<Experiment> precision = scale ? std::nullopt : by_precision();
     if (precision && precision->settled) return *precision;
     if (scale && scale->cause == Cause::absolute_epsilon && subjects::may_have_epsilon(*source_) == false)
-      scale->cause = right_above_ ? Cause::underflow : Cause::overflow;
+      scale->cause = by_exponents_at(last_turn_);
     for (std::optional<Experiment>* found : {&values, &number, &scale, &precision}) {
       if (*found) return open(std::move(**found));
     }
@@ -140,9 +140,20 @@ class Trial {
   std::optional<LargerScales> at_larger_scales(const DecideBlock& block) const {
     const Scales usual = scales_in_range(size_, lane_.scalar, kUsualFactors);
     if (size_.high == -1000 || usual.last < 1 || !usual.has(0)) return std::nullopt;
-    const auto larger = tried(block, {1, usual.last}, 12);
-    return LargerScales{std::none_of(larger.begin(), larger.end(), [](const auto& one) { return one.second; }),
-                        larger.back().first};
+    return until(block, usual.last);
+  }
+
+  // The same where products may leave the exponents.
+  std::optional<LargerScales> at_any_larger_scales() const {
+    const Scales all = exact_scales(size_);
+    if (size_.high == -1000 || all.last < 1) return std::nullopt;
+    return until(block_of(lane_), all.last);
+  }
+
+  LargerScales until(const DecideBlock& block, int last) const {
+    const auto larger = tried(block, {1, last}, 12);
+    return {std::none_of(larger.begin(), larger.end(), [](const auto& one) { return one.second; }),
+            larger.back().first};
   }
 
   bool right_in_float64() const {
@@ -176,13 +187,13 @@ class Trial {
   std::optional<Experiment> by_number(const std::optional<Experiment>& scale) const {
     const auto number = number_that_decides();
     if (!number) return std::nullopt;
-    const std::optional<LargerScales> larger = at_larger_scales();
-    const bool relative = !scale && larger && larger->wrong;
+    const std::optional<LargerScales> larger = at_larger_scales(), any = larger ? larger : at_any_larger_scales();
+    const bool relative = !scale && any && any->wrong;
     const bool settled =
         number->on_images && (scale ? scale->cause == Cause::absolute_epsilon && turns_in_range_ : larger.has_value());
     std::string text = number->words;
     if (scale) text += "; " + scale->evidence;
-    if (relative) text += "; it is wrong at " + larger->text();
+    if (relative) text += "; it is wrong at " + any->text();
     return Experiment{relative ? Cause::relative_epsilon : Cause::absolute_epsilon, settled, std::move(text),
                       settled ? number->line : ""};
   }
@@ -333,8 +344,7 @@ class Trial {
       const int middle = wrong + (right - wrong) / 2;
       (asked(lane_, {scaled(pair_, middle)})[0] ? right : wrong) = middle;
     }
-    right_above_ = right > wrong;
-    return {wrong, right};
+    return last_turn_ = {wrong, right};
   }
 
   // Whether the same code in float64 is right wherever no product leaves its exponents.
@@ -395,11 +405,21 @@ class Trial {
     if (turn) {
       turns_in_range_ = true;
       if (!right_in_float64_at_every_scale()) return Experiment{Cause::absolute_epsilon, false, turn->text()};
-      return Experiment{turn->right > turn->wrong ? Cause::underflow : Cause::overflow, false, turn->text()};
+      const Cause cause = by_exponents_at(*turn);
+      return Experiment{cause, false,
+                        turn->text() + (cause == Cause::rounding ? ", in float64 at all that were tried" : "")};
     }
     if (right) return outside(bisected(0, in_range.first > 0 ? in_range.first : in_range.last));
     wrong_at_ = tried;
     return beyond(in_range);
+  }
+
+  // Underflow or overflow if some product of coordinates can have that where the lane is wrong; else rounding.
+  Cause by_exponents_at(Turn turn) const {
+    const bool upwards = turn.right > turn.wrong;
+    const bool leaves = upwards ? kMostFactors * (size_.smallest_difference + turn.wrong) < limits().least
+                                : kMostFactors * (size_.largest_difference + 1 + turn.wrong) >= limits().most;
+    return !leaves ? Cause::rounding : upwards ? Cause::underflow : Cause::overflow;
   }
 
   // The lane is right at all scales in range, so the pair is out of range. The lane turns wrong between the range and
@@ -479,11 +499,11 @@ class Trial {
   mutable int asked_ = 0, late_ = 0;                       // verdicts; those that took all of their time
   mutable std::optional<std::vector<Pair>> wrong_images_;  // once asked for
   mutable std::optional<subjects::ChangedCode> doubles_;
-  Scales strictly_{1, 0};             // scales at which even the longest products stay within the exponents
-  mutable bool right_above_ = false;  // of the two scales that were found last
-  bool turns_in_range_ = false;       // the verdict turns between two of these
-  Scales wrong_at_{1, 0};  // wrong at all scales tried from first to last, those at which the usual products stay
-                           // within the exponents; none if it is right at some
+  Scales strictly_{1, 0};  // scales at which even the longest products stay within the exponents
+  mutable Turn last_turn_{0, 0};
+  bool turns_in_range_ = false;  // the verdict turns between two of these
+  Scales wrong_at_{1, 0};        // wrong at all scales tried from first to last, those at which the usual products stay
+                                 // within the exponents; none if it is right at some
 };
 
 }  // namespace

@@ -358,6 +358,24 @@ TEST(Experiments, FindOverflowAndUnderflow) {
   }
 }
 
+TEST(Experiments, BlameExponentsOnlyWhereAProductLeavesThem) {
+  const auto wrong_where = [](std::string_view id, auto is_wrong_at) -> const Lane& {
+    add_lane(std::string(id), Scalar::f64, Variant::cpu, truth_of);
+    return add_lane(std::string(id), Scalar::f32, Variant::cpu, [is_wrong_at](const Pair& pair) {
+      return is_wrong_at(std::fabs(pair.b[2].x)) ? opposite(truth_of(pair)) : truth_of(pair);
+    });
+  };
+  const Lane& large = wrong_where("wrong_above_16", [](float x) { return x >= 16; });
+  const Lane& small = wrong_where("wrong_below_32", [](float x) { return x < 32; });
+  // Few products of these numbers underflow, and none overflows.
+  const Pair pair{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, -1}, {1, 1, 1}, {30.000002f, 3, 1}}};
+  for (const Lane* lane : {&large, &small}) {
+    const Experiment found = experiment(*lane, decide_lane(*lane, pair), pair, truth_of(pair));
+    EXPECT_EQ(found.cause, Cause::rounding) << lane->id << ' ' << name(found.cause) << ' ' << found.evidence;
+    EXPECT_FALSE(found.settled) << found.evidence;
+  }
+}
+
 TEST(Experiments, AFailureIsItsOwnCauseAndAConventionIsNone) {
   const Pair pair{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {1, 1, 1}, {3, 3, 1}}};  // touching
   for (const auto& [verdict, cause] : {std::pair{Verdict::crashed, Cause::crash},

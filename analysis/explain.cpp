@@ -317,7 +317,7 @@ Cause cause_of(const Lane& lane, const AnyPair& given, Verdict truth_of_given) {
 }
 
 bool leaves_exponents(const Lane& lane, const AnyPair& pair) {
-  if (lane.foreign || lane.under) return false;  // not known
+  if (lane.foreign || lane.under || lane.exact) return false;  // not known, or without effect
   const DecideBlock block = block_of(rounded_counterpart(lane));
   std::uint64_t intersects, declined;
   std::feclearexcept(FE_OVERFLOW | FE_UNDERFLOW);
@@ -356,7 +356,6 @@ std::vector<LaneExplanation> accounts(const AnyPair& pair, Verdict truth, std::s
   if (truth == Verdict::declined) return result;
   std::map<std::pair<const AlgorithmInfo*, bool>, oracle::Exactly> exactly;
   for (const Lane* lane : lanes) {
-    if (lane->exact) continue;
     const Own own = own_of(*lane, pair, truth);
     const Verdict verdict = decide_lane(*lane, own.pair);
     if (verdict == truth || is_by_convention(*lane, verdict, pair)) continue;

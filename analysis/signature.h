@@ -73,13 +73,12 @@ std::optional<Signature> parse_signature(std::string_view key);
 // The subject in a key, such as "moller_1997"; empty if the text is not a key.
 std::string subject_of(std::string_view key);
 
-// Calls visit(first, count) for each run of lanes of one subject. Skips exact lanes, which have no failures.
-// Requires: lanes in table order.
+// Calls visit(first, count) for each run of lanes of one subject.   Requires: lanes in table order.
 template <class Visit>
 void for_each_subject(std::span<const Lane* const> lanes, Visit visit) {
   for (std::size_t first = 0, end; first < lanes.size(); first = end) {
     for (end = first; end < lanes.size() && lanes[end]->info == lanes[first]->info;) ++end;
-    if (!lanes[first]->exact) visit(first, end - first);
+    visit(first, end - first);
   }
 }
 

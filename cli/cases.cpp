@@ -25,16 +25,20 @@ std::uint64_t number(const std::string& text, const std::string& name) {
   return *value;
 }
 
+// A margin that no double can hold is the least or the largest (oracle/truth.h).
+std::string words_of_margin(double size) {
+  using Limits = std::numeric_limits<double>;
+  if (size <= Limits::denorm_min()) return "less than 1e-323";
+  return size < Limits::max() ? fmt::format("{:.3g}", size) : "at least 1.79e308";
+}
+
 // "disjoint, 1e-11 apart", "they share a segment, 0.25 deep"
 std::string words(const oracle::Truth& truth) {
-  if (truth.verdict == Verdict::disjoint)
-    return truth.margin > std::numeric_limits<double>::denorm_min()
-               ? fmt::format("disjoint, {:.3g} apart", truth.margin)
-               : "disjoint, less than 1e-323 apart";
+  if (truth.verdict == Verdict::disjoint) return fmt::format("disjoint, {} apart", words_of_margin(truth.margin));
   const char* contact = truth.contact == Contact::point     ? "they touch in a point"
                         : truth.contact == Contact::segment ? "they share a segment"
                                                             : "they share an area";
-  return truth.margin < 0 ? fmt::format("{}, {:.3g} deep", contact, -truth.margin) : contact;
+  return truth.margin < 0 ? fmt::format("{}, {} deep", contact, words_of_margin(-truth.margin)) : contact;
 }
 
 }  // namespace
@@ -83,6 +87,12 @@ bool alike(const oracle::Truth& l, const oracle::Truth& r) {
   return l.verdict == r.verdict && l.contact == r.contact && l.margin_sign == r.margin_sign;
 }
 
+// "it rounds number 2, 0.1", or, of several, how many and the first.
+std::string rounded_words(std::size_t count, std::size_t first, std::string_view number) {
+  return fmt::format("it rounds {}number {}, {}", count == 1 ? "" : fmt::format("{} numbers, the first is ", count),
+                     first + 1, number);
+}
+
 // The note of a pair of doubles. truth: its own.
 std::string note_of_doubles(const corpus::Entry& entry, const oracle::Truth& truth) {
   const double* own = coordinates(*entry.doubles);
@@ -91,16 +101,18 @@ std::string note_of_doubles(const corpus::Entry& entry, const oracle::Truth& tru
   if (const auto written = entry.written.empty() ? std::nullopt : oracle::truth_as_written(entry.written, entry.pair);
       written && !alike(*written, truth))
     parts.push_back("as written: " + words(*written) + "; as doubles: " + words(truth));
-  int i = 0;
-  while (i < kCoordinates && (std::isnan(own[i]) || double{stored[i]} == own[i])) ++i;
-  if (i == kCoordinates) return fmt::format("{}", fmt::join(parts, "; "));
-  const std::string number = fmt::format("number {}, {}", i + 1, own[i]);
+  std::vector<std::size_t> rounded;
+  for (std::size_t i = 0; i < kCoordinates; ++i) {
+    if (!std::isnan(own[i]) && double{stored[i]} != own[i]) rounded.push_back(i);
+  }
+  if (rounded.empty()) return fmt::format("{}", fmt::join(parts, "; "));
   if (const auto beyond = std::find_if(stored, stored + kCoordinates, [](float x) { return std::isinf(x); });
       is_finite(*entry.doubles) && beyond != stored + kCoordinates) {
     parts.push_back(fmt::format("float32 cannot store it: number {}, {} is beyond its largest", beyond - stored + 1,
                                 own[beyond - stored]));
   } else if (const oracle::Truth in_float32 = oracle::truth(entry.pair); !alike(in_float32, truth)) {
-    parts.push_back(fmt::format("as stored in float32: {} (it rounds {})", words(in_float32), number));
+    parts.push_back(fmt::format("as stored in float32: {} ({})", words(in_float32),
+                                rounded_words(rounded.size(), rounded[0], fmt::format("{}", own[rounded[0]]))));
   }
   return fmt::format("{}", fmt::join(parts, "; "));
 }
@@ -125,9 +137,9 @@ std::string written_note(const corpus::Entry& entry, const oracle::Truth& truth)
   if (double_differs)
     text += fmt::format("; as doubles{}: {}", float_differs ? "" : " and as stored in float32", words(in_doubles));
   if (!float_differs) return text;
-  const std::size_t i = oracle::first_rounded(entry.written, entry.pair).value();
-  return fmt::format("{}; as stored in float32: {} (it rounds number {}, {})", text, words(truth), i + 1,
-                     printable(entry.written[i]));
+  const std::vector<std::size_t> rounded = oracle::rounded(entry.written, entry.pair);
+  return fmt::format("{}; as stored in float32: {} ({})", text, words(truth),
+                     rounded_words(rounded.size(), rounded.at(0), printable(entry.written[rounded.at(0)])));
 }
 
 std::vector<std::pair<std::string, Verdict>> stored_verdicts_of(const corpus::Entry& entry,
@@ -165,10 +177,9 @@ CLI::Option* add_exact_input(CLI::App& command, bool& exact_input) {
 
 void expect_exact_input(const std::string& name, const corpus::Entry& entry) {
   if (entry.written.empty()) return;
-  if (const std::optional<std::size_t> i = oracle::first_rounded(entry.written, entry.pair)) {
+  if (const std::vector<std::size_t> rounded = oracle::rounded(entry.written, entry.pair); !rounded.empty())
     throw UsageError(fmt::format("{}:{}: float32 cannot represent number {}, {}, exactly, as --exact-input demands",
-                                 name, entry.line, *i + 1, shown(entry.written[*i])));
-  }
+                                 name, entry.line, rounded[0] + 1, shown(entry.written[rounded[0]])));
 }
 
 void say_notes(const std::vector<std::string>& notes, const strata::Rounding& rounding, bool exact_input) {

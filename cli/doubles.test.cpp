@@ -60,6 +60,38 @@ TEST_F(Doubles, ACampaignIsRepeatedByItsFiles) {
   EXPECT_NE(failed.err.find("coordinates=f64"), std::string::npos) << failed.err;
 }
 
+// The exact lane in float decides what float32 stores, so its wrong verdicts are failures like those of other lanes.
+TEST_F(Doubles, WhatStoringAloneGetsWrongIsAFailure) {
+  const std::string fuzz =
+      "graze fuzz --coordinates f64 --strata stored,large_offset --pairs 400 --lanes 'exact/*/cpu' --out s";
+  ASSERT_EQ(shell(fuzz).status, 0);
+  const Json summary = Json::parse(contents(shell.folder / "s/summary.json"));
+  std::uint64_t wrong = 0, of_signatures = 0;
+  for (const Json& stratum : summary["strata"]) {
+    const Json& lane = stratum["lanes"]["exact/f32/cpu"];
+    wrong += lane["false_positive"].get<std::uint64_t>() + lane["false_negative"].get<std::uint64_t>();
+  }
+  EXPECT_GT(wrong, 200u);
+  EXPECT_EQ(summary["disagreements"], wrong);
+  for (const Json& row : summary["signatures"]) {
+    EXPECT_NE(row["key"].get<std::string>().find("/exact:"), std::string::npos) << row;
+    of_signatures += row["count"].get<std::uint64_t>();
+  }
+  EXPECT_EQ(of_signatures, wrong);
+  expect_done("graze minimize s");
+  const std::string failures = shell("graze failures s").out;
+  EXPECT_NE(failures.find("stored"), std::string::npos) << failures;
+  const std::string file = "s/" + std::string(summary["signatures"][0]["case"]);
+  const Ran explained = shell("graze explain " + file);
+  EXPECT_NE(explained.out.find("float32"), std::string::npos) << explained.out << explained.err;
+  EXPECT_NE(shell("graze repro " + file).out.find("(as recorded)"), std::string::npos);
+  expect_done("graze map " + file + " --lanes 'exact/*/cpu' --out map");
+  expect_done("graze report s");
+  const Ran failed = shell("rm -rf t; " + fuzz + " --fail-above 0 --out t");
+  EXPECT_EQ(failed.status, 1);
+  EXPECT_NE(failed.err.find("exact is wrong on "), std::string::npos) << failed.err;
+}
+
 TEST_F(Doubles, ATableIsReadBackWithTheSameTruth) {
   expect_done("graze dump stored/f64:7 --pairs 40 --format pairs --lanes 'exact/*/cpu,moller_1997/f32/cpu' > p.pairs");
   const Ran check = shell("graze check p.pairs --json --lanes 'exact/*/cpu,moller_1997/f32/cpu'");

@@ -55,8 +55,9 @@ std::string emit(reports::SnippetKind kind, const std::string& name, const std::
   }
   if (!fallback) throw std::runtime_error("there is no pair with finite coordinates in " + name);
   if (!reports::shows_lanes(kind)) return reports::snippet(kind, *fallback);
-  throw std::runtime_error(fmt::format("none of the {} lanes is wrong on any pair of {}; choose other --lanes",
-                                       kind == reports::SnippetKind::cuda ? "CUDA" : "CPU", name));
+  throw std::runtime_error(
+      fmt::format("none of the {} lanes that a program can show is wrong on any pair of {}; choose other --lanes",
+                  kind == reports::SnippetKind::cuda ? "CUDA" : "CPU", name));
 }
 
 }  // namespace graze::cli

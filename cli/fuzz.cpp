@@ -89,8 +89,8 @@ std::pair<std::string, std::filesystem::path> smallest_case(const std::filesyste
   return smallest;
 }
 
-// Finds the first of the given subjects (of all, if none are given) that is wrong on more pairs than allowed. Reports
-// it in one line with its simplest case, minimised.
+// Reports each of the given subjects (of all, if none are given) that is wrong on more pairs than allowed, in one line
+// with its simplest case, minimised.
 // Returns: the exit status.
 int fail_above(const FuzzOptions& options, const fuzz::SelectedLanes& under_test, const Json& summary) {
   std::map<std::string, std::uint64_t> wrong;
@@ -98,6 +98,7 @@ int fail_above(const FuzzOptions& options, const fuzz::SelectedLanes& under_test
     const auto signature = analysis::parse_signature(row["key"].get<std::string>());
     if (signature) wrong[signature->subject] += row["count"].get<std::uint64_t>();
   }
+  int status = 0;
   for (const auto& [subject, count] : wrong) {
     const auto names_it = [&, &id = subject](const std::string& text) { return text.starts_with(id + '='); };
     const auto& given = options.lanes.subjects;
@@ -108,9 +109,9 @@ int fail_above(const FuzzOptions& options, const fuzz::SelectedLanes& under_test
                "graze: {} is wrong on {} pairs, above the limit {} of --fail-above; the smallest is {}; again: "
                "graze repro {}\n",
                subject, reports::grouped(count), reports::grouped(*options.fail_above), pair, path_word(file.string()));
-    return 1;
+    status = 1;
   }
-  return 0;
+  return status;
 }
 
 // Runs one of the processes that mpirun started.   Returns: the exit status.

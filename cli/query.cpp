@@ -345,9 +345,13 @@ void query_mesh(const QueryOptions& options, int& status) {
   const bool on_cores =
       std::none_of(options.executors.begin(), options.executors.end(),
                    [](const std::string& executor) { return executor.ends_with("gpu") || executor.ends_with("gpus"); });
-  const bool are_doubles = !(of_references.in_doubles.empty() && of_mesh.in_doubles.empty()) && on_cores &&
-                           lanes.ids == std::vector<std::string>{"exact"};
+  const bool has_doubles = !of_references.in_doubles.empty() || !of_mesh.in_doubles.empty(),
+             are_doubles = has_doubles && on_cores && lanes.ids == std::vector<std::string>{"exact"};
   say_notes(of_references, of_mesh, options.exact_input, are_doubles);
+  if (has_doubles && !are_doubles && matches_any(lanes.ids, "exact"))
+    fmt::print(stderr,
+               "graze: exact decides the rounded triangles too, as {}; alone and on cores it decides the doubles\n",
+               on_cores ? "the other lanes take float32" : "GPUs take float32");
   are_doubles ? answer<double>(options, lanes, in_doubles(of_references), in_doubles(of_mesh), status)
               : answer<float>(options, lanes, of_references.triangles, of_mesh.triangles, status);
 }

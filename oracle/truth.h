@@ -23,7 +23,7 @@ struct OracleMismatch : std::runtime_error {
 
 // Relation and margin. The verdict is CGAL's, confirmed by the decision on GMP integers.
 // Exact: always; the margin is a rational's square root, rounded once by MPFR. Of doubles it may be beyond what a
-// double holds: it is then 0 or infinite, and margin_sign still tells.
+// double holds: it is then the least or the largest one.
 // Throws: OracleMismatch.   Returns: declined, unknown and NaN if a coordinate is not finite.
 Truth truth(const Pair& pair);
 Truth truth(const DoublePair& pair);

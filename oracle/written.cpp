@@ -57,16 +57,17 @@ bool is_stored(const std::string& text, float stored) {
 
 }  // namespace
 
-std::optional<std::size_t> first_rounded(std::span<const std::string> numbers, const Pair& stored) {
+std::vector<std::size_t> rounded(std::span<const std::string> numbers, const Pair& stored) {
+  std::vector<std::size_t> found;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const float x = coordinates(stored)[i];
-    if (std::isfinite(x) && !is_stored(numbers[i], x)) return i;
+    if (std::isfinite(x) && !is_stored(numbers[i], x)) found.push_back(i);
   }
-  return std::nullopt;
+  return found;
 }
 
 std::optional<Truth> truth_as_written(std::span<const std::string> numbers, const Pair& stored) {
-  if (!is_finite(stored) || !first_rounded(numbers, stored)) return std::nullopt;
+  if (!is_finite(stored) || rounded(numbers, stored).empty()) return std::nullopt;
   mpq_class values[kCoordinates];
   mpz_class denominator = 1;
   for (std::size_t i = 0; i < kCoordinates; ++i) {

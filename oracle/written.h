@@ -5,20 +5,21 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/pair.h"
 #include "oracle/truth.h"
 
 namespace graze::oracle {
 
-// The first of a pair's numbers that float32 cannot hold as written, if any. It can hold infinities and NaN.
+// Which of a pair's numbers float32 cannot hold as written. It can hold infinities and NaN.
 // Requires: 18 texts; the pair's coordinates are their nearest float32 (core/text.h).
 // Throws: std::runtime_error for an exponent of more than five digits.
-std::optional<std::size_t> first_rounded(std::span<const std::string> numbers, const Pair& stored);
+std::vector<std::size_t> rounded(std::span<const std::string> numbers, const Pair& stored);
 
 // Verdict, contact and margin of the numbers as rationals, decided like truth(). Ulps are those of the stored pair.
 // Nothing if every number is stored as written, or if one is not finite.
-// Exact: always.   Throws: OracleMismatch; what first_rounded throws.
+// Exact: always.   Throws: OracleMismatch; what rounded throws.
 std::optional<Truth> truth_as_written(std::span<const std::string> numbers, const Pair& stored);
 
 }  // namespace graze::oracle

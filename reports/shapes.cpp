@@ -11,8 +11,8 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 // An object has these fields; a '?' at the end of a name makes the field optional, and "*" stands for all fields. A
-// list has elements of one shape. "text?" may be null. Other words are shapes of this table. It follows
-// reports/web/src/report.ts.
+// list has elements of one shape, and with "some" at least one. "text?" may be null, and "positive" is a count. Other
+// words are shapes of this table. It follows reports/web/src/report.ts.
 constexpr const char* kShapes = R"({
 "share": {"count": "count", "of": "count", "share": "number?", "low": "number?", "high": "number?"},
 "threshold": {"exponent": "whole?", "above": "count", "bound": "number", "largest": "whole?"},
@@ -28,20 +28,20 @@ constexpr const char* kShapes = R"({
   "interactions": [{"first": "policy_errors", "second": "policy_errors", "together": "policy_errors"}],
   "lanes_left_out?": "left_out", "epsilon?": {"name": "text", "written": "text", "value?": "number", "file": "text", "lines": ["count"],
     "chosen": "text", "units?": "text"},
-  "zero": "policy_errors", "curves": [{"site": "text", "tolerance": "text", "points": ["policy_errors"]}],
-  "sentences": ["text"]},
+  "zero": "policy_errors", "curves": [{"site": "text", "tolerance": "text", "points": ["policy_errors", "some"]}],
+  "sentences": ["text", "some"]},
 "left_out": {"patterns": ["text"], "why": {"*": "text"}},
 "pareto": {"pairs": "count", "seed": "count", "machine": "text", "lanes_left_out?": "left_out",
   "lanes": [{"lane": "text", "errors": "errors", "bound": "number", "in_cache?": "quartiles",
     "from_memory?": "quartiles", "one_a_call?": "quartiles", "resident?": "quartiles", "with_copies?": "quartiles",
     "dominated": "yes or no",
-    "registers?": "count", "local_bytes?": "count", "active_threads?": "count", "failure": "text?"}],
+    "registers?": "count", "local_bytes?": "count", "active_threads?": "count", "failure": "text?"}, "some"],
   "not_timed?": [{"lane": "text", "errors": "errors", "bound": "number", "failure": "text?", "why": "text"}],
   "extremes": [{"lane": "text", "extreme": "text", "says": "text", "points": [{"log2": "whole", "pairs": "count",
     "false_positive": "count", "false_negative": "count", "declined": "count"}]}],
   "sentences": ["text"]},
-"costs": {"machine": "text", "passes": "count", "rows": [{"lane": "count", "group": "count?", "pairs": "count",
-  "low": "number", "middle": "number", "high": "number"}], "answer": ["text"]},
+"costs": {"machine": "text", "passes": "positive", "rows": [{"lane": "count", "group": "count?", "pairs": "positive",
+  "low": "number", "middle": "number", "high": "number"}, "some"], "answer": ["text", "some"]},
 "run": {"seed": "count", "pairs": "count", "complete": "yes or no", "command": "text", "map_command": "text",
   "build": {"version": "text", "commit": "text", "compiler": "text", "cuda": "text?", "device": "text?"},
   "scene?": "text?", "machine": "text?", "subjects?": [{"name": "text", "what": "text", "hash": "text",
@@ -81,7 +81,7 @@ constexpr const char* kShapes = R"({
   "answer": ["text"], "groups": [{"id": "text", "describes": "text", "strata": ["count"]}],
   "rates": [{"lane": "count", "stratum": "count?", "false_positive": "share", "false_negative": "share",
     "wrong": "share", "declined": "count", "differs_from_cpu": "share?", "crashed?": "count", "timed_out?": "count",
-    "unstable?": "count", "by_convention?": "count", "stored?": "count"}],
+    "unstable?": "count", "by_convention?": "count", "stored?": "count"}, "some"],
   "group_rates": [{"lane": "count", "group": "count", "wrong": "share",
   "false_positive?": "share", "false_negative?": "share"}],
   "side_by_side": [{"kind": "text", "left": "count", "right": "count",
@@ -108,6 +108,7 @@ void expect(const Json& shapes, const Json& shape, const Json& value, const std:
   };
   if (shape.is_array()) {
     if (!value.is_array()) refuse("a list");
+    if (shape.size() > 1 && value.empty()) refuse("a list of something");
     for (std::size_t i = 0; i < value.size(); ++i) expect(shapes, shape[0], value[i], fmt::format("{}/{}", place, i));
     return;
   }
@@ -134,11 +135,12 @@ void expect(const Json& shapes, const Json& shape, const Json& value, const std:
     word.pop_back();
   }
   if (shapes.contains(word)) return expect(shapes, shapes[word], value, place);
-  const bool fits = word == "text"     ? value.is_string()
-                    : word == "count"  ? value.is_number_unsigned()
-                    : word == "whole"  ? value.is_number_integer()
-                    : word == "number" ? value.is_number()
-                                       : value.is_boolean();
+  const bool fits = word == "text"       ? value.is_string()
+                    : word == "count"    ? value.is_number_unsigned()
+                    : word == "positive" ? value.is_number_unsigned() && value > 0
+                    : word == "whole"    ? value.is_number_integer()
+                    : word == "number"   ? value.is_number()
+                                         : value.is_boolean();
   if (!fits) refuse(word == "yes or no" ? word : "a " + word + (word == "whole" ? " number" : ""));
 }
 

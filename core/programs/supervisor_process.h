@@ -26,8 +26,8 @@ class SupervisorProcess {
   // descriptors `shared` from 4 on. output: where it writes; -1 for /dev/null.   Throws: std::system_error.
   SupervisorProcess(const std::string& program, const std::vector<std::string>& arguments,
                     const std::vector<int>& shared, int output);
-  // Closes its end of the socket, after which the supervisor ends everything that it started. Kills a supervisor that is
-  // silent for 10 s. After a request to stop, waits 1 s only and then leaves it to end by itself.
+  // Closes its end of the socket, after which the supervisor ends everything that it started. Kills a supervisor that
+  // is silent for 10 s. After a request to stop, waits 1 s only and then leaves it to end by itself.
   ~SupervisorProcess();
   SupervisorProcess(const SupervisorProcess&) = delete;
   SupervisorProcess& operator=(const SupervisorProcess&) = delete;

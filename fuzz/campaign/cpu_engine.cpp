@@ -248,7 +248,7 @@ class BlockJudge {
         verdicts_[l] = truth(i);
         continue;
       }
-      any_wrong = any_wrong || (is_wrong(verdicts_[l], truth(i)) && !under_test_.lanes[l]->exact);
+      any_wrong = any_wrong || is_wrong(verdicts_[l], truth(i));
     }
     if (!any_wrong) return;
     ++result.disagreements;

@@ -25,7 +25,7 @@ class Panels {
   explicit Panels(std::span<const Lane* const> lanes)
       : lanes_{find_lane(std::is_same_v<Real, float> ? "exact/f32/cpu" : "exact/f64/cpu")} {
     for (const Lane* lane : lanes) {
-      if (!lane->exact || (lane->scalar == Scalar::f32 && std::is_same_v<Real, double>)) lanes_.push_back(lane);
+      if (!is_never_wrong(*lane, PairOf{})) lanes_.push_back(lane);
     }
     for (const Lane* lane : lanes_) blocks_.push_back(block_of(*lane));
     failed_.resize(blocks_.size());

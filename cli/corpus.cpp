@@ -57,14 +57,15 @@ void write_corpus(const CorpusOptions& options, const fuzz::RegressionCorpus& co
 }
 
 fuzz::DecideLanes decide_by(const fuzz::SelectedLanes& under_test) {
-  return [&under_test](const Pair& pair, std::vector<const Lane*>& apart) { return decide(under_test, pair, apart); };
+  return
+      [&under_test](const AnyPair& pair, std::vector<const Lane*>& apart) { return decide(under_test, pair, apart); };
 }
 
 std::vector<corpus::Entry> cases_to_add(const std::string& name, bool exact_input) {
-  std::vector<corpus::Entry> entries = read_cases(name);
+  std::vector<corpus::Entry> entries = read_cases(name, PairTypes::both);
   for (const corpus::Entry& entry : entries) {
     if (exact_input) expect_exact_input(name, entry);
-    const std::string note = written_note(entry, oracle::truth(entry.pair));
+    const std::string note = written_note(entry, truth_of(entry));
     if (!note.empty()) fmt::print("{}:{}: {}\n", printable(name), entry.line, note);
   }
   return entries;
@@ -171,6 +172,17 @@ std::string not_run(const fuzz::RegressionCorpus& corpus) {
   return text;
 }
 
+// "Not run on pairs of doubles: …": lanes that decide the corpus's pairs of float32 alone.
+std::string not_run_on_doubles(const fuzz::RegressionCorpus& corpus, const fuzz::SelectedLanes& under_test) {
+  std::vector<std::string> ids;
+  if (std::any_of(corpus.begin(), corpus.end(), [](const auto& row) { return !row.second.pair.floats; })) {
+    for (const Lane* lane : under_test.lanes) {
+      if (!fuzz::takes(*lane, DoublePair{})) ids.push_back(lane->id);
+    }
+  }
+  return ids.empty() ? "" : printable(fmt::format("Not run on pairs of doubles: {}.", fmt::join(ids, ", "))) + '\n';
+}
+
 // One test a case: it fails if a verdict differs from the record.
 std::vector<reports::JunitCase> tests_of(const std::string& file, const fuzz::RegressionCorpus& corpus,
                                          const fuzz::Verified& result) {
@@ -201,7 +213,7 @@ int verify(const CorpusOptions& options) {
              reports::grouped(result.compared), result.changes.size(), options.update ? ", recorded" : "");
   if (const std::string evidence = cuda_evidence(under_test); !evidence.empty())
     fmt::print("CUDA lanes: {}\n", evidence);
-  fmt::print("{}", not_run(corpus));
+  fmt::print("{}{}", not_run(corpus), not_run_on_doubles(corpus, under_test));
   if (options.update) {
     write_corpus(options, corpus);
     return 0;

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "cli/run_graze.h"
+#include "corpus/pair_format.h"
 
 namespace graze::cli {
 namespace {
@@ -304,12 +305,65 @@ TEST_F(Doubles, CasesBecomePrograms) {
   expect_done(repro + "obj > case.obj && grep -q 1.0000000000009095 case.obj");
 }
 
+// Two meshes that the same step of 0.001 separates everywhere: the decimals of the one have few digits, those of the
+// other many. Both are decided as they are written, whichever comes first.
+TEST_F(Doubles, AllDecimalsOfTwoMeshesAreDoublesIfSomeHaveManyDigits) {
+  std::ofstream(shell.folder / "few.off") << "OFF\n3 1 0\n0.1 0 0\n0.1 1 0\n0.1 0 1\n3 0 1 2\n";
+  std::ofstream(shell.folder / "many.off") << "OFF\n3 1 0\n0.1000000001 0 0\n0.1000000001 1 0\n0.1000000001 0 1\n"
+                                              "3 0 1 2\n";
+  std::ofstream(shell.folder / "few.txt") << "0.1 0 0 0.1 1 0 0.1 0 1\n";
+  for (const std::string command :
+       {"graze query few.off many.off --between", "graze query many.off few.off --between",
+        "graze query few.off#0 many.off", "graze query many.off#0 few.off", "graze query few.txt many.off"}) {
+    const Ran ran = shell(command);
+    EXPECT_EQ(ran.status, 0) << command << ran.err;
+    EXPECT_NE(ran.out.find("0 "), std::string::npos) << ran.out;
+    EXPECT_EQ(ran.out.find("1 pair"), std::string::npos) << command << ran.out;
+    EXPECT_EQ(ran.out.find("1 of 1"), std::string::npos) << command << ran.out;
+    EXPECT_NE(ran.err.find("many.off: decided in doubles"), std::string::npos) << command << ran.err;
+    EXPECT_EQ(ran.err.find("rounded"), std::string::npos) << command << ran.err;
+  }
+  for (const std::string meshes : {"few.off many.off", "many.off few.off"}) {
+    expect_done("rm -rf f; graze fuzz --mesh " + meshes + " --coordinates f64 --lanes 'exact/*/cpu' --out f");
+    const Json mesh = Json::parse(contents(shell.folder / "f/summary.json"))["strata"]["mesh/f64"];
+    EXPECT_EQ(mesh["intersects"], 0) << meshes;
+    EXPECT_EQ(mesh["lanes"]["exact/f32/cpu"]["stored"], 1) << meshes;
+  }
+}
+
+TEST_F(Doubles, ARegressionCorpusKeepsThemBesideFloats) {
+  expect_done(
+      "graze fuzz --coordinates both --strata 'near_vertex_face,stored' --pairs 600 "
+      "--lanes 'moller_1997/*/cpu,exact/*/cpu' --out c && graze corpus add c --top 3 --corpus r --lanes '*/cpu'");
+  const std::string once = contents(shell.folder / "r/cases.pairs");
+  EXPECT_NE(once.find("exact_"), std::string::npos) << once;
+  std::size_t of_doubles = 0, of_floats = 0;
+  for (const corpus::Entry& entry : corpus::read_pairs(shell.folder / "r/cases.pairs", PairTypes::both))
+    ++(entry.doubles ? of_doubles : of_floats);
+  EXPECT_GT(of_doubles, 1u);
+  EXPECT_GT(of_floats, 0u);
+  const Ran verified = shell("graze corpus verify --corpus r --lanes '*/cpu,*/f64/cuda-fma' --executor twin");
+  EXPECT_EQ(verified.status, 0) << verified.out << verified.err;
+  EXPECT_NE(verified.out.find("Not run on pairs of doubles: projected_sat/f64/cuda-fma"), std::string::npos)
+      << verified.out;
+  expect_done("graze corpus verify --corpus r --lanes '*/cpu' --update && graze corpus list --corpus r > /dev/null");
+  EXPECT_EQ(contents(shell.folder / "r/cases.pairs"), once);
+  // A verdict on a pair of doubles that differs from its record is a change.
+  expect_done("sed -i '/coordinates=f64/s/\\(lanes=.*moller_1997:\\)[+-]f32/\\1.f32/' r/cases.pairs");
+  EXPECT_NE(contents(shell.folder / "r/cases.pairs"), once);
+  const Ran changed = shell("graze corpus verify --corpus r --lanes 'moller_1997/f32/cpu'");
+  EXPECT_EQ(changed.status, 1) << changed.out;
+  EXPECT_NE(changed.out.find("moller_1997/f32/cpu: was "), std::string::npos) << changed.out;
+  // Single pairs.
+  expect_done("graze corpus add stored/f64:1:3 --corpus s --lanes 'exact/*/cpu,moller_1997/*/cpu'");
+  EXPECT_NE(contents(shell.folder / "s/cases.pairs").find("coordinates=f64"), std::string::npos);
+}
+
 TEST_F(Doubles, VerbsThatTakeFloat32AloneSaySo) {
   expect_done(kCampaign);
   const Json summary = Json::parse(contents(shell.folder / "c/summary.json"));
   const std::string file = "c/" + summary["signatures"][0]["case"].get<std::string>();
   for (const auto& [command, word] : std::map<std::string, std::string>{
-           {"graze corpus add c --corpus r", "corpus add"},
            {"graze tune moller_1997/f32/cpu --from c --forbid false-negative", "tune"},
            {"graze discrepancy moller_1997/f32/cpu moller_1997/f32/cpu-fma --campaign c", "discrepancy"},
            {"graze fuzz --coordinates f64 --scene a.toml --out m", "--coordinates"}})

@@ -32,6 +32,7 @@
 #include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/campaign/scratch.h"
+#include "fuzz/campaign/store_file.h"
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimised_cases.h"
 #include "fuzz/ranks/rank_campaign.h"
@@ -227,8 +228,13 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
     return kInterrupted;
   }
   // Foreign code can write into the folder too. So what it may have changed is read back before it is told.
-  if (campaign.spec.contains("subjects"))
-    campaign.shard.whole() ? void(fuzz::checked_summary(options.out)) : void(fuzz::counts_of_database(options.out));
+  if (campaign.spec.contains("subjects") && campaign.shard.whole()) {
+    fuzz::checked_summary(options.out);
+  } else if (campaign.spec.contains("subjects")) {
+    fuzz::StoreSpec spec = fuzz::store_spec(campaign);
+    spec.directory = options.out;
+    fuzz::for_each_row(spec, [](const fuzz::PairRange&, const fuzz::StoredCounts&) {});
+  }
   if (!campaign.shard.whole()) {
     print_shard(options.out, campaign.spec, outcome.summary, options.json);
     return 0;

@@ -44,11 +44,12 @@ FoundPair related(std::uint32_t i, std::uint32_t j, const DoublePair& pair);
 // The text of a CSV file: a head, and a row for each pair.
 std::string csv_of(std::span<const FoundPair> pairs);
 
-// The triangles of a mesh in float32. `in_doubles` are the same in doubles, if a coordinate is beyond float32
-// (strata::Rounding); else empty.
+// The triangles of a mesh in float32. `in_doubles` are the same in doubles, if float32 rounded a coordinate; else
+// empty.
 struct MeshTriangles {
   std::vector<std::array<Vec3<float>, 3>> triangles;
   std::vector<std::array<Vec3<double>, 3>> in_doubles = {};
+  bool has_doubles = false;  // a coordinate is beyond float32 (strata::Rounding)
 
   std::size_t size() const { return triangles.size(); }
 };
@@ -59,7 +60,7 @@ struct TwoMeshes {
   std::optional<MeshTriangles> b;
 
   // Whether a coordinate is beyond float32. Then doubles are decided.
-  bool are_doubles() const { return !a.in_doubles.empty() || (b && !b->in_doubles.empty()); }
+  bool are_doubles() const { return a.has_doubles || (b && b->has_doubles); }
   Pair pair(std::uint32_t i, std::uint32_t j) const;
   DoublePair pair_of_doubles(std::uint32_t i, std::uint32_t j) const;
 };

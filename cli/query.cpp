@@ -345,7 +345,7 @@ void query_mesh(const QueryOptions& options, int& status) {
   const bool on_cores =
       std::none_of(options.executors.begin(), options.executors.end(),
                    [](const std::string& executor) { return executor.ends_with("gpu") || executor.ends_with("gpus"); });
-  const bool has_doubles = !of_references.in_doubles.empty() || !of_mesh.in_doubles.empty(),
+  const bool has_doubles = of_references.rounding.beyond > 0 || of_mesh.rounding.beyond > 0,
              are_doubles = has_doubles && on_cores && lanes.ids == std::vector<std::string>{"exact"};
   say_notes(of_references, of_mesh, options.exact_input, are_doubles);
   if (has_doubles && !are_doubles && matches_any(lanes.ids, "exact"))

@@ -36,10 +36,10 @@ Input read_numbers(const std::string& file) {
     throw std::runtime_error(
         fmt::format("{}: expected nine numbers for each reference, found {}", file, numbers.size()));
   references.triangles.resize(numbers.size() / 9);
-  if (references.rounding.beyond > 0) references.in_doubles.resize(numbers.size() / 9);
+  references.in_doubles.resize(numbers.size() / 9);
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     references.triangles[i / 9][i % 9] = numbers[i].stored;
-    if (references.rounding.beyond > 0) references.in_doubles[i / 9][i % 9] = numbers[i].written;
+    references.in_doubles[i / 9][i % 9] = numbers[i].written;
   }
   references.notes = strata::rounding_note(file, references.rounding);
   references.notes_of_doubles = strata::doubles_note(file, references.rounding);

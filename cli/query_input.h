@@ -27,7 +27,7 @@ QueryLanes query_lanes(const LaneOptions& options, const std::vector<std::string
 
 struct Input {
   std::vector<query::Triangle> triangles;
-  std::vector<query::DoubleTriangle> in_doubles;     // the same, if a coordinate is beyond float32; else empty
+  std::vector<query::DoubleTriangle> in_doubles;     // the same, if float32 rounded a coordinate; may else be empty
   std::vector<std::string> notes, notes_of_doubles;  // see strata::MeshPairs
   strata::Rounding rounding;
 };

@@ -50,13 +50,16 @@ struct Search {
 };
 
 Search opened(const MeshQuestion& question) {
-  const auto read = [&](const std::string& file) {
-    strata::MeshPairs mesh = strata::read_triangles(file, strata::Coordinates::any);
-    say_notes(question.exact_input ? mesh.notes : mesh.notes_of_doubles, mesh.rounding, question.exact_input);
-    return MeshTriangles{std::move(mesh.triangles), std::move(mesh.in_doubles)};
+  std::vector<strata::MeshPairs> read;
+  for (const std::string& file : question.files) read.push_back(strata::read_triangles(file, strata::Coordinates::any));
+  const auto triangles_of = [](strata::MeshPairs& mesh) {
+    return MeshTriangles{std::move(mesh.triangles), std::move(mesh.in_doubles), mesh.rounding.beyond > 0};
   };
-  Search search{question, {read(question.files[0]), {}}};
-  if (question.files.size() == 2) search.meshes.b = read(question.files[1]);
+  Search search{question, {triangles_of(read[0]), {}}};
+  if (read.size() == 2) search.meshes.b = triangles_of(read[1]);
+  const bool of_doubles = search.meshes.are_doubles() && !question.exact_input;
+  for (const strata::MeshPairs& mesh : read)
+    say_notes(of_doubles ? mesh.notes_of_doubles : mesh.notes, mesh.rounding, question.exact_input);
   return search;
 }
 

@@ -55,7 +55,7 @@ bool intersects(const BasicPair<Real>& pair) {
 
 // How many pairs have another verdict as float32 stores them.
 std::uint64_t changed_by_storing(const strata::MeshPairs& mesh) {
-  if (mesh.in_doubles.empty()) return 0;
+  if (mesh.in_doubles.empty() || mesh.rounding.beyond == 0) return 0;
   return tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, mesh.size()), std::uint64_t{0},
       [&](const auto& range, std::uint64_t count) {

@@ -205,6 +205,10 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
   return under_test;
 }
 
+bool takes(const Lane& lane, const AnyPair& pair) {
+  return pair.floats || lane.scalar == Scalar::f32 || backends::on_host(lane).decides_doubles();
+}
+
 std::vector<LaneLeftOut> select_for_doubles(SelectedLanes& under_test) {
   const Lane& exact = *find_lane(kExactDoubles);
   const auto at = std::find(under_test.lanes.begin(), under_test.lanes.end(), &exact);
@@ -213,10 +217,8 @@ std::vector<LaneLeftOut> select_for_doubles(SelectedLanes& under_test) {
     under_test.on_host.push_back(exact.decide);
     sort_by_subject(under_test);
   }
-  return leave_out(under_test, [](const Lane& lane) {
-    const bool takes = lane.scalar == Scalar::f32 || backends::on_host(lane).decides_doubles();
-    return takes ? "" : "takes pairs of float32 alone";
-  });
+  return leave_out(under_test,
+                   [](const Lane& lane) { return takes(lane, DoublePair{}) ? "" : "takes pairs of float32 alone"; });
 }
 
 BlockVerdicts::BlockVerdicts(const SelectedLanes& under_test)

@@ -66,6 +66,9 @@ void expect_each_matches(const std::vector<std::string>& globs, const std::vecto
 // lanes in double that take float32 pairs alone.   Returns: these.   Throws: as expect_each_runs.
 std::vector<LaneLeftOut> select_for_doubles(SelectedLanes& under_test);
 
+// Whether the lane decides pairs of this type. Lanes in float decide doubles as float32 stores them.
+bool takes(const Lane& lane, const AnyPair& pair);
+
 // Throws: UsageError, with the reasons, if no lane of a pattern runs here, or, without patterns, none of a subject.
 void expect_each_runs(const SelectedLanes& under_test);
 

@@ -95,7 +95,7 @@ void add_mesh(MeshPairs& pairs, const std::filesystem::path& file, Coordinates c
   const std::size_t before = pairs.triangles.size();
   for (const auto& [i, j, k] : soup.triangles)
     pairs.triangles.push_back({soup.vertices[i], soup.vertices[j], soup.vertices[k]});
-  if (soup.rounding.beyond > 0 || !pairs.in_doubles.empty()) {
+  if (soup.rounding.rounded > 0 || !pairs.in_doubles.empty()) {
     for (std::size_t t = pairs.in_doubles.size(); t < before; ++t)  // of files before it, which float32 holds
       pairs.in_doubles.push_back(in_doubles(pairs.triangles[t]));
     for (const auto& [i, j, k] : soup.triangles)

@@ -21,7 +21,7 @@ namespace graze::strata {
 
 struct MeshPairs {
   std::vector<std::array<Vec3<float>, 3>> triangles;  // of the first file, then of the second, in file order
-  // The same triangles in doubles, if a file has a coordinate beyond float32; else empty.
+  // The same triangles in doubles, if float32 rounded a coordinate; else empty.
   std::vector<std::array<Vec3<double>, 3>> in_doubles;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> candidates;  // indices into triangles, sorted, first < second
   std::uint64_t content_hash = 0;  // FNV-1a of the bytes of the first file, then of the second

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "analysis/lane_trace.h"
 #include "analysis/signature.h"
 #include "backends/backends.h"
 #include "core/cannot.h"
@@ -170,8 +171,8 @@ void expect_verdicts(const Known& known, const Json& verdicts, const Case& c) {
     const bool told = known.own.contains(id) && lane.subject == c.of_first.subject &&
                       (mark != '.' || !corpus::field(first, "kind"));  // a result may cover only some lanes
     const Lane* row = find_lane(id);
-    const bool exact = row && row->exact && (row->scalar == Scalar::f64 || corpus::pair_of(first).floats);
-    expect((!told || analysis::mark(*verdict, truth_of(first)) == mark) && (!exact || *verdict == truth_of(first)),
+    const bool is_truth = row && analysis::is_never_wrong(*row, corpus::pair_of(first));
+    expect((!told || analysis::mark(*verdict, truth_of(first)) == mark) && (!is_truth || *verdict == truth_of(first)),
            "another verdict of " + id + " on " + corpus::origin_of(first));
   }
 }

@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "analysis/lane_trace.h"
 #include "analysis/signature.h"
 #include "core/cannot.h"
 #include "core/error.h"
@@ -42,16 +43,18 @@ std::optional<analysis::Signature> without_lanes(const std::string& key) {
 }
 
 // The pair's signatures, one for each subject, whether it is right or wrong.
-std::vector<analysis::Signature> signatures_of(const Pair& pair, const Replay& seen) {
-  const analysis::Signature blank{seen.truth.contact,
-                                  seen.truth.hulls,
-                                  analysis::nesting_of(pair, seen.truth),
-                                  oracle::margin_bucket(pair, seen.truth.verdict),
-                                  "",
-                                  {}};
+std::vector<analysis::Signature> signatures_of(const AnyPair& pair, const Replay& seen) {
+  const analysis::Signature blank = visit(pair, [&](const auto& own) -> analysis::Signature {
+    return {seen.truth.contact,
+            seen.truth.hulls,
+            analysis::nesting_of(own, seen.truth),
+            oracle::margin_bucket(own, seen.truth.verdict),
+            "",
+            {}};
+  });
   std::vector<analysis::Signature> result;
   for (const Lane& lane : lanes()) {  // in table order
-    if (lane.exact) continue;
+    if (analysis::is_never_wrong(lane, pair)) continue;
     const auto mark = seen.marks.find(lane.id);
     if (mark == seen.marks.end()) continue;
     const LaneName name = lane.lane_name();
@@ -74,14 +77,13 @@ std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directo
   try {
     if (!summary.at("complete").get<bool>())
       throw UsageError(cannot("add", directory, "its campaign is not finished; finish it with `graze fuzz`"));
-    expect_float32(summary.at("spec"), "corpus add");
     const std::string seen = seen_by(summary.at("build"), "campaign", summary.at("spec").dump());
     std::map<std::string, std::size_t> taken;           // number of signatures taken, by subject
     for (const Json& row : summary.at("signatures")) {  // most frequent first
       const std::string signature = row.at("key");
       if (!matches_any(globs, signature) || taken[analysis::subject_of(signature)]++ >= most) continue;
-      failures.push_back(
-          {signature, read_cases(directory, row).front(), row.at("count"), seen, case_file(directory, row).string()});
+      failures.push_back({signature, read_cases(directory, row, PairTypes::both).front(), row.at("count"), seen,
+                          case_file(directory, row).string()});
     }
   } catch (const Json::exception&) {
     throw corpus::FormatError(cannot("use", file, "it is not the summary of a campaign"));
@@ -96,7 +98,7 @@ std::vector<FoundFailure> found_in_cases(const std::vector<corpus::Entry>& entri
   const auto take = [&](const std::string& signature, const corpus::Entry& entry) {
     if (!taken.insert(signature).second) return;
     std::ostringstream bits;
-    corpus::write_entry(bits, {entry.pair});
+    corpus::write_entry(bits, corpus::entry_of(corpus::pair_of(entry), {}));
     failures.push_back({signature, entry, 1, seen_by(build, "case", bits.str())});
   };
   const bool minimised = std::any_of(entries.begin(), entries.end(), is_minimised);
@@ -106,9 +108,10 @@ std::vector<FoundFailure> found_in_cases(const std::vector<corpus::Entry>& entri
       take(*signature, entry);
       continue;
     }
-    const Replay now = replay(entry.pair, run, decide);
+    const AnyPair pair = corpus::pair_of(entry);
+    const Replay now = replay(pair, run, decide);
     if (now.truth.verdict == Verdict::declined) continue;
-    for (const analysis::Signature& s : signatures_of(entry.pair, now)) {
+    for (const analysis::Signature& s : signatures_of(pair, now)) {
       if (s.wrong()) take(analysis::key(s), entry);
     }
   }
@@ -125,7 +128,8 @@ Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const
   };
   if (signature && std::none_of(run.begin(), run.end(), was_wrong)) return Added::not_run;
 
-  const Replay now = replay(failure.entry.pair, run, decide);
+  const AnyPair pair = corpus::pair_of(failure.entry);
+  const Replay now = replay(pair, run, decide);
   const std::string algorithm = analysis::subject_of(failure.signature);
   const CaseState state = state_after(CaseState::failing, failure.signature, now.marks);
   if (known != corpus.end()) {
@@ -136,7 +140,7 @@ Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const
   }
   std::string found = "none";
   if (now.truth.verdict != Verdict::declined) {
-    for (const analysis::Signature& s : signatures_of(failure.entry.pair, now)) {
+    for (const analysis::Signature& s : signatures_of(pair, now)) {
       if (s.subject == algorithm) found = analysis::key(s);
     }
   }
@@ -149,7 +153,7 @@ Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const
   }
 
   RegressionCase c{case_name(failure.signature),
-                   failure.entry.pair,
+                   pair,
                    std::string(name(now.truth.verdict)),
                    std::string(name(now.truth.contact)),
                    state,

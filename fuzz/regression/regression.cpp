@@ -6,19 +6,21 @@
 #include <algorithm>
 #include <sstream>
 
+#include "analysis/lane_trace.h"
 #include "analysis/signature.h"
 #include "core/cannot.h"
 #include "core/fnv1a.h"
 #include "core/text.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/files.h"
+#include "fuzz/selected_lanes.h"
 
 namespace graze::fuzz {
 namespace {
 
 constexpr CaseState kStates[] = {CaseState::failing, CaseState::fixed, CaseState::flaky};
 constexpr std::string_view kOwnFields[] = {"name",      "truth", "contact", "state", "count",
-                                           "signature", "lanes", "first",   "last"};
+                                           "signature", "lanes", "first",   "last",  "coordinates"};
 
 constexpr std::string_view kMarks = ".+-?!@%~";
 
@@ -133,10 +135,10 @@ RegressionCorpus read_regressions(const std::filesystem::path& file) {
   if (const std::string text = read_whole(file); !text.empty() && text.back() != '\n')
     throw corpus::FormatError(cannot("use", file, "it is cut off: its last line has no end"));
   RegressionCorpus corpus;
-  for (const corpus::Entry& entry : corpus::read_pairs(file)) {
+  for (const corpus::Entry& entry : corpus::read_pairs(file, PairTypes::both)) {
     const Line line{entry, fmt::format("{}:{}", file.string(), entry.line)};
-    RegressionCase c{line.text("name"), entry.pair,   line.text("truth"), line.text("contact"), line.state(),
-                     line.count(),      line.marks(), line.text("first"), line.text("last")};
+    RegressionCase c{line.text("name"), corpus::pair_of(entry), line.text("truth"), line.text("contact"), line.state(),
+                     line.count(),      line.marks(),           line.text("first"), line.text("last")};
     c.other = other_fields(entry);
     const std::string& signature = line.text("signature");
     if (!analysis::parse_signature(signature)) line.fail("the signature of a failure", '\'' + signature + '\'');
@@ -152,34 +154,35 @@ void write_regressions(const std::filesystem::path& file, const RegressionCorpus
   corpus::write_header(out);
   out << "# Kept by `graze corpus`: one case for each signature, ordered by it. lanes: the marks of the last replay.\n";
   for (const auto& [signature, c] : corpus) {
-    corpus::Entry entry{c.pair,
-                        {{"name", c.name},
-                         {"truth", c.truth},
-                         {"contact", c.contact},
-                         {"state", std::string(name(c.state))},
-                         {"count", std::to_string(c.count)},
-                         {"signature", signature},
-                         {"lanes", text_of(c.marks)},
-                         {"first", c.first},
-                         {"last", c.last}},
-                        0};
+    corpus::Entry entry = corpus::entry_of(c.pair, {{"name", c.name},
+                                                    {"truth", c.truth},
+                                                    {"contact", c.contact},
+                                                    {"state", std::string(name(c.state))},
+                                                    {"count", std::to_string(c.count)},
+                                                    {"signature", signature},
+                                                    {"lanes", text_of(c.marks)},
+                                                    {"first", c.first},
+                                                    {"last", c.last}});
     entry.fields.insert(entry.fields.end(), c.other.begin(), c.other.end());
     corpus::write_entry(out, entry);
   }
   write_whole(file, out.str());
 }
 
-Replay replay(const Pair& pair, std::span<const Lane* const> run, const DecideLanes& decide) {
+Replay replay(const AnyPair& pair, std::span<const Lane* const> run, const DecideLanes& decide) {
   Replay result{oracle::truth(pair), {}};
   for (int r = 0; r < kReplays; ++r) {
     std::vector<const Lane*> apart;
     const std::vector<Verdict> verdicts = decide(pair, apart);
     for (std::size_t l = 0; l < run.size(); ++l) {
+      if (!takes(*run[l], pair)) continue;
       const char now = analysis::mark(verdicts[l], result.truth.verdict);
       char& known = result.marks.emplace(run[l]->id, now).first->second;
       if (known != now) known = '~';
     }
-    for (const Lane* lane : apart) result.marks[lane->id] = '~';
+    for (const Lane* lane : apart) {
+      if (takes(*lane, pair)) result.marks[lane->id] = '~';
+    }
   }
   return result;
 }
@@ -209,9 +212,10 @@ Verified verify(RegressionCorpus& corpus, std::span<const Lane* const> run, cons
     if (c.truth != truth_now || c.contact != contact_now)
       change(fmt::format("truth: was {}, {}, is {}, {}", c.truth, c.contact, truth_now, contact_now));
     for (const Lane* lane : run) {
+      if (!takes(*lane, c.pair)) continue;
       const char mark_now = now.marks.at(lane->id);
       const auto known = c.marks.find(lane->id);
-      if (lane->exact) {  // its record is the truth, whatever the file says
+      if (analysis::is_never_wrong(*lane, c.pair)) {  // its record is the truth, whatever the file says
         ++result.compared;
         if (mark_now != '.')
           change(fmt::format("{}: the truth is {}, the verdict is {}", lane->id, truth_now,

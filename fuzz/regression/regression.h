@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/any_pair.h"
 #include "core/lanes/lanes.h"
-#include "core/pair.h"
 #include "corpus/pair_format.h"
 #include "oracle/truth.h"
 
@@ -33,7 +33,7 @@ inline constexpr std::uint64_t kMostCount = std::uint64_t{1} << 53;  // of pairs
 
 struct RegressionCase {
   std::string name;  // a word, unique
-  Pair pair{};
+  AnyPair pair;
   std::string truth, contact;
   CaseState state = CaseState::failing;
   std::uint64_t count = 0;  // pairs seen with this signature
@@ -59,17 +59,17 @@ void write_regressions(const std::filesystem::path& file, const RegressionCorpus
 
 // Each lane's verdict on a pair; `apart` receives the lanes whose executors disagree. See decide in
 // fuzz/selected_lanes.h.
-using DecideLanes = std::function<std::vector<Verdict>(const Pair&, std::vector<const Lane*>& apart)>;
+using DecideLanes = std::function<std::vector<Verdict>(const AnyPair&, std::vector<const Lane*>& apart)>;
 
 struct Replay {
   oracle::Truth truth;
-  Marks marks;
+  Marks marks;  // of the lanes that take the pair
 };
 
 inline constexpr int kReplays = 3;
 
 // Runs the lanes on the pair kReplays times.
-Replay replay(const Pair& pair, std::span<const Lane* const> lanes, const DecideLanes& decide);
+Replay replay(const AnyPair& pair, std::span<const Lane* const> lanes, const DecideLanes& decide);
 
 // The state of a case with this signature after a replay; `before` if the replay cannot tell.
 CaseState state_after(CaseState before, const std::string& signature, const Marks& now);

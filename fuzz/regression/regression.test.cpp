@@ -32,7 +32,7 @@ struct Liars {
     for (const Lane& lane : published_lanes()) lanes.push_back(&lane);
   }
   DecideLanes decide() {
-    return [this](const Pair&, std::vector<const Lane*>& differ) {
+    return [this](const AnyPair&, std::vector<const Lane*>& differ) {
       ++calls;
       std::vector<Verdict> verdicts;
       for (const Lane* lane : lanes) {
@@ -130,7 +130,7 @@ TEST_F(Regression, ASignatureIsStoredOnceAndCounted) {
   EXPECT_EQ(only().count, 12u);
   EXPECT_EQ(only().first, "here; campaign 1");
   EXPECT_EQ(only().last, "there; campaign 2");
-  EXPECT_EQ(only().pair.b[0].x, 1);  // the first pair stays
+  EXPECT_EQ(only().pair.floats->b[0].x, 1);  // the first pair stays
   EXPECT_EQ(add({kSignature, {kShifted}, 5, "there; campaign 2"}), Added::known);
   EXPECT_EQ(only().count, 12u);
 }
@@ -166,7 +166,7 @@ TEST_F(Regression, AFixedCaseTakesThePairThatFailsAgain) {
   liars.wrong = {"moller_1997/f32/cpu"};
   EXPECT_EQ(add({kSignature, {kShifted}, 1, "s3"}), Added::seen_again);
   EXPECT_EQ(only().state, CaseState::failing);
-  EXPECT_EQ(only().pair.b[0].x, 2);
+  EXPECT_EQ(only().pair.floats->b[0].x, 2);
   EXPECT_EQ(only().count, 9u);
   EXPECT_EQ(only().first, "here; campaign 1");
   EXPECT_EQ(changes(), Texts());

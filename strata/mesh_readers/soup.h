@@ -44,7 +44,7 @@ struct Rounding {
 std::vector<std::string> rounding_note(const std::string& file, const Rounding& rounding);
 
 // The same for who decides doubles: "FILE: decided in doubles, because 6 of 18 coordinates have more digits than
-// float32 holds". As above if none has.
+// float32 holds"; empty if none has.
 std::vector<std::string> doubles_note(const std::string& file, const Rounding& rounding);
 
 // A number of a file: the float32 nearest to it, and the double nearest to it.

@@ -16,6 +16,7 @@ TOPICS = (
     "hosts_2012",
     "toolchains",
     "campaign",
+    "stored",
     "league",
     "exact",
     "gpu_engine",

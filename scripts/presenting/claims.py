@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """All results of docs/results, in their order."""
 from presenting.builds import fast_math, hosts, processors, riddle
+from presenting.inputs import stored
 from presenting.methods import epsilon, league, price, which
 
-RESULTS = (riddle, hosts, price, which, fast_math, processors, league, epsilon)
+RESULTS = (riddle, hosts, price, which, fast_math, processors, stored, league, epsilon)
 
 
 def results(records):

@@ -305,8 +305,8 @@ TEST_F(Doubles, CasesBecomePrograms) {
   expect_done(repro + "obj > case.obj && grep -q 1.0000000000009095 case.obj");
 }
 
-// Two triangles that are 1e-10 apart: the decimals of the one have few digits, those of the other many. Both are decided
-// as they are written, whichever comes first.
+// Two triangles that are 1e-10 apart: the decimals of the one have few digits, those of the other many. Both are
+// decided as they are written, whichever comes first.
 TEST_F(Doubles, AllDecimalsOfTwoMeshesAreDoublesIfSomeHaveManyDigits) {
   std::ofstream(shell.folder / "few.off") << "OFF\n3 1 0\n0.1 0 0\n0.1 1 0\n0.1 0 1\n3 0 1 2\n";
   std::ofstream(shell.folder / "many.off") << "OFF\n3 1 0\n0.1000000001 0 0\n0.1000000001 1 0\n0.1000000001 0 1\n"

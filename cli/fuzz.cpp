@@ -228,9 +228,10 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
     return kInterrupted;
   }
   // Foreign code can write into the folder too. So what it may have changed is read back before it is told.
-  if (campaign.spec.contains("subjects") && campaign.shard.whole()) {
+  const bool foreign = campaign.spec.contains("subjects");
+  if (foreign && campaign.shard.whole()) {
     fuzz::checked_summary(options.out);
-  } else if (campaign.spec.contains("subjects")) {
+  } else if (foreign) {
     fuzz::StoreSpec spec = fuzz::store_spec(campaign);
     spec.directory = options.out;
     fuzz::for_each_row(spec, [](const fuzz::PairRange&, const fuzz::StoredCounts&) {});

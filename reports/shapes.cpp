@@ -11,8 +11,8 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 // An object has these fields; a '?' at the end of a name makes the field optional, and "*" stands for all fields. A
-// list has elements of one shape, and with "some" at least one. "text?" may be null, and "positive" is a count. Other
-// words are shapes of this table. It follows reports/web/src/report.ts.
+// list has elements of one shape, and with "some" at least one. "text?" may be null, and a "positive count" is not 0.
+// Other words are shapes of this table. It follows reports/web/src/report.ts.
 constexpr const char* kShapes = R"({
 "share": {"count": "count", "of": "count", "share": "number?", "low": "number?", "high": "number?"},
 "threshold": {"exponent": "whole?", "above": "count", "bound": "number", "largest": "whole?"},
@@ -40,8 +40,8 @@ constexpr const char* kShapes = R"({
   "extremes": [{"lane": "text", "extreme": "text", "says": "text", "points": [{"log2": "whole", "pairs": "count",
     "false_positive": "count", "false_negative": "count", "declined": "count"}]}],
   "sentences": ["text"]},
-"costs": {"machine": "text", "passes": "positive", "rows": [{"lane": "count", "group": "count?", "pairs": "positive",
-  "low": "number", "middle": "number", "high": "number"}, "some"], "answer": ["text", "some"]},
+"costs": {"machine": "text", "passes": "positive count", "rows": [{"lane": "count", "group": "count?",
+  "pairs": "positive count", "low": "number", "middle": "number", "high": "number"}, "some"], "answer": ["text", "some"]},
 "run": {"seed": "count", "pairs": "count", "complete": "yes or no", "command": "text", "map_command": "text",
   "build": {"version": "text", "commit": "text", "compiler": "text", "cuda": "text?", "device": "text?"},
   "scene?": "text?", "machine": "text?", "subjects?": [{"name": "text", "what": "text", "hash": "text",
@@ -135,12 +135,12 @@ void expect(const Json& shapes, const Json& shape, const Json& value, const std:
     word.pop_back();
   }
   if (shapes.contains(word)) return expect(shapes, shapes[word], value, place);
-  const bool fits = word == "text"       ? value.is_string()
-                    : word == "count"    ? value.is_number_unsigned()
-                    : word == "positive" ? value.is_number_unsigned() && value > 0
-                    : word == "whole"    ? value.is_number_integer()
-                    : word == "number"   ? value.is_number()
-                                         : value.is_boolean();
+  const bool fits = word == "text"             ? value.is_string()
+                    : word == "count"          ? value.is_number_unsigned()
+                    : word == "positive count" ? value.is_number_unsigned() && value > 0
+                    : word == "whole"          ? value.is_number_integer()
+                    : word == "number"         ? value.is_number()
+                                               : value.is_boolean();
   if (!fits) refuse(word == "yes or no" ? word : "a " + word + (word == "whole" ? " number" : ""));
 }
 

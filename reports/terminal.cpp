@@ -96,10 +96,9 @@ std::string decided_by(std::uint64_t disagreements, const Json& oracle, bool dou
         "agree on all.",
         grouped(exact), grouped(oracle["cgal"]), grouped(gmp));
   }
-  const std::uint64_t others = gmp - disagreements;
-  return fmt::format("CGAL decided all of them. GMP decided {} once more, the {} and {}{} other{}: they agree on all.",
-                     grouped(gmp), grouped(disagreements), doubles ? "" : "a sample of ", grouped(others),
-                     others == 1 ? "" : "s");
+  return fmt::format("CGAL decided all of them. GMP decided {} once more, the {} and {}{}: they agree on all.",
+                     grouped(gmp), grouped(disagreements), doubles ? "" : "a sample of ",
+                     counted(gmp - disagreements, "other"));
 }
 
 }  // namespace

@@ -40,7 +40,8 @@ def stored(r):
         f"near pairs; with a local origin on {share(exact, 'local')}",
         "What does it cost to store a model of doubles in float32, as everyone does who uploads it to a GPU? Of "
         "models that lie near each other we took all pairs of triangles whose boxes overlap, and compared the exact "
-        "verdict on the stored triangles with that on the doubles. Surveys of the same ground, in UTM coordinates, change "
+        "verdict on the stored triangles with that on the doubles. Surveys of the same ground, in UTM coordinates, "
+        "change "
         f"{count(exact['survey'])} of {count(pairs['survey'])} verdicts; no test that reads floats can be right on "
         "these. Counted from a corner of the area before they are stored, they change "
         f"{count(exact['local'])} of {count(pairs['local'])}. On machine parts computing in float32 costs more than "

@@ -325,7 +325,7 @@ TEST_F(DiscrepancyCommand, ComparesTwoResults) {
   expect_done(run + "moller_1997/f32/cuda-fma --out b");
   expect_done(run + "moller_1997/f32/cpu-fma --out c");
   const Ran same = shell("graze discrepancy --compare a b"), other = shell("graze discrepancy --compare a c");
-  EXPECT_NE(same.out.find("0 counts differ, "), std::string::npos) << same.out << same.err;
+  EXPECT_NE(same.out.find("0 numbers differ, "), std::string::npos) << same.out << same.err;
   EXPECT_NE(other.out.find("Only the first has moller_1997/f32/cpu against moller_1997/f32/cuda-fma."),
             std::string::npos)
       << other.out << other.err;

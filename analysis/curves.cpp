@@ -12,25 +12,27 @@ std::string tolerance(const std::string& site, bool relative, double value) {
 }
 
 int log2_cube(Sources sources) {
-  std::vector<float> sizes;
+  std::vector<double> sizes;
   for (const strata::PairSource& source : sources) {
     for (std::uint64_t i = 0; i < std::min<std::uint64_t>(source.pairs, 200); ++i) {
-      const Pair pair = source.pair(i);
-      float size = 0;
-      for (int c = 0; c < 3; ++c) {
-        float low = coordinates(pair)[c], high = low;
-        for (int k = c; k < kCoordinates; k += 3) {
-          low = std::min(low, coordinates(pair)[k]);
-          high = std::max(high, coordinates(pair)[k]);
+      visit(source.any_pair(i), [&]<class Real>(const BasicPair<Real>& pair) {
+        Real size = 0;
+        for (int c = 0; c < 3; ++c) {
+          Real low = coordinates(pair)[c], high = low;
+          for (int k = c; k < kCoordinates; k += 3) {
+            low = std::min(low, coordinates(pair)[k]);
+            high = std::max(high, coordinates(pair)[k]);
+          }
+          size = std::max(size, high - low);
         }
-        size = std::max(size, high - low);
-      }
-      sizes.push_back(size);
+        sizes.push_back(size);
+      });
     }
   }
   std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
-  const float median = sizes[sizes.size() / 2];
-  return median > 0 && std::isfinite(median) ? 3 * std::ilogb(median) : 0;
+  const double median = sizes[sizes.size() / 2];
+  constexpr int kMost = 960;  // so that a tolerance is a finite double, and not 0
+  return median > 0 && std::isfinite(median) ? std::clamp(3 * std::ilogb(median), -kMost, kMost) : 0;
 }
 
 std::vector<double> steps(double low, double high, double step) {

@@ -177,6 +177,7 @@ LaneExplanation account_of_foreign(const Lane& lane, Verdict verdict, const AnyP
   LaneExplanation result{};
   result.lane = &lane;
   result.verdict = verdict;
+  result.guessed = !pair.floats;
   result.cause = found.cause;
   result.exactly.verdict = Verdict::declined;
   result.evidence = Evidence::none;
@@ -240,7 +241,8 @@ std::string what_rounding_decides(const DoublePair& pair, const Pair& stored, Ve
     DoublePair kept = in_doubles(stored);
     coordinates(kept)[i] = coordinates(pair)[i];
     if (relation_of(kept).verdict == truth)
-      return fmt::format("with number {} alone kept as {} it would be {}", i + 1, coordinates(pair)[i], name(truth));
+      return fmt::format("with number {} alone kept as {} the verdict would be {}", i + 1, coordinates(pair)[i],
+                         name(truth));
   }
   return fmt::format("it rounds {} numbers, of which none alone decides", rounded);
 }
@@ -256,6 +258,7 @@ LaneExplanation account_of_stored(const Lane& lane, Verdict verdict, const Doubl
   result.evidence = Evidence::none;
   result.settled = Settled::yes;
   result.experiment = what_rounding_decides(pair, stored, truth);
+  result.beyond = !is_finite(stored);
   result.slow = true;  // neighbours of what it was not given would tell nothing
   return result;
 }

@@ -391,7 +391,7 @@ TEST(ExplainDoubles, TheNumberThatDecidesIsNamed) {
   const LaneExplanation& lane = lane_of(near, "guigue_devillers_2003/f32/cpu");
   EXPECT_EQ(lane.cause, Cause::stored);
   EXPECT_EQ(lane.settled, Settled::yes);
-  EXPECT_EQ(lane.experiment, "with number 12 alone kept as 1.0000000000009095 it would be disjoint");
+  EXPECT_EQ(lane.experiment, "with number 12 alone kept as 1.0000000000009095 the verdict would be disjoint");
   EXPECT_NE(sentence(near, lane.lane->info).find("float32 stores another pair, of which that is right"),
             std::string::npos);
   for (const LaneExplanation& other : near.lanes) EXPECT_EQ(other.lane->scalar, Scalar::f32);

@@ -16,14 +16,14 @@ namespace {
 // "the triangles meet in a segment inside b, 0.5 deep", "b lies inside a, coplanar".
 std::string phrase(const AnyPair& pair, const oracle::Truth& truth) {
   if (truth.contact == Contact::none)
-    return fmt::format("the triangles are {:.3g} apart ({:.3g} ulps of the largest coordinate)", truth.margin,
-                       truth.margin_ulps);
+    return fmt::format("the triangles are {} apart ({} ulps of the largest coordinate)",
+                       oracle::margin_words(truth.margin), oracle::margin_words(truth.margin_ulps));
   const Nesting nesting = nesting_of(pair, truth);
   const char inner = nesting == Nesting::b_in_a ? 'b' : 'a', outer = nesting == Nesting::b_in_a ? 'a' : 'b';
   if (truth.hulls.coplanar && nesting == Nesting::same) return "a and b cover the same points";
   if (truth.hulls.coplanar && nesting != Nesting::none) return fmt::format("{} lies inside {}, coplanar", inner, outer);
   const std::string inside = nesting == Nesting::none ? "" : fmt::format(" inside {}", outer);
-  const std::string deep = truth.margin < 0 ? fmt::format(", {:.3g} deep", -truth.margin) : "";
+  const std::string deep = truth.margin < 0 ? fmt::format(", {} deep", oracle::margin_words(-truth.margin)) : "";
   switch (truth.contact) {
     case Contact::point:
       return "the triangles meet in a point" + deep;
@@ -229,11 +229,12 @@ std::string reason_by_experiment(const LaneExplanation& lane) {
       case Cause::policy:
         return "the policy";
       case Cause::stored:
-        return "float32 stores another pair, of which that is right";
+        return lane.beyond ? "float32 cannot store the pair" : "float32 stores another pair, of which that is right";
       default:
         return "rounding";
     }
   };
+  if (lane.guessed && lane.settled != Settled::yes) return fmt::format("not settled ({})", lane.experiment);
   return fmt::format("{}{} ({})", lane.settled == Settled::yes ? "" : "not settled: perhaps ", words(),
                      lane.experiment);
 }

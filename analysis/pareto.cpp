@@ -13,15 +13,16 @@
 namespace graze::analysis {
 namespace {
 
-Pair moved(const Pair& pair, Extreme extreme, int k) {
-  Pair result = pair;
-  float size = 0;
+template <class Real>
+BasicPair<Real> moved(const BasicPair<Real>& pair, Extreme extreme, int k) {
+  BasicPair<Real> result = pair;
+  Real size = 0;
   for (int c = 0; c < kCoordinates; ++c)
     size = std::max(size, std::fabs(coordinates(pair)[c] - coordinates(pair)[c % 3]));
   // A power of two, so only the addition below rounds.
-  const float offset = size > 0 && std::isfinite(size) ? std::ldexp(1.0f, std::ilogb(size) + k) : 0;
+  const Real offset = size > 0 && std::isfinite(size) ? std::ldexp(Real(1), std::ilogb(size) + k) : 0;
   for (int c = 0; c < kCoordinates; ++c) {
-    float& x = coordinates(result)[c];
+    Real& x = coordinates(result)[c];
     switch (extreme) {
       case Extreme::scale:
         x = std::ldexp(x, k);
@@ -68,15 +69,15 @@ std::string_view name(Extreme extreme) {
 
 namespace {
 
-template <class AnyPair>
-double nanoseconds_of(const DecideBlock& lane, const std::vector<AnyPair>& pairs, Calls calls) {
+template <class PairOf>
+double nanoseconds_of(const DecideBlock& lane, const std::vector<PairOf>& pairs, Calls calls) {
   VerdictBits bits;
   std::uint64_t intersects = 0, declined = 0;
   const double start = processor_nanoseconds();
   if (calls == Calls::of_blocks) {
-    decide(lane, std::span<const AnyPair>(pairs), bits);
+    decide(lane, std::span<const PairOf>(pairs), bits);
   } else {
-    for (const AnyPair& pair : pairs) lane(&pair, 1, &intersects, &declined);
+    for (const PairOf& pair : pairs) lane(&pair, 1, &intersects, &declined);
   }
   const double taken = std::max(0.0, processor_nanoseconds() - start - nanoseconds_of_the_clock());
   return taken / static_cast<double>(pairs.size());
@@ -84,12 +85,9 @@ double nanoseconds_of(const DecideBlock& lane, const std::vector<AnyPair>& pairs
 
 }  // namespace
 
-double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<Pair>& pairs, Calls calls) {
-  return nanoseconds_of(lane, pairs, calls);
-}
-
-double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<DoublePair>& pairs) {
-  return nanoseconds_of(lane, pairs, Calls::of_blocks);
+double nanoseconds_a_pair(const DecideBlock& lane, const strata::PairBlock& pairs, Calls calls) {
+  return pairs.in_doubles() && lane.decides_doubles() ? nanoseconds_of(lane, pairs.doubles, calls)
+                                                      : nanoseconds_of(lane, pairs.floats, calls);
 }
 
 Cost quartiles(std::vector<double> nanoseconds) {
@@ -98,7 +96,7 @@ Cost quartiles(std::vector<double> nanoseconds) {
   return {nanoseconds[quarter], nanoseconds[nanoseconds.size() / 2], nanoseconds[nanoseconds.size() - 1 - quarter]};
 }
 
-std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const std::vector<Pair>& pairs, int passes,
+std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const strata::PairBlock& pairs, int passes,
                            Calls calls) {
   std::vector<std::vector<double>> taken(lanes.size());
   for (int pass = 0; pass < passes; ++pass) {
@@ -117,7 +115,7 @@ std::string why_not_timed(const Lane& lane) {
   return subject && subject->kind == "command" ? "the time of a program includes reading and writing lines" : "";
 }
 
-std::vector<std::optional<Cost>> costs_of(std::span<const Lane* const> lanes, const std::vector<Pair>& pairs,
+std::vector<std::optional<Cost>> costs_of(std::span<const Lane* const> lanes, const strata::PairBlock& pairs,
                                           int passes, Calls calls) {
   std::vector<std::vector<double>> taken(lanes.size());
   std::vector<bool> failed(lanes.size());  // then it may take seconds on a pair, and is not asked again
@@ -141,12 +139,16 @@ std::vector<std::optional<Cost>> costs_of(std::span<const Lane* const> lanes, co
   return costs;
 }
 
-std::vector<Pair> first_pairs(std::span<const strata::PairSource> sources, std::size_t count) {
-  std::vector<Pair> pairs;
+strata::PairBlock first_pairs(std::span<const strata::PairSource> sources, std::size_t count) {
+  const bool in_doubles = std::any_of(sources.begin(), sources.end(), [](const auto& of) { return of.in_doubles(); });
+  strata::PairBlock pairs;
   for (std::uint64_t i = 0; pairs.size() < count; ++i) {
     const std::size_t before = pairs.size();
     for (const strata::PairSource& source : sources) {
-      if (i < source.pairs && pairs.size() < count) pairs.push_back(source.pair(i));
+      if (i >= source.pairs || pairs.size() == count) continue;
+      const AnyPair pair = source.any_pair(i);
+      pairs.floats.push_back(pair.floats ? *pair.floats : stored_in_float32(pair.doubles));
+      if (in_doubles) pairs.doubles.push_back(pair.doubles);
     }
     if (pairs.size() == before) break;
   }
@@ -179,7 +181,14 @@ std::vector<strata::PairSource> made_extreme(std::span<const strata::PairSource>
   if (k == 0 && extreme != Extreme::offset) return result;
   for (strata::PairSource& source : result) {
     source.stratum = -1;
-    source.pair = [draw = source.pair, extreme, k](std::uint64_t index) { return moved(draw(index), extreme, k); };
+    const auto change = [extreme, k](const auto& draw) {
+      return [draw, extreme, k](std::uint64_t index) { return moved(draw(index), extreme, k); };
+    };
+    if (source.in_doubles()) {
+      source.double_pair = change(source.double_pair);
+    } else {
+      source.pair = change(source.pair);
+    }
   }
   return result;
 }

@@ -25,15 +25,14 @@ enum class Calls { of_blocks, of_one };
 // clock.
 double processor_nanoseconds();
 
-// Nanoseconds per pair of one run of the lane over the pairs.   Requires: pairs.
-double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<Pair>& pairs, Calls calls = Calls::of_blocks);
-double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<DoublePair>& pairs);
+// Nanoseconds per pair of one run of the lane over the pairs, of the type that it takes.   Requires: pairs.
+double nanoseconds_a_pair(const DecideBlock& lane, const strata::PairBlock& pairs, Calls calls = Calls::of_blocks);
 
 // Requires: some.
 Cost quartiles(std::vector<double> nanoseconds);
 
 // Requires: pairs.
-std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const std::vector<Pair>& pairs, int passes,
+std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const strata::PairBlock& pairs, int passes,
                            Calls calls = Calls::of_blocks);
 
 // Why the time of this lane is not that of its code: twins, programs that answer by lines, … Empty if it is measured.
@@ -42,11 +41,11 @@ std::string why_not_timed(const Lane& lane);
 // The same for lanes. A user's code is timed by the processor time of its own process, without communication; there
 // each call decides one pair, unless the code takes blocks. Nothing for a lane that is not timed, or that failed on a
 // pair.
-std::vector<std::optional<Cost>> costs_of(std::span<const Lane* const> lanes, const std::vector<Pair>& pairs,
+std::vector<std::optional<Cost>> costs_of(std::span<const Lane* const> lanes, const strata::PairBlock& pairs,
                                           int passes, Calls calls = Calls::of_blocks);
 
-// The first pairs of the sources, which take turns; `count` in all.
-std::vector<Pair> first_pairs(std::span<const strata::PairSource> sources, std::size_t count);
+// The first pairs of the sources, which take turns; `count` in all. If a source has doubles, all are doubles.
+strata::PairBlock first_pairs(std::span<const strata::PairSource> sources, std::size_t count);
 
 // A lane's errors and costs, to compare with other lanes.
 struct Offer {
@@ -57,7 +56,7 @@ struct Offer {
       far = std::nullopt;  // of pairs in a core's cache, and from memory; or on the device, and with copies
   bool dominated = false;  // by `near`
   std::optional<cuda::KernelNeeds> needs = std::nullopt;  // on a device
-  std::optional<Pair> failure = std::nullopt;             // small, on which the lane is wrong
+  std::optional<AnyPair> failure = std::nullopt;          // small, on which the lane is wrong
   std::optional<Cost> alone = std::nullopt;               // on a core, of calls that decide one pair each
   std::string why_not_timed = {};                         // without costs
 };

@@ -31,7 +31,16 @@ TEST(Pareto, CostsAreOfAllPairsInTurn) {
   const auto sources = strata::stratum_sources(1, 40, {"uniform", "lattice"});
   EXPECT_EQ(first_pairs(sources, 30).size(), 30u);
   EXPECT_EQ(first_pairs(sources, 100).size(), 40u);
-  EXPECT_EQ(first_pairs(sources, 3)[1].a[0], sources[1].pair(0).a[0]);
+  EXPECT_EQ(first_pairs(sources, 3).floats[1].a[0], sources[1].pair(0).a[0]);
+  EXPECT_FALSE(first_pairs(sources, 3).in_doubles());
+  const auto in_doubles = strata::stratum_sources(1, 40, {"uniform", "stored"}, PairTypes::both);
+  const strata::PairBlock both = first_pairs(in_doubles, 9);
+  ASSERT_EQ(both.doubles.size(), 9u);
+  for (std::size_t i = 0; i < 9; ++i) {
+    const AnyPair pair = in_doubles[i % 3].any_pair(i / 3);
+    EXPECT_TRUE(both.doubles[i].a[0] == pair.doubles.a[0]) << i;
+    EXPECT_TRUE(both.floats[i].a[0] == stored_in_float32(pair.doubles).a[0]) << i;
+  }
   const std::vector<DecideBlock> lanes = {find_lane("exact/f32/cpu")->decide, find_lane("moller_1997/f32/cpu")->decide};
   for (const Cost& cost : costs_of(lanes, first_pairs(sources, 40), 9)) {
     EXPECT_GT(cost.low, 0);

@@ -49,13 +49,15 @@ struct Rows {
   }
 
   // Looks at the pairs on which a user's code is not right.
-  void look_at_foreign(std::size_t row, const LaneDecider& decider, const Rows& truth, const std::vector<Pair>& pairs) {
+  template <class Real>
+  void look_at_foreign(std::size_t row, const LaneDecider& decider, const Rows& truth,
+                       const std::vector<BasicPair<Real>>& pairs) {
     is_foreign[row] = true;
     for (std::size_t w = 0; w < words; ++w) {
       for (std::uint64_t bits = judged(row, w, truth).not_right(); bits != 0; bits &= bits - 1) {
         const std::uint64_t bit = bits & ~(bits - 1);
         const auto is_set = [&](std::uint64_t word) { return (word & bit) != 0; };
-        const Pair& pair = pairs[w * 64 + static_cast<std::size_t>(std::countr_zero(bits))];
+        const BasicPair<Real>& pair = pairs[w * 64 + static_cast<std::size_t>(std::countr_zero(bits))];
         const Verdict verdict = decider.block.verdict_of(is_set(yes(row, w)), is_set(none(row, w)), pair);
         if (is_failure(verdict)) {
           ++foreign[row].of(verdict);
@@ -142,9 +144,24 @@ void add(const SourceBlock& block, const Rows& truth, const Rows& lane, NotRight
 // Policies that are decided together, one after the other in the list of policies.
 struct Together {
   std::size_t first;
-  LaneDecider one;                // of a single policy
-  DecideLadder ladder = nullptr;  // of several
+  LaneDecider one;  // of a single policy
+  Ladders ladders;  // of several
   std::vector<Epsilons> rungs;
+
+  // Decides pairs of the type that the lane takes.
+  template <class Real>
+  void decide(const std::vector<BasicPair<Real>>& pairs, const Rows& truth, Rows& rows) const {
+    std::uint64_t* const intersects = &rows.intersects[first * rows.words];
+    std::uint64_t* const declined = &rows.declined[first * rows.words];
+    if (!ladders) {
+      one.block(pairs.data(), pairs.size(), intersects, declined);
+      if (one.foreign) rows.look_at_foreign(first, one, truth, pairs);
+    } else if constexpr (std::is_same_v<Real, float>) {
+      ladders.floats(rungs, pairs.data(), pairs.size(), intersects, declined);
+    } else {
+      ladders.doubles(rungs, pairs.data(), pairs.size(), intersects, declined);
+    }
+  }
 };
 
 // Draws the pairs in blocks, computes the truth of each pair once, and runs every lane under every policy on it. Then
@@ -152,28 +169,28 @@ struct Together {
 template <class Result, class Add>
 std::vector<Result> run(const std::vector<std::vector<Together>>& lanes, std::size_t policies,
                         const std::vector<Result>& empty, Sources sources, int threads, const Add& add) {
-  const DecideBlock exact = find_lane("exact/f32/cpu")->decide;
+  const DecideBlock exact = find_lane("exact/f32/cpu")->decide, in_doubles = find_lane("exact/f64/cpu")->decide;
   const std::vector<SourceBlock> blocks = blocks_of(sources, kBlock);
   const auto count = static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, count);
   tbb::enumerable_thread_specific<std::vector<Result>> results(empty);
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
     const SourceBlock& block = blocks[b];
-    std::vector<Pair> pairs;
-    for (std::uint64_t i = 0; i < block.count; ++i)
-      pairs.push_back(sources[static_cast<std::size_t>(block.source)].pair(block.first + i));
+    const strata::PairBlock pairs =
+        strata::pairs_of(sources[static_cast<std::size_t>(block.source)], block.first, block.count);
     Rows truth(1, pairs.size());
-    exact(pairs.data(), pairs.size(), truth.intersects.data(), truth.declined.data());
+    if (pairs.in_doubles()) {
+      in_doubles(pairs.doubles.data(), pairs.size(), truth.intersects.data(), truth.declined.data());
+    } else {
+      exact(pairs.floats.data(), pairs.size(), truth.intersects.data(), truth.declined.data());
+    }
     std::vector<Rows> rows(lanes.size(), Rows(policies, pairs.size()));
     for (std::size_t l = 0; l < lanes.size(); ++l) {
       for (const Together& part : lanes[l]) {
-        std::uint64_t* const intersects = &rows[l].intersects[part.first * rows[l].words];
-        std::uint64_t* const declined = &rows[l].declined[part.first * rows[l].words];
-        if (part.ladder) {
-          part.ladder(part.rungs, pairs.data(), pairs.size(), intersects, declined);
+        if (pairs.in_doubles() && (part.ladders ? bool(part.ladders.doubles) : part.one.block.decides_doubles())) {
+          part.decide(pairs.doubles, truth, rows[l]);
         } else {
-          part.one.block(pairs.data(), pairs.size(), intersects, declined);
-          if (part.one.foreign) rows[l].look_at_foreign(part.first, part.one, truth, pairs);
+          part.decide(pairs.floats, truth, rows[l]);
         }
       }
     }
@@ -223,13 +240,13 @@ std::vector<Together> parts_of(const Lane& lane, Policies policies) {
   for (std::size_t p = 0; p < policies.size(); ++p) {
     const Lane under = policies[p].empty() ? lane : lane_under(lane, policies[p]);
     const bool tolerances = under.under && under.under->kind == Policy::Kind::tolerances;
-    const DecideLadder ladder = tolerances ? ladder_of(lane, under.under->epsilons.any_relative()) : nullptr;
-    if (!ladder) {
-      parts.push_back({p, backends::on_host(under), nullptr, {}});
-    } else if (!parts.empty() && parts.back().ladder && rises(parts.back().rungs.back(), under.under->epsilons)) {
+    const Ladders ladders = tolerances ? ladders_of(lane, under.under->epsilons.any_relative()) : Ladders();
+    if (!ladders) {
+      parts.push_back({p, backends::on_host(under), {}, {}});
+    } else if (!parts.empty() && parts.back().ladders && rises(parts.back().rungs.back(), under.under->epsilons)) {
       parts.back().rungs.push_back(under.under->epsilons);
     } else {
-      parts.push_back({p, DecideBlock(), ladder, {under.under->epsilons}});
+      parts.push_back({p, DecideBlock(), ladders, {under.under->epsilons}});
     }
   }
   return parts;
@@ -237,7 +254,7 @@ std::vector<Together> parts_of(const Lane& lane, Policies policies) {
 
 std::vector<Together> parts_of(const DecideUnder& decide, Policies policies) {
   std::vector<Together> parts;
-  for (const std::string& policy : policies) parts.push_back({parts.size(), decide(policy), nullptr, {}});
+  for (const std::string& policy : policies) parts.push_back({parts.size(), decide(policy), {}, {}});
   return parts;
 }
 

@@ -7,14 +7,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/lane_trace.h"
 #include "core/exact/exact.h"
+#include "oracle/truth.h"
 #include "strata/strata.h"
 
 namespace graze::analysis {
 namespace {
 
-std::vector<strata::PairSource> drawn(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs) {
-  return strata::stratum_sources(seed, pairs, globs);
+std::vector<strata::PairSource> drawn(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs,
+                                      PairTypes types = PairTypes::f32) {
+  return strata::stratum_sources(seed, pairs, globs, types);
 }
 
 const Lane& moller() { return *find_lane("moller_1997/f32/cpu"); }
@@ -64,6 +67,36 @@ TEST(Sweep, CountsWhatEachPolicyGetsWrong) {
   }
 }
 
+// Of doubles the truth is CGAL's, and a lane in float decides what float32 stores.
+TEST(Sweep, CountsPairsOfDoublesByTheirOwnTruth) {
+  const auto sources = drawn(3, 400, {"near_vertex_face", "stored"}, PairTypes::f64);
+  const std::vector<std::string> policies = {"abs:1e-6", "rel:100", "bound"};
+  for (const char* id : {"moller_1997/f32/cpu", "moller_1997/f64/cpu", "moller_1997/f32/cpu-fma"}) {
+    const Lane& lane = *find_lane(id);
+    const std::vector<PolicyErrors> found = host_sweep(lane)(policies, sources);
+    for (std::size_t p = 0; p < policies.size(); ++p) {
+      PolicyErrors expected;
+      for (std::size_t s = 0; s < sources.size(); ++s) {
+        for (std::uint64_t i = 0; i < sources[s].pairs; ++i) {
+          const DoublePair pair = sources[s].double_pair(i);
+          const Verdict truth = oracle::cgal_verdict(pair);
+          const Verdict with = decide_lane(lane_under(lane, policies[p]), pair), without = decide_lane(lane, pair);
+          expected.declined += with == Verdict::declined;
+          expected.false_negative += with == Verdict::disjoint && truth == Verdict::intersects;
+          expected.false_positive += with == Verdict::intersects && truth == Verdict::disjoint;
+          const PairPlace place{static_cast<int>(s), i};
+          if (with == truth && without != truth && expected.fixed++ == 0) expected.first_fixed = place;
+          if (with != truth && without == truth && expected.broken++ == 0) expected.first_broken = place;
+        }
+      }
+      expected.policy = policies[p];
+      expected.pairs = 400;
+      EXPECT_EQ(found[p], expected) << id << ' ' << policies[p];
+    }
+    EXPECT_GT(found[0].wrong(), 50u) << id;
+  }
+}
+
 TEST(Sweep, ListsEachPairOnWhichSomePolicyIsNotRight) {
   const auto sources = drawn(3, 3001, {"near_vertex_face", "extreme_scale"});
   const std::vector<std::string> policies = {"", "abs:1e-6", "rel:100", "bound"};
@@ -98,7 +131,7 @@ TEST(Sweep, ListsEachPairOnWhichSomePolicyIsNotRight) {
 // A sweep of many tolerances at once counts the same as one sweep for each: absolute and relative, at all sites and at
 // one.
 TEST(Sweep, ManyTolerancesAtOnceAreEachAlone) {
-  const auto sources = drawn(8, strata::kStrataCount * 300, {});
+  const auto sources = drawn(8, 2 * strata::kStrataCount * 300, {}, PairTypes::both);
   std::vector<std::string> policies;
   for (const std::string_view form : {"abs", "rel", "plane_distance=abs", "separation=rel"}) {
     for (int k = -60; k <= 20; k += 5) policies.push_back(fmt::format("{}:{}", form, std::exp2(k)));

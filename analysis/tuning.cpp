@@ -135,10 +135,17 @@ std::vector<strata::PairSource> scaled(Sources sources, int k) {
   std::vector<strata::PairSource> result(sources.begin(), sources.end());
   for (strata::PairSource& source : result) {
     source.stratum = -1;
-    source.pair = [draw = source.pair, k](std::uint64_t index) {
-      const Pair pair = draw(index);
-      return exactly_scaled(pair, k).value_or(pair);
+    const auto change = [k](const auto& draw) {
+      return [draw, k](std::uint64_t index) {
+        const auto pair = draw(index);
+        return exactly_scaled(pair, k).value_or(pair);
+      };
     };
+    if (source.in_doubles()) {
+      source.double_pair = change(source.double_pair);
+    } else {
+      source.pair = change(source.pair);
+    }
   }
   return result;
 }
@@ -197,7 +204,7 @@ std::vector<std::string> sites_asked(const Lane& lane, Sources sources) {
   std::array<bool, kSiteCount> asked{};
   for (const strata::PairSource& source : sources) {
     for (std::uint64_t i = 0; i < std::min<std::uint64_t>(source.pairs, 500); ++i) {
-      for (const Seen<double>& seen : run_led(lane, source.pair(i), Contraction::none, {}).seen) {
+      for (const Seen<double>& seen : run_led(lane, seen_by(lane, source.any_pair(i)), Contraction::none, {}).seen) {
         if (seen.site) asked[static_cast<std::size_t>(*seen.site)] = true;
       }
     }

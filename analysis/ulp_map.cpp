@@ -74,14 +74,14 @@ class Panels {
     return Cell::unstable;
   }
 
-  // Asks the panel's lane about the pairs; foreign code gets eight pairs at a time.
+  // Asks the panel's lane about the pairs; foreign code gets few at a time, because each may take all of its time.
   // Returns: false if the panel is given up.
   bool ask(std::size_t p, std::span<const PairOf> pairs) {
-    const std::size_t at_once = lanes_[p]->foreign ? 8 : pairs.size();
     said_.clear();
-    for (std::size_t begin = 0; begin < pairs.size(); begin += at_once) {
+    while (said_.size() < pairs.size()) {
       if (given_up(p)) return false;
-      const auto some = pairs.subspan(begin, std::min(at_once, pairs.size() - begin));
+      const std::size_t at_once = !lanes_[p]->foreign ? pairs.size() : said_.empty() || failed_[p] > 0 ? 8 : 64;
+      const auto some = pairs.subspan(said_.size(), std::min(at_once, pairs.size() - said_.size()));
       for (const Verdict said : verdicts_seen_by(*lanes_[p], blocks_[p], some)) {
         said_.push_back(said);
         failed_[p] += said == Verdict::timed_out ? kOfALate : is_failure(said) ? 1 : 0;

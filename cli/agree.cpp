@@ -62,6 +62,8 @@ int agree(const TuneOptions& options) {
     }
   }
   TunePairs pairs = tune_pairs(options);
+  for (const Lane* lane : {&first, &second}) expect_takes(*lane, pairs);
+  const Lane* const exact[] = {&exact_on(pairs, first), &exact_on(pairs, second)};
   spec.sources = std::move(pairs.sources);
   spec.others = std::move(pairs.others);
   spec.sites = analysis::sites_asked(first, spec.sources);
@@ -80,8 +82,7 @@ int agree(const TuneOptions& options) {
   for (const Lane& lane : under) {
     if (!policy.empty() && lane.id != costly.back()->id) add_cost_of(lane);
   }
-  add_cost_of(backends::exact_beside(first));
-  add_cost_of(backends::exact_beside(second));
+  for (const Lane* lane : exact) add_cost_of(*lane);
   for (const std::string& sentence : cost_sentences(costly, spec.others))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
 

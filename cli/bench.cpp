@@ -229,7 +229,15 @@ void add_bench(CLI::App& app, int& status) {
       ->option_text("FILE.svg");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->callback([options, &status, command] {
-    if (!options->between.empty() && command->count("--triangles") == 0) options->sizes.clear();
+    if (!options->between.empty() && command->count("--triangles") == 0) {
+      for (const char* option : {"--lanes", "--subject", "--toolchains", "--plot"}) {
+        if (command->count(option) > 0)
+          throw UsageError(fmt::format(
+              "{} is for arrays of triangles; add --triangles, or leave it out: --between times the exact test alone",
+              option));
+      }
+      options->sizes.clear();
+    }
     bench(*options, status);
   });
 }

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 
 #include "analysis/signature.h"
 #include "core/error.h"
@@ -25,20 +24,13 @@ std::uint64_t number(const std::string& text, const std::string& name) {
   return *value;
 }
 
-// A margin that no double can hold is the least or the largest (oracle/truth.h).
-std::string words_of_margin(double size) {
-  using Limits = std::numeric_limits<double>;
-  if (size <= Limits::denorm_min()) return "less than 1e-323";
-  return size < Limits::max() ? fmt::format("{:.3g}", size) : "at least 1.79e308";
-}
-
 // "disjoint, 1e-11 apart", "they share a segment, 0.25 deep"
 std::string words(const oracle::Truth& truth) {
-  if (truth.verdict == Verdict::disjoint) return fmt::format("disjoint, {} apart", words_of_margin(truth.margin));
+  if (truth.verdict == Verdict::disjoint) return fmt::format("disjoint, {} apart", oracle::margin_words(truth.margin));
   const char* contact = truth.contact == Contact::point     ? "they touch in a point"
                         : truth.contact == Contact::segment ? "they share a segment"
                                                             : "they share an area";
-  return truth.margin < 0 ? fmt::format("{}, {} deep", contact, words_of_margin(-truth.margin)) : contact;
+  return truth.margin < 0 ? fmt::format("{}, {} deep", contact, oracle::margin_words(-truth.margin)) : contact;
 }
 
 }  // namespace
@@ -76,9 +68,9 @@ std::vector<corpus::Entry> read_cases(const std::string& name, PairTypes taken) 
   if (sources.size() != 1) throw UsageError(name + " matches several strata; name one");
   const std::vector<std::pair<std::string, std::string>> numbers = {
       {"stratum", stratum}, {"seed", seed}, {"index", index}};
-  if (!in_doubles) return {corpus::entry_of(sources.front().pair(number(index, name)), numbers)};
-  if (taken == PairTypes::f32) throw UsageError(name + " is a pair of doubles; this takes pairs of float32");
-  return {corpus::entry_of(sources.front().double_pair(number(index, name)), numbers)};
+  if (in_doubles && taken == PairTypes::f32)
+    throw UsageError(name + " is a pair of doubles; this takes pairs of float32");
+  return {corpus::entry_of(sources.front().any_pair(number(index, name)), numbers)};
 }
 
 namespace {

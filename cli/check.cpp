@@ -103,6 +103,8 @@ void add_check(CLI::App& app, int&) {
   command->add_flag("--truth-only", options->truth_only, "Print the truth alone; run no lane")
       ->excludes("--lanes")
       ->excludes("--subject")
+      ->excludes("--toolchains")
+      ->excludes("--resubject")
       ->excludes("--executor");
   command->callback([options] { check(*options); });
 }

@@ -122,9 +122,14 @@ void print_sufficient(const std::string& scene, double rate);
 strata::SceneSources drawn_from_scene(const std::string& file, std::uint64_t seed, std::uint64_t pairs,
                                       const std::vector<std::string>& globs, fuzz::Json& recorded);
 
-// The same without recording; if `scene` is empty, draws from the strata.
+// The same without recording; if `scene` is empty, draws from the strata.   Throws: as expect_float32_scene, too.
 strata::SceneSources drawn(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
-                           const std::vector<std::string>& globs);
+                           const std::vector<std::string>& globs, PairTypes types = PairTypes::f32);
+
+// Adds --coordinates to a verb that draws pairs of either type.
+void add_coordinates_option(CLI::App& command, PairTypes& types);
+// Throws: UsageError if doubles are to be drawn from a scene.
+void expect_float32_scene(PairTypes types);
 
 // Lists the strata that the scene cannot contain, with the reasons, below a heading; empty for none.
 std::string left_out_text(const std::vector<strata::LeftOut>& left_out);

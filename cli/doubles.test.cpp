@@ -208,6 +208,57 @@ TEST_F(Doubles, ACaseThatNamesAnotherPairHasChanged) {
   }
 }
 
+TEST_F(Doubles, TheirScalesAndGroupsAreTheirOwnInAReport) {
+  expect_done(
+      "graze fuzz --coordinates both --strata extreme_scale,uniform --pairs 60k --lanes "
+      "'moller_1997/*/cpu,exact/*/cpu' "
+      "--out s && graze report s");
+  const Json told = Json::parse(contents(shell.folder / "s/report.json"));
+  std::map<std::string, int> steps;
+  int ends_at_most = 0;
+  for (const Json& row : told["extremes"]) {
+    steps[row["kind"]] = row["step"];
+    std::uint64_t pairs = 0;
+    for (const Json& cell : row["cells"]) pairs += cell["wrong"]["of"].get<std::uint64_t>();
+    EXPECT_EQ(pairs, 15000u) << row["kind"];
+    const std::string lane = told["lanes"][row["lane"].get<std::size_t>()]["id"];
+    const bool never = row["kind"] == "scale" ? lane.starts_with("exact/") : lane == "exact/f64/cpu";
+    EXPECT_EQ(row["says"].get<std::string>().starts_with("errs on none of 15,000 pairs"), never) << row["says"];
+    if (row["kind"] == "scale/f64")
+      ends_at_most += row["says"].get<std::string>().find(" to 2^1024") != std::string::npos;
+  }
+  EXPECT_EQ(steps, (std::map<std::string, int>{{"scale", 4}, {"scale/f64", 32}}));
+  EXPECT_GT(ends_at_most, 0);
+  const std::string rates = contents(shell.folder / "s/rates.csv");
+  EXPECT_NE(rates.find("exact/f32/cpu,general/f64,uniform/f64,wrong,"), std::string::npos);
+  EXPECT_NE(rates.find("exact/f32/cpu,general,uniform,wrong,"), std::string::npos);
+  EXPECT_EQ(rates.find("exact/f32/cpu,general,uniform/f64,"), std::string::npos);
+}
+
+TEST_F(Doubles, NoReasonIsToldThatNobodySaw) {
+  std::ofstream(shell.folder / "beyond.pairs") << "0 0 0  1 0 0  0 1 0   0 0 1  1 0 1  0 1e39 1\n";
+  const std::string told =
+      shell("graze explain beyond.pairs --lanes 'moller_1997/f32/cpu' | tr '\\n' ' ' | tr -s ' '").out;
+  EXPECT_NE(told.find("float32 cannot store the pair (number 17, 1e+39, is beyond its largest)"), std::string::npos)
+      << told;
+  std::ofstream(shell.folder / "yes.c") << "int meet(const double* a, const double* b) { return 1; }\n";
+  std::ofstream(shell.folder / "y.pairs") << "0 0 0 1 0 0 0 1 0  0 0 1 1 0 1 0 1 1 | coordinates=f64\n";
+  const std::string own =
+      shell("graze explain y.pairs --subject yes=./yes.c:meet --lanes 'yes/*' | tr '\\n' ' ' | tr -s ' '").out;
+  EXPECT_NE(own.find("not settled (Graze makes experiments"), std::string::npos) << own;
+  EXPECT_EQ(own.find("perhaps"), std::string::npos) << own;
+}
+
+// Of a campaign's cases no pair is believed that its strata cannot have drawn.
+TEST_F(Doubles, CasesOfOtherStrataAreRefused) {
+  expect_done("graze fuzz --strata near_vertex_face --pairs 2000 --lanes 'moller_1997/f32/cpu' --out c");
+  const Json summary = Json::parse(contents(shell.folder / "c/summary.json"));
+  const std::string file = "c/" + summary["signatures"][0]["case"].get<std::string>();
+  expect_done("sed -i '3,$s/stratum=[a-z_]* seed=1 index=[0-9]* /stratum=nosuch seed=99 index=12345678 /' " + file);
+  expect_error("graze report c", 1, {file, "does not belong to the campaign"});
+  expect_error("graze minimize c", 1, {file, "does not belong to the campaign"});
+}
+
 TEST_F(Doubles, WhatStoringChangesIsSaid) {
   std::ofstream(shell.folder / "far.pairs")
       << "1000000.01 0 0 1000000.01 1 0 1000000.01 0 1  1000000.02 0 0 1000000.02 1 0 1000000.02 0 1 | "
@@ -359,12 +410,93 @@ TEST_F(Doubles, ARegressionCorpusKeepsThemBesideFloats) {
   EXPECT_NE(contents(shell.folder / "s/cases.pairs").find("coordinates=f64"), std::string::npos);
 }
 
+TEST_F(Doubles, APolicyIsTunedOnThem) {
+  const std::string strata = "--strata near_vertex_face,stored --pairs 2000 --coordinates f64 ";
+  expect_done("graze tune moller_1997/f64/cpu --forbid false-negative " + strata + "--out t > told");
+  const Json tuned = Json::parse(contents(shell.folder / "t/tune.json"));
+  // A campaign of the chosen policy on the pairs that judged it counts the same.
+  const std::string lane = "moller_1997/f64/cpu/" + tuned["chosen"].get<std::string>();
+  expect_done("graze fuzz --lanes '" + lane + "' " + strata + "--seed 2 --out c");
+  const Json summary = Json::parse(contents(shell.folder / "c/summary.json"));
+  for (const char* count : {"false_positive", "false_negative", "declined"}) {
+    std::uint64_t counted = 0;
+    for (const Json& stratum : summary["strata"]) counted += stratum["lanes"][lane][count].get<std::uint64_t>();
+    EXPECT_EQ(tuned["confirmed"][count], counted) << lane << ' ' << count;
+  }
+  EXPECT_GT(tuned["confirmed"]["fixed"], 0);
+  for (const char* file : {"t/fixed.pairs", "t/broken.pairs"})
+    EXPECT_NE(contents(shell.folder / file).find("coordinates=f64"), std::string::npos) << file;
+  const std::string told = contents(shell.folder / "told");
+  EXPECT_NE(told.find("exact/f64/cpu"), std::string::npos) << told;
+  const std::size_t next = told.find("Next: ");
+  ASSERT_NE(next, std::string::npos);
+  EXPECT_NE(shell(told.substr(next + 6)).out.find("moller_1997/f64"), std::string::npos) << told;
+  // On a campaign's own pairs, of a lane in float; and two lanes that are to agree.
+  expect_done(
+      "graze fuzz --lanes 'moller_1997/*/cpu*' --strata near_vertex_face --pairs 500 --coordinates both --out d");
+  expect_done("graze tune moller_1997/f32/cpu --from d --out u");
+  EXPECT_NE(contents(shell.folder / "u/changes.csv").find("near_vertex_face/f64,1,"), std::string::npos);
+  expect_done("graze tune --agree moller_1997/f64/cpu moller_1997/f64/cpu-fma --max-rate 0.1 " + strata + "--out v");
+  const Json agreed = Json::parse(contents(shell.folder / "v/agree.json"));
+  EXPECT_EQ(agreed["zero_confirmed"]["pairs"], 2000);
+  EXPECT_EQ(agreed["zero_confirmed"]["intersecting"], agreed["confirmed"]["intersecting"]);
+}
+
+TEST_F(Doubles, AnEpsilonOfOnesOwnIsTunedOnThem) {
+  std::ofstream(shell.folder / "mine.c") << R"(#include <math.h>
+// By the planes of both triangles alone: right where they do not cross, and blunt near them.
+static double side(const double* p, const double* q) {
+  const double eps = 1e-3;
+  double u[3], v[3], n[3], all = 0, none = 0;
+  for (int i = 0; i < 3; ++i) u[i] = p[3 + i] - p[i], v[i] = p[6 + i] - p[i];
+  for (int i = 0; i < 3; ++i) n[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+  for (int k = 0; k < 3; ++k) {
+    double d = 0;
+    for (int i = 0; i < 3; ++i) d += n[i] * (q[3 * k + i] - p[i]);
+    all += d > eps, none += d < -eps;
+  }
+  return all == 3 || none == 3;
+}
+int intersects(const double* a, const double* b) { return !side(a, b) && !side(b, a); }
+)";
+  expect_done(
+      "export XDG_CACHE_HOME=$PWD/cache; graze tune mine/f64/cpu --subject mine=./mine.c --coordinates f64 --strata "
+      "near_vertex_face --pairs 3000 --out t");
+  const Json tuned = Json::parse(contents(shell.folder / "t/tune.json"));
+  EXPECT_EQ(tuned["epsilon"]["name"], "eps");
+  EXPECT_LT(tuned["confirmed"]["false_positive"], tuned["zero_confirmed"]["false_positive"]);
+  EXPECT_NE(contents(shell.folder / "t/fixed.pairs").find("coordinates=f64"), std::string::npos);
+}
+
+TEST_F(Doubles, ErrorsAndCostsAreMeasuredOnThem) {
+  expect_done(
+      "graze pareto --coordinates f64 --strata stored,near_vertex_face --pairs 2000 --lanes "
+      "'moller_1997/*/cpu,exact/*/cpu' --out p");
+  const Json found = Json::parse(contents(shell.folder / "p/pareto.json"));
+  int failures = 0;
+  for (const Json& lane : found["lanes"]) {
+    const bool never = lane["lane"] == "exact/f64/cpu";
+    EXPECT_EQ(lane["failure"].is_null(), never) << lane;
+    EXPECT_EQ(lane["errors"]["false_positive"] == 0 && lane["errors"]["false_negative"] == 0, never) << lane;
+    EXPECT_GT(lane["in_cache"]["middle"], 0) << lane;
+    if (never) continue;
+    std::ofstream(shell.folder / "f.pairs") << lane["failure"].get<std::string>() << '\n';
+    const Ran checked = shell("graze check f.pairs --lanes " + lane["lane"].get<std::string>());
+    EXPECT_NE(checked.out.find(" !"), std::string::npos) << lane["failure"] << checked.out << checked.err;
+    ++failures;
+  }
+  EXPECT_EQ(failures, 3);
+  EXPECT_EQ(found["lanes"].size(), 4u);
+}
+
 TEST_F(Doubles, VerbsThatTakeFloat32AloneSaySo) {
   expect_done(kCampaign);
   const Json summary = Json::parse(contents(shell.folder / "c/summary.json"));
   const std::string file = "c/" + summary["signatures"][0]["case"].get<std::string>();
   for (const auto& [command, word] : std::map<std::string, std::string>{
-           {"graze tune moller_1997/f32/cpu --from c --forbid false-negative", "tune"},
+           {"graze tune moller_1997/f64/cuda-nofma --from c", "moller_1997/f64/cuda-nofma"},
+           {"graze tune moller_1997/f32/cpu --scene a.toml --coordinates f64", "--coordinates"},
+           {"graze pareto --scene a.toml --coordinates both", "--coordinates"},
            {"graze discrepancy moller_1997/f32/cpu moller_1997/f32/cpu-fma --campaign c", "discrepancy"},
            {"graze fuzz --coordinates f64 --scene a.toml --out m", "--coordinates"}})
     expect_error(command, 2, {word});

@@ -56,7 +56,13 @@ CampaignPairs drawn_for(const DumpOptions& options) {
   const std::string stratum = options.name.substr(0, options.name.find(':'));
   const bool is_path = fs::is_directory(options.name) ||
                        (options.name.find('/') != std::string::npos && !strata::stratum_in_doubles(stratum));
-  return is_path ? pairs_of_campaign(options.name, options.pairs, "dump") : of_stratum(options);
+  if (!is_path) return of_stratum(options);
+  CampaignPairs pairs = pairs_of_campaign(options.name, options.pairs, "dump");
+  std::uint64_t all = 0;
+  for (const strata::PairSource& source : pairs.sources) all += source.pairs;
+  if (all < options.pairs)
+    fmt::print(stderr, "graze: {} has {} of {} pairs\n", printable(options.name), all, options.pairs);
+  return pairs;
 }
 
 // The lane's name as a field key, such as moller_1997.f32.cpu.
@@ -89,6 +95,7 @@ void dump(const DumpOptions& options) {
   fuzz::SelectedLanes under_test;
   LaneOptions lanes = options.lanes;
   if (lanes.globs.empty()) lanes.globs = with_subjects({}, lanes);
+  if (lanes.globs.empty()) expect_own_code_among(lanes, {}, "--lanes");
   if (!lanes.globs.empty()) under_test = selected_lanes(lanes, options.name);
   const CampaignPairs dumped = drawn_for(options);
   const bool some_doubles =
@@ -99,8 +106,7 @@ void dump(const DumpOptions& options) {
     for (std::uint64_t index = 0; index < source.pairs && std::cout; ++index) {
       const std::vector<std::pair<std::string, std::string>> numbers = {
           {"stratum", source.id}, {"seed", std::to_string(dumped.seed)}, {"index", std::to_string(index)}};
-      corpus::Entry entry = source.in_doubles() ? corpus::entry_of(source.double_pair(index), numbers)
-                                                : corpus::entry_of(source.pair(index), numbers);
+      corpus::Entry entry = corpus::entry_of(source.any_pair(index), numbers);
       if (!dumped.scene.empty() && options.format == Format::pairs) entry.fields.emplace_back("scene", dumped.scene);
       for (auto& field : fuzz::truth_fields(truth_of(entry))) entry.fields.push_back(std::move(field));
       if (!under_test.lanes.empty()) {

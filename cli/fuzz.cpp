@@ -250,8 +250,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
 int start(const FuzzOptions& options) {
   if (!options.junit.empty() && !options.shard.whole())
     throw UsageError("--junit is for whole campaigns; a shard has a part of the pairs alone");
-  if (options.coordinates != PairTypes::f32 && !options.scene.empty())
-    throw UsageError("--coordinates is for strata and meshes; scenes are read as float32");
+  if (!options.scene.empty()) expect_float32_scene(options.coordinates);
   if (!options.scratch.empty() && options.shard.whole())
     throw UsageError("--scratch is for shards alone; add --shard K/N");
   if (!fuzz::started_by_mpirun()) return fuzz(options, nullptr);
@@ -338,15 +337,7 @@ void add_fuzz(CLI::App& app, int& status) {
                    "Folder on a local disk for a shard's database while it runs; it is then copied to --out")
       ->option_text("DIR");
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
-  static_assert(static_cast<int>(PairTypes::f32) == 0 && static_cast<int>(PairTypes::f64) == 1 &&
-                static_cast<int>(PairTypes::both) == 2);
-  command
-      ->add_option("--coordinates", options->coordinates,
-                   "Coordinates of the pairs. f64: doubles, which lanes in double decide as they are, and lanes in "
-                   "float as float32 stores them; see docs/double.md")
-      ->transform(one_of({"f32", "f64", "both"}, Chosen::place))
-      ->option_text("f32|f64|both")
-      ->default_str("f32");
+  add_coordinates_option(*command, options->coordinates);
   add_lane_options(*command, options->lanes);
   add_scene_option(*command, options->scene);
   command

@@ -95,6 +95,10 @@ TEST_F(Inputs, WrongWordsAreNamedWithWhatIsNearest) {
   expect_error("graze fuzz --engine 1", 2, {"'1'"});
   expect_error("graze repro uniform:1:1 --emit nope", 2, {"'nope'"});
   expect_error("echo | graze check - --truth-only --lanes '*'", 2, {"--lanes"});
+  expect_error("echo | graze check - --truth-only --toolchains x86-gcc", 2, {"--toolchains"});
+  expect_error("graze dump uniform --pairs 2 --toolchains x86-gcc", 2, {"--toolchains", "--lanes"});
+  expect_error("graze bench --between a.off b.off --lanes '*/f32/cpu'", 2, {"--lanes", "--triangles"});
+  expect_error("graze bench --between a.off b.off --plot p.svg", 2, {"--plot", "--triangles"});
 }
 
 TEST_F(Inputs, UnknownOptionsAreNamedWithWhatIsNearest) {
@@ -232,6 +236,17 @@ TEST_F(Inputs, WhatFloat32MakesOfMeshesIsSaid) {
   expect_done("grep -q 'coordinates=f64' h.pairs && graze check h.pairs --lanes exact/f64/cpu | grep -q intersects");
   expect_done("grep -q 'v 1000000.01 0 0' h.obj && grep -q 0,0,area,pierces h.csv");
   expect_done("graze query --between far.off far.off --pairs b.pairs > out && graze check b.pairs > out");
+  // Numbers below what a double can hold are rounded to 0, which is said too.
+  std::ofstream(shell.folder / "least.off")
+      << "OFF\n6 2 0\n0 0 0\n1 0 0.0\n0 1 -0\n0 0 1e-500\n1 0 1e-500\n0 1 1e-500\n3 0 1 2\n3 3 4 5\n";
+  std::ofstream(shell.folder / "least.txt") << "-1 -1 1e-500 2 0 0 0 2 0\n";
+  for (const std::string command : {"graze query --self least.off", "graze query least.off#0 least.off",
+                                    "graze fuzz --mesh least.off --lanes exact/f32/cpu --out l"}) {
+    const Ran ran = shell(command);
+    EXPECT_NE(ran.err.find("least.off: float32 rounded 3 of 18 coordinates"), std::string::npos) << command << ran.err;
+    expect_error(command + " --exact-input", 2, {"least.off", "3 of 18", "--exact-input"});
+  }
+  expect_error("graze query least.txt near.off --exact-input", 2, {"least.txt", "1 of 9"});
   const Ran exact = shell("graze query --self near.off --exact-input");
   EXPECT_EQ(exact.status, 0) << exact.err;
   EXPECT_EQ(exact.err.find("float32"), std::string::npos);

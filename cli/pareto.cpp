@@ -32,6 +32,7 @@ struct ParetoOptions {
   LaneOptions lanes;
   std::vector<std::string> strata;
   std::uint64_t pairs = 200'000, seed = 1;
+  PairTypes coordinates = PairTypes::f32;
   std::string scene, out = "pareto";
   bool device = false;
 };
@@ -56,7 +57,9 @@ Measured measured(const ParetoOptions& options, const fuzz::SelectedLanes& under
     result.ids.push_back(lane->id);
     result.lanes.push_back(lane);
   }
-  const Lane* exact = find_lane(options.device ? "exact/f32/cuda" : "exact/f32/cpu");
+  const Lane* exact = find_lane(options.device                          ? "exact/f32/cuda"
+                                : options.coordinates == PairTypes::f32 ? fuzz::kExactLane
+                                                                        : fuzz::kExactDoubles);
   const auto lane_of = [exact](const std::string& id) { return id.empty() ? exact : find_lane(id); };
   if (options.device) {
     result.sweep = analysis::device_sweep([=](const std::string& id) { return *lane_of(id); });
@@ -67,13 +70,15 @@ Measured measured(const ParetoOptions& options, const fuzz::SelectedLanes& under
 }
 
 // Minimises the first pair on which the lane is wrong; without a twin, returns that pair itself.
-std::optional<Pair> smallest_failure(const Lane& lane, const analysis::PolicyErrors& errors,
-                                     const std::vector<strata::PairSource>& sources) {
+std::optional<AnyPair> smallest_failure(const Lane& lane, const analysis::PolicyErrors& errors,
+                                        const std::vector<strata::PairSource>& sources) {
   if (!errors.first_broken) return std::nullopt;
-  const Pair pair = sources[static_cast<std::size_t>(errors.first_broken->source)].pair(errors.first_broken->index);
+  const AnyPair pair =
+      sources[static_cast<std::size_t>(errors.first_broken->source)].any_pair(errors.first_broken->index);
   if (!backends::on_host(lane)) return pair;
   const auto failures = fuzz::failures_of(fuzz::select_lanes({lane.id}, fuzz::Executor::twin), pair);
-  return failures.empty() ? std::nullopt : fuzz::minimise(failures[0], pair).pair.floats;
+  if (failures.empty()) return std::nullopt;
+  return fuzz::minimise(failures[0], pair).pair;
 }
 
 analysis::Pareto offers_of(const ParetoOptions& options, const Measured& measured,
@@ -85,7 +90,7 @@ analysis::Pareto offers_of(const ParetoOptions& options, const Measured& measure
   }
   if (options.device) {
     const cuda::DeviceCosts costs =
-        cuda::measure_on_device(measured.lanes, analysis::first_pairs(sources, kPairsOnDevice), 21);
+        cuda::measure_on_device(measured.lanes, analysis::first_pairs(sources, kPairsOnDevice).floats, 21);
     pareto.machine = costs.device;
     pareto.threads_at_once = costs.threads_at_once;
     for (std::size_t l = 0; l < costs.of.size(); ++l) {
@@ -126,13 +131,15 @@ int pareto(ParetoOptions options) {
   if (std::string why_not; options.device && !cuda::open_device(why_not))
     throw std::runtime_error("--device needs a CUDA device: " + why_not);
   fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
+  if (options.coordinates != PairTypes::f32) take_doubles(under_test);
   say_left_out(leave_out(under_test, [&](const Lane& lane) { return why_left_out(lane, options.device); }));
   const Measured lanes = measured(options, under_test);
-  const strata::SceneSources all = drawn(options.scene, options.seed, options.pairs, options.strata);
+  const strata::SceneSources all =
+      drawn(options.scene, options.seed, options.pairs, options.strata, options.coordinates);
   const ResultFolder folder(options.out, "pareto.json");
   analysis::Pareto pareto = offers_of(options, lanes, all.sources);
   const std::uint64_t at_each = std::max(options.pairs / 10, std::min(options.pairs, kFewestAtAnExtreme));
-  const auto some = drawn(options.scene, options.seed, at_each, options.strata).sources;
+  const auto some = drawn(options.scene, options.seed, at_each, options.strata, options.coordinates).sources;
   for (const analysis::Extreme extreme : analysis::kExtremes) {
     const std::size_t first = pareto.curves.size();
     for (const std::string& id : lanes.ids) pareto.curves.push_back({id, extreme, {}});
@@ -182,12 +189,14 @@ void add_pareto(CLI::App& app, int& status) {
   command->get_option("--lanes")->default_str("common CPU lanes and those of --subject; with --device CUDA lanes");
   add_subject_options(*command, options->lanes);
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
+  add_coordinates_option(*command, options->coordinates);
   add_scene_option(*command, options->scene);
   add_count(*command, "--pairs", options->pairs, 1000, kMostWhole, "Number of pairs on which errors are counted");
   add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of the pairs");
   command
       ->add_flag("--device", options->device,
                  "Measure the CUDA lanes on the first device, with pairs in its memory and with copies")
+      ->excludes("--coordinates")
       ->excludes("--subject");
   command->add_option("--out", options->out, "Folder for pareto.json and the pictures")
       ->capture_default_str()

@@ -275,7 +275,10 @@ std::vector<Run> runs_of(const QueryOptions& options, const QueryLanes& lanes, c
 void expect_different_files(const QueryOptions& options) {
   std::set<std::filesystem::path> files;
   for (const std::string& file : {options.csv, options.obj, options.pairs, options.mismatches}) {
-    if (!file.empty() && !files.insert(std::filesystem::weakly_canonical(std::filesystem::absolute(file))).second)
+    std::error_code no_file;  // a pipe has no path of its own
+    const std::filesystem::path path = std::filesystem::absolute(file, no_file),
+                                place = std::filesystem::weakly_canonical(path, no_file);
+    if (!file.empty() && !files.insert(no_file ? path : place).second)
       throw UsageError("--csv, --obj, --pairs and --mismatches need different files; two of them are " +
                        shown_path(file));
   }

@@ -90,6 +90,8 @@ TEST_F(QueryCommand, WritesHits) {
       obj.starts_with("# Written by graze query\ng reference\nv 3 2 0\nv 1 2 5\nv 2 1 5\nf 1 2 3\ng hits\nv 0 0 0\n"))
       << obj;
   EXPECT_EQ(json("graze query mesh.obj#3 hits.obj --json")["hits"], 3);  // the reference is in the file too
+  expect_done("graze query mesh.obj#3 mesh.obj --pairs /dev/stdout 2>&1 | cat > piped; grep '^0x' hits.pairs > h");
+  expect_done("grep -q . h && grep '^0x' piped | cmp - h");  // a pipe has no path of its own
   const Ran checked = shell("graze check hits.pairs --truth-only | grep -c 'truth: intersects'");
   EXPECT_EQ(checked.out, "2\n");
 }

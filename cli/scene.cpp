@@ -199,11 +199,28 @@ strata::SceneSources drawn_from_scene(const std::string& file, std::uint64_t see
   return drawn;
 }
 
+void add_coordinates_option(CLI::App& command, PairTypes& types) {
+  static_assert(static_cast<int>(PairTypes::f32) == 0 && static_cast<int>(PairTypes::f64) == 1 &&
+                static_cast<int>(PairTypes::both) == 2);
+  command
+      .add_option("--coordinates", types,
+                  "Coordinates of the pairs. f64: doubles, which lanes in double decide as they are, and lanes in "
+                  "float as float32 stores them; see docs/double.md")
+      ->transform(one_of({"f32", "f64", "both"}, Chosen::place))
+      ->option_text("f32|f64|both")
+      ->default_str("f32");
+}
+
+void expect_float32_scene(PairTypes types) {
+  if (types != PairTypes::f32) throw UsageError("--coordinates is for strata and meshes; scenes are read as float32");
+}
+
 strata::SceneSources drawn(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
-                           const std::vector<std::string>& globs) {
+                           const std::vector<std::string>& globs, PairTypes types) {
   fuzz::Json recorded;
-  if (!scene.empty()) return drawn_from_scene(scene, seed, pairs, globs, recorded);
-  return {strata::stratum_sources(seed, pairs, globs), {}, {}, {}};
+  if (scene.empty()) return {strata::stratum_sources(seed, pairs, globs, types), {}, {}, {}};
+  expect_float32_scene(types);
+  return drawn_from_scene(scene, seed, pairs, globs, recorded);
 }
 
 std::string left_out_text(const std::vector<strata::LeftOut>& left_out) {

@@ -243,7 +243,7 @@ TEST_F(Shards, StatusRefusesADamagedStatus) {
     std::ofstream(shell.folder / "c/status.json") << text;
     expect_error("graze status c", 1, {"status.json", found});
   };
-  const std::string damaged = "damaged";
+  const std::string damaged = "damaged", way = whole["ways"].at(0);
   for (const std::string& text : {std::string(), std::string("[]"), whole.dump().substr(0, 90)}) refused(text, damaged);
   for (const auto& [field, value, found] : {std::tuple<const char*, Json, std::string>("done", 399, "399 done"),
                                             {"done", 401, "401 done"},
@@ -258,6 +258,7 @@ TEST_F(Shards, StatusRefusesADamagedStatus) {
                                             {"shard", "2/1", "2/1"},
                                             {"rate", -1, "rate"},
                                             {"ways", {1}, damaged},
+                                            {"ways", {way, way}, "twice"},
                                             {"updated", "x", "updated"}}) {
     Json other = whole;
     other[field] = value;

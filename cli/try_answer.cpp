@@ -101,7 +101,7 @@ CallCosts call_costs(const Lane& own, const std::vector<strata::PairSource>& sou
   for (const Lane& lane : published_lanes()) {
     if (lane.variant == Variant::cpu && lane.scalar == Scalar::f32) timed.push_back(&lane);
   }
-  const std::vector<Pair> pairs = analysis::first_pairs(sources, kPairsCalled);
+  const strata::PairBlock pairs = analysis::first_pairs(sources, kPairsCalled);
   const std::vector<std::optional<analysis::Cost>> costs =
       analysis::costs_of(timed, pairs, kPassesOfCalls, analysis::Calls::of_one);
   const auto least = std::min_element(costs.begin() + 2, costs.end(),

@@ -41,7 +41,9 @@ namespace {
 
 // A mesh's own pairs do not depend on the seed, so they serve only to choose, or only to verify the choice.
 std::vector<strata::PairSource> without_meshes(std::vector<strata::PairSource> sources, const char* use) {
-  std::erase_if(sources, [](const strata::PairSource& source) { return source.id == "mesh"; });
+  std::erase_if(sources, [](const strata::PairSource& source) {
+    return strata::stratum_in_doubles(source.id).value_or(source.id) == "mesh";
+  });
   if (sources.empty())
     throw UsageError(fmt::format("the pairs of a mesh do not depend on the seed, so none are left to {}", use));
   return sources;
@@ -50,7 +52,6 @@ std::vector<strata::PairSource> without_meshes(std::vector<strata::PairSource> s
 // The campaign's own pairs to choose on, which show the disagreements that it counted.
 TunePairs pairs_from(const TuneOptions& options) {
   CampaignPairs campaign = pairs_of_campaign(options.from, 0, "tune on");
-  strata::expect_float32(campaign.sources, "tune");
   if (!campaign.summary.at("complete"))
     throw UsageError(cannot("tune on", options.from, "it is not finished; finish it with `graze fuzz`"));
   fuzz::Json spec = campaign.summary["spec"];
@@ -73,31 +74,45 @@ TunePairs pairs_from(const TuneOptions& options) {
 TunePairs tune_pairs(const TuneOptions& options) {
   if (!options.from.empty()) return pairs_from(options);
   const std::uint64_t pairs = options.pairs > 0 ? options.pairs : 1'000'000;
-  strata::SceneSources others = drawn(options.scene, options.seed + 1, pairs, options.strata);
+  strata::SceneSources others = drawn(options.scene, options.seed + 1, pairs, options.strata, options.coordinates);
   std::vector<strata::PairSource> sources =
-      drawn(options.scene, options.seed, std::max<std::uint64_t>(pairs / 10, 1), options.strata).sources;
+      drawn(options.scene, options.seed, std::max<std::uint64_t>(pairs / 10, 1), options.strata, options.coordinates)
+          .sources;
   return {nullptr, without_meshes(std::move(sources), "choose on; add --strata"), std::move(others.sources),
           left_out_text(others.left_out)};
 }
 
-Pair pair_at(const std::vector<strata::PairSource>& sources, const analysis::PairPlace& place) {
-  return sources[static_cast<std::size_t>(place.source)].pair(place.index);
+bool TunePairs::in_doubles() const {
+  return std::any_of(others.begin(), others.end(),
+                     [](const strata::PairSource& source) { return source.in_doubles(); });
 }
 
-std::string file_of_pair(const Pair& pair, const std::string& lanes) {
+void expect_takes(const Lane& lane, const TunePairs& pairs) {
+  if (pairs.in_doubles() && !fuzz::takes(lane, DoublePair{}))
+    throw UsageError(cannot("run", lane.id, "it takes pairs of float32 alone"));
+}
+
+const Lane& exact_on(const TunePairs& pairs, const Lane& lane) {
+  return pairs.in_doubles() ? *find_lane(fuzz::kExactDoubles) : backends::exact_beside(lane);
+}
+
+AnyPair pair_at(const std::vector<strata::PairSource>& sources, const analysis::PairPlace& place) {
+  return sources[static_cast<std::size_t>(place.source)].any_pair(place.index);
+}
+
+std::string file_of_pair(const AnyPair& pair, const std::string& lanes) {
   std::ostringstream text;
   corpus::write_header(text);
-  corpus::write_entry(text, {pair, {{"lanes", lanes}}});
+  corpus::write_entry(text, corpus::entry_of(pair, {{"lanes", lanes}}));
   return text.str();
 }
 
-std::string smallest(const Lane& first, const Lane& second, const Pair& pair) {
+std::string smallest(const Lane& first, const Lane& second, const AnyPair& pair) {
   fuzz::SelectedLanes both;
   both.lanes = {&first, &second};
   both.on_host = {backends::on_host(first), backends::on_host(second)};
-  Pair small = pair;
-  if (both.on_host[0] && both.on_host[1])
-    small = fuzz::minimise(fuzz::failures_of(both, pair).at(0), pair).pair.floats.value();
+  AnyPair small = pair;
+  if (both.on_host[0] && both.on_host[1]) small = fuzz::minimise(fuzz::failures_of(both, pair).at(0), pair).pair;
   return file_of_pair(small, first.id + "," + second.id);
 }
 
@@ -132,8 +147,8 @@ std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
   std::vector<std::string> sentences;
   constexpr std::size_t kTimed = 8192;
   constexpr int kPasses = 9;
-  const std::vector<std::optional<analysis::Cost>> host_costs =
-      analysis::costs_of(on_host, analysis::first_pairs(sources, kTimed), kPasses);
+  const strata::PairBlock pairs = analysis::first_pairs(sources, kTimed);
+  const std::vector<std::optional<analysis::Cost>> host_costs = analysis::costs_of(on_host, pairs, kPasses);
   std::vector<const Lane*> timed;
   std::vector<analysis::Cost> costs;
   for (std::size_t l = 0; l < on_host.size(); ++l) {
@@ -149,7 +164,7 @@ std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
   if (!timed.empty()) {
     sentences.push_back(sentence("", timed, [&](std::size_t l) { return costs[l]; }));
     sentences.push_back(reports::costs_sentence(analysis::Calls::of_blocks,
-                                                fmt::format("{} of the fresh pairs", reports::grouped(kTimed)),
+                                                fmt::format("{} of the fresh pairs", reports::grouped(pairs.size())),
                                                 fuzz::machine_name(), kPasses));
   }
   std::string why_not;
@@ -157,7 +172,7 @@ std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
     sentences.push_back("Cost of the CUDA lanes: not measured, because they run as twins here (" + why_not + ").");
   } else if (!on_device.empty()) {
     const cuda::DeviceCosts there =
-        cuda::measure_on_device(on_device, analysis::first_pairs(sources, std::size_t{1} << 20), 9);
+        cuda::measure_on_device(on_device, analysis::first_pairs(sources, std::size_t{1} << 20).floats, 9);
     sentences.push_back(sentence(" on " + there.device + ", 2^20 pairs a call that are there already", on_device,
                                  [&](std::size_t l) { return analysis::quartiles(there.of[l].resident); }));
   }
@@ -187,8 +202,10 @@ const Lane& lane_to_tune(const TuneOptions& options) {
 
 int tune(const TuneOptions& options) {
   const Lane* const lane = &lane_to_tune(options);
-  std::string why_not;
-  const bool on_device = backends::backend_of(*lane).has_device && cuda::open_device(why_not);
+  TunePairs pairs = tune_pairs(options);
+  expect_takes(*lane, pairs);
+  std::string why_not;  // a device draws and decides float32 alone
+  const bool on_device = backends::backend_of(*lane).has_device && !pairs.in_doubles() && cuda::open_device(why_not);
   if (const std::string why = backends::why_not_on_host(*lane); !on_device && !why.empty())
     throw UsageError(cannot("run", lane->id, why));
   std::optional<subjects::TunableSource> source;  // of own code
@@ -204,7 +221,7 @@ int tune(const TuneOptions& options) {
   } else {
     spec.sweep = analysis::host_sweep(*lane, options.threads);
   }
-  TunePairs pairs = tune_pairs(options);
+  const Lane& exact = exact_on(pairs, *lane);
   spec.sources = std::move(pairs.sources);
   spec.others = std::move(pairs.others);
   spec.by_value = source.has_value();
@@ -237,7 +254,7 @@ int tune(const TuneOptions& options) {
   }
   fmt::print("\n{}", pairs.left_out);
   const Lane chosen = tuned.chosen.empty() || source ? *lane : lane_under(*lane, tuned.chosen);
-  const Lane* const costly[] = {&chosen, &backends::exact_beside(*lane)};
+  const Lane* const costly[] = {&chosen, &exact};
   for (const std::string& sentence : cost_sentences(costly, spec.others))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
   fuzz::Json json = reports::tuning_json(question, tuned);
@@ -249,7 +266,7 @@ int tune(const TuneOptions& options) {
   for (const auto& [place, name] :
        {std::pair{tuned.confirmed.first_fixed, "fixed.pairs"}, {tuned.confirmed.first_broken, "broken.pairs"}}) {
     if (!place) continue;
-    const Pair pair = pair_at(spec.others, *place);
+    const AnyPair pair = pair_at(spec.others, *place);
     results.push_back({name, source ? file_of_pair(pair, lane->id) : smallest(*lane, chosen, pair)});
   }
   write_listed(out, results,
@@ -290,11 +307,13 @@ void add_tune(CLI::App& app, int& status) {
       ->default_str("the obvious one");
   for (const char* of_own_code : {"--resubject", "--epsilon"}) command->get_option("--agree")->excludes(of_own_code);
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
+  add_coordinates_option(*command, options->coordinates);
   add_scene_option(*command, options->scene);
   command
       ->add_option("--from", options->from,
                    "Campaign whose own pairs, with the disagreements that it counted, the choice is made on")
       ->excludes("--strata")
+      ->excludes("--coordinates")
       ->excludes("--scene")
       ->option_text("DIR");
   add_count(*command, "--pairs", options->pairs, 10, kMostWhole,

@@ -25,6 +25,7 @@ struct TuneOptions {
   std::vector<std::string> strata;
   std::uint64_t pairs = 0;  // 0: a million, or as many as the campaign `from` has
   std::uint64_t seed = 1;
+  PairTypes coordinates = PairTypes::f32;
   int threads = 0;
   int forbid = 2;
   double max_rate = 1e-6, max_other = 0.1;
@@ -40,19 +41,27 @@ struct TunePairs {
   fuzz::Json campaign;  // summary of the campaign that `sources` are of; null: none
   std::vector<strata::PairSource> sources, others;
   std::string left_out;  // left_out_text of the scene
+
+  bool in_doubles() const;  // some of them
 };
 
 // Throws: as drawn and pairs_of_campaign; UsageError if no pairs are left to choose on, or to verify.
 TunePairs tune_pairs(const TuneOptions& options);
 
-Pair pair_at(const std::vector<strata::PairSource>& sources, const analysis::PairPlace& place);
+// Throws: UsageError if some pairs are doubles, and the lane takes float32 alone.
+void expect_takes(const Lane& lane, const TunePairs& pairs);
+
+// The lane that is never wrong on these pairs, beside this one if it can be.
+const Lane& exact_on(const TunePairs& pairs, const Lane& lane);
+
+AnyPair pair_at(const std::vector<strata::PairSource>& sources, const analysis::PairPlace& place);
 
 // The file for a pair, with these lanes.
-std::string file_of_pair(const Pair& pair, const std::string& lanes);
+std::string file_of_pair(const AnyPair& pair, const std::string& lanes);
 
 // The file for a minimised pair on which both lanes keep their verdicts. Without twins, the pair is not minimised.
 // Requires: a lane is wrong on the pair.
-std::string smallest(const Lane& first, const Lane& second, const Pair& pair);
+std::string smallest(const Lane& first, const Lane& second, const AnyPair& pair);
 
 // Writes the results and lists them. Removes those of the optional ones, each with the first line of its kind, that an
 // earlier run wrote and this one did not.

@@ -176,6 +176,8 @@ TEST_F(Files, AChangeOfASealedFileIsNoticed) {
   EXPECT_THROW(read_sealed(file, "remove it"), std::runtime_error);
   EXPECT_TRUE(parse_shallow(read_whole(file)).is_discarded());
   EXPECT_TRUE(parse_shallow("{").is_discarded());
+  EXPECT_FALSE(parse_shallow("{}").is_discarded());
+  EXPECT_TRUE(parse_shallow(std::string("{}\0{}", 5)).is_discarded());
   EXPECT_TRUE(parse_shallow(R"({"a": {"b": 1, "b": 1}})").is_discarded());
   EXPECT_FALSE(parse_shallow(R"({"a": {"b": 1}, "b": [{"a": 1}, {"a": 2}]})").is_discarded());
   EXPECT_EQ(parse_shallow(text)["checksum"], sealed(json)["checksum"]);

@@ -39,7 +39,8 @@ std::string checksum_of(const Json& json) {
 }  // namespace
 
 Json parse_shallow(const std::string& text) {
-  if (is_too_deep(text)) return Json(Json::value_t::discarded);
+  // At a zero byte, which no JSON text has, the parser takes the text to end.
+  if (is_too_deep(text) || text.find('\0') != text.npos) return Json(Json::value_t::discarded);
   std::vector<std::set<std::string>> keys;  // of the objects around
   bool twice = false;
   Json json = Json::parse(

@@ -43,6 +43,15 @@ Truth truth_of_pair(const BasicPair<Real>& pair) {
 
 }  // namespace
 
+std::string margin_words(double size) {
+  using Limits = std::numeric_limits<double>;
+  if (size <= Limits::denorm_min()) return "less than 1e-323";
+  if (size >= Limits::max()) return "at least 1.79e308";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", size);
+  return text;
+}
+
 Truth truth(const Pair& pair) { return truth_of_pair(pair); }
 Truth truth(const DoublePair& pair) { return truth_of_pair(pair); }
 

@@ -4,6 +4,7 @@
 
 #include <compare>
 #include <stdexcept>
+#include <string>
 
 #include "core/any_pair.h"
 #include "core/margin/bucket.h"
@@ -30,6 +31,9 @@ Truth truth(const DoublePair& pair);
 inline Truth truth(const AnyPair& pair) {
   return visit(pair, [](const auto& own) { return oracle::truth(own); });
 }
+
+// A margin's size in words: "0.25", "less than 1e-323", "at least 1.79e308".
+std::string margin_words(double size);
 
 // CGAL's decision: its triangle test for proper triangles, and its tests of segments and points for degenerate ones.
 // Requires: finite coordinates.   Exact: always.

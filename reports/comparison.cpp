@@ -327,13 +327,6 @@ Json differences_of(const Json& after, const Json& before, const Json& verdicts)
   return rows;
 }
 
-bool has_doubles(const Json& report) {
-  const Json& strata = report.at("strata");
-  return std::any_of(strata.begin(), strata.end(), [](const Json& row) {
-    return bool(strata::stratum_in_doubles(row.at("id").get_ref<const std::string&>()));
-  });
-}
-
 }  // namespace
 
 bool same_pairs(const Json& before, const Json& after) {
@@ -411,9 +404,7 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
         "All strata together and kinds of failure are not compared: the campaigns have other strata, or in other "
         "shares.");
   if (!kinds_known)
-    differences.push_back(has_doubles(report) || has_doubles(before)
-                              ? "Kinds of failure are not compared: `graze minimize` does not take pairs of doubles."
-                              : "Kinds of failure are not compared: run `graze minimize` on both campaigns first.");
+    differences.push_back("Kinds of failure are not compared: run `graze minimize` on both campaigns first.");
   report["compare"] = {
       {"other", before.at("run")}, {"headline", headline}, {"differences", differences},       {"rates", rows},
       {"gained", gained},          {"lost", lost},         {"kinds_compared", kinds_compared}, {"verdicts", verdicts}};

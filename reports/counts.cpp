@@ -30,7 +30,7 @@ void add(WrongCounts& counts, const Json& row, const std::map<std::string, std::
   }
 }
 
-void add(StratumCounts& counts, const Json& row, const std::map<std::string, std::size_t>& place) {
+void add(StratumCounts& counts, const Json& row, bool in_doubles, const std::map<std::string, std::size_t>& place) {
   static const std::map<std::string, Bucket> buckets = [] {
     std::map<std::string, Bucket> all;
     for (int b = -kBucketMost; b <= kBucketMost; ++b)
@@ -48,7 +48,8 @@ void add(StratumCounts& counts, const Json& row, const std::map<std::string, std
   for (const auto& [bucket, found] : row.at("margins").items()) add(counts.margins[buckets.at(bucket)], found, place);
   if (!row.contains("extremes")) return;
   for (const auto& [axis, cells] : row["extremes"].items()) {
-    for (const auto& [exponent, found] : cells.items()) add(counts.extremes[axis][std::stoi(exponent)], found, place);
+    std::map<int, WrongCounts>& counted = counts.extremes[axis + (in_doubles ? std::string(strata::kInDoubles) : "")];
+    for (const auto& [exponent, found] : cells.items()) add(counted[std::stoi(exponent)], found, place);
   }
 }
 
@@ -103,8 +104,8 @@ CampaignCounts counts_of(const Json& summary) {
   for (const auto& [id, row] : summary.at("strata").items()) {
     StratumCounts& stratum = counts.strata.emplace_back();
     stratum.id = id;
-    add(stratum, row, place);
-    add(counts.total, row, place);
+    add(stratum, row, stratum.in_doubles(), place);
+    add(counts.total, row, stratum.in_doubles(), place);
   }
   const auto doubles =
       std::count_if(counts.strata.begin(), counts.strata.end(), std::mem_fn(&StratumCounts::in_doubles));
@@ -124,7 +125,7 @@ CampaignCounts counts_of(const Json& summary) {
             counts.strata[s].in_doubles() != of_doubles)
           continue;
         group.strata.push_back(s);
-        add(group.counts, summary["strata"][id], place);
+        add(group.counts, summary["strata"][id], of_doubles, place);
       }
       if (!group.strata.empty()) counts.groups.push_back(std::move(group));
     }

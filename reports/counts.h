@@ -32,7 +32,8 @@ struct StratumCounts {
   std::uint64_t pairs = 0, intersects = 0;
   std::vector<analysis::LaneCounts> lanes;
   std::map<Bucket, WrongCounts> margins;
-  std::map<std::string, std::map<int, WrongCounts>> extremes;  // by axis ("scale", "offset") and exponent
+  std::map<std::string, std::map<int, WrongCounts>>
+      extremes;  // by kind ("scale", "offset", "scale/f64", …) and exponent
 
   std::uint64_t wrong(std::size_t lane) const { return lanes[lane].wrong(); }
   bool in_doubles() const { return strata::stratum_in_doubles(id).has_value(); }

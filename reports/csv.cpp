@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "fuzz/campaign/checked_summary.h"
 #include "reports/failure_cards.h"
 #include "reports/report.h"
@@ -43,16 +45,19 @@ void append(std::vector<Json>& cells, const Json& share) {
 Json lane_id(const Json& report, const Json& row) { return report["lanes"][row["lane"].get<std::size_t>()]["id"]; }
 
 // The group of a stratum; empty for a stratum that this build does not know.
-Json group_id(const std::string& stratum) {
-  const auto group = strata::group_of_name(stratum);
-  return group ? Json(strata::kGroups[static_cast<std::size_t>(*group)].id) : Json();
+Json group_id(const Json& report, const Json& stratum) {
+  for (const Json& group : report["groups"]) {
+    const Json& strata = group["strata"];
+    if (std::find(strata.begin(), strata.end(), stratum) != strata.end()) return group["id"];
+  }
+  return nullptr;
 }
 
 std::string rates_csv(const Json& report) {
   Table table("lane,group,stratum,kind,count,of,share,low,high");  // empty group and stratum: all strata together
   for (const Json& row : report["rates"]) {
     const Json stratum = row["stratum"].is_null() ? Json() : report["strata"][row["stratum"].get<std::size_t>()]["id"];
-    const Json group = stratum.is_null() ? Json() : group_id(stratum);
+    const Json group = stratum.is_null() ? Json() : group_id(report, row["stratum"]);
     for (const char* kind : {"false_positive", "false_negative", "wrong", "differs_from_cpu"}) {
       if (row[kind].is_null()) continue;
       std::vector<Json> cells{lane_id(report, row), group, stratum, kind};

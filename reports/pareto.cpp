@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 
 #include "core/text.h"
 #include "corpus/pair_format.h"
@@ -47,10 +48,12 @@ std::string begin(const std::string& title, double right = kRight) {
 }
 
 // The pair as input of `graze check`.
-std::string numbers(const Pair& pair) {
-  std::string text;
-  for (int c = 0; c < kCoordinates; ++c) text += (c > 0 ? " " : "") + corpus::hex_float(coordinates(pair)[c]);
-  return text;
+std::string line_of(const AnyPair& pair) {
+  std::ostringstream text;
+  corpus::write_entry(text, corpus::entry_of(pair, {}));
+  std::string line = text.str();
+  line.pop_back();  // its end of line
+  return line;
 }
 
 Json cost_json(const Cost& cost) {
@@ -106,7 +109,7 @@ Json offer_json(const Offer& offer) {
   return {{"lane", offer.lane},
           {"errors", errors_json(offer.errors)},
           {"bound", analysis::upper_bound(offer.errors.not_right(), offer.errors.pairs)},
-          {"failure", offer.failure ? Json(numbers(*offer.failure)) : Json()}};
+          {"failure", offer.failure ? Json(line_of(*offer.failure)) : Json()}};
 }
 
 // Of what the columns of costs are.

@@ -278,7 +278,9 @@ void expect_relocations(const Json& tuned) {
     expect(errors.policy.empty() && errors.changes_nothing(), "errors without a policy", *without);
   }
   expect_relocation(tuned.at("confirmed"), zero_confirmed);
+  std::set<std::pair<std::string, std::string>> curves;
   for (const Json& curve : tuned.at("curves")) {
+    expect(curves.emplace(curve.at("site"), curve.at("tolerance")).second, "each curve once", curve.at("site"));
     for (const Json& point : curve.at("points")) expect_relocation(point, zero);
   }
   for (const Json& row : tuned.at("interactions")) {
@@ -286,12 +288,14 @@ void expect_relocations(const Json& tuned) {
   }
   const std::uint64_t most = tuned.at("confirmed").at("pairs");
   for (const auto& [side, row] : tuned.at("scale_break").items()) {
-    const analysis::PolicyErrors errors = errors_of(row.at("errors"));
+    const analysis::PolicyErrors errors = errors_of(row.at("errors")), from = errors_of(row.at("from"));
+    const auto can_be = [&](const analysis::PolicyErrors& of) {
+      return of.policy == tuned.at("chosen").get<std::string>() && of.fixed <= of.pairs - of.not_right() &&
+             of.broken <= of.not_right();
+    };
     const int log2 = row.at("log2");
-    expect((side == "up" ? log2 > 0 : log2 < 0) && std::abs(log2) <= analysis::kMostScale &&
-               errors.policy == tuned.at("chosen").get<std::string>() && errors.pairs <= most &&
-               errors_of(row.at("from")).pairs == errors.pairs && errors.fixed <= errors.pairs - errors.not_right() &&
-               errors.broken <= errors.not_right(),
+    expect((side == "up" ? log2 > 0 : log2 < 0) && std::abs(log2) <= analysis::kMostScale && errors.pairs <= most &&
+               from.pairs == errors.pairs && can_be(errors) && can_be(from),
            fmt::format("errors of the choice at another scale, of at most {} pairs", most), row);
   }
 }
@@ -428,8 +432,10 @@ void expect_possible_costs(const Json& costs, const Json& report) {
   const auto most_of = [&](const Json& stratum) {
     return std::min(fuzz::kPairsTimed, complete ? drawn_of(report, stratum).pairs : all);
   };
+  std::set<std::pair<std::string, std::string>> rows;
   for (const Json& row : costs["rows"]) {
     const Json& group = row["group"];
+    expect(rows.emplace(row["lane"].dump(), group.dump()).second, "the costs of a lane in a group once", row);
     std::uint64_t most = 0;
     if (group.is_null()) {
       for (std::size_t place = 0; place < report.at("strata").size(); ++place) most += most_of(place);

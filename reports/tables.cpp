@@ -184,9 +184,12 @@ Json group_rates(const CampaignCounts& counts) {
 
 Json extremes(const CampaignCounts& counts) {
   Json rows = Json::array();
-  for (const auto& [axis, cells] : counts.total.extremes) {
+  for (const auto& [kind, cells] : counts.total.extremes) {
+    const int step = width_of_place(kind == "scale"       ? Axis::scale
+                                    : kind == "scale/f64" ? Axis::wide_scale
+                                                          : Axis::offset);
     for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
-      Json row = {{"kind", axis}, {"step", axis == "scale" ? 4 : 1}, {"lane", l}, {"cells", Json::array()}};
+      Json row = {{"kind", kind}, {"step", step}, {"lane", l}, {"cells", Json::array()}};
       for (const auto& [exponent, found] : cells) {
         if (found.pairs != 0)
           row["cells"].push_back({{"exponent", exponent}, {"wrong", to_json(share_of(found.wrong[l], found.pairs))}});

@@ -45,6 +45,15 @@ void share_evenly(std::vector<PairSource>& sources, std::uint64_t pairs) {
 
 }  // namespace
 
+PairBlock pairs_of(const PairSource& source, std::uint64_t first, std::uint64_t count) {
+  PairBlock block;
+  for (std::uint64_t i = first; i < first + count; ++i) {
+    if (source.in_doubles()) block.doubles.push_back(source.double_pair(i));
+    block.floats.push_back(source.in_doubles() ? stored_in_float32(block.doubles.back()) : source.pair(i));
+  }
+  return block;
+}
+
 void expect_float32(std::span<const PairSource> sources, const char* verb) {
   for (const PairSource& source : sources) {
     if (source.in_doubles())

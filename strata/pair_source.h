@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/any_pair.h"
 #include "core/margin/axis.h"
-#include "core/pair.h"
 
 namespace graze::strata {
 
@@ -31,7 +31,21 @@ struct PairSource {
   std::function<DoublePair(std::uint64_t index)> double_pair = nullptr;  // in place of `pair`
 
   bool in_doubles() const { return bool(double_pair); }
+  AnyPair any_pair(std::uint64_t index) const { return in_doubles() ? AnyPair(double_pair(index)) : pair(index); }
 };
+
+// Pairs of one type. Of doubles, `floats` are what float32 stores of them, which lanes in float32 decide.
+struct PairBlock {
+  std::vector<Pair> floats;
+  std::vector<DoublePair> doubles;  // none of pairs of float32
+
+  bool in_doubles() const { return !doubles.empty(); }
+  std::size_t size() const { return floats.size(); }
+  AnyPair operator[](std::size_t i) const { return in_doubles() ? AnyPair(doubles[i]) : floats[i]; }
+};
+
+// The pairs [first, first + count) of a source.
+PairBlock pairs_of(const PairSource& source, std::uint64_t first, std::uint64_t count);
 
 // The name of a stratum of doubles as a source: "uniform/f64". Nothing if the source is not one of doubles.
 inline constexpr std::string_view kInDoubles = "/f64";

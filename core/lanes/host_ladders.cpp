@@ -54,9 +54,9 @@ class Climb {
   mutable std::size_t next_;
 };
 
-template <class Algorithm, class Real, class Number>
-void decide_ladder(std::span<const Epsilons> epsilons, const Pair* pairs, std::size_t count, std::uint64_t* intersects,
-                   std::uint64_t* declined) {
+template <class Algorithm, class Real, class Number, class PairOf>
+void decide_ladder(std::span<const Epsilons> epsilons, const PairOf* pairs, std::size_t count,
+                   std::uint64_t* intersects, std::uint64_t* declined) {
   const std::vector<Tolerances<Real>> rungs(epsilons.begin(), epsilons.end());
   const std::size_t words = (count + 63) / 64;
   std::fill_n(intersects, words * rungs.size(), 0);
@@ -87,19 +87,25 @@ void decide_ladder(std::span<const Epsilons> epsilons, const Pair* pairs, std::s
   }
 }
 
+template <class Algorithm, class Number>
+constexpr Ladders ladders_in_double() {
+  return {decide_ladder<Algorithm, double, Number, Pair>, decide_ladder<Algorithm, double, Number, DoublePair>};
+}
+
 // For each algorithm: f32 absolute and relative, f64 absolute and relative.
 template <class... Algorithm>
 constexpr auto ladders(const std::tuple<Algorithm...>*) {
-  return std::array{std::array<DecideLadder, 4>{
-      decide_ladder<Algorithm, float, float>, decide_ladder<Algorithm, float, WithMagnitude<float>>,
-      decide_ladder<Algorithm, double, double>, decide_ladder<Algorithm, double, WithMagnitude<double>>}...};
+  return std::array{std::array<Ladders, 4>{Ladders{decide_ladder<Algorithm, float, float, Pair>},
+                                           Ladders{decide_ladder<Algorithm, float, WithMagnitude<float>, Pair>},
+                                           ladders_in_double<Algorithm, double>(),
+                                           ladders_in_double<Algorithm, WithMagnitude<double>>()}...};
 }
 
 }  // namespace GRAZE_FP
 
-DecideLadder ladder_of(const Lane& lane, bool relative) {
+Ladders ladders_of(const Lane& lane, bool relative) {
   static constexpr auto kLadders = ladders(static_cast<const Algorithms*>(nullptr));
-  if (lane.variant != Variant::cpu || lane.algorithm < 0) return nullptr;
+  if (lane.variant != Variant::cpu || lane.algorithm < 0) return {};
   return kLadders[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar) * 2 + relative];
 }
 

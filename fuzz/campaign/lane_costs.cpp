@@ -26,16 +26,9 @@ constexpr std::uint64_t kMostPasses = 1'000'000;
 }  // namespace
 
 Json measure_costs(const Campaign& campaign) {
-  std::vector<std::vector<Pair>> blocks;
-  std::vector<std::vector<DoublePair>> blocks_of_doubles;  // of sources of doubles
-  for (const strata::PairSource& source : campaign.sources) {
-    std::vector<Pair>& block = blocks.emplace_back();
-    std::vector<DoublePair>& doubles = blocks_of_doubles.emplace_back();
-    for (std::uint64_t i = 0; i < std::min(source.pairs, kPairsTimed); ++i) {
-      if (source.in_doubles()) doubles.push_back(source.double_pair(i));
-      block.push_back(source.in_doubles() ? stored_in_float32(doubles.back()) : source.pair(i));
-    }
-  }
+  std::vector<strata::PairBlock> blocks;
+  for (const strata::PairSource& source : campaign.sources)
+    blocks.push_back(strata::pairs_of(source, 0, std::min(source.pairs, kPairsTimed)));
   std::vector<const Lane*> lanes;
   for (const Lane* lane : campaign.under_test->lanes) {
     if (lane->decide && !lane->foreign && runs_on_this_cpu(*lane)) lanes.push_back(lane);
@@ -44,17 +37,14 @@ Json measure_costs(const Campaign& campaign) {
   for (int pass = 0; pass < kPassesTimed; ++pass) {
     for (std::size_t l = 0; l < lanes.size(); ++l) {
       for (std::size_t s = 0; s < blocks.size(); ++s) {
-        if (blocks[s].empty()) continue;
-        const bool in_doubles = !blocks_of_doubles[s].empty() && lanes[l]->scalar == Scalar::f64;
-        taken[l][s].push_back(in_doubles ? analysis::nanoseconds_a_pair(lanes[l]->decide, blocks_of_doubles[s])
-                                         : analysis::nanoseconds_a_pair(lanes[l]->decide, blocks[s]));
+        if (blocks[s].size() > 0) taken[l][s].push_back(analysis::nanoseconds_a_pair(lanes[l]->decide, blocks[s]));
       }
     }
   }
   Json rows = Json::object();
   for (std::size_t l = 0; l < lanes.size(); ++l) {
     for (std::size_t s = 0; s < blocks.size(); ++s) {
-      if (blocks[s].empty()) continue;
+      if (blocks[s].size() == 0) continue;
       Json& row = rows[lanes[l]->id][campaign.sources[s].id] = {{"pairs", blocks[s].size()}};
       row.update(quartiles(taken[l][s]));
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include "analysis/signature.h"
@@ -52,8 +53,7 @@ std::string case_text(const Campaign& campaign, const std::string& key, const Si
     const strata::PairSource& source = campaign.sources[static_cast<std::size_t>(c.source)];
     const std::vector<std::pair<std::string, std::string>> numbers = {
         {"stratum", source.id}, {"seed", std::to_string(campaign.seed)}, {"index", std::to_string(c.index)}};
-    corpus::Entry entry = source.in_doubles() ? corpus::entry_of(source.double_pair(c.index), numbers)
-                                              : corpus::entry_of(source.pair(c.index), numbers);
+    corpus::Entry entry = corpus::entry_of(source.any_pair(c.index), numbers);
     if (campaign.spec.contains("scene"))
       entry.fields.emplace_back("scene", campaign.spec["scene"]["name"].get<std::string>());
     const oracle::Truth truth = oracle::truth(corpus::pair_of(entry));
@@ -85,7 +85,8 @@ bool is_drawn(const corpus::Entry& entry) {
   const std::string id = corpus::text_of(entry, "stratum");
   const strata::StratumInfo* row = strata::stratum_info(id);
   const auto seed = parse_whole(corpus::text_of(entry, "seed")), index = parse_whole(corpus::text_of(entry, "index"));
-  if (!row || corpus::field(entry, "scene")) return true;
+  if (corpus::field(entry, "scene")) return true;
+  if (!row) return id.empty() || id == "hunt" || strata::stratum_in_doubles(id).value_or(id) == "mesh";
   if (!seed || !index || bool(entry.doubles) != bool(strata::stratum_in_doubles(id))) return false;
   const auto same = [](const auto& drawn, const auto& pair) { return std::memcmp(&drawn, &pair, sizeof drawn) == 0; };
   return entry.doubles ? same(strata::generate_doubles(*seed, row->stratum, *index), *entry.doubles)
@@ -194,6 +195,7 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
   const std::string head = signature_line(key, count);
   if (text.compare(text.find('\n') + 1, head.size(), head) != 0) throw refuse("its head is not that of this signature");
   std::size_t kept = 0;
+  std::set<std::string> origins;
   for (std::size_t e = 0; e < entries.size(); ++e) {
     const corpus::Entry& entry = entries[e];
     const bool result = corpus::field(entry, "kind") != nullptr;
@@ -206,7 +208,8 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
     kept += !result;
     if (!own || own->subject != recorded->subject || (!result && *own != *recorded))
       throw refuse(fmt::format("line {} has another signature", entry.line));
-    if (!has_its_truth(entry, *own) || (!result && !is_drawn(entry)))
+    if (!has_its_truth(entry, *own) ||
+        (!result && !(is_drawn(entry) && origins.insert(corpus::origin_of(entry)).second)))
       throw refuse(fmt::format("line {} has a pair that does not belong to the campaign", entry.line));
   }
   if (kept != std::min<std::uint64_t>(count, kKeptCases)) throw refuse(fmt::format("it has {} cases", kept));

@@ -55,7 +55,9 @@ void expect_possible_status(const Json& status) {
   if (status.at("rate").get<double>() < 0 || (!left.is_null() && left.get<double>() < 0))
     throw std::runtime_error(
         fmt::format("its rate or its time left is below 0: {}, {}", status["rate"].dump(), left.dump()));
-  const std::vector<std::string> ways = status.at("ways");
+  const std::vector<std::string> all_ways = status.at("ways");
+  const std::set<std::string> ways(all_ways.begin(), all_ways.end());
+  if (ways.size() < all_ways.size()) throw std::runtime_error("it has one of its ways twice");
   const std::uint64_t signatures = status["signatures"];
   if (ways.size() > signatures || (signatures > 0 && disagreements == 0))
     throw std::runtime_error(fmt::format("its counts contradict each other: {} disagreements, {} signatures, {} ways",

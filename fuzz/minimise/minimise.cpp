@@ -155,6 +155,7 @@ struct Walk {
   bool ask_all = false;     // every pair's cause, before it is taken
   bool open;                // foreign code whose cause is not settled on the first pair
   int late = 0;             // verdicts of foreign code that took all of their time
+  bool prompt = false;      // it has given a block of verdicts before its time was up
 
   Walk(const Failure& of, const PairOf& pair, std::span<const Minimised> results, std::size_t limit)
       : Walk(of, pair, results, limit, found_cause(of.first_wrong(pair), pair, of.truth.verdict)) {}
@@ -220,11 +221,10 @@ struct Walk {
   // Tries all moves of this kind on the current pair; takes the simplest result that fails in the same way, if any.
   bool improve(int kind) {
     const std::vector<PairOf> simpler = simpler_moves(way.back(), kind, result.moved);
-    const std::ptrdiff_t at_first = failure.lanes.front()->foreign ? kForeignAtOnce : std::ptrdiff_t{kBlockPairs};
-    std::ptrdiff_t at_once = at_first;
     for (auto first = simpler.begin(); first != simpler.end();) {
       if (spent()) return false;
-      const auto last = first + std::min(at_once, simpler.end() - first);
+      const bool few = failure.lanes.front()->foreign && (late > 0 || !prompt);
+      const auto last = first + std::min(few ? kForeignAtOnce : std::ptrdiff_t{kBlockPairs}, simpler.end() - first);
       for (const PairOf& candidate : decided_alike<Real>(failure, {first, last}, &late)) {
         if (spent()) return false;
         if (!take(candidate)) continue;
@@ -232,7 +232,7 @@ struct Walk {
         return true;
       }
       first = last;
-      at_once = late > 0 ? at_first : kBlockPairs;
+      prompt = true;
     }
     result.single_moves += simpler.size();
     return false;

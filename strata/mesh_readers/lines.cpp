@@ -109,8 +109,9 @@ Coordinate Lines::coordinate(std::size_t i, Rounding& rounding) const {
   if (!value || !file_.may_be(*value)) fail_at(i, "a coordinate that is finite in float32");
   const double written = std::strtod(std::string(words_[i]).c_str(), nullptr);
   constexpr std::size_t kTold = 15;  // digits, by which doubles tell any two decimals apart
-  const bool is_it = words_[i].size() <= kTold || written != static_cast<double>(*value) || !std::isfinite(written) ||
-                     is_exactly(words_[i], written);
+  const bool is_zero = words_[i].find_first_not_of("+-0.") == words_[i].npos;
+  const bool is_it = is_zero || (words_[i].size() <= kTold && written != 0) || written != static_cast<double>(*value) ||
+                     !std::isfinite(written) || is_exactly(words_[i], written);
   rounding.add(written, *value, std::max(std::abs(written) * 0x1p-53, 0x1p-1074), is_it);
   rounding.beyond +=
       std::isfinite(written) && written != static_cast<double>(*value) && !is_decimal_of(*value, written);

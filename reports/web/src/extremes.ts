@@ -31,24 +31,48 @@ const bounds = ([, low, high]: Times) =>
 const kFew = 100;
 const few = ({ wrong }: Cell) => wrong.of < kFew;
 
-const kKinds: { kind: Kind; title: string; says: string; axis: string; short: string; what: string }[] = [
-  {
-    kind: 'scale',
-    title: 'Size of the coordinates',
-    axis: 'largest coordinate',
-    short: 'largest coordinate',
-    what: 'largest coordinate',
-    says: 'By the largest coordinate’s power of two, from the smallest subnormal float32 to the largest number: products underflow to the left and overflow to the right.',
-  },
-  {
-    kind: 'offset',
-    title: 'Distance from the origin',
-    axis: 'largest coordinate, in sizes of the pair',
-    short: 'largest coordinate / size',
-    what: 'offset',
-    says: 'By how many times its own size a pair lies away from the origin: every doubling costs a bit of what float32 has left for its shape.',
-  },
-];
+const kKinds: { kind: Kind; column: string; title: string; says: string; axis: string; short: string; what: string }[] =
+  [
+    {
+      kind: 'scale',
+      column: 'Scaled',
+      title: 'Size of the coordinates',
+      axis: 'largest coordinate',
+      short: 'largest coordinate',
+      what: 'largest coordinate',
+      says: 'By the largest coordinate’s power of two, from the smallest subnormal float32 to the largest number: products underflow to the left and overflow to the right.',
+    },
+    {
+      kind: 'offset',
+      column: 'Away from the origin',
+      title: 'Distance from the origin',
+      axis: 'largest coordinate, in sizes of the pair',
+      short: 'largest coordinate / size',
+      what: 'offset',
+      says: 'By how many times its own size a pair lies away from the origin: every doubling costs a bit of what float32 has left for its shape.',
+    },
+    {
+      kind: 'scale/f64',
+      column: 'Doubles scaled',
+      title: 'Size of the coordinates of doubles',
+      axis: 'largest coordinate',
+      short: 'largest coordinate',
+      what: 'largest coordinate',
+      says: 'Of pairs of doubles, by the largest coordinate’s power of two: lanes in float decide what float32 stores, which ends at 2^128.',
+    },
+    {
+      kind: 'offset/f64',
+      column: 'Doubles away from the origin',
+      title: 'Distance of doubles from the origin',
+      axis: 'largest coordinate, in sizes of the pair',
+      short: 'largest coordinate / size',
+      what: 'offset',
+      says: 'Of pairs of doubles, by how many times its own size a pair lies away from the origin.',
+    },
+  ];
+
+const drawn_kinds = (report: Report) =>
+  kKinds.filter(({ kind }) => report.extremes.some((row) => row.kind === kind && row.cells.length));
 
 function cells_of(report: Report, kind: Kind, lanes: number[]): Cell[] {
   const what = kKinds.find((k) => k.kind === kind)!.what;
@@ -81,8 +105,7 @@ function words_table(report: Report, pareto: Pareto | null, lanes: number[]) {
   const table = sortable_table<number>(
     [
       { label: 'Lane', cell: (lane) => breakable(report.lanes[lane].id), order: (lane) => lane },
-      column('Scaled', (lane) => said(lane, 'scale')),
-      column('Away from the origin', (lane) => said(lane, 'offset')),
+      ...drawn_kinds(report).map((of) => column(of.column, (lane) => said(lane, of.kind))),
       ...(pareto
         ? [
             column('Flattened by 2^k', (lane) => measured(lane, 'flatness')),
@@ -97,11 +120,11 @@ function words_table(report: Report, pareto: Pareto | null, lanes: number[]) {
 }
 
 export function extremes_section(report: Report, pareto: Pareto | null) {
-  const kinds = kKinds.filter(({ kind }) => report.extremes.some((row) => row.kind === kind && row.cells.length));
+  const kinds = drawn_kinds(report);
   if (!kinds.length) return null;
   const figures = kinds.map((kind) => ({
     ...kind,
-    element: h('figure', { class: 'chart heat', id: `extremes-${kind.kind}` }),
+    element: h('figure', { class: 'chart heat', id: `extremes-${kind.kind.replace('/', '-')}` }),
   }));
 
   function draw({ kind, axis, short, title, element }: (typeof figures)[number], width: number) {

@@ -187,13 +187,14 @@ export interface Report {
     disjoint: Threshold;
     intersects: Threshold;
   }[];
-  // kind scale: by the exponent of the largest coordinate; offset: by log2(largest coordinate / extent of the pair). A
+  // kind scale: by the exponent of the largest coordinate; offset: by log2(largest coordinate / extent of the pair);
+  // …/f64: of pairs of doubles. A
   // cell stands for exponents [exponent, exponent + step); cells without pairs are absent.
   // origin: the exponent nearest to 0 that has enough pairs to compare with; null if none has. says: how far the lane is
   // as right as there. times, if the lane errs in the cell: the ratio of the cell's share and the origin's, and
   // its lower and upper bound from both 95 % intervals; null where that would divide by 0.
   extremes: {
-    kind: 'scale' | 'offset';
+    kind: 'scale' | 'offset' | 'scale/f64' | 'offset/f64';
     step: number;
     lane: number;
     cells: { exponent: number; wrong: Share; times?: Times }[];

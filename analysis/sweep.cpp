@@ -48,20 +48,23 @@ struct Rows {
     return judge(yes(row, word), none(row, word), truth.yes(0, word), count, is_foreign[row]);
   }
 
-  // Looks at the pairs on which a user's code is not right.
-  template <class Real>
-  void look_at_foreign(std::size_t row, const LaneDecider& decider, const Rows& truth,
-                       const std::vector<BasicPair<Real>>& pairs) {
+  // Looks at the pairs on which a user's code is not right. in_doubles: it decided the doubles.
+  void look_at_foreign(std::size_t row, const LaneDecider& decider, const Rows& truth, const strata::PairBlock& pairs,
+                       bool in_doubles) {
     is_foreign[row] = true;
     for (std::size_t w = 0; w < words; ++w) {
       for (std::uint64_t bits = judged(row, w, truth).not_right(); bits != 0; bits &= bits - 1) {
         const std::uint64_t bit = bits & ~(bits - 1);
-        const auto is_set = [&](std::uint64_t word) { return (word & bit) != 0; };
-        const BasicPair<Real>& pair = pairs[w * 64 + static_cast<std::size_t>(std::countr_zero(bits))];
-        const Verdict verdict = decider.block.verdict_of(is_set(yes(row, w)), is_set(none(row, w)), pair);
+        const bool yes_bit = yes(row, w) & bit, none_bit = none(row, w) & bit;
+        const std::size_t i = w * 64 + static_cast<std::size_t>(std::countr_zero(bits));
+        const Verdict verdict = in_doubles ? decider.block.verdict_of(yes_bit, none_bit, pairs.doubles[i])
+                                           : decider.block.verdict_of(yes_bit, none_bit, pairs.floats[i]);
+        const auto is_by_convention = [&](const auto& pair) {
+          return by_convention(*decider.foreign, verdict, pair, relation_of(pair));
+        };
         if (is_failure(verdict)) {
           ++foreign[row].of(verdict);
-        } else if (decider.foreign->outside != 0 && by_convention(*decider.foreign, verdict, pair, relation_of(pair))) {
+        } else if (decider.foreign->outside != 0 && visit(pairs[i], is_by_convention)) {
           excused[row * words + w] |= bit;
           ++foreign[row].by_convention;
         }
@@ -148,19 +151,17 @@ struct Together {
   Ladders ladders;  // of several
   std::vector<Epsilons> rungs;
 
-  // Decides pairs of the type that the lane takes.
-  template <class Real>
-  void decide(const std::vector<BasicPair<Real>>& pairs, const Rows& truth, Rows& rows) const {
+  // Of doubles, a lane that takes float32 alone decides what float32 stores.
+  void decide(const strata::PairBlock& pairs, const Rows& truth, Rows& rows) const {
+    const bool in_doubles = pairs.in_doubles() && (ladders ? bool(ladders.doubles) : one.block.decides_doubles());
     std::uint64_t* const intersects = &rows.intersects[first * rows.words];
     std::uint64_t* const declined = &rows.declined[first * rows.words];
-    if (!ladders) {
-      one.block(pairs.data(), pairs.size(), intersects, declined);
-      if (one.foreign) rows.look_at_foreign(first, one, truth, pairs);
-    } else if constexpr (std::is_same_v<Real, float>) {
-      ladders.floats(rungs, pairs.data(), pairs.size(), intersects, declined);
-    } else {
-      ladders.doubles(rungs, pairs.data(), pairs.size(), intersects, declined);
-    }
+    const auto run = [&](const auto& of, const auto& ladder) {
+      if (ladders) return ladder(rungs, of.data(), of.size(), intersects, declined);
+      one.block(of.data(), of.size(), intersects, declined);
+    };
+    in_doubles ? run(pairs.doubles, ladders.doubles) : run(pairs.floats, ladders.floats);
+    if (!ladders && one.foreign) rows.look_at_foreign(first, one, truth, pairs, in_doubles);
   }
 };
 
@@ -186,13 +187,7 @@ std::vector<Result> run(const std::vector<std::vector<Together>>& lanes, std::si
     }
     std::vector<Rows> rows(lanes.size(), Rows(policies, pairs.size()));
     for (std::size_t l = 0; l < lanes.size(); ++l) {
-      for (const Together& part : lanes[l]) {
-        if (pairs.in_doubles() && (part.ladders ? bool(part.ladders.doubles) : part.one.block.decides_doubles())) {
-          part.decide(pairs.doubles, truth, rows[l]);
-        } else {
-          part.decide(pairs.floats, truth, rows[l]);
-        }
-      }
+      for (const Together& part : lanes[l]) part.decide(pairs, truth, rows[l]);
     }
     std::vector<Result>& result = results.local();
     for (std::size_t p = 0; p < result.size(); ++p) add(block, truth, rows, p, result[p]);

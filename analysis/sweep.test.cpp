@@ -22,6 +22,16 @@ std::vector<strata::PairSource> drawn(std::uint64_t seed, std::uint64_t pairs, c
 
 const Lane& moller() { return *find_lane("moller_1997/f32/cpu"); }
 
+// Adds a pair's verdict under a policy, and without one.
+void count(PolicyErrors& to, Verdict truth, Verdict with, Verdict without, const PairPlace& place) {
+  ++to.pairs;
+  to.declined += with == Verdict::declined;
+  to.false_negative += with == Verdict::disjoint && truth == Verdict::intersects;
+  to.false_positive += with == Verdict::intersects && truth == Verdict::disjoint;
+  if (with == truth && without != truth && to.fixed++ == 0) to.first_fixed = place;
+  if (with != truth && without == truth && to.broken++ == 0) to.first_broken = place;
+}
+
 TEST(Sweep, CountsWhatEachPolicyGetsWrong) {
   const auto sources = drawn(3, 3001, {"near_vertex_face", "shared_edge", "extreme_scale"});
   const std::vector<std::string> policies = {"", "abs:1e-6", "rel:100", "bound"};
@@ -34,13 +44,7 @@ TEST(Sweep, CountsWhatEachPolicyGetsWrong) {
         const Pair pair = sources[s].pair(i);
         const Verdict truth = exact::intersects(&pair.a[0].x, &pair.b[0].x) ? Verdict::intersects : Verdict::disjoint;
         const Verdict with = decide_one(under, pair), without = decide_one(zero, pair);
-        ++expected.pairs;
-        expected.declined += with == Verdict::declined;
-        expected.false_negative += with == Verdict::disjoint && truth == Verdict::intersects;
-        expected.false_positive += with == Verdict::intersects && truth == Verdict::disjoint;
-        const PairPlace place{static_cast<int>(s), i};
-        if (with == truth && without != truth && expected.fixed++ == 0) expected.first_fixed = place;
-        if (with != truth && without == truth && expected.broken++ == 0) expected.first_broken = place;
+        count(expected, truth, with, without, {static_cast<int>(s), i});
       }
     }
     EXPECT_EQ(found[p].policy, policies[p]);
@@ -81,16 +85,10 @@ TEST(Sweep, CountsPairsOfDoublesByTheirOwnTruth) {
           const DoublePair pair = sources[s].double_pair(i);
           const Verdict truth = oracle::cgal_verdict(pair);
           const Verdict with = decide_lane(lane_under(lane, policies[p]), pair), without = decide_lane(lane, pair);
-          expected.declined += with == Verdict::declined;
-          expected.false_negative += with == Verdict::disjoint && truth == Verdict::intersects;
-          expected.false_positive += with == Verdict::intersects && truth == Verdict::disjoint;
-          const PairPlace place{static_cast<int>(s), i};
-          if (with == truth && without != truth && expected.fixed++ == 0) expected.first_fixed = place;
-          if (with != truth && without == truth && expected.broken++ == 0) expected.first_broken = place;
+          count(expected, truth, with, without, {static_cast<int>(s), i});
         }
       }
       expected.policy = policies[p];
-      expected.pairs = 400;
       EXPECT_EQ(found[p], expected) << id << ' ' << policies[p];
     }
     EXPECT_GT(found[0].wrong(), 50u) << id;

@@ -41,9 +41,7 @@ namespace {
 
 // A mesh's own pairs do not depend on the seed, so they serve only to choose, or only to verify the choice.
 std::vector<strata::PairSource> without_meshes(std::vector<strata::PairSource> sources, const char* use) {
-  std::erase_if(sources, [](const strata::PairSource& source) {
-    return strata::stratum_in_doubles(source.id).value_or(source.id) == "mesh";
-  });
+  std::erase_if(sources, [](const strata::PairSource& source) { return fuzz::is_of_mesh(source.id); });
   if (sources.empty())
     throw UsageError(fmt::format("the pairs of a mesh do not depend on the seed, so none are left to {}", use));
   return sources;

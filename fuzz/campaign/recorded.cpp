@@ -74,10 +74,9 @@ SelectedLanes recorded_lanes(const Json& spec) {
   return under_test;
 }
 
-namespace {
+bool is_of_mesh(std::string_view source) { return strata::stratum_in_doubles(source).value_or(source) == "mesh"; }
 
-// Whether a source of this name draws from a mesh as it is.
-bool is_of_mesh(const std::string& source) { return strata::stratum_in_doubles(source).value_or(source) == "mesh"; }
+namespace {
 
 // The pairs of the mesh: from the summary, if it has them, else from the mesh itself.
 std::uint64_t mesh_pairs(const Json& spec, const Json& summary) {

@@ -16,6 +16,8 @@ namespace graze::fuzz {
 // Throws: std::runtime_error if a mesh has changed; nlohmann's exceptions for another shape.
 std::vector<strata::PairSource> recorded_sources(const Json& spec);
 
+bool is_of_mesh(std::string_view source);  // whether a source of this name draws from a mesh as it is
+
 bool has_doubles(const Json& spec);  // some of the campaign's pairs are pairs of doubles
 
 // Throws: UsageError, naming the verb, if the campaign has pairs of doubles.

@@ -86,7 +86,7 @@ bool is_drawn(const corpus::Entry& entry) {
   const strata::StratumInfo* row = strata::stratum_info(id);
   const auto seed = parse_whole(corpus::text_of(entry, "seed")), index = parse_whole(corpus::text_of(entry, "index"));
   if (corpus::field(entry, "scene")) return true;
-  if (!row) return id.empty() || id == "hunt" || strata::stratum_in_doubles(id).value_or(id) == "mesh";
+  if (!row) return id.empty() || id == "hunt" || is_of_mesh(id);
   if (!seed || !index || bool(entry.doubles) != bool(strata::stratum_in_doubles(id))) return false;
   const auto same = [](const auto& drawn, const auto& pair) { return std::memcmp(&drawn, &pair, sizeof drawn) == 0; };
   return entry.doubles ? same(strata::generate_doubles(*seed, row->stratum, *index), *entry.doubles)

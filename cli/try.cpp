@@ -142,7 +142,8 @@ Json minimised_kinds(const fuzz::SelectedLanes& under_test, const fs::path& dire
         if (done.contains(place)) {
           left -= left > 0;
         } else {
-          of_kind.emplace_back(simplicity(fuzz::read_cases(directory, rows[place]).front().pair), place);
+          of_kind.emplace_back(simplicity(fuzz::read_cases(directory, summary["spec"], rows[place]).front().pair),
+                               place);
         }
       }
       std::sort(of_kind.begin(), of_kind.end());

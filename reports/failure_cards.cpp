@@ -166,9 +166,9 @@ Json maps_of(const std::filesystem::path& case_file, const AnyPair& pair, const 
 }
 
 // The names of the pairs that the campaign kept for a signature, such as "near_edge_edge:1:42".
-Json kept_pairs(const std::filesystem::path& directory, const Json& found) {
+Json kept_pairs(const std::filesystem::path& directory, const Json& spec, const Json& found) {
   Json names = Json::array();
-  for (const corpus::Entry& entry : fuzz::read_cases(directory, found, PairTypes::both)) {
+  for (const corpus::Entry& entry : fuzz::read_cases(directory, spec, found)) {
     if (!corpus::field(entry, "kind")) names.push_back(corpus::origin_of(entry));
   }
   return names;
@@ -278,7 +278,7 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
   const std::size_t count = summary.at("signatures").size();
   for (std::size_t place = 0; place < std::min(count, kMostSignatures); ++place) {
     rows.push_back(signature_row(counts, summary.at("signatures")[place]));
-    rows.back()["pairs"] = kept_pairs(directory, summary.at("signatures")[place]);
+    rows.back()["pairs"] = kept_pairs(directory, summary.at("spec"), summary.at("signatures")[place]);
     rows.back()["cards"] = cards_of[place];
   }
   if (rows.size() < count) {

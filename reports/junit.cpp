@@ -67,7 +67,7 @@ std::map<std::pair<std::string, std::string>, Kept> simplest_of(const fs::path& 
   for (const Json& row : summary["signatures"]) {
     const auto signature = analysis::parse_signature(row["key"].get<std::string>());
     if (!signature) continue;
-    for (const corpus::Entry& entry : fuzz::read_cases(directory, row, PairTypes::both)) {
+    for (const corpus::Entry& entry : fuzz::read_cases(directory, summary["spec"], row)) {
       const auto stratum = std::find_if(entry.fields.begin(), entry.fields.end(),
                                         [](const auto& field) { return field.first == "stratum"; });
       if (stratum == entry.fields.end()) continue;  // a result of the minimiser, whose stratum is another pair's

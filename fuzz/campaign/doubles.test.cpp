@@ -143,7 +143,7 @@ TEST_F(CampaignOfDoubles, RecordsAreReadBackAndChecked) {
   EXPECT_EQ(checked_summary(directory), summary);
   ASSERT_GT(summary["signatures"].size(), 10u);
   for (const Json& row : summary["signatures"]) {
-    for (const corpus::Entry& entry : read_cases(directory, row, PairTypes::both)) ASSERT_TRUE(entry.doubles);
+    for (const corpus::Entry& entry : read_cases(directory, summary["spec"], row)) ASSERT_TRUE(entry.doubles);
   }
   const std::vector<strata::PairSource> again = recorded_sources(summary["spec"]);
   ASSERT_EQ(again.size(), 2u);
@@ -159,7 +159,7 @@ TEST_F(CampaignOfDoubles, RecordsAreReadBackAndChecked) {
   const std::size_t at = text.find("p", text.find("0x1.")) - 1;
   text[at] = text[at] == '4' ? '5' : '4';
   write_whole(file, text);
-  EXPECT_THROW(read_cases(directory, summary["signatures"][0], PairTypes::both), corpus::FormatError);
+  EXPECT_THROW(read_cases(directory, summary["spec"], summary["signatures"][0]), corpus::FormatError);
   // An exact lane that is wrong otherwise than by storing, and errors of storing that are more than the errors.
   std::filesystem::remove(directory / kDatabase);
   EXPECT_EQ(checked_summary(directory), summary);  // also without its database

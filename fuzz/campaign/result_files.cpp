@@ -86,7 +86,7 @@ bool is_drawn(const corpus::Entry& entry) {
   const strata::StratumInfo* row = strata::stratum_info(id);
   const auto seed = parse_whole(corpus::text_of(entry, "seed")), index = parse_whole(corpus::text_of(entry, "index"));
   if (corpus::field(entry, "scene")) return true;
-  if (!row) return id.empty() || id == "hunt" || is_of_mesh(id);
+  if (!row) return true;
   if (!seed || !index || bool(entry.doubles) != bool(strata::stratum_in_doubles(id))) return false;
   const auto same = [](const auto& drawn, const auto& pair) { return std::memcmp(&drawn, &pair, sizeof drawn) == 0; };
   return entry.doubles ? same(strata::generate_doubles(*seed, row->stratum, *index), *entry.doubles)
@@ -168,7 +168,7 @@ corpus::FormatError wrong_cases(const std::filesystem::path& directory, const Js
                                                 row.at("key").get<std::string>(), again)));
 }
 
-std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, const Json& row, PairTypes taken) {
+std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, const Json& spec, const Json& row) {
   const std::string key = row.at("key");
   const std::uint64_t count = row.at("count");
   const std::optional<analysis::Signature> recorded = analysis::parse_signature(key);
@@ -188,14 +188,15 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
   } catch (const corpus::FormatError& error) {
     throw refuse(std::string("it is not a file of pairs: ") + error.what());
   }
-  const bool some_doubles =
-      std::any_of(entries.begin(), entries.end(), [](const corpus::Entry& entry) { return bool(entry.doubles); });
-  if (taken == PairTypes::f32 && some_doubles)
-    throw UsageError(cannot("use", file, "it has pairs of doubles, and this takes pairs of float32"));
   const std::string head = signature_line(key, count);
   if (text.compare(text.find('\n') + 1, head.size(), head) != 0) throw refuse("its head is not that of this signature");
   std::size_t kept = 0;
+  const std::set<std::string> strata = spec.at("strata");
   std::set<std::string> origins;
+  const auto belongs = [&](const corpus::Entry& entry) {
+    return strata.contains(corpus::text_of(entry, "stratum")) && is_drawn(entry) &&
+           origins.insert(corpus::origin_of(entry)).second;
+  };
   for (std::size_t e = 0; e < entries.size(); ++e) {
     const corpus::Entry& entry = entries[e];
     const bool result = corpus::field(entry, "kind") != nullptr;
@@ -208,8 +209,7 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
     kept += !result;
     if (!own || own->subject != recorded->subject || (!result && *own != *recorded))
       throw refuse(fmt::format("line {} has another signature", entry.line));
-    if (!has_its_truth(entry, *own) ||
-        (!result && !(is_drawn(entry) && origins.insert(corpus::origin_of(entry)).second)))
+    if (!has_its_truth(entry, *own) || (!result && !belongs(entry)))
       throw refuse(fmt::format("line {} has a pair that does not belong to the campaign", entry.line));
   }
   if (kept != std::min<std::uint64_t>(count, kKeptCases)) throw refuse(fmt::format("it has {} cases", kept));

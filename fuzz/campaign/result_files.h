@@ -36,11 +36,10 @@ Json shard_summary(const Shard& shard, const Store& store, bool complete, std::u
 std::filesystem::path case_file(const std::filesystem::path& directory, const Json& row);
 
 // Reads a signature's cases, named by its row in the summary, with the minimiser's results before them. Checks that the
-// file's name, its head and its cases belong to the signature, that no case is missing, and that each pair has the
-// truth recorded beside it.
+// file's name, its head and its cases belong to the signature, that no case is missing, that each has another origin in
+// the campaign's strata, and that each pair has the truth recorded beside it.   spec: the campaign's.
 // Throws: FormatError, in one line, with the command that writes the file again.
-std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, const Json& row,
-                                      PairTypes taken = PairTypes::f32);
+std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, const Json& spec, const Json& row);
 
 // Whether the pair is the one that its stratum, seed and index name. Also true if that is not known: for scenes, meshes
 // and hunts, and for a case without them.

@@ -56,7 +56,7 @@ bool is_minimised(const corpus::Entry& entry) { return has_kind(entry, "minimise
 std::vector<corpus::Entry> checked_cases(const SelectedLanes& under_test, const Json& spec,
                                          const std::filesystem::path& directory, const Json& row) {
   const auto& ran = spec.at("lanes");
-  std::vector<corpus::Entry> entries = read_cases(directory, row, PairTypes::both);
+  std::vector<corpus::Entry> entries = read_cases(directory, spec, row);
   for (const corpus::Entry& entry : entries) {
     const auto signature = analysis::parse_signature(corpus::text_of(entry, "signature")).value();
     const AnyPair pair = corpus::pair_of(entry);

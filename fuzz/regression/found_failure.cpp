@@ -82,7 +82,7 @@ std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directo
     for (const Json& row : summary.at("signatures")) {  // most frequent first
       const std::string signature = row.at("key");
       if (!matches_any(globs, signature) || taken[analysis::subject_of(signature)]++ >= most) continue;
-      failures.push_back({signature, read_cases(directory, row, PairTypes::both).front(), row.at("count"), seen,
+      failures.push_back({signature, read_cases(directory, summary["spec"], row).front(), row.at("count"), seen,
                           case_file(directory, row).string()});
     }
   } catch (const Json::exception&) {

@@ -12,6 +12,7 @@
 
 #include "analysis/changed_source.h"
 #include "analysis/image_experiments.h"
+#include "analysis/lane_trace.h"
 #include "analysis/scales.h"
 #include "backends/backends.h"
 #include "core/lanes/verdicts.h"
@@ -288,7 +289,7 @@ class Trial {
   // For each pair, whether the block is right. Pairs that were not tried, because others took all of their time, are
   // false; until_wrong: so are those after a wrong one.
   std::vector<bool> asked(const DecideBlock& block, const std::vector<Pair>& pairs, bool until_wrong = false) const {
-    constexpr std::size_t kAtOnce = 8;
+    constexpr std::size_t kAtOnce = foreign_at_once(false);
     std::vector<bool> right(pairs.size());
     for (std::size_t begin = 0; begin < pairs.size() && late_ < kMostLate; begin += kAtOnce) {
       const std::vector<Verdict> verdicts =

@@ -35,6 +35,10 @@ inline bool is_never_wrong(const Lane& lane, const AnyPair& pair) {
 std::vector<Verdict> verdicts_seen_by(const Lane& lane, const DecideBlock& block, std::span<const Pair> pairs);
 std::vector<Verdict> verdicts_seen_by(const Lane& lane, const DecideBlock& block, std::span<const DoublePair> pairs);
 
+// How many pairs to ask foreign code about at once. Each may take all of its time, so they are few until it has
+// answered some before its time was up.
+constexpr std::size_t foreign_at_once(bool prompt) { return prompt ? 64 : 8; }
+
 // Replays the lane on the pair. A lane whose operations the compiler rewrites has no evidence.
 // Requires here and below: the pair is seen_by(lane, pair).
 Replay replay(const Lane& lane, const AnyPair& pair);

@@ -179,17 +179,8 @@ std::vector<int> exponents(Extreme extreme) {
 std::vector<strata::PairSource> made_extreme(std::span<const strata::PairSource> sources, Extreme extreme, int k) {
   std::vector<strata::PairSource> result(sources.begin(), sources.end());
   if (k == 0 && extreme != Extreme::offset) return result;
-  for (strata::PairSource& source : result) {
-    source.stratum = -1;
-    const auto change = [extreme, k](const auto& draw) {
-      return [draw, extreme, k](std::uint64_t index) { return moved(draw(index), extreme, k); };
-    };
-    if (source.in_doubles()) {
-      source.double_pair = change(source.double_pair);
-    } else {
-      source.pair = change(source.pair);
-    }
-  }
+  for (strata::PairSource& source : result)
+    source = changed(std::move(source), [extreme, k](const auto& pair) { return moved(pair, extreme, k); });
   return result;
 }
 

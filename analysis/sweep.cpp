@@ -271,6 +271,12 @@ std::vector<SourceBlock> blocks_of(Sources sources, std::uint64_t most) {
   return blocks;
 }
 
+std::uint64_t pairs_in(Sources sources) {
+  std::uint64_t pairs = 0;
+  for (const strata::PairSource& source : sources) pairs += source.pairs;
+  return pairs;
+}
+
 PolicyErrors& PolicyErrors::operator+=(const PolicyErrors& other) {
   Counts::operator+=(other);
   pairs += other.pairs;

@@ -61,6 +61,23 @@ struct SourceBlock {
 // All pairs of the sources, in blocks of at most `most` pairs.
 std::vector<SourceBlock> blocks_of(Sources sources, std::uint64_t most);
 
+std::uint64_t pairs_in(Sources sources);  // in all
+
+// The source with change(pair) in place of each of its pairs, of either type. Only the host can draw it.
+template <class Change>
+strata::PairSource changed(strata::PairSource source, const Change& change) {
+  const auto drawn = [&](const auto& draw) {
+    return [draw, change](std::uint64_t index) { return change(draw(index)); };
+  };
+  source.stratum = -1;
+  if (source.in_doubles()) {
+    source.double_pair = drawn(source.double_pair);
+  } else {
+    source.pair = drawn(source.pair);
+  }
+  return source;
+}
+
 // The errors under each policy, on all pairs of the sources.
 using Sweep = std::function<std::vector<PolicyErrors>(Policies policies, Sources sources)>;
 

@@ -132,21 +132,9 @@ class Tuner {
 }  // namespace
 
 std::vector<strata::PairSource> scaled(Sources sources, int k) {
-  std::vector<strata::PairSource> result(sources.begin(), sources.end());
-  for (strata::PairSource& source : result) {
-    source.stratum = -1;
-    const auto change = [k](const auto& draw) {
-      return [draw, k](std::uint64_t index) {
-        const auto pair = draw(index);
-        return exactly_scaled(pair, k).value_or(pair);
-      };
-    };
-    if (source.in_doubles()) {
-      source.double_pair = change(source.double_pair);
-    } else {
-      source.pair = change(source.pair);
-    }
-  }
+  std::vector<strata::PairSource> result;
+  for (const strata::PairSource& source : sources)
+    result.push_back(changed(source, [k](const auto& pair) { return exactly_scaled(pair, k).value_or(pair); }));
   return result;
 }
 

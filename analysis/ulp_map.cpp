@@ -74,13 +74,14 @@ class Panels {
     return Cell::unstable;
   }
 
-  // Asks the panel's lane about the pairs; foreign code gets few at a time, because each may take all of its time.
+  // Asks the panel's lane about the pairs.
   // Returns: false if the panel is given up.
   bool ask(std::size_t p, std::span<const PairOf> pairs) {
     said_.clear();
     while (said_.size() < pairs.size()) {
       if (given_up(p)) return false;
-      const std::size_t at_once = !lanes_[p]->foreign ? pairs.size() : said_.empty() || failed_[p] > 0 ? 8 : 64;
+      const bool prompt = !said_.empty() && failed_[p] == 0;
+      const std::size_t at_once = lanes_[p]->foreign ? foreign_at_once(prompt) : pairs.size();
       const auto some = pairs.subspan(said_.size(), std::min(at_once, pairs.size() - said_.size()));
       for (const Verdict said : verdicts_seen_by(*lanes_[p], blocks_[p], some)) {
         said_.push_back(said);

@@ -235,9 +235,7 @@ int discrepancy(DiscrepancyOptions options) {
   if (spec.lanes.size() <= kMostTables) fmt::print("{}", reports::discrepancy_tables(found, screen));
   if (spec.lanes.size() > 1) fmt::print("{}", reports::comparisons_table(found, screen));
   fmt::print("{}", left_out);
-  std::uint64_t pairs = 0;
-  for (const strata::PairSource& source : spec.sources) pairs += source.pairs;
-  fuzz::Json json = {{"pairs", pairs}, {"seed", seed}};
+  fuzz::Json json = {{"pairs", analysis::pairs_in(spec.sources)}, {"seed", seed}};
   const fuzz::Json build = fuzz::build_info({});
   for (const char* key : {"version", "commit", "compiler", "cuda"}) json["build"][key] = build.at(key);
   if (!scene.empty()) json["scene"] = scene;

@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "analysis/discrepancy.h"
+#include "analysis/sweep.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "core/cannot.h"
@@ -58,9 +59,7 @@ CampaignPairs drawn_for(const DumpOptions& options) {
                        (options.name.find('/') != std::string::npos && !strata::stratum_in_doubles(stratum));
   if (!is_path) return of_stratum(options);
   CampaignPairs pairs = pairs_of_campaign(options.name, options.pairs, "dump");
-  std::uint64_t all = 0;
-  for (const strata::PairSource& source : pairs.sources) all += source.pairs;
-  if (all < options.pairs)
+  if (const std::uint64_t all = analysis::pairs_in(pairs.sources); all < options.pairs)
     fmt::print(stderr, "graze: {} has {} of {} pairs\n", printable(options.name), all, options.pairs);
   return pairs;
 }

@@ -263,7 +263,8 @@ std::string epsilon_words(const CampaignCounts& counts, std::size_t lane, const 
   if (!in_source.empty()) text += fmt::format(" ({} your {})", pairs > 0 ? "perhaps" : "such as", in_source);
   if (settled > 0) return text + "; make it relative to the triangles' size.";  // other sizes fail at other distances
   std::string trusted;
-  for (const auto& [id, which] : {std::pair("general", "the general strata"), {"general/f64", "those of doubles"}}) {
+  for (const auto& [id, which] :
+       {std::pair("general", "the general strata"), {"general/f64", "the general strata of doubles"}}) {
     if (const GroupCounts* group = counts.group(id)) trusted += trusted_from(group->counts, lane, which);
   }
   return text + '.' + (trusted.empty() ? trusted_from(counts.total, lane, "all pairs") : trusted);

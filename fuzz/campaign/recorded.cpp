@@ -54,12 +54,6 @@ bool has_doubles(const Json& spec) {
   });
 }
 
-void expect_float32(const Json& spec, const char* verb) {
-  if (has_doubles(spec))
-    throw UsageError(
-        fmt::format("`graze {}` takes pairs of float32, and some strata of this campaign have pairs of doubles", verb));
-}
-
 SelectedLanes recorded_lanes(const Json& spec) {
   subjects::open_recorded(spec);
   SelectedLanes under_test;

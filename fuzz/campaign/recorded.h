@@ -20,9 +20,6 @@ bool is_of_mesh(std::string_view source);  // whether a source of this name draw
 
 bool has_doubles(const Json& spec);  // some of the campaign's pairs are pairs of doubles
 
-// Throws: UsageError, naming the verb, if the campaign has pairs of doubles.
-void expect_float32(const Json& spec, const char* verb);
-
 // Returns the lanes in the spec's order, without executors. Opens the campaign's subjects.
 // Throws: std::runtime_error for a lane that this build does not have.
 SelectedLanes recorded_lanes(const Json& spec);

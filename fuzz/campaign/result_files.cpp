@@ -85,8 +85,7 @@ bool is_drawn(const corpus::Entry& entry) {
   const std::string id = corpus::text_of(entry, "stratum");
   const strata::StratumInfo* row = strata::stratum_info(id);
   const auto seed = parse_whole(corpus::text_of(entry, "seed")), index = parse_whole(corpus::text_of(entry, "index"));
-  if (corpus::field(entry, "scene")) return true;
-  if (!row) return true;
+  if (!row || corpus::field(entry, "scene")) return true;
   if (!seed || !index || bool(entry.doubles) != bool(strata::stratum_in_doubles(id))) return false;
   const auto same = [](const auto& drawn, const auto& pair) { return std::memcmp(&drawn, &pair, sizeof drawn) == 0; };
   return entry.doubles ? same(strata::generate_doubles(*seed, row->stratum, *index), *entry.doubles)

@@ -8,6 +8,7 @@
 
 #include "analysis/convention.h"
 #include "analysis/experiments.h"
+#include "analysis/lane_trace.h"
 #include "backends/backends.h"
 #include "core/lanes/verdicts.h"
 #include "core/margin/margin.h"
@@ -20,8 +21,7 @@ namespace {
 
 constexpr std::size_t kBlockPairs = 64;  // one word of verdicts
 
-constexpr std::ptrdiff_t kForeignAtOnce = 8;  // at first, and after a timeout: each may take all of its time
-constexpr int kMostLate = 3;                  // after so many a case ends
+constexpr int kMostLate = 3;  // timeouts after which a case ends
 
 // Returns those of at most 64 pairs that get the failure's verdict from every lane. Wrong lanes decide first, because
 // they leave the fewest pairs to the others. late: increased by the number of timeouts of foreign code.
@@ -223,8 +223,9 @@ struct Walk {
     const std::vector<PairOf> simpler = simpler_moves(way.back(), kind, result.moved);
     for (auto first = simpler.begin(); first != simpler.end();) {
       if (spent()) return false;
-      const bool few = failure.lanes.front()->foreign && (late > 0 || !prompt);
-      const auto last = first + std::min(few ? kForeignAtOnce : std::ptrdiff_t{kBlockPairs}, simpler.end() - first);
+      const std::size_t at_once =
+          failure.lanes.front()->foreign ? analysis::foreign_at_once(prompt && late == 0) : kBlockPairs;
+      const auto last = first + std::min(static_cast<std::ptrdiff_t>(at_once), simpler.end() - first);
       for (const PairOf& candidate : decided_alike<Real>(failure, {first, last}, &late)) {
         if (spent()) return false;
         if (!take(candidate)) continue;

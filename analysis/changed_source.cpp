@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "subjects/subjects.h"
@@ -23,6 +24,14 @@ DecidingNumber told(const Lane& lane, const std::vector<subjects::Epsilon>& numb
   return result;
 }
 
+// A number far below all of these that does not underflow as soon as it is multiplied.
+double far_below(const std::vector<subjects::Epsilon>& numbers) {
+  constexpr double kAboutFltEpsilon = 1e-7;  // whose value the source does not have
+  double least = 1;
+  for (const subjects::Epsilon& number : numbers) least = std::min(least, number.value.value_or(kAboutFltEpsilon));
+  return std::max(least * 1e-9, subjects::kNegligible);
+}
+
 }  // namespace
 
 std::optional<DecidingNumber> deciding_number(const Lane& lane, const IsRight& is_right,
@@ -35,6 +44,8 @@ std::optional<DecidingNumber> deciding_number(const Lane& lane, const IsRight& i
   for (const std::vector<subjects::Epsilon>& some : tried) {
     const auto changed = subjects::changed(lane, {.negligible = some, .doubles = doubles});
     if (!changed || !is_right(*changed)) continue;
+    const auto smaller = subjects::changed(lane, {.negligible = some, .value = far_below(some), .doubles = doubles});
+    if (!smaller || !is_right(*smaller)) continue;
     if (is_right_on_images(*changed)) return told(lane, some, true, doubles);
     if (!on_pair) on_pair = told(lane, some, false, doubles);
   }

@@ -17,9 +17,9 @@ struct DecidingNumber {
   bool on_images;     // it is right on the pair's images too
 };
 
-// A small number of the source that decides: with a negligible one in its place, the code is right. Prefers numbers
-// that decide on the pair's images too: on one pair any change may be right by luck. If no number alone decides, all
-// together may.
+// A small number of the source that decides: with a negligible one in its place, the code is right; and with 1e-9 of
+// it, too, because the products of a unit's factor underflow if it is negligible. Prefers numbers that decide on the
+// pair's images too: on one pair any change may be right by luck. If no number alone decides, all together may.
 // is_right, is_right_on_images: what the changed code says; the second is asked only where the first holds.
 // doubles: double takes the place of float too, and all numbers change together.
 using IsRight = std::function<bool(const DecideBlock& block)>;

@@ -14,17 +14,13 @@ namespace graze::analysis {
 
 // Whether the verdict differs from the truth and the lane's convention excludes the pair. Crashes, time-outs and
 // unstable verdicts never count as convention.
-bool by_convention(const Lane& lane, Verdict verdict, const Pair& pair, const Relation& truth);
-bool by_convention(const Lane& lane, Verdict verdict, const DoublePair& pair, const Relation& truth);
-
-// Whether the lane's convention excludes the pair.   Requires: finite coordinates.
-bool is_outside(const Lane& lane, const Pair& pair, const Relation& truth);
+template <class Real>
+bool by_convention(const Lane& lane, Verdict verdict, const BasicPair<Real>& pair, const Relation& truth);
 
 // Returns the verdicts, with the truth in place of those that differ by convention. Those that still differ are wrong.
-std::vector<Verdict> excused(std::span<const Lane* const> lanes, std::vector<Verdict> verdicts, const Pair& pair,
-                             const oracle::Truth& truth);
-std::vector<Verdict> excused(std::span<const Lane* const> lanes, std::vector<Verdict> verdicts, const DoublePair& pair,
-                             const oracle::Truth& truth);
+template <class Real>
+std::vector<Verdict> excused(std::span<const Lane* const> lanes, std::vector<Verdict> verdicts,
+                             const BasicPair<Real>& pair, const oracle::Truth& truth);
 
 // "touching pairs, coplanar pairs"; empty for a convention that excludes nothing.
 std::string outside_in_words(unsigned outside);

@@ -431,7 +431,7 @@ TEST(Discrepancy, VerdictsAloneAreThoseOfTheLanes) {
   const Lane &first = lane("moller_1997/f32/cpu"), &second = lane("moller_1997/f32/cuda-fma");
   const TwoDeciders deciders{{&first, &second}, {cuda::block_on_host(first), cuda::block_on_host(second)}};
   const auto sources = strata::stratum_sources(9, 4'000, {"near_vertex_face", "coplanar_wide"});
-  const auto simpler = [](const Pair& l, const Pair& r) { return l.a[0].x < r.a[0].x; };
+  const auto simpler = [](const AnyPair& l, const AnyPair& r) { return l.doubles.a[0].x < r.doubles.a[0].x; };
   const std::vector<VerdictsApart> found = verdicts_apart(deciders, sources, 1, simpler);
   EXPECT_EQ(found, verdicts_apart(deciders, sources, 3, simpler));
   const Discrepancies values = discrepancies({{{first, second}}, sources, 0, false});

@@ -53,9 +53,12 @@ struct LargerScales {
   std::string text() const { return fmt::format("all larger scales that were tried, up to 2^{}", most); }
 };
 
+template <class Real>
 class Trial {
+  using PairOf = BasicPair<Real>;
+
  public:
-  Trial(const Lane& lane, const Pair& pair, Verdict truth) : lane_(lane), pair_(pair), truth_(truth), size_(pair) {}
+  Trial(const Lane& lane, const PairOf& pair, Verdict truth) : lane_(lane), pair_(pair), truth_(truth), size_(pair) {}
 
   Experiment run(bool unstable) {
     Experiment found = unstable ? cause_of_unstable() : cause();
@@ -88,7 +91,7 @@ class Trial {
       source_ = rounded;
     }
     std::optional<Experiment> scale;
-    if (size_.high > -1000) scale = by_scale();
+    if (!size_.is_zero()) scale = by_scale();
     if (scale && scale->settled) return named(std::move(*scale));
     std::optional<Experiment> number = by_number(scale);
     if (number && number->settled) return *number;
@@ -140,14 +143,14 @@ class Trial {
   }
   std::optional<LargerScales> at_larger_scales(const DecideBlock& block) const {
     const Scales usual = scales_in_range(size_, lane_.scalar, kUsualFactors);
-    if (size_.high == -1000 || usual.last < 1 || !usual.has(0)) return std::nullopt;
+    if (size_.is_zero() || usual.last < 1 || !usual.has(0)) return std::nullopt;
     return until(block, usual.last);
   }
 
   // The same where products may leave the exponents.
   std::optional<LargerScales> at_any_larger_scales() const {
     const Scales all = exact_scales(size_);
-    if (size_.high == -1000 || all.last < 1) return std::nullopt;
+    if (size_.is_zero() || all.last < 1) return std::nullopt;
     return until(block_of(lane_), all.last);
   }
 
@@ -251,13 +254,13 @@ class Trial {
     }
     std::istringstream words(toolchain.strict);
     const std::vector<std::string> flags{std::istream_iterator<std::string>(words), {}};
-    const subjects::ChangedCode strict = subjects::changed(lane_, {{}, flags, false, {}});
+    const subjects::ChangedCode strict = subjects::changed(lane_, {.flags = flags});
     if (!strict || !asked(*strict, {pair_})[0]) return std::nullopt;
     Experiment found = by_build(*strict, analysis::in_float64(lane_), cause,
                                 fmt::format("compiled with {} it is right", toolchain.strict));
     if (cause != Cause::contraction) return found;
     for (const subjects::FusedLine& line : subjects::fused_lines_of(lane_)) {
-      const subjects::ChangedCode rounded = subjects::changed(lane_, {{}, {}, false, line});
+      const subjects::ChangedCode rounded = subjects::changed(lane_, {.rounded = line});
       if (!rounded || !asked(*rounded, {pair_})[0]) continue;
       found.line = line.place();
       break;
@@ -270,7 +273,7 @@ class Trial {
   }
   Experiment by_build(const DecideBlock& rounded, const Lane* f64, Cause cause, std::string evidence) const {
     if (f64 && !asked(*f64, {pair_})[0]) return {cause, false, evidence + ", but that build is wrong in float64"};
-    if (size_.high == -1000 || has_small_integers(pair_, lane_.scalar))
+    if (size_.is_zero() || has_small_integers(pair_, lane_.scalar))
       return {cause, false, evidence + ", though only roots and quotients round here"};
     const Scales scales = scales_in_range(size_, lane_.scalar, kUsualFactors);
     for (const auto& [k, right] : tried(rounded, scales, 16)) {
@@ -279,7 +282,7 @@ class Trial {
     return {cause, true, std::move(evidence)};
   }
 
-  std::vector<Verdict> said(const DecideBlock& block, std::span<const Pair> pairs) const {
+  std::vector<Verdict> said(const DecideBlock& block, std::span<const PairOf> pairs) const {
     asked_ += static_cast<int>(pairs.size());
     std::vector<Verdict> verdicts = verdicts_of(block, pairs);
     late_ += static_cast<int>(std::count(verdicts.begin(), verdicts.end(), Verdict::timed_out));
@@ -288,7 +291,7 @@ class Trial {
 
   // For each pair, whether the block is right. Pairs that were not tried, because others took all of their time, are
   // false; until_wrong: so are those after a wrong one.
-  std::vector<bool> asked(const DecideBlock& block, const std::vector<Pair>& pairs, bool until_wrong = false) const {
+  std::vector<bool> asked(const DecideBlock& block, const std::vector<PairOf>& pairs, bool until_wrong = false) const {
     constexpr std::size_t kAtOnce = foreign_at_once(false);
     std::vector<bool> right(pairs.size());
     for (std::size_t begin = 0; begin < pairs.size() && late_ < kMostLate; begin += kAtOnce) {
@@ -301,7 +304,7 @@ class Trial {
     }
     return right;
   }
-  std::vector<bool> asked(const Lane& lane, const std::vector<Pair>& pairs) const {
+  std::vector<bool> asked(const Lane& lane, const std::vector<PairOf>& pairs) const {
     return asked(block_of(lane), pairs);
   }
 
@@ -315,8 +318,8 @@ class Trial {
         });
   }
 
-  Ask asking() const {
-    return [this](const std::vector<Pair>& pairs) { return asked(lane_, pairs); };
+  Ask<Real> asking() const {
+    return [this](const std::vector<PairOf>& pairs) { return asked(lane_, pairs); };
   }
 
   const ScalarLimits& limits() const { return limits_of(lane_.scalar); }
@@ -329,7 +332,7 @@ class Trial {
     std::vector<std::pair<int, bool>> result;
     if (scales.empty()) return result;
     const int step = std::max(1, (scales.last - scales.first) / most + 1);
-    std::vector<Pair> pairs;
+    std::vector<PairOf> pairs;
     for (int k = scales.first; k <= scales.last; k += step) {
       result.emplace_back(k, false);
       pairs.push_back(scaled(pair_, k));
@@ -426,6 +429,8 @@ class Trial {
   // The lane is right at all scales in range, so the pair is out of range. The lane turns wrong between the range and
   // the pair.
   Experiment outside(Turn turn) const {
+    // In doubles nothing wider can show that code which adds lengths and areas is not wrong here without limits too.
+    constexpr bool kIsNarrow = sizeof(Real) == sizeof(float);
     const bool by_float64 = right_in_float64_at_every_scale();
     const std::string text = turn.text(),
                       doubles = by_float64 ? ", and in float64 it is right at all scales that were tried" : "";
@@ -434,7 +439,7 @@ class Trial {
         return {Cause::absolute_epsilon, false,
                 text + fmt::format(", though products of its differences are not too small for {}", limits().name)};
       const bool lost = 3 * (size_.largest_difference + 1 + turn.wrong) <= limits().least;
-      return {Cause::underflow, lost || (by_float64 && !strictly_.empty()),
+      return {Cause::underflow, (kIsNarrow && lost) || (by_float64 && !strictly_.empty()),
               lost ? text + fmt::format(", where every product of three differences is too small for {}", limits().name)
                    : text + doubles};
     }
@@ -445,7 +450,7 @@ class Trial {
     if (!by_float64 && !too_large(4))
       return {Cause::absolute_epsilon, false,
               text + fmt::format(", though products of four differences are not too large for {}", limits().name)};
-    return {Cause::overflow, lost || (by_float64 && too_large(4)),
+    return {Cause::overflow, (kIsNarrow && lost) || (by_float64 && too_large(4)),
             lost ? text + fmt::format(", where products of three differences are too large for {}", limits().name)
                  : text + doubles};
   }
@@ -494,11 +499,11 @@ class Trial {
 
   const Lane& lane_;
   const Lane* source_ = &lane_;  // the same code rounded as written if that is wrong too: its source is changed
-  const Pair& pair_;
+  const PairOf& pair_;
   Verdict truth_;
   Size size_;
-  mutable int asked_ = 0, late_ = 0;                       // verdicts; those that took all of their time
-  mutable std::optional<std::vector<Pair>> wrong_images_;  // once asked for
+  mutable int asked_ = 0, late_ = 0;                         // verdicts; those that took all of their time
+  mutable std::optional<std::vector<PairOf>> wrong_images_;  // once asked for
   mutable std::optional<subjects::ChangedCode> doubles_;
   Scales strictly_{1, 0};  // scales at which even the longest products stay within the exponents
   mutable Turn last_turn_{0, 0};
@@ -509,7 +514,8 @@ class Trial {
 
 }  // namespace
 
-Experiment experiment(const Lane& lane, Verdict verdict, const Pair& pair, Verdict truth) {
+template <class Real>
+Experiment experiment(const Lane& lane, Verdict verdict, const BasicPair<Real>& pair, Verdict truth) {
   const subjects::Opened* code = subjects::opened(lane.info->id);
   switch (verdict) {
     case Verdict::crashed:
@@ -519,8 +525,11 @@ Experiment experiment(const Lane& lane, Verdict verdict, const Pair& pair, Verdi
     case Verdict::timed_out:
       return {Cause::no_answer, true, "it exceeded its time limit"};
     default:
-      return Trial(lane, pair, truth).run(verdict == Verdict::unstable);
+      return Trial<Real>(lane, pair, truth).run(verdict == Verdict::unstable);
   }
 }
+
+template Experiment experiment(const Lane&, Verdict, const Pair&, Verdict);
+template Experiment experiment(const Lane&, Verdict, const DoublePair&, Verdict);
 
 }  // namespace graze::analysis

@@ -171,13 +171,10 @@ LaneExplanation account_of(const Lane& lane, Verdict verdict, const AnyPair& pai
 }
 
 LaneExplanation account_of_foreign(const Lane& lane, Verdict verdict, const AnyPair& pair, Verdict truth) {
-  Experiment found = pair.floats
-                         ? known_experiment(lane, verdict, *pair.floats, truth)
-                         : Experiment{Cause::rounding, false, "Graze makes experiments on pairs of float32 alone"};
+  Experiment found = known_experiment(lane, verdict, pair, truth);
   LaneExplanation result{};
   result.lane = &lane;
   result.verdict = verdict;
-  result.guessed = !pair.floats;
   result.cause = found.cause;
   result.exactly.verdict = Verdict::declined;
   result.evidence = Evidence::none;

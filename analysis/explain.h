@@ -108,7 +108,6 @@ struct LaneExplanation {
   std::string experiment;  // for lanes without steps (foreign, under a policy, or `stored`): the evidence for the cause
   std::string line;        // of foreign code: "mine.cpp:9", the number in it that decides; empty if it is not known
   bool slow = false;       // for the same lanes: other pairs time out or fail, so no neighbours were tried
-  bool guessed = false;    // of foreign code: no experiment was made, so the cause is only the commonest
   bool beyond = false;     // of the cause `stored`: float32 cannot hold a number of the pair
 
   // Whether the account comes from experiments, because the lane has no steps.

@@ -234,7 +234,6 @@ std::string reason_by_experiment(const LaneExplanation& lane) {
         return "rounding";
     }
   };
-  if (lane.guessed && lane.settled != Settled::yes) return fmt::format("not settled ({})", lane.experiment);
   return fmt::format("{}{} ({})", lane.settled == Settled::yes ? "" : "not settled: perhaps ", words(),
                      lane.experiment);
 }

@@ -15,21 +15,23 @@ namespace {
 int count_of(const std::vector<bool>& right) { return static_cast<int>(std::count(right.begin(), right.end(), true)); }
 
 // Whether no sum of 32 products of this many coordinates or differences rounds, for the pair times `scale`.
-bool holds_products(const Pair& pair, Scalar scalar, int factors, int scale) {
+template <class Real>
+bool holds_products(const BasicPair<Real>& pair, Scalar scalar, int factors, int scale) {
   const Size size(pair);
   const int digits = limits_of(scalar).digits;
-  if (size.high == -1000 || size.high - size.low > digits) return false;
-  float largest = 0;
+  if (size.is_zero() || size.high - size.low > digits) return false;
+  Real largest = 0;
   for (int i = 0; i < kCoordinates; ++i) {
     for (int j = i % 3; j <= i; j += 3) {
-      const float c = coordinates(pair)[i];
+      const Real c = coordinates(pair)[i];
       largest = std::max({largest, std::fabs(c), std::fabs(c - coordinates(pair)[j])});
     }
   }
   return std::pow(scale * std::ldexp(double{largest}, -size.low), factors) <= std::ldexp(1.0, digits - 5);
 }
 
-bool is_degenerate(const Pair& pair) {
+template <class Real>
+bool is_degenerate(const BasicPair<Real>& pair) {
   const Hulls hulls = relation_of(pair).hulls;
   return hulls.dimension_a < 2 || hulls.dimension_b < 2;
 }
@@ -40,25 +42,27 @@ struct Image {
   int factor, from, to;
 };
 
-std::vector<Pair> changed(std::vector<Pair> pairs, const Image& image) {
-  for (Pair& pair : pairs) {
-    float* const c = coordinates(pair);
-    for (int i = 0; i < kCoordinates; ++i) c[i] *= static_cast<float>(image.factor);
+template <class Real>
+std::vector<BasicPair<Real>> changed(std::vector<BasicPair<Real>> pairs, const Image& image) {
+  for (BasicPair<Real>& pair : pairs) {
+    Real* const c = coordinates(pair);
+    for (int i = 0; i < kCoordinates; ++i) c[i] *= static_cast<Real>(image.factor);
     for (int i = 0; i < kCoordinates && image.from != image.to; i += 3) c[i + image.to] += c[i + image.from];
   }
   return pairs;
 }
 
 // Translates each vertex to the origin, if that is exact.
-std::vector<Pair> to_vertices(const Pair& pair, const Size& size) {
-  std::vector<Pair> result;
+template <class Real>
+std::vector<BasicPair<Real>> to_vertices(const BasicPair<Real>& pair, const Size& size) {
+  std::vector<BasicPair<Real>> result;
   if (size.high - size.low + 1 > 53) return result;  // differences are exact in doubles only up to this size
-  for (const Vec3<float>* vertex = pair.a; vertex != pair.a + 6; ++vertex) {
-    Pair moved;
+  for (const Vec3<Real>* vertex = pair.a; vertex != pair.a + 6; ++vertex) {
+    BasicPair<Real> moved;
     bool exact = true;
     for (int i = 0; i < kCoordinates; ++i) {
       const double difference = double{coordinates(pair)[i]} - (&vertex->x)[i % 3];
-      coordinates(moved)[i] = static_cast<float>(difference);
+      coordinates(moved)[i] = static_cast<Real>(difference);
       exact = exact && coordinates(moved)[i] == difference;
     }
     if (exact) result.push_back(moved);
@@ -67,12 +71,13 @@ std::vector<Pair> to_vertices(const Pair& pair, const Size& size) {
 }
 
 // Rounds the pair to fewer bits, if that keeps its truth and shape.
-std::vector<Pair> snapped(const Pair& pair, const Size& size) {
-  std::vector<Pair> result;
+template <class Real>
+std::vector<BasicPair<Real>> snapped(const BasicPair<Real>& pair, const Size& size) {
+  std::vector<BasicPair<Real>> result;
   const Relation own = relation_of(pair);
   for (const int bits : {1, 2, 3, 4, 6, 8, 10, 12, 16, 20}) {
     if (bits >= size.high - size.low) break;
-    Pair rounded = pair;
+    BasicPair<Real> rounded = pair;
     const int unit = size.high - bits;
     for (int i = 0; i < kCoordinates; ++i)
       coordinates(rounded)[i] = std::ldexp(std::nearbyint(std::ldexp(coordinates(pair)[i], -unit)), unit);
@@ -85,15 +90,23 @@ std::vector<Pair> snapped(const Pair& pair, const Size& size) {
 
 }  // namespace
 
-bool has_small_integers(const Pair& pair, Scalar scalar) { return holds_products(pair, scalar, kUsualFactors, 1); }
+template <class Real>
+bool has_small_integers(const BasicPair<Real>& pair, Scalar scalar) {
+  return holds_products(pair, scalar, kUsualFactors, 1);
+}
 
-bool holds_determinants(const Pair& pair, Scalar scalar) { return holds_products(pair, scalar, 3, 1); }
+template <class Real>
+bool holds_determinants(const BasicPair<Real>& pair, Scalar scalar) {
+  return holds_products(pair, scalar, 3, 1);
+}
 
-std::optional<Experiment> without_rounding(const Pair& pair, Scalar widest, const Ask& ask) {
-  const std::vector<Pair> in_order = orders(pair), mirror_images = mirrored(pair), in_axes = axes(pair);
+template <class Real>
+std::optional<Experiment> without_rounding(const BasicPair<Real>& pair, Scalar widest, const Ask<Real>& ask) {
+  using Pairs = std::vector<BasicPair<Real>>;
+  const Pairs in_order = orders(pair), mirror_images = mirrored(pair), in_axes = axes(pair);
   const std::vector<bool> right = ask(in_order);
   const bool nothing_rounds = holds_products(pair, widest, kMostFactors, 1);
-  std::vector<std::vector<Pair>> images;
+  std::vector<Pairs> images;
   for (const int factor : {3, 5}) {
     if (holds_products(pair, widest, 3, factor)) images.push_back(changed(in_order, {factor, 0, 0}));
   }
@@ -101,7 +114,7 @@ std::optional<Experiment> without_rounding(const Pair& pair, Scalar widest, cons
     for (const Image& image : {Image{1, 0, 1}, {1, 1, 2}, {1, 2, 0}, {1, 1, 0}, {1, 2, 1}, {1, 0, 2}})
       images.push_back(changed(in_order, image));
   }
-  for (const std::vector<Pair>& image : images) {
+  for (const Pairs& image : images) {
     if (is_finite(image[0]) && ask(image) != right) return std::nullopt;
   }
   const int in_orders = count_of(right), in_mirrors = count_of(ask(mirror_images)), by_axes = count_of(ask(in_axes));
@@ -120,8 +133,9 @@ std::optional<Experiment> without_rounding(const Pair& pair, Scalar widest, cons
   return Experiment{cause, true, std::move(text)};
 }
 
-std::vector<Pair> wrong_images(const Pair& pair, const Ask& ask) {
-  std::vector<Pair> images = orders(pair), in_mirrors = mirrored(pair), wrong, chosen;
+template <class Real>
+std::vector<BasicPair<Real>> wrong_images(const BasicPair<Real>& pair, const Ask<Real>& ask) {
+  std::vector<BasicPair<Real>> images = orders(pair), in_mirrors = mirrored(pair), wrong, chosen;
   images.insert(images.end(), in_mirrors.begin() + 1, in_mirrors.end());
   images.erase(images.begin());
   const std::vector<bool> right = ask(images);
@@ -133,11 +147,12 @@ std::vector<Pair> wrong_images(const Pair& pair, const Ask& ask) {
   return chosen;
 }
 
-Experiment by_images(const Pair& pair, const Ask& ask) {
+template <class Real>
+Experiment by_images(const BasicPair<Real>& pair, const Ask<Real>& ask) {
   const Size size(pair);
   struct Images {
     std::string_view what;
-    std::vector<Pair> pairs;
+    std::vector<BasicPair<Real>> pairs;
   };
   const Images kinds[] = {{"orders", orders(pair)},
                           {"mirror images", mirrored(pair)},
@@ -157,5 +172,16 @@ Experiment by_images(const Pair& pair, const Ask& ask) {
   return {orders_alone && tried_others ? Cause::order_dependent : Cause::rounding, false,
           "right in " + right + (wrong.empty() ? "" : ", and in " + wrong)};
 }
+
+template bool has_small_integers(const Pair&, Scalar);
+template bool has_small_integers(const DoublePair&, Scalar);
+template bool holds_determinants(const Pair&, Scalar);
+template bool holds_determinants(const DoublePair&, Scalar);
+template std::optional<Experiment> without_rounding(const Pair&, Scalar, const Ask<float>&);
+template std::optional<Experiment> without_rounding(const DoublePair&, Scalar, const Ask<double>&);
+template std::vector<Pair> wrong_images(const Pair&, const Ask<float>&);
+template std::vector<DoublePair> wrong_images(const DoublePair&, const Ask<double>&);
+template Experiment by_images(const Pair&, const Ask<float>&);
+template Experiment by_images(const DoublePair&, const Ask<double>&);
 
 }  // namespace graze::analysis

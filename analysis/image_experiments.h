@@ -13,26 +13,32 @@
 namespace graze::analysis {
 
 // For each pair, whether the lane is right.
-using Ask = std::function<std::vector<bool>(const std::vector<Pair>&)>;
+template <class Real>
+using Ask = std::function<std::vector<bool>(const std::vector<BasicPair<Real>>&)>;
 
 // Whether the coordinates are so small integers, times a power of two, that no sum of 32 products of up to
 // kUsualFactors coordinates or differences rounds: up to 8 in float32, up to 256 in float64.
-bool has_small_integers(const Pair& pair, Scalar scalar);
+template <class Real>
+bool has_small_integers(const BasicPair<Real>& pair, Scalar scalar);
 
 // Whether no sum of 32 products of up to three coordinates or differences rounds, such as a determinant's.
-bool holds_determinants(const Pair& pair, Scalar scalar);
+template <class Real>
+bool holds_determinants(const BasicPair<Real>& pair, Scalar scalar);
 
 // The cause where these do not round in the widest arithmetic in which the code is known to be wrong. Nothing if the
 // lane is wrong in other orders of the pair when it is scaled by 3 and 5, because then quotients or roots may decide;
 // or when an axis is added to another, unless products of kMostFactors do not round either. Rounded
 // quotients may remain: 18 of 18,237 causes of published algorithms on such pairs were, all of interval_overlap.
 // Requires: has_small_integers; the lane is wrong on the pair at all larger scales.
-std::optional<Experiment> without_rounding(const Pair& pair, Scalar widest, const Ask& ask);
+template <class Real>
+std::optional<Experiment> without_rounding(const BasicPair<Real>& pair, Scalar widest, const Ask<Real>& ask);
 
 // The other orders and mirror images of the pair on which the lane is wrong; of many, kMostImages at even distances.
-std::vector<Pair> wrong_images(const Pair& pair, const Ask& ask);
+template <class Real>
+std::vector<BasicPair<Real>> wrong_images(const BasicPair<Real>& pair, const Ask<Real>& ask);
 
 // A cause that is not settled.
-Experiment by_images(const Pair& pair, const Ask& ask);
+template <class Real>
+Experiment by_images(const BasicPair<Real>& pair, const Ask<Real>& ask);
 
 }  // namespace graze::analysis

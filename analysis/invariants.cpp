@@ -10,11 +10,10 @@
 #include <algorithm>
 #include <mutex>
 
-#include "analysis/convention.h"
 #include "analysis/explain.h"
 #include "analysis/neighbours.h"
 #include "analysis/scales.h"
-#include "analysis/tally.h"
+#include "core/lanes/convention.h"
 #include "core/lanes/verdicts.h"
 #include "core/relation_of.h"
 
@@ -45,16 +44,18 @@ const Claims kClaims[] = {
     {"separating_axes", {Invariant::swap, Invariant::mirror, Invariant::scale}},
 };
 
-std::vector<Pair> scaled_images(const Pair& pair) {
-  std::vector<Pair> result;
+template <class Real>
+std::vector<BasicPair<Real>> scaled_images(const BasicPair<Real>& pair) {
+  std::vector<BasicPair<Real>> result;
   for (const int k : kScales) {
-    if (const std::optional<Pair> image = exactly_scaled(pair, k)) result.push_back(*image);
+    if (const std::optional<BasicPair<Real>> image = exactly_scaled(pair, k)) result.push_back(*image);
   }
   return result;
 }
 
 // The indices in kScales of the images that scaled_images returns, in the same order.
-std::vector<std::size_t> used_scales(const Pair& pair) {
+template <class Real>
+std::vector<std::size_t> used_scales(const BasicPair<Real>& pair) {
   std::vector<std::size_t> places;
   for (std::size_t s = 0; s < kScales.size(); ++s) {
     if (exactly_scaled(pair, kScales[s])) places.push_back(s);
@@ -69,26 +70,27 @@ struct Group {
 };
 
 // Some pairs of one source, followed by all their images.
+template <class Real>
 struct Asked {
-  std::vector<Pair> all;
-  std::size_t pairs = 0;
+  std::vector<BasicPair<Real>> all;
+  std::size_t pairs;
   std::vector<Group> groups;
 
-  Asked(const strata::PairSource& source, std::uint64_t first, std::uint64_t count) : pairs(count) {
-    for (std::uint64_t i = 0; i < count; ++i) all.push_back(source.pair(first + i));
+  explicit Asked(const std::vector<BasicPair<Real>>& of) : all(of), pairs(of.size()) {
     for (std::size_t p = 0; p < pairs; ++p) {
       if (!is_finite(all[p])) continue;
       for (const InvariantInfo& invariant : kInvariants) {
-        const std::vector<Pair> of = images(invariant.invariant, all[p]);
-        groups.push_back({invariant.invariant, p, all.size(), all.size() + of.size()});
-        all.insert(all.end(), of.begin(), of.end());
+        const std::vector<BasicPair<Real>> made = images(invariant.invariant, all[p]);
+        groups.push_back({invariant.invariant, p, all.size(), all.size() + made.size()});
+        all.insert(all.end(), made.begin(), made.end());
       }
     }
   }
 };
 
-bool is_outside(const Lane& lane, const Pair& pair) {
-  return lane.outside != 0 && analysis::is_outside(lane, pair, relation_of(pair));
+template <class Real>
+bool leaves_open(const Lane& lane, const BasicPair<Real>& pair) {
+  return lane.outside != 0 && is_outside(lane.outside, pair, relation_of(pair));
 }
 
 InvariantBroken broken(std::string_view who, Invariant invariant, const strata::PairSource& source, std::uint64_t index,
@@ -102,8 +104,10 @@ struct Run {
   const InvariantSpec& spec;
 
   // Runs the exact decision on every image, and the oracle on the images of some pairs.
-  void expect_truth(const Asked& asked, const strata::PairSource& source, std::uint64_t first,
-                    Invariants& counts) const {
+  template <class Real>
+  void expect_truth(const Asked<Real>& asked, const PairPlace& place, Invariants& counts) const {
+    const strata::PairSource& source = spec.sources[static_cast<std::size_t>(place.source)];
+    const std::uint64_t first = place.index;
     const std::vector<Verdict> exactly = verdicts_of(spec.exact, asked.all);
     const auto by_oracle = [&](std::size_t i) {
       return spec.intersects(asked.all[i]) ? Verdict::intersects : Verdict::disjoint;
@@ -128,12 +132,12 @@ struct Run {
           throw broken("the oracle", group.invariant, source, first + group.pair, of_pair[group.pair], of_image);
       }
     }
-    counts.pairs += asked.pairs;
+    counts.pairs += asked.groups.size() / kInvariantCount;  // the finite ones
     counts.images += asked.all.size() - asked.pairs;
   }
 
   // Uses the host lane, which performs the same operations as the twin.
-  static bool leaves(const Lane& lane, const Pair& pair, const Pair& image) {
+  static bool leaves(const Lane& lane, const AnyPair& pair, const AnyPair& image) {
     const Lane& host = *counterpart(lane, Variant::cpu);
     return leaves_exponents(host, pair) || leaves_exponents(host, image);
   }
@@ -144,12 +148,13 @@ struct Run {
     if (better) kept = found;
   }
 
-  void count(std::size_t l, const Asked& asked, const PairPlace& first, InvariantsOfLane& result) const {
+  template <class Real>
+  void count(std::size_t l, const Asked<Real>& asked, const PairPlace& first, InvariantsOfLane& result) const {
     const Lane& lane = *spec.lanes[l];
     const strata::PairSource& source = spec.sources[static_cast<std::size_t>(first.source)];
     const std::vector<Verdict> said = verdicts_of(spec.on_host[l], asked.all);
     std::vector<bool> outside(asked.pairs);
-    for (std::size_t p = 0; p < asked.pairs; ++p) outside[p] = is_outside(lane, asked.all[p]);
+    for (std::size_t p = 0; p < asked.pairs; ++p) outside[p] = leaves_open(lane, asked.all[p]);
     for (const Group& group : asked.groups) {
       if (group.first == group.last || outside[group.pair]) continue;
       const auto invariant = static_cast<std::size_t>(group.invariant);
@@ -162,7 +167,7 @@ struct Run {
       for (const std::size_t s : scales) ++result.by_scale[s].pairs;
       for (std::size_t i = group.first; i < group.last; ++i) {
         if (!breaks(group.invariant, said[group.pair], said[i])) continue;
-        if (group.invariant == Invariant::part && is_outside(lane, asked.all[i])) continue;
+        if (group.invariant == Invariant::part && leaves_open(lane, asked.all[i])) continue;
         const InvariantCase found{place, asked.all[group.pair], asked.all[i], said[group.pair], said[i]};
         const bool stays = (scale || !in_range) && knows_range(lane) && !leaves(lane, found.pair, found.image);
         in_range = in_range || stays;
@@ -176,6 +181,25 @@ struct Run {
       counts.changed += changed;
       counts.in_range += in_range;
     }
+  }
+
+  template <class Real>
+  void ask(const std::vector<std::size_t>& lanes, const std::vector<BasicPair<Real>>& pairs, const PairPlace& first,
+           Invariants& result) const {
+    if (lanes.empty()) return;
+    const Asked asked(pairs);
+    expect_truth(asked, first, result);
+    for (const std::size_t l : lanes) count(l, asked, first, result.lanes[l]);
+  }
+
+  void ask(const SourceBlock& block, Invariants& result) const {
+    const strata::PairSource& source = spec.sources[static_cast<std::size_t>(block.source)];
+    const strata::PairBlock pairs = strata::pairs_of(source, block.first, block.count);
+    std::vector<std::size_t> floats, doubles;
+    for (std::size_t l = 0; l < spec.lanes.size(); ++l)
+      (source.in_doubles() && spec.on_host[l].decides_doubles() ? doubles : floats).push_back(l);
+    ask(doubles, pairs.doubles, {block.source, block.first}, result);
+    ask(floats, pairs.floats, {block.source, block.first}, result);
   }
 };
 
@@ -201,11 +225,12 @@ InvariantCount InvariantsOfLane::total(Invariant invariant) const {
   return sum;
 }
 
-std::vector<Pair> images(Invariant invariant, const Pair& pair) {
-  std::vector<Pair> result;
+template <class Real>
+std::vector<BasicPair<Real>> images(Invariant invariant, const BasicPair<Real>& pair) {
+  std::vector<BasicPair<Real>> result;
   switch (invariant) {
     case Invariant::swap:
-      return {Pair{{pair.b[0], pair.b[1], pair.b[2]}, {pair.a[0], pair.a[1], pair.a[2]}}};
+      return {BasicPair<Real>{{pair.b[0], pair.b[1], pair.b[2]}, {pair.a[0], pair.a[1], pair.a[2]}}};
     case Invariant::order:
       result = orders(pair);
       result.resize(36);
@@ -229,6 +254,9 @@ std::vector<Pair> images(Invariant invariant, const Pair& pair) {
   return result;
 }
 
+template std::vector<Pair> images(Invariant, const Pair&);
+template std::vector<DoublePair> images(Invariant, const DoublePair&);
+
 bool breaks(Invariant invariant, Verdict of_pair, Verdict of_image) {
   if (invariant != Invariant::part) return of_pair != of_image;
   return of_image == Verdict::intersects && of_pair == Verdict::disjoint;
@@ -249,11 +277,13 @@ bool claims(const Lane& lane, Invariant invariant) {
   return std::find(claimed.begin(), claimed.end(), invariant) != claimed.end();
 }
 
-bool oracle_intersects(const Pair& pair) {
-  const bool intersects = oracle::cgal_verdict(pair) == Verdict::intersects;
-  if (intersects == (oracle::gmp_contact(pair) == Contact::none))
-    throw InvariantBroken(fmt::format("CGAL and GMP differ: {} and {}", intersects, !intersects));
-  return intersects;
+bool oracle_intersects(const AnyPair& pair) {
+  return visit(pair, [](const auto& own) {
+    const bool intersects = oracle::cgal_verdict(own) == Verdict::intersects;
+    if (intersects == (oracle::gmp_contact(own) == Contact::none))
+      throw InvariantBroken(fmt::format("CGAL and GMP differ: {} and {}", intersects, !intersects));
+    return intersects;
+  });
 }
 
 Invariants invariants(const InvariantSpec& spec) {
@@ -271,14 +301,8 @@ Invariants invariants(const InvariantSpec& spec) {
       const std::lock_guard lock(mutex);
       if (b > first_broken) return;
     }
-    const SourceBlock& block = blocks[b];
-    const strata::PairSource& source = spec.sources[static_cast<std::size_t>(block.source)];
-    Invariants& result = results.local();
     try {
-      const Asked asked(source, block.first, block.count);
-      run.expect_truth(asked, source, block.first, result);
-      for (std::size_t l = 0; l < spec.lanes.size(); ++l)
-        run.count(l, asked, {block.source, block.first}, result.lanes[l]);
+      run.ask(blocks[b], results.local());
     } catch (const InvariantBroken& error) {
       const std::lock_guard lock(mutex);
       if (b < first_broken) first_broken = b, what = error.what();

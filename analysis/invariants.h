@@ -42,7 +42,8 @@ inline constexpr std::size_t kInvariantCount = std::size(kInvariants);
 inline constexpr std::array kScales = {1, -1, 4, -4, 16, -16, 64, -64};
 
 // The pair's images, without the pair itself. Images that would lose bits are left out.
-std::vector<Pair> images(Invariant invariant, const Pair& pair);
+template <class Real>
+std::vector<BasicPair<Real>> images(Invariant invariant, const BasicPair<Real>& pair);
 
 // Whether these verdicts on a pair and its image break the invariant.
 bool breaks(Invariant invariant, Verdict of_pair, Verdict of_image);
@@ -74,7 +75,7 @@ struct InvariantCount {
 
 struct InvariantCase {
   PairPlace place;
-  Pair pair, image;
+  AnyPair pair, image;
   Verdict of_pair = Verdict::declined, of_image = Verdict::declined;
 };
 
@@ -88,23 +89,24 @@ struct InvariantsOfLane {
 };
 
 // CGAL's verdict, which must equal GMP's.   Throws: InvariantBroken.
-bool oracle_intersects(const Pair& pair);
+bool oracle_intersects(const AnyPair& pair);
 
 struct InvariantSpec {
   std::vector<const Lane*> lanes;
-  std::vector<DecideBlock> on_host;  // of each: the host lane or its twin
-  std::vector<strata::PairSource> sources;
-  int threads = 0;  // 0: one on each core
+  std::vector<DecideBlock> on_host;         // of each: the host lane or its twin
+  std::vector<strata::PairSource> sources;  // of doubles: lanes in float take what float32 stores of a pair
+  int threads = 0;                          // 0: one on each core
   // Whether l is simpler than r. The simplest case is kept; of equally simple ones, the first.
-  std::function<bool(const Pair& l, const Pair& r)> simpler;
-  DecideBlock exact = find_lane("exact/f32/cpu")->decide;           // asked of every image
-  std::function<bool(const Pair&)> intersects = oracle_intersects;  // asked of every image of some pairs:
-  std::uint64_t oracle_every = 8;                                   // of the first of so many
+  std::function<bool(const AnyPair& l, const AnyPair& r)> simpler;
+  DecideBlock exact = find_lane("exact/f64/cpu")->decide;              // asked of every image
+  std::function<bool(const AnyPair&)> intersects = oracle_intersects;  // asked of every image of some pairs:
+  std::uint64_t oracle_every = 8;                                      // of the first of so many
 };
 
 struct Invariants {
   std::vector<InvariantsOfLane> lanes;
-  std::uint64_t pairs = 0, images = 0;          // all of them decided by the exact decision
+  // All of them decided by the exact decision. A pair of doubles and what float32 stores of it are two.
+  std::uint64_t pairs = 0, images = 0;
   std::uint64_t by_oracle = 0, its_images = 0;  // and these by CGAL and GMP
 };
 

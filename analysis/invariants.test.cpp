@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/invariants.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,31 +11,30 @@
 #include "analysis/explain.h"
 #include "analysis/neighbours.h"
 #include "analysis/scales.h"
-#include "corpus/pair_format.h"
 #include "cuda/twin/twin.h"
 #include "strata/strata.h"
 
 namespace graze::analysis {
 namespace {
 
-bool simpler(const Pair& l, const Pair& r) {
-  const auto size = [](const Pair& pair) {
+bool simpler(const AnyPair& l, const AnyPair& r) {
+  const auto size = [](const AnyPair& pair) {
     double sum = 0;
-    for (int c = 0; c < kCoordinates; ++c) sum += std::fabs(coordinates(pair)[c]);
+    for (int c = 0; c < kCoordinates; ++c) sum += std::fabs(coordinates(pair.doubles)[c]);
     return sum;
   };
   return size(l) < size(r);
 }
 
 InvariantSpec spec_of(const std::vector<std::string>& ids, std::uint64_t pairs,
-                      const std::vector<std::string>& strata = {}) {
+                      const std::vector<std::string>& strata = {}, PairTypes types = PairTypes::f32) {
   InvariantSpec spec;
   for (const std::string& id : ids) {
     spec.lanes.push_back(find_lane(id));
     if (!spec.lanes.back()) throw std::logic_error(id + ": expected a lane");
     spec.on_host.push_back(cuda::block_on_host(*spec.lanes.back()));
   }
-  spec.sources = strata::stratum_sources(7, pairs, strata);
+  spec.sources = strata::stratum_sources(7, pairs, strata, types);
   spec.simpler = simpler;
   return spec;
 }
@@ -48,32 +48,43 @@ std::string refusal(const InvariantSpec& spec) {
   return "nothing broken";
 }
 
+// The pairs as text, in the same order.
+template <class Real>
+std::vector<std::string> texts(const std::vector<BasicPair<Real>>& pairs) {
+  std::vector<std::string> all;
+  for (const BasicPair<Real>& pair : pairs) {
+    all.emplace_back();
+    for (int c = 0; c < kCoordinates; ++c) all.back() += fmt::format("{:a} ", coordinates(pair)[c]);
+  }
+  return all;
+}
+
 TEST(Invariants, ImagesAskTheSameQuestion) {
-  std::set<Invariant> asked;
-  for (const strata::StratumInfo& stratum : strata::kStrata) {
-    for (std::uint64_t i = 0; i < 12; ++i) {
-      const Pair pair = strata::generate(3, stratum.stratum, i);
+  for (const PairTypes types : {PairTypes::f32, PairTypes::f64}) {
+    std::set<Invariant> asked;
+    const auto expect_same_question = [&](const auto& pair, const std::string& source) {
       const Verdict truth = oracle::truth(pair).verdict;
       for (const InvariantInfo& invariant : kInvariants) {
         std::set<std::string> different;
-        for (const Pair& image : images(invariant.invariant, pair)) {
-          const Verdict of_image = oracle::truth(image).verdict;
-          EXPECT_FALSE(breaks(invariant.invariant, truth, of_image))
-              << invariant.id << " of " << stratum.id << " " << i;
-          std::string text;
-          for (int c = 0; c < kCoordinates; ++c) text += corpus::hex_float(coordinates(image)[c]) + ' ';
-          different.insert(text);
+        for (const auto& image : images(invariant.invariant, pair)) {
+          EXPECT_FALSE(breaks(invariant.invariant, truth, oracle::truth(image).verdict))
+              << invariant.id << " of " << source;
+          different.insert(texts(std::vector{image}).front());
           asked.insert(invariant.invariant);
         }
-        if (stratum.id != "uniform") continue;
+        if (!source.starts_with("uniform")) continue;
         const std::size_t all[] = {1, 35, 7, 5, 8};
         if (static_cast<std::size_t>(invariant.invariant) < std::size(all)) {
           EXPECT_EQ(different.size(), all[static_cast<std::size_t>(invariant.invariant)]) << invariant.id;
         }
       }
+    };
+    for (const strata::PairSource& source : strata::stratum_sources(3, 228, {}, types)) {
+      for (std::uint64_t i = 0; i < source.pairs; ++i)
+        visit(source.any_pair(i), [&](const auto& pair) { expect_same_question(pair, source.id); });
     }
+    EXPECT_EQ(asked.size(), kInvariantCount);
   }
-  EXPECT_EQ(asked.size(), kInvariantCount);
 }
 
 TEST(Invariants, NoImageThatWouldLoseBits) {
@@ -90,16 +101,25 @@ TEST(Invariants, NoImageThatWouldLoseBits) {
   EXPECT_EQ(images(Invariant::part, pair).size(), 8u);
   pair.a[1].x = 0x1p127f;
   EXPECT_EQ(images(Invariant::scale, pair).size(), 4u);
+  // The sum of two coordinates overflows, half of it does not.
+  pair.a[0].x = 0x1.8p127f;
+  EXPECT_EQ(images(Invariant::part, pair).size(), 8u);
 }
 
-// The pairs as text, in the same order.
-std::vector<std::string> texts(const std::vector<Pair>& pairs) {
-  std::vector<std::string> all;
-  for (const Pair& pair : pairs) {
-    all.emplace_back();
-    for (int c = 0; c < kCoordinates; ++c) all.back() += corpus::hex_float(coordinates(pair)[c]) + ' ';
-  }
-  return all;
+// A double holds what a float32 loses, and has limits of its own.
+TEST(Invariants, ImagesOfDoublesLoseNoBitOfADouble) {
+  const Pair floats{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {1, 0, 1}, {0, 1, 0x1p-52f}}};
+  DoublePair pair = in_doubles(floats);
+  EXPECT_EQ(images(Invariant::translate, floats).size(), 3u);
+  EXPECT_EQ(images(Invariant::translate, pair).size(), 8u);
+  EXPECT_EQ(images(Invariant::part, floats).size(), 4u);
+  EXPECT_EQ(images(Invariant::part, pair).size(), 8u);
+  pair.b[2].z = 0x1p-1074;
+  EXPECT_EQ(images(Invariant::scale, pair).size(), 4u);
+  EXPECT_EQ(images(Invariant::translate, pair).size(), 3u);
+  EXPECT_EQ(images(Invariant::part, pair).size(), 4u);
+  pair.a[1].x = 0x1p1023;
+  EXPECT_EQ(images(Invariant::scale, pair).size(), 0u);
 }
 
 Pair changed(const Pair& pair, float scale, float step) {
@@ -118,7 +138,7 @@ TEST(Invariants, NoWayIsMissingAndNoneIsThereTwice) {
     const std::vector<std::string> all = texts(pairs);
     EXPECT_EQ(all.size(), count);
     EXPECT_EQ(std::set<std::string>(all.begin(), all.end()).size(), count);
-    EXPECT_EQ(all.front(), texts({pair}).front()) << count;
+    EXPECT_EQ(all.front(), texts(std::vector{pair}).front()) << count;
   }
 }
 
@@ -132,7 +152,8 @@ TEST(Invariants, ScaleByThesePowersAndMoveByTheLargestCoordinates) {
     std::swap(coordinates(pair)[0], coordinates(pair)[largest]);
     const std::vector<std::string> moved = texts(translated(pair));
     for (const float step : {8.0f, -8.0f})
-      EXPECT_EQ(std::count(moved.begin(), moved.end(), texts({changed(pair, 1, step)}).front()), 1) << largest;
+      EXPECT_EQ(std::count(moved.begin(), moved.end(), texts(std::vector{changed(pair, 1, step)}).front()), 1)
+          << largest;
     std::swap(coordinates(pair)[0], coordinates(pair)[largest]);
   }
 }
@@ -173,12 +194,17 @@ TEST(Invariants, EachAlgorithmSaysWhatItClaims) {
   EXPECT_FALSE(claims(*find_lane("exact/f32/cpu"), Invariant::scale));
 }
 
-// Every claim holds on every stratum, and every invariant that is not claimed is broken by some pair.
-TEST(Invariants, ClaimsHoldAndNothingElseDoes) {
+std::vector<std::string> lanes_of(const std::vector<Variant>& variants) {
   std::vector<std::string> ids;
   for (const Lane& lane : published_lanes()) {
-    if (lane.variant == Variant::cpu || lane.variant == Variant::cuda_nofma) ids.push_back(lane.id);
+    if (std::find(variants.begin(), variants.end(), lane.variant) != variants.end()) ids.push_back(lane.id);
   }
+  return ids;
+}
+
+// Every claim holds on every stratum, and every invariant that is not claimed is broken by some pair.
+TEST(Invariants, ClaimsHoldAndNothingElseDoes) {
+  const std::vector<std::string> ids = lanes_of({Variant::cpu, Variant::cuda_nofma});
   const InvariantSpec spec = spec_of(ids, strata::kStrataCount * 150);
   const Invariants found = invariants(spec);  // throws where a claim is broken
   EXPECT_EQ(found.pairs, strata::kStrataCount * 150u);
@@ -193,30 +219,67 @@ TEST(Invariants, ClaimsHoldAndNothingElseDoes) {
   }
 }
 
+// On doubles, lanes in float take what float32 stores, and images of that. So the claims hold here too.
+TEST(Invariants, ClaimsHoldOnDoubles) {
+  std::vector<std::string> ids = lanes_of({Variant::cpu});
+  ids.insert(ids.end(), {"exact/f32/cpu", "exact/f64/cpu"});
+  const InvariantSpec spec = spec_of(ids, 2000, {}, PairTypes::f64);
+  const Invariants found = invariants(spec);  // throws where a claim is broken
+  std::uint64_t stored = 0;
+  for (const strata::PairSource& source : spec.sources) {
+    for (std::uint64_t i = 0; i < source.pairs; ++i) stored += is_finite(stored_in_float32(source.double_pair(i)));
+  }
+  EXPECT_EQ(found.pairs, 2000 + stored);
+  EXPECT_LT(stored, 2000u);  // float32 cannot hold the largest
+  EXPECT_GT(found.its_images, 10'000u);
+  for (std::size_t l = 0; l < ids.size(); ++l) {
+    for (const InvariantInfo& invariant : kInvariants) {
+      const InvariantCount count = found.lanes[l].total(invariant.invariant);
+      EXPECT_GT(count.pairs, 100u) << invariant.id;
+      if (spec.lanes[l]->exact) {
+        EXPECT_EQ(count.changed, 0u) << ids[l] << " " << invariant.id;
+      } else if (!claims(*spec.lanes[l], invariant.invariant)) {
+        EXPECT_GT(count.changed, 0u) << ids[l] << " " << invariant.id;
+      }
+      const std::optional<InvariantCase>& kept = found.lanes[l].simplest[static_cast<std::size_t>(invariant.invariant)];
+      if (kept) {
+        EXPECT_EQ(kept->pair.floats.has_value(), spec.lanes[l]->scalar == Scalar::f32);
+      }
+    }
+  }
+}
+
 // A plain loop over pairs and images gives the same counts.
 TEST(Invariants, CountsAreThoseOfAPlainLoop) {
   const InvariantSpec spec =
-      spec_of({"moller_1997/f32/cpu", "guigue_devillers_2003/f32/cuda-fma"}, 300, {"near_edge_edge", "lattice"});
+      spec_of({"moller_1997/f32/cpu", "moller_1997/f64/cpu", "guigue_devillers_2003/f32/cuda-fma"}, 600,
+              {"near_edge_edge", "lattice"}, PairTypes::both);
+  ASSERT_EQ(spec.sources.size(), 4u);
   const Invariants found = invariants(spec);
+  // The source's pair as the lane takes it.
+  const auto taken = [&](std::size_t l, const strata::PairSource& source, std::uint64_t i) {
+    const AnyPair pair = source.any_pair(i);
+    return spec.lanes[l]->scalar == Scalar::f64 || pair.floats ? pair : stored_in_float32(pair.doubles);
+  };
   std::uint64_t changes = 0;
   for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
     for (const InvariantInfo& invariant : kInvariants) {
       for (std::size_t s = 0; s < spec.sources.size(); ++s) {
         InvariantCount counted;
         for (std::uint64_t i = 0; i < spec.sources[s].pairs; ++i) {
-          const Pair pair = spec.sources[s].pair(i);
-          const std::vector<Pair> all = images(invariant.invariant, pair);
-          counted.pairs += !all.empty();
-          counted.changed += std::any_of(all.begin(), all.end(), [&](const Pair& image) {
-            return breaks(invariant.invariant, decide_one(spec.on_host[l], pair), decide_one(spec.on_host[l], image));
+          visit(taken(l, spec.sources[s], i), [&](const auto& pair) {
+            const auto all = images(invariant.invariant, pair);
+            const Lane& host = *counterpart(*spec.lanes[l], Variant::cpu);
+            const auto breaks_it = [&](const auto& image) {
+              return breaks(invariant.invariant, decide_one(spec.on_host[l], pair), decide_one(spec.on_host[l], image));
+            };
+            counted.pairs += !all.empty();
+            counted.changed += std::any_of(all.begin(), all.end(), breaks_it);
+            counted.in_range +=
+                !leaves_exponents(host, pair) && std::any_of(all.begin(), all.end(), [&](const auto& image) {
+                  return breaks_it(image) && !leaves_exponents(host, image);
+                });
           });
-          const Lane& host = *counterpart(*spec.lanes[l], Variant::cpu);
-          counted.in_range +=
-              !leaves_exponents(host, pair) && std::any_of(all.begin(), all.end(), [&](const Pair& image) {
-                return breaks(invariant.invariant, decide_one(spec.on_host[l], pair),
-                              decide_one(spec.on_host[l], image)) &&
-                       !leaves_exponents(host, image);
-              });
         }
         const InvariantCount& count = found.lanes[l].counts[static_cast<std::size_t>(invariant.invariant)][s];
         EXPECT_EQ(count.pairs, counted.pairs) << spec.lanes[l]->id << " " << invariant.id;
@@ -227,8 +290,11 @@ TEST(Invariants, CountsAreThoseOfAPlainLoop) {
       const std::optional<InvariantCase>& kept = found.lanes[l].simplest[static_cast<std::size_t>(invariant.invariant)];
       ASSERT_EQ(kept.has_value(), found.lanes[l].total(invariant.invariant).changed > 0);
       if (!kept) continue;
-      EXPECT_EQ(decide_one(spec.on_host[l], kept->pair), kept->of_pair);
-      EXPECT_EQ(decide_one(spec.on_host[l], kept->image), kept->of_image);
+      const auto says = [&](const AnyPair& pair) {
+        return visit(pair, [&](const auto& own) { return decide_one(spec.on_host[l], own); });
+      };
+      EXPECT_EQ(says(kept->pair), kept->of_pair);
+      EXPECT_EQ(says(kept->image), kept->of_image);
       EXPECT_TRUE(breaks(invariant.invariant, kept->of_pair, kept->of_image));
     }
   }
@@ -236,7 +302,10 @@ TEST(Invariants, CountsAreThoseOfAPlainLoop) {
   std::uint64_t all = 0;
   for (const strata::PairSource& source : spec.sources) {
     for (std::uint64_t i = 0; i < source.pairs; ++i) {
-      for (const InvariantInfo& invariant : kInvariants) all += images(invariant.invariant, source.pair(i)).size();
+      for (const InvariantInfo& invariant : kInvariants) {
+        all += images(invariant.invariant, *taken(0, source, i).floats).size();
+        if (source.in_doubles()) all += images(invariant.invariant, source.double_pair(i)).size();
+      }
     }
   }
   EXPECT_EQ(found.images, all);
@@ -371,15 +440,15 @@ TEST(Invariants, StopWhereTheTruthBreaksOne) {
   spec.exact = find_lane("exact/f32/cpu")->decide;
   EXPECT_EQ(refusal(spec), "nothing broken");
   spec.oracle_every = 1;
-  spec.intersects = [&](const Pair& pair) {
+  spec.intersects = [&](const AnyPair& pair) {
     return oracle_intersects(pair) !=
-           std::equal(coordinates(pair), coordinates(pair) + kCoordinates, coordinates(swapped));
+           std::equal(coordinates(*pair.floats), coordinates(*pair.floats) + kCoordinates, coordinates(swapped));
   };
   EXPECT_EQ(refusal(spec),
             "the oracle breaks the invariant \"swap\" on pair 3 of shared_vertex: it says intersects, but on an image "
             "disjoint");
   // A wrong verdict on the pair itself is found before its images are tested.
-  spec.intersects = [&](const Pair& pair) { return oracle_intersects(pair) && simpler(pair, pair); };
+  spec.intersects = [&](const AnyPair& pair) { return oracle_intersects(pair) && simpler(pair, pair); };
   EXPECT_EQ(refusal(spec), "exact and the oracle differ on pair 0 of shared_vertex: intersects and disjoint");
 }
 

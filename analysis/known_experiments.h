@@ -8,6 +8,6 @@ namespace graze::analysis {
 
 // Like `experiment`; of a lane in the lane table, a result that this process had before for the pair is given again.
 // Thread-safe.
-Experiment known_experiment(const Lane& lane, Verdict verdict, const Pair& pair, Verdict truth);
+Experiment known_experiment(const Lane& lane, Verdict verdict, const AnyPair& pair, Verdict truth);
 
 }  // namespace graze::analysis

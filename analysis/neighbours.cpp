@@ -13,24 +13,25 @@ namespace graze::analysis {
 namespace {
 
 // x + y if the sum is exact.   Reference: Knuth, two-sum.
-std::optional<float> exact_sum(float x, float y) {
-  const float sum = x + y, other = sum - x, rest = (x - (sum - other)) + (y - other);
+template <class Real>
+std::optional<Real> exact_sum(Real x, Real y) {
+  const Real sum = x + y, other = sum - x, rest = (x - (sum - other)) + (y - other);
   return std::isfinite(sum) && rest == 0 ? std::optional(sum) : std::nullopt;
 }
 
 // (x + y) / 2 if that is exact.
-std::optional<float> exact_middle(float x, float y) {
-  const double middle = (double{x} + double{y}) / 2;  // the sum is rounded if the floats are far apart
-  const auto result = static_cast<float>(middle);
-  const bool exact =
-      double{result} == middle && middle * 2 - double{x} == double{y} && middle * 2 - double{y} == double{x};
-  return exact ? std::optional(result) : std::nullopt;
+template <class Real>
+std::optional<Real> exact_middle(Real x, Real y) {
+  if (const std::optional<Real> sum = exact_sum(x, y))
+    return *sum / 2 * 2 == *sum ? std::optional(*sum / 2) : std::nullopt;
+  return x / 2 * 2 == x && y / 2 * 2 == y ? exact_sum(x / 2, y / 2) : std::nullopt;  // the sum may overflow
 }
 
-std::optional<Pair> moved_by(const Pair& pair, const Vec3<float>& step) {
-  Pair moved;
+template <class Real>
+std::optional<BasicPair<Real>> moved_by(const BasicPair<Real>& pair, const Vec3<Real>& step) {
+  BasicPair<Real> moved;
   for (int i = 0; i < kCoordinates; ++i) {
-    const std::optional<float> sum = exact_sum(coordinates(pair)[i], component(step, i % 3));
+    const std::optional<Real> sum = exact_sum(coordinates(pair)[i], component(step, i % 3));
     if (!sum) return {};
     coordinates(moved)[i] = *sum;
   }
@@ -38,10 +39,11 @@ std::optional<Pair> moved_by(const Pair& pair, const Vec3<float>& step) {
 }
 
 // The midpoints of the edges from v[0] to v[1], from v[1] to v[2] and from v[2] to v[0], if they are exact.
-bool exact_middles(const Vec3<float> (&v)[3], Vec3<float> (&middles)[3]) {
+template <class Real>
+bool exact_middles(const Vec3<Real> (&v)[3], Vec3<Real> (&middles)[3]) {
   for (int i = 0; i < 3; ++i) {
     for (int axis = 0; axis < 3; ++axis) {
-      const std::optional<float> middle = exact_middle(component(v[i], axis), component(v[(i + 1) % 3], axis));
+      const std::optional<Real> middle = exact_middle(component(v[i], axis), component(v[(i + 1) % 3], axis));
       if (!middle) return false;
       component(middles[i], axis) = *middle;
     }
@@ -87,46 +89,49 @@ std::vector<BasicPair<Real>> scalings(const BasicPair<Real>& pair) {
   return result;
 }
 
-std::vector<Pair> axes(const Pair& pair) {
+template <class Real>
+std::vector<BasicPair<Real>> axes(const BasicPair<Real>& pair) {
   constexpr int kAxes[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
-  std::vector<Pair> result;
+  std::vector<BasicPair<Real>> result;
   for (const auto& order : kAxes) {
-    Pair turned;
+    BasicPair<Real> turned;
     for (int i = 0; i < kCoordinates; ++i) coordinates(turned)[i] = coordinates(pair)[i - i % 3 + order[i % 3]];
     result.push_back(turned);
   }
   return result;
 }
 
-std::vector<Pair> translated(const Pair& pair) {
-  std::vector<Pair> result{pair};
-  float largest = 0;
+template <class Real>
+std::vector<BasicPair<Real>> translated(const BasicPair<Real>& pair) {
+  std::vector<BasicPair<Real>> result{pair};
+  Real largest = 0;
   for (int i = 0; i < kCoordinates; ++i) largest = std::max(largest, std::abs(coordinates(pair)[i]));
-  std::vector<Vec3<float>> steps;
+  std::vector<Vec3<Real>> steps;
   for (const auto& triangle : {pair.a, pair.b}) {
     for (int i = 0; i < 3; ++i) steps.push_back({-triangle[i].x, -triangle[i].y, -triangle[i].z});
   }
   if (largest > 0) {
-    const float step = std::ldexp(1.0f, std::ilogb(largest));
+    const Real step = std::ldexp(Real{1}, std::ilogb(largest));
     steps.push_back({step, step, step});
     steps.push_back({-step, -step, -step});
   }
-  for (const Vec3<float>& step : steps) {
-    if (const std::optional<Pair> moved = moved_by(pair, step)) result.push_back(*moved);
+  for (const Vec3<Real>& step : steps) {
+    if (const std::optional<BasicPair<Real>> moved = moved_by(pair, step)) result.push_back(*moved);
   }
   return result;
 }
 
-std::vector<Pair> parts(const Pair& pair) {
-  std::vector<Pair> result{pair};
+template <class Real>
+std::vector<BasicPair<Real>> parts(const BasicPair<Real>& pair) {
+  std::vector<BasicPair<Real>> result{pair};
   for (const bool first : {true, false}) {
     const auto& whole = first ? pair.a : pair.b;
-    Vec3<float> m[3];
+    Vec3<Real> m[3];
     if (!exact_middles(whole, m)) continue;
-    const Vec3<float> divided[4][3] = {
+    const Vec3<Real> divided[4][3] = {
         {whole[0], m[0], m[2]}, {m[0], whole[1], m[1]}, {m[2], m[1], whole[2]}, {m[0], m[1], m[2]}};
     for (const auto& part : divided) {
-      Pair with = pair;
+      BasicPair<Real> with = pair;
       std::copy(part, part + 3, first ? with.a : with.b);
       result.push_back(with);
     }
@@ -155,6 +160,12 @@ template std::vector<Pair> mirrored(const Pair&);
 template std::vector<DoublePair> mirrored(const DoublePair&);
 template std::vector<Pair> scalings(const Pair&);
 template std::vector<DoublePair> scalings(const DoublePair&);
+template std::vector<Pair> axes(const Pair&);
+template std::vector<DoublePair> axes(const DoublePair&);
+template std::vector<Pair> translated(const Pair&);
+template std::vector<DoublePair> translated(const DoublePair&);
+template std::vector<Pair> parts(const Pair&);
+template std::vector<DoublePair> parts(const DoublePair&);
 template std::vector<Pair> nudged(const Pair&, int);
 template std::vector<DoublePair> nudged(const DoublePair&, int);
 

@@ -20,14 +20,17 @@ std::vector<BasicPair<Real>> mirrored(const BasicPair<Real>& pair);
 inline constexpr int kMostScaling = 64;
 template <class Real>
 std::vector<BasicPair<Real>> scalings(const BasicPair<Real>& pair);
-std::vector<Pair> axes(const Pair& pair);  // the 6 orders of the axes
+template <class Real>
+std::vector<BasicPair<Real>> axes(const BasicPair<Real>& pair);  // the 6 orders of the axes
 // Translated so that a vertex is at the origin, and by plus and minus the power of two of the largest coordinate along
 // (1, 1, 1). Translations that would round a coordinate are left out.
-std::vector<Pair> translated(const Pair& pair);
+template <class Real>
+std::vector<BasicPair<Real>> translated(const BasicPair<Real>& pair);
 
 // Replaces one triangle by one of the four parts into which its edge midpoints divide it, if the midpoints are exact in
-// float32. If a part intersects, the pair intersects.
-std::vector<Pair> parts(const Pair& pair);
+// the coordinate type. If a part intersects, the pair intersects.
+template <class Real>
+std::vector<BasicPair<Real>> parts(const BasicPair<Real>& pair);
 
 // Moves one coordinate by an ulp and by 2^-10 of its size, up and down. A zero moves as far as the largest coordinate
 // would. Returns the finite results: four, except near the limits of the type.

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -26,33 +27,40 @@ inline const ScalarLimits& limits_of(Scalar scalar) {
 }
 
 // Exponent bounds of a pair: all coordinates are multiples of 2^low and less than 2^high.
-// Requires: some coordinate is not zero.
 struct Size {
-  int low = 1000, high = -1000;
-  int largest_difference = -1000, smallest_difference = 1000;  // exponents; vertex differences along one axis
+  static constexpr int kNone = 10'000;  // beyond all exponents
+  int low = kNone, high = -kNone;
+  int largest_difference = -kNone, smallest_difference = kNone;  // exponents; vertex differences along one axis
+  int least, most;  // of the coordinate type: the exponents of its least number, and of the first beyond its largest
 
-  explicit Size(const Pair& pair) {
-    const float* c = coordinates(pair);
+  template <class Real>
+  explicit Size(const BasicPair<Real>& pair)
+      : least(std::numeric_limits<Real>::min_exponent - std::numeric_limits<Real>::digits),
+        most(std::numeric_limits<Real>::max_exponent) {
+    constexpr int kDigits = std::numeric_limits<Real>::digits;
+    const Real* c = coordinates(pair);
     for (int i = 0; i < kCoordinates; ++i) {
       if (c[i] == 0) continue;
       int exponent;
-      auto mantissa = static_cast<std::uint32_t>(std::ldexp(std::frexp(std::fabs(c[i]), &exponent), 24));
+      const auto mantissa = static_cast<std::uint64_t>(std::ldexp(std::frexp(std::fabs(c[i]), &exponent), kDigits));
       high = std::max(high, exponent);
-      low = std::min(low, exponent - 24 + std::countr_zero(mantissa));
+      low = std::min(low, exponent - kDigits + std::countr_zero(mantissa));
       for (int j = i % 3; j < i; j += 3) add_difference(double{c[i]} - c[j]);
     }
     for (int axis = 0; axis < 3; ++axis) {
-      const bool zero =
-          std::any_of(c, c + kCoordinates, [&](const float& x) { return (&x - c) % 3 == axis && x == 0; });
-      for (int i = axis; zero && i < kCoordinates; i += 3) add_difference(c[i]);
+      const bool zero = std::any_of(c, c + kCoordinates, [&](const Real& x) { return (&x - c) % 3 == axis && x == 0; });
+      for (int i = axis; zero && i < kCoordinates; i += 3) add_difference(double{c[i]});
     }
   }
+
+  bool is_zero() const { return high == -kNone; }  // all coordinates are
 
  private:
   void add_difference(double difference) {
     if (difference == 0) return;
-    largest_difference = std::max(largest_difference, std::ilogb(difference));
-    smallest_difference = std::min(smallest_difference, std::ilogb(difference));
+    const int exponent = std::isinf(difference) ? most : std::ilogb(difference);
+    largest_difference = std::max(largest_difference, exponent);
+    smallest_difference = std::min(smallest_difference, exponent);
   }
 };
 
@@ -65,8 +73,8 @@ struct Scales {
 
 inline Scales common(Scales l, Scales r) { return {std::max(l.first, r.first), std::min(l.last, r.last)}; }
 
-// The scales at which only the exponents of the coordinates change.
-inline Scales exact_scales(const Size& size) { return {-149 - size.low, 128 - size.high}; }
+// The scales at which only the exponents of the coordinates change.   Requires here and below: not is_zero().
+inline Scales exact_scales(const Size& size) { return {size.least - size.low, size.most - size.high}; }
 
 // The scales at which no product of this many coordinates, and no sum of four such products, can leave the scalar's
 // exponents. However it rounds, such a product is a multiple of 2^(factors * low), or 0.

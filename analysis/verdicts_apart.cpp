@@ -13,13 +13,14 @@
 namespace graze::analysis {
 
 std::vector<VerdictsApart> verdicts_apart(const TwoDeciders& deciders, const std::vector<strata::PairSource>& sources,
-                                          int threads, const std::function<bool(const Pair&, const Pair&)>& simpler) {
+                                          int threads,
+                                          const std::function<bool(const AnyPair&, const AnyPair&)>& simpler) {
   constexpr std::uint64_t kPairsDecided = 64;
   const std::vector<SourceBlock> blocks = blocks_of(sources, kPairsDecided);
   const auto most = static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, most);
   const auto pair_at = [&](const PairPlace& place) {
-    return sources[static_cast<std::size_t>(place.source)].pair(place.index);
+    return sources[static_cast<std::size_t>(place.source)].any_pair(place.index);
   };
   // Equally simple pairs are ordered by their places, so that the simplest does not depend on the threads.
   const auto keep_simplest = [&](std::optional<PairPlace>& kept, const PairPlace& found) {
@@ -27,28 +28,32 @@ std::vector<VerdictsApart> verdicts_apart(const TwoDeciders& deciders, const std
       kept = found;
       return;
     }
-    const Pair old_pair = pair_at(*kept), pair = pair_at(found);
+    const AnyPair old_pair = pair_at(*kept), pair = pair_at(found);
     if (simpler(pair, old_pair) || (!simpler(old_pair, pair) && found < *kept)) kept = found;
   };
   tbb::enumerable_thread_specific<std::vector<VerdictsApart>> results(std::vector<VerdictsApart>(sources.size()));
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
     const SourceBlock& block = blocks[b];
     const auto source = static_cast<std::size_t>(block.source);
-    std::vector<Pair> pairs;
-    for (std::uint64_t i = 0; i < block.count; ++i) pairs.push_back(sources[source].pair(block.first + i));
-    const std::vector<Verdict> verdicts[2] = {verdicts_of(deciders.decide[0], pairs),
-                                              verdicts_of(deciders.decide[1], pairs)};
+    const strata::PairBlock pairs = strata::pairs_of(sources[source], block.first, block.count);
+    const auto verdicts_by = [&](const DecideBlock& decide) {
+      return pairs.in_doubles() && decide.decides_doubles() ? verdicts_of(decide, pairs.doubles)
+                                                            : verdicts_of(decide, pairs.floats);
+    };
+    const std::vector<Verdict> verdicts[2] = {verdicts_by(deciders.decide[0]), verdicts_by(deciders.decide[1])};
     VerdictsApart& to = results.local()[source];
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      if (!is_finite(pairs[i])) continue;
+      const AnyPair pair = pairs[i];
+      const Relation truth = visit(pair, [](const auto& own) { return relation_or_declined(own); });
+      if (truth.verdict == Verdict::declined) continue;
       ++to.pairs;
-      const Relation truth = relation_of(pairs[i]);
       bool right[2];  // or permitted by the code's convention
       for (int lane = 0; lane < 2; ++lane) {
         const Verdict verdict = verdicts[lane][i];
         right[lane] = verdict == truth.verdict;
         if (right[lane]) continue;
-        right[lane] = by_convention(*deciders.lanes[lane], verdict, pairs[i], truth);
+        right[lane] =
+            visit(pair, [&](const auto& own) { return by_convention(*deciders.lanes[lane], verdict, own, truth); });
         ++(right[lane] ? to.of[lane].by_convention : to.of[lane].of(verdict));
       }
       if (verdicts[0][i] == verdicts[1][i]) continue;

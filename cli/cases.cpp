@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "analysis/signature.h"
+#include "cli/commands.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/campaign_scene.h"
@@ -20,7 +21,8 @@ namespace {
 
 std::uint64_t number(const std::string& text, const std::string& name) {
   const std::optional<std::uint64_t> value = parse_whole(text);
-  if (!value) throw UsageError(name + ": expected a whole number, found '" + text + "'");
+  if (!value || *value > kMostWhole)
+    throw UsageError(name + ": expected a whole number up to 2^53, found '" + text + "'");
   return *value;
 }
 

@@ -55,7 +55,7 @@ class RecordedCode {
 
 // scene: "@" and its name, or empty.
 Json case_json(const strata::PairSource& source, const std::string& scene, std::uint64_t seed, std::uint64_t index) {
-  return fmt::format("{}{}:{}:{} {}", source.id, scene, seed, index, fuzz::pair_text(source.pair(index)));
+  return fmt::format("{}{}:{}:{} {}", source.id, scene, seed, index, fuzz::pair_text(source.any_pair(index)));
 }
 
 // Decides the pairs of the rows' strata again, by both lanes, and adds the counts to the rows.
@@ -65,8 +65,8 @@ void count_on_pairs(const Lane& before, const Lane& after, const std::vector<str
   std::vector<strata::PairSource> of_rows;
   for (const Json* row : rows)
     of_rows.push_back(*std::find_if(sources.begin(), sources.end(),
-                                    [&](const strata::PairSource& source) { return source.id == row->at("stratum"); }));
-  const auto simpler = [](const Pair& l, const Pair& r) { return simplicity(l) < simplicity(r); };
+                                    [&](const strata::PairSource& source) { return row->at("stratum") == source.id; }));
+  const auto simpler = [](const AnyPair& l, const AnyPair& r) { return simplicity(l) < simplicity(r); };
   const std::vector<analysis::VerdictsApart> found =
       analysis::verdicts_apart({{&before, &after}, {before.decide, after.decide}}, of_rows, 0, simpler);
   for (std::size_t s = 0; s < rows.size(); ++s) {
@@ -108,7 +108,6 @@ Json changed_rows(const std::string& before, const std::string& after) {
     const Lane *lane_then = then.lane(id), *lane_now = lane_then ? now.lane(id) : nullptr;
     if (!lane_then || !lane_now || !lane_then->decide || !lane_now->decide) continue;
     if (sources.empty()) sources = fuzz::recorded_sources(spec);
-    strata::expect_float32(sources, "report --since");
     count_on_pairs(*lane_then, *lane_now, sources, spec, changed);
   }
   return rows;

@@ -37,6 +37,7 @@ struct DiscrepancyOptions {
   std::vector<std::string> compare;
   std::vector<std::string> strata;
   std::uint64_t pairs = 20'000, seed = 1;
+  PairTypes coordinates = PairTypes::f32;
   int threads = 0, executor = 0;
   std::string scene, campaign, out;
 };
@@ -124,11 +125,13 @@ Comparisons comparisons_of(const DiscrepancyOptions& options) {
   return comparisons;
 }
 
-bool is_simpler(const Pair& l, const Pair& r) { return simplicity(l) < simplicity(r); }
+bool is_simpler(const AnyPair& l, const AnyPair& r) { return simplicity(l) < simplicity(r); }
 
 // The simplest pair to show: of two triangles, if possible, for one may well see no fault in a segment or a point.
-bool shows_better(const Pair& l, const Pair& r) {
-  const auto is_degenerate = [](const Pair& pair) { return fuzz::shape_name(relation_of(pair).hulls) == "degenerate"; };
+bool shows_better(const AnyPair& l, const AnyPair& r) {
+  const auto is_degenerate = [](const AnyPair& pair) {
+    return fuzz::shape_name(visit(pair, [](const auto& own) { return relation_of(own).hulls; })) == "degenerate";
+  };
   const bool of_l = is_degenerate(l), of_r = is_degenerate(r);
   return of_l != of_r ? of_r : is_simpler(l, r);
 }
@@ -169,6 +172,18 @@ int compare(const std::vector<std::string>& names) {
   return 0;
 }
 
+// Throws: UsageError if values are compared, or a lane takes float32 alone.
+void expect_take_doubles(const Comparisons& comparisons) {
+  if (!comparisons.values.empty())
+    throw UsageError("values are compared on pairs of float32 alone; only verdicts of your own code on doubles too");
+  for (const analysis::TwoDeciders& deciders : comparisons.verdicts) {
+    for (const Lane* lane : deciders.lanes) {
+      if (!fuzz::takes(*lane, DoublePair{}))
+        throw UsageError(cannot("compare", lane->id, "it takes pairs of float32 alone"));
+    }
+  }
+}
+
 int discrepancy(DiscrepancyOptions options) {
   options.subjects.executor = options.executor == kTwin ? fuzz::Executor::twin : fuzz::Executor::automatic;
   if (!options.compare.empty()) return compare(options.compare);
@@ -182,8 +197,9 @@ int discrepancy(DiscrepancyOptions options) {
   std::string left_out;
   if (options.campaign.empty()) {
     if (options.scene.empty()) {
-      spec.sources = strata::stratum_sources(seed, options.pairs, options.strata);
+      spec.sources = strata::stratum_sources(seed, options.pairs, options.strata, options.coordinates);
     } else {
+      expect_float32_scene(options.coordinates);
       fuzz::Json recorded;
       strata::SceneSources all = drawn_from_scene(options.scene, seed, options.pairs, options.strata, recorded);
       spec.sources = std::move(all.sources);
@@ -192,11 +208,13 @@ int discrepancy(DiscrepancyOptions options) {
     }
   } else {
     CampaignPairs of_campaign = pairs_of_campaign(options.campaign, options.pairs, "compare lanes on");
-    strata::expect_float32(of_campaign.sources, "discrepancy");
     spec.sources = std::move(of_campaign.sources);
     seed = of_campaign.seed;
     scene = of_campaign.scene;
   }
+  const bool in_doubles =
+      std::any_of(spec.sources.begin(), spec.sources.end(), [](const auto& source) { return source.in_doubles(); });
+  if (in_doubles) expect_take_doubles(comparisons);
   spec.threads = options.threads;
   std::string why_not;
   spec.on_device = options.executor != kTwin && cuda::open_device(why_not);
@@ -209,19 +227,19 @@ int discrepancy(DiscrepancyOptions options) {
   const reports::DiscrepancyResults found{spec, analysis::discrepancies(spec), origins_of(spec)};
 
   fuzz::Json verdicts = fuzz::Json::array();
-  std::optional<Pair> simplest;
+  std::optional<AnyPair> simplest;
   std::string next;
   for (const analysis::TwoDeciders& deciders : comparisons.verdicts) {
     const Lane &first = *deciders.lanes[0], &second = *deciders.lanes[1];
     std::optional<analysis::OperandsApart> operands;
-    if (analysis::shows_operands(first, second))
+    if (!in_doubles && analysis::shows_operands(first, second))
       operands = analysis::operands_apart(second, spec.sources, kOriginPairs / spec.sources.size());
     const auto apart = analysis::verdicts_apart(deciders, spec.sources, options.threads, shows_better);
     verdicts.push_back(reports::verdicts_json(deciders, spec.sources, apart, operands ? &*operands : nullptr));
     for (std::size_t s = 0; s < apart.size() && scene.empty(); ++s) {
       if (!apart[s].simplest) continue;
       const strata::PairSource& source = spec.sources[s];
-      const Pair pair = source.pair(apart[s].simplest->index);
+      const AnyPair pair = source.any_pair(apart[s].simplest->index);
       if (simplest && !shows_better(pair, *simplest)) continue;
       simplest = pair;
       next = fmt::format("Next: graze explain {}:{}:{} --lanes {},{}{}{}{}\n", source.id, source.seed,
@@ -288,11 +306,13 @@ void add_discrepancy(CLI::App& app, int& status) {
   add_subject_options(*command, options->subjects);
   add_resubject_option(*command, options->subjects);
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
+  add_coordinates_option(*command, options->coordinates);
   add_scene_option(*command, options->scene);
   command
       ->add_option("--campaign", options->campaign,
                    "Compare on the first pairs of this campaign; without --out, its report shows the results")
       ->excludes("--strata")
+      ->excludes("--coordinates")
       ->excludes("--scene")
       ->option_text("DIR");
   add_count(*command, "--pairs", options->pairs, 1, kMostWhole,
@@ -310,8 +330,8 @@ void add_discrepancy(CLI::App& app, int& status) {
       ->add_option("--out", options->out,
                    "Folder for discrepancy.html, .json and .csv (default: the campaign's, else discrepancy)")
       ->option_text("DIR");
-  for (const char* silenced :
-       {"--strata", "--scene", "--campaign", "--pairs", "--seed", "--threads", "--executor", "--out", "--subject"})
+  for (const char* silenced : {"--strata", "--coordinates", "--scene", "--campaign", "--pairs", "--seed", "--threads",
+                               "--executor", "--out", "--subject"})
     command->get_option("--compare")->excludes(silenced);
   command->get_option("--campaign")->excludes("--seed");
   command->callback([options, &status] { status = discrepancy(*options); });

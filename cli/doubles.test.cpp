@@ -245,7 +245,22 @@ TEST_F(Doubles, NoReasonIsToldThatNobodySaw) {
   std::ofstream(shell.folder / "y.pairs") << "0 0 0 1 0 0 0 1 0  0 0 1 1 0 1 0 1 1 | coordinates=f64\n";
   const std::string own =
       shell("graze explain y.pairs --subject yes=./yes.c:meet --lanes 'yes/*' | tr '\\n' ' ' | tr -s ' '").out;
-  EXPECT_NE(own.find("not settled (Graze makes experiments"), std::string::npos) << own;
+  EXPECT_NE(own.find("the code itself is wrong here, not its rounding (no sum and no product"), std::string::npos)
+      << own;
+}
+
+// An epsilon is found in a function of doubles as in one of floats, by what the function says of other doubles.
+TEST_F(Doubles, ExperimentsFindAnEpsilonInOnesOwnCode) {
+  std::ofstream(shell.folder / "near.c") << "#include <math.h>\n"
+                                            "int meet(const double* a, const double* b) {\n"
+                                            "  return fabs(b[2] - a[2]) <= 1e-6;\n"
+                                            "}\n";
+  std::ofstream(shell.folder / "near.pairs")
+      << "0.1 0.2 0  1.3 0 0  0 1.7 0   0.1 0 1e-7  1.1 0 1e-7  0 1.9 1e-7 | coordinates=f64\n";
+  const std::string own =
+      shell("graze explain near.pairs --subject near=./near.c:meet --lanes 'near/*' | tr '\\n' ' ' | tr -s ' '").out;
+  EXPECT_NE(own.find("an absolute epsilon decides"), std::string::npos) << own;
+  EXPECT_NE(own.find("with 1e-36 in place of 1e-6 at near.c:3 it is right"), std::string::npos) << own;
   EXPECT_EQ(own.find("perhaps"), std::string::npos) << own;
 }
 
@@ -489,6 +504,76 @@ TEST_F(Doubles, ErrorsAndCostsAreMeasuredOnThem) {
   EXPECT_EQ(found["lanes"].size(), 4u);
 }
 
+// A case of a lane in float is a pair of float32, that of a lane in double one of doubles. Each is wrong as `check`
+// reads it.
+TEST_F(Doubles, BrokenInvariantsAreCountedOnThem) {
+  expect_done(
+      "graze invariants --coordinates f64 --pairs 2800 --lanes "
+      "'guigue*/*/cpu,exact/*/cpu' --out i");
+  const Json found = Json::parse(contents(shell.folder / "i/invariants.json"));
+  ASSERT_EQ(found["lanes"].size(), 4u);
+  EXPECT_GT(found["truth"]["pairs"], 5000);  // and what float32 stores of each, where it can
+  for (const Json& lane : found["lanes"]) {
+    const std::string id = lane["lane"];
+    const Json& order = lane["invariants"]["order"];
+    EXPECT_EQ(order["pairs"] == 2800, id.find("/f64/") != id.npos) << id;
+    EXPECT_EQ(order["strata"].size(), 28u);
+    EXPECT_EQ(order["strata"]["stored/f64"]["pairs"], 100);
+    EXPECT_EQ(order["changed"] == 0, id.starts_with("exact/")) << id;
+    if (order["changed"] == 0) continue;
+    const std::string from = order["case"]["from"];
+    EXPECT_EQ(from.ends_with("/f64, stored in float32"), id.find("/f32/") != id.npos) << from;
+    const Ran checked = shell("graze check i/cases/order.pairs --json --lanes '" + id + "'");
+    std::istringstream lines(checked.out);
+    bool wrong = false;
+    for (std::string line; std::getline(lines, line);) {
+      const Json pair = Json::parse(line);
+      wrong = wrong || pair["lanes"][id] != pair["truth"]["verdict"];
+    }
+    EXPECT_TRUE(wrong) << checked.out << checked.err;
+  }
+}
+
+// The verdicts of one's own code against the exact lane are the campaign's errors, of either type; a later campaign
+// says on which pairs of doubles the code's verdict changed.
+TEST_F(Doubles, VerdictsOfOnesOwnCodeAreComparedOnThem) {
+  std::ofstream(shell.folder / "mine.c") << "int meet(const double* a, const double* b) { return a[0] > b[0]; }\n"
+                                            "int meet_f(const float* a, const float* b) { return a[0] > b[0]; }\n";
+  const std::string drawn = " --coordinates f64 --strata stored,uniform --pairs 1000 --out ";
+  for (const std::string& scalar : {std::string("f64"), std::string("f32")}) {
+    const std::string subject = scalar == "f64" ? "mine=mine.c:meet" : "mine=mine.c:meet_f";
+    const std::string lane = "mine/" + scalar + "/cpu", exact = "exact/" + scalar + "/cpu";
+    expect_done("graze discrepancy " + lane + " " + exact + " --subject " + subject + drawn + "d_" + scalar);
+    expect_done("graze fuzz --lanes '" + lane + "," + exact + "' --subject " + subject + drawn + "c_" + scalar);
+    const Json found = Json::parse(contents(shell.folder / ("d_" + scalar) / "discrepancy.json"))["verdicts"][0];
+    const Json summary = Json::parse(contents(shell.folder / ("c_" + scalar) / "summary.json"));
+    for (const auto& [stratum, row] : found["strata"].items()) {
+      EXPECT_TRUE(stratum.ends_with("/f64")) << stratum;
+      const Json& lanes = summary["strata"][stratum]["lanes"];
+      for (const auto& [of, id] : {std::pair{"of_first", lane}, {"of_second", exact}}) {
+        for (const char* error : {"false_positive", "false_negative"})
+          EXPECT_EQ(row[of].value(error, 0), lanes[id][error]) << id << stratum << error;
+      }
+      EXPECT_GT(row["differs"], 0) << stratum;
+    }
+    EXPECT_EQ(found["total"]["of_second"].value("false_positive", 0) == 0, scalar == "f64");  // by storing alone
+  }
+  std::ofstream(shell.folder / "mine.c") << "int meet(const double* a, const double* b) { return 1; }\n";
+  expect_done("graze fuzz --lanes 'mine/*,exact/*' --subject mine=mine.c:meet" + drawn + "later");
+  expect_done("graze report --compare c_f64 later");
+  std::uint64_t broken = 0, mended = 0;
+  const Json compared = Json::parse(contents(shell.folder / "later/compare.json"))["compare"]["verdicts"];
+  for (const Json& row : compared) {
+    if (row["known"] == "same") continue;
+    broken += row["broken"].get<std::uint64_t>();
+    mended += row["mended"].get<std::uint64_t>();
+    EXPECT_TRUE(row["smallest_mended"].get<std::string>().starts_with(row["stratum"].get<std::string>() + ":1:"))
+        << row;
+  }
+  EXPECT_GT(broken, 0u);
+  EXPECT_GT(mended, 0u);
+}
+
 TEST_F(Doubles, VerbsThatTakeFloat32AloneSaySo) {
   expect_done(kCampaign);
   const Json summary = Json::parse(contents(shell.folder / "c/summary.json"));
@@ -497,7 +582,8 @@ TEST_F(Doubles, VerbsThatTakeFloat32AloneSaySo) {
            {"graze tune moller_1997/f64/cuda-nofma --from c", "moller_1997/f64/cuda-nofma"},
            {"graze tune moller_1997/f32/cpu --scene a.toml --coordinates f64", "--coordinates"},
            {"graze pareto --scene a.toml --coordinates both", "--coordinates"},
-           {"graze discrepancy moller_1997/f32/cpu moller_1997/f32/cpu-fma --campaign c", "discrepancy"},
+           {"graze invariants --scene a.toml --coordinates f64", "--coordinates"},
+           {"graze discrepancy moller_1997/f32/cpu moller_1997/f32/cpu-fma --campaign c", "pairs of float32 alone"},
            {"graze fuzz --coordinates f64 --scene a.toml --out m", "--coordinates"}})
     expect_error(command, 2, {word});
   expect_error("graze view " + file, 1, {file, "doubles"});

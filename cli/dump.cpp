@@ -216,7 +216,12 @@ void add_dump(CLI::App& app, int&) {
       ->excludes("--lanes")
       ->excludes("--subject")
       ->excludes("--format");
-  command->callback([options] { options->values.empty() ? dump(*options) : dump_values(*options); });
+  command->callback([options] {
+    const LaneOptions& lanes = options->lanes;
+    if (lanes.executor != fuzz::Executor::automatic && lanes.globs.empty() && lanes.subjects.empty())
+      throw UsageError("--executor is for lanes whose verdicts are added; name them with --lanes");
+    options->values.empty() ? dump(*options) : dump_values(*options);
+  });
 }
 
 }  // namespace graze::cli

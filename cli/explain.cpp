@@ -230,9 +230,7 @@ void print_json(const ExplainOptions& options, const fuzz::SelectedLanes& under_
 
 void explain_cases(const ExplainOptions& options) {
   fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
-  // The user's own code comes first.
-  std::stable_partition(under_test.lanes.begin(), under_test.lanes.end(),
-                        [](const Lane* lane) { return lane->foreign; });
+  fuzz::put_own_code_first(under_test);
   const reports::Screen screen = output_screen();
   const std::vector<corpus::Entry> entries = read_cases(options.name, PairTypes::both);
   take_doubles_of(entries, under_test);

@@ -97,6 +97,10 @@ TEST_F(Inputs, WrongWordsAreNamedWithWhatIsNearest) {
   expect_error("echo | graze check - --truth-only --lanes '*'", 2, {"--lanes"});
   expect_error("echo | graze check - --truth-only --toolchains x86-gcc", 2, {"--toolchains"});
   expect_error("graze dump uniform --pairs 2 --toolchains x86-gcc", 2, {"--toolchains", "--lanes"});
+  expect_error("graze dump uniform --pairs 2 --executor twin", 2, {"--executor", "--lanes"});
+  expect_error("graze scene a.toml --sufficient 1e-3 --poses p.csv", 2, {"--poses"});
+  expect_error("graze scene a.toml --sufficient 1e-3 --units mm", 2, {"--units"});
+  expect_error("graze repro uniform:18446744073709551615:1", 2, {"uniform:18446744073709551615:1", "2^53"});
   expect_error("graze bench --between a.off b.off --lanes '*/f32/cpu'", 2, {"--lanes", "--triangles"});
   expect_error("graze bench --between a.off b.off --plot p.svg", 2, {"--plot", "--triangles"});
 }

@@ -19,19 +19,22 @@ struct InvariantsOptions {
   LaneOptions lanes;
   std::vector<std::string> strata;
   std::uint64_t pairs = 20'000, seed = 1;
+  PairTypes coordinates = PairTypes::f32;
   int threads = 0;
   std::string scene, out = "invariants";
 };
 
 int invariants(const InvariantsOptions& options) {
+  if (!options.scene.empty()) expect_float32_scene(options.coordinates);
   fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
+  if (options.coordinates != PairTypes::f32) take_doubles(under_test);
   analysis::InvariantSpec spec;
   spec.lanes = under_test.lanes;
   spec.on_host = under_test.on_host;
-  strata::SceneSources all = drawn(options.scene, options.seed, options.pairs, options.strata);
+  strata::SceneSources all = drawn(options.scene, options.seed, options.pairs, options.strata, options.coordinates);
   spec.sources = std::move(all.sources);
   spec.threads = options.threads;
-  spec.simpler = [](const Pair& l, const Pair& r) { return simplicity(l) < simplicity(r); };
+  spec.simpler = [](const AnyPair& l, const AnyPair& r) { return simplicity(l) < simplicity(r); };
   const ResultFolder folder(options.out, "invariants.json");
   const analysis::Invariants found = analysis::invariants(spec);
 
@@ -72,6 +75,7 @@ void add_invariants(CLI::App& app, int& status) {
   const auto options = std::make_shared<InvariantsOptions>();
   add_lane_options(*command, options->lanes, Executors::twins);
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
+  add_coordinates_option(*command, options->coordinates);
   add_scene_option(*command, options->scene);
   add_count(*command, "--pairs", options->pairs, 1, kMostWhole,
             "Number of pairs in total, shared evenly by the strata; each is decided in about 70 forms");

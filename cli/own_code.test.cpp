@@ -92,6 +92,30 @@ INSTANTIATE_TEST_SUITE_P(cli, Emitted, testing::ValuesIn(kCodes),
 
 class OwnCodeTest : public CommandTest {};
 
+// Your own code comes first in the sentences and in the table; each lane's row has its own verdict.
+TEST_F(OwnCodeTest, ExplainShowsEachLanesOwnVerdict) {
+  std::ofstream(shell.folder / "own.c") << "int zero(const float* a, const float* b) { return 0; }\n"
+                                           "int none(const float* a, const float* b) { return -1; }\n";
+  expect_done("cc -shared -fPIC own.c -o own.so");
+  std::ofstream(shell.folder / "p.pairs") << "0 0 0  4 0 0  0 4 0   1 1 -1  1 1 1  3 3 1\n";
+  for (const auto& [function, says] : {std::pair("zero", "disjoint"), {"none", "declined"}}) {
+    const std::string of = std::string(" p.pairs --subject own=./own.so:") + function;
+    const Ran ran = shell("graze explain" + of + " --lanes 'own/f32/cpu,moller_1997/f32/cpu,exact/f32/cpu'");
+    const auto row = [&](const char* lane) {
+      std::istringstream lines(ran.out);
+      for (std::string line; std::getline(lines, line);) {
+        if (line.find(lane) != line.npos && line.find("says") == line.npos) return line;
+      }
+      return std::string();
+    };
+    EXPECT_NE(row("own/f32 ").find(says), std::string::npos) << ran.out << ran.err;
+    for (const char* lane : {"moller_1997/f32 ", "exact/f32 "}) {
+      EXPECT_NE(row(lane).find("intersects"), std::string::npos) << ran.out;
+      EXPECT_EQ(row(lane).find('!'), std::string::npos) << ran.out;
+    }
+  }
+}
+
 TEST_F(OwnCodeTest, TheExactLaneRunsBesideItUnlessALaneOptionLeavesItOut) {
   std::ofstream(shell.folder / "own.c") << "int intersects(const float a[9], const float b[9]) { return 1; }\n";
   const std::string graze = "export XDG_CACHE_HOME=$PWD/cache; graze ",

@@ -18,6 +18,7 @@
 #include "core/text.h"
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/recorded.h"
+#include "fuzz/files.h"
 #include "fuzz/own_files.h"
 #include "reports/comparison.h"
 #include "reports/report.h"

@@ -65,6 +65,8 @@ TEST_F(PackCommand, DamagedRecordsAreNotPacked) {
                                       {"sed -i 's/\"seconds\": /\"seconds\": 1/' c/timings.json", "timings.json"},
                                       {"sed -i 's/\"pairs\": /\"pairs\": 1/' c/failures.json", "failures.json"}})
     expect_error(std::string("cd home; rm -rf c; cp -r whole c; ") + damage + "; graze pack c --force", 1, {named});
+  for (const char* ignored : {"--executor twin", "--toolchains x86-gcc", "--resubject", "--lanes '*'"})
+    expect_error(std::string("graze repro c.sqlar ") + ignored, 2, {"leave out", "--executor"});
   const Ran again = shell("mkdir there && cd there && graze repro ../c.sqlar");
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_NE(again.out.find("\nReproduced: "), std::string::npos) << again.out;

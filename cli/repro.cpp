@@ -82,8 +82,11 @@ bool compare_truth(const corpus::Entry& entry, const oracle::Truth& t) {
 
 int repro(const std::string& name, const LaneOptions& lanes, const std::string& emitted) {
   if (fuzz::is_archive(name)) {
-    if (!lanes.globs.empty() || !lanes.subjects.empty() || !emitted.empty())
-      throw UsageError("graze repro: a pack runs as its campaign did; leave out --lanes, --subject and --emit");
+    if (!lanes.globs.empty() || !lanes.subjects.empty() || !lanes.toolchains.empty() || lanes.resubject ||
+        lanes.executor != fuzz::Executor::automatic || !emitted.empty())
+      throw UsageError(
+          "graze repro: a pack runs as its campaign did; leave out --lanes, --subject, "
+          "--toolchains, --executor, --resubject and --emit");
     return repro_pack(name);
   }
   fuzz::SelectedLanes under_test = selected_lanes(lanes, name);

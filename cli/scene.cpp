@@ -172,7 +172,7 @@ void add_scene(CLI::App& app, int&) {
                    "Highest rate of wrong verdicts; finds the cheapest lane that keeps it in the scene")
       ->check(number(1e-6, 0.5))
       ->option_text("RATE");
-  command->callback([options] {
+  command->callback([options, command] {
     const bool is_scene = fs::path(options->files[0]).extension() == ".toml";
     if (options->sufficient > 0 && options->out.empty() != is_scene)
       throw UsageError(
@@ -181,6 +181,10 @@ void add_scene(CLI::App& app, int&) {
     if (!is_scene) return scene(*options);
     if (options->files.size() > 1 || options->sufficient == 0)
       throw UsageError("graze scene measures meshes or pairs; a scene that exists needs --sufficient");
+    for (const char* measures : {"--poses", "--units", "--exact-input"}) {
+      if (command->count(measures) > 0)
+        throw UsageError(std::string(measures) + " is for meshes and pairs that are measured, not for a scene");
+    }
     print_sufficient(options->files[0], options->sufficient);
   });
 }

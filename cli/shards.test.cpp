@@ -259,12 +259,21 @@ TEST_F(Shards, StatusRefusesADamagedStatus) {
                                             {"rate", -1, "rate"},
                                             {"ways", {1}, damaged},
                                             {"ways", {way, way}, "twice"},
+                                            {"ways", {"such"}, "no hash"},
+                                            {"process", -1, "process"},
+                                            {"hash", "", "hash"},
                                             {"updated", "x", "updated"}}) {
     Json other = whole;
     other[field] = value;
     refused(sealed(other), found);
     refused(other.dump(), "its checksum differs");
   }
+  std::ofstream(shell.folder / "c/status.json") << sealed(whole);
+  expect_error("graze status c ./c", 2, {"./c", "twice"});
+  Json foreign = whole;
+  foreign["why"] = "a\x1b[31m\nb";
+  std::ofstream(shell.folder / "c/status.json") << sealed(foreign);
+  EXPECT_NE(shell("graze status c").out.find("a\\x1b[31m\\x0ab"), std::string::npos);
   for (const char* field : {"state", "shard", "pairs", "done", "disagreements", "signatures", "updated"}) {
     Json other = whole;
     other.erase(field);

@@ -14,6 +14,7 @@
 #include "cli/progress.h"
 #include "cli/results.h"
 #include "core/cannot.h"
+#include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/rank_stores.h"
@@ -120,7 +121,9 @@ Json status_of(const StatusOptions& options) {
   std::uint64_t pairs = 0, done = 0, disagreements = 0;
   std::set<std::string> known;
   double rate = 0;
+  std::set<fs::path> named;
   for (const std::string& name : options.directories) {
+    if (!named.insert(fs::weakly_canonical(name)).second) throw UsageError(printable(name) + " is named twice");
     std::vector<fs::path> places = fuzz::rank_directories(name);
     if (places.empty()) places.emplace_back(name);
     std::uint64_t of_ranks = 0;
@@ -157,7 +160,7 @@ std::string table(const Json& all) {
         reports::grouped(static_cast<std::uint64_t>(row["rate"].get<double>())),
         row["seconds_left"].is_null() ? "-" : duration(row["seconds_left"].get<double>()),
         reports::grouped(row["disagreements"]), reports::grouped(row["signatures"]), reports::grouped(row["new"]));
-    if (row.contains("why")) text += "  " + row["why"].get<std::string>() + '\n';
+    if (row.contains("why")) text += "  " + printable(row["why"].get<std::string>()) + '\n';
   }
   std::vector<std::string> states;
   for (const auto& [state, count] : all["states"].items())

@@ -148,7 +148,7 @@ std::optional<reports::EpsilonEffect> epsilon_effect(const Lane& own, const std:
   for (const subjects::Epsilon& number : numbers)
     effect.named += (effect.named.empty() ? "" : " and ") + epsilon_in_words(file, number);
   const auto found = analysis::verdicts_apart({{&own, &own}, {own.decide, *changed}}, sources, 0,
-                                              [](const Pair&, const Pair&) { return false; });
+                                              [](const AnyPair&, const AnyPair&) { return false; });
   for (const analysis::VerdictsApart& of_source : found) {
     effect.mended += of_source.mended;
     effect.broken += of_source.broken;

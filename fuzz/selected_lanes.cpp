@@ -22,14 +22,13 @@ std::string why_unavailable(const Lane& lane, const cuda::Device* device, const 
   return device && backend.has_device ? "" : backend.why_not_on_host(lane, why_no_device);
 }
 
-// The table has lanes under a policy at its end; this moves them to the other lanes of their subject.
-void sort_by_subject(SelectedLanes& under_test) {
-  std::map<const AlgorithmInfo*, std::size_t> places;
-  for (const Lane* lane : under_test.lanes) places.emplace(lane->info, places.size());
+// Sorts the lanes by place(lane), with what decides them. Lanes of one place keep their order.
+template <class Place>
+void sort_lanes(SelectedLanes& under_test, const Place& place) {
   std::vector<std::size_t> order(under_test.lanes.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) {
-    return places.at(under_test.lanes[l]->info) < places.at(under_test.lanes[r]->info);
+    return place(*under_test.lanes[l]) < place(*under_test.lanes[r]);
   });
   SelectedLanes sorted;
   for (const std::size_t l : order) {
@@ -38,6 +37,13 @@ void sort_by_subject(SelectedLanes& under_test) {
   }
   under_test.lanes = std::move(sorted.lanes);
   under_test.on_host = std::move(sorted.on_host);
+}
+
+// The table has lanes under a policy at its end; this moves them to the other lanes of their subject.
+void sort_by_subject(SelectedLanes& under_test) {
+  std::map<const AlgorithmInfo*, std::size_t> places;
+  for (const Lane* lane : under_test.lanes) places.emplace(lane->info, places.size());
+  sort_lanes(under_test, [&](const Lane& lane) { return places.at(lane.info); });
 }
 
 bool wants_lanes(const std::string& pattern) { return !pattern.starts_with(kLeaveOut); }
@@ -203,6 +209,10 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
                                  fmt::join(left_out_in_words(under_test.left_out), "; ")));
   }
   return under_test;
+}
+
+void put_own_code_first(SelectedLanes& under_test) {
+  sort_lanes(under_test, [](const Lane& lane) { return !lane.foreign; });
 }
 
 bool takes(const Lane& lane, const AnyPair& pair) {

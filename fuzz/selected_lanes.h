@@ -66,6 +66,9 @@ void expect_each_matches(const std::vector<std::string>& globs, const std::vecto
 // lanes in double that take float32 pairs alone.   Returns: these.   Throws: as expect_each_runs.
 std::vector<LaneLeftOut> select_for_doubles(SelectedLanes& under_test);
 
+// Moves lanes of foreign code before the others.
+void put_own_code_first(SelectedLanes& under_test);
+
 // Whether the lane decides pairs of this type. Lanes in float decide doubles as float32 stores them.
 bool takes(const Lane& lane, const AnyPair& pair);
 

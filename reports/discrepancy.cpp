@@ -291,18 +291,12 @@ Json discrepancy_json(const DiscrepancyResults& results) {
   for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
     const LanesCompared& lanes = spec.lanes[l];
     const std::vector<Question>& questions = questions_of(lanes.first->algorithm);
-    Json list = Json::array(), strata = Json::object();
-    for (const Question& question : questions) {
-      list.push_back({{"question", question.name},
-                      {"site", site_name(question.site)},
-                      {"degree", question.degree},
-                      {"values", question.of}});
-    }
+    Json strata = Json::object();
     for (std::size_t s = 0; s < spec.sources.size(); ++s)
       strata[spec.sources[s].id] = counts_json(found[l][s], questions, spec.sources[s].axis);
     all.push_back({{"first", lanes.first->id},
                    {"second", lanes.second->id},
-                   {"questions", list},
+                   {"questions", questions_json(questions)},
                    {"total", counts_json(total(lanes, found[l]), questions, {})},
                    {"strata", strata},
                    {"origins", origins[l] ? origins_json(*origins[l], questions) : Json()}});

@@ -30,7 +30,9 @@ class DiscrepancyResult : public testing::Test {
         spec,
         analysis::discrepancies(spec),
         {analysis::origins(*spec.lanes[0].second, spec.sources, 500, 0, simpler), std::nullopt}};
-    json_ = {{"pairs", 9000u}, {"seed", 4u}};
+    json_ = {{"pairs", 9000u},
+             {"seed", 4u},
+             {"build", {{"version", "1"}, {"commit", "a"}, {"compiler", "GCC"}, {"cuda", nullptr}}}};
     json_.update(discrepancy_json(results));
     csv_ = discrepancy_csv(results);
   }
@@ -56,16 +58,24 @@ TEST_F(DiscrepancyResult, EveryCountThatIsEditedIsRefused) {
     }
   }
   EXPECT_GT(passed, 200u);
-  for (const auto& [place, value] : {std::pair<const char*, Json>("/pairs", 8999u),
-                                     {"/lanes/0/second", json_["lanes"][0]["first"]},
-                                     {"/lanes/0/second", "interval_overlap/f32/cuda-nofma"},
-                                     {"/lanes/1", json_["lanes"][0]},
-                                     {"/lanes/1/origins", json_["lanes"][0]["origins"]},
-                                     {"/lanes/0/origins/starts/0/by_line", {{"99", 1}}},
-                                     {"/lanes/0/origins/starts/0/by_line", {{"abc", 1}}},
-                                     {"/lanes/0/origins/starts/0/by_line", {{"1x", 1}}},
-                                     {"/lanes/0/origins/starts/1", json_["lanes"][0]["origins"]["starts"][0]},
-                                     {"/lanes/0/origins/lines/0/line", 3}}) {
+  for (const auto& [place, value] :
+       {std::pair<const char*, Json>("/pairs", 8999u),
+        {"/seed", -1},
+        {"/seed", 1.5},
+        {"/build", nullptr},
+        {"/lanes/0/questions", nullptr},
+        {"/lanes/0/questions/0/degree", -7},
+        {"/lanes/0/strata/thesis/unlike", {1e308, 0.5}},
+        {"/lanes/0/origins/verdicts", json_["lanes"][0]["total"]["verdict"].get<std::uint64_t>() + 1},
+        {"/lanes/0/second", json_["lanes"][0]["first"]},
+        {"/lanes/0/second", "interval_overlap/f32/cuda-nofma"},
+        {"/lanes/1", json_["lanes"][0]},
+        {"/lanes/1/origins", json_["lanes"][0]["origins"]},
+        {"/lanes/0/origins/starts/0/by_line", {{"99", 1}}},
+        {"/lanes/0/origins/starts/0/by_line", {{"abc", 1}}},
+        {"/lanes/0/origins/starts/0/by_line", {{"1x", 1}}},
+        {"/lanes/0/origins/starts/1", json_["lanes"][0]["origins"]["starts"][0]},
+        {"/lanes/0/origins/lines/0/line", 3}}) {
     Json other = json_;
     other[Json::json_pointer(place)] = value;
     EXPECT_THROW(expect_possible_discrepancy(other), std::exception) << place;

@@ -29,6 +29,17 @@ ordered_json octaves_json(std::span<const std::uint64_t> counts) {
   return histogram;
 }
 
+ordered_json questions_json(const std::vector<Question>& questions) {
+  ordered_json list = ordered_json::array();
+  for (const Question& question : questions) {
+    list.push_back({{"question", question.name},
+                    {"site", site_name(question.site)},
+                    {"degree", question.degree},
+                    {"values", question.of}});
+  }
+  return list;
+}
+
 std::optional<int> quantile(const Octaves& octaves, double share) {
   std::uint64_t all = 0, so_far = 0;
   for (const auto& [k, count] : octaves) all += count;

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "core/discrepancy/questions.h"
+
 namespace graze::reports {
 
 // Throws: nlohmann::json::exception if there is no such key; std::runtime_error if it is no count.
@@ -20,6 +22,9 @@ inline std::string text_at(const nlohmann::ordered_json& json, const char* key) 
 
 // part / whole; 0 of nothing.
 double part_of(std::uint64_t part, std::uint64_t whole);
+
+// The questions of an algorithm, as they are listed: name, site, degree and values.
+nlohmann::ordered_json questions_json(const std::vector<Question>& questions);
 
 // The name of a bucket by its exponent, and a histogram with the buckets that are not zero.
 std::string octave(int k);

@@ -50,7 +50,7 @@ class FailureCards : public CampaignTest {
     const std::string_view shape = fuzz::shape_name(truth.hulls, analysis::nesting_of(pair, truth));
     std::set<std::string> found;
     for (const fuzz::LaneReason& reason : fuzz::reasons_of(under_test, subject, pair, truth.verdict)) {
-      if (fuzz::kind_key(subject, reason, shape) == kind["key"]) found.insert(reason.lane->id);
+      if (kind["key"] == fuzz::kind_key(subject, reason, shape)) found.insert(reason.lane->id);
     }
     return found;
   }

@@ -24,7 +24,9 @@ const std::optional<InvariantCase>& case_of(const analysis::InvariantsOfLane& la
 }
 
 std::string place_of(const analysis::InvariantSpec& spec, const InvariantCase& found) {
-  return fmt::format("pair {} of {}", found.place.index, spec.sources[static_cast<std::size_t>(found.place.source)].id);
+  const strata::PairSource& source = spec.sources[static_cast<std::size_t>(found.place.source)];
+  return fmt::format("pair {} of {}{}", found.place.index, source.id,
+                     source.in_doubles() && found.pair.floats ? ", stored in float32" : "");
 }
 
 Json case_json(const analysis::InvariantSpec& spec, const std::optional<InvariantCase>& found) {
@@ -39,14 +41,13 @@ Json case_json(const analysis::InvariantSpec& spec, const std::optional<Invarian
 // The two entries of a case: the pair with the wrong verdict, then the other.
 std::vector<corpus::Entry> entries_of(const analysis::InvariantSpec& spec, const Lane& lane,
                                       const InvariantInfo& invariant, const InvariantCase& found) {
-  const auto entry = [&](const Pair& pair, Verdict says, const std::string& from) {
-    const Verdict truth = decide_one(spec.exact, pair);
-    return corpus::Entry{pair,
-                         {{"invariant", std::string(invariant.id)},
-                          {"lanes", lane.id},
-                          {"from", from},
-                          {"says", std::string(name(says))},
-                          {"truth", std::string(name(truth))}}};
+  const auto entry = [&](const AnyPair& pair, Verdict says, const std::string& from) {
+    const Verdict truth = visit(pair, [&](const auto& own) { return decide_one(spec.exact, own); });
+    return corpus::entry_of(pair, {{"invariant", std::string(invariant.id)},
+                                   {"lanes", lane.id},
+                                   {"from", from},
+                                   {"says", std::string(name(says))},
+                                   {"truth", std::string(name(truth))}});
   };
   const std::string from = place_of(spec, found);
   std::vector<corpus::Entry> entries = {entry(found.pair, found.of_pair, from),

@@ -57,7 +57,7 @@ void expect_possible_counts(const Json& of, const std::vector<Question>& questio
   expect(number_at(of, "sign") <= number_at(of, "differs") + number_at(of, "choice"),
          what + ": more signs differ than values and choices");
   for (const Json& unlike : of.at("unlike"))
-    expect(unlike.get<std::uint64_t>() <= number_at(of, "pairs"), what + ": unlike");
+    expect(unlike.is_number_unsigned() && unlike <= of.at("pairs"), what + ": unlike");
   for (const auto& [site, counts] : of.at("sites").items()) {
     expect_falling(counts, {"asked", "differs", "sign"}, what + ", " + site);
     expect(number_at(counts, "asked") <= number_at(of, "pairs"), what + ": more pairs at " + site);
@@ -111,6 +111,8 @@ void expect_possible_origins(const Json& of, const std::vector<Question>& questi
   const Json &origins = of.at("origins"), &total = of.at("total"), &lines = origins.at("lines");
   expect(number_at(origins, "pairs") <= number_at(total, "pairs"), what + ": more pairs are traced than compared");
   expect_falling(origins, {"pairs", "verdicts"}, what);
+  expect(number_at(origins, "verdicts") <= number_at(total, "verdict"),
+         what + ": more verdicts are traced than differ");
   std::size_t values = 0;
   for (const Question& question : questions) values += question.of.size();
   for (const Json& line : lines) {
@@ -146,6 +148,9 @@ void expect_possible_origins(const Json& of, const std::vector<Question>& questi
 void expect_possible_discrepancy(const Json& json) {
   const Json verdicts = json.value("verdicts", Json::array());
   expect(!json.at("lanes").empty() || !verdicts.empty(), "no lanes");
+  constexpr std::uint64_t kMostSeed = std::uint64_t{1} << 53;
+  expect(json.at("seed").is_number_unsigned() && json["seed"] <= kMostSeed, "the seed " + json["seed"].dump());
+  for (const char* name : {"version", "commit", "compiler"}) text_at(json.at("build"), name);
   for (const Json& of : verdicts) expect_possible_verdicts(of);
   std::set<std::set<std::string>> compared;
   for (const Json& of : json.at("lanes")) {
@@ -156,6 +161,7 @@ void expect_possible_discrepancy(const Json& json) {
                lanes[0]->scalar == lanes[1]->scalar,
            "not two lanes of one published algorithm and scalar");
     const std::vector<Question>& questions = questions_of(lanes[0]->algorithm);
+    expect(of.at("questions") == questions_json(questions), "the questions are not those of the algorithm");
     Json sum;
     for (const auto& [stratum, counts] : of.at("strata").items()) {
       expect_possible_counts(counts, questions, text_at(of, "second") + ", " + stratum);

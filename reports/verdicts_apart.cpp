@@ -141,7 +141,7 @@ Json verdicts_json(const analysis::TwoDeciders& deciders, const std::vector<stra
     Json& row = strata[sources[s].id] = row_of(found[s]);
     if (const auto& simplest = found[s].simplest)
       row["simplest"] = {{"place", fmt::format("{}:{}:{}", sources[s].id, sources[s].seed, simplest->index)},
-                         {"pair", coordinates_of(sources[s].pair(simplest->index))}};
+                         {"pair", coordinates_of(sources[s].any_pair(simplest->index))}};
   }
   Json of = {{"first", deciders.lanes[0]->id},
              {"second", deciders.lanes[1]->id},

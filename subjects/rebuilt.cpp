@@ -204,6 +204,7 @@ ChangedCode changed(const Lane& lane, const Change& change) {
   if (text.empty()) return nullptr;
   const SourceLanguage language = language_of(opened_of(lane));
   for (const Epsilon& number : change.negligible) key += '\n' + number.name;
+  if (change.value != kNegligible) key += fmt::format("\nby {}", change.value);
   for (const std::string& flag : change.flags) key += '\n' + flag;
   if (change.rounded) key += "\nrounded at " + change.rounded->place();
   Builds& all = builds();
@@ -216,7 +217,7 @@ ChangedCode changed(const Lane& lane, const Change& change) {
   }
   auto found = all.built.find(key);
   if (found == all.built.end()) {
-    text = with_value(text, change.negligible, kNegligible, language);
+    text = with_value(text, change.negligible, change.value, language);
     if (change.doubles) text = in_doubles(text);
     std::unique_ptr<ForeignProcesses> made;
     const StopSignals stops;

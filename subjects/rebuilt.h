@@ -38,13 +38,14 @@ TunableSource tunable_source(const Lane& lane, const std::string& name);
 std::unique_ptr<ForeignProcesses> rebuilt(const Lane& lane, const std::string& text, Scalar scalar,
                                           const std::vector<std::string>& more_flags = {});
 
+inline constexpr double kNegligible = 1e-36;  // a normal number in float32; comparisons with 0 keep their outcome
 struct Change {
-  std::vector<Epsilon> negligible = {};   // numbers of which kNegligible takes the place
+  std::vector<Epsilon> negligible = {};  // numbers of which another takes the place:
+  double value = kNegligible;
   std::vector<std::string> flags = {};    // further compiler flags
   bool doubles = false;                   // double takes the place of float
   std::optional<FusedLine> rounded = {};  // products that the compiler fuses at this line are rounded
 };
-inline constexpr double kNegligible = 1e-36;  // a normal number in float32; comparisons with 0 keep their outcome
 
 // The lines of the lane's source at which its compiler fuses products into additions. Empty if it has no source as
 // built, or fuses nothing.   Throws: Stopped.

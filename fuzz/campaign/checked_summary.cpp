@@ -175,6 +175,14 @@ void expect_possible_signatures(const Json& summary, std::uint64_t pairs) {
 
 // Checks a summary that has no database: counts are within their limits, and sums agree.
 void expect_possible_summary(const Json& summary) {
+  constexpr std::uint64_t kMostSeed = std::uint64_t{1} << 53;
+  if (const std::uint64_t seed = count(summary.at("spec"), "seed"); seed > kMostSeed)
+    throw Impossible(fmt::format("expected a seed up to 2^53, found {}", seed));
+  for (const auto& [field, value] : summary.at("build").items()) {
+    if (!value.is_string() && !value.is_null() && field != "executors")
+      throw Impossible(fmt::format("expected a text as build's {}, found {}", field, value.dump()));
+  }
+  for (const char* field : {"version", "commit", "compiler"}) summary["build"].at(field).get_ref<const std::string&>();
   std::uint64_t pairs = 0;
   const std::vector<std::string> lanes = summary.at("spec").at("lanes");
   for (const std::string& lane : lanes) {

@@ -39,6 +39,11 @@ std::set<std::string> ways_of(const std::map<std::string, SignatureCount>& signa
   return ways;
 }
 
+// Whether it is written as a hash is: 16 hexadecimal digits.
+bool is_hash(const std::string& text) {
+  return text.size() == 16 && text.find_first_not_of("0123456789abcdef") == text.npos;
+}
+
 // Throws: std::runtime_error that says what is wrong; Json::exception for another shape.
 void expect_possible_status(const Json& status) {
   const std::string state = status.at("state"), shard = status.at("shard");
@@ -58,18 +63,18 @@ void expect_possible_status(const Json& status) {
   const std::vector<std::string> all_ways = status.at("ways");
   const std::set<std::string> ways(all_ways.begin(), all_ways.end());
   if (ways.size() < all_ways.size()) throw std::runtime_error("it has one of its ways twice");
+  if (!std::all_of(ways.begin(), ways.end(), is_hash)) throw std::runtime_error("one of its ways is no hash");
   const std::uint64_t signatures = status["signatures"];
   if (ways.size() > signatures || (signatures > 0 && disagreements == 0))
     throw std::runtime_error(fmt::format("its counts contradict each other: {} disagreements, {} signatures, {} ways",
                                          disagreements, signatures, ways.size()));
   for (const char* whole : {"process", "updated"}) {
-    if (!status.at(whole).is_number_integer())
-      throw std::runtime_error(fmt::format("{} is not a whole number, but {}", whole, shown(status[whole].dump())));
+    if (!status.at(whole).is_number_unsigned())
+      throw std::runtime_error(fmt::format("{} is not a count, but {}", whole, shown(status[whole].dump())));
   }
   status.at("host").get_ref<const std::string&>();
-  for (const char* text : {"why", "hash"}) {
-    if (status.contains(text)) status[text].get_ref<const std::string&>();
-  }
+  if (status.contains("why")) status["why"].get_ref<const std::string&>();
+  if (status.contains("hash") && !is_hash(status["hash"])) throw std::runtime_error("its hash is none");
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "analysis/neighbours.h"
 #include "analysis/pareto.h"
 #include "analysis/tally.h"
+#include "core/lanes/convention.h"
 #include "core/lanes/verdicts.h"
 #include "core/relation_of.h"
 #include "fuzz/league/smallest.h"
@@ -59,7 +60,7 @@ struct Counting {
     const std::vector<Verdict> said = verdicts_of(*decide, pairs);
     std::vector<std::size_t> not_right;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      ++(analysis::is_outside(*row.lane, pairs[i], truths[i]) ? counts.outside : counts.pairs);
+      ++(is_outside(row.lane->outside, pairs[i], truths[i]) ? counts.outside : counts.pairs);
       if (said[i] == truths[i].verdict) continue;
       if (analysis::by_convention(*row.lane, said[i], pairs[i], truths[i])) {
         ++counts.by_convention;
@@ -112,7 +113,7 @@ struct Counting {
     const std::vector<Verdict> said = verdicts_of(*decide, all);
     for (std::size_t i = 0; i < all.size(); ++i) {
       const bool open =
-          invariants[i] == analysis::Invariant::part && analysis::is_outside(*row.lane, all[i], relation_of(all[i]));
+          invariants[i] == analysis::Invariant::part && is_outside(row.lane->outside, all[i], relation_of(all[i]));
       if (!open && analysis::breaks(invariants[i], of_pair, said[i])) return true;
     }
     return false;
@@ -122,7 +123,7 @@ struct Counting {
   // contract are skipped.
   void count_orders(std::span<const Pair> pairs, const std::vector<Relation>& truths) {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      if (analysis::is_outside(*row.lane, pairs[i], truths[i])) continue;
+      if (is_outside(row.lane->outside, pairs[i], truths[i])) continue;
       ++row.order_sample;
       const std::vector<Verdict> said = verdicts_of(*decide, analysis::orders(pairs[i]));
       row.order_dependent += std::adjacent_find(said.begin(), said.end(), std::not_equal_to<>()) != said.end();

@@ -85,7 +85,7 @@ TEST_F(Kinds, TheirPairsAreOfTheKind) {
       const Relation relation = relation_of(pair);
       const Verdict truth = relation.verdict;
       const std::string_view shape = shape_name(relation.hulls, analysis::nesting_of(pair, relation));
-      EXPECT_EQ(shape, kind["shape"]) << kind["key"];
+      EXPECT_EQ(kind["shape"], shape) << kind["key"];
       std::set<std::string> lanes;
       for (const LaneReason& reason : reasons_of(under_test_, kind["subject"].get<std::string>(), pair, truth)) {
         if (kind_key(kind["subject"].get<std::string>(), reason, shape) == kind["key"].get<std::string>())

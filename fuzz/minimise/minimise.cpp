@@ -137,8 +137,11 @@ struct FoundCause {
 };
 
 FoundCause found_cause(const Lane& lane, const AnyPair& pair, Verdict truth) {
-  if (!lane.foreign || !pair.floats) return {analysis::cause_of(lane, pair, truth), false};
-  const analysis::Experiment found = analysis::experiment(lane, analysis::decide_lane(lane, pair), *pair.floats, truth);
+  const bool stored = !pair.floats && lane.scalar == Scalar::f32;  // it decides another pair
+  if (!lane.foreign || stored) return {analysis::cause_of(lane, pair, truth), false};
+  const Verdict verdict = analysis::decide_lane(lane, pair);
+  const analysis::Experiment found =
+      visit(pair, [&](const auto& own) { return analysis::experiment(lane, verdict, own, truth); });
   return {found.cause, found.settled};
 }
 

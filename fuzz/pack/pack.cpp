@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/cannot.h"
+#include "core/error.h"
 #include "core/fnv1a.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"

@@ -142,7 +142,7 @@ std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum) {
       }
       break;
     case Stratum::lattice:
-      if (!scene.grid) return "your coordinates are on no grid";
+      if (!scene.grid) return "your scene has no grid";
       if (steps > kMostLatticeSteps)
         return fmt::format("your longest edge takes {:.3g} grid steps, more than {}", steps, kMostLatticeSteps);
       break;

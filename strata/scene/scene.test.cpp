@@ -193,7 +193,7 @@ TEST(Scene, WhatItCannotContainIsLeftOutWithTheReason) {
   EXPECT_EQ(why(mm, Stratum::mixed_scale), "your triangles' longest edges differ by a factor of 8, less than 16");
   EXPECT_EQ(why("extent = [0, 99]\nedges = [0.5, 40]", Stratum::mixed_scale), "drawn");
   EXPECT_EQ(why(mm, Stratum::sliver), "your aspect ratios stay within 1.2 … 10, below 1024");
-  EXPECT_EQ(why(mm, Stratum::lattice), "your coordinates are on no grid");
+  EXPECT_EQ(why(mm, Stratum::lattice), "your scene has no grid");
   EXPECT_EQ(why(mm, Stratum::exact_contact), "drawn");
   EXPECT_EQ(why("extent = [90000, 99000]\nedges = [0.1, 0.3]", Stratum::exact_contact),
             "your longest edge takes 38.4 ulps of your largest coordinate, fewer than 64");

@@ -56,8 +56,7 @@ bool has(const std::string& text, std::string_view part) { return text.find(part
 const Pair kFine{{{0.0117f, 0.0231f, 0.0119f}, {4.0177f, 0.0313f, 0.0171f}, {0.0239f, 4.0191f, 0.0113f}},
                  {{1.0133f, 1.0171f, -1.0193f}, {1.0271f, 1.0131f, 1.0119f}, {3.0117f, 3.0213f, 1.0157f}}};
 
-// With a negligible number in place of the unit all coordinates become the same. That is right on this pair, but gives
-// one verdict for all pairs.
+// With a negligible number in place of the unit the products of the wrong comparison underflow, so it is right.
 TEST_F(ExperimentsOnSources, AUnitIsNoEpsilon) {
   const Lane& lane = opened(
       "units", std::string(kHead) +

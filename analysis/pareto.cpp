@@ -140,7 +140,7 @@ std::vector<std::optional<Cost>> costs_of(std::span<const Lane* const> lanes, co
 }
 
 strata::PairBlock first_pairs(std::span<const strata::PairSource> sources, std::size_t count) {
-  const bool in_doubles = std::any_of(sources.begin(), sources.end(), [](const auto& of) { return of.in_doubles(); });
+  const bool in_doubles = any_in_doubles(sources);
   strata::PairBlock pairs;
   for (std::uint64_t i = 0; pairs.size() < count; ++i) {
     const std::size_t before = pairs.size();

@@ -271,6 +271,11 @@ std::vector<SourceBlock> blocks_of(Sources sources, std::uint64_t most) {
   return blocks;
 }
 
+bool any_in_doubles(Sources sources) {
+  return std::any_of(sources.begin(), sources.end(),
+                     [](const strata::PairSource& source) { return source.in_doubles(); });
+}
+
 std::uint64_t pairs_in(Sources sources) {
   std::uint64_t pairs = 0;
   for (const strata::PairSource& source : sources) pairs += source.pairs;

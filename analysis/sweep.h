@@ -63,6 +63,8 @@ std::vector<SourceBlock> blocks_of(Sources sources, std::uint64_t most);
 
 std::uint64_t pairs_in(Sources sources);  // in all
 
+bool any_in_doubles(Sources sources);
+
 // The source with change(pair) in place of each of its pairs, of either type. Only the host can draw it.
 template <class Change>
 strata::PairSource changed(strata::PairSource source, const Change& change) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 20261127;
 
-// Of each stratum. GRAZE_PAIRS asks for another number, such as 10^8 of all in docs/measurements.
+// Of each stratum. GRAZE_PAIRS asks for another number: a machine with many cores takes 10^8 of all.
 std::uint64_t pairs_wanted() {
   const char* text = std::getenv("GRAZE_PAIRS");
   return text ? std::stoull(text) : 100'000;

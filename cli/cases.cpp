@@ -9,9 +9,9 @@
 #include <cstdlib>
 
 #include "analysis/signature.h"
-#include "cli/commands.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "core/whole.h"
 #include "fuzz/campaign/campaign_scene.h"
 #include "oracle/written.h"
 #include "strata/pair_source.h"

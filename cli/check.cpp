@@ -38,14 +38,17 @@ void check(const CheckOptions& options) {
   if (!from_stdin) file = corpus::open_pairs(options.file);
   fuzz::SelectedLanes under_test;
   if (!options.truth_only) under_test = selected_lanes(options.lanes, options.file);
+  std::string evidence = cuda_evidence(under_test);
   const std::string name_of_input = from_stdin ? "standard input" : options.file;
   corpus::PairReader reader(from_stdin ? std::cin : file, name_of_input, PairTypes::both);
   std::size_t number_of_pair = 0;
   bool wrong = false, any_doubles = false;
   for (; const auto entry = reader.next(); ++number_of_pair) {
-    if (entry->doubles && !std::exchange(any_doubles, true) && !options.truth_only) take_doubles(under_test);
+    if (entry->doubles && !std::exchange(any_doubles, true) && !options.truth_only) {
+      take_doubles(under_test);
+      evidence = cuda_evidence(under_test);
+    }
     if (options.exact_input) expect_exact_input(name_of_input, *entry);
-    const std::string evidence = cuda_evidence(under_test);
     const oracle::Truth t = truth_of(*entry);
     const std::string note = written_note(*entry, t), stored = stored_verdicts(*entry, under_test.left_out, t.verdict);
     const std::vector<Verdict> verdicts =

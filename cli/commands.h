@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/whole.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/campaign_scene.h"
 #include "fuzz/campaign/store_file.h"
@@ -133,9 +134,6 @@ void expect_float32_scene(PairTypes types);
 
 // Lists the strata that the scene cannot contain, with the reasons, below a heading; empty for none.
 std::string left_out_text(const std::vector<strata::LeftOut>& left_out);
-
-// The limit of pair counts and seeds: 2^53, up to which every JSON reader represents all whole numbers exactly.
-inline constexpr std::uint64_t kMostWhole = std::uint64_t{1} << 53;
 
 // Accepts whole numbers in [least, most], also as 1e6, 10M or 1_000_000, and nothing else. To be used by transform().
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);

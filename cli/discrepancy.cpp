@@ -212,8 +212,7 @@ int discrepancy(DiscrepancyOptions options) {
     seed = of_campaign.seed;
     scene = of_campaign.scene;
   }
-  const bool in_doubles =
-      std::any_of(spec.sources.begin(), spec.sources.end(), [](const auto& source) { return source.in_doubles(); });
+  const bool in_doubles = analysis::any_in_doubles(spec.sources);
   if (in_doubles) expect_take_doubles(comparisons);
   spec.threads = options.threads;
   std::string why_not;

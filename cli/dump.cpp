@@ -97,9 +97,7 @@ void dump(const DumpOptions& options) {
   if (lanes.globs.empty()) expect_own_code_among(lanes, {}, "--lanes");
   if (!lanes.globs.empty()) under_test = selected_lanes(lanes, options.name);
   const CampaignPairs dumped = drawn_for(options);
-  const bool some_doubles =
-      std::any_of(dumped.sources.begin(), dumped.sources.end(), [](const auto& source) { return source.in_doubles(); });
-  if (some_doubles && !under_test.lanes.empty()) take_doubles(under_test);
+  if (analysis::any_in_doubles(dumped.sources) && !under_test.lanes.empty()) take_doubles(under_test);
   print_header(options.format, under_test.lanes);
   for (const strata::PairSource& source : dumped.sources) {
     for (std::uint64_t index = 0; index < source.pairs && std::cout; ++index) {

@@ -80,10 +80,7 @@ TunePairs tune_pairs(const TuneOptions& options) {
           left_out_text(others.left_out)};
 }
 
-bool TunePairs::in_doubles() const {
-  return std::any_of(others.begin(), others.end(),
-                     [](const strata::PairSource& source) { return source.in_doubles(); });
-}
+bool TunePairs::in_doubles() const { return analysis::any_in_doubles(others); }
 
 void expect_takes(const Lane& lane, const TunePairs& pairs) {
   if (pairs.in_doubles() && !fuzz::takes(lane, DoublePair{}))

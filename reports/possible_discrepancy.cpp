@@ -7,6 +7,7 @@
 #include "analysis/discrepancy.h"
 #include "core/discrepancy/questions.h"
 #include "core/lanes/lanes.h"
+#include "core/whole.h"
 #include "reports/discrepancy_reading.h"
 #include "reports/possible_counts.h"
 #include "reports/verdicts_apart.h"
@@ -148,8 +149,7 @@ void expect_possible_origins(const Json& of, const std::vector<Question>& questi
 void expect_possible_discrepancy(const Json& json) {
   const Json verdicts = json.value("verdicts", Json::array());
   expect(!json.at("lanes").empty() || !verdicts.empty(), "no lanes");
-  constexpr std::uint64_t kMostSeed = std::uint64_t{1} << 53;
-  expect(json.at("seed").is_number_unsigned() && json["seed"] <= kMostSeed, "the seed " + json["seed"].dump());
+  expect(json.at("seed").is_number_unsigned() && json["seed"] <= kMostWhole, "the seed " + json["seed"].dump());
   for (const char* name : {"version", "commit", "compiler"}) text_at(json.at("build"), name);
   for (const Json& of : verdicts) expect_possible_verdicts(of);
   std::set<std::set<std::string>> compared;

@@ -448,9 +448,8 @@ Built build_assembly(std::string_view assembly, const Recipe& recipe, const std:
 }
 
 Built kept_build(const std::string& name, bool is_program) {
-  const bool is_hash = name.size() == 16 && name.find_first_not_of("0123456789abcdef") == name.npos;
   const fs::path file = cache_folder() / (name + std::string(is_program ? kProgram : kObject));
-  const std::optional<std::string> kept = is_hash ? kept_content(file) : std::nullopt;
+  const std::optional<std::string> kept = is_hash(name) ? kept_content(file) : std::nullopt;
   if (!kept) throw std::runtime_error(fmt::format("the build {} is no longer in the cache", shown(name)));
   return {file, "", std::make_shared<SealedCopy>(file.filename().string(), *kept)};
 }

@@ -12,6 +12,7 @@
 #include "core/lanes/lanes.h"
 #include "core/margin/bucket.h"
 #include "core/text.h"
+#include "core/whole.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/counts_json.h"
@@ -175,8 +176,7 @@ void expect_possible_signatures(const Json& summary, std::uint64_t pairs) {
 
 // Checks a summary that has no database: counts are within their limits, and sums agree.
 void expect_possible_summary(const Json& summary) {
-  constexpr std::uint64_t kMostSeed = std::uint64_t{1} << 53;
-  if (const std::uint64_t seed = count(summary.at("spec"), "seed"); seed > kMostSeed)
+  if (const std::uint64_t seed = count(summary.at("spec"), "seed"); seed > kMostWhole)
     throw Impossible(fmt::format("expected a seed up to 2^53, found {}", seed));
   for (const auto& [field, value] : summary.at("build").items()) {
     if (!value.is_string() && !value.is_null() && field != "executors")

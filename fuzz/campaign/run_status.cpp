@@ -39,11 +39,6 @@ std::set<std::string> ways_of(const std::map<std::string, SignatureCount>& signa
   return ways;
 }
 
-// Whether it is written as a hash is: 16 hexadecimal digits.
-bool is_hash(const std::string& text) {
-  return text.size() == 16 && text.find_first_not_of("0123456789abcdef") == text.npos;
-}
-
 // Throws: std::runtime_error that says what is wrong; Json::exception for another shape.
 void expect_possible_status(const Json& status) {
   const std::string state = status.at("state"), shard = status.at("shard");
@@ -74,7 +69,8 @@ void expect_possible_status(const Json& status) {
   }
   status.at("host").get_ref<const std::string&>();
   if (status.contains("why")) status["why"].get_ref<const std::string&>();
-  if (status.contains("hash") && !is_hash(status["hash"])) throw std::runtime_error("its hash is none");
+  if (status.contains("hash") && !is_hash(status["hash"].get_ref<const std::string&>()))
+    throw std::runtime_error("its hash is none");
 }
 
 }  // namespace

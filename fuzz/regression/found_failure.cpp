@@ -14,6 +14,7 @@
 #include "core/cannot.h"
 #include "core/error.h"
 #include "core/fnv1a.h"
+#include "core/whole.h"
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
@@ -134,7 +135,7 @@ Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const
   const CaseState state = state_after(CaseState::failing, failure.signature, now.marks);
   if (known != corpus.end()) {
     RegressionCase& c = known->second;
-    c.count = std::min(c.count + failure.count, kMostCount);
+    c.count = std::min(c.count + failure.count, kMostWhole);
     c.last = failure.seen;
     if (c.state != CaseState::fixed || state == CaseState::fixed) return Added::seen_again;
   }

@@ -11,6 +11,7 @@
 #include "core/cannot.h"
 #include "core/fnv1a.h"
 #include "core/text.h"
+#include "core/whole.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/files.h"
 #include "fuzz/selected_lanes.h"
@@ -62,7 +63,7 @@ struct Line {
   std::uint64_t count() const {
     const std::string& word = text("count");
     const std::optional<std::uint64_t> value = parse_whole(word);
-    if (!value || *value == 0 || *value > kMostCount) fail("a whole number above 0 as count", '\'' + word + '\'');
+    if (!value || *value == 0 || *value > kMostWhole) fail("a whole number above 0 as count", '\'' + word + '\'');
     return *value;
   }
 

@@ -29,8 +29,6 @@ std::string_view name(CaseState state);
 // between replays.
 using Marks = std::map<std::string, char>;
 
-inline constexpr std::uint64_t kMostCount = std::uint64_t{1} << 53;  // of pairs with one signature
-
 struct RegressionCase {
   std::string name;  // a word, unique
   AnyPair pair;

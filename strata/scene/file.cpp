@@ -233,7 +233,7 @@ class Reader {
     if (!scene.meshes.poses.empty() && scene.meshes.files.size() != 1)
       fail(node, "one file beside poses", found_text(*files));
     const std::string hash = content ? text(*content) : "";
-    if (hash.size() != 16 || hash.find_first_not_of("0123456789abcdef") != hash.npos)
+    if (!is_hash(hash))
       fail(content ? *content : node, "content: 16 hexadecimal digits, as `graze scene` writes them",
            content ? shown(hash) : "none");
     scene.meshes.content = std::stoull(hash, nullptr, 16);

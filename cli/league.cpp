@@ -17,6 +17,7 @@
 #include "cli/results.h"
 #include "cli/screen.h"
 #include "core/cannot.h"
+#include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/cost_estimate.h"
@@ -36,6 +37,7 @@ constexpr double kStartOfAProgram = 10;  // seconds; added to the time for a pro
 struct LeagueOptions {
   std::string subjects, scene, out = "league";
   std::uint64_t pairs = 100'000, seed = 1;
+  PairTypes coordinates = PairTypes::f32;
   std::vector<std::string> strata;
   double timeout = 0.1;
 };
@@ -106,18 +108,27 @@ void remove_other_drawings(const fs::path& folder, const std::map<std::string, s
 }
 
 int league(const LeagueOptions& options) {
+  if (options.coordinates == PairTypes::both)
+    throw UsageError("graze league: --coordinates both: a table has pairs of one type; make one of f32 and one of f64");
   fuzz::MostPairs most;
   std::vector<reports::LeagueSubject> subjects = read_subjects(options.subjects, most);
   for (reports::LeagueSubject& subject : subjects) open(subject, options.timeout);
-  const fuzz::SelectedLanes lanes = fuzz::league_lanes({"*/cpu", "*/cpu-fma"});
+  const bool in_doubles = options.coordinates == PairTypes::f64;
+  fuzz::SelectedLanes lanes =
+      in_doubles ? fuzz::league_lanes({"*/f64/cpu", "*/f64/cpu-fma"}) : fuzz::league_lanes({"*/cpu", "*/cpu-fma"});
+  if (in_doubles) take_doubles(lanes);
   say_left_out(lanes.left_out);
-  for (const reports::LeagueSubject& subject : subjects) {
-    if (std::none_of(lanes.lanes.begin(), lanes.lanes.end(),
-                     [&](auto* lane) { return lane->info->id == subject.name; }))
+  std::erase_if(subjects, [&](const reports::LeagueSubject& subject) {
+    const bool has_lane = std::any_of(lanes.lanes.begin(), lanes.lanes.end(),
+                                      [&](const Lane* lane) { return lane->info->id == subject.name; });
+    if (!has_lane && !in_doubles)
       throw std::runtime_error(
           fmt::format("{} of {} has no lane that runs on this processor", subject.name, options.subjects));
-  }
-  const strata::SceneSources drawn_pairs = drawn(options.scene, options.seed, options.pairs, options.strata);
+    if (!has_lane) fmt::print(stderr, "graze: left out {}: it has no function of doubles\n", subject.name);
+    return !has_lane;
+  });
+  const strata::SceneSources drawn_pairs =
+      drawn(options.scene, options.seed, options.pairs, options.strata, options.coordinates);
   const std::vector<strata::PairSource>& sources = drawn_pairs.sources;
   const ResultFolder folder(options.out, "league.json");
   const std::atomic<bool>& interrupted = catch_interrupts();
@@ -140,6 +151,7 @@ int league(const LeagueOptions& options) {
                                     options.pairs, options.seed);
   if (!options.scene.empty()) command += " --scene " + path_word(options.scene);
   for (const std::string& glob : options.strata) command += " --strata " + shell_word(glob);
+  if (in_doubles) command += " --coordinates f64";
   const fs::path& out = folder.path;
   fs::create_directories(out / "league");
   write_result(out / "league.json", json.dump(1) + "\n");
@@ -173,6 +185,7 @@ void add_league(CLI::App& app, int& status) {
       ->capture_default_str()
       ->option_text("SECONDS");
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
+  add_coordinates_option(*command, options->coordinates);
   add_scene_option(*command, options->scene);
   command->add_option("--out", options->out, "Directory for league.json, league.md and drawings")
       ->capture_default_str()

@@ -218,7 +218,7 @@ TEST_F(TryCommand, WorksOnEachKindOfCode) {
     const bool is_there = needs == "NVRTC" ? shell("graze lanes --subject cu=./own.cu:meet").err.empty()
                                            : needs.empty() || shell("command -v " + needs).status == 0;
     if (!is_there) continue;
-    const Json answer = answer_of(std::string(code.source) + " --pairs 60 --out " + out);
+    const Json answer = answer_of(std::string(code.source) + " --pairs 30 --out " + out);
     ASSERT_TRUE(answer.is_object()) << code.source;
     EXPECT_EQ(answer["lane"], code.lane);
     EXPECT_GT(answer["wrong"]["count"], 0) << code.source;
@@ -231,7 +231,7 @@ TEST_F(TryCommand, WorksOnEachKindOfCode) {
     EXPECT_EQ(answer["tune"], "") << code.source;
     EXPECT_EQ(answer["nanoseconds_a_call"]["own"].contains("middle"), code.is_timed) << code.source;
     if (needs == "NVRTC") {
-      const Ran text = shell("graze try own.cu:meet --pairs 60 --out text");
+      const Ran text = shell("graze try own.cu:meet --pairs 30 --out text");
       EXPECT_NE(text.out.find("CPU against GPU: graze discrepancy --campaign text\n"), std::string::npos) << text.out;
       expect_done("graze discrepancy --campaign text > /dev/null");
     }
@@ -241,8 +241,8 @@ TEST_F(TryCommand, WorksOnEachKindOfCode) {
       const Json report = Json::parse(contents(shell.folder / out / "report.json"));
       expect_done(report["run"]["command"].get<std::string>() + " > /dev/null");
       expect_done("sed -i 's/</>/' shapes.py");
-      EXPECT_NE(answer_of(std::string(code.source) + " --pairs 60 --out " + out)["earlier"], "");
-      expect_error("graze try shapes.py:none --pairs 60 --out none", 1, {"shapes.py", "crashed"});
+      EXPECT_NE(answer_of(std::string(code.source) + " --pairs 30 --out " + out)["earlier"], "");
+      expect_error("graze try shapes.py:none --pairs 30 --out none", 1, {"shapes.py", "crashed"});
     }
     ++tried;
   }

@@ -82,16 +82,16 @@ Json subject_json(const AlgorithmInfo& info, const Lane& lane, const std::vector
 }
 
 // Writes a number that reads back to the same bits, as a short decimal if that is exact.
-std::string written(float value) {
-  const double scaled = std::fabs(static_cast<double>(value)) * 64;
+std::string written(double value) {
+  const double scaled = std::fabs(value) * 64;
   if (scaled < 1e7 && scaled == std::floor(scaled)) return fmt::format("{}", value);
   return corpus::hex_float(value);
 }
 
-std::string written(const Pair& pair) {
+std::string written(const AnyPair& pair) {
   std::string text;
   for (int i = 0; i < kCoordinates; ++i)
-    text += (i == 0 ? "" : i % 9 == 0 ? "   " : i % 3 == 0 ? "  " : " ") + written(coordinates(pair)[i]);
+    text += (i == 0 ? "" : i % 9 == 0 ? "   " : i % 3 == 0 ? "  " : " ") + written(coordinates(pair.doubles)[i]);
   return text;
 }
 
@@ -316,11 +316,16 @@ Json league_json(const fuzz::League& league, const std::vector<LeagueSubject>& s
     }
   }
   choose_drawings(failures, rows);
-  return {{"seed", league.seed},     {"pairs", league.pairs},
-          {"strata", league.strata}, {"groups", groups},
-          {"subjects", own},         {"rows", rows},
-          {"failures", failures},    {"failures_not_repeated", league.failures_not_repeated},
-          {"timings", timings}};
+  Json json{{"seed", league.seed}, {"pairs", league.pairs}};
+  if (league.in_doubles) json["coordinates"] = "f64";
+  json.update({{"strata", league.strata},
+               {"groups", groups},
+               {"subjects", own},
+               {"rows", rows},
+               {"failures", failures},
+               {"failures_not_repeated", league.failures_not_repeated},
+               {"timings", timings}});
+  return json;
 }
 
 std::map<std::string, std::string> league_drawings(const Json& league) {
@@ -374,7 +379,7 @@ std::string league_page(const Json& league, const std::string& command) {
   return fmt::format(
       R"(# League: triangle-triangle tests of libraries, side by side
 
-Made by `{command}`; do not edit. The same {pairs} pairs went to all lanes: strata with seed {seed}, in equal shares. Lanes with the fewest clearly wrong verdicts stand first.
+Made by `{command}`; do not edit. The same {pairs} pairs went to all lanes: strata with seed {seed}, in equal shares{doubles}. Lanes with the fewest clearly wrong verdicts stand first.
 
 CGAL's exact decision and `core/exact` give the truth of every pair; GMP confirms it where a lane is wrong. Touching counts, and a degenerate triangle is a segment or a point. Where a library's documentation states nothing, every difference counts. Columns:
 
@@ -401,6 +406,8 @@ Wrong within the contract (false negatives, false positives, crashed, timed out 
 For each subject, shape ("clear" as above) and wrong verdict, the simplest pair that was found. The commands run in the folder in which `scripts/league` ran. `graze repro --emit` turns a pair into a program. CGAL and GMP confirmed each failure, and a fresh process repeated it; {not_repeated} others were not repeated and are left out. The second triangle is orange, the contact red, and the line in both planes dashed.
 {failures})",
       fmt::arg("command", command), fmt::arg("pairs", count_text(league.at("pairs"))),
+      fmt::arg("doubles",
+               league.contains("coordinates") ? ", with coordinates in double. Ulps are those of double" : ""),
       fmt::arg("seed", league.at("seed").get<std::uint64_t>()), fmt::arg("counts", page_counts(league)),
       fmt::arg("exponent", fuzz::kClearExponent), fmt::arg("repetitions", fuzz::kLeagueRepetitions),
       fmt::arg("timed", fuzz::kLeagueTimedPairs),

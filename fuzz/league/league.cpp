@@ -32,7 +32,8 @@ constexpr std::size_t kBlockPairs = 1024;
 constexpr std::uint64_t kOrderSample = 950;  // pairs asked in all orders, shared evenly by the strata
 constexpr std::uint64_t kOrderShare = 20;    // at most one in so many of a lane's pairs
 
-Relation true_of(const Pair& pair) {
+template <class Real>
+Relation true_of(const BasicPair<Real>& pair) {
   const Relation found = relation_of(pair);
   if (found.verdict != oracle::cgal_verdict(pair))
     throw oracle::OracleMismatch(pair_text(pair) + ": CGAL and the exact decision of core differ");
@@ -48,7 +49,8 @@ struct Counting {
   Smallest smallest;
 
   // Checks with GMP the truth of a pair on which the lane is wrong.
-  void confirm(const Pair& pair, const Relation& truth) const {
+  template <class Real>
+  void confirm(const BasicPair<Real>& pair, const Relation& truth) const {
     const Contact contact = oracle::gmp_contact(pair);
     if (contact != truth.contact) {
       throw oracle::OracleMismatch(fmt::format("{}: the exact decision of core says contact {}, GMP {}",
@@ -56,7 +58,8 @@ struct Counting {
     }
   }
 
-  void count(std::span<const Pair> pairs, const std::vector<Relation>& truths, LeagueCounts& counts) {
+  template <class Real>
+  void count(std::span<const BasicPair<Real>> pairs, const std::vector<Relation>& truths, LeagueCounts& counts) {
     const std::vector<Verdict> said = verdicts_of(*decide, pairs);
     std::vector<std::size_t> not_right;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -74,12 +77,13 @@ struct Counting {
     for (std::size_t i = 0; i < pairs.size(); ++i) *row.flips += said[i] != other[i];
   }
 
-  void count_not_right(std::span<const Pair> pairs, const std::vector<Relation>& truths,
+  template <class Real>
+  void count_not_right(std::span<const BasicPair<Real>> pairs, const std::vector<Relation>& truths,
                        const std::vector<Verdict>& said, const std::vector<std::size_t>& not_right,
                        LeagueCounts& counts) {
-    std::vector<Pair> again_of;
+    std::vector<BasicPair<Real>> again_of;
     for (const std::size_t i : not_right) again_of.push_back(pairs[i]);
-    const std::vector<Verdict> again = verdicts_in_fresh_process(*row.lane, again_of);
+    const std::vector<Verdict> again = verdicts_in_fresh_process<Real>(*row.lane, again_of);
     for (std::size_t k = 0; k < not_right.size(); ++k) {
       const std::size_t i = not_right[k];
       confirm(pairs[i], truths[i]);
@@ -100,13 +104,14 @@ struct Counting {
   }
 
   // Whether the verdict breaks an invariant on an image within the lane's contract. The orders are counted separately.
-  bool breaks_an_invariant(const Pair& pair, Verdict of_pair) const {
-    std::vector<Pair> all;
+  template <class Real>
+  bool breaks_an_invariant(const BasicPair<Real>& pair, Verdict of_pair) const {
+    std::vector<BasicPair<Real>> all;
     std::vector<analysis::Invariant> invariants;
     for (const analysis::InvariantInfo& invariant : analysis::kInvariants) {
       if (invariant.invariant == analysis::Invariant::swap || invariant.invariant == analysis::Invariant::order)
         continue;
-      const std::vector<Pair> images = analysis::images(invariant.invariant, pair);
+      const std::vector<BasicPair<Real>> images = analysis::images(invariant.invariant, pair);
       all.insert(all.end(), images.begin(), images.end());
       invariants.resize(all.size(), invariant.invariant);
     }
@@ -121,7 +126,8 @@ struct Counting {
 
   // Counts the pairs on which the verdict changes with the order, or breaks another invariant. Pairs outside the lane's
   // contract are skipped.
-  void count_orders(std::span<const Pair> pairs, const std::vector<Relation>& truths) {
+  template <class Real>
+  void count_orders(std::span<const BasicPair<Real>> pairs, const std::vector<Relation>& truths) {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       if (is_outside(row.lane->outside, pairs[i], truths[i])) continue;
       ++row.order_sample;
@@ -132,7 +138,8 @@ struct Counting {
   }
 };
 
-std::vector<Relation> truths_of(const std::vector<Pair>& pairs) {
+template <class Real>
+std::vector<Relation> truths_of(const std::vector<BasicPair<Real>>& pairs) {
   std::vector<Relation> truths(pairs.size());
   tbb::parallel_for(std::size_t{0}, (pairs.size() + kBlockPairs - 1) / kBlockPairs, [&](std::size_t block) {
     for (std::size_t i = block * kBlockPairs; i < std::min(pairs.size(), (block + 1) * kBlockPairs); ++i)
@@ -144,7 +151,8 @@ std::vector<Relation> truths_of(const std::vector<Pair>& pairs) {
 }  // namespace
 
 LeagueGroup league_group(std::string_view stratum) {
-  if (stratum.starts_with("near_") || stratum == "exact_contact") return LeagueGroup::near;
+  if (stratum.starts_with("near_") || strata::stratum_in_doubles(stratum).value_or(stratum) == "exact_contact")
+    return LeagueGroup::near;
   switch (strata::group_of_name(stratum).value_or(strata::Group::general)) {
     case strata::Group::coplanar:
       return LeagueGroup::coplanar;
@@ -169,6 +177,7 @@ LeagueCounts& LeagueCounts::operator+=(const LeagueCounts& other) {
 SelectedLanes league_lanes(const std::vector<std::string>& globs) {
   SelectedLanes all = select_lanes(globs, Executor::twin), result;
   result.left_out = all.left_out;
+  result.asked = all.asked;
   for (std::size_t l = 0; l < all.lanes.size(); ++l) {
     if (all.lanes[l]->variant != Variant::cpu && all.lanes[l]->variant != Variant::cpu_fma) continue;
     result.lanes.push_back(all.lanes[l]);
@@ -197,25 +206,30 @@ League run_league(const SelectedLanes& under_test, std::vector<strata::PairSourc
   League league;
   league.seed = seed;
   bool stopped = false;
+  // The pairs from `begin` on of a source that has so many.
+  const auto count = [&](const auto& pairs, std::uint64_t begin, std::uint64_t of_source, std::size_t group) {
+    const std::vector<Relation> truths = truths_of(pairs);
+    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t l) {
+      const std::uint64_t its = std::min(of_source, all[l].of_source);
+      if (its <= begin) return;
+      const auto first = [&](std::uint64_t many) {
+        return std::span(pairs).first(std::min<std::uint64_t>(pairs.size(), many));
+      };
+      all[l].count(first(its - begin), truths, all[l].row.groups[group]);
+      if (begin > 0) return;
+      all[l].count_orders(first(std::clamp<std::uint64_t>(its / kOrderShare, 1,
+                                                          std::max<std::uint64_t>(1, kOrderSample / sources.size()))),
+                          truths);
+    });
+  };
   for (const strata::PairSource& source : sources) {
     league.strata.push_back(source.id);
     const auto group = static_cast<std::size_t>(league_group(source.id));
     for (std::uint64_t begin = 0; begin < source.pairs && !stopped; begin += kBatchPairs) {
-      std::vector<Pair> pairs(std::min<std::uint64_t>(kBatchPairs, source.pairs - begin));
-      for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = source.pair(begin + i);
-      const std::vector<Relation> truths = truths_of(pairs);
-      tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t l) {
-        const std::uint64_t its = std::min(source.pairs, all[l].of_source);
-        if (its <= begin) return;
-        const auto first = [&](std::uint64_t count) {
-          return std::span(pairs).first(std::min<std::uint64_t>(pairs.size(), count));
-        };
-        all[l].count(first(its - begin), truths, all[l].row.groups[group]);
-        if (begin > 0) return;
-        all[l].count_orders(first(std::clamp<std::uint64_t>(its / kOrderShare, 1,
-                                                            std::max<std::uint64_t>(1, kOrderSample / sources.size()))),
-                            truths);
-      });
+      const strata::PairBlock pairs =
+          strata::pairs_of(source, begin, std::min<std::uint64_t>(kBatchPairs, source.pairs - begin));
+      pairs.in_doubles() ? count(pairs.doubles, begin, source.pairs, group)
+                         : count(pairs.floats, begin, source.pairs, group);
       league.pairs += pairs.size();
       stopped = stop(league.pairs);
     }
@@ -225,19 +239,21 @@ League run_league(const SelectedLanes& under_test, std::vector<strata::PairSourc
     league.rows.push_back(counting.row);
     counting.smallest.add_candidates(*counting.row.lane, candidates);
   }
+  league.in_doubles = sources.front().in_doubles();
   if (!stopped) league.failures = smallest_failures(candidates, league.failures_not_repeated);
   return league;
 }
 
 std::vector<std::optional<double>> league_costs(const League& league) {
-  std::vector<Pair> pairs(kLeagueTimedPairs);
-  for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = strata::generate(league.seed, strata::Stratum::uniform, i);
+  const PairTypes types = league.in_doubles ? PairTypes::f64 : PairTypes::f32;
+  const strata::PairBlock pairs = strata::pairs_of(
+      strata::stratum_sources(league.seed, kLeagueTimedPairs, {"uniform"}, types).front(), 0, kLeagueTimedPairs);
   std::vector<std::vector<double>> taken(league.rows.size());
   for (std::size_t repetition = 0; repetition < kLeagueRepetitions; ++repetition) {
     for (std::size_t r = 0; r < league.rows.size(); ++r) {
       const Lane& lane = *league.rows[r].lane;
       const double start = analysis::processor_nanoseconds();
-      verdicts_of(lane.decide, pairs);
+      league.in_doubles ? verdicts_of(lane.decide, pairs.doubles) : verdicts_of(lane.decide, pairs.floats);
       std::optional<double> nanoseconds = analysis::processor_nanoseconds() - start;
       if (lane.foreign) nanoseconds = subjects::processes_of(lane).nanoseconds();
       if (nanoseconds) taken[r].push_back(*nanoseconds / static_cast<double>(pairs.size()));

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/any_pair.h"
 #include "core/counts.h"
 #include "fuzz/selected_lanes.h"
 #include "oracle/truth.h"
@@ -48,7 +49,7 @@ struct LeagueFailure {
   const Lane* lane;  // the first of its subject that fails so
   std::string shape;
   Verdict verdict;  // in a fresh process; it is the way in which the lane is wrong
-  Pair pair;
+  AnyPair pair = Pair{};
   oracle::Truth truth;  // by CGAL and GMP
   bool minimised;       // otherwise as it was met: a failure that would cost too much, or comes and goes
 };
@@ -65,6 +66,7 @@ struct LeagueRow {
 
 struct League {
   std::uint64_t seed = 1, pairs = 0;
+  bool in_doubles = false;  // its pairs
   std::vector<std::string> strata;
   std::vector<LeagueRow> rows;
   std::vector<LeagueFailure> failures;      // of subjects in the rows' order
@@ -78,9 +80,9 @@ SelectedLanes league_lanes(const std::vector<std::string>& globs);
 // Limits of slow subjects, by name: such a subject gets at most this many pairs, the first ones of each stratum.
 using MostPairs = std::map<std::string, std::uint64_t, std::less<>>;
 
-// Runs the league. The result does not depend on the number of threads. `stop` is called now and then with the number
-// of pairs done; if it returns true, the result has only these pairs. Throws: OracleMismatch when two exact decisions
-// differ.
+// Runs the league on pairs of one type. The result does not depend on the number of threads. `stop` is called now and
+// then with the number of pairs done; if it returns true, the result has only these pairs. Throws: OracleMismatch when
+// two exact decisions differ.   Requires: lanes that decide this type.
 League run_league(
     const SelectedLanes& under_test, std::vector<strata::PairSource> sources, std::uint64_t seed,
     const MostPairs& most = {},

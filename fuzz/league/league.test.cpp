@@ -27,15 +27,15 @@ constexpr const char* kPlanted = R"(
 #include <graze/subject.h>
 #include "core/exact/exact.h"
 using graze::exact::relation;
-static int truth(const float a[9], const float b[9]) { return relation(a, b).intersects(); }
-static int blind(const float a[9], const float b[9]) { return !relation(a, b).hulls.coplanar && truth(a, b); }
-static int dies(const float a[9], const float b[9]) { if (a[0] == 1) abort(); return truth(a, b); }
-static int narrow(const float a[9], const float b[9]) {
+template <class T> int truth(const T a[9], const T b[9]) { return relation(a, b).intersects(); }
+template <class T> int blind(const T a[9], const T b[9]) { return !relation(a, b).hulls.coplanar && truth(a, b); }
+template <class T> int dies(const T a[9], const T b[9]) { if (a[0] == 1) abort(); return truth(a, b); }
+template <class T> int narrow(const T a[9], const T b[9]) {
   return relation(a, b).hulls.dimension_a == 2 && relation(a, b).hulls.dimension_b == 2 && truth(a, b);
 }
-static int one_sided(const float a[9], const float b[9]) { return a[0] > b[0] || truth(a, b); }
+template <class T> int one_sided(const T a[9], const T b[9]) { return a[0] > b[0] || truth(a, b); }
 #define PLANT(name, outside) \
-  GRAZE_SUBJECT(name##_one) = {GRAZE_SUBJECT_ABI, outside, "3", nullptr, nullptr, name, nullptr, nullptr, nullptr}
+  GRAZE_SUBJECT(name##_one) = {GRAZE_SUBJECT_ABI, outside, "3", nullptr, nullptr, name<float>, name<double>, nullptr, nullptr}
 PLANT(truth, 0);
 PLANT(blind, 0);
 PLANT(dies, 0);
@@ -46,12 +46,12 @@ PLANT(one_sided, 0);
 constexpr std::uint64_t kSeed = 3, kPairs = 3000, kOrders = 50;  // of each source's 1,000 pairs one in 20 in all orders
 constexpr const char* kNames[] = {"truth", "blind", "dies", "narrow", "one_sided"};
 
-std::vector<strata::PairSource> sources() {
-  return strata::stratum_sources(kSeed, kPairs, {"uniform", "lattice", "coplanar_wide"});
+std::vector<strata::PairSource> sources(PairTypes types = PairTypes::f32) {
+  return strata::stratum_sources(kSeed, kPairs, {"uniform", "lattice", "coplanar_wide"}, types);
 }
 
 struct Planted : testing::Test {
-  static inline League league;
+  static inline League league, of_doubles;
   static inline SelectedLanes lanes;
 
   static void SetUpTestSuite() {
@@ -64,20 +64,32 @@ struct Planted : testing::Test {
     ASSERT_EQ(std::system((build + (folder / "planted.cpp").string() + " -o " + library.string()).c_str()), 0);
     for (const std::string name : kNames)
       subjects::open(subjects::parse_subject(name + '=' + library.string() + ':' + name + "_one"));
-    lanes = league_lanes({"truth/*", "blind/*", "dies/*", "narrow/*", "one_sided/*", "moller_1997/*", "exact/*"});
+    std::vector<std::string> all{"moller_1997/*", "exact/*"}, in_doubles{"moller_1997/f64/*", "exact/f64/*"};
+    for (const std::string name : kNames) {
+      all.push_back(name + "/f32/*");
+      in_doubles.push_back(name + "/f64/*");
+    }
+    lanes = league_lanes(all);
     league = run_league(lanes, sources(), kSeed);
+    SelectedLanes of_f64 = league_lanes(in_doubles);
+    select_for_doubles(of_f64);
+    of_doubles = run_league(of_f64, sources(PairTypes::f64), kSeed);
   }
 
-  static const LeagueRow& row(const std::string& lane) {
-    for (const LeagueRow& r : league.rows) {
+  static const LeagueRow& row(const std::string& lane, const League& of = league) {
+    for (const LeagueRow& r : of.rows) {
       if (r.lane->id == lane) return r;
     }
     throw std::logic_error(lane);
   }
+
+  template <class Real>
+  static void expect_independent_counts(const League& found, PairTypes types);
 };
 
 // The verdict that a planted subject must give, by the oracle.
-Verdict planted(std::string_view name, const Pair& pair) {
+template <class Real>
+Verdict planted(std::string_view name, const BasicPair<Real>& pair) {
   const Hulls hulls = oracle::hulls(pair);
   const Verdict truth = oracle::truth(pair).verdict;
   const bool degenerate = hulls.dimension_a < 2 || hulls.dimension_b < 2;
@@ -88,16 +100,28 @@ Verdict planted(std::string_view name, const Pair& pair) {
   return truth;
 }
 
-TEST_F(Planted, EveryNumberIsThatOfAnIndependentCount) {
+template <class Real>
+BasicPair<Real> pair_of(const strata::PairSource& source, std::uint64_t i) {
+  if constexpr (sizeof(Real) == sizeof(float))
+    return source.pair(i);
+  else
+    return source.double_pair(i);
+}
+
+template <class Real>
+void Planted::expect_independent_counts(const League& of, PairTypes types) {
+  const std::string suffix = types == PairTypes::f64 ? "/f64/cpu" : "/f32/cpu";
   for (const std::string name : kNames) {
-    const LeagueRow& found = row(name + "/f32/cpu");
+    const LeagueRow& found = row(name + suffix, of);
     std::array<LeagueCounts, kLeagueGroupCount> groups;
     std::uint64_t order_dependent = 0, breaks_invariant = 0, sample = 0;
-    for (const strata::PairSource& source : sources()) {
+    for (const strata::PairSource& source : sources(types)) {
       ASSERT_EQ(source.pairs, 1000u);
-      LeagueCounts& counts = groups[source.id == "uniform" ? 0 : source.id == "coplanar_wide" ? 2 : 3];
+      LeagueCounts& counts = groups[source.id.starts_with("uniform")         ? 0
+                                    : source.id.starts_with("coplanar_wide") ? 2
+                                                                             : 3];
       for (std::uint64_t i = 0; i < source.pairs; ++i) {
-        const Pair pair = source.pair(i);
+        const BasicPair<Real> pair = pair_of<Real>(source, i);
         const oracle::Truth truth = oracle::truth(pair);
         const Hulls hulls = oracle::hulls(pair);
         const bool degenerate = hulls.dimension_a < 2 || hulls.dimension_b < 2;
@@ -111,18 +135,18 @@ TEST_F(Planted, EveryNumberIsThatOfAnIndependentCount) {
         }
         if (i >= kOrders || outside) continue;
         ++sample;
-        const std::vector<Pair> orders = analysis::orders(pair);
+        const std::vector<BasicPair<Real>> orders = analysis::orders(pair);
         breaks_invariant += std::any_of(
             std::begin(analysis::kInvariants) + 2, std::end(analysis::kInvariants), [&](const auto& invariant) {
-              const std::vector<Pair> images = analysis::images(invariant.invariant, pair);
-              return std::any_of(images.begin(), images.end(), [&](const Pair& other) {
+              const std::vector<BasicPair<Real>> images = analysis::images(invariant.invariant, pair);
+              return std::any_of(images.begin(), images.end(), [&](const BasicPair<Real>& other) {
                 const bool open =
                     name == "narrow" && (oracle::hulls(other).dimension_a < 2 || oracle::hulls(other).dimension_b < 2);
                 return !open && analysis::breaks(invariant.invariant, says, planted(name, other));
               });
             });
-        order_dependent +=
-            std::any_of(orders.begin(), orders.end(), [&](const Pair& other) { return planted(name, other) != says; });
+        order_dependent += std::any_of(orders.begin(), orders.end(),
+                                       [&](const BasicPair<Real>& other) { return planted(name, other) != says; });
       }
     }
     for (std::size_t g = 0; g < kLeagueGroupCount; ++g) {
@@ -139,16 +163,28 @@ TEST_F(Planted, EveryNumberIsThatOfAnIndependentCount) {
     EXPECT_FALSE(found.flips) << name;
   }
   // Each planted defect occurs often enough to be tested.
-  EXPECT_GT(row("blind/f32/cpu").groups[2].false_negative, 100u);
-  EXPECT_GT(row("dies/f32/cpu").groups[3].crashed, 100u);
-  EXPECT_GT(row("narrow/f32/cpu").groups[3].by_convention, 50u);
-  EXPECT_GT(row("one_sided/f32/cpu").groups[0].clear, 100u);
-  EXPECT_GT(row("one_sided/f32/cpu").order_dependent, 10u);
-  EXPECT_EQ(row("truth/f32/cpu").order_dependent, 0u);
-  EXPECT_GT(row("one_sided/f32/cpu").breaks_invariant, 10u);
-  EXPECT_GT(row("moller_1997/f32/cpu").breaks_invariant, 10u);
-  EXPECT_EQ(row("truth/f32/cpu").breaks_invariant, 0u);
-  EXPECT_EQ(row("exact/f32/cpu").breaks_invariant, 0u);
+  EXPECT_GT(row("blind" + suffix, of).groups[2].false_negative, 100u);
+  EXPECT_GT(row("dies" + suffix, of).groups[3].crashed, 20u);
+  EXPECT_GT(row("narrow" + suffix, of).groups[3].by_convention, 50u);
+  EXPECT_GT(row("one_sided" + suffix, of).groups[0].clear, 100u);
+  EXPECT_GT(row("one_sided" + suffix, of).order_dependent, 10u);
+  EXPECT_EQ(row("truth" + suffix, of).order_dependent, 0u);
+  EXPECT_GT(row("one_sided" + suffix, of).breaks_invariant, 10u);
+  EXPECT_GT(row("moller_1997" + suffix, of).breaks_invariant, 10u);
+  EXPECT_EQ(row("truth" + suffix, of).breaks_invariant, 0u);
+  EXPECT_EQ(row("exact" + suffix, of).breaks_invariant, 0u);
+}
+
+TEST_F(Planted, EveryNumberIsThatOfAnIndependentCount) { expect_independent_counts<float>(league, PairTypes::f32); }
+
+TEST_F(Planted, OnDoublesToo) {
+  EXPECT_TRUE(of_doubles.in_doubles);
+  expect_independent_counts<double>(of_doubles, PairTypes::f64);
+  EXPECT_GT(of_doubles.failures.size(), 4u);
+  for (const LeagueFailure& failure : of_doubles.failures) {
+    EXPECT_EQ(failure.lane->scalar, Scalar::f64);
+    EXPECT_NE(failure.verdict, oracle::truth(failure.pair).verdict);
+  }
 }
 
 TEST_F(Planted, FlipsAreThePairsOnWhichContractionChangesTheVerdict) {
@@ -167,15 +203,16 @@ TEST_F(Planted, TheSmallestFailureOfEachKindIsOneAndIsSmall) {
   std::map<std::string, int> kinds;
   for (const LeagueFailure& failure : league.failures) {
     const std::string subject(failure.lane->info->id);
+    const Pair& pair = failure.pair.floats.value();
     ++kinds[subject + ", " + failure.shape + ", " + std::string(name(failure.verdict))];
-    EXPECT_EQ(oracle::truth(failure.pair).verdict, failure.truth.verdict);
+    EXPECT_EQ(oracle::truth(pair).verdict, failure.truth.verdict);
     EXPECT_NE(failure.verdict, failure.truth.verdict);
-    EXPECT_EQ(shape_name(oracle::hulls(failure.pair)), failure.shape == kClear ? "general" : failure.shape);
+    EXPECT_EQ(shape_name(oracle::hulls(pair)), failure.shape == kClear ? "general" : failure.shape);
     EXPECT_TRUE(failure.shape != kClear || std::fabs(failure.truth.margin_ulps) >= 4096);
     if (!failure.lane->foreign) continue;
-    EXPECT_EQ(planted(subject, failure.pair), failure.verdict) << subject;
+    EXPECT_EQ(planted(subject, pair), failure.verdict) << subject;
     EXPECT_TRUE(failure.minimised);
-    EXPECT_LE(nontrivial_magnitudes(failure.pair), 1) << subject << ' ' << pair_text(failure.pair);
+    EXPECT_LE(nontrivial_magnitudes(pair), 1) << subject << ' ' << pair_text(pair);
   }
   for (const char* kind :
        {"blind, coplanar, disjoint", "blind, degenerate, disjoint", "one_sided, clear, intersects",

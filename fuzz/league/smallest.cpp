@@ -48,7 +48,7 @@ LeagueFailure minimised(const Candidate& candidate) {
     const Minimised found = minimise(failures.front(), candidate.pair, {}, most_moved(candidate));
     confirm(under_test, failures.front(), found.pair);
     if (candidate.shape == kClear && !is_clear(oracle::truth(found.pair))) return result;
-    result.pair = found.pair.floats.value();
+    result.pair = found.pair;
     result.minimised = true;
   } catch (const oracle::OracleMismatch&) {
     throw;
@@ -58,29 +58,33 @@ LeagueFailure minimised(const Candidate& candidate) {
 }
 
 // Whether the lane fails on this pair as on the failure's own pair: the same shape and verdict, within its contract.
-bool fails_so(const LeagueFailure& failure, const Pair& pair) {
-  const Verdict verdict = decide_one(failure.lane->decide, pair);
+bool fails_so(const LeagueFailure& failure, const AnyPair& pair) {
+  const Verdict verdict = visit(pair, [&](const auto& own) { return decide_one(failure.lane->decide, own); });
   const oracle::Truth truth = oracle::truth(pair);
   const bool shaped = failure.shape == kClear ? is_clear(truth) : shape_name(truth.hulls) == failure.shape;
   return shaped && verdict != truth.verdict && verdict == failure.verdict &&
-         !analysis::by_convention(*failure.lane, verdict, pair, truth);
+         !visit(pair, [&](const auto& own) { return analysis::by_convention(*failure.lane, verdict, own, truth); });
 }
 
 }  // namespace
 
-std::vector<Verdict> verdicts_in_fresh_process(const Lane& lane, const std::vector<Pair>& pairs) {
+template <class Real>
+std::vector<Verdict> verdicts_in_fresh_process(const Lane& lane, const std::vector<BasicPair<Real>>& pairs) {
   if (pairs.empty()) return {};
   std::unique_ptr<subjects::ForeignProcesses> fresh;
   if (lane.foreign) fresh = subjects::processes_of(lane).anew();
   return verdicts_of(fresh ? DecideBlock(*fresh) : lane.decide, pairs);
 }
 
-void Smallest::add(std::string_view shape, Verdict says, const Pair& pair) {
+template std::vector<Verdict> verdicts_in_fresh_process(const Lane&, const std::vector<Pair>&);
+template std::vector<Verdict> verdicts_in_fresh_process(const Lane&, const std::vector<DoublePair>&);
+
+void Smallest::add(std::string_view shape, Verdict says, const AnyPair& pair) {
   const std::pair<std::string, Verdict> key{shape, says};
   const auto found = pairs_.find(key);
   if (found == pairs_.end()) {
     pairs_.emplace(key, std::pair(simplicity(pair), pair));
-  } else if (simplicity_counts(pair, found->second.first.counts) <= found->second.first.counts) {
+  } else if (simplicity_counts(pair.doubles, found->second.first.counts) <= found->second.first.counts) {
     if (const Simplicity now = simplicity(pair); now < found->second.first) found->second = {now, pair};
   }
 }
@@ -118,7 +122,9 @@ std::vector<LeagueFailure> smallest_failures(const std::vector<Candidate>& candi
   tbb::parallel_for(std::size_t{0}, shared.size(), [&](std::size_t i) {
     LeagueFailure& failure = shared[i];
     failure.truth = oracle::truth(failure.pair);
-    const Verdict again = verdicts_in_fresh_process(*failure.lane, {failure.pair}).front();
+    const Verdict again = visit(failure.pair, [&](const auto& own) {
+      return verdicts_in_fresh_process(*failure.lane, std::vector{own}).front();
+    });
     shown[i] = again == failure.verdict && again != failure.truth.verdict;
   });
   std::vector<LeagueFailure> result;

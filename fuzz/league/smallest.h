@@ -15,24 +15,25 @@
 namespace graze::fuzz {
 
 // The lane's verdicts in a process that has seen no pair before these.
-std::vector<Verdict> verdicts_in_fresh_process(const Lane& lane, const std::vector<Pair>& pairs);
+template <class Real>
+std::vector<Verdict> verdicts_in_fresh_process(const Lane& lane, const std::vector<BasicPair<Real>>& pairs);
 
 struct Candidate {
   const Lane* lane;
   std::string shape;
   Verdict says;  // wrong
-  Pair pair;
+  AnyPair pair;
   bool lane_dies;  // it crashed or did not return on some pair of the league
 };
 
 // Keeps one lane's simplest pair of each shape and wrong verdict. The order in which pairs are added does not matter.
 class Smallest {
  public:
-  void add(std::string_view shape, Verdict says, const Pair& pair);
+  void add(std::string_view shape, Verdict says, const AnyPair& pair);
   void add_candidates(const Lane& lane, std::vector<Candidate>& candidates) const;
 
  private:
-  std::map<std::pair<std::string, Verdict>, std::pair<Simplicity, Pair>> pairs_;
+  std::map<std::pair<std::string, Verdict>, std::pair<Simplicity, AnyPair>> pairs_;
 };
 
 // Minimises the first candidate of each subject, shape and verdict. If another subject's pair is simpler and fails in

@@ -33,7 +33,7 @@ class Kinds : public testing::Test {
     under_test_ = select_lanes({}, Executor::twin);
     Campaign campaign;
     campaign.seed = 5;
-    campaign.sources = strata::stratum_sources(campaign.seed, std::size(strata::kStrata) * 60, {"*"});
+    campaign.sources = strata::stratum_sources(campaign.seed, std::size(strata::kStrata) * 30, {"*"});
     campaign.under_test = &under_test_;
     campaign.threads = 2;
     campaign.directory = directory_;

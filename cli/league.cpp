@@ -124,7 +124,7 @@ int league(const LeagueOptions& options) {
     if (!has_lane && !in_doubles)
       throw std::runtime_error(
           fmt::format("{} of {} has no lane that runs on this processor", subject.name, options.subjects));
-    if (!has_lane) fmt::print(stderr, "graze: left out {}: it has no function of doubles\n", subject.name);
+    if (!has_lane) fmt::print(stderr, "graze: left out {}: it does not take doubles\n", subject.name);
     return !has_lane;
   });
   const strata::SceneSources drawn_pairs =

@@ -96,6 +96,31 @@ TEST_F(LeagueCommand, ThePagesCommandsShowItsFailures) {
     EXPECT_TRUE(subjects.contains(subject)) << subject;
 }
 
+TEST_F(LeagueCommand, OfDoublesHasFunctionsOfDoublesAlone) {
+  std::ofstream(shell.folder / "doubles.c")
+      << "int meet(const double a[9], const double b[9]) { return a[0] < b[0]; }\n";
+  expect_done("cc -shared -fPIC -O2 doubles.c -o doubles.so && echo 'by_x=doubles.so:meet/f64' >> subjects.txt");
+  const Ran ran =
+      shell("graze league --subjects subjects.txt --pairs 600 --strata uniform,stored --coordinates f64 --out found");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.err.find("graze: left out spoken: it does not take doubles\n"), std::string::npos) << ran.err;
+  const auto league = nlohmann::json::parse(contents(shell.folder / "found/league.json"));
+  EXPECT_EQ(league["coordinates"], "f64");
+  EXPECT_EQ(league["strata"], nlohmann::json({"uniform/f64", "stored/f64"}));
+  for (const auto& row : league["rows"])
+    EXPECT_NE(row["lane"].get<std::string>().find("/f64/cpu"), std::string::npos) << row["lane"];
+  int of_doubles = 0;
+  for (const auto& failure : league["failures"]) {
+    const std::string again = failure["again"], says = failure["says"];
+    const Ran found = shell(again);
+    EXPECT_NE(found.out.find("truth: " + failure["truth"].get<std::string>()), std::string::npos) << again;
+    EXPECT_NE(found.out.find(says + " !"), std::string::npos) << again << '\n' << found.out;
+    of_doubles += again.find(" | coordinates=f64'") != std::string::npos;
+  }
+  EXPECT_GT(of_doubles, 3);
+  expect_error("graze league --subjects subjects.txt --coordinates both --out x", 2, {"--coordinates both"});
+}
+
 TEST_F(LeagueCommand, TheSameRunHasTheSameResultsButForTimings) {
   expect_done(kRun);
   expect_done("mv found first && " + std::string(kRun));

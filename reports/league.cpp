@@ -92,7 +92,7 @@ std::string written(const AnyPair& pair) {
   std::string text;
   for (int i = 0; i < kCoordinates; ++i)
     text += (i == 0 ? "" : i % 9 == 0 ? "   " : i % 3 == 0 ? "  " : " ") + written(coordinates(pair.doubles)[i]);
-  return text;
+  return text + (pair.floats ? "" : " | coordinates=f64");
 }
 
 Json failure_json(const fuzz::LeagueFailure& failure, const std::vector<LeagueSubject>& subjects) {

@@ -11,8 +11,8 @@
 
 #include "analysis/changed_source.h"
 #include "analysis/image_experiments.h"
+#include "analysis/image_verdicts.h"
 #include "analysis/lane_trace.h"
-#include "analysis/questions.h"
 #include "analysis/scales.h"
 #include "backends/backends.h"
 #include "core/lanes/verdicts.h"
@@ -368,7 +368,7 @@ class Trial {
   const PairOf& pair_;
   Verdict truth_;
   const Size size_;
-  Questions<Real> ask_;
+  ImageVerdicts<Real> ask_;
   mutable std::optional<std::vector<PairOf>> wrong_images_;  // once asked for
   Scales strictly_{1, 0};        // scales at which even the longest products stay within the exponents
   bool turns_in_range_ = false;  // the verdict turns between two of these

@@ -164,7 +164,7 @@ void Planted::expect_independent_counts(const League& of, PairTypes types) {
   }
   // Each planted defect occurs often enough to be tested.
   EXPECT_GT(row("blind" + suffix, of).groups[2].false_negative, 100u);
-  EXPECT_GT(row("dies" + suffix, of).groups[3].crashed, 20u);
+  EXPECT_GT(row("dies" + suffix, of).groups[3].crashed, 100u);
   EXPECT_GT(row("narrow" + suffix, of).groups[3].by_convention, 50u);
   EXPECT_GT(row("one_sided" + suffix, of).groups[0].clear, 100u);
   EXPECT_GT(row("one_sided" + suffix, of).order_dependent, 10u);

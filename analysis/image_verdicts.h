@@ -52,11 +52,11 @@ inline const Lane* in_float64(const Lane& lane) {
 }
 
 template <class Real>
-class Questions {
+class ImageVerdicts {
   using PairOf = BasicPair<Real>;
 
  public:
-  Questions(const Lane& lane, const PairOf& pair, Verdict truth)
+  ImageVerdicts(const Lane& lane, const PairOf& pair, Verdict truth)
       : source(&lane), lane_(lane), pair_(pair), truth_(truth) {}
 
   std::vector<Verdict> said(const DecideBlock& block, std::span<const PairOf> pairs) const {

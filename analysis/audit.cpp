@@ -20,7 +20,7 @@ Settled of_all_contraction(const LaneExplanation& lane, const AnyPair& pair, Ver
 
 Settled of_contraction(const LaneExplanation& lane, const AnyPair& pair, Verdict truth) {
   if (lane.contractions.sites.empty()) return of_all_contraction(lane, pair, truth);
-  const std::span<const cuda::ContractionSite> all = cuda::contraction_sites(*lane.lane);
+  const std::span<const cuda::ContractionSite> all = cuda::contraction_sites(*lane.lane, pair);
   std::vector<std::uint64_t> named(all.size() / 64 + 1), others(all.size() / 64 + 1);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const bool is_named =
@@ -28,8 +28,8 @@ Settled of_contraction(const LaneExplanation& lane, const AnyPair& pair, Verdict
                     [&](const cuda::ContractionSite& site) { return site.ptx_line == all[i].ptx_line; });
     (is_named ? named : others)[i / 64] |= std::uint64_t{1} << (i % 64);
   }
-  return both(cuda::decide_fusing(*lane.lane, pair.floats.value(), others) == truth,
-              cuda::decide_fusing(*lane.lane, pair.floats.value(), named) != truth);
+  return both(cuda::decide_fusing(*lane.lane, pair, others) == truth,
+              cuda::decide_fusing(*lane.lane, pair, named) != truth);
 }
 
 Settled of_range(const LaneExplanation& lane, const AnyPair& pair, Verdict truth) {

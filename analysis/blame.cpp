@@ -31,8 +31,8 @@ Set others(Set set) {
 // A kernel in which any set of sites can be fused.
 class Fusing {
  public:
-  Fusing(const Lane& lane, const Pair& pair, const std::function<void()>& asked)
-      : lane_(lane), pair_(pair), asked_(asked), sites_(cuda::contraction_sites(lane)) {}
+  Fusing(const Lane& lane, const AnyPair& pair, const std::function<void()>& asked)
+      : lane_(lane), pair_(pair), asked_(asked), sites_(cuda::contraction_sites(lane, pair)) {}
 
   Set none() const { return {sites_.size()}; }
   Set all() const { return others(none()); }
@@ -63,7 +63,7 @@ class Fusing {
 
  private:
   const Lane& lane_;
-  const Pair& pair_;
+  const AnyPair& pair_;
   const std::function<void()>& asked_;
   std::span<const cuda::ContractionSite> sites_;
 };
@@ -106,7 +106,7 @@ Set reduced(const Fusing& kernel, Set set, Verdict verdict) {
 
 }  // namespace
 
-Blame blame(const Lane& lane, const Pair& pair, const std::function<void()>& asked) {
+Blame blame(const Lane& lane, const AnyPair& pair, const std::function<void()>& asked) {
   const Fusing kernel(lane, pair, asked);
   const Verdict verdict = kernel.verdict(kernel.all());
   if (verdict == kernel.verdict(kernel.none())) return {};

@@ -25,7 +25,7 @@ struct Blame {
 // Returns: no sites if the lane's verdict equals that of its source without contraction.
 // Requires: a cuda-fma lane with a twin.
 // asked: called before each verdict.
-Blame blame(const Lane& lane, const Pair& pair, const std::function<void()>& asked = {});
+Blame blame(const Lane& lane, const AnyPair& pair, const std::function<void()>& asked = {});
 
 // The same for foreign code, which may crash or hang when some of its operations are fused. The search runs in a
 // separate process, and each verdict may take `seconds`. Deterministic if the code never takes longer.

@@ -165,7 +165,7 @@ LaneExplanation account_of(const Lane& lane, Verdict verdict, const AnyPair& pai
     for (Decider& decider : result.deciding)
       decider.by_cause = is_by_cause(decider, without(cause, lane, pair, result.rule));
   }
-  if (!cuda::contraction_sites(lane).empty()) result.contractions = blame(lane, pair.floats.value());
+  if (!cuda::contraction_sites(lane).empty()) result.contractions = blame(lane, pair);
   result.settled = audit(result, pair, truth);
   return result;
 }

@@ -35,10 +35,13 @@ Trace<double> run_in(int algorithm, const DoublePair& pair, Contraction rule, co
 // The evidence that this run of a contracted lane is the lane's own.
 Evidence evidence(const Lane& lane, const AnyPair& pair, const Trace<double>& run) {
   if (run.verdict != decide_lane(lane, pair)) return Evidence::none;
-  const cuda::TraceBlock twin = cuda::twin_trace(lane);
-  if (!twin || !pair.floats) return Evidence::verdict;
+  if (!cuda::twin_trace(lane)) return Evidence::verdict;
   std::uint64_t hash = 0;
-  twin(&*pair.floats, 1, &hash);
+  if (pair.floats) {
+    cuda::twin_trace(lane)(&*pair.floats, 1, &hash);
+  } else {
+    cuda::twin_trace_of_doubles(lane)(&pair.doubles, 1, &hash);
+  }
   return hash == (lane.scalar == Scalar::f32 ? trace_hash<float>(run) : trace_hash<double>(run)) ? Evidence::hash
                                                                                                  : Evidence::verdict;
 }

@@ -27,12 +27,13 @@ std::string why_no_twin(const Lane& lane, const std::string& why_no_device) {
 }
 
 constexpr Backend kProcessor{
-    "exact/f32/cpu", false, false, own_code, why_not_on_processor, [](const Lane&) { return std::string(); }};
+    "exact/f32/cpu", false, false, own_code, why_not_on_processor, [](const Lane&, bool) { return std::string(); }};
 constexpr Backend kProcess{
-    "exact/f32/cpu", false, false, own_code, why_not_in_process, [](const Lane& lane) { return lane.evidence; }};
-constexpr Backend kCuda{"exact/f32/cuda", true, true, cuda::block_on_host, why_no_twin, [](const Lane& lane) {
-                          return lane.exact ? std::string("twin, exact") : cuda::twin_evidence(lane);
-                        }};
+    "exact/f32/cpu", false, false, own_code, why_not_in_process, [](const Lane& lane, bool) { return lane.evidence; }};
+constexpr Backend kCuda{
+    "exact/f32/cuda", true, true, cuda::block_on_host, why_no_twin, [](const Lane& lane, bool of_doubles) {
+      return lane.exact ? std::string("twin, exact") : cuda::twin_evidence(lane, of_doubles);
+    }};
 
 }  // namespace
 

@@ -18,8 +18,9 @@ struct Backend {
   DecideBlock (*on_host)(const Lane& lane);
   // "no fma instructions"; empty if the host runs the lane. why_no_device: why no device runs it; may be empty.
   std::string (*why_not_on_host)(const Lane& lane, const std::string& why_no_device);
-  // How we know the verdicts of on_host: "twin, verified on …". Empty if the lane's own code runs here.
-  std::string (*evidence)(const Lane& lane);
+  // How we know the verdicts of on_host: "twin, verified on …". Empty if the lane's own code runs here. of_doubles: on
+  // pairs of doubles.
+  std::string (*evidence)(const Lane& lane, bool of_doubles);
 };
 
 const Backend& backend_of(const Lane& lane);

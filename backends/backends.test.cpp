@@ -39,7 +39,7 @@ TEST(Backends, HaveAnExactLaneInTheSamePlace) {
 TEST(Backends, NameTheEvidenceOfReplaysAlone) {
   for (const Lane& lane : lanes()) {
     if (!on_host(lane)) continue;
-    EXPECT_EQ(backend_of(lane).evidence(lane).empty(), !backend_of(lane).is_replayed) << lane.id;
+    EXPECT_EQ(backend_of(lane).evidence(lane, false).empty(), !backend_of(lane).is_replayed) << lane.id;
   }
 }
 

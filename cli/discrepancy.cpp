@@ -86,9 +86,9 @@ Comparisons comparisons_of_subjects(const std::vector<std::string>& names, fuzz:
           fmt::format("--subject {0}: only {1} of it runs here; name the lanes to compare, such as {1} {2}", name,
                       found.lanes.front()->id, backends::exact_beside(*found.lanes.front()).id));
     say_left_out(found.left_out);
-    auto& [lanes, on_host, device, asked, left_out] = comparisons.of_subjects;
-    asked.insert(asked.end(), found.asked.begin(), found.asked.end());
-    left_out.insert(left_out.end(), found.left_out.begin(), found.left_out.end());
+    fuzz::SelectedLanes& all = comparisons.of_subjects;
+    all.asked.insert(all.asked.end(), found.asked.begin(), found.asked.end());
+    all.left_out.insert(all.left_out.end(), found.left_out.begin(), found.left_out.end());
   }
   return comparisons;
 }

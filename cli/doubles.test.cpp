@@ -408,9 +408,10 @@ TEST_F(Doubles, ARegressionCorpusKeepsThemBesideFloats) {
     ++(entry.doubles ? of_doubles : of_floats);
   EXPECT_GT(of_doubles, 1u);
   EXPECT_GT(of_floats, 0u);
-  const Ran verified = shell("graze corpus verify --corpus r --lanes '*/cpu,*/f64/cuda-fma' --executor twin");
+  const Ran verified =
+      shell("graze corpus verify --corpus r --lanes '*/cpu,*/f64/cuda-fma,*/f64/cuda-fma/abs:1e-6' --executor twin");
   EXPECT_EQ(verified.status, 0) << verified.out << verified.err;
-  EXPECT_NE(verified.out.find("Not run on pairs of doubles: projected_sat/f64/cuda-fma"), std::string::npos)
+  EXPECT_NE(verified.out.find("Not run on pairs of doubles: projected_sat/f64/cuda-fma/abs:1e-6"), std::string::npos)
       << verified.out;
   expect_done("graze corpus verify --corpus r --lanes '*/cpu' --update && graze corpus list --corpus r > /dev/null");
   EXPECT_EQ(contents(shell.folder / "r/cases.pairs"), once);
@@ -588,8 +589,9 @@ TEST_F(Doubles, VerbsThatTakeFloat32AloneSaySo) {
     expect_error(command, 2, {word});
   expect_error("graze view " + file, 1, {file, "doubles"});
   expect_error("graze fuzz --coordinates f16 --out m", 2, {"f16"});
-  expect_error("graze fuzz --coordinates f64 --lanes 'moller_1997/f64/cuda-fma' --executor twin --out m", 2,
-               {"moller_1997/f64/cuda-fma", "float32"});
+  expect_error("graze fuzz --coordinates f64 --lanes 'moller_1997/f64/cuda-fma/abs:1' --executor twin --out m", 2,
+               {"moller_1997/f64/cuda-fma/abs:1", "float32"});
+  expect_error("graze prove-twin --coordinates both", 2, {"--coordinates", "f64"});
   expect_error("graze dump nothing/f64", 2, {"nothing/f64"});
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "m"));
 }

@@ -28,6 +28,8 @@ cuda::ProofRecord record_of(const cuda::ProofOptions& options, const LaneOptions
     return named.build->twin.empty() || !matches_any(options.lanes, named.lane);
   });
   if (lanes.subjects.empty()) return cuda::prove_twin(options);
+  if (options.of_doubles)
+    throw UsageError("--coordinates f64: the twins of subjects take pairs of float32 alone; leave out --coordinates");
   if (builds.empty()) throw UsageError("none of the subjects is a CUDA source with a twin");
   for (const std::string& name : subject_names(lanes)) {
     if (std::none_of(builds.begin(), builds.end(), [&](auto& named) { return named.lane.starts_with(name + '/'); }))
@@ -63,10 +65,12 @@ void add_prove_twin(CLI::App& app, int& status) {
   auto options = std::make_shared<cuda::ProofOptions>();
   auto out = std::make_shared<std::string>();
   auto lanes = std::make_shared<LaneOptions>();
+  auto coordinates = std::make_shared<PairTypes>(PairTypes::f32);
   add_count(*command, "--pairs", options->pairs, 1, kMostWhole, "Number of pairs per lane, shared by all strata");
   add_count(*command, "--twin-pairs", options->twin_pairs, 1, kMostWhole,
             "Number of these pairs that the twin replays as well");
   add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of all strata");
+  add_coordinates_option(*command, *coordinates);
   add_lane_options(*command, *lanes, Executors::twins);
   command->add_flag("--wrong-rule", options->wrong_rule,
                     "Use a wrong rule of contraction on purpose; the comparison must then fail");
@@ -75,7 +79,10 @@ void add_prove_twin(CLI::App& app, int& status) {
           "--out", *out,
           "File for the record (default: proof.json; for a subject FILE.cu.proof.json, where graze looks for it)")
       ->option_text("FILE");
-  command->callback([options, lanes, out, &status] {
+  command->callback([options, lanes, coordinates, out, &status] {
+    if (*coordinates == PairTypes::both)
+      throw UsageError("--coordinates both: a record is of one type; name f32 or f64");
+    options->of_doubles = *coordinates == PairTypes::f64;
     options->lanes = lanes->globs;
     options->progress = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
     status = prove(*options, *lanes, *out);

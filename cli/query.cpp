@@ -53,6 +53,7 @@ struct Run {
   std::string lane, executor;
   query::Answer answer;
   std::vector<std::uint8_t> bytes;
+  bool of_doubles = false;
   std::uint64_t failed = 0;  // pairs on which a user's code crashed, timed out or was unstable
 };
 
@@ -142,7 +143,7 @@ void write_hits(const QueryOptions& options, const Run& run, const TrianglesOf<R
 std::string evidence_of(const Run& run) {
   const Lane* lane = find_lane(run.lane);
   const bool on_cores = run.answer.executor == GRAZE_ONE_CORE || run.answer.executor == GRAZE_ALL_CORES;
-  return lane && on_cores ? backends::backend_of(*lane).evidence(*lane) : "";
+  return lane && on_cores ? backends::backend_of(*lane).evidence(*lane, run.of_doubles) : "";
 }
 
 // A query counts failures of a user's code as declined; this tells them apart.
@@ -236,7 +237,8 @@ std::vector<Run> runs_of(const QueryOptions& options, const QueryLanes& lanes, c
                          const TrianglesOf<Real>& triangles, int& status) {
   std::vector<Run> runs;
   for (const std::string& lane : lanes.ids) {
-    for (const std::string& executor : options.executors) runs.push_back({lane, executor, {}, {}});
+    for (const std::string& executor : options.executors)
+      runs.push_back({lane, executor, {}, {}, std::is_same_v<Real, double>});
   }
   if (runs.size() == 1 && !options.mismatches.empty())
     throw UsageError("--mismatches is for lanes or executors that are compared; name several by --lanes or --executor");

@@ -83,8 +83,10 @@ TunePairs tune_pairs(const TuneOptions& options) {
 bool TunePairs::in_doubles() const { return analysis::any_in_doubles(others); }
 
 void expect_takes(const Lane& lane, const TunePairs& pairs) {
-  if (pairs.in_doubles() && !fuzz::takes(lane, DoublePair{}))
-    throw UsageError(cannot("run", lane.id, "it takes pairs of float32 alone"));
+  if (!pairs.in_doubles()) return;
+  if (!fuzz::takes(lane, DoublePair{})) throw UsageError(cannot("run", lane.id, "it takes pairs of float32 alone"));
+  if (lane.algorithm >= 0 && !fuzz::takes(lane_under(lane, "abs:1e-6"), DoublePair{}))
+    throw UsageError(cannot("tune", lane.id, "under a tolerance it takes pairs of float32 alone"));
 }
 
 const Lane& exact_on(const TunePairs& pairs, const Lane& lane) {

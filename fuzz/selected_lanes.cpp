@@ -66,7 +66,7 @@ std::vector<const Lane*> SelectedLanes::device_lanes() const {
 }
 
 std::string SelectedLanes::evidence(std::size_t l) const {
-  const std::string here = on_host[l] ? backend_of(*lanes[l]).evidence(*lanes[l]) : "";
+  const std::string here = on_host[l] ? backend_of(*lanes[l]).evidence(*lanes[l], of_doubles) : "";
   return !on_device(l) ? here : here.empty() ? "device" : "device and " + here;
 }
 
@@ -74,7 +74,7 @@ std::string status(const Lane& lane, const cuda::Device* device, const std::stri
   if (const std::string why = why_unavailable(lane, device, why_no_device); !why.empty())
     return "unavailable (" + why + ")";
   const Backend& backend = backend_of(lane);
-  const std::string by = device && backend.has_device ? "device" : backend.evidence(lane);
+  const std::string by = device && backend.has_device ? "device" : backend.evidence(lane, false);
   return by.empty() ? "available" : "available (" + by + ")";
 }
 
@@ -179,7 +179,6 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
                            const std::vector<LaneLeftOut>& not_opened) {
   expect_each_matches(globs, not_opened);
   const bool names_some = std::any_of(globs.begin(), globs.end(), wants_lanes);
-  const bool asks_for_doubles = std::find(globs.begin(), globs.end(), kExactDoubles) != globs.end();
   SelectedLanes under_test;
   under_test.asked = globs;
   std::string why_not;
@@ -187,7 +186,8 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
   const bool needs_device = require_device || executor == Executor::device || executor == Executor::both;
   if (needs_device && !under_test.device) throw std::runtime_error("expected a CUDA device, found: " + why_not);
   for (const Lane& lane : lanes()) {
-    if (!matches_any(globs, lane.id) || (lane.id == kExactDoubles && !asks_for_doubles)) continue;
+    if (!matches_any(globs, lane.id)) continue;
+    if (is_exact_on_doubles(lane) && std::find(globs.begin(), globs.end(), lane.id) == globs.end()) continue;
     const Backend& backend = backend_of(lane);
     const bool only_device = backend.has_device && under_test.device && executor != Executor::both;
     const DecideBlock on_host = only_device ? nullptr : backend.on_host(lane);
@@ -220,15 +220,22 @@ bool takes(const Lane& lane, const AnyPair& pair) {
 }
 
 std::vector<LaneLeftOut> select_for_doubles(SelectedLanes& under_test) {
-  const Lane& exact = *find_lane(kExactDoubles);
-  const auto at = std::find(under_test.lanes.begin(), under_test.lanes.end(), &exact);
-  if (at == under_test.lanes.end() && matches_any(under_test.asked, exact.id)) {
-    under_test.lanes.push_back(&exact);
-    under_test.on_host.push_back(exact.decide);
-    sort_by_subject(under_test);
+  bool with_twins = !under_test.device;
+  for (std::size_t l = 0; l < under_test.lanes.size(); ++l) with_twins = with_twins || under_test.on_both(l);
+  for (const Lane& lane : lanes()) {
+    if (!is_exact_on_doubles(lane) || !matches_any(under_test.asked, lane.id) ||
+        std::find(under_test.lanes.begin(), under_test.lanes.end(), &lane) != under_test.lanes.end())
+      continue;
+    under_test.lanes.push_back(&lane);
+    const bool only_device = backend_of(lane).has_device && !with_twins;
+    under_test.on_host.push_back(only_device ? nullptr : backends::on_host(lane));
   }
-  return leave_out(under_test,
-                   [](const Lane& lane) { return takes(lane, DoublePair{}) ? "" : "takes pairs of float32 alone"; });
+  sort_by_subject(under_test);
+  under_test.of_doubles = true;
+  return leave_out(under_test, [&](const Lane& lane) {
+    const bool by_device = under_test.device && backend_of(lane).has_device && !lane.under;
+    return by_device || takes(lane, DoublePair{}) ? "" : "takes pairs of float32 alone";
+  });
 }
 
 BlockVerdicts::BlockVerdicts(const SelectedLanes& under_test)
@@ -264,13 +271,13 @@ std::span<const LaneVerdicts> BlockVerdicts::decide(std::span<const Pair> pairs,
 std::vector<Verdict> decide(const SelectedLanes& under_test, const AnyPair& any, std::vector<const Lane*>& apart) {
   apart.clear();
   const Pair pair = any.floats ? *any.floats : stored_in_float32(any.doubles);
+  const std::span<const DoublePair> doubles(&any.doubles, any.floats ? 0 : 1);
   std::vector<VerdictBits> on_device;
-  if (under_test.device) under_test.device->decide(std::span(&pair, 1), under_test.device_lanes(), on_device);
+  if (under_test.device) under_test.device->decide(std::span(&pair, 1), under_test.device_lanes(), on_device, doubles);
   BlockVerdicts block(under_test);
   std::vector<Verdict> verdicts;
   const auto differs = [&](std::size_t l, std::size_t) { apart.push_back(under_test.lanes[l]); };
-  for (const LaneVerdicts& lane :
-       block.decide(std::span(&pair, 1), on_device, 0, differs, std::span(&any.doubles, any.floats ? 0 : 1)))
+  for (const LaneVerdicts& lane : block.decide(std::span(&pair, 1), on_device, 0, differs, doubles))
     verdicts.push_back(lane.at(0));
   return verdicts;
 }

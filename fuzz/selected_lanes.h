@@ -30,6 +30,7 @@ struct SelectedLanes {
   std::unique_ptr<cuda::Device> device;  // null when the CUDA lanes do not run on one
   std::vector<std::string> asked;        // the patterns; none: all lanes that run here, and all of the user's own code
   std::vector<LaneLeftOut> left_out;     // of those asked for
+  bool of_doubles = false;               // some of the pairs are of doubles
 
   // False for foreign code, even if it uses a device, because it runs in a process of its own.
   bool on_device(std::size_t l) const { return device && backends::backend_of(*lanes[l]).has_device; }
@@ -48,8 +49,9 @@ inline constexpr char kLeaveOut = '!';
 // Adds the exact lane to the patterns, unless one of them selects it or leaves it out. If none selects lanes, all are
 // selected already.
 inline constexpr const char* kExactLane = "exact/f32/cpu";
-// The exact lane of doubles runs only on pairs of doubles, or where it is named in full.
+// The exact lanes of doubles run only on pairs of doubles, or where they are named in full.
 inline constexpr const char* kExactDoubles = "exact/f64/cpu";
+inline bool is_exact_on_doubles(const Lane& lane) { return lane.exact && lane.scalar == Scalar::f64; }
 std::vector<std::string> with_exact_lane(std::vector<std::string> patterns);
 
 // not_opened: lanes of a campaign's subjects that are not in the table, because their code has changed.

@@ -83,7 +83,7 @@ Json replay() {
 std::string evidence() {
   std::set<std::string> kinds;
   for (const Lane* lane : replayed_lanes()) {
-    if (const std::string by = backends::backend_of(*lane).evidence(*lane); !by.empty() && !lane->exact)
+    if (const std::string by = backends::backend_of(*lane).evidence(*lane, false); !by.empty() && !lane->exact)
       kinds.insert(by);
   }
   return fmt::format("{}", fmt::join(kinds, "; "));

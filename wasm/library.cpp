@@ -71,9 +71,10 @@ extern const HostDoublePolicyBlocks kHostDoublePolicyBlocks{};
 namespace cuda {
 
 std::span<const ContractionSite> contraction_sites(const Lane& lane) { return twin_row(lane).sites; }
+std::span<const ContractionSite> contraction_sites(const Lane& lane, const AnyPair&) { return twin_row(lane).sites; }
 
-Verdict decide_fusing(const Lane& lane, const Pair& pair, std::span<const std::uint64_t> fused) {
-  return twin_row(lane).decide_fusing(pair, fused.data());
+Verdict decide_fusing(const Lane& lane, const AnyPair& pair, std::span<const std::uint64_t> fused) {
+  return twin_row(lane).decide_fusing(*pair.floats, fused.data());
 }
 
 }  // namespace cuda

@@ -124,14 +124,14 @@ std::vector<Lane> make_lanes() {
     }
     ++algorithm;
   }
-  for (const Variant variant : {Variant::cpu, Variant::cuda}) {
-    Lane& lane = table.emplace_back(lane_of(&kExactInfo, Scalar::f32, variant));
-    lane.exact = true;
-    if (!lane.is_cuda()) lane.decide = decide_exactly;
+  for (const Scalar scalar : {Scalar::f32, Scalar::f64}) {
+    for (const Variant variant : {Variant::cpu, Variant::cuda}) {
+      Lane& lane = table.emplace_back(lane_of(&kExactInfo, scalar, variant));
+      lane.exact = true;
+      if (lane.is_cuda()) continue;
+      lane.decide = {{decide_exactly}, {scalar == Scalar::f64 ? decide_doubles_exactly : nullptr}};
+    }
   }
-  Lane& of_doubles = table.emplace_back(lane_of(&kExactInfo, Scalar::f64, Variant::cpu));
-  of_doubles.exact = true;
-  of_doubles.decide = {{decide_exactly}, {decide_doubles_exactly}};
   return table;
 }
 

@@ -74,6 +74,24 @@ Launch of_lane(const DeviceKernels<Launch>& table, const Lane& lane) {
   return table[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)];
 }
 
+// A block's coordinates in the layout of the kernels, on the host and on the device.
+template <class Real>
+struct Columns {
+  std::vector<Real> staging;
+  DeviceArray<Real> coordinates;
+
+  // The pairs in device memory, as 18 arrays of `stride`.
+  const Real* copied(std::span<const BasicPair<Real>> pairs, std::size_t stride) {
+    staging.resize(stride * kCoordinates);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      for (std::size_t c = 0; c < kCoordinates; ++c) staging[c * stride + i] = graze::coordinates(pairs[i])[c];
+    }
+    Real* on_device = coordinates.at_least(staging.size());
+    check(cudaMemcpy(on_device, staging.data(), staging.size() * sizeof(Real), cudaMemcpyHostToDevice));
+    return on_device;
+  }
+};
+
 std::string version(int packed) { return std::to_string(packed / 1000) + "." + std::to_string(packed % 1000 / 10); }
 
 }  // namespace
@@ -93,6 +111,16 @@ void launch_lane(const Lane& lane, DeviceExact& exact, DevicePairs pairs, std::u
     check(cudaGetLastError());
     if (lane.under->kind == Policy::Kind::filtered) exact.decide_declined(pairs, intersects, declined, stream);
   }
+  check(cudaGetLastError());
+}
+
+void launch_lane(const Lane& lane, DeviceExact& exact, DeviceDoubles pairs, std::uint32_t* intersects,
+                 std::uint32_t* declined, cudaStream_t stream) {
+  if (lane.under || lane.scalar != Scalar::f64)
+    throw std::logic_error(lane.id + ": expected a lane in double without a policy");
+  if (lane.algorithm < 0) return exact.decide(pairs, intersects, declined, nullptr, stream);
+  kernels_of(lane.variant)
+      .decide_doubles[static_cast<std::size_t>(lane.algorithm)](pairs, intersects, declined, stream);
   check(cudaGetLastError());
 }
 
@@ -117,28 +145,28 @@ class CudaDevice final : public Device {
               std::to_string(__CUDACC_VER_BUILD__);
   }
 
-  void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,
-              std::vector<VerdictBits>& bits) override {
+  void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes, std::vector<VerdictBits>& bits,
+              std::span<const DoublePair> doubles) override {
     bits.resize(cuda_lanes.size());
     if (pairs.empty()) return;
     check(cudaSetDevice(0));  // an engine of another device may have left that one current
     // Whole thread blocks, so that each writes whole words.
     const std::size_t stride = (pairs.size() + kThreads - 1) / kThreads * kThreads;
-    staging_.resize(stride * kCoordinates);
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      for (std::size_t c = 0; c < kCoordinates; ++c) staging_[c * stride + i] = coordinates(pairs[i])[c];
-    }
-    float* on_device = coordinates_.at_least(staging_.size());
-    check(cudaMemcpy(on_device, staging_.data(), staging_.size() * sizeof(float), cudaMemcpyHostToDevice));
-
-    const DevicePairs block{on_device, static_cast<std::uint32_t>(stride), static_cast<std::uint32_t>(pairs.size())};
+    const auto stride32 = static_cast<std::uint32_t>(stride), count = static_cast<std::uint32_t>(pairs.size());
+    const DevicePairs block{floats_.copied(pairs, stride), stride32, count};
+    const DeviceDoubles of_doubles{doubles.empty() ? nullptr : doubles_.copied(doubles, stride), stride32, count};
     const std::size_t words = stride / 64;
     std::uint64_t* intersects = intersects_.at_least(words * cuda_lanes.size());
     std::uint64_t* declined = declined_.at_least(words * cuda_lanes.size());
     for (std::size_t l = 0; l < cuda_lanes.size(); ++l) {
       const Lane& lane = *cuda_lanes[l];
-      launch_lane(lane, exact_, block, reinterpret_cast<std::uint32_t*>(intersects + l * words),
-                  reinterpret_cast<std::uint32_t*>(declined + l * words), nullptr);
+      auto* yes = reinterpret_cast<std::uint32_t*>(intersects + l * words);
+      auto* no_answer = reinterpret_cast<std::uint32_t*>(declined + l * words);
+      if (lane.scalar == Scalar::f64 && of_doubles.coordinates) {
+        launch_lane(lane, exact_, of_doubles, yes, no_answer, nullptr);
+      } else {
+        launch_lane(lane, exact_, block, yes, no_answer, nullptr);
+      }
     }
     for (std::size_t l = 0; l < cuda_lanes.size(); ++l) {
       bits[l].intersects.resize(words);
@@ -151,8 +179,8 @@ class CudaDevice final : public Device {
   }
 
  private:
-  std::vector<float> staging_;
-  DeviceArray<float> coordinates_;
+  Columns<float> floats_;
+  Columns<double> doubles_;
   DeviceExact exact_;
   DeviceArray<std::uint64_t> intersects_, declined_;
 };

@@ -18,10 +18,12 @@ class Device {
  public:
   virtual ~Device() = default;
 
-  // Decides the pairs by each lane; bits[k] has the verdicts of cuda_lanes[k].   Requires: CUDA lanes.
+  // Decides the pairs by each lane; bits[k] has the verdicts of cuda_lanes[k]. If doubles is not empty, the pairs are
+  // its pairs as stored in float32, and lanes in double decide the doubles.
+  // Requires: CUDA lanes; with doubles, those in double have no policy.
   // Throws: std::runtime_error on any CUDA error.
   virtual void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,
-                      std::vector<VerdictBits>& bits) = 0;
+                      std::vector<VerdictBits>& bits, std::span<const DoublePair> doubles = {}) = 0;
 
   std::string name;     // "NVIDIA H100 80GB HBM3"
   std::string driver;   // CUDA version of the driver, "13.0"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The layout of a block of pairs in device memory. It is the first parameter of the kernels and of their twins.
+// The layouts of a block of pairs in device memory. They are the first parameter of the kernels and of their twins.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,13 @@ namespace graze::cuda {
 // A block of pairs: 18 arrays of `stride` floats, ax0[] ay0[] … bz2[], of which `count` are in use.
 struct DevicePairs {
   const float* coordinates;
+  std::uint32_t stride;
+  std::uint32_t count;
+};
+
+// The same for pairs of doubles.
+struct DeviceDoubles {
+  const double* coordinates;
   std::uint32_t stride;
   std::uint32_t count;
 };

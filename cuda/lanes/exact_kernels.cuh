@@ -28,6 +28,9 @@ class DeviceExact {
   // thread blocks. Unless `stages` is null, adds to stages[s] the number of pairs that stage s decided.
   void decide(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, unsigned long long* stages,
               cudaStream_t stream);
+  // The same for pairs of doubles.
+  void decide(DeviceDoubles pairs, std::uint32_t* intersects, std::uint32_t* declined, unsigned long long* stages,
+              cudaStream_t stream);
   // Decides only the pairs whose bit in `declined` is set: those that a filter left open. Pairs that are not finite
   // stay declined.
   void decide_declined(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream);
@@ -42,6 +45,9 @@ class DeviceExact {
 
 // Starts the kernels of a CUDA lane. They write the same words as DeviceExact::decide.
 void launch_lane(const Lane& lane, DeviceExact& exact, DevicePairs pairs, std::uint32_t* intersects,
+                 std::uint32_t* declined, cudaStream_t stream);
+// Requires: a lane in double without a policy.
+void launch_lane(const Lane& lane, DeviceExact& exact, DeviceDoubles pairs, std::uint32_t* intersects,
                  std::uint32_t* declined, cudaStream_t stream);
 
 // Starts the kernel of a published CUDA lane that records its values; see core/lanes/records.h.

@@ -21,6 +21,7 @@ using exact::detail::Grid;
 using exact::detail::NumberKinds;
 
 __device__ bool is_finite(float x) { return (exact::detail::bits_of(x) & 0x7f800000u) != 0x7f800000u; }
+__device__ bool is_finite(double x) { return (exact::detail::bits_of(x) & 0x7ff0000000000000u) != 0x7ff0000000000000u; }
 
 __device__ void count(unsigned long long* stages, Stage stage, std::uint32_t pairs) {
   if (stages && pairs) atomicAdd(&stages[static_cast<int>(stage)], static_cast<unsigned long long>(pairs));
@@ -57,7 +58,7 @@ __device__ int list_of(const float* c) { return floats_hold(c) ? 0 : 1; }
 // whether the pair intersects. If it returns kLeft, the pair goes to the list `left`.
 constexpr int kLeft = exact::kStages;
 
-template <class Pairs, class Decide>
+template <class Real = float, class Pairs, class Decide>
 __device__ void decide_listed(const Pairs& pairs, const PairList& from, const PairList& left, std::uint32_t* intersects,
                               unsigned long long* stages, const Decide& decide) {
   const std::uint32_t count = *from.count;
@@ -67,7 +68,7 @@ __device__ void decide_listed(const Pairs& pairs, const PairList& from, const Pa
     const std::uint32_t i = n < count ? from.at[n] : 0;
     bool is_left = false;
     if (n < count) {
-      float c[kCoordinates];
+      Real c[kCoordinates];
       load(pairs, i, c);
       bool yes = false;
       const int stage = decide(c, yes);

@@ -26,6 +26,23 @@ __global__ void trace_pairs(DevicePairs pairs, std::uint64_t* hashes) {
   hashes[i] = hash ^ static_cast<std::uint64_t>(verdict);
 }
 
+// The same for pairs of doubles, which lanes in double decide. Real is double.
+template <int algorithm, class Real>
+__global__ void decide_double_pairs(DeviceDoubles pairs, std::uint32_t* intersects, std::uint32_t* declined) {
+  vote<Real>(pairs, intersects, declined,
+             [](const auto& a, const auto& b) { return std::tuple_element_t<algorithm, Algorithms>::decide(a, b); });
+}
+
+template <int algorithm, class Real>
+__global__ void trace_double_pairs(DeviceDoubles pairs, std::uint64_t* hashes) {
+  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i >= pairs.count) return;
+  const Triangles<Real> t = widened<Real>(pairs, i);
+  std::uint64_t hash = 0;
+  const Verdict verdict = std::tuple_element_t<algorithm, Algorithms>::decide(t.a, t.b, TracePolicy{&hash});
+  hashes[i] = hash ^ static_cast<std::uint64_t>(verdict);
+}
+
 template <int algorithm, class Real>
 void launch_decide(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream) {
   decide_pairs<algorithm, Real><<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, intersects, declined);
@@ -34,6 +51,17 @@ void launch_decide(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* 
 template <int algorithm, class Real>
 void launch_trace(DevicePairs pairs, std::uint64_t* hashes, cudaStream_t stream) {
   trace_pairs<algorithm, Real><<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, hashes);
+}
+
+template <int algorithm>
+void launch_decide_doubles(DeviceDoubles pairs, std::uint32_t* intersects, std::uint32_t* declined,
+                           cudaStream_t stream) {
+  decide_double_pairs<algorithm, double><<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, intersects, declined);
+}
+
+template <int algorithm>
+void launch_trace_doubles(DeviceDoubles pairs, std::uint64_t* hashes, cudaStream_t stream) {
+  trace_double_pairs<algorithm, double><<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, hashes);
 }
 
 template <int... algorithm>
@@ -46,8 +74,15 @@ constexpr DeviceKernels<LaunchTrace> trace_launchers(std::integer_sequence<int, 
   return {std::array<LaunchTrace, 2>{launch_trace<algorithm, float>, launch_trace<algorithm, double>}...};
 }
 
-extern const VariantKernels kKernels = {decide_launchers(std::make_integer_sequence<int, kAlgorithmCount>()),
-                                        trace_launchers(std::make_integer_sequence<int, kAlgorithmCount>())};
+template <int... algorithm>
+constexpr VariantKernels kernels(std::integer_sequence<int, algorithm...> all) {
+  return {decide_launchers(all),
+          trace_launchers(all),
+          {launch_decide_doubles<algorithm>...},
+          {launch_trace_doubles<algorithm>...}};
+}
+
+extern const VariantKernels kKernels = kernels(std::make_integer_sequence<int, kAlgorithmCount>());
 
 }  // namespace GRAZE_FP
 

@@ -25,6 +25,11 @@ using LaunchDecide = void (*)(DevicePairs pairs, std::uint32_t* intersects, std:
 // Starts a kernel that writes each pair's trace hash; see cuda/lanes/trace.h.
 using LaunchTrace = void (*)(DevicePairs pairs, std::uint64_t* hashes, cudaStream_t stream);
 
+// The same for pairs of doubles.
+using LaunchDecideDoubles = void (*)(DeviceDoubles pairs, std::uint32_t* intersects, std::uint32_t* declined,
+                                     cudaStream_t stream);
+using LaunchTraceDoubles = void (*)(DeviceDoubles pairs, std::uint64_t* hashes, cudaStream_t stream);
+
 // As LaunchDecide, for lanes with tolerances.
 using LaunchWithin = void (*)(const Epsilons& epsilons, DevicePairs pairs, std::uint32_t* intersects,
                               std::uint32_t* declined, cudaStream_t stream);
@@ -39,9 +44,14 @@ using DeviceKernels = std::array<std::array<Launch, 2>, kAlgorithmCount>;
 struct VariantKernels {
   DeviceKernels<LaunchDecide> decide;
   DeviceKernels<LaunchTrace> trace;
+  std::array<LaunchDecideDoubles, kAlgorithmCount> decide_doubles;  // in double
+  std::array<LaunchTraceDoubles, kAlgorithmCount> trace_doubles;
 };
 
-constexpr std::uint32_t thread_blocks(const DevicePairs& pairs) { return (pairs.count + kThreads - 1) / kThreads; }
+template <class Pairs>
+constexpr std::uint32_t thread_blocks(const Pairs& pairs) {
+  return (pairs.count + kThreads - 1) / kThreads;
+}
 
 // Throws: std::logic_error for a variant without kernels.
 const VariantKernels& kernels_of(Variant variant);

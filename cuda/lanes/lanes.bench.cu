@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs per second of each CUDA lane, by stratum, on pairs in device memory. For comparison, the limits set by memory:
-// a copy, and a kernel that only reads the pairs (72 bytes each) and writes a bit.
-// Before that, the exact lane must give the same bits as the host on a sample. Without a device, prints a line and
-// succeeds.
+// Pairs per second of each CUDA lane, by stratum, on pairs in device memory: of float32, and of doubles for lanes in
+// double. For comparison, the limits set by memory: a copy, and a kernel that only reads the pairs (72 or 144 bytes
+// each) and writes a bit. Before that, the exact lane must give the same bits as the host on a sample. Without a
+// device, prints a line and succeeds.
 #include <benchmark/benchmark.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
@@ -36,34 +38,57 @@ namespace graze::cuda {
 namespace {
 
 constexpr std::uint32_t kPairs = 1u << 24;
-constexpr std::size_t kFloats = std::size_t{kPairs} * kCoordinates;
+constexpr std::size_t kNumbers = std::size_t{kPairs} * kCoordinates;
 constexpr std::uint32_t kSample = 1u << 16;
 constexpr int kLaunches = 4;  // timed together, to make the few microseconds of a launch negligible
 
+std::span<const strata::StratumInfo> strata_of(float) { return strata::kStrata; }
+std::span<const strata::StratumInfo> strata_of(double) { return strata::kDoubleStrata; }
+
+void draw(const strata::StratumInfo& stratum, std::uint64_t first, float* to) {
+  launch_generate(to, kPairs, 1, static_cast<int>(stratum.stratum), first, nullptr);
+  check(cudaGetLastError());
+}
+
+// On all CPU cores, then copied.
+void draw(const strata::StratumInfo& stratum, std::uint64_t first, double* to) {
+  std::vector<double> columns(kNumbers);
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, kPairs, 4096), [&](const auto& part) {
+    for (std::uint32_t i = part.begin(); i != part.end(); ++i) {
+      const DoublePair pair = strata::generate_doubles(1, stratum.stratum, first + i);
+      for (std::size_t c = 0; c < kCoordinates; ++c) columns[c * kPairs + i] = coordinates(pair)[c];
+    }
+  });
+  check(cudaMemcpy(to, columns.data(), kNumbers * sizeof(double), cudaMemcpyHostToDevice));
+}
+
 // The pairs of one stratum, and the memory to which the lanes write.
+template <class Real>
 struct Resident {
-  int stratum = -1;
-  DeviceArray<float> coordinates, copy;
+  using Block = std::conditional_t<std::is_same_v<Real, float>, DevicePairs, DeviceDoubles>;
+
+  const strata::StratumInfo* stratum = nullptr;
+  DeviceArray<Real> coordinates, copy;
   DeviceArray<std::uint32_t> intersects, declined;
   DeviceArray<unsigned long long> stages;
   DeviceExact exact;
 
-  DevicePairs pairs() { return {coordinates.at_least(kFloats), kPairs, kPairs}; }
+  Block pairs() { return {coordinates.at_least(kNumbers), kPairs, kPairs}; }
   std::uint32_t* intersects_bits() { return intersects.at_least(kPairs / 32); }
   std::uint32_t* declined_bits() { return declined.at_least(kPairs / 32); }
 
-  void hold(int wanted, std::uint64_t first = 0) {
-    if (stratum == wanted && first == 0) return;
-    launch_generate(coordinates.at_least(kFloats), kPairs, 1, wanted, first, nullptr);
-    check(cudaGetLastError());
+  void hold(const strata::StratumInfo& wanted, std::uint64_t first = 0) {
+    if (stratum == &wanted && first == 0) return;
+    draw(wanted, first, coordinates.at_least(kNumbers));
     check(cudaDeviceSynchronize());
-    stratum = wanted;
+    stratum = &wanted;
   }
 };
 
-__global__ void read_pairs(DevicePairs pairs, std::uint32_t* bits) {
+template <class Block>
+__global__ void read_pairs(Block pairs, std::uint32_t* bits) {
   const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
-  float sum = 0;
+  auto sum = pairs.coordinates[i] * 0;
   for (int c = 0; c < kCoordinates; ++c) sum += pairs.coordinates[std::size_t(c) * pairs.stride + i];
   const std::uint32_t word = __ballot_sync(0xffffffffu, sum > 0);
   if (threadIdx.x % 32 == 0) bits[i / 32] = word;
@@ -92,15 +117,17 @@ void measure(benchmark::State& state, double items, double bytes, const Launch& 
 using Bits = std::vector<std::uint64_t>;
 
 // Copies the first `count` pairs from the device to `columns`: 18 arrays of that length.
-void fetch(Resident& resident, std::size_t count, float* columns) {
-  check(cudaMemcpy2D(columns, count * sizeof(float), resident.pairs().coordinates, kPairs * sizeof(float),
-                     count * sizeof(float), kCoordinates, cudaMemcpyDeviceToHost));
+template <class Real>
+void fetch(Resident<Real>& resident, std::size_t count, Real* columns) {
+  check(cudaMemcpy2D(columns, count * sizeof(Real), resident.pairs().coordinates, kPairs * sizeof(Real),
+                     count * sizeof(Real), kCoordinates, cudaMemcpyDeviceToHost));
 }
 
 // The verdicts of the host's exact lane on pairs [first, first + count) in columns of length `stride`.
 // Requires: count is a multiple of 64.
-Bits by_host(const Lane& host, const float* columns, std::size_t stride, std::size_t first, std::size_t count) {
-  std::vector<Pair> pairs(count);
+template <class Real>
+Bits by_host(const Lane& host, const Real* columns, std::size_t stride, std::size_t first, std::size_t count) {
+  std::vector<BasicPair<Real>> pairs(count);
   for (std::size_t c = 0; c < kCoordinates; ++c) {
     for (std::size_t i = 0; i < count; ++i) coordinates(pairs[i])[c] = columns[c * stride + first + i];
   }
@@ -109,14 +136,16 @@ Bits by_host(const Lane& host, const float* columns, std::size_t stride, std::si
   return intersects;
 }
 
-Bits by_device(Resident& resident, std::size_t count) {
+template <class Real>
+Bits by_device(Resident<Real>& resident, std::size_t count) {
   Bits intersects(count / 64);
   check(cudaMemcpy(intersects.data(), resident.intersects_bits(), count / 8, cudaMemcpyDeviceToHost));
   return intersects;
 }
 
 // Decides the pairs in device memory and returns how many pairs each stage decided.
-void decide(Resident& resident, unsigned long long (&stages)[exact::kStages]) {
+template <class Real>
+void decide(Resident<Real>& resident, unsigned long long (&stages)[exact::kStages]) {
   unsigned long long* counts = resident.stages.at_least(exact::kStages);
   check(cudaMemset(counts, 0, sizeof stages));
   resident.exact.decide(resident.pairs(), resident.intersects_bits(), resident.declined_bits(), counts, nullptr);
@@ -125,17 +154,18 @@ void decide(Resident& resident, unsigned long long (&stages)[exact::kStages]) {
 
 // Compares device and host on rounds [first, end) of every stratum, kPairs pairs in each. Prints a line for each, with
 // hashes of the verdicts.   Returns: whether there is no difference.
+template <class Real>
 bool device_is_host(std::uint64_t first, std::uint64_t end) {
   if (first >= end) throw std::invalid_argument("expected FIRST below END");
-  const Lane& host = *(&lanes().back() - 1);
+  const Lane& host = *find_lane(std::is_same_v<Real, float> ? "exact/f32/cpu" : "exact/f64/cpu");
   const auto hashed = [](const Bits& bits, std::uint64_t hash) {
     return fnv1a({reinterpret_cast<const char*>(bits.data()), bits.size() * sizeof bits[0]}, hash);
   };
-  Resident resident;
-  float* columns;
-  check(cudaMallocHost(&columns, kFloats * sizeof(float)));
+  Resident<Real> resident;
+  Real* columns;
+  check(cudaMallocHost(&columns, kNumbers * sizeof(Real)));
   bool same = true;
-  for (int stratum = 0; stratum < strata::kStrataCount; ++stratum) {
+  for (const strata::StratumInfo& stratum : strata_of(Real())) {
     std::uint64_t differ = 0, hash_of_device = fnv1a(""), hash_of_host = fnv1a("");
     for (std::uint64_t round = first; round < end; ++round) {
       resident.hold(stratum, round * kPairs);
@@ -164,30 +194,37 @@ bool device_is_host(std::uint64_t first, std::uint64_t end) {
       hash_of_device = hashed(of_device, hash_of_device);
       hash_of_host = hashed(of_host, hash_of_host);
     }
-    std::cout << strata::kStrata[stratum].id << ": " << (end - first) * kPairs << " pairs, " << differ
-              << " differ, hashes " << std::hex << hash_of_device << ' ' << hash_of_host << std::dec << std::endl;
+    std::cout << stratum.id << ": " << (end - first) * kPairs << " pairs, " << differ << " differ, hashes " << std::hex
+              << hash_of_device << ' ' << hash_of_host << std::dec << std::endl;
     same = same && differ == 0 && hash_of_device == hash_of_host;
   }
   check(cudaFreeHost(columns));
   return same;
 }
 
-void measure_lane(benchmark::State& state, Resident& resident, int stratum, const Lane& lane) {
+void launch(const Lane& lane, Resident<float>& resident) {
+  launch_lane(lane, resident.exact, resident.pairs(), resident.intersects_bits(), resident.declined_bits(), nullptr);
+}
+void launch(const Lane& lane, Resident<double>& resident) {
+  launch_lane(lane, resident.exact, resident.pairs(), resident.intersects_bits(), resident.declined_bits(), nullptr);
+}
+
+template <class Real>
+void measure_lane(benchmark::State& state, Resident<Real>& resident, const strata::StratumInfo& stratum,
+                  const Lane& lane) {
   resident.hold(stratum);
   if (lane.exact) {
     unsigned long long stages[exact::kStages];
-    const Lane& host = *(&lane - 1);  // exact/f32/cpu is the row before exact/f32/cuda
+    const Lane& host = *counterpart(lane, Variant::cpu);
     decide(resident, stages);
-    std::vector<float> columns(kSample * kCoordinates);
+    std::vector<Real> columns(kSample * kCoordinates);
     fetch(resident, kSample, columns.data());
     if (by_device(resident, kSample) != by_host(host, columns.data(), kSample, 0, kSample))
       return state.SkipWithError("differs from the host's exact lane");
     constexpr const char* kNames[] = {"bounded", "doubles", "int128", "wide"};
     for (int s = 0; s < exact::kStages; ++s) state.counters[kNames[s]] = static_cast<double>(stages[s]);
   }
-  measure(state, kPairs, double{kPairs} * sizeof(Pair), [&] {
-    launch_lane(lane, resident.exact, resident.pairs(), resident.intersects_bits(), resident.declined_bits(), nullptr);
-  });
+  measure(state, kPairs, double{kPairs} * sizeof(BasicPair<Real>), [&] { launch(lane, resident); });
 }
 
 // The total time of a sweep over 64 tolerances, including drawing and judging the pairs.
@@ -214,33 +251,39 @@ void add(const std::string& name, Function function) {
   benchmark::RegisterBenchmark(name.c_str(), function)->UseManualTime()->Unit(benchmark::kMicrosecond);
 }
 
-void add_all(Resident& resident) {
-  constexpr double kBytes = double{kFloats} * sizeof(float);
-  add("copy/memory", [&](benchmark::State& state) {
-    resident.hold(0);
-    measure(state, kPairs, 2 * kBytes, [&] {
-      check(cudaMemcpyAsync(resident.copy.at_least(kFloats), resident.pairs().coordinates, kFloats * sizeof(float),
+// suffix: of the benchmarks' names.
+template <class Real>
+void add_of(Resident<Real>& resident, const std::string& suffix) {
+  const std::span<const strata::StratumInfo> all = strata_of(Real());
+  constexpr std::size_t kBytes = kNumbers * sizeof(Real);
+  add("copy/memory" + suffix, [&resident, all](benchmark::State& state) {
+    resident.hold(all[0]);
+    measure(state, kPairs, 2.0 * kBytes, [&] {
+      check(cudaMemcpyAsync(resident.copy.at_least(kNumbers), resident.pairs().coordinates, kBytes,
                             cudaMemcpyDeviceToDevice));
     });
   });
-  add("read/memory", [&](benchmark::State& state) {
-    resident.hold(0);
-    measure(state, kPairs, kBytes, [&] {
+  add("read/memory" + suffix, [&resident, all](benchmark::State& state) {
+    resident.hold(all[0]);
+    measure(state, kPairs, double{kBytes}, [&] {
       read_pairs<<<kPairs / kThreads, kThreads>>>(resident.pairs(), resident.intersects_bits());
       check(cudaGetLastError());
     });
   });
+  for (const strata::StratumInfo& stratum : all) {
+    for (const Lane& lane : lanes()) {
+      if (!lane.is_cuda() || (std::is_same_v<Real, double> && lane.scalar != Scalar::f64)) continue;
+      add(lane.id + '/' + std::string(stratum.id) + suffix,
+          [&resident, &lane, &stratum](benchmark::State& state) { measure_lane(state, resident, stratum, lane); });
+    }
+  }
+}
+
+void add_sweeps() {
   for (const char* form : {"abs", "rel"}) {
     for (const char* id : {"moller_1997/f32/cuda-fma", "guigue_devillers_2003/f32/cuda-fma"}) {
       add(std::string("sweep of 64 tolerances/") + id + '/' + form,
           [=](benchmark::State& state) { measure_sweep(state, *find_lane(id), form); });
-    }
-  }
-  for (int stratum = 0; stratum < strata::kStrataCount; ++stratum) {
-    for (const Lane& lane : lanes()) {
-      if (!lane.is_cuda()) continue;
-      add(lane.id + '/' + std::string(strata::kStrata[stratum].id),
-          [&resident, &lane, stratum](benchmark::State& state) { measure_lane(state, resident, stratum, lane); });
     }
   }
 }
@@ -248,10 +291,13 @@ void add_all(Resident& resident) {
 }  // namespace
 }  // namespace graze::cuda
 
-// `graze_device_bench compare FIRST END` compares the exact lanes of device and host instead of measuring.
+// `graze_device_bench compare FIRST END` compares the exact lanes of device and host instead of measuring, `compare_f64
+// FIRST END` those on pairs of doubles.
 int main(int argc, char** argv) try {
   if (argc == 4 && std::string_view(argv[1]) == "compare")
-    return graze::cuda::device_is_host(std::stoull(argv[2]), std::stoull(argv[3])) ? 0 : 1;
+    return graze::cuda::device_is_host<float>(std::stoull(argv[2]), std::stoull(argv[3])) ? 0 : 1;
+  if (argc == 4 && std::string_view(argv[1]) == "compare_f64")
+    return graze::cuda::device_is_host<double>(std::stoull(argv[2]), std::stoull(argv[3])) ? 0 : 1;
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   std::string why_not;
@@ -265,8 +311,11 @@ int main(int argc, char** argv) try {
   benchmark::AddCustomContext("nvcc", device->toolkit);
   benchmark::AddCustomContext("flags", GRAZE_FLAGS);
   benchmark::AddCustomContext("commit", GRAZE_COMMIT);
-  graze::cuda::Resident resident;
-  graze::cuda::add_all(resident);
+  graze::cuda::Resident<float> of_floats;
+  graze::cuda::Resident<double> of_doubles;
+  graze::cuda::add_of(of_floats, "");
+  graze::cuda::add_sweeps();
+  graze::cuda::add_of(of_doubles, std::string(graze::strata::kInDoubles));
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

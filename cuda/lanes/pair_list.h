@@ -62,7 +62,8 @@ __device__ inline void add_of_block(const PairList& first, const PairList& secon
 #endif
 
 // The coordinates of pair i.
-GRAZE_HD inline void load(const DevicePairs& pairs, std::uint32_t i, float* c) {
+template <class Pairs, class Real>
+GRAZE_HD void load(const Pairs& pairs, std::uint32_t i, Real* c) {
   for (std::uint32_t k = 0; k < kCoordinates; ++k) c[k] = pairs.coordinates[std::size_t{k} * pairs.stride + i];
 }
 

@@ -14,9 +14,9 @@ struct Triangles {
   Vec3<Real> a[3], b[3];
 };
 
-template <class Real>
-__device__ Triangles<Real> widened(const DevicePairs& pairs, std::uint32_t i) {
-  const float* c = pairs.coordinates + i;
+template <class Real, class Pairs>
+__device__ Triangles<Real> widened(const Pairs& pairs, std::uint32_t i) {
+  const auto* c = pairs.coordinates + i;
   const auto vertex = [&](int v) {
     return Vec3<Real>{Real(c[(3 * v) * pairs.stride]), Real(c[(3 * v + 1) * pairs.stride]),
                       Real(c[(3 * v + 2) * pairs.stride])};
@@ -25,9 +25,8 @@ __device__ Triangles<Real> widened(const DevicePairs& pairs, std::uint32_t i) {
 }
 
 // Decides pair i of this thread and writes bit i % 32 of word i / 32 of `intersects` and `declined`.
-template <class Real, class Decide>
-__device__ void vote(const DevicePairs& pairs, std::uint32_t* intersects, std::uint32_t* declined,
-                     const Decide& decide) {
+template <class Real, class Pairs, class Decide>
+__device__ void vote(const Pairs& pairs, std::uint32_t* intersects, std::uint32_t* declined, const Decide& decide) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   Verdict verdict = Verdict::disjoint;
   if (i < pairs.count) {

@@ -43,6 +43,10 @@ std::span<const ContractionSite> contraction_sites(const Lane& lane) {
   return found == foreign_twins().end() ? std::span<const ContractionSite>() : found->second.sites;
 }
 
+std::span<const ContractionSite> contraction_sites(const Lane& lane, const AnyPair& pair) {
+  return pair.floats ? contraction_sites(lane) : twin_row(lane).doubles.sites;
+}
+
 std::span<const ComparisonSite> comparison_sites(const Lane& lane) {
   const auto found = foreign_twins().find(lane.id);
   return found == foreign_twins().end() ? std::span<const ComparisonSite>() : found->second.library->comparisons();
@@ -54,13 +58,16 @@ Verdict decide_comparing(const Lane& lane, const Pair& pair, std::span<const std
   return answer < 0 ? Verdict::declined : answer > 0 ? Verdict::intersects : Verdict::disjoint;
 }
 
-Verdict decide_fusing(const Lane& lane, const Pair& pair, std::span<const std::uint64_t> fused) {
+Verdict decide_fusing(const Lane& lane, const AnyPair& pair, std::span<const std::uint64_t> fused) {
   std::size_t none = 0;
-  if (lane.foreign) return decide_comparing(lane, pair, fused, {}, none);
+  if (lane.foreign) return decide_comparing(lane, pair.floats.value(), fused, {}, none);
+  const auto decide = [&](const auto& twin, const auto& own) {
+    if (!twin.decide_fusing || fused.size() * 64 < twin.sites.size())
+      throw std::invalid_argument("decide_fusing: no such twin, or too few bits for its sites");
+    return twin.decide_fusing(own, fused.data());
+  };
   const TwinRow& row = twin_row(lane);
-  if (!row.decide_fusing || fused.size() * 64 < row.sites.size())
-    throw std::invalid_argument("decide_fusing: no such twin, or too few bits for its sites");
-  return row.decide_fusing(pair, fused.data());
+  return pair.floats ? decide(row, *pair.floats) : decide(row.doubles, pair.doubles);
 }
 
 }  // namespace graze::cuda

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cuda/twin/prove.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -16,12 +19,13 @@
 #include "cuda/lanes/stratum_kernels.cuh"
 #include "cuda/twin/explicit_ptx.h"
 #include "cuda/twin/twin_table.h"
+#include "strata/pair_source.h"
 #include "strata/strata.h"
 
 namespace graze::cuda {
 namespace {
 
-constexpr std::uint32_t kBlockPairs = 1u << 23;  // 604 MB of coordinates
+constexpr std::uint32_t kBlockPairs = 1u << 23;  // 604 MB of coordinates in float32
 
 // The explicit PTX, assembled by the driver for this device.
 class ExplicitKernels {
@@ -53,16 +57,69 @@ struct LaneRun {
   DeviceArray<std::uint64_t> hashes[2];
 };
 
+// What depends on the coordinate type of the pairs.
+struct OfFloats {
+  using Real = float;
+  using Block = DevicePairs;
+  static constexpr std::span<const strata::StratumInfo> kStrata{strata::kStrata};
+  static constexpr std::string_view kSuffix = "";
+
+  static const TwinFunctions<Pair>& twin(const Lane& lane) { return twin_row(lane); }
+  static void launch(const Lane& lane, const Block& block, std::uint32_t* yes, std::uint32_t* no_answer,
+                     std::uint64_t* hashes) {
+    const auto a = static_cast<std::size_t>(lane.algorithm), s = static_cast<std::size_t>(lane.scalar);
+    kernels_of(lane.variant).decide[a][s](block, yes, no_answer, nullptr);
+    kernels_of(lane.variant).trace[a][s](block, hashes, nullptr);
+  }
+  void draw(std::uint64_t seed, std::size_t s, std::uint64_t first, std::uint32_t n, float* to) {
+    launch_generate(to, n, seed, static_cast<int>(s), first, nullptr);
+    check(cudaGetLastError());
+  }
+};
+
+struct OfDoubles {
+  using Real = double;
+  using Block = DeviceDoubles;
+  static constexpr std::span<const strata::StratumInfo> kStrata{strata::kDoubleStrata};
+  static constexpr std::string_view kSuffix = strata::kInDoubles;
+
+  static const TwinFunctions<DoublePair>& twin(const Lane& lane) { return twin_row(lane).doubles; }
+  static void launch(const Lane& lane, const Block& block, std::uint32_t* yes, std::uint32_t* no_answer,
+                     std::uint64_t* hashes) {
+    const auto a = static_cast<std::size_t>(lane.algorithm);
+    kernels_of(lane.variant).decide_doubles[a](block, yes, no_answer, nullptr);
+    kernels_of(lane.variant).trace_doubles[a](block, hashes, nullptr);
+  }
+  // On all CPU cores, then copied.
+  void draw(std::uint64_t seed, std::size_t s, std::uint64_t first, std::uint32_t n, double* to) {
+    drawn_.resize(std::size_t{n} * kCoordinates);
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, n, 4096), [&](const auto& part) {
+      for (std::uint32_t i = part.begin(); i != part.end(); ++i) {
+        const DoublePair pair = strata::generate_doubles(seed, kStrata[s].stratum, first + i);
+        for (std::size_t c = 0; c < kCoordinates; ++c) drawn_[c * n + i] = coordinates(pair)[c];
+      }
+    });
+    check(cudaMemcpy(to, drawn_.data(), drawn_.size() * sizeof(double), cudaMemcpyHostToDevice));
+  }
+
+ private:
+  std::vector<double> drawn_;
+};
+
+template <class Coordinates>
 class Prover {
+  using Real = typename Coordinates::Real;
+  using Block = typename Coordinates::Block;
+  static constexpr std::size_t kStrataCount = Coordinates::kStrata.size();
+
  public:
   explicit Prover(const ProofOptions& options) : options_(options) {
     for (const Lane& lane : lanes()) {
-      if (!twin_block(lane) || !matches_any(options.lanes, lane.id)) continue;
+      const auto& twin = Coordinates::twin(lane);
+      if (!twin.decide || !matches_any(options.lanes, lane.id)) continue;
       lanes_.push_back(&lane);
-      const TwinRow& row = twin_row(lane);
-      record_.lanes.push_back({lane.id, row.hash, row.trace_hash, std::vector<StratumProof>(strata::kStrataCount)});
-      for (int s = 0; s < strata::kStrataCount; ++s)
-        record_.lanes.back().strata[static_cast<std::size_t>(s)].stratum = strata::kStrata[s].id;
+      record_.lanes.push_back({lane.id, twin.hash, twin.trace_hash, std::vector<StratumProof>(kStrataCount)});
+      for (std::size_t s = 0; s < kStrataCount; ++s) record_.lanes.back().strata[s].stratum = name_of(s);
       auto& module = explicit_[lane.variant];
       if (!module) module = std::make_unique<ExplicitKernels>(lane.variant, options.wrong_rule);
     }
@@ -74,10 +131,8 @@ class Prover {
     record_.driver = device.driver;
     record_.toolkit = device.toolkit;
     record_.seed = options_.seed;
-    for (int s = 0; s < strata::kStrataCount; ++s) {
-      const auto count = [&](std::uint64_t all) {
-        return all / strata::kStrataCount + (static_cast<std::uint64_t>(s) < all % strata::kStrataCount);
-      };
+    for (std::size_t s = 0; s < kStrataCount; ++s) {
+      const auto count = [&](std::uint64_t all) { return all / kStrataCount + (s < all % kStrataCount); };
       const std::uint64_t pairs = count(options_.pairs), twin_pairs = std::min(pairs, count(options_.twin_pairs));
       for (std::uint64_t first = 0; first < pairs; first += kBlockPairs) {
         const auto n = static_cast<std::uint32_t>(std::min<std::uint64_t>(kBlockPairs, pairs - first));
@@ -91,35 +146,36 @@ class Prover {
   }
 
  private:
-  std::string progress_line(int s) const {
+  static std::string name_of(std::size_t s) {
+    return std::string(Coordinates::kStrata[s].id) + std::string(Coordinates::kSuffix);
+  }
+
+  std::string progress_line(std::size_t s) const {
     std::uint64_t differences = 0, twin_differences = 0;
     for (const LaneProof& lane : record_.lanes) {
-      const StratumProof& row = lane.strata[static_cast<std::size_t>(s)];
+      const StratumProof& row = lane.strata[s];
       differences += row.verdict_differences + row.trace_differences;
       twin_differences += row.twin_verdict_differences + row.twin_trace_differences;
     }
-    return std::string(strata::kStrata[s].id) + ": " + std::to_string(differences) + " differences on the device, " +
+    return name_of(s) + ": " + std::to_string(differences) + " differences on the device, " +
            std::to_string(twin_differences) + " from the twin, " + std::to_string(static_cast<int>(record_.seconds)) +
            " s";
   }
 
-  void prove_block(int s, std::uint64_t first, std::uint32_t n, std::uint32_t sample) {
-    float* on_device = coordinates_.at_least(std::size_t{n} * kCoordinates);
-    launch_generate(on_device, n, options_.seed, s, first, nullptr);
-    check(cudaGetLastError());
-    const DevicePairs block{on_device, n, n};
+  void prove_block(std::size_t s, std::uint64_t first, std::uint32_t n, std::uint32_t sample) {
+    Real* on_device = coordinates_.at_least(std::size_t{n} * kCoordinates);
+    drawing_.draw(options_.seed, s, first, n, on_device);
+    const Block block{on_device, n, n};
     if (sample) fetch_pairs(n, sample);
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      StratumProof& row = record_.lanes[l].strata[static_cast<std::size_t>(s)];
+      StratumProof& row = record_.lanes[l].strata[s];
       run_lane(*lanes_[l], block);
       compare_on_device(row, first, n);
       if (sample) compare_with_twin(*lanes_[l], row, first, sample);
     }
   }
 
-  void run_lane(const Lane& lane, const DevicePairs& block) {
-    const auto a = static_cast<std::size_t>(lane.algorithm), s = static_cast<std::size_t>(lane.scalar);
-    const VariantKernels& built = kernels_of(lane.variant);
+  void run_lane(const Lane& lane, const Block& block) {
     const std::size_t words = (block.count + kThreads - 1) / kThreads * (kThreads / 32);
     std::uint32_t *yes[2], *no_answer[2];
     std::uint64_t* hashes[2];
@@ -128,13 +184,12 @@ class Prover {
       no_answer[v] = run_.declined[v].at_least(words);
       hashes[v] = run_.hashes[v].at_least(block.count);
     }
-    built.decide[a][s](block, yes[0], no_answer[0], nullptr);
-    built.trace[a][s](block, hashes[0], nullptr);
+    Coordinates::launch(lane, block, yes[0], no_answer[0], hashes[0]);
     check(cudaGetLastError());
-    const TwinRow& row = twin_row(lane);
+    const auto& twin = Coordinates::twin(lane);
     ExplicitKernels& kernels = *explicit_.at(lane.variant);
-    kernels.launch(row.symbol, block.count, block, yes[1], no_answer[1]);
-    kernels.launch(row.trace_symbol, block.count, block, hashes[1]);
+    kernels.launch(twin.symbol, block.count, block, yes[1], no_answer[1]);
+    kernels.launch(twin.trace_symbol, block.count, block, hashes[1]);
   }
 
   void compare_on_device(StratumProof& row, std::uint64_t first, std::uint32_t n) {
@@ -158,11 +213,11 @@ class Prover {
 
   // Copies the first pairs of the block from the device, as its kernels saw them.
   void fetch_pairs(std::uint32_t n, std::uint32_t sample) {
-    std::vector<float> column(sample);
+    std::vector<Real> column(sample);
     pairs_.resize(sample);
     for (int c = 0; c < kCoordinates; ++c) {
       check(cudaMemcpy(column.data(), coordinates_.at_least(0) + std::size_t{n} * static_cast<std::size_t>(c),
-                       sample * sizeof(float), cudaMemcpyDeviceToHost));
+                       sample * sizeof(Real), cudaMemcpyDeviceToHost));
       for (std::uint32_t i = 0; i < sample; ++i) coordinates(pairs_[i])[c] = column[i];
     }
   }
@@ -176,8 +231,7 @@ class Prover {
                      cudaMemcpyDeviceToHost));
     check(
         cudaMemcpy(hashes.data(), run_.hashes[0].at_least(0), sample * sizeof(std::uint64_t), cudaMemcpyDeviceToHost));
-    const DecideBlock decide = twin_block(lane);
-    const TraceBlock trace = twin_trace(lane);
+    const auto& twin = Coordinates::twin(lane);
 
     constexpr std::size_t kPart = 1 << 14;
     std::atomic<std::size_t> next = 0;
@@ -191,8 +245,8 @@ class Prover {
       std::vector<std::uint64_t> twin_yes(kPart / 64), twin_no_answer(kPart / 64), twin_hashes(kPart);
       for (std::size_t at = next.fetch_add(kPart); at < sample; at = next.fetch_add(kPart)) {
         const std::size_t n = std::min<std::size_t>(kPart, sample - at);
-        decide(pairs_.data() + at, n, twin_yes.data(), twin_no_answer.data());
-        trace(pairs_.data() + at, n, twin_hashes.data());
+        twin.decide(pairs_.data() + at, n, twin_yes.data(), twin_no_answer.data());
+        twin.trace(pairs_.data() + at, n, twin_hashes.data());
         for (std::size_t i = 0; i < n; ++i) {
           const auto bit = [&](const std::vector<std::uint64_t>& words64, std::size_t place) {
             return words64[place / 64] >> (place % 64) & 1;
@@ -220,9 +274,10 @@ class Prover {
   std::vector<const Lane*> lanes_;
   std::map<Variant, std::unique_ptr<ExplicitKernels>> explicit_;
   LaneRun run_;
-  DeviceArray<float> coordinates_;
+  Coordinates drawing_;
+  DeviceArray<Real> coordinates_;
   DeviceArray<Differences> differences_;
-  std::vector<Pair> pairs_;
+  std::vector<BasicPair<Real>> pairs_;
 };
 
 }  // namespace
@@ -231,7 +286,7 @@ ProofRecord prove_twin(const ProofOptions& options) {
   std::string why_not;
   const auto device = open_device(why_not);
   if (!device) throw std::runtime_error("a proof needs a device: " + why_not);
-  return Prover(options).run(*device);
+  return options.of_doubles ? Prover<OfDoubles>(options).run(*device) : Prover<OfFloats>(options).run(*device);
 }
 
 }  // namespace graze::cuda

@@ -16,6 +16,7 @@ struct ProofOptions {
   std::uint64_t pairs = 10'000'000'000;    // for each lane, over all strata
   std::uint64_t twin_pairs = 100'000'000;  // how many of them also run on the twin
   std::uint64_t seed = 1;
+  bool of_doubles = false;              // pairs of doubles and the lanes in double; else pairs of float32
   std::vector<std::string> lanes = {};  // shell patterns; all CUDA lanes when empty
   bool wrong_rule = false;  // the explicit PTX contracts the right product first, which must give differences
   std::function<void(const std::string& line)> progress = nullptr;  // called after each stratum

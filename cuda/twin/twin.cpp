@@ -109,12 +109,13 @@ const TwinRow& twin_row(const Lane& lane) {
 }
 
 DecideBlock::Function twin_block(const Lane& lane) { return twin_row(lane).decide; }
+DecideFunction<DoublePair> twin_of_doubles(const Lane& lane) { return twin_row(lane).doubles.decide; }
 
 DecideBlock block_on_host(const Lane& lane) {
   if (lane.decide) return lane.decide;
   if (lane.foreign) return nullptr;
   if (lane.under) return policy_twin(lane);
-  if (!lane.exact) return twin_block(lane);
+  if (!lane.exact) return {{twin_block(lane)}, {twin_of_doubles(lane)}};
   const Lane* on_cpu = counterpart(lane, Variant::cpu);
   return on_cpu ? on_cpu->decide : nullptr;
 }
@@ -140,6 +141,7 @@ void record_fusing(const Lane& lane, std::span<const Pair> pairs, const Records&
 bool has_policy_twins() { return kHasPolicyTwins; }
 
 TraceBlock twin_trace(const Lane& lane) { return twin_row(lane).trace; }
+TraceFunction<DoublePair> twin_trace_of_doubles(const Lane& lane) { return twin_row(lane).doubles.trace; }
 const char* twin_hash(const Lane& lane) { return twin_row(lane).hash; }
 const char* twin_trace_hash(const Lane& lane) { return twin_row(lane).trace_hash; }
 
@@ -162,10 +164,13 @@ std::string evidence(const TwinProof& proof) {
   return words;
 }
 
-std::string twin_evidence(const Lane& lane) {
+std::string twin_evidence(const Lane& lane, bool of_doubles) {
   const TwinRow& row = twin_row(lane);
+  const bool decides_doubles = of_doubles && row.doubles.decide;
+  const std::string_view of_verdict = decides_doubles ? row.doubles.hash : row.hash,
+                         of_trace = decides_doubles ? row.doubles.trace_hash : row.trace_hash;
   for (const auto& [hash, trace_hash, proof] : kProofs) {
-    if (row.decide && hash == row.hash && trace_hash == row.trace_hash) return evidence(proof);
+    if (row.decide && hash == of_verdict && trace_hash == of_trace) return evidence(proof);
   }
   return "twin";
 }

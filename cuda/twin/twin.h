@@ -8,20 +8,25 @@
 #include <string>
 #include <string_view>
 
+#include "core/any_pair.h"
 #include "core/lanes/records.h"
 
 namespace graze::cuda {
 
 // The twin of a published CUDA lane; null when there is none.
 DecideBlock::Function twin_block(const Lane& lane);
+DecideFunction<DoublePair> twin_of_doubles(const Lane& lane);  // of a lane in double
 
 // The function that gives the lane's verdicts on the host: the lane's own, or the twin of a CUDA lane. For the exact
 // CUDA lane it is the exact CPU lane, which is built from the same source. Null when there is none.
 DecideBlock block_on_host(const Lane& lane);
 
 // Writes each pair's trace hash (see cuda/lanes/trace.h), which includes the verdict.
-using TraceBlock = void (*)(const Pair* pairs, std::size_t count, std::uint64_t* hashes);
+template <class AnyPair>
+using TraceFunction = void (*)(const AnyPair* pairs, std::size_t count, std::uint64_t* hashes);
+using TraceBlock = TraceFunction<Pair>;
 TraceBlock twin_trace(const Lane& lane);
+TraceFunction<DoublePair> twin_trace_of_doubles(const Lane& lane);
 
 // The twin's records; null when there is none, and in builds of scripts/campaign.
 RecordBlock twin_record(const Lane& lane);
@@ -46,8 +51,9 @@ struct TwinProof {
 // 1e+10".
 std::string evidence(const TwinProof& proof);
 
-// evidence() of the record in cuda/proofs for this very kernel; "twin" when there is none.
-std::string twin_evidence(const Lane& lane);
+// evidence() of the record in cuda/proofs for this very kernel; "twin" when there is none. of_doubles: for the kernel
+// that decides pairs of doubles, if the lane has one.
+std::string twin_evidence(const Lane& lane, bool of_doubles = false);
 
 struct SourceLine {
   const char* file;  // from the repository's root; empty when there is none
@@ -73,6 +79,8 @@ struct ComparisonSite {
 
 // The contraction sites of a lane's twin, in program order. Empty without a twin or without contractions.
 std::span<const ContractionSite> contraction_sites(const Lane& lane);
+// Of the kernel that decides this pair.
+std::span<const ContractionSite> contraction_sites(const Lane& lane, const AnyPair& pair);
 
 // Gives a foreign CUDA lane the sites of its twin, a library of cuda/subject. A verdict may take `most_seconds`
 // seconds.
@@ -83,8 +91,8 @@ double most_seconds(const Lane& lane);  // for one verdict.   Requires: a foreig
 // The verdict of a lane with contraction sites when sites whose bit is not set round twice. No bit set gives
 // cuda-nofma; all bits set give the lane itself. Bit i % 64 of word i / 64 belongs to site i. Foreign code runs in this
 // process and may crash or not return.
-// Requires: (sites + 63) / 64 words.
-Verdict decide_fusing(const Lane& lane, const Pair& pair, std::span<const std::uint64_t> fused);
+// Requires: (sites + 63) / 64 words; a pair of doubles only for a lane in double that is not foreign.
+Verdict decide_fusing(const Lane& lane, const AnyPair& pair, std::span<const std::uint64_t> fused);
 
 // The comparisons of numbers in a foreign CUDA lane with contraction sites, in program order. `min`, `max` and tests of
 // bits are none.

@@ -32,14 +32,15 @@ u64 address(const void* object) { return reinterpret_cast<std::uintptr_t>(object
 struct Block {
   u64 coordinates;
   u32 stride = 1, count = 1;
-  explicit Block(const Pair& pair) : coordinates(address(graze::coordinates(pair))) {}
+  template <class Real>
+  explicit Block(const BasicPair<Real>& pair) : coordinates(address(graze::coordinates(pair))) {}
 };
-static_assert(sizeof(Block) == 16 && (sizeof(DevicePairs) == 16 || sizeof(void*) < 8));
+static_assert(sizeof(Block) == 16 && ((sizeof(DevicePairs) == 16 && sizeof(DeviceDoubles) == 16) || sizeof(void*) < 8));
 
 // Decides one pair as a block of one. With stride 1 its coordinates are the 18 arrays. `more`: the kernel's parameters
 // between the block and the output words.
-template <class Kernel, class Fuse, class... More>
-Verdict decide_one(const Pair& pair, const Fuse& fuse, const More&... more) {
+template <class Kernel, class Real, class Fuse, class... More>
+Verdict decide_one(const BasicPair<Real>& pair, const Fuse& fuse, const More&... more) {
   const Block block(pair);
   u32 yes = 0, no_answer = 0;
   const u64 yes_at = address(&yes), no_answer_at = address(&no_answer);
@@ -48,10 +49,10 @@ Verdict decide_one(const Pair& pair, const Fuse& fuse, const More&... more) {
   return yes ? Verdict::intersects : no_answer ? Verdict::declined : Verdict::disjoint;
 }
 
-template <class Kernel>
-void decide_block(const Pair* pairs, std::size_t count, u64* intersects, u64* declined) {
+template <class Kernel, class AnyPair>
+void decide_block(const AnyPair* pairs, std::size_t count, u64* intersects, u64* declined) {
   decide_each(pairs, count, intersects, declined,
-              [](const Pair& pair) { return decide_one<Kernel>(pair, AllFused{}); });
+              [](const AnyPair& pair) { return decide_one<Kernel>(pair, AllFused{}); });
 }
 
 template <class Kernel>
@@ -61,8 +62,8 @@ void decide_within(const Epsilons& epsilons, const Pair* pairs, std::size_t coun
               [&](const Pair& pair) { return decide_one<Kernel>(pair, AllFused{}, tolerances); });
 }
 
-template <class Kernel>
-void trace_block(const Pair* pairs, std::size_t count, u64* hashes) {
+template <class Kernel, class AnyPair>
+void trace_block(const AnyPair* pairs, std::size_t count, u64* hashes) {
   for (std::size_t i = 0; i < count; ++i) {
     const Block block(pairs[i]);
     const u64 hash_at = address(hashes + i);
@@ -94,22 +95,36 @@ void record_fusing(const Pair* pairs, std::size_t count, const Records& to, cons
   record_each<Kernel>(pairs, count, to, SomeFused{fused});
 }
 
-template <class Kernel>
-Verdict decide_fusing(const Pair& pair, const u64* fused) {
+template <class Kernel, class AnyPair>
+Verdict decide_fusing(const AnyPair& pair, const u64* fused) {
   return decide_one<Kernel>(pair, SomeFused{fused});
+}
+
+template <class Kernel, class AnyPair>
+constexpr void enter_decide(TwinFunctions<AnyPair>& twin) {
+  twin.decide = decide_block<Kernel, AnyPair>;
+  twin.hash = Kernel::kHash;
+  twin.symbol = Kernel::kSymbol;
+  if constexpr (Kernel::kSiteCount > 0) {
+    twin.decide_fusing = decide_fusing<Kernel, AnyPair>;
+    twin.sites = std::span<const ContractionSite>(Kernel::kSites, Kernel::kSiteCount);
+  }
+}
+
+template <class Kernel, class AnyPair>
+constexpr void enter_trace(TwinFunctions<AnyPair>& twin) {
+  twin.trace = trace_block<Kernel, AnyPair>;
+  twin.trace_hash = Kernel::kHash;
+  twin.trace_symbol = Kernel::kSymbol;
 }
 
 template <class Kernel>
 constexpr void enter(TwinTable& table) {
   TwinRow& row = table.rows[static_cast<std::size_t>(Kernel::kInteger)][static_cast<std::size_t>(Kernel::kScalar)];
   if constexpr (Kernel::kName == "decide_pairs") {
-    row.decide = decide_block<Kernel>;
-    row.hash = Kernel::kHash;
-    row.symbol = Kernel::kSymbol;
-    if constexpr (Kernel::kSiteCount > 0) {
-      row.decide_fusing = decide_fusing<Kernel>;
-      row.sites = std::span<const ContractionSite>(Kernel::kSites, Kernel::kSiteCount);
-    }
+    enter_decide<Kernel, Pair>(row);
+  } else if constexpr (Kernel::kName == "trace_pairs") {
+    enter_trace<Kernel, Pair>(row);
   } else if constexpr (Kernel::kName == "record_pairs") {
     row.record = record_block<Kernel>;
     if constexpr (Kernel::kSiteCount > 0) {
@@ -120,10 +135,12 @@ constexpr void enter(TwinTable& table) {
     row.absolute = decide_within<Kernel>;
   } else if constexpr (Kernel::kName == "relative_pairs") {
     row.relative = decide_within<Kernel>;
-  } else {
-    row.trace = trace_block<Kernel>;
-    row.trace_hash = Kernel::kHash;
-    row.trace_symbol = Kernel::kSymbol;
+#ifndef __wasm__  // which has no pairs of doubles
+  } else if constexpr (Kernel::kName == "decide_double_pairs") {
+    enter_decide<Kernel, DoublePair>(row.doubles);
+  } else if constexpr (Kernel::kName == "trace_double_pairs") {
+    enter_trace<Kernel, DoublePair>(row.doubles);
+#endif
   }
 }
 

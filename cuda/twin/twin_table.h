@@ -11,15 +11,21 @@
 
 namespace graze::cuda {
 
-struct TwinRow {
-  DecideBlock::Function decide = nullptr;
-  TraceBlock trace = nullptr;
-  Verdict (*decide_fusing)(const Pair& pair, const std::uint64_t* fused) = nullptr;
+// Of the kernels for pairs of one coordinate type.
+template <class AnyPair>
+struct TwinFunctions {
+  DecideFunction<AnyPair> decide = nullptr;
+  TraceFunction<AnyPair> trace = nullptr;
+  Verdict (*decide_fusing)(const AnyPair& pair, const std::uint64_t* fused) = nullptr;
   const char* hash = "";
   const char* trace_hash = "";
   const char* symbol = "";  // name of the kernel that it replays
   const char* trace_symbol = "";
   std::span<const ContractionSite> sites = {};
+};
+
+struct TwinRow : TwinFunctions<Pair> {
+  TwinFunctions<DoublePair> doubles;                           // of lanes in double
   DecideBlock::Within absolute = nullptr, relative = nullptr;  // with tolerances: absolute; also relative
   RecordBlock record = nullptr;                                // its sites are `sites`
   void (*record_fusing)(const Pair* pairs, std::size_t count, const Records& to, const std::uint64_t* fused) = nullptr;

@@ -252,8 +252,8 @@ TEST_F(CampaignTest, RefusesForeignAndDamagedDatabases) {
 // A device that equals its twin, except on the eighth pair of every block.
 class WrongOnce final : public cuda::Device {
  public:
-  void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,
-              std::vector<VerdictBits>& bits) override {
+  void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes, std::vector<VerdictBits>& bits,
+              std::span<const DoublePair>) override {
     bits.assign(cuda_lanes.size(),
                 {analysis::Bits((pairs.size() + 63) / 64), analysis::Bits((pairs.size() + 63) / 64)});
     for (std::size_t l = 0; l < cuda_lanes.size(); ++l) {

@@ -325,7 +325,7 @@ BatchResult judge(const Campaign& campaign, int source_number, std::size_t count
 
   const std::vector<const Lane*> device_lanes = campaign.under_test->device_lanes();
   std::vector<VerdictBits> device_bits;
-  if (!device_lanes.empty()) campaign.under_test->device->decide(pairs, device_lanes, device_bits);
+  if (!device_lanes.empty()) campaign.under_test->device->decide(pairs, device_lanes, device_bits, doubles);
 
   const BatchResult empty = no_counts(campaign);
   tbb::enumerable_thread_specific<BatchResult> results(empty);

@@ -11,6 +11,7 @@
 #include "analysis/sweep.h"
 #include "cuda/engine/discrepancy.h"
 #include "cuda/lanes/device_costs.h"
+#include "cuda/twin/prove.h"
 #include "fuzz/campaign/campaign_testing.h"
 #include "strata/strata.h"
 
@@ -88,6 +89,36 @@ TEST_F(DeviceTest, GpuEngineCpuEngineAndTwinsLeaveTheSameBytesOverAllStrata) {
     expect_same_bytes("twins" + number, "gpu" + number);
     EXPECT_GT(summary["signatures"].size(), 1000u);
   }
+}
+
+TEST_F(DeviceTest, DoublesAreDecidedAsByTheTwins) {
+  select_for_doubles(twins_);
+  select_for_doubles(on_device_);
+  const auto of_doubles = [&](const SelectedLanes& under_test, const std::string& name) {
+    Campaign c = campaign(under_test, name, 0, 0);
+    c.sources = strata::stratum_sources(6, 28 * 5'000, {}, PairTypes::f64);
+    return c;
+  };
+  run(of_doubles(twins_, "twins"));
+  const Json summary = run(of_doubles(on_device_, "device"));
+  expect_same_bytes("twins", "device");
+  EXPECT_GT(summary["signatures"].size(), 1000u);
+  // Fast math has no twin: its lanes decide doubles on a device alone.
+  SelectedLanes fast = select_lanes({"*/f64/cuda-fast", "moller_1997/f64/cpu-fma"}, Executor::device);
+  EXPECT_TRUE(select_for_doubles(fast).empty());
+  const Json counts = run(of_doubles(fast, "fast"))["lanes"];
+  EXPECT_EQ(counts.size(), 6u) << counts;
+}
+
+TEST_F(DeviceTest, TwinsOfDoublesAreProven) {
+  const cuda::ProofRecord record =
+      cuda::prove_twin({.pairs = 28 * 40'000, .twin_pairs = 28 * 4'000, .of_doubles = true});
+  EXPECT_EQ(record.lanes.size(), 10u);
+  for (const cuda::LaneProof& lane : record.lanes) EXPECT_TRUE(lane.verified()) << lane.lane;
+  const cuda::ProofRecord wrong = cuda::prove_twin(
+      {.pairs = 28 * 40'000, .twin_pairs = 28, .of_doubles = true, .lanes = {"*/cuda-fma"}, .wrong_rule = true});
+  EXPECT_EQ(wrong.lanes.size(), 5u);
+  for (const cuda::LaneProof& lane : wrong.lanes) EXPECT_GT(lane.differences(), 0u) << lane.lane;
 }
 
 TEST_F(DeviceTest, ScenesAreDrawnOnTheDeviceAsOnTheHost) {

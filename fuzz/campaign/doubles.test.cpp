@@ -93,7 +93,7 @@ TEST_F(CampaignOfDoubles, CountsAreThoseOfEachPairAlone) {
   EXPECT_GT(wrong_in_double, 1000u);
 }
 
-TEST_F(CampaignOfDoubles, LanesInDoubleThatReadFloat32AreLeftOutWithTheReason) {
+TEST_F(CampaignOfDoubles, LanesThatTakeFloat32AloneAreLeftOutWithTheReason) {
   const auto has = [](const auto& rows, const std::string& id) {
     return std::any_of(rows.begin(), rows.end(), [&](const auto& row) {
       if constexpr (std::is_pointer_v<std::decay_t<decltype(row)>>) {
@@ -105,10 +105,17 @@ TEST_F(CampaignOfDoubles, LanesInDoubleThatReadFloat32AreLeftOutWithTheReason) {
   };
   EXPECT_TRUE(has(lanes_.lanes, "exact/f64/cpu"));
   EXPECT_TRUE(has(lanes_.lanes, "moller_1997/f32/cuda-fma"));  // which decides what float32 stores
-  EXPECT_FALSE(has(lanes_.lanes, "moller_1997/f64/cuda-fma"));
-  EXPECT_TRUE(has(lanes_.left_out, "moller_1997/f64/cuda-fma"));
-  EXPECT_FALSE(has(select_lanes({"exact/*"}, Executor::twin).lanes, "exact/f64/cpu"));  // not on pairs of float32
-  EXPECT_TRUE(has(select_lanes({"exact/f64/cpu"}, Executor::twin).lanes, "exact/f64/cpu"));
+  EXPECT_TRUE(has(lanes_.lanes, "moller_1997/f64/cuda-fma"));
+  EXPECT_TRUE(has(lanes_.lanes, "exact/f64/cuda"));
+  EXPECT_TRUE(lanes_.left_out.empty());
+  SelectedLanes tolerant = select_lanes({"moller_1997/f64/*/abs:1e-6"}, Executor::twin);
+  ASSERT_TRUE(has(tolerant.lanes, "moller_1997/f64/cuda-fma/abs:1e-6"));
+  EXPECT_TRUE(has(select_for_doubles(tolerant), "moller_1997/f64/cuda-fma/abs:1e-6"));
+  EXPECT_TRUE(has(tolerant.lanes, "moller_1997/f64/cpu/abs:1e-6"));
+  for (const char* exact : {"exact/f64/cpu", "exact/f64/cuda"}) {
+    EXPECT_FALSE(has(select_lanes({"exact/*"}, Executor::twin).lanes, exact));  // not on pairs of float32
+    EXPECT_TRUE(has(select_lanes({exact}, Executor::twin).lanes, exact));
+  }
 }
 
 // Both coordinate types in one campaign: the float32 strata are those of a campaign of their own.

@@ -75,6 +75,9 @@ class Arrays(unittest.TestCase):
         for lane in ("moller_1997/f32/cpu", "moller_1997/f32/cuda-fma"):
             of_stored = graze.verdicts(lane, drawn.astype(np.float32))
             self.assertTrue((graze.verdicts(lane, drawn) == of_stored).all(), lane)
+        for lane in ("moller_1997/f64/cuda-nofma", "separating_axes/f64/cuda-nofma"):
+            of_cpu = graze.verdicts(lane.replace("cuda-nofma", "cpu"), drawn)
+            self.assertTrue((graze.verdicts(lane, drawn) == of_cpu).all(), lane)
         wrong = {
             lane: (graze.verdicts(f"moller_1997/{lane}", drawn) != right).mean() for lane in ("f32/cpu", "f64/cpu")
         }
@@ -169,7 +172,7 @@ class Arrays(unittest.TestCase):
             (TypeError, "float64", lambda: graze.margin(drawn.astype(float))),
             (ValueError, "coordinates", lambda: graze.pairs(coordinates="f16")),
             (ValueError, "large_offset", lambda: graze.pairs("large_offset")),
-            (ValueError, "float32", lambda: graze.verdicts("moller_1997/f64/cuda-fma", drawn.astype(float))),
+            (ValueError, "float32", lambda: graze.verdicts("moller_1997/f64/cuda-fma/rel:9", drawn.astype(float))),
             (ValueError, r"\(n, 2, 3, 3\)", lambda: graze.truth(drawn[0, 0])),
             (ValueError, "no_such", lambda: graze.pairs("no_such")),
             (ValueError, "seed", lambda: graze.pairs(seed=-1)),

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// The twins of the kernels that decide pairs of doubles.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <vector>
+
+#include "cuda/lanes/trace.h"
+#include "cuda/twin/twin_table.h"
+#include "strata/strata.h"
+
+namespace graze::cuda {
+namespace {
+
+// Pairs of every stratum of doubles.
+const std::vector<DoublePair>& double_sample() {
+  static const std::vector<DoublePair> pairs = [] {
+    std::vector<DoublePair> all;
+    for (const strata::StratumInfo& stratum : strata::kDoubleStrata) {
+      for (std::uint64_t i = 0; i < 5000; ++i) all.push_back(strata::generate_doubles(5, stratum.stratum, i));
+    }
+    return all;
+  }();
+  return pairs;
+}
+
+std::vector<Verdict> verdicts_in_double(const DecideBlock& decide) {
+  const std::vector<DoublePair>& pairs = double_sample();
+  std::vector<std::uint64_t> yes((pairs.size() + 63) / 64), declined(yes.size());
+  decide(pairs.data(), pairs.size(), yes.data(), declined.data());
+  std::vector<Verdict> verdicts;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    verdicts.push_back(verdict_of_bits(yes[i / 64] >> i % 64 & 1, declined[i / 64] >> i % 64 & 1));
+  return verdicts;
+}
+
+class TwinOfDoubles : public testing::TestWithParam<const Lane*> {
+ protected:
+  const Lane& lane() const { return *GetParam(); }
+  const Lane& sibling(Variant variant) const { return *counterpart(lane(), variant); }
+};
+
+std::vector<const Lane*> fused_lanes_in_double() {
+  std::vector<const Lane*> rows;
+  for (const Lane& lane : lanes()) {
+    if (lane.variant == Variant::cuda_fma && lane.scalar == Scalar::f64) rows.push_back(&lane);
+  }
+  return rows;
+}
+
+INSTANTIATE_TEST_SUITE_P(Lanes, TwinOfDoubles, testing::ValuesIn(fused_lanes_in_double()),
+                         [](const auto& row) { return parse_lane_name(row.param->id)->subject; });
+
+TEST_P(TwinOfDoubles, WithoutContractionIsTheCpuLane) {
+  ASSERT_GE(double_sample().size(), 100'000u);
+  EXPECT_TRUE(verdicts_in_double(block_on_host(sibling(Variant::cuda_nofma))) ==
+              verdicts_in_double(sibling(Variant::cpu).decide));
+}
+
+// The trace of the cpu lane's algorithm, compiled without contraction on this processor.
+template <class... Algorithm>
+std::uint64_t traced_in_double(int algorithm, const DoublePair& pair, const std::tuple<Algorithm...>*) {
+  using Trace = std::uint64_t (*)(const DoublePair&);
+  static constexpr Trace kTraces[] = {[](const DoublePair& of) {
+    std::uint64_t hash = 0;
+    const Verdict verdict = Algorithm::decide(of.a, of.b, TracePolicy{&hash});
+    return hash ^ static_cast<std::uint64_t>(verdict);
+  }...};
+  return kTraces[algorithm](pair);
+}
+
+TEST_P(TwinOfDoubles, WithoutContractionHasTheCpuLanesIntermediateBits) {
+  const std::vector<DoublePair>& pairs = double_sample();
+  std::vector<std::uint64_t> hashes(pairs.size());
+  twin_trace_of_doubles(sibling(Variant::cuda_nofma))(pairs.data(), pairs.size(), hashes.data());
+  int differ = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    differ += hashes[i] != traced_in_double(lane().algorithm, pairs[i], static_cast<const Algorithms*>(nullptr));
+  EXPECT_EQ(differ, 0);
+}
+
+TEST_P(TwinOfDoubles, ContractionChangesVerdicts) {
+  EXPECT_NE(verdicts_in_double(block_on_host(lane())), verdicts_in_double(block_on_host(sibling(Variant::cuda_nofma))));
+}
+
+TEST_P(TwinOfDoubles, DecidesFloatsAsTheTwinOfFloats) {
+  std::vector<Pair> floats;
+  std::vector<DoublePair> doubles;
+  for (std::uint64_t i = 0; i < 20'000; ++i) {
+    floats.push_back(strata::generate(7, strata::kStrata[i % strata::kStrataCount].stratum, i));
+    doubles.push_back(in_doubles(floats.back()));
+  }
+  std::vector<std::uint64_t> hashes(floats.size()), of_doubles(floats.size());
+  twin_trace(lane())(floats.data(), floats.size(), hashes.data());
+  twin_trace_of_doubles(lane())(doubles.data(), doubles.size(), of_doubles.data());
+  EXPECT_EQ(hashes, of_doubles);
+}
+
+TEST_P(TwinOfDoubles, FusingAllSitesIsCudaFmaAndNoneIsCudaNofma) {
+  const std::size_t sites = contraction_sites(lane(), double_sample()[0]).size();
+  ASSERT_GT(sites, 0u);
+  const std::vector<std::uint64_t> none((sites + 63) / 64, 0), all((sites + 63) / 64, ~std::uint64_t{0});
+  const std::vector<Verdict> fused = verdicts_in_double(block_on_host(lane())),
+                             unfused = verdicts_in_double(block_on_host(sibling(Variant::cuda_nofma)));
+  int wrong = 0;
+  for (std::size_t i = 0; i < fused.size(); ++i) {
+    wrong += decide_fusing(lane(), double_sample()[i], all) != fused[i];
+    wrong += decide_fusing(lane(), double_sample()[i], none) != unfused[i];
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST_P(TwinOfDoubles, WithFmaFromTheLibraryIsTheSame) {
+  const TwinRow& portable = twin_cuda_fma_portable::kTwinTable.rows[static_cast<std::size_t>(lane().algorithm)][1];
+  EXPECT_TRUE(verdicts_in_double({{portable.decide}, {portable.doubles.decide}}) ==
+              verdicts_in_double(block_on_host(lane())));
+}
+
+TEST_P(TwinOfDoubles, HasItsOwnKernelsAndSites) {
+  for (const Variant variant : {Variant::cuda_fma, Variant::cuda_nofma}) {
+    const TwinRow& row = twin_row(sibling(variant));
+    EXPECT_STRNE(row.doubles.hash, row.hash);
+    EXPECT_STRNE(row.doubles.symbol, row.symbol);
+    EXPECT_STRNE(row.doubles.trace_hash, row.trace_hash);
+  }
+  for (const ContractionSite& site : contraction_sites(lane(), double_sample()[0])) {
+    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(GRAZE_SOURCE_DIR) / site.at.file)) << site.at.file;
+    EXPECT_GT(site.at.line, 0);
+  }
+}
+
+TEST(TwinOfDoubles, LanesInFloatHaveNone) {
+  EXPECT_EQ(twin_of_doubles(*find_lane("moller_1997/f32/cuda-fma")), nullptr);
+  EXPECT_FALSE(block_on_host(*find_lane("moller_1997/f32/cuda-fma")).decides_doubles());
+}
+
+}  // namespace
+}  // namespace graze::cuda

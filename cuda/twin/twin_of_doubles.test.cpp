@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "cuda/lanes/trace.h"
@@ -127,6 +129,26 @@ TEST_P(TwinOfDoubles, HasItsOwnKernelsAndSites) {
     EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(GRAZE_SOURCE_DIR) / site.at.file)) << site.at.file;
     EXPECT_GT(site.at.line, 0);
   }
+}
+
+// The evidence is that of the record for these kernels, not for those of float32.
+TEST_P(TwinOfDoubles, EvidenceSaysWhatTheRecordSays) {
+  const auto record =
+      nlohmann::json::parse(std::ifstream(GRAZE_SOURCE_DIR "/cuda/proofs/nvidia_h200_nvcc_13.0.88_f64.json"));
+  int told = 0;
+  for (const Variant variant : {Variant::cuda_fma, Variant::cuda_nofma}) {
+    const TwinRow& row = twin_row(sibling(variant));
+    for (const auto& proven : record.at("lanes")) {
+      if (proven.at("hash") != row.doubles.hash || proven.at("trace_hash") != row.doubles.trace_hash) continue;
+      EXPECT_EQ(proven.at("lane"), sibling(variant).id);
+      EXPECT_EQ(twin_evidence(sibling(variant), true),
+                "twin, verified on NVIDIA H200, nvcc 13.0.88: GPU and twin agree on 1e+08 pairs, the GPU's default "
+                "build and explicit PTX on 1e+09");
+      EXPECT_NE(twin_evidence(sibling(variant), true), twin_evidence(sibling(variant)));
+      ++told;
+    }
+  }
+  EXPECT_EQ(told, 2);
 }
 
 TEST(TwinOfDoubles, LanesInFloatHaveNone) {

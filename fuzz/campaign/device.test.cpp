@@ -106,7 +106,7 @@ TEST_F(DeviceTest, DoublesAreDecidedAsByTheTwins) {
   // Fast math has no twin: its lanes decide doubles on a device alone.
   SelectedLanes fast = select_lanes({"*/f64/cuda-fast", "moller_1997/f64/cpu-fma"}, Executor::device);
   EXPECT_TRUE(select_for_doubles(fast).empty());
-  const Json counts = run(of_doubles(fast, "fast"))["lanes"];
+  const Json counts = run(of_doubles(fast, "fast"))["strata"]["near_edge_edge/f64"]["lanes"];
   EXPECT_EQ(counts.size(), 6u) << counts;
 }
 

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The oracle's two decisions and the exact decision over the strata of doubles: they must always agree.
+// The oracle's two decisions and the exact decision, of a pair alone and of blocks, over the strata of doubles: they
+// must always agree.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <string>
+#include <vector>
 
+#include "core/exact_blocks/decide.h"
+#include "core/lanes/lanes.h"
 #include "core/relation_of.h"
 #include "oracle/truth.h"
 #include "strata/strata.h"
@@ -26,13 +30,22 @@ class EveryDoubleStratum : public testing::TestWithParam<strata::StratumInfo> {}
 TEST_P(EveryDoubleStratum, ThreeDecisionsAgree) {
   const strata::Stratum stratum = GetParam().stratum;
   const std::uint64_t pairs = pairs_wanted();
+  constexpr std::size_t kTogether = 1000;
+  std::vector<DoublePair> drawn(kTogether);
+  std::vector<std::uint64_t> in_blocks((kTogether + 63) / 64), declined(in_blocks.size());
   std::uint64_t intersecting = 0;
   for (std::uint64_t index = 0; index < pairs; ++index) {
-    const DoublePair pair = strata::generate_doubles(kSeed, stratum, index);
+    const std::size_t i = index % kTogether;
+    if (i == 0) {
+      for (std::size_t k = 0; k < kTogether; ++k) drawn[k] = strata::generate_doubles(kSeed, stratum, index + k);
+      exact::decide(coordinates(drawn[0]), kTogether, in_blocks.data(), declined.data());
+    }
+    const DoublePair& pair = drawn[i];
     const Verdict verdict = oracle::cgal_verdict(pair);
     const Contact contact = oracle::gmp_contact(pair);
     ASSERT_EQ(verdict == Verdict::intersects, contact != Contact::none) << index;
     ASSERT_EQ(exact::intersects(&pair.a[0].x, &pair.b[0].x), verdict == Verdict::intersects) << index;
+    ASSERT_EQ(verdict_of_bits(in_blocks[i / 64] >> i % 64 & 1, declined[i / 64] >> i % 64 & 1), verdict) << index;
     const Relation r = relation_of(pair);
     ASSERT_EQ(r.verdict, verdict) << index;
     ASSERT_EQ(r.contact, contact) << index;

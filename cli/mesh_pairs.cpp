@@ -104,10 +104,8 @@ struct Block {
 };
 
 void decide_doubles(Candidates& of) {
-  for (std::size_t k = 0; k < of.pairs_of_doubles.size(); ++k) {
-    const DoublePair& pair = of.pairs_of_doubles[k];
-    of.intersect[k / 64] |= std::uint64_t{exact::intersects(&pair.a[0].x, &pair.b[0].x)} << k % 64;
-  }
+  std::vector<std::uint64_t> declined(of.intersect.size());
+  exact::decide(coordinates(of.pairs_of_doubles[0]), of.pairs_of_doubles.size(), of.intersect.data(), declined.data());
 }
 
 void decide_on_cores(Candidates& of) {

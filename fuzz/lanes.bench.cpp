@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time per pair of every host lane on every stratum. For comparison, the time of CGAL's do_intersect on ready-made
-// triangles, and of the oracle's two decisions. GRAZE_MESH=FILE adds the candidate pairs of a mesh as a stratum.
-// Exact lanes must first agree with the oracle on every pair that is timed.
+// Time per pair of every host lane on every stratum, of float32 and, for lanes in double, of doubles. For comparison,
+// the time of CGAL's do_intersect on ready-made triangles, and of the oracle's two decisions. GRAZE_MESH=FILE adds the
+// candidate pairs of a mesh as a stratum. Exact lanes must first agree with the oracle on every pair that is timed.
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
@@ -20,6 +20,7 @@
 #include "core/lanes/lanes.h"
 #include "oracle/truth.h"
 #include "strata/mesh.h"
+#include "strata/pair_source.h"
 #include "strata/strata.h"
 
 namespace graze::fuzz {
@@ -27,15 +28,17 @@ namespace {
 
 constexpr std::size_t kPairs = 1 << 14;  // 1.2 MB: too many branches for the predictor, but fits in the cache
 
+template <class Real>
 struct Block {
-  std::vector<Pair> pairs;
+  std::vector<BasicPair<Real>> pairs;
   std::vector<std::uint64_t> intersects;  // the truth: bit i % 64 of word i / 64
 };
 
+template <class Real>
 struct PairsToTime {
   std::string id;
-  Block all;
-  Block proper;  // pairs without degenerate triangles, as CGAL's do_intersect requires
+  Block<Real> all;
+  Block<Real> proper;  // pairs without degenerate triangles, as CGAL's do_intersect requires
 };
 
 // Writes one bit for each pair, as lanes do.
@@ -45,25 +48,27 @@ void by_pair(std::size_t count, std::uint64_t* intersects, const Decide& decide)
   for (std::size_t i = 0; i < count; ++i) intersects[i / 64] |= std::uint64_t{decide(i)} << i % 64;
 }
 
-Block block_of(std::vector<Pair> pairs) {
-  Block block{std::move(pairs), {}};
+template <class Real>
+Block<Real> block_of(std::vector<BasicPair<Real>> pairs) {
+  Block<Real> block{std::move(pairs), {}};
   block.intersects.resize((block.pairs.size() + 63) / 64);
   by_pair(block.pairs.size(), block.intersects.data(),
           [&](std::size_t i) { return oracle::cgal_verdict(block.pairs[i]) == Verdict::intersects; });
   return block;
 }
 
-PairsToTime source_of(std::string id, std::vector<Pair> pairs) {
-  std::vector<Pair> proper;
-  std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(proper), [](const Pair& pair) {
+template <class Real>
+PairsToTime<Real> source_of(std::string id, std::vector<BasicPair<Real>> pairs) {
+  std::vector<BasicPair<Real>> proper;
+  std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(proper), [](const BasicPair<Real>& pair) {
     const Hulls hulls = oracle::hulls(pair);
     return hulls.dimension_a == 2 && hulls.dimension_b == 2;
   });
   return {std::move(id), block_of(std::move(pairs)), block_of(std::move(proper))};
 }
 
-std::vector<PairsToTime> make_sources() {
-  std::vector<PairsToTime> sources;
+std::vector<PairsToTime<float>> make_sources() {
+  std::vector<PairsToTime<float>> sources;
   std::vector<Pair> pairs(kPairs);
   for (const strata::StratumInfo& row : strata::kStrata) {
     for (std::size_t i = 0; i < kPairs; ++i) pairs[i] = strata::generate(1, row.stratum, i);
@@ -78,9 +83,21 @@ std::vector<PairsToTime> make_sources() {
   return sources;
 }
 
-using Decide = std::function<void(const Block&, std::uint64_t* intersects, std::uint64_t* declined)>;
+std::vector<PairsToTime<double>> make_double_sources() {
+  std::vector<PairsToTime<double>> sources;
+  std::vector<DoublePair> pairs(kPairs);
+  for (const strata::StratumInfo& row : strata::kDoubleStrata) {
+    for (std::size_t i = 0; i < kPairs; ++i) pairs[i] = strata::generate_doubles(1, row.stratum, i);
+    sources.push_back(source_of(std::string(row.id) + std::string(strata::kInDoubles), pairs));
+  }
+  return sources;
+}
 
-void measure(benchmark::State& state, const Block& block, bool exact, const Decide& decide) {
+template <class Real>
+using Decide = std::function<void(const Block<Real>&, std::uint64_t* intersects, std::uint64_t* declined)>;
+
+template <class Real>
+void measure(benchmark::State& state, const Block<Real>& block, bool exact, const Decide<Real>& decide) {
   const std::vector<std::uint64_t> none(block.intersects.size());
   std::vector<std::uint64_t> intersects = none, declined = none;
   decide(block, intersects.data(), declined.data());
@@ -95,18 +112,18 @@ void measure(benchmark::State& state, const Block& block, bool exact, const Deci
 }
 
 // Triangles are made once for all runs on a block, because EPECK's points cache their exact coordinates.
-template <class Kernel>
-void by_cgal(const Block& block, std::uint64_t* intersects, std::uint64_t*) {
+template <class Kernel, class Real>
+void by_cgal(const Block<Real>& block, std::uint64_t* intersects, std::uint64_t*) {
   using Triangle = typename Kernel::Triangle_3;
-  static const Block* made_for = nullptr;
+  static const Block<Real>* made_for = nullptr;
   static std::vector<Triangle> triangles;
   if (made_for != &block) {
-    const auto triangle = [](const Vec3<float>(&p)[3]) {
-      const auto point = [](const Vec3<float>& v) { return typename Kernel::Point_3(v.x, v.y, v.z); };
+    const auto triangle = [](const Vec3<Real>(&p)[3]) {
+      const auto point = [](const Vec3<Real>& v) { return typename Kernel::Point_3(v.x, v.y, v.z); };
       return Triangle(point(p[0]), point(p[1]), point(p[2]));
     };
     triangles.clear();
-    for (const Pair& pair : block.pairs) {
+    for (const BasicPair<Real>& pair : block.pairs) {
       triangles.push_back(triangle(pair.a));
       triangles.push_back(triangle(pair.b));
     }
@@ -116,30 +133,37 @@ void by_cgal(const Block& block, std::uint64_t* intersects, std::uint64_t*) {
           [](std::size_t i) { return CGAL::do_intersect(triangles[2 * i], triangles[2 * i + 1]); });
 }
 
-void add(const std::string& decision, const std::string& source, const Block& block, bool exact, Decide decide) {
+template <class Real>
+void add(const std::string& decision, const std::string& source, const Block<Real>& block, bool exact,
+         Decide<Real> decide) {
   benchmark::RegisterBenchmark((decision + '/' + source).c_str(), [=, &block](benchmark::State& state) {
     measure(state, block, exact, decide);
   })->Unit(benchmark::kMicrosecond);
 }
 
-void add_source(const PairsToTime& source) {
+template <class Real>
+void add_source(const PairsToTime<Real>& source) {
+  using Bits = std::uint64_t*;
   for (const Lane& lane : lanes()) {
     if (!lane.decide || !runs_on_this_cpu(lane)) continue;
-    const Decide decide = [&lane](const Block& block, std::uint64_t* intersects, std::uint64_t* declined) {
+    if (std::is_same_v<Real, double> && !lane.decide.decides_doubles()) continue;
+    const Decide<Real> decide = [&lane](const Block<Real>& block, Bits intersects, Bits declined) {
       lane.decide(block.pairs.data(), block.pairs.size(), intersects, declined);
     };
     add(lane.id, source.id, source.all, lane.exact, decide);
     if (lane.exact && !source.proper.pairs.empty()) add(lane.id + ",proper", source.id, source.proper, true, decide);
   }
   if (!source.proper.pairs.empty()) {
-    add("cgal_epick", source.id, source.proper, true, by_cgal<CGAL::Exact_predicates_inexact_constructions_kernel>);
-    add("cgal_epeck", source.id, source.proper, true, by_cgal<CGAL::Exact_predicates_exact_constructions_kernel>);
+    using Epick = CGAL::Exact_predicates_inexact_constructions_kernel;
+    using Epeck = CGAL::Exact_predicates_exact_constructions_kernel;
+    add<Real>("cgal_epick", source.id, source.proper, true, by_cgal<Epick, Real>);
+    add<Real>("cgal_epeck", source.id, source.proper, true, by_cgal<Epeck, Real>);
   }
-  add("cgal_verdict", source.id, source.all, true, [](const Block& block, std::uint64_t* intersects, std::uint64_t*) {
+  add<Real>("cgal_verdict", source.id, source.all, true, [](const Block<Real>& block, Bits intersects, Bits) {
     by_pair(block.pairs.size(), intersects,
             [&](std::size_t i) { return oracle::cgal_verdict(block.pairs[i]) == Verdict::intersects; });
   });
-  add("gmp_contact", source.id, source.all, true, [](const Block& block, std::uint64_t* intersects, std::uint64_t*) {
+  add<Real>("gmp_contact", source.id, source.all, true, [](const Block<Real>& block, Bits intersects, Bits) {
     by_pair(block.pairs.size(), intersects,
             [&](std::size_t i) { return oracle::gmp_contact(block.pairs[i]) != Contact::none; });
   });
@@ -163,8 +187,10 @@ int main(int argc, char** argv) try {
   benchmark::AddCustomContext("commit", GRAZE_COMMIT);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  const std::vector<graze::fuzz::PairsToTime> sources = graze::fuzz::make_sources();
-  for (const graze::fuzz::PairsToTime& source : sources) graze::fuzz::add_source(source);
+  const auto sources = graze::fuzz::make_sources();
+  const auto of_doubles = graze::fuzz::make_double_sources();
+  for (const auto& source : sources) graze::fuzz::add_source(source);
+  for (const auto& source : of_doubles) graze::fuzz::add_source(source);
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

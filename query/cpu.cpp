@@ -145,15 +145,10 @@ struct Block {
   }
 };
 
-void decide_exactly(const std::vector<Pair>& pairs, std::size_t count, std::uint64_t* hits) {
+template <class Real>
+void decide_exactly(const std::vector<BasicPair<Real>>& pairs, std::size_t count, std::uint64_t* hits) {
   std::uint64_t declined[kTogether / 64];
   exact::decide(coordinates(pairs[0]), count, hits, declined);
-}
-
-void decide_exactly(const std::vector<DoublePair>& pairs, std::size_t count, std::uint64_t* hits) {
-  std::fill_n(hits, kTogether / 64, 0);
-  for (std::size_t i = 0; i < count; ++i)
-    hits[i / 64] |= std::uint64_t{exact::intersects(&pairs[i].a[0].x, &pairs[i].b[0].x)} << i % 64;
 }
 
 template <class Real>

@@ -6,6 +6,7 @@ import statistics
 import sys
 
 EXACT, PROPER, CUDA = "exact/f32/cpu", "exact/f32/cpu,proper", "exact/f32/cuda"
+OF_DOUBLES = "/f64"  # ends the names of benchmarks on pairs of doubles
 DOUBLES, THESIS = "guigue_devillers_2003/f64/cpu", "interval_overlap/f32/cpu"
 BESIDE = {
     EXACT: EXACT,
@@ -20,7 +21,8 @@ STAGES = ("bounded", "doubles", "int128", "wide")
 
 
 def read(path):
-    """The file's context, and {decision: {stratum: run}}. Each value of a run is the median of its repetitions."""
+    """The file's context, and {decision: {stratum: run}} on pairs of float32 and of doubles. Each value of a run is the
+    median of its repetitions."""
     with open(path, encoding="utf-8") as file:
         document = json.load(file)
     repetitions = {}
@@ -29,10 +31,10 @@ def read(path):
             sys.exit(f"speed_table: {path}: expected figures of {run['name']}, found: {run['error_message']}")
         if run["run_type"] == "iteration":
             repetitions.setdefault(run["run_name"].removesuffix("/manual_time"), []).append(run)
-    results = {}
+    results, of_doubles = {}, {}
     for name, runs in repetitions.items():
-        decision, stratum = name.rsplit("/", 1)
-        results.setdefault(decision, {})[stratum] = {
+        decision, stratum = name.removesuffix(OF_DOUBLES).rsplit("/", 1)
+        (of_doubles if name.endswith(OF_DOUBLES) else results).setdefault(decision, {})[stratum] = {
             key: statistics.median(run[key] for run in runs)
             for key, value in runs[0].items()
             if isinstance(value, (int, float))
@@ -41,7 +43,7 @@ def read(path):
         sys.exit(f"speed_table: {path}: expected benchmark results, found none")
     context = document["context"]
     context["repetitions"] = max(len(runs) for runs in repetitions.values())
-    return context, results
+    return context, results, of_doubles
 
 
 def table(head, rows):
@@ -60,7 +62,13 @@ def lanes_by_strata(results, unit):
     )
 
 
-def host(context, results):
+def in_doubles(lane, of_doubles, unit, beside):
+    """The exact lane on pairs of doubles; empty without such benchmarks. beside: heads and cells of further columns."""
+    rows = [[s, unit(run), *(cell(s, run) for cell in beside.values())] for s, run in of_doubles.get(lane, {}).items()]
+    return f"\n### Pairs of doubles\n{table(['stratum', lane, *beside], rows)}" if rows else ""
+
+
+def host(context, results, of_doubles):
     nanoseconds = lambda run: figure(1e9 / run["items_per_second"])
     most = max(run["pairs"] for run in results[EXACT].values())
     rows = []
@@ -77,6 +85,13 @@ def host(context, results):
                 f"{100 * proper:.3g} %",
             ]
         )
+    epick, of_proper = of_doubles.get("cgal_epick", {}), of_doubles.get("exact/f64/cpu,proper", {})
+    beside = {
+        "CGAL EPICK": lambda s, run: nanoseconds(epick[s]) if s in epick else "-",
+        "EPICK / exact": lambda s, run: (
+            f"{of_proper[s]['items_per_second'] / epick[s]['items_per_second']:.2f}" if s in epick else "-"
+        ),
+    }
     return f"""## CPU: nanoseconds per pair on one core
 {context['processor']}, {context['num_cpus']} cores; {context['compiler']}, `{context['flags']}`; commit `{context['commit']}`.
 Median of {context['repetitions']} repetitions, CPU time, on the same pairs of each stratum (seed 1, at most {most:,.0f}), which lie in the cache: bound by arithmetic and branches, not by memory.
@@ -86,13 +101,15 @@ What is exact agreed with the oracle on every pair that was timed. CGAL's `do_in
 ### Every host lane, with CGAL and GMP for comparison
 `proper`: over the pairs that CGAL takes.
 
-{lanes_by_strata(results, nanoseconds)}"""
+{lanes_by_strata(results, nanoseconds)}{in_doubles("exact/f64/cpu", of_doubles, nanoseconds, beside)}"""
 
 
-def device(context, results):
+def device(context, results, of_doubles):
     memory = {kind: results[kind]["memory"]["bytes_per_second"] for kind in ("copy", "read")}
     giga = lambda run: figure(run["items_per_second"] / 1e9)
     share = lambda run, kind: f"{100 * run['bytes_per_second'] / memory[kind]:.3g} %"
+    read_doubles = of_doubles["read"]["memory"]["bytes_per_second"] if of_doubles else 0
+    of_read = lambda s, run: f"{100 * run['bytes_per_second'] / read_doubles:.3g} %"
     rows = [
         [
             stratum,
@@ -112,7 +129,7 @@ Median of {context['repetitions']} repetitions on 2^24 pairs of each stratum (se
 {table(["stratum", CUDA, "of copy", "of read", *(f"decided by {stage}" for stage in STAGES)], rows)}
 ### Every CUDA lane
 
-{lanes_by_strata(lanes, giga)}"""
+{lanes_by_strata(lanes, giga)}{in_doubles("exact/f64/cuda", of_doubles, giga, {"of read": of_read})}"""
 
 
 if __name__ == "__main__":

@@ -71,6 +71,20 @@ class SpeedTable(unittest.TestCase):
         self.assertIn("| thesis | 30 | 75 % | 72 % | 90 % | 5 % | 3 % | 2 % |\n", result.stdout)
         self.assertIn("which is 40 * 10^9 pairs/s", result.stdout)
 
+    def test_pairs_of_doubles_have_a_table_of_their_own(self):
+        of_doubles = runs("exact/f64/cpu/stored/f64", 3e-5, 1e-5, 2e-5, pairs=1000)  # median: 20 ns per pair
+        of_doubles += runs("exact/f64/cpu,proper/stored/f64", 2e-5, items=800, pairs=800)  # 25 ns
+        of_doubles += runs("cgal_epick/stored/f64", 4e-5, items=800, pairs=800)  # 50 ns
+        of_doubles += runs("exact/f64/cpu/degenerate/f64", 6e-5, pairs=1000)
+        on_device = runs("copy/memory/f64/manual_time", 1.0, bytes_per_second=2.8e12)
+        on_device += runs("read/memory/f64/manual_time", 1.0, bytes_per_second=4e12)
+        on_device += runs("exact/f64/cuda/stored/f64/manual_time", 1.0, items=2e10, bytes_per_second=3e12)
+        result = self.run_script((HOST, host_results() + of_doubles), (DEVICE, device_results() + on_device))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("| stored | 20 | 50 | 2.00 |\n| degenerate | 60 | - | - |\n", result.stdout)
+        self.assertIn("| stored | 20 | 75 % |\n", result.stdout)
+        self.assertIn("| thesis | 30 | 75 % | 72 % | 90 % | 5 % | 3 % | 2 % |\n", result.stdout)
+
     def test_a_failed_validation_fails(self):
         failed = {
             "name": "exact/f32/cpu/thesis",

@@ -7,7 +7,7 @@
 
 namespace graze::exact {
 void decide(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-  one_by_one(pairs, count, intersects, declined);
+  one_by_one(reinterpret_cast<const Pair*>(pairs), count, intersects, declined);
 }
 const char* decide_target() { return "scalar"; }
 }  // namespace graze::exact
@@ -32,10 +32,14 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-#if HWY_MAX_BYTES >= 32 && !HWY_HAVE_SCALABLE
+#if HWY_MAX_BYTES >= 32 && !HWY_HAVE_SCALABLE && HWY_NATIVE_FMA
 #include "core/exact_blocks/vectors-inl.h"
 
-constexpr std::size_t kChunk = 512;  // pairs of which the undecided ones are gathered: 36 KB
+#include "core/exact_blocks/doubles-inl.h"
+
+constexpr std::size_t kChunk = 512;  // most pairs of which the undecided ones are gathered
+template <class Real>
+constexpr std::size_t kChunkOf = kChunk * sizeof(float) / sizeof(Real);  // 36 KB
 constexpr unsigned kAll = (1u << kAtOnce) - 1;
 constexpr int kBitsOfDoubles = detail::kDoubleBits;
 
@@ -56,21 +60,22 @@ struct Waiting {
   }
 };
 
+template <class Real>
 struct Chunk {
-  const float* pairs;
+  const Real* pairs;
   std::uint64_t *intersects, *declined;  // words of zeros
 
   // number(i): the index of the i-th pair.
   template <class Number>
-  HWY_INLINE Coordinates side_by_side(const Number& number) const {
-    const float* where[kAtOnce];
-    for (std::size_t i = 0; i < kAtOnce; ++i) where[i] = pairs + number(i) * kFloats;
-    return Coordinates(where);
+  HWY_INLINE CoordinatesOf<Real> side_by_side(const Number& number) const {
+    const Real* where[kAtOnce];
+    for (std::size_t i = 0; i < kAtOnce; ++i) where[i] = pairs + number(i) * kNumbers;
+    return CoordinatesOf<Real>(where);
   }
-  HWY_INLINE Coordinates from(std::size_t first) const {
+  HWY_INLINE CoordinatesOf<Real> from(std::size_t first) const {
     return side_by_side([&](std::size_t i) HWY_ATTR { return first + i; });
   }
-  HWY_INLINE Coordinates at(const std::uint16_t* numbers) const {
+  HWY_INLINE CoordinatesOf<Real> at(const std::uint16_t* numbers) const {
     return side_by_side([&](std::size_t i) HWY_ATTR { return std::size_t{numbers[i]}; });
   }
 
@@ -82,8 +87,9 @@ struct Chunk {
   }
 };
 
-HWY_ATTR void decide_chunk(const Chunk& chunk, std::size_t count) {
-  Waiting last, open, small, middle, rest;
+template <class Real>
+HWY_ATTR void decide_chunk(const Chunk<Real>& chunk, std::size_t count) {
+  Waiting last, open, small, middle, large, rest;
   const std::size_t side_by_side = count / kAtOnce * kAtOnce;
   for (std::size_t i = 0; i < side_by_side; i += kAtOnce) {
     const Filtered found = filter_all(chunk.from(i));
@@ -100,14 +106,14 @@ HWY_ATTR void decide_chunk(const Chunk& chunk, std::size_t count) {
     open.add(which & ~(found.intersects | found.disjoint | found.declined), numbers);
   });
   open.take([&](const std::uint16_t* numbers, unsigned which) HWY_ATTR {
-    const Coordinates pairs = chunk.at(numbers);
+    const CoordinatesOf<Real> pairs = chunk.at(numbers);
     const unsigned shared = share_vertex(pairs);
     chunk.set(chunk.intersects, which & shared, numbers);
     if ((which &= ~shared) == 0) return;
     const unsigned of_doubles = OnGrid(pairs, kBitsOfDoubles).within, of_both = OnGrid(pairs, kBitsOfBoth).within;
     small.add(which & of_doubles, numbers);
     middle.add(which & ~of_doubles & of_both, numbers);
-    rest.add(which & ~of_doubles & ~of_both, numbers);
+    (sizeof(Real) == sizeof(float) ? rest : large).add(which & ~of_doubles & ~of_both, numbers);
   });
   small.take([&](const std::uint16_t* numbers, unsigned which) HWY_ATTR {
     chunk.set(chunk.intersects, which & ~separated<Double>(OnGrid(chunk.at(numbers), kBitsOfDoubles)), numbers);
@@ -115,32 +121,47 @@ HWY_ATTR void decide_chunk(const Chunk& chunk, std::size_t count) {
   middle.take([&](const std::uint16_t* numbers, unsigned which) HWY_ATTR {
     chunk.set(chunk.intersects, which & ~separated<DoubleAndInteger>(OnGrid(chunk.at(numbers), kBitsOfBoth)), numbers);
   });
+  large.take([&](const std::uint16_t* numbers, unsigned which) HWY_ATTR {  // near contacts of doubles
+    const Filtered found = filter_all<DoubleDouble>(chunk.at(numbers));
+    chunk.set(chunk.intersects, which & found.intersects, numbers);
+    rest.add(which & ~(found.intersects | found.disjoint), numbers);
+  });
   for (const std::uint16_t& number : std::span(rest.pair).first(rest.count)) {
-    const float* const pair = chunk.pairs + number * kFloats;
+    const Real* const pair = chunk.pairs + number * kNumbers;
     Stage stage;
     if (detail::decide_unsure(pair, pair + 9, stage)) chunk.set(chunk.intersects, 1, &number);
   }
 }
 
-HWY_ATTR void decide_all(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+template <class Real>
+HWY_ATTR void decide_in_chunks(const Real* pairs, std::size_t count, std::uint64_t* intersects,
+                               std::uint64_t* declined) {
   std::fill_n(intersects, (count + 63) / 64, 0);
   std::fill_n(declined, (count + 63) / 64, 0);
-  for (std::size_t first = 0; first < count; first += kChunk)
-    decide_chunk({pairs + first * kFloats, intersects + first / 64, declined + first / 64},
-                 std::min(kChunk, count - first));
+  for (std::size_t first = 0; first < count; first += kChunkOf<Real>)
+    decide_chunk<Real>({pairs + first * kNumbers, intersects + first / 64, declined + first / 64},
+                       std::min(kChunkOf<Real>, count - first));
 }
 
 const char* target() { return hwy::TargetName(HWY_TARGET); }
 
 #else
 
-void decide_all(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-  one_by_one(pairs, count, intersects, declined);
+template <class Real>
+void decide_in_chunks(const Real* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+  one_by_one(reinterpret_cast<const BasicPair<Real>*>(pairs), count, intersects, declined);
 }
 
 const char* target() { return "scalar"; }
 
 #endif
+
+void decide_floats(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+  decide_in_chunks(pairs, count, intersects, declined);
+}
+void decide_doubles(const double* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+  decide_in_chunks(pairs, count, intersects, declined);
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace graze::exact
@@ -149,12 +170,19 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace graze::exact {
 
-HWY_EXPORT(decide_all);
+HWY_EXPORT(decide_floats);
+HWY_EXPORT(decide_doubles);
 HWY_EXPORT(target);
 
 void decide(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-  if (count == 1) return one_by_one(pairs, count, intersects, declined);  // vectors gain only from several
-  HWY_DYNAMIC_DISPATCH(decide_all)(pairs, count, intersects, declined);
+  // Vectors gain only from several pairs.
+  if (count == 1) return one_by_one(reinterpret_cast<const Pair*>(pairs), count, intersects, declined);
+  HWY_DYNAMIC_DISPATCH(decide_floats)(pairs, count, intersects, declined);
+}
+
+void decide(const double* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+  if (count == 1) return one_by_one(reinterpret_cast<const DoublePair*>(pairs), count, intersects, declined);
+  HWY_DYNAMIC_DISPATCH(decide_doubles)(pairs, count, intersects, declined);
 }
 
 const char* decide_target() { return HWY_DYNAMIC_DISPATCH(target)(); }

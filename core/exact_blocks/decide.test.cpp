@@ -44,7 +44,8 @@ class ExactBlocks : public testing::Test {
   }
 
   // Checks both bits of every pair, and zeros after the last pair.
-  static void expect_as_each_alone(const std::vector<float>& pairs, const std::string& what) {
+  template <class Real>
+  static void expect_as_each_alone(const std::vector<Real>& pairs, const std::string& what) {
     const std::size_t count = pairs.size() / 18, words = (count + 63) / 64;
     std::vector<std::uint64_t> yes(words + 1, ~0ull), declined(words + 1, ~0ull);
     decide(pairs.data(), count, yes.data(), declined.data());
@@ -59,22 +60,24 @@ class ExactBlocks : public testing::Test {
   }
 };
 
-std::vector<float> drawn(std::size_t pairs, auto coordinate) {
-  std::vector<float> all(18 * pairs);
-  for (float& x : all) x = coordinate();
+template <class Real = float>
+std::vector<Real> drawn(std::size_t pairs, auto coordinate) {
+  std::vector<Real> all(18 * pairs);
+  for (Real& x : all) x = coordinate();
   return all;
 }
 
 // Near contacts of a vertex and a face, of two edges, and of coplanar triangles. Gaps and depths get smaller and
 // smaller, so that each pair needs its own grid, and all sizes of grids occur.
-std::vector<float> near_contacts() {
-  std::vector<float> all;
+template <class Real>
+std::vector<Real> near_contacts() {
+  std::vector<Real> all;
   for (int exponent = 0; exponent >= -90; --exponent) {
-    for (const float sign : {1.0f, 0.0f, -1.0f}) {
-      const float h = std::ldexp(sign, exponent);
-      for (const auto& pair : {std::array<float, 18>{-1, -1, 0, 1, -1, 0, 0, 1, 0, 0, 0, h, 1, 0, 1, 0, 1, 1},
-                               std::array<float, 18>{-1, 0, 0, 1, 0, 0, 0, 0, -1, 0, -1, h, 0, 1, h, 0, 0, 1},
-                               std::array<float, 18>{-1, -1, 0, 0, -1, 0, 0, 1, 0, h, 0, 0, 1, 1, 0, 1, -1, 0}})
+    for (const Real sign : {Real(1), Real(0), Real(-1)}) {
+      const Real h = std::ldexp(sign, exponent);
+      for (const auto& pair : {std::array<Real, 18>{-1, -1, 0, 1, -1, 0, 0, 1, 0, 0, 0, h, 1, 0, 1, 0, 1, 1},
+                               std::array<Real, 18>{-1, 0, 0, 1, 0, 0, 0, 0, -1, 0, -1, h, 0, 1, h, 0, 0, 1},
+                               std::array<Real, 18>{-1, -1, 0, 0, -1, 0, 0, 1, 0, h, 0, 0, 1, 1, 0, 1, -1, 0}})
         all.insert(all.end(), pair.begin(), pair.end());
     }
   }
@@ -94,7 +97,7 @@ TEST_F(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
   const auto whole = [&](int bits) {
     return static_cast<float>(static_cast<std::int64_t>(random() >> (63 - bits)) - (std::int64_t{1} << bits));
   };
-  const auto vertices_again = [&](std::vector<float> all) {  // some of b's are a's: contacts and coplanar pairs
+  const auto vertices_again = [&](auto all) {  // some of b's are a's: contacts and coplanar pairs
     for (std::size_t pair = 0; pair < all.size(); pair += 18) {
       for (std::size_t v = 9; v < 18; v += 3) {
         if (random() % 3 == 0) std::copy_n(&all[pair + random() % 3 * 3], 3, &all[pair + v]);
@@ -116,7 +119,7 @@ TEST_F(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
       {"wider", vertices_again(drawn(2000, [&] { return std::ldexp(whole(23), static_cast<int>(random() % 60)); }))},
       {"near the smallest", vertices_again(drawn(2000, [&] { return std::ldexp(whole(5), -149); }))},
       {"near the largest", vertices_again(drawn(2000, [&] { return std::ldexp(whole(20), 106); }))},
-      {"near contacts", near_contacts()},
+      {"near contacts", near_contacts<float>()},
       {"contacts alone, in few bits", contacts(0)},
       {"contacts alone, in 31 bits", contacts(-30)},
       {"contacts alone, in 61 bits", contacts(-60)},
@@ -128,8 +131,36 @@ TEST_F(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
                            return x;
                          })},
   };
+  const auto of_bits = [&](int bits) {
+    return static_cast<double>(static_cast<std::int64_t>(random() >> (64 - bits)));
+  };
+  const auto scaled = [&](int bits, int exponent) {
+    return vertices_again(drawn<double>(3000, [&] { return std::ldexp(of_bits(bits), exponent); }));
+  };
+  const std::vector<std::pair<std::string, std::vector<double>>> of_doubles = {
+      {"general", drawn<double>(5000, [&] { return static_cast<double>(random() % 2000) / 7; })},
+      {"small lattice", drawn<double>(20000, [&] { return of_bits(2); })},
+      {"14 bits", scaled(14, 0)},
+      {"33 bits", scaled(33, -20)},
+      {"53 bits", scaled(53, 3)},
+      {"the smallest", scaled(12, -1074)},
+      {"below 2^-900", scaled(12, -1000)},
+      {"beyond 2^300", scaled(20, 320)},
+      {"the largest", scaled(20, 1003)},
+      {"small beside large",
+       vertices_again(drawn<double>(3000, [&] { return std::ldexp(of_bits(3), random() % 2 ? 900 : -1060); }))},
+      {"near contacts", near_contacts<double>()},
+      {"any bits", drawn<double>(5000,
+                                 [&] {
+                                   const std::uint64_t bits = random();
+                                   double x;
+                                   std::memcpy(&x, &bits, sizeof x);
+                                   return x;
+                                 })},
+  };
   const std::set<std::string> names = on_every_target([&](const std::string& target) {
     for (const auto& [kind, pairs] : kinds) expect_as_each_alone(pairs, target + ", " + kind);
+    for (const auto& [kind, pairs] : of_doubles) expect_as_each_alone(pairs, target + ", doubles, " + kind);
   });
   EXPECT_TRUE(names.contains("scalar") || names.size() > 1) << "only one way of computing was tested";
   std::string all;
@@ -140,13 +171,22 @@ TEST_F(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
 TEST_F(ExactBlocks, AreOfAnySizeAndDeclineWhatIsNotFinite) {
   std::mt19937 random(8);
   std::vector<float> pairs = drawn(1100, [&] { return static_cast<float>(random() % 9); });
+  const std::vector<double> doubles = [&] {
+    std::vector<double> all = drawn<double>(600, [&] { return static_cast<double>(random() % 9); });
+    for (std::size_t i = 0; i < all.size(); i += 18 * 5 + 7)
+      all[i] = i % 2 == 0 ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+    return all;
+  }();
   for (std::size_t i = 0; i < pairs.size(); i += 18 * 5 + 7)
     pairs[i] = i % 2 == 0 ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
   on_every_target([&](const std::string& target) {
     for (std::size_t count = 0; count <= 140; ++count)
-      expect_as_each_alone({pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(18 * count)}, target);
+      expect_as_each_alone<float>({pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(18 * count)}, target);
+    for (const std::size_t count : {1, 3, 8, 9, 64, 255, 256, 257, 511, 512, 513, 600})
+      expect_as_each_alone<double>({doubles.begin(), doubles.begin() + static_cast<std::ptrdiff_t>(18 * count)},
+                                   target);
     for (const std::size_t count : {511, 512, 513, 1023, 1100})
-      expect_as_each_alone({pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(18 * count)}, target);
+      expect_as_each_alone<float>({pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(18 * count)}, target);
   });
 }
 

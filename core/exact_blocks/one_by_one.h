@@ -15,8 +15,5 @@ void one_by_one(const AnyPair* pairs, std::size_t count, std::uint64_t* intersec
                                                            : Verdict::disjoint;
   });
 }
-inline void one_by_one(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-  one_by_one(reinterpret_cast<const Pair*>(pairs), count, intersects, declined);
-}
 
 }  // namespace graze::exact

@@ -2,14 +2,15 @@
 // What decide.cpp computes with: vectors of doubles with one pair in each vector lane. Included once for each
 // instruction set, within its namespace, so there is no include guard.
 //
-//   filter_all    the decision by planes with one error bound for each pair, like core/exact/filter.h
+//   filter_all    the decision by planes with one error bound for each pair, like core/exact/filter.h; in Double, or
+//                 in DoubleDouble (doubles-inl.h)
 //   share_vertex  like core/exact/shared_vertex.h
 //   separated     the decision by axes, like core/exact/by_axes.h, on numbers whose signs are exact. These are Double
 //                 where nothing rounds, and else DoubleAndInteger. The latter stores each number as a double, which is
 //                 close, and as a 64-bit integer, which is the number modulo 2^64. If the double is small, the integer
 //                 is the number.
 
-constexpr std::size_t kFloats = 18;
+constexpr std::size_t kNumbers = 18;  // coordinates of a pair
 using Tag = hn::CappedTag<double, 8>;
 using FloatTag = hn::Rebind<float, Tag>;
 using IntegerTag = hn::RebindToSigned<Tag>;
@@ -40,8 +41,10 @@ HWY_INLINE Three<T> operator-(const Three<T>& l, const Three<T>& r) {
 
 // The kinds of numbers.
 struct Double {
+  static constexpr double kError = 6 * detail::kDeterminantError;  // see determinant_error in core/exact/error_bound.h
   V v;
   static HWY_INLINE Double of_integer(V x) { return {x}; }
+  static HWY_INLINE Double difference(V l, V r) { return {hn::Sub(l, r)}; }
   HWY_INLINE V sign() const { return v; }
   friend HWY_INLINE Double operator-(Double l, Double r) { return {hn::Sub(l.v, r.v)}; }
   // p q - r s
@@ -87,11 +90,19 @@ HWY_INLINE Three<Double> chosen(M mask, const Three<Double>& yes, const Three<Do
           {hn::IfThenElse(mask, yes.z.v, no.z.v)}};
 }
 
-// The coordinates of kAtOnce pairs, which need not be adjacent in memory.
-struct Coordinates {
-  VF x[kFloats];
+HWY_INLINE V widened(VF x) { return hn::PromoteTo(d, x); }
+HWY_INLINE V widened(V x) { return x; }
 
-  HWY_INLINE explicit Coordinates(const float* const (&pairs)[kAtOnce]) {
+// The coordinates of kAtOnce pairs, which need not be adjacent in memory.
+template <class Real>
+struct CoordinatesOf;
+
+template <>
+struct CoordinatesOf<float> {
+  static constexpr FloatTag tag{};
+  VF x[kNumbers];
+
+  HWY_INLINE explicit CoordinatesOf(const float* const (&pairs)[kAtOnce]) {
     for (std::size_t c = 0; c < 16; c += 4) columns(pairs, c, x[c], x[c + 1], x[c + 2], x[c + 3]);
     VF again, too;
     columns(pairs, 14, again, too, x[16], x[17]);
@@ -122,6 +133,8 @@ struct Coordinates {
   }
 };
 
+using Coordinates = CoordinatesOf<float>;
+
 // Bit i is set if the result of pair i is certain.
 struct Filtered {
   unsigned intersects, disjoint, declined;
@@ -145,32 +158,54 @@ HWY_INLINE Turned turned(const Three<Double> (&v)[3], const M (&below)[3], M oth
 // Whether the lone vertex of three is below. The other two are equal and cancel.   Requires: not all three are equal.
 HWY_INLINE M alone_is_below(const M (&below)[3]) { return hn::Xor(hn::Xor(below[0], below[1]), below[2]); }
 
-HWY_INLINE Filtered filter_all(const Coordinates& pairs) {
-  VF zeros = hn::Zero(df);  // NaN instead if a coordinate is not finite
-  for (const VF& x : pairs.x) zeros = hn::MulAdd(x, hn::Zero(df), zeros);
-  const unsigned declined = bits(hn::IsNaN(hn::PromoteTo(d, zeros)));
+// The differences of coordinates, as numbers of another kind.
+template <class Number>
+HWY_INLINE Three<Number> difference(const Three<Double>& l, const Three<Double>& r) {
+  return {Number::difference(l.x.v, r.x.v), Number::difference(l.y.v, r.y.v), Number::difference(l.z.v, r.z.v)};
+}
 
-  V bound = hn::Set(d, 6 * detail::kDeterminantError);  // see determinant_error in core/exact/error_bound.h
+// The determinant (p - o) x (q - o) . (r - o), of which the sign counts.
+template <class Number>
+HWY_INLINE V orientation(const Three<Double>& o, const Three<Double>& p, const Three<Double>& q,
+                         const Three<Double>& r) {
+  return Number::dot(cross(difference<Number>(p, o), difference<Number>(q, o)), difference<Number>(r, o)).sign();
+}
+
+template <class Number = Double, class Real>
+HWY_INLINE Filtered filter_all(const CoordinatesOf<Real>& pairs) {
+  auto zeros = hn::Zero(pairs.tag);  // NaN instead if a coordinate is not finite
+  for (const auto& x : pairs.x) zeros = hn::MulAdd(x, hn::Zero(pairs.tag), zeros);
+  const unsigned declined = bits(hn::IsNaN(widened(zeros)));
+
+  V bound = hn::Set(d, Number::kError);
+  V most_extent = hn::Zero(d);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    VF low = pairs.x[axis], high = pairs.x[axis];
-    for (std::size_t i = axis + 3; i < kFloats; i += 3) {
+    auto low = pairs.x[axis], high = pairs.x[axis];
+    for (std::size_t i = axis + 3; i < kNumbers; i += 3) {
       low = hn::Min(low, pairs.x[i]);
       high = hn::Max(high, pairs.x[i]);
     }
-    bound = hn::Mul(bound, hn::Sub(hn::PromoteTo(d, high), hn::PromoteTo(d, low)));
+    const V extent = hn::Sub(widened(high), widened(low));
+    most_extent = hn::Max(most_extent, extent);
+    bound = hn::Mul(bound, extent);
+  }
+  if constexpr (sizeof(Real) > sizeof(float)) {
+    bound = hn::IfThenElse(hn::Le(most_extent, hn::Set(d, detail::kMostExtent)),
+                           hn::Add(bound, hn::Set(d, detail::kDeterminantUnderflow)), hn::Set(d, __builtin_inf()));
   }
 
   Three<Double> a[3], b[3];
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto at = [&](std::size_t c) HWY_ATTR { return Double{hn::PromoteTo(d, pairs.x[c])}; };
+    const auto at = [&](std::size_t c) HWY_ATTR { return Double{widened(pairs.x[c])}; };
     a[i] = {at(3 * i), at(3 * i + 1), at(3 * i + 2)};
     b[i] = {at(3 * i + 9), at(3 * i + 10), at(3 * i + 11)};
   }
-  const Three<Double> normal_a = cross(a[1] - a[0], a[2] - a[0]), normal_b = cross(b[1] - b[0], b[2] - b[0]);
-  const V of_a[3] = {Double::dot(normal_b, a[0] - b[0]).v, Double::dot(normal_b, a[1] - b[0]).v,
-                     Double::dot(normal_b, a[2] - b[0]).v};
-  const V of_b[3] = {Double::dot(normal_a, b[0] - a[0]).v, Double::dot(normal_a, b[1] - a[0]).v,
-                     Double::dot(normal_a, b[2] - a[0]).v};
+  const Three<Number> normal_a = cross(difference<Number>(a[1], a[0]), difference<Number>(a[2], a[0])),
+                      normal_b = cross(difference<Number>(b[1], b[0]), difference<Number>(b[2], b[0]));
+  const auto height = [](const Three<Number>& normal, const Three<Double>& v, const Three<Double>& from)
+                          HWY_ATTR { return Number::dot(normal, difference<Number>(v, from)).sign(); };
+  const V of_a[3] = {height(normal_b, a[0], b[0]), height(normal_b, a[1], b[0]), height(normal_b, a[2], b[0])};
+  const V of_b[3] = {height(normal_a, b[0], a[0]), height(normal_a, b[1], a[0]), height(normal_a, b[2], a[0])};
   const auto least = [](const V(&v)[3]) HWY_ATTR { return hn::Min(hn::Min(v[0], v[1]), v[2]); };
   const auto most = [](const V(&v)[3]) HWY_ATTR { return hn::Max(hn::Max(v[0], v[1]), v[2]); };
   const V nearest = hn::Min(hn::Min(hn::Min(hn::Abs(of_a[0]), hn::Abs(of_a[1])), hn::Abs(of_a[2])),
@@ -186,43 +221,50 @@ HWY_INLINE Filtered filter_all(const Coordinates& pairs) {
   const M a_below[3] = {hn::Lt(of_a[0], zero), hn::Lt(of_a[1], zero), hn::Lt(of_a[2], zero)};
   const M b_below[3] = {hn::Lt(of_b[0], zero), hn::Lt(of_b[1], zero), hn::Lt(of_b[2], zero)};
   const Turned t = turned(a, a_below, alone_is_below(b_below)), u = turned(b, b_below, alone_is_below(a_below));
-  const V first = Double::dot(cross(u.first - t.second, t.first - t.second), u.second - t.second).v;
-  const V second = Double::dot(cross(u.first - t.first, t.third - t.first), u.third - t.first).v;
+  const V first = orientation<Number>(t.second, u.first, t.first, u.second);
+  const V second = orientation<Number>(t.first, u.first, t.third, u.third);
   const V between = hn::Max(first, second);
   return {on_sides & bits(hn::Lt(between, hn::Neg(bound))), parted | (on_sides & bits(hn::Gt(between, bound))),
           declined};
 }
 
-HWY_INLINE unsigned share_vertex(const Coordinates& pairs) {
-  auto shared = hn::Gt(hn::Zero(df), hn::Zero(df));
+template <class Real>
+HWY_INLINE unsigned share_vertex(const CoordinatesOf<Real>& pairs) {
+  auto shared = hn::Gt(hn::Zero(pairs.tag), hn::Zero(pairs.tag));
   for (std::size_t i = 0; i < 9; i += 3) {
-    for (std::size_t j = 9; j < kFloats; j += 3) {
+    for (std::size_t j = 9; j < kNumbers; j += 3) {
       const auto same = hn::And(hn::Eq(pairs.x[i], pairs.x[j]), hn::And(hn::Eq(pairs.x[i + 1], pairs.x[j + 1]),
                                                                         hn::Eq(pairs.x[i + 2], pairs.x[j + 2])));
       shared = hn::Or(shared, same);
     }
   }
   std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(df, shared, bytes);
+  hn::StoreMaskBits(pairs.tag, shared, bytes);
   return bytes[0];
 }
 
 // The coordinates as integers, if the given number of bits holds them all.
 struct OnGrid {
-  V x[kFloats];
+  V x[kNumbers];
   unsigned within;  // bit i is set if the coordinates of pair i are integers
 
-  HWY_INLINE OnGrid(const Coordinates& pairs, int bits_of_grid) {
-    VF largest = hn::Set(df, 0x1p-126f);  // a grid of subnormals only is treated as a finer one
-    for (const VF& c : pairs.x) largest = hn::Max(largest, hn::Abs(c));
+  template <class Real>
+  HWY_INLINE OnGrid(const CoordinatesOf<Real>& pairs, int bits_of_grid) {
+    // A grid of smaller numbers only is treated as a finer one.
+    auto largest = hn::Set(pairs.tag, sizeof(Real) == sizeof(float) ? Real(0x1p-126) : Real(0x1p-900));
+    for (const auto& c : pairs.x) largest = hn::Max(largest, hn::Abs(c));
     // Values stay below 2^bits_of_grid. It is enough that the largest is at least half of that, so the scale is
     // 2^(bits_of_grid - 1 - e).
-    const VI exponent = hn::And(hn::BitCast(di, hn::PromoteTo(d, largest)), hn::Set(di, std::int64_t{0x7ff} << 52));
+    const VI exponent = hn::And(hn::BitCast(di, widened(largest)), hn::Set(di, std::int64_t{0x7ff} << 52));
     const V scale = hn::BitCast(d, hn::Sub(hn::Set(di, std::int64_t{2 * 1023 + bits_of_grid - 1} << 52), exponent));
     M whole = hn::Eq(scale, scale);
-    for (std::size_t c = 0; c < kFloats; ++c) {
-      x[c] = hn::Mul(hn::PromoteTo(d, pairs.x[c]), scale);
+    for (std::size_t c = 0; c < kNumbers; ++c) {
+      x[c] = hn::Mul(widened(pairs.x[c]), scale);
       whole = hn::And(whole, hn::Eq(hn::Round(x[c]), x[c]));
+      if constexpr (sizeof(Real) > sizeof(float)) {  // a small number times a small scale may underflow to zero
+        const V zero = hn::Zero(d);
+        whole = hn::And(whole, hn::Or(hn::Ne(x[c], zero), hn::Eq(pairs.x[c], zero)));
+      }
     }
     within = bits(whole);
   }

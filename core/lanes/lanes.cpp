@@ -11,7 +11,6 @@
 
 #include "core/error.h"
 #include "core/exact_blocks/decide.h"
-#include "core/exact_blocks/one_by_one.h"
 #include "core/lanes/host_blocks.h"
 #include "core/lanes/named_policies.h"
 #include "core/lanes/vector_blocks.h"
@@ -38,7 +37,7 @@ constexpr DecideFunction<DoublePair> decide_doubles_exactly = nullptr;
 #else
 void decide_doubles_exactly(const DoublePair* pairs, std::size_t count, std::uint64_t* intersects,
                             std::uint64_t* declined) {
-  exact::one_by_one(pairs, count, intersects, declined);
+  exact::decide(reinterpret_cast<const double*>(pairs), count, intersects, declined);
 }
 #endif
 

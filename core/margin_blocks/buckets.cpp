@@ -43,7 +43,7 @@ struct Numbers {
 
 HWY_INLINE Coordinates coordinates_at(const float* pairs, const Numbers& numbers) {
   const float* where[kAtOnce];
-  for (std::size_t i = 0; i < kAtOnce; ++i) where[i] = pairs + std::size_t{numbers.pair[i]} * kFloats;
+  for (std::size_t i = 0; i < kAtOnce; ++i) where[i] = pairs + std::size_t{numbers.pair[i]} * kNumbers;
   return Coordinates(where);
 }
 

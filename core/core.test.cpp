@@ -139,8 +139,9 @@ TEST(LaneTable, IsTheProductOfAlgorithmsScalarsAndVariantsAndTheExactLanes) {
   }
   const auto built = std::count_if(std::begin(kVariants), std::end(kVariants), builds_published);
   EXPECT_EQ(built, 6);
-  EXPECT_EQ(ids.size(), static_cast<std::size_t>(kAlgorithmCount * 2 * built) + 3);
+  EXPECT_EQ(ids.size(), static_cast<std::size_t>(kAlgorithmCount * 2 * built) + 4);
   EXPECT_TRUE(ids.contains("exact/f32/cuda"));
+  EXPECT_TRUE(ids.contains("exact/f64/cuda"));
   EXPECT_TRUE(ids.contains("moller_1997/f32/cuda-fma"));
   EXPECT_TRUE(matches_any({"*/f32/*", "x"}, "moller_1997/f32/cpu"));
   EXPECT_FALSE(matches_any({"*/f64/*"}, "moller_1997/f32/cpu"));

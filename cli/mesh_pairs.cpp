@@ -103,14 +103,12 @@ struct Block {
   }
 };
 
-void decide_doubles(Candidates& of) {
-  std::vector<std::uint64_t> declined(of.intersect.size());
-  exact::decide(coordinates(of.pairs_of_doubles[0]), of.pairs_of_doubles.size(), of.intersect.data(), declined.data());
-}
-
 void decide_on_cores(Candidates& of) {
   std::vector<std::uint64_t> declined(of.intersect.size());
-  exact::decide(coordinates(of.pairs[0]), of.pairs.size(), of.intersect.data(), declined.data());
+  const auto decide = [&](const auto& pairs) {
+    exact::decide(coordinates(pairs[0]), pairs.size(), of.intersect.data(), declined.data());
+  };
+  of.pairs.empty() ? decide(of.pairs_of_doubles) : decide(of.pairs);
 }
 
 }  // namespace
@@ -153,9 +151,8 @@ std::string csv_of(std::span<const FoundPair> pairs) {
 
 Decider exact_decider(const std::string& executor, bool of_doubles) {
   const int cores = tbb::info::default_concurrency();
-  const auto decide = of_doubles ? decide_doubles : decide_on_cores;
-  if (executor == "one-core") return {executor, 1, kBlock, decide};
-  if (executor != "one-gpu") return {"all-cores", cores, kBlock, decide};
+  if (executor == "one-core") return {executor, 1, kBlock, decide_on_cores};
+  if (executor != "one-gpu") return {"all-cores", cores, kBlock, decide_on_cores};
   if (of_doubles)
     throw std::runtime_error(
         "--executor one-gpu: the device decides float32, which does not hold these coordinates; leave it out, and the "

@@ -22,6 +22,12 @@ std::string why_unavailable(const Lane& lane, const cuda::Device* device, const 
   return device && backend.has_device ? "" : backend.why_not_on_host(lane, why_no_device);
 }
 
+// What decides the lane on the host; null where only the device runs it.
+DecideBlock host_block(const SelectedLanes& under_test, const Lane& lane) {
+  const Backend& backend = backend_of(lane);
+  return backend.has_device && under_test.device && !under_test.twins_too ? nullptr : backend.on_host(lane);
+}
+
 // Sorts the lanes by place(lane), with what decides them. Lanes of one place keep their order.
 template <class Place>
 void sort_lanes(SelectedLanes& under_test, const Place& place) {
@@ -181,6 +187,7 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
   const bool names_some = std::any_of(globs.begin(), globs.end(), wants_lanes);
   SelectedLanes under_test;
   under_test.asked = globs;
+  under_test.twins_too = executor == Executor::both;
   std::string why_not;
   if (executor != Executor::twin) under_test.device = cuda::open_device(why_not);
   const bool needs_device = require_device || executor == Executor::device || executor == Executor::both;
@@ -188,13 +195,10 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
   for (const Lane& lane : lanes()) {
     if (!matches_any(globs, lane.id)) continue;
     if (is_exact_on_doubles(lane) && std::find(globs.begin(), globs.end(), lane.id) == globs.end()) continue;
-    const Backend& backend = backend_of(lane);
-    const bool only_device = backend.has_device && under_test.device && executor != Executor::both;
-    const DecideBlock on_host = only_device ? nullptr : backend.on_host(lane);
     const std::string why = why_unavailable(lane, under_test.device.get(), why_not);
     if (why.empty()) {
       under_test.lanes.push_back(&lane);
-      under_test.on_host.push_back(on_host);
+      under_test.on_host.push_back(host_block(under_test, lane));
     } else if (names_some || lane.foreign) {
       under_test.left_out.push_back({lane.id, why});
     }
@@ -220,15 +224,12 @@ bool takes(const Lane& lane, const AnyPair& pair) {
 }
 
 std::vector<LaneLeftOut> select_for_doubles(SelectedLanes& under_test) {
-  bool with_twins = !under_test.device;
-  for (std::size_t l = 0; l < under_test.lanes.size(); ++l) with_twins = with_twins || under_test.on_both(l);
   for (const Lane& lane : lanes()) {
     if (!is_exact_on_doubles(lane) || !matches_any(under_test.asked, lane.id) ||
         std::find(under_test.lanes.begin(), under_test.lanes.end(), &lane) != under_test.lanes.end())
       continue;
     under_test.lanes.push_back(&lane);
-    const bool only_device = backend_of(lane).has_device && !with_twins;
-    under_test.on_host.push_back(only_device ? nullptr : backends::on_host(lane));
+    under_test.on_host.push_back(host_block(under_test, lane));
   }
   sort_by_subject(under_test);
   under_test.of_doubles = true;

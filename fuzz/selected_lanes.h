@@ -30,6 +30,7 @@ struct SelectedLanes {
   std::unique_ptr<cuda::Device> device;  // null when the CUDA lanes do not run on one
   std::vector<std::string> asked;        // the patterns; none: all lanes that run here, and all of the user's own code
   std::vector<LaneLeftOut> left_out;     // of those asked for
+  bool twins_too = false;                // what the device runs runs as twins as well
   bool of_doubles = false;               // some of the pairs are of doubles
 
   // False for foreign code, even if it uses a device, because it runs in a process of its own.

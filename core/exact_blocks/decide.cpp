@@ -7,7 +7,7 @@
 
 namespace graze::exact {
 void decide(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-  one_by_one(reinterpret_cast<const Pair*>(pairs), count, intersects, declined);
+  one_by_one(pairs, count, intersects, declined);
 }
 const char* decide_target() { return "scalar"; }
 }  // namespace graze::exact
@@ -113,7 +113,7 @@ HWY_ATTR void decide_chunk(const Chunk<Real>& chunk, std::size_t count) {
     const unsigned of_doubles = OnGrid(pairs, kBitsOfDoubles).within, of_both = OnGrid(pairs, kBitsOfBoth).within;
     small.add(which & of_doubles, numbers);
     middle.add(which & ~of_doubles & of_both, numbers);
-    (sizeof(Real) == sizeof(float) ? rest : large).add(which & ~of_doubles & ~of_both, numbers);
+    large.add(which & ~of_doubles & ~of_both, numbers);
   });
   small.take([&](const std::uint16_t* numbers, unsigned which) HWY_ATTR {
     chunk.set(chunk.intersects, which & ~separated<Double>(OnGrid(chunk.at(numbers), kBitsOfDoubles)), numbers);
@@ -121,7 +121,7 @@ HWY_ATTR void decide_chunk(const Chunk<Real>& chunk, std::size_t count) {
   middle.take([&](const std::uint16_t* numbers, unsigned which) HWY_ATTR {
     chunk.set(chunk.intersects, which & ~separated<DoubleAndInteger>(OnGrid(chunk.at(numbers), kBitsOfBoth)), numbers);
   });
-  large.take([&](const std::uint16_t* numbers, unsigned which) HWY_ATTR {  // near contacts of doubles
+  large.take([&](const std::uint16_t* numbers, unsigned which) HWY_ATTR {
     const Filtered found = filter_all<DoubleDouble>(chunk.at(numbers));
     chunk.set(chunk.intersects, which & found.intersects, numbers);
     rest.add(which & ~(found.intersects | found.disjoint), numbers);
@@ -149,7 +149,7 @@ const char* target() { return hwy::TargetName(HWY_TARGET); }
 
 template <class Real>
 void decide_in_chunks(const Real* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-  one_by_one(reinterpret_cast<const BasicPair<Real>*>(pairs), count, intersects, declined);
+  one_by_one(pairs, count, intersects, declined);
 }
 
 const char* target() { return "scalar"; }
@@ -175,13 +175,12 @@ HWY_EXPORT(decide_doubles);
 HWY_EXPORT(target);
 
 void decide(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-  // Vectors gain only from several pairs.
-  if (count == 1) return one_by_one(reinterpret_cast<const Pair*>(pairs), count, intersects, declined);
+  if (count == 1) return one_by_one(pairs, count, intersects, declined);  // vectors gain only from several
   HWY_DYNAMIC_DISPATCH(decide_floats)(pairs, count, intersects, declined);
 }
 
 void decide(const double* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-  if (count == 1) return one_by_one(reinterpret_cast<const DoublePair*>(pairs), count, intersects, declined);
+  if (count == 1) return one_by_one(pairs, count, intersects, declined);
   HWY_DYNAMIC_DISPATCH(decide_doubles)(pairs, count, intersects, declined);
 }
 

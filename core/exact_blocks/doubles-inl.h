@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What decide.cpp needs for pairs of doubles besides vectors-inl.h, after which it is included.
+// What decide.cpp needs besides vectors-inl.h, after which it is included: numbers for pairs on large grids, and pairs
+// of doubles.
 
 // Unevaluated sums of two doubles (Dekker 1971). Differences of doubles are exact. With u = 2^-53, a product of two
 // such numbers is off by at most 5 u^2 of itself, a sum or difference by at most 3 u^2 of the summands' magnitudes
 // (Joldes, Muller and Popescu 2017), so a determinant by at most (2 * 5 + 3 * 3) u^2 of its products' magnitudes and
 // terms of u^3: 32 u^2 bounds it. `hi` has the sign of the number and is off by u of it, so twice that bounds `hi`.
-// What underflows is within kDeterminantUnderflow (core/exact/error_bound.h).   Requires: fused multiply-adds, and no
-// contraction by the compiler.
+// With coordinates in float32 nothing underflows; with doubles, what does is within kDeterminantUnderflow
+// (core/exact/error_bound.h).   Requires: fused multiply-adds, and no contraction by the compiler.
 struct DoubleDouble {
   static constexpr double kError = 6 * 64 * 0x1p-106;
   V hi, lo;

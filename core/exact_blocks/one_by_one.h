@@ -6,10 +6,11 @@
 
 namespace graze::exact {
 
-// Like decide (decide.h), but one pair after the other, of either coordinate type.
-template <class AnyPair>
-void one_by_one(const AnyPair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-  decide_each(pairs, count, intersects, declined, [](const AnyPair& pair) {
+// Like decide (decide.h), but one pair after the other.
+template <class Real>
+void one_by_one(const Real* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+  using AnyPair = BasicPair<Real>;
+  decide_each(reinterpret_cast<const AnyPair*>(pairs), count, intersects, declined, [](const AnyPair& pair) {
     return !is_finite(pair)                                ? Verdict::declined
            : exact::intersects(&pair.a[0].x, &pair.b[0].x) ? Verdict::intersects
                                                            : Verdict::disjoint;

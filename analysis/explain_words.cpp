@@ -178,7 +178,7 @@ std::string remedy(const LaneExplanation& lane) {
   if (lane.cause == Cause::contraction) return "without contraction it is right";
   if (lane.cause == Cause::fast_math) return "with every operation rounded as written it is right";
   const std::string bits = lane.bits_needed == 0
-                               ? fmt::format("with a mantissa of {} bits it is still wrong", oracle::kMostBits)
+                               ? fmt::format("no mantissa of up to {} bits is known to be enough", oracle::kMostBits)
                                : fmt::format("{} mantissa bits would be enough", lane.bits_needed);
   if (lane.cause == Cause::rounding) return bits;
   if (lane.settled != Settled::not_without) return "with exponents without limits it is right";

@@ -64,6 +64,7 @@ int agree(const TuneOptions& options) {
   TunePairs pairs = tune_pairs(options);
   for (const Lane* lane : {&first, &second}) expect_takes(*lane, pairs);
   const Lane* const exact[] = {&exact_on(pairs, first), &exact_on(pairs, second)};
+  question.exact_scalar = name(exact[0]->scalar);
   spec.sources = std::move(pairs.sources);
   spec.others = std::move(pairs.others);
   spec.sites = analysis::sites_asked(first, spec.sources);

@@ -122,6 +122,7 @@ TEST_F(ExitStatus, PlacesWithOtherThingsAreWrongUse) {
     expect_error("graze scene mesh.off --out " + file, 2, {file, "--force"});
     expect_error("graze query 'mesh.off#0' mesh.off --obj " + file, 2, {file, "--force"});
     expect_error("graze status s1 --prometheus " + file, 2, {file, "--force"});
+    expect_error("graze toolchain x86-gcc --json " + file, 2, {file, "--force"});
   }
   EXPECT_EQ(contents(shell.folder / "p").substr(0, 4), "0.1 ");
   EXPECT_EQ(contents(shell.folder / "mine/notes.txt"), "kept");

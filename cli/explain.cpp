@@ -136,7 +136,7 @@ std::string lane_text(const analysis::LaneExplanation& lane, const analysis::Lan
   contractions();
   line(4, fmt::format("mantissa bits from which on it is right: {}",
                       lane.cause == analysis::Cause::logic ? "no number of bits helps"
-                      : lane.bits_needed == 0              ? fmt::format("more than {}", oracle::kMostBits)
+                      : lane.bits_needed == 0              ? fmt::format("none up to {} is known", oracle::kMostBits)
                                                            : fmt::format("{}", lane.bits_needed)));
   surroundings();
   return text;

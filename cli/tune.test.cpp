@@ -264,6 +264,7 @@ TEST_F(AgreeCommand, FreshPairsConfirmItForTwoAlgorithms) {
     EXPECT_EQ(json["confirmed"]["differing"], recounted(shell, stratum, 2, 10'000, cpu, cuda, policy)) << ran.out;
     EXPECT_GT(json["zero_confirmed"]["differing"], 100) << ran.out;
     EXPECT_EQ(json["rounded"]["agreement"]["differing"], 0) << ran.out;
+    EXPECT_NE(ran.out.find("(exact/f32/cpu and exact/f32/cuda)"), std::string::npos) << ran.out;
     // With twice the pairs and another seed, the rate keeps to the bound.
     const double fresh = static_cast<double>(recounted(shell, stratum, 99, 20'000, cpu, cuda, policy)) / 20'000;
     if (result == std::string("satisfied")) {

@@ -33,7 +33,7 @@ std::string differing(const Agreement& a, const std::string& pairs) {
 
 const std::string kSamePairs = "the same pairs";
 
-// Whether the chosen tolerance is the smallest of the sweep; that one is too small to change a comparison.
+// Whether the chosen tolerance is the smallest of the sweep; that one is smaller than any rounding error.
 bool is_smallest(const Agreed& a) {
   return std::any_of(a.curves.begin(), a.curves.end(),
                      [&](const auto& curve) { return curve.points.front().policy == a.chosen; });
@@ -95,8 +95,9 @@ std::vector<std::string> agreement_sentences(const AgreeQuestion& q, const Agree
   if (!a.chosen.empty()) {
     if (is_smallest(a))
       result.push_back(fmt::format(
-          "{} is the smallest tolerance of the sweep and changes no comparison by itself: in code with tolerances the "
-          "compiler fuses other products. {} is the clearer remedy.",
+          "{} is the smallest tolerance of the sweep, and smaller than any rounding error. What helps is a side "
+          "effect: in code with tolerances the compiler may fuse other products, and under a relative one a number of "
+          "which the size overflows counts as zero. {} is the clearer remedy.",
           a.chosen, q.flag.empty() ? "Exact arithmetic" : q.flag));
     const Agreement& now = a.confirmed;
     result.push_back(
@@ -120,12 +121,15 @@ std::vector<std::string> agreement_sentences(const AgreeQuestion& q, const Agree
         a.blunt->policy, grouped(a.blunt->pairs), grouped(a.blunt->of[0].wrong()), grouped(a.blunt->of[1].wrong())));
   if (!q.without_relative.empty())
     result.push_back(fmt::format("Relative tolerances are left out: {} has no twin under them.", q.without_relative));
-  if (a.rounded)
+  if (a.rounded && q.rounded[0] == q.rounded[1])
+    result.push_back(fmt::format("Without a tolerance: built with {}, both are {}.", q.flag, q.rounded[0]));
+  else if (a.rounded)
     result.push_back(fmt::format(
         "Without a tolerance: built with {}, {} and {} differ on {}; at 95 % confidence the rate is under {}.", q.flag,
         q.rounded[0], q.rounded[1], differing(*a.rounded, kSamePairs),
         rounded_up(analysis::upper_bound(a.rounded->differing, a.rounded->pairs), 2)));
-  result.push_back("The exact lanes (exact/f32/cpu and exact/f32/cuda) never differ and are never wrong.");
+  result.push_back(fmt::format("The exact lanes (exact/{0}/cpu and exact/{0}/cuda) never differ and are never wrong.",
+                               q.exact_scalar));
   return result;
 }
 

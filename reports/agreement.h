@@ -18,6 +18,7 @@ struct AgreeQuestion {
   std::string flag;                  // of the compiler, that makes them so
   std::string without_relative;      // the lane that has no twin under relative tolerances; empty: both have one
   double max_rate = 0;
+  std::string exact_scalar = "f32";  // of the lanes that decide the pairs exactly
 };
 
 // The answer first. Every number in it belongs to the pairs that the sentence names.

@@ -211,9 +211,8 @@ std::string kinds_heading(const CampaignCounts& counts, std::size_t lane, std::s
   const auto builds = std::count_if(counts.lanes.begin(), counts.lanes.end(),
                                     [&](const ReportLane& other) { return other.name.subject == subject; });
   return fmt::format(
-      "{} of {} of failure, the code's own mistakes of at least 1 % first (of the {} that {} gets wrong, by one "
-      "pair of each "
-      "signature):",
+      "{} of {} of failure, the code's own mistakes of at least 1 % first (of the {} that {} gets wrong; cause of one "
+      "pair per signature):",
       told, counted(kinds, "kind"), counted(failures, "pair"), builds > 1 ? "some build" : "it");
 }
 

@@ -176,10 +176,14 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
   std::string text = fmt::format("Avoid {}: wrong on {}, {} false positives and {} false negatives",
                                  ids(counts, equals), with_interval(wrong_share(counts, worst), " pairs"),
                                  grouped(found.false_positive), grouped(found.false_negative));
-  if (const GroupCounts* general = counts.group("general"); general && general->counts.pairs != counts.total.pairs) {
-    text += fmt::format("; of general pairs on {}",
-                        rate_words(share_of(general->counts.wrong(worst), general->counts.pairs).share));
+  std::uint64_t general = 0, wrong_general = 0;
+  for (const GroupCounts& group : counts.groups) {
+    if (group.id != "general" && group.id != "general/f64") continue;
+    general += group.counts.pairs;
+    wrong_general += group.counts.wrong(worst);
   }
+  if (general > 0 && general != counts.total.pairs)
+    text += fmt::format("; of general pairs on {}", rate_words(share_of(wrong_general, general).share));
   const Ground ground = ground_of(counts);
   const std::optional<Cost> own = cost_of(costs, worst, ground.strata);
   const std::size_t least =

@@ -17,9 +17,10 @@ struct MadeLane {
   std::uint64_t wrong;  // out of 10,000 pairs of uniform and 10,000 of degenerate; false negatives
 };
 
-CampaignCounts counts_with(const std::vector<MadeLane>& lanes) {
+CampaignCounts counts_with(const std::vector<MadeLane>& lanes,
+                           const std::vector<std::string>& strata = {"uniform", "degenerate"}) {
   Json summary = {{"spec", {{"seed", 1}, {"pairs", 20'000}, {"lanes", Json::array()}}}, {"complete", true}};
-  for (const char* stratum : {"uniform", "degenerate"}) {
+  for (const std::string& stratum : strata) {
     Json& row = summary["strata"][stratum] = {
         {"pairs", 10'000}, {"intersects", 5'000}, {"lanes", Json::object()}, {"margins", Json::object()}};
     for (const MadeLane& lane : lanes) {
@@ -113,6 +114,21 @@ TEST(Recommendations, TheWorstLaneIsAvoidedWhereIntervalsAreApart) {
                                          {"separating_axes/f64/cpu", 100}}),
                             nullptr)
                   .text.starts_with("Avoid moller_1997/f32/cpu: "));
+}
+
+// General pairs of both coordinate types are counted together.
+TEST(Recommendations, GeneralPairsAreThoseOfBothTypes) {
+  const std::vector<MadeLane> lanes = {{"moller_1997/f32/cpu", 900}, {"separating_axes/f64/cpu", 100}};
+  EXPECT_TRUE(lane_to_avoid(counts_with(lanes, {"uniform", "uniform/f64", "degenerate"}), nullptr)
+                  .text.ends_with("; of general pairs on 9 %."));
+  CampaignCounts counts = counts_with(lanes, {"uniform", "uniform/f64", "degenerate"});
+  for (GroupCounts& group : counts.groups) {
+    if (group.id == "general/f64") group.counts.lanes[0].false_negative = 100;
+  }
+  EXPECT_TRUE(lane_to_avoid(counts, nullptr).text.ends_with("; of general pairs on 5 %."))
+      << lane_to_avoid(counts, nullptr).text;
+  EXPECT_EQ(lane_to_avoid(counts_with(lanes, {"uniform", "uniform/f64"}), nullptr).text.find("general"),
+            std::string::npos);
 }
 
 TEST(Recommendations, TheLeastWrongLaneIsNamedWithItsCost) {

@@ -40,12 +40,16 @@ void Questions::advance() {
     second_ = true;
   }
   skip_failed();
+  if (!done()) return;
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (failed_here_[i] != 0 && answers_[i] <= kIntersects) answers_[i] = failed_here_[i];
+  }
 }
 
 std::size_t Questions::take(const std::uint64_t* words) {
   const std::size_t before = taken_;
   while (!answered()) {
-    const std::size_t pair = second_ ? at_ - 1 : at_;
+    const std::size_t pair = next_pair();
     const std::uint64_t word = __atomic_load_n(words + (second_ ? kMostAsked : 0) + pair, __ATOMIC_ACQUIRE);
     const auto answer = static_cast<signed char>(static_cast<int>(word & 3) - 2);
     if (answer < kDeclined || word != word_of(nonce_, second_, pair, answer)) break;
@@ -61,6 +65,7 @@ std::size_t Questions::take(const std::uint64_t* words) {
 }
 
 void Questions::failed(signed char how) {
+  const std::size_t here = done() ? 0 : answered() && !second_ && at_ > 0 ? at_ - 1 : next_pair();
   if (program_) {
     second_ = second_before_;
     at_ = at_before_;
@@ -70,10 +75,12 @@ void Questions::failed(signed char how) {
     singly_ = true;
   } else if (program_ && asked_ > 1) {
     most_ = std::max<std::size_t>(1, std::min(taken_, asked_ / 2));
+    if (taken_ > 0) failed_here_[here] = how;
   } else if (taken_ == 0 && asked_ > 1) {
     most_ = 1;
   } else {
-    answers_[second_ ? at_ - 1 : at_] = how;
+    answers_[next_pair()] = how;
+    failed_here_.fill(0);  // this pair is why
     advance();
     most_ = program_ ? 1 : 2 * kMostAsked;
   }
@@ -82,7 +89,7 @@ void Questions::failed(signed char how) {
 
 void Questions::give_up(signed char how) {
   while (!done()) {
-    answers_[second_ ? at_ - 1 : at_] = how;
+    answers_[next_pair()] = how;
     advance();
   }
 }

@@ -11,7 +11,7 @@ namespace graze::subjects {
 // Each pair is asked twice, forward and then backward, so that state left behind by one call shows in another. Answers
 // count in this order and once each. A word that is forged, early, late or of another question changes nothing. Answers
 // of a program have no number: one extra line would give each later pair the answer of another pair. So a question's
-// answers count all or not at all, and a pair fails only when it is asked alone.
+// answers count all or not at all, and the pair that makes it fail is found by asking it alone.
 class Questions {
  public:
   // of_blocks: the subject takes blocks of pairs. program: a program answers, by lines or block by block.
@@ -31,7 +31,9 @@ class Questions {
   // - blocks: asks the block again, one pair at a time.
   // - single pairs: the first pair without an answer gets `how`, kCrashed or kTimedOut. If no pair has an answer, it
   //   first asks that pair alone, because code that destroys its own answers fails on a later pair.
-  // - a program: all answers to this question are discarded, and the next question has fewer pairs.
+  // - a program: all answers to this question are discarded, and the next question has fewer pairs. If no pair of the
+  //   block fails alone afterwards, the failure came from the program's state. Then the pair at which it failed gets
+  //   `how`: the first one without an answer, or the last one if the program wrote more than it was asked for.
   // Requires: !answered(), except for a program.
   void failed(signed char how);
 
@@ -43,6 +45,7 @@ class Questions {
   std::span<const signed char> answers() const { return {answers_.data(), count_}; }
 
  private:
+  std::size_t next_pair() const { return second_ ? at_ - 1 : at_; }
   void skip_failed();
   void advance();
 
@@ -58,6 +61,7 @@ class Questions {
   bool second_before_ = false;
   std::size_t at_before_ = 0;
   std::array<signed char, kMostAsked> answers_before_{};
+  std::array<signed char, kMostAsked> failed_here_{};  // of a program: how a question failed at this pair; 0: none did
 };
 
 // Sanitises a worker's message about its code: terminates texts, makes them printable, and sets flags to 0 or 1.

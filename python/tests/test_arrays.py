@@ -117,6 +117,24 @@ class Arrays(unittest.TestCase):
         for pair, verdict in zip(drawn, said):
             self.assertEqual(verdict, intersect(pair), graze.Pair(pair))
 
+    def test_text_is_rounded_once(self):
+        middle, beyond = "1.00000005960464477539062500000", "1.00000005960464477539062500001"  # 1 + 2^-24, half an ulp
+        smallest = "0." + str(5**150).zfill(150)  # 2^-150, half the smallest
+        words = [
+            middle,
+            beyond,
+            "-" + beyond,
+            "1e-400",
+            "1e-99999999999999999999",
+            smallest,
+            smallest + "1",
+            "inf",
+            "0.1",
+        ]
+        expected = [1, 1 + 2**-23, -1 - 2**-23, 0, 0, 0, 2**-149, np.inf, np.float32(0.1)]
+        found = graze.Pair(" ".join(words + ["0"] * 9)).array.ravel()
+        self.assertEqual(found[:9].tolist(), [float(x) for x in expected])
+
     def test_relations(self):
         same = graze.Pair("0 0 0  1 0 0  0 1 0   0 0 0  1 0 0  0 1 0").relation
         self.assertEqual(graze.CONTACTS[same["contact"]], "area")
@@ -183,6 +201,7 @@ class Arrays(unittest.TestCase):
             (TypeError, "lane", lambda: graze.verdicts("exact/f32/cpu\0", drawn)),
             (ValueError, "18 numbers", lambda: graze.Pair("1 2 3")),
             (ValueError, "float32", lambda: graze.Pair([0.1] * 18)),
+            (ValueError, "1e39", lambda: graze.Pair("1e39" + " 0" * 17)),
             (ValueError, "no lane", lambda: graze.verdicts("no/f32/cpu", drawn)),
             (ValueError, "policy", lambda: graze.verdicts("moller_1997/f32/cpu/rel:x", drawn)),
             (ValueError, "reference", lambda: graze.meets(drawn[:, 0], drawn[:, 1])),

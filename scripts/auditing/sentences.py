@@ -231,6 +231,8 @@ def check_remedy(pair, name, scalar, lane, reason, counts):
             expect(pair.verdict(pair.sized(name, scalar, n - 1)) != pair.truth, f"{n - 1} bits are not")
     elif last.startswith("no mantissa"):
         counts["no number of bits"] += 1
+        widths = range(MOST_BITS, MOST_BITS // 2 - 1, -1)
+        expect(any(pair.verdict(pair.sized(name, scalar, b)) != pair.truth for b in widths), "no mantissa is enough")
     elif last == "with exponents without limits it is right":
         expect(
             pair.verdict(pair.sized(name, scalar, rule=lane["contracted"])) == pair.truth

@@ -33,7 +33,7 @@ std::string differing(const Agreement& a, const std::string& pairs) {
 
 const std::string kSamePairs = "the same pairs";
 
-// Whether the chosen tolerance is the smallest of the sweep; that one is smaller than any rounding error.
+// Whether the chosen tolerance is the smallest of the sweep; that one covers no ordinary rounding error.
 bool is_smallest(const Agreed& a) {
   return std::any_of(a.curves.begin(), a.curves.end(),
                      [&](const auto& curve) { return curve.points.front().policy == a.chosen; });
@@ -95,9 +95,9 @@ std::vector<std::string> agreement_sentences(const AgreeQuestion& q, const Agree
   if (!a.chosen.empty()) {
     if (is_smallest(a))
       result.push_back(fmt::format(
-          "{} is the smallest tolerance of the sweep, and smaller than any rounding error. What helps is a side "
-          "effect: in code with tolerances the compiler may fuse other products, and under a relative one a number of "
-          "which the size overflows counts as zero. {} is the clearer remedy.",
+          "{} is the smallest tolerance of the sweep and covers no ordinary rounding error. What helps is a side "
+          "effect: in code with tolerances the compiler may fuse other products, and a quotient has an enormous size "
+          "where cancellation has left its divisor tiny. {} is the clearer remedy.",
           a.chosen, q.flag.empty() ? "Exact arithmetic" : q.flag));
     const Agreement& now = a.confirmed;
     result.push_back(

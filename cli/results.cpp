@@ -36,12 +36,12 @@ void add_force_flag(CLI::App& verb) {
 void add_force(CLI::App& app) {
   for (CLI::App* verb : app.get_subcommands([](const CLI::App* v) { return v->get_name() != "merge"; })) {
     add_force(*verb);  // `corpus` has verbs of its own
-    const char* const places[] = {"--out", "--plot", "--obj", "--prometheus", "--junit"};
-    const CLI::Option* const json = verb->get_option_no_throw("--json");
-    if ((json && json->get_type_size() > 0) || std::any_of(std::begin(places), std::end(places), [&](const char* name) {
-          return verb->get_option_no_throw(name);
-        }))
-      add_force_flag(*verb);
+    const char* const places[] = {"--out", "--plot", "--obj", "--prometheus", "--junit", "--json"};
+    const auto is_place = [&](const char* name) {
+      const CLI::Option* const option = verb->get_option_no_throw(name);
+      return option && option->get_type_size() > 0;  // most --json are flags
+    };
+    if (std::any_of(std::begin(places), std::end(places), is_place)) add_force_flag(*verb);
   }
 }
 

@@ -177,10 +177,11 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
                                  ids(counts, equals), with_interval(wrong_share(counts, worst), " pairs"),
                                  grouped(found.false_positive), grouped(found.false_negative));
   std::uint64_t general = 0, wrong_general = 0;
-  for (const GroupCounts& group : counts.groups) {
-    if (group.id != "general" && group.id != "general/f64") continue;
-    general += group.counts.pairs;
-    wrong_general += group.counts.wrong(worst);
+  for (const char* id : {"general", "general/f64"}) {
+    const GroupCounts* group = counts.group(id);
+    if (!group) continue;
+    general += group->counts.pairs;
+    wrong_general += group->counts.wrong(worst);
   }
   if (general > 0 && general != counts.total.pairs)
     text += fmt::format("; of general pairs on {}", rate_words(share_of(wrong_general, general).share));

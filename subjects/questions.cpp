@@ -65,7 +65,7 @@ std::size_t Questions::take(const std::uint64_t* words) {
 }
 
 void Questions::failed(signed char how) {
-  const std::size_t here = done() ? 0 : answered() && !second_ && at_ > 0 ? at_ - 1 : next_pair();
+  const std::size_t here = answered() ? std::min(second_ ? at_ : at_ - 1, count_ - 1) : next_pair();
   if (program_) {
     second_ = second_before_;
     at_ = at_before_;

@@ -24,11 +24,13 @@ constexpr IntegerTag di;
 constexpr std::size_t kAtOnce = HWY_MAX_BYTES >= 64 ? 8 : 4;
 constexpr int kBitsOfBoth = 34;  // that DoubleAndInteger holds
 
-HWY_INLINE unsigned bits(M mask) {
+template <class AnyTag>
+HWY_INLINE unsigned bits(AnyTag tag, hn::Mask<AnyTag> mask) {
   std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, mask, bytes);
+  hn::StoreMaskBits(tag, mask, bytes);
   return bytes[0];
 }
+HWY_INLINE unsigned bits(M mask) { return bits(d, mask); }
 
 template <class T>
 struct Three {
@@ -238,9 +240,7 @@ HWY_INLINE unsigned share_vertex(const CoordinatesOf<Real>& pairs) {
       shared = hn::Or(shared, same);
     }
   }
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(pairs.tag, shared, bytes);
-  return bytes[0];
+  return bits(pairs.tag, shared);
 }
 
 // The coordinates as integers, if the given number of bits holds them all.

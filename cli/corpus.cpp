@@ -119,7 +119,10 @@ void add(const CorpusOptions& options) {
   fuzz::RegressionCorpus corpus;
   if (std::filesystem::exists(options.file())) corpus = fuzz::read_regressions(options.file());
   std::array<std::size_t, 4> count{};
+  const std::size_t& not_run = count[3];
+  std::vector<std::string> with_not_run;
   for (const auto& [name, failures] : found) {
+    const std::size_t before = not_run;
     for (const fuzz::FoundFailure& failure : failures) {
       try {
         ++count[static_cast<std::size_t>(fuzz::add(corpus, failure, under_test.lanes, by_bench))];
@@ -127,10 +130,12 @@ void add(const CorpusOptions& options) {
         throw std::runtime_error((failure.file.empty() ? name : failure.file) + ": " + error.what());
       }
     }
+    if (not_run > before) with_not_run.push_back(printable(name));
   }
-  if (const std::size_t not_run = count[3]; not_run > 0) {
-    const std::string why = fmt::format("{} not added: of {} no lane that was wrong runs here; choose other --lanes",
-                                        reports::counted(not_run, "failure"), not_run == 1 ? "it" : "each");
+  if (not_run > 0) {
+    const std::string why =
+        fmt::format("{}: {} not added: of {} no lane that was wrong runs here; choose other --lanes",
+                    fmt::join(with_not_run, ", "), reports::counted(not_run, "failure"), not_run == 1 ? "it" : "each");
     if (not_run == std::accumulate(count.begin(), count.end(), std::size_t{0})) throw std::runtime_error(why);
     fmt::print(stderr, "graze: {}\n", why);
   }

@@ -45,9 +45,15 @@ std::optional<RightRange> right_range(std::span<const ErrorsAt> points) {
     return std::abs(l.exponent) < std::abs(r.exponent);
   });
   const Limits limits = limits_of(*origin);
-  return RightRange{*origin, is_right(*origin, limits),
-                    side_of(std::vector(std::make_reverse_iterator(origin + 1), enough.rend()), limits),
-                    side_of(std::vector(origin, enough.end()), limits)};
+  RightRange range{*origin, is_right(*origin, limits),
+                   side_of(std::vector(std::make_reverse_iterator(origin + 1), enough.rend()), limits),
+                   side_of(std::vector(origin, enough.end()), limits)};
+  for (const ErrorsAt& at : points) {  // also those with too few pairs to say anything
+    if (at.pairs == 0) continue;
+    range.down.last = std::min(range.down.last, at.exponent);
+    range.up.last = std::max(range.up.last, at.exponent);
+  }
+  return range;
 }
 
 }  // namespace graze::analysis

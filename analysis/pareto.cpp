@@ -147,7 +147,7 @@ strata::PairBlock first_pairs(std::span<const strata::PairSource> sources, std::
     for (const strata::PairSource& source : sources) {
       if (i >= source.pairs || pairs.size() == count) continue;
       const AnyPair pair = source.any_pair(i);
-      pairs.floats.push_back(pair.floats ? *pair.floats : stored_in_float32(pair.doubles));
+      pairs.floats.push_back(pair.in_float32());
       if (in_doubles) pairs.doubles.push_back(pair.doubles);
     }
     if (pairs.size() == before) break;
@@ -158,9 +158,9 @@ strata::PairBlock first_pairs(std::span<const strata::PairSource> sources, std::
 bool is_dominated(const Offer& offer, const std::vector<Offer>& offers, std::optional<Cost> Offer::*by) {
   return std::any_of(offers.begin(), offers.end(), [&](const Offer& other) {
     if (!(offer.*by && other.*by)) return false;
-    const double less = other.errors.share_not_right() - offer.errors.share_not_right(),
-                 faster = (other.*by)->middle - (offer.*by)->middle;
-    return less <= 0 && faster <= 0 && (less < 0 || faster < 0);
+    const double own = offer.errors.share_not_right(), others = other.errors.share_not_right();
+    const Cost &cost = *(offer.*by), &of_other = *(other.*by);
+    return others < own ? of_other.middle <= cost.middle : others == own && of_other.high < cost.low;
   });
 }
 

@@ -27,6 +27,19 @@ TEST(Pareto, TheFrontIsWhatNothingBeats) {
   EXPECT_EQ(dominated, (std::vector<bool>{false, false, true, false, true, false, false}));
 }
 
+TEST(Pareto, ADifferenceWithinTheSpreadsDominatesNothing) {
+  std::vector<Offer> offers = {offer(0, 18), offer(0, 17.9), offer(0, 15)};
+  offers[1].near = Cost{17, 17.9, 18.5};
+  mark_dominated(offers);
+  EXPECT_TRUE(offers[0].dominated && offers[1].dominated);  // by the third
+  offers.pop_back();
+  mark_dominated(offers);
+  EXPECT_FALSE(offers[0].dominated || offers[1].dominated);
+  offers[0].errors.false_negative = 1;
+  mark_dominated(offers);
+  EXPECT_TRUE(offers[0].dominated);
+}
+
 TEST(Pareto, CostsAreOfAllPairsInTurn) {
   const auto sources = strata::stratum_sources(1, 40, {"uniform", "lattice"});
   EXPECT_EQ(first_pairs(sources, 30).size(), 30u);

@@ -316,6 +316,13 @@ TEST_F(Cli, AHuntIsACampaignForOtherVerbs) {
   EXPECT_EQ(shell("graze hunt --runs 601 --lanes 'moller_1997/f32/cpu,exact/f32/cpu' --out h").status, 2);
 }
 
+// SQLite reads a relative name that begins like this as a URI.
+TEST_F(Cli, AFolderMayBeNamedLikeAUri) {
+  expect_done("mkdir d; graze fuzz --pairs 100 --strata lattice --lanes moller_1997/f32/cpu --out file:d > /dev/null");
+  EXPECT_TRUE(std::filesystem::is_empty(shell.folder / "d"));
+  expect_done("test -f file:d/campaign.sqlite; graze report file:d > /dev/null");
+}
+
 TEST_F(Cli, EveryVerbHasHelpWithAnExampleThatRuns) {
   for (const std::string verb :
        {"fuzz", "check", "repro", "explain", "dump", "lanes", "plan", "strata"}) {  // prove-twin needs a device

@@ -162,12 +162,25 @@ fuzz::Json results_of(const std::string& name) {
   return found;
 }
 
+std::set<std::string> strata_of(const fuzz::Json& result) {
+  std::set<std::string> strata;
+  for (const char* kind : {"lanes", "verdicts"}) {
+    for (const fuzz::Json& of : result.value(kind, fuzz::Json::array())) {
+      for (const auto& [id, counts] : of.at("strata").items()) strata.insert(id);
+    }
+  }
+  return strata;
+}
+
 int compare(const std::vector<std::string>& names) {
   const fuzz::Json before = results_of(names[0]), after = results_of(names[1]);
-  for (const char* spec : {"pairs", "seed", "scene"}) {
-    if (before.value(spec, fuzz::Json()) != after.value(spec, fuzz::Json()))
-      throw UsageError(fmt::format("{} and {} do not have the same pairs: their {} differ", names[0], names[1], spec));
-  }
+  const auto expect_same = [&](const char* what, bool same) {
+    if (!same)
+      throw UsageError(fmt::format("{} and {} do not have the same pairs: their {} differ", names[0], names[1], what));
+  };
+  for (const char* spec : {"pairs", "seed", "scene"})
+    expect_same(spec, before.value(spec, fuzz::Json()) == after.value(spec, fuzz::Json()));
+  expect_same("strata", strata_of(before) == strata_of(after));
   fmt::print("{}", reports::discrepancy_changes(before, after, output_screen()));
   return 0;
 }

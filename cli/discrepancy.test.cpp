@@ -107,6 +107,9 @@ TEST_F(DiscrepancyCommand, ACampaignsPairsAreThoseOfItsScene) {
   EXPECT_NE(contents(shell.folder / "c/discrepancy.html").find("scene hall.toml"), std::string::npos);
   expect_done(compare + "--pairs 600 --out e");
   expect_error("graze discrepancy --compare c e", 2, {"scene"});
+  expect_done(compare + "--pairs 600 --strata lattice --out f");
+  expect_error("graze discrepancy --compare e f", 2, {"strata"});
+  expect_error("graze discrepancy moller_1997/f32/cpu moller_1997/f32/cpu-fast", 2, {"cpu-fast", "fast math"});
   const std::string other_pairs = "that the campaign did not draw";
   expect_done("graze report c");
   EXPECT_EQ(contents(shell.folder / "c/report.html").find(other_pairs), std::string::npos);

@@ -578,6 +578,34 @@ TEST_F(Doubles, VerdictsOfOnesOwnCodeAreComparedOnThem) {
   EXPECT_GT(mended, 0u);
 }
 
+TEST_F(Doubles, AreSearchedByAHunt) {
+  const std::string hunt =
+      "graze hunt --coordinates f64 --runs 1500 --seed 3 --lanes 'moller_1997/*/cpu,exact/*/cpu' --out h";
+  const Ran first = shell(hunt);
+  if (first.err.find("libFuzzer") != std::string::npos) GTEST_SKIP() << "this build has no libFuzzer";
+  ASSERT_EQ(first.status, 0) << first.err;
+  const Json summary = Json::parse(contents(shell.folder / "h/summary.json"));
+  const Json& lanes = summary["strata"]["hunt/f64"]["lanes"];
+  EXPECT_GT(lanes["exact/f32/cpu"]["stored"], 30);
+  EXPECT_GT(lanes["moller_1997/f64/cpu"]["false_negative"], 10);
+  for (const char* wrong : {"false_positive", "false_negative", "declined"})
+    EXPECT_EQ(lanes["exact/f64/cpu"][wrong], 0);
+  const std::string file = summary["signatures"][0]["case"];
+  const Ran again = shell("graze repro h/" + file);
+  EXPECT_NE(again.out.find("(as recorded)"), std::string::npos) << again.out << again.err;
+  EXPECT_NE(contents(shell.folder / ("h/" + file)).find("stratum=hunt/f64 seed=3 index="), std::string::npos);
+  expect_done("graze minimize h && graze failures h && graze report h");
+  const Json report = Json::parse(contents(shell.folder / "h/report.json"));
+  EXPECT_EQ(report["run"]["command"].dump().find("graze hunt --runs 1500 --seed 3 --coordinates f64"), 1u);
+  EXPECT_EQ(report["strata"][0]["describes"], "pairs that guided search made from all strata of doubles");
+  const std::string before = contents(shell.folder / "h/summary.json");
+  expect_done(hunt + " && graze corpus add h --corpus k --top 3 --lanes '*/cpu'");
+  EXPECT_EQ(contents(shell.folder / "h/summary.json"), before);
+  expect_error("graze hunt --coordinates both --out b", 2, {"hunt", "--coordinates"});
+  expect_error("echo 'extent = [[0, 1], [0, 1], [0, 1]]' > s.toml; graze hunt --coordinates f64 --scene s.toml --out b",
+               2, {"--coordinates", "scenes"});
+}
+
 TEST_F(Doubles, VerbsThatTakeFloat32AloneSaySo) {
   expect_done(kCampaign);
   const Json summary = Json::parse(contents(shell.folder / "c/summary.json"));

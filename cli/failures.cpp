@@ -41,9 +41,11 @@ std::string shares(const Json& counts, std::size_t most) {
   }
   std::stable_sort(rows.begin(), rows.end(), [](const auto& l, const auto& r) { return l.second > r.second; });
   std::string text;
-  for (std::size_t i = 0; i < std::min(most, rows.size()); ++i)
-    text += fmt::format("{}{} {:.0f} %", i == 0 ? "" : ", ", rows[i].first,
-                        100 * static_cast<double>(rows[i].second) / sum);
+  for (std::size_t i = 0; i < std::min(most, rows.size()); ++i) {
+    const double percent = 100 * static_cast<double>(rows[i].second) / sum;
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", rows[i].first,
+                        percent < 0.5 ? "under 1 %" : fmt::format("{:.0f} %", percent));
+  }
   return text + (rows.size() > most ? fmt::format(", {} more", rows.size() - most) : "");
 }
 

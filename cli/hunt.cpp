@@ -14,6 +14,7 @@
 #include "cli/results.h"
 #include "cli/screen.h"
 #include "cli/shard_option.h"
+#include "core/error.h"
 #include "core/text.h"
 #include "fuzz/files.h"
 #include "fuzz/hunt/hunt.h"
@@ -33,6 +34,7 @@ struct HuntOptions {
   std::uint64_t seed = 1, minutes = 0;
   int threads = 0;
   std::string out = "hunt", scene;
+  PairTypes coordinates = PairTypes::f32;
   std::vector<std::string> strata;
   LaneOptions lanes;
   fuzz::Shard shard;
@@ -68,9 +70,13 @@ int hunt(const HuntOptions& options) {
         "graze hunt is not in this build, which found no libFuzzer of clang; install libclang-rt-14-dev and build "
         "again");
   }
+  if (options.coordinates == PairTypes::both)
+    throw UsageError("a hunt searches pairs of one type; give --coordinates f32 or f64, and run one hunt for each");
+  if (!options.scene.empty()) expect_float32_scene(options.coordinates);
   LaneOptions lanes = options.lanes;
   lanes.executor = fuzz::Executor::twin;
-  const fuzz::SelectedLanes under_test = selected_lanes(lanes);
+  fuzz::SelectedLanes under_test = selected_lanes(lanes);
+  if (options.coordinates == PairTypes::f64) take_doubles(under_test);
   fuzz::Hunt hunt;
   hunt.pairs = options.runs;
   hunt.seconds = 60 * static_cast<double>(options.minutes);
@@ -89,7 +95,7 @@ int hunt(const HuntOptions& options) {
     left_out = std::move(drawn.left_out);
     hunt.drawn.scene = &scene.emplace(strata::resolved(fuzz::open_scene(options.scene).scene));
   } else {
-    hunt.drawn.sources = strata::stratum_sources(options.seed, options.runs, options.strata);
+    hunt.drawn.sources = strata::stratum_sources(options.seed, options.runs, options.strata, options.coordinates);
   }
   hunt.campaign.spec = fuzz::hunt_spec(hunt);
   if (!scene_spec.is_null()) hunt.campaign.spec["scene"] = scene_spec;
@@ -159,6 +165,7 @@ void add_hunt(CLI::App& app, int& status) {
       "Part of the search to run: the K-th of N, with its share of the runs, in a directory of its own. `graze merge` "
       "joins the parts by kind of failure");
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to start from");
+  add_coordinates_option(*command, options->coordinates);
   add_lane_options(*command, options->lanes, Executors::twins);
   add_scene_option(*command, options->scene);
   command->add_flag("--json", options->json, "Print the summary as JSON");

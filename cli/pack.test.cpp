@@ -128,6 +128,10 @@ TEST_F(PackCommand, WhatCannotBePackedIsRefusedInOneLine) {
   expect_error(in + "cp m.c kept; sed -i s/0/1/ m.c; graze pack c; status=$?; mv kept m.c; exit $status", 1,
                {"m.c", "changed"});
   expect_error(in + "rm c/campaign.sqlite; graze pack c", 1, {"c", "campaign.sqlite"});
+  run("printf 'OFF\\n4 2 0\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n3 0 1 2\\n3 0 1 3\\n' > mesh.off; graze scene mesh.off "
+      "--out "
+      "s.toml; graze fuzz --scene s.toml --lanes 'moller_1997/f32/cpu' --pairs 20 --out s");
+  expect_error(in + "sed -i 's/^1 0 0/2 0 0/' mesh.off; graze pack s", 1, {"mesh.off", "changed"});
 }
 
 }  // namespace

@@ -234,6 +234,15 @@ TEST_F(Shards, StatusTellsWhatRunsAndWhatNeedsHelp) {
   expect_done("graze status killed --stalled 3000");
 }
 
+// A run that ends while its status is read has ended, and was not killed.
+TEST_F(Shards, ARunThatEndsIsNotKilled) {
+  const Ran ran = shell(
+      "for k in 1 2 3 4; do graze fuzz --seed $k --pairs 3000 --strata 'near_*' --lanes '*/f32/cpu' --out r$k > "
+      "/dev/null & for i in $(seq 2000); do graze status r$k > said 2>&1 || { cat said; exit 1; }; "
+      "grep -q ' done ' said && break; done; wait; done");
+  EXPECT_EQ(ran.status, 0) << ran.out;
+}
+
 // A status that is damaged or has impossible counts does not pass for a shard that has not begun.
 TEST_F(Shards, StatusRefusesADamagedStatus) {
   expect_done("graze fuzz --seed 5 --pairs 400 --strata near_edge_edge --lanes '*/f32/cpu' --out c > /dev/null");

@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <ctime>
 #include <iostream>
 #include <set>
+#include <thread>
 
 #include "cli/commands.h"
 #include "cli/progress.h"
@@ -85,16 +87,25 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
               {"disagreements", 0},
               {"signatures", 0},
               {"new", 0}};
-  const Json status = fuzz::read_status(directory);
+  Json status = fuzz::read_status(directory);
+  // A run that begins makes its database first.
+  for (int wait = 0; status.is_null() && wait < 40 && fuzz::has_database(directory); ++wait) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    status = fuzz::read_status(directory);
+  }
   if (status.is_null()) {
     if (fuzz::has_database(directory))
       throw std::runtime_error(
           cannot("open", directory / "status.json", "it is missing beside a database (`graze merge` writes none)"));
     return row;
   }
+  const auto silent = [&] { return std::time(nullptr) - status.at("updated").get<std::int64_t>(); };
+  row["state"] = state_of(status, silent(), stalled);
+  if (row["state"] == "killed") {  // or it ended after its status was read
+    if (Json now = fuzz::read_status(directory); !now.is_null()) status = std::move(now);
+    row["state"] = state_of(status, silent(), stalled);
+  }
   if (fuzz::has_database(directory)) expect_own_signatures(directory, status);
-  const std::int64_t silent = std::time(nullptr) - status.at("updated").get<std::int64_t>();
-  row["state"] = state_of(status, silent, stalled);
   for (const char* field : {"shard", "pairs", "done", "disagreements", "signatures"}) row[field] = status.at(field);
   std::size_t fresh = 0;
   for (const std::string way : status.at("ways")) fresh += known.insert(way).second;
@@ -103,7 +114,7 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
     row["rate"] = status.at("rate");
     row["seconds_left"] = status.at("seconds_left");
   }
-  row["silent"] = silent;
+  row["silent"] = silent();
   if (status.contains("why")) row["why"] = status["why"];
   return row;
 }
@@ -143,7 +154,7 @@ Json status_of(const StatusOptions& options) {
   all["pairs"] = pairs;
   all["done"] = done;
   all["rate"] = rate;
-  if (rate > 0) all["seconds_left"] = static_cast<double>(pairs - std::min(done, pairs)) / rate;
+  if (rate > 0 && done < pairs) all["seconds_left"] = static_cast<double>(pairs - done) / rate;
   all["disagreements"] = disagreements;
   return all;
 }

@@ -16,6 +16,9 @@ struct AnyPair {
 
   AnyPair(const Pair& pair) : doubles(in_doubles(pair)), floats(pair) {}
   AnyPair(const DoublePair& pair) : doubles(pair) {}
+
+  // The pair itself, or what a program stores of it that keeps its coordinates in float32.
+  Pair in_float32() const { return floats ? *floats : stored_in_float32(doubles); }
 };
 
 // Calls f with the pair in its own type.

@@ -271,7 +271,7 @@ std::span<const LaneVerdicts> BlockVerdicts::decide(std::span<const Pair> pairs,
 
 std::vector<Verdict> decide(const SelectedLanes& under_test, const AnyPair& any, std::vector<const Lane*>& apart) {
   apart.clear();
-  const Pair pair = any.floats ? *any.floats : stored_in_float32(any.doubles);
+  const Pair pair = any.in_float32();
   const std::span<const DoublePair> doubles(&any.doubles, any.floats ? 0 : 1);
   std::vector<VerdictBits> on_device;
   if (under_test.device) under_test.device->decide(std::span(&pair, 1), under_test.device_lanes(), on_device, doubles);

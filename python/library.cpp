@@ -73,10 +73,12 @@ DecideBlock decider_of(const std::string& id) {
     lane = find_lane(id_of({name->subject, name->scalar, name->variant, ""}));
     policy = name->policy;
   }
-  if (!lane) throw std::invalid_argument(fmt::format("there is no lane {}; graze.lanes() lists them", shown(id)));
-  const DecideBlock block = backends::on_host(policy.empty() ? *lane : lane_under(*lane, policy));
+  if (!lane || (!policy.empty() && lane->algorithm < 0))
+    throw std::invalid_argument(fmt::format("there is no lane {}; graze.lanes() lists them", shown(id)));
+  const Lane asked = policy.empty() ? *lane : lane_under(*lane, policy);
+  const DecideBlock block = backends::on_host(asked);
   if (!block)
-    throw std::invalid_argument(fmt::format("the lane {} does not run here: {}", id, backends::why_not_on_host(*lane)));
+    throw std::invalid_argument(fmt::format("the lane {} does not run here: {}", id, backends::why_not_on_host(asked)));
   return block;
 }
 

@@ -33,7 +33,7 @@ TEST(RightWords, SayWhatIsMissing) {
   EXPECT_EQ(right_words(Points{{6, 1'000, 10'000}, {7, 1'000, 10'000}}, 1),
             "no pairs at 1; as right as at 2^6 (errs on 10 %) everywhere, 2^6 to 2^8");
   EXPECT_EQ(right_words(Points{{0, 1, 2}, {6, 1'000, 10'000}, {7, 1'000, 10'000}}, 1),
-            "few pairs at 1; as right as at 2^6 (errs on 10 %) everywhere, 2^6 to 2^8");
+            "few pairs at 1; as right as at 2^6 (errs on 10 %) from 2^6 to 2^8; not settled below 2^6");
 }
 
 TEST(RightWords, AnOriginWithoutErrorsHasNoRatioAbove) {

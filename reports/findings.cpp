@@ -40,8 +40,12 @@ std::vector<Contracted> contracted(const CampaignCounts& counts, const LaneIndic
 std::string contraction(const CampaignCounts& counts, const LaneIndices& lanes) {
   const std::vector<Contracted> all = contracted(counts, lanes);
   if (all.empty()) {
-    return "No lane with contraction ran beside the same lane without it, so the campaign does not show what "
-           "contraction changes.";
+    const bool others = std::any_of(lanes.begin(), lanes.end(),
+                                    [&](std::size_t l) { return !variant_of_name(counts.lanes[l].name.variant); });
+    return others ? "Of the lanes that are not a toolchain's, none with contraction ran beside the same lane without "
+                    "it; the map of the toolchains shows where their verdicts differ."
+                  : "No lane with contraction ran beside the same lane without it, so the campaign does not show what "
+                    "contraction changes.";
   }
   const StratumCounts& total = counts.total;
   const auto moved = [&](const Contracted& c) {
@@ -81,12 +85,16 @@ constexpr const char* kRateOf2012 =
     "docs/measurements.md.";
 
 std::string thesis(const CampaignCounts& counts, const LaneIndices& lanes) {
-  const StratumCounts* stratum = counts.stratum("thesis");
-  if (!stratum || stratum->pairs == 0) {
+  const auto drawn = [&](const char* id) {
+    const StratumCounts* of = counts.stratum(id);
+    return of && of->pairs > 0 ? of : nullptr;
+  };
+  const StratumCounts *in_float32 = drawn("thesis"), *stratum = in_float32 ? in_float32 : drawn("thesis/f64");
+  if (!stratum) {
     return "The triangles of the 2012 thesis (stratum thesis) were not drawn, so the campaign does not say how often "
            "CPU and GPU differ on them.";
   }
-  const std::string pairs = grouped(stratum->pairs);
+  const std::string pairs = grouped(stratum->pairs), in_doubles = in_float32 ? "" : ", in doubles,";
   const auto differing = [&](std::size_t l) { return stratum->lanes[l].differs_from_cpu; };
   LaneIndices compared;
   std::uint64_t without_contraction = 0;
@@ -100,31 +108,32 @@ std::string thesis(const CampaignCounts& counts, const LaneIndices& lanes) {
   }
   if (compared.empty()) {
     return fmt::format(
-        "On the {} pairs of the 2012 thesis's triangles no CUDA lane ran beside its cpu lane, so the "
+        "On the {} pairs of the 2012 thesis's triangles{} no CUDA lane ran beside its cpu lane, so the "
         "campaign does not say how often CPU and GPU differ.",
-        pairs);
+        pairs, in_doubles);
   }
   const std::size_t most = *std::max_element(compared.begin(), compared.end(),
                                              [&](std::size_t l, std::size_t r) { return differing(l) < differing(r); });
   if (differing(most) == 0) {
     return fmt::format(
-        "On the 2012 thesis's triangles CPU and GPU agree: none of {} CUDA lanes differs from its cpu "
+        "On the 2012 thesis's triangles{} CPU and GPU agree: none of {} CUDA lanes differs from its cpu "
         "lane on any of {} pairs (with 95 % confidence fewer than {}).",
-        compared.size(), pairs, rate_words(bound_of_none(stratum->pairs), Bound::upper));
+        in_doubles, compared.size(), pairs, rate_words(bound_of_none(stratum->pairs), Bound::upper));
   }
   const int own = counts.find({"interval_overlap", "f32", "cuda-fma", ""});
   const auto own_place = static_cast<std::size_t>(own);
   const bool tells_own = own >= 0 && own_place != most && counts.lanes[own_place].cpu >= 0;
-  return fmt::format("On the 2012 thesis's triangles the GPU differs most from the CPU in {}: on {} of {} pairs{}{}.{}",
-                     counts.lanes[most].id, with_interval(share_of(differing(most), stratum->pairs)), pairs,
-                     tells_own ? fmt::format("; in the thesis's own algorithm, interval_overlap/f32, on {}",
-                                             with_interval(share_of(differing(own_place), stratum->pairs)))
-                               : "",
-                     !ran_without ? ""
-                     : without_contraction == 0
-                         ? "; without contraction on none"
-                         : fmt::format("; without contraction {} verdicts differ still", grouped(without_contraction)),
-                     own >= 0 && counts.lanes[own_place].cpu >= 0 ? kRateOf2012 : "");
+  return fmt::format(
+      "On the 2012 thesis's triangles{} the GPU differs most from the CPU in {}: on {} of {} pairs{}{}.{}", in_doubles,
+      counts.lanes[most].id, with_interval(share_of(differing(most), stratum->pairs)), pairs,
+      tells_own ? fmt::format("; in the thesis's own algorithm, interval_overlap/f32, on {}",
+                              with_interval(share_of(differing(own_place), stratum->pairs)))
+                : "",
+      !ran_without ? ""
+      : without_contraction == 0
+          ? "; without contraction on none"
+          : fmt::format("; without contraction {} verdicts differ still", grouped(without_contraction)),
+      in_float32 && own >= 0 && counts.lanes[own_place].cpu >= 0 ? kRateOf2012 : "");
 }
 
 std::string dangerous(const CampaignCounts& counts, const LaneIndices& lanes) {
@@ -138,18 +147,21 @@ std::string dangerous(const CampaignCounts& counts, const LaneIndices& lanes) {
     if (stratum.pairs == 0) continue;
     double wrong = 0;
     for (const std::size_t l : lanes) wrong += static_cast<double>(stratum.wrong(l));
-    const std::size_t best = *std::min_element(
-        lanes.begin(), lanes.end(), [&](std::size_t l, std::size_t r) { return stratum.wrong(l) < stratum.wrong(r); });
+    const std::size_t best = *std::min_element(lanes.begin(), lanes.end(), [&](std::size_t l, std::size_t r) {
+      return stratum.lanes[l].not_right() < stratum.lanes[r].not_right();
+    });
     all.push_back({&stratum, wrong / static_cast<double>(stratum.pairs) / static_cast<double>(lanes.size()), best});
   }
   std::stable_sort(all.begin(), all.end(), [](const Danger& l, const Danger& r) { return l.share > r.share; });
   const char* whose = lanes.size() < counts.lanes.size() ? "the published lanes' verdicts" : "all verdicts";
   const auto described = [&](const Danger& d) {
     const double best = share_of(d.stratum->wrong(d.best), d.stratum->pairs).share;
+    const std::uint64_t declined = d.stratum->lanes[d.best].declined;
     return fmt::format("{} ({} of {} wrong{})", d.stratum->id, rate_words(d.share), whose,
                        lanes.size() == 1 ? ""
-                                         : fmt::format(", {} of those of its best lane, {}",
-                                                       best == 0 ? "none" : rate_words(best), counts.lanes[d.best].id));
+                                         : fmt::format(", {} of those of its best lane, {}{}",
+                                                       best == 0 ? "none" : rate_words(best), counts.lanes[d.best].id,
+                                                       declined == 0 ? "" : ", which declines " + grouped(declined)));
   };
   if (all.front().share == 0) {
     return all.size() == 1 ? fmt::format("The only stratum, {}, shows no wrong verdict.", all[0].stratum->id)

@@ -92,6 +92,26 @@ TEST(Answer, WithoutCpuLanesCountsWrongVerdicts) {
   EXPECT_TRUE(contains(said[3], "no CUDA lane ran beside its cpu lane")) << said[3];
 }
 
+TEST(Answer, NamesWhatItLeavesOut) {
+  const auto of_toolchains =
+      answer_of(summary_of({"moller_1997/f32/cpu", "moller_1997/f32/x86-gcc-v3"}, {"near_edge_edge"}, {1, 0, 0, 0}));
+  EXPECT_TRUE(std::any_of(of_toolchains.begin(), of_toolchains.end(), [](const std::string& text) {
+    return contains(text, "the map of the toolchains shows where their verdicts differ");
+  }));
+  const auto of_doubles =
+      answer_of(summary_of({"interval_overlap/f64/cpu", "interval_overlap/f64/cuda-fma"}, {"thesis/f64"}, {}));
+  EXPECT_TRUE(std::any_of(of_doubles.begin(), of_doubles.end(), [](const std::string& text) {
+    return contains(text, "On the 2012 thesis's triangles, in doubles, CPU and GPU agree: none of 1 CUDA lanes");
+  }));
+  Json summary = summary_of({"moller_1997/f32/cpu/bound", "separating_axes/f64/cpu"}, {"degenerate"}, {3, 0, 0, 0});
+  summary["strata"]["degenerate"]["lanes"]["moller_1997/f32/cpu/bound"] = {
+      {"false_positive", 1}, {"false_negative", 0}, {"declined", 1}, {"differs_from_cpu", 0}};
+  const auto declining = answer_of(summary);
+  EXPECT_TRUE(std::any_of(declining.begin(), declining.end(), [](const std::string& text) {
+    return contains(text, "its best lane, moller_1997/f32/cpu/bound, which declines 1)");
+  }));
+}
+
 TEST(Answer, OfExactLanesOnlyAndOfNothing) {
   EXPECT_EQ(answer_of(summary_of({"exact/f32/cpu"}, {"uniform"}, {})),
             std::vector<std::string>{"Only exact lanes ran, and none of their verdicts on 1,000 pairs are wrong."});

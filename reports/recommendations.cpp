@@ -13,15 +13,22 @@ Share wrong_share(const CampaignCounts& counts, std::size_t lane) {
   return share_of(counts.total.wrong(lane), counts.total.pairs);
 }
 
-LaneIndices those_wrong(const CampaignCounts& counts, const LaneIndices& among, std::uint64_t wrong) {
+template <class Holds>
+LaneIndices those(const LaneIndices& among, const Holds& holds) {
   LaneIndices places;
-  std::copy_if(among.begin(), among.end(), std::back_inserter(places),
-               [&](std::size_t l) { return counts.total.wrong(l) == wrong; });
+  std::copy_if(among.begin(), among.end(), std::back_inserter(places), holds);
   return places;
 }
 
+// Pairs on which the lane's verdict is wrong or declined.
+std::uint64_t not_right(const CampaignCounts& counts, std::size_t lane) { return counts.total.lanes[lane].not_right(); }
+
+Share share_not_right(const CampaignCounts& counts, std::size_t lane) {
+  return share_of(not_right(counts, lane), counts.total.pairs);
+}
+
 // The strata on which costs are compared: general pairs if there are any, because exact decisions are known to be slow
-// on others.
+// on others; of both coordinate types, those of float32.
 struct Ground {
   std::vector<std::size_t> strata;
   std::string pair;  // "a general pair"
@@ -29,7 +36,8 @@ struct Ground {
 
 Ground ground_of(const CampaignCounts& counts) {
   const GroupCounts* general = counts.group("general");
-  return general ? Ground{general->strata, "a general pair"} : Ground{counts.drawn(), "a pair"};
+  if (!general) return {counts.drawn(), "a pair"};
+  return {general->strata, counts.group("general/f64") ? "a general pair of float32" : "a general pair"};
 }
 
 std::optional<Cost> cost_of(const Costs* costs, std::size_t lane, const std::vector<std::size_t>& strata) {
@@ -102,21 +110,21 @@ int first_of_others(const CampaignCounts& counts, const LaneIndices& lanes, std:
   int best = -1;
   for (const std::size_t l : lanes) {
     if (same_family(counts, l, than)) continue;
-    if (best < 0 || better(counts.total.wrong(l), counts.total.wrong(static_cast<std::size_t>(best))))
-      best = static_cast<int>(l);
+    if (best < 0 || better(l, static_cast<std::size_t>(best))) best = static_cast<int>(l);
   }
   return best;
 }
 
-std::string not_settled(const CampaignCounts& counts, const char* which, std::size_t l, std::size_t r) {
+std::string not_settled(const CampaignCounts& counts, const char* which, std::size_t l, std::size_t r,
+                        Share (*share_of_lane)(const CampaignCounts&, std::size_t), const char* what) {
   const auto interval = [&](std::size_t lane) {
-    const Share share = wrong_share(counts, lane);
+    const Share share = share_of_lane(counts, lane);
     return fmt::format("{} to {}", rate_words(share.low, Bound::lower), rate_words(share.high, Bound::upper));
   };
   return fmt::format(
-      "Which published lane is {} is not settled: the 95 % intervals of {}, wrong on {} of all pairs, and {}, on {}, "
+      "Which published lane is {} is not settled: the 95 % intervals of {}, {} on {} of all pairs, and {}, on {}, "
       "overlap.",
-      which, counts.lanes[l].id, interval(l), counts.lanes[r].id, interval(r));
+      which, counts.lanes[l].id, what, interval(l), counts.lanes[r].id, interval(r));
 }
 
 // ", at 82 ns a general pair": the cost of the cheapest of the lanes.
@@ -162,7 +170,7 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
   const std::size_t worst =
       *std::max_element(lanes.begin(), lanes.end(), [&](auto l, auto r) { return wrong(l) < wrong(r); });
   if (wrong(worst) == 0) return {"No lane need be avoided: none is wrong on any pair of this campaign."};
-  const int next = first_of_others(counts, lanes, worst, std::greater<>());
+  const int next = first_of_others(counts, lanes, worst, [&](auto l, auto r) { return wrong(l) > wrong(r); });
   if (next < 0) {
     const LaneName& name = counts.lanes[worst].name;
     return {fmt::format("Of the published lanes only those of {}/{} ran, so the campaign does not say which to avoid.",
@@ -170,9 +178,13 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
             false};
   }
   if (!wrong_share(counts, worst).apart(wrong_share(counts, static_cast<std::size_t>(next))))
-    return {not_settled(counts, "worst", worst, static_cast<std::size_t>(next))};
-  const LaneIndices equals = those_wrong(counts, lanes, wrong(worst));
+    return {not_settled(counts, "worst", worst, static_cast<std::size_t>(next), wrong_share, "wrong")};
   const analysis::LaneCounts& found = counts.total.lanes[worst];
+  const LaneIndices equals = those(lanes, [&](std::size_t l) {
+    const analysis::LaneCounts& of = counts.total.lanes[l];
+    return of.wrong() == found.wrong() && of.false_positive == found.false_positive &&
+           of.false_negative == found.false_negative;
+  });
   std::string text = fmt::format("Avoid {}: wrong on {}, {} false positives and {} false negatives",
                                  ids(counts, equals), with_interval(wrong_share(counts, worst), " pairs"),
                                  grouped(found.false_positive), grouped(found.false_negative));
@@ -187,8 +199,8 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
     text += fmt::format("; of general pairs on {}", rate_words(share_of(wrong_general, general).share));
   const Ground ground = ground_of(counts);
   const std::optional<Cost> own = cost_of(costs, worst, ground.strata);
-  const std::size_t least =
-      *std::min_element(lanes.begin(), lanes.end(), [&](auto l, auto r) { return wrong(l) < wrong(r); });
+  const std::size_t least = *std::min_element(
+      lanes.begin(), lanes.end(), [&](auto l, auto r) { return not_right(counts, l) < not_right(counts, r); });
   const std::optional<Cost> better = cost_of(costs, least, ground.strata);
   if (own && better && better->below(*own)) {
     text += fmt::format(". {} is both less often wrong and cheaper, {} {} against {}", counts.lanes[least].id,
@@ -197,34 +209,52 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
   return {text + "."};
 }
 
+// Where lanes decline, the lane to name is the one that is most often right, not one that declines everything.
 Sentence least_wrong_lane(const CampaignCounts& counts, const Costs* costs) {
   const LaneIndices lanes = published(counts);
   const StratumCounts& total = counts.total;
-  const auto less = [&](std::size_t l, std::size_t r) { return total.wrong(l) < total.wrong(r); };
+  const auto less = [&](std::size_t l, std::size_t r) { return not_right(counts, l) < not_right(counts, r); };
   const std::size_t least = *std::min_element(lanes.begin(), lanes.end(), less);
-  const std::size_t most = *std::max_element(lanes.begin(), lanes.end(), less);
-  const std::string bound = rate_words(bound_of_none(total.pairs), Bound::upper);
-  if (total.wrong(most) == 0) {
-    return {fmt::format("{} wrong on none of {} pairs, so with 95 % confidence {} on fewer than {} of such pairs{}.",
+  const bool any_declines = !declining(counts, lanes).empty();
+  // Pairs that all the lanes given decide, at least.
+  const auto decided = [&](const LaneIndices& of) {
+    std::uint64_t pairs = total.pairs;
+    for (const std::size_t l : of) pairs = std::min(pairs, total.pairs - total.lanes[l].declined);
+    return pairs;
+  };
+  const auto bound = [](std::uint64_t pairs) { return rate_words(bound_of_none(pairs), Bound::upper); };
+  if (std::all_of(lanes.begin(), lanes.end(), [&](std::size_t l) { return total.wrong(l) == 0; })) {
+    const std::uint64_t pairs = decided(lanes);
+    return {fmt::format("{} wrong on none of {} pairs{}{}.",
                         lanes.size() == 1 ? fmt::format("The only published lane, {}, is", counts.lanes[least].id)
                                           : fmt::format("All {} published lanes are", lanes.size()),
-                        grouped(total.pairs), lanes.size() == 1 ? "it errs" : "each errs", bound,
+                        grouped(total.pairs),
+                        pairs == 0 ? ""
+                                   : fmt::format(", so with 95 % confidence {} on fewer than {} of such pairs",
+                                                 lanes.size() == 1 ? "it errs" : "each errs", bound(pairs)),
                         declining(counts, lanes))};
   }
-  const int next = first_of_others(counts, lanes, least, std::less<>());
-  if (next >= 0 && !wrong_share(counts, least).apart(wrong_share(counts, static_cast<std::size_t>(next))))
-    return {not_settled(counts, "least wrong", least, static_cast<std::size_t>(next))};
+  const char* which = any_declines ? "most often right" : "least wrong";
+  const int next = first_of_others(counts, lanes, least, less);
+  if (next >= 0 && !share_not_right(counts, least).apart(share_not_right(counts, static_cast<std::size_t>(next))))
+    return {not_settled(counts, which, least, static_cast<std::size_t>(next), share_not_right,
+                        any_declines ? "wrong or without a verdict" : "wrong")};
+  const LaneIndices best = those(lanes, [&](std::size_t l) {
+    return not_right(counts, l) == not_right(counts, least) && total.wrong(l) == total.wrong(least);
+  });
   const std::string found =
-      total.wrong(least) == 0
-          ? fmt::format("none of {} pairs (with 95 % confidence fewer than {})", grouped(total.pairs), bound)
-          : fmt::format("{} of {} pairs", with_interval(wrong_share(counts, least)), grouped(total.pairs));
-  const LaneIndices best = those_wrong(counts, lanes, total.wrong(least));
+      total.wrong(least) > 0
+          ? fmt::format("{} of {} pairs", with_interval(wrong_share(counts, least)), grouped(total.pairs))
+      : decided(best) == 0 ? fmt::format("none of {} pairs", grouped(total.pairs))
+                           : fmt::format("none of {} pairs (with 95 % confidence fewer than {})", grouped(total.pairs),
+                                         bound(decided(best)));
   const std::string cost = at_cost(counts, costs, best);
   if (lanes.size() == 1)
     return {fmt::format("The only published lane, {}, is wrong on {}{}{}.", counts.lanes[least].id, found, cost,
                         declining(counts, lanes))};
-  return {fmt::format("Of the {} published lanes the least wrong {} {}: on {}{}{}.", lanes.size(),
-                      best.size() == 1 ? "is" : "are", ids(counts, best), found, cost, declining(counts, best))};
+  return {fmt::format("Of the {} published lanes the {} {} {}: {}on {}{}{}.", lanes.size(), which,
+                      best.size() == 1 ? "is" : "are", ids(counts, best), any_declines ? "wrong " : "", found, cost,
+                      declining(counts, best))};
 }
 
 }  // namespace graze::reports

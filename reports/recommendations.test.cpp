@@ -14,7 +14,8 @@ using Json = nlohmann::ordered_json;
 
 struct MadeLane {
   std::string id;
-  std::uint64_t wrong;  // out of 10,000 pairs of uniform and 10,000 of degenerate; false negatives
+  std::uint64_t wrong;         // out of 10,000 pairs of uniform and 10,000 of degenerate; false negatives
+  std::uint64_t declined = 0;  // likewise
 };
 
 CampaignCounts counts_with(const std::vector<MadeLane>& lanes,
@@ -25,7 +26,7 @@ CampaignCounts counts_with(const std::vector<MadeLane>& lanes,
         {"pairs", 10'000}, {"intersects", 5'000}, {"lanes", Json::object()}, {"margins", Json::object()}};
     for (const MadeLane& lane : lanes) {
       row["lanes"][lane.id] = {
-          {"false_positive", 0}, {"false_negative", lane.wrong}, {"declined", 0}, {"differs_from_cpu", 0}};
+          {"false_positive", 0}, {"false_negative", lane.wrong}, {"declined", lane.declined}, {"differs_from_cpu", 0}};
     }
   }
   for (const MadeLane& lane : lanes) summary["spec"]["lanes"].push_back(lane.id);
@@ -129,6 +130,10 @@ TEST(Recommendations, GeneralPairsAreThoseOfBothTypes) {
       << lane_to_avoid(counts, nullptr).text;
   EXPECT_EQ(lane_to_avoid(counts_with(lanes, {"uniform", "uniform/f64"}), nullptr).text.find("general"),
             std::string::npos);
+  const Costs costs = costs_with({{38, 300}, {60, 62}, {80, 82}});
+  EXPECT_NE(lane_to_use(counts_with({{"exact/f64/cpu", 0}, lanes[0], lanes[1]}, {"uniform", "uniform/f64"}), &costs)
+                .text.find(", at 38 ns (37 to 39) a general pair of float32 against 60 ns"),
+            std::string::npos);
 }
 
 TEST(Recommendations, TheLeastWrongLaneIsNamedWithItsCost) {
@@ -142,6 +147,24 @@ TEST(Recommendations, TheLeastWrongLaneIsNamedWithItsCost) {
       least_wrong_lane(counts_with({{"moller_1997/f32/cpu", 110}, {"separating_axes/f64/cpu", 100}}), nullptr)
           .text.starts_with(
               "Which published lane is least wrong is not settled: the 95 % intervals of separating_axes/f64/cpu"));
+}
+
+// A lane that declines all pairs is wrong on none, and of no use.
+TEST(Recommendations, ALaneThatDeclinesIsNotTheBest) {
+  const MadeLane silent{"moller_1997/f32/cpu/bound", 0, 10'000}, cautious{"moller_1997/f32/cpu/bound", 0, 40};
+  const MadeLane other{"separating_axes/f64/cpu", 100};
+  EXPECT_EQ(least_wrong_lane(counts_with({silent, other}), nullptr).text,
+            "Of the 2 published lanes the most often right is separating_axes/f64/cpu: wrong on 200 (1 %, 95 % "
+            "interval 0.871 % to 1.15 %) of 20,000 pairs.");
+  EXPECT_EQ(least_wrong_lane(counts_with({cautious, other}), nullptr).text,
+            "Of the 2 published lanes the most often right is moller_1997/f32/cpu/bound: wrong on none of 20,000 pairs "
+            "(with 95 % confidence fewer than 1 in 6,640); moller_1997/f32/cpu/bound declines 80 pairs.");
+  EXPECT_EQ(least_wrong_lane(counts_with({silent}), nullptr).text,
+            "The only published lane, moller_1997/f32/cpu/bound, is wrong on none of 20,000 pairs; "
+            "moller_1997/f32/cpu/bound declines 20,000 pairs.");
+  EXPECT_TRUE(least_wrong_lane(counts_with({{"moller_1997/f32/cpu/bound", 0, 95}, other}), nullptr)
+                  .text.starts_with("Which published lane is most often right is not settled: the 95 % intervals of "
+                                    "moller_1997/f32/cpu/bound, wrong or without a verdict on "));
 }
 
 TEST(Costs, HaveOneFormWithTheirSpread) {

@@ -67,10 +67,13 @@ Json run_of(const std::filesystem::path& directory, const Json& summary, const C
 std::string description_of(const std::string& stratum, const Json& spec) {
   if (const strata::StratumInfo* row = strata::stratum_info(stratum))
     return (strata::stratum_in_doubles(stratum) ? "in doubles: " : "") + std::string(row->what);
-  if (stratum == "hunt" && spec.contains("hunt")) {
+  if (spec.contains("hunt")) {
     const std::vector<std::string> from = spec["hunt"].at("strata");
-    return "pairs that guided search made from " +
-           (from.size() == std::size(strata::kStrata) ? "all strata" : fmt::format("{}", fmt::join(from, ", ")));
+    const bool in_doubles = strata::stratum_in_doubles(stratum).has_value();
+    const std::size_t all = in_doubles ? std::size(strata::kDoubleStrata) : std::size(strata::kStrata);
+    return "pairs that guided search made from " + (from.size() == all
+                                                        ? std::string("all strata") + (in_doubles ? " of doubles" : "")
+                                                        : fmt::format("{}", fmt::join(from, ", ")));
   }
   const std::string mesh =
       spec.contains("mesh") ? " (content " + spec["mesh"].at("content").get<std::string>() + ")" : "";

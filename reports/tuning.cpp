@@ -55,6 +55,9 @@ std::string choice_words(const TuneQuestion& q, const std::string& policy) {
 // The subject of "is good enough here": "No tolerance", "No value".
 std::string_view setting(const TuneQuestion& q) { return q.source ? "value" : "tolerance"; }
 
+// "value of kEps from 0 on": a sweep has no values below 0, which mean something else.
+std::string value_of(const TuneQuestion& q) { return "value of " + printable(q.source->epsilon.name) + " from 0 on"; }
+
 std::string rate(std::uint64_t count, std::uint64_t of) {
   return rate_words(of == 0 ? 0 : static_cast<double>(count) / static_cast<double>(of));
 }
@@ -122,8 +125,7 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
   return fmt::format(
       "No {} is good enough here: {} keeps {} at or under {}. On the pairs of the choice the fewest are those of {}. "
       "The exact lane has no errors.",
-      setting(q), q.source ? "no value of " + printable(q.source->epsilon.name) : "no tolerance of " + q.lane,
-      words(q.forbid), q.max_rate, of);
+      setting(q), q.source ? "no " + value_of(q) : "no tolerance of " + q.lane, words(q.forbid), q.max_rate, of);
 }
 
 // Says that the choice 0 does not err like the smallest value beside it: a comparison with 0 also decides what is
@@ -187,8 +189,7 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
   }
   const auto changes_nothing = [](const PolicyErrors& point) { return point.changes_nothing(); };
   if (question.source && std::all_of(tuned.curves[0].points.begin(), tuned.curves[0].points.end(), changes_nothing))
-    result.push_back(
-        fmt::format("Dead knob: no value of {} changes any verdict here.", printable(question.source->epsilon.name)));
+    result.push_back(fmt::format("Dead knob: no {} changes any verdict here.", value_of(question)));
   for (const std::string& site : tuned.dead)
     result.push_back(fmt::format("Dead knob: at {} no tolerance changes any verdict here.", site));
   const analysis::ScaleBreak& scale = tuned.scale;
@@ -205,9 +206,9 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
                                        : fmt::format("neither errors nor {} alone are", words(question.forbid)),
         counted(scale.here.pairs, "pair")));
   for (const analysis::Interaction& i : tuned.interactions) {
-    result.push_back(fmt::format("Two sites: {} alone has {} wrong, {} alone {}, both {}.", i.first,
+    result.push_back(fmt::format("Two sites: {} alone has {} wrong, {} alone {}, both {}, of {} to choose on.", i.first,
                                  grouped(i.of_first.wrong()), i.second, grouped(i.of_second.wrong()),
-                                 grouped(i.together.wrong())));
+                                 grouped(i.together.wrong()), counted(i.together.pairs, "pair")));
   }
   return result;
 }

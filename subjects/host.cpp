@@ -429,6 +429,7 @@ int load_and_fork(char** argv, const std::string& kind, const std::string& what,
   fcntl(kTalkFd, F_SETFD, FD_CLOEXEC);
   if (kind != "program") fcntl(kCodeFd, F_SETFD, FD_CLOEXEC);
   if (kind != "device") set_limits(memory);
+  const pid_t self = getpid();
   Loaded loaded{};
   graze_subject subject{GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
   if (kind == "library") {
@@ -455,9 +456,9 @@ int load_and_fork(char** argv, const std::string& kind, const std::string& what,
     loaded.of_blocks = 1;
     if (kind == "command" && describe) put(loaded.text, described_by(what).c_str());
   }
+  if (getpid() != self) _exit(0);  // a copy that the code made of this process while it was loaded
   loaded.says = Says::loaded;
   send_message(&loaded, sizeof loaded);
-  const pid_t self = getpid();
   pthread_atfork(nullptr, nullptr, [] { is_copy = true; });
   for (;;) {
     const pid_t worker = fork();

@@ -783,18 +783,24 @@ TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
   }
 }
 
-// Each call forks, so each pair leaves one more process, but there must be no second worker.
+// Where each call forks, each pair leaves one more process, but there must be no second worker; nor a second process
+// that loads the code and starts workers.
 TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
-  const fs::path file = built_from("forks_twice",
-                                   "#include <signal.h>\n#include <unistd.h>\n"
-                                   "int intersects(const float a[9], const float b[9]) {\n"
-                                   "  signal(SIGCHLD, SIG_IGN); fork(); return a[0] < b[0]; }");
-  {
-    ForeignProcesses subject({"library", file.string(), "intersects", "f32"}, Scalar::f32);
-    const std::vector<Verdict> found = verdicts(subject);
-    for (std::size_t i = 0; i < pairs.size(); ++i) EXPECT_EQ(found[i], left_of(pairs[i])) << i;
+  const std::string includes = "#include <signal.h>\n#include <unistd.h>\n",
+                    function = "int intersects(const float a[9], const float b[9]) {\n";
+  const fs::path kFiles[] = {
+      built_from("forks_twice", includes + function + "  signal(SIGCHLD, SIG_IGN); fork(); return a[0] < b[0]; }"),
+      built_from("forks_loading", includes + "__attribute__((constructor)) static void load(void) { fork(); }\n" +
+                                      function + "  return a[0] < b[0]; }")};
+  for (const fs::path& file : kFiles) {
+    for (int run = 0; run < 3; ++run) {
+      SCOPED_TRACE(file);
+      ForeignProcesses subject({"library", file.string(), "intersects", "f32"}, Scalar::f32);
+      const std::vector<Verdict> found = verdicts(subject);
+      for (std::size_t i = 0; i < pairs.size(); ++i) EXPECT_EQ(found[i], left_of(pairs[i])) << i;
+    }
+    expect_nothing_left();
   }
-  expect_nothing_left();
 }
 
 // The supervisor, the guardian and graze run in process groups that the code is not in.

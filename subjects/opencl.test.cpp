@@ -129,6 +129,22 @@ TEST_F(OpenCl, WhatAKernelPrintsIsNoAnswer) {
   EXPECT_EQ(verdicts_of(subject, few), std::vector<Verdict>(few.size(), Verdict::disjoint));
 }
 
+// Graze does not call the function while it compiles it.
+TEST_F(OpenCl, AFunctionThatFailsOnZerosCompiles) {
+  const fs::path file = write("zeros.cl",
+                              "int f(const REAL* a, const REAL* b) {\n"
+                              "  int zero = 1;\n"
+                              "  for (int i = 0; i < 9; ++i) zero &= a[i] == 0 && b[i] == 0;\n"
+                              "  for (volatile int wait = zero; wait;) {}\n"
+                              "  return a[0] < b[0] ? 5 : -5;\n"
+                              "}\n");
+  ForeignProcesses subject(code(file, "f", "default"), Scalar::f32);
+  const std::vector<Pair> few(pairs.begin(), pairs.begin() + 100);
+  const std::vector<Verdict> found = verdicts_of(subject, few);
+  for (std::size_t i = 0; i < few.size(); ++i)
+    ASSERT_EQ(found[i], few[i].a[0].x < few[i].b[0].x ? Verdict::intersects : Verdict::declined) << i;
+}
+
 TEST_F(OpenCl, MistakesAreToldInOneLine) {
   const std::string good = write("good.cl", "int f(const REAL* a, const REAL* b) { return 0; }\n");
   const std::string bad = write("bad.cl", "int f(const REAL* a, const REAL* b) {\n  return nonsense;\n}\n");

@@ -89,6 +89,18 @@ TEST_F(CudaSubject, FlushesSubnormalsInItsVariantOnly) {
   }
 }
 
+TEST_F(CudaSubject, AKernelThatEndsEarlyWritesNoAnswer) {
+  const auto builds = build(
+      "__device__ int intersects(const float a[9], const float b[9]) { if (a[0] > 1) asm volatile(\"exit;\"); return "
+      "b[0] > 1; }");
+  ASSERT_EQ(builds[0].why_no_twin, "");
+  const Pair pairs[] = {{{{2, 0, 0}}, {{2, 0, 0}}}, {{}, {{2, 0, 0}}}};
+  std::int8_t answers[2] = {7, 7};
+  TwinLibrary(builds[0].twin, builds[0].scalar).decide(pairs, answers);
+  EXPECT_EQ(answers[0], 7);
+  EXPECT_EQ(answers[1], 1);
+}
+
 TEST_F(CudaSubject, KnowsFloatAndDoubleAndNames) {
   EXPECT_EQ(build("__device__ bool f(const double* a, const double* b) { return a[0] < b[0]; }", "f")[0].scalar,
             Scalar::f64);

@@ -49,11 +49,13 @@ struct Watched : SomeFused {
   }
 };
 
+constexpr int kNoAnswer = 2;  // the kernel ended before it wrote an answer
+
 // One pair, as a block of one: stride 1, so that its coordinates are the 18 arrays.
 template <class Fuse>
 int decide(const Real* pair, const Fuse& fuse) {
   const u32 one = 1;
-  signed char answer = 0;
+  signed char answer = kNoAnswer;
   signed char* const answer_at = &answer;
   const auto bytes = [](const void* object) { return static_cast<const unsigned char*>(object); };
   const unsigned char* const parameters[] = {bytes(&pair), bytes(&one), bytes(&one), bytes(&answer_at)};
@@ -62,7 +64,10 @@ int decide(const Real* pair, const Fuse& fuse) {
 }
 
 void decide_block(const Real* pairs, std::size_t count, signed char* answers) {
-  for (std::size_t i = 0; i < count; ++i) answers[i] = static_cast<signed char>(decide(pairs + 18 * i, AllFused{}));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (const int said = decide(pairs + 18 * i, AllFused{}); said != kNoAnswer)
+      answers[i] = static_cast<signed char>(said);
+  }
 }
 
 }  // namespace
@@ -86,7 +91,8 @@ void graze_twin_decide_block(const ptx::Real* pairs, std::size_t count, signed c
 int graze_twin_is_f64(void) { return sizeof(ptx::Real) == 8; }
 int graze_twin_decide_fusing(const ptx::Real* pair, const std::uint64_t* fused, Comparison* made, std::size_t most,
                              std::size_t* count) {
-  return ptx::decide(pair, ptx::Watched{{fused}, made, most, count});
+  const int said = ptx::decide(pair, ptx::Watched{{fused}, made, most, count});
+  return said == ptx::kNoAnswer ? -1 : said;
 }
 int graze_twin_comparison_count(void) { return static_cast<int>(std::size(ptx::Kernel::kComparisons)) - 1; }
 const ComparisonSite* graze_twin_comparisons(void) { return ptx::Kernel::kComparisons; }

@@ -291,9 +291,11 @@ struct PairJudge::Parts {
 PairJudge::PairJudge(const Campaign& campaign) : parts_(std::make_unique<Parts>(campaign)) {}
 PairJudge::~PairJudge() = default;
 
-const PairJudge::Found& PairJudge::judge(const Pair& pair, std::uint64_t index, BatchResult& total) {
+const PairJudge::Found& PairJudge::judge(const AnyPair& pair, std::uint64_t index, BatchResult& total) {
+  const Pair stored = pair.in_float32();
+  const std::span<const DoublePair> doubles(&pair.doubles, pair.floats ? 0 : 1);
   parts_->found.failures.clear();
-  parts_->judge.judge({{&pair, 1}}, {&index, 1}, 0, total, &parts_->found);
+  parts_->judge.judge({{&stored, 1}, doubles}, {&index, 1}, 0, total, &parts_->found);
   parts_->judge.add_signatures(total);
   return parts_->found;
 }

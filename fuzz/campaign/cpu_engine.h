@@ -30,8 +30,8 @@ class PairJudge {
     std::vector<Verdict> verdicts;              // of each lane; of one that is right by its convention the truth
     std::vector<analysis::Signature> failures;  // of each subject that is wrong
   };
-  // Adds the pair's counts to `total`.   Throws: OracleMismatch.
-  const Found& judge(const Pair& pair, std::uint64_t index, BatchResult& total);
+  // Adds the pair's counts to `total`. All pairs have the source's coordinate type.   Throws: OracleMismatch.
+  const Found& judge(const AnyPair& pair, std::uint64_t index, BatchResult& total);
 
  private:
   struct Parts;

@@ -21,7 +21,7 @@ namespace graze::fuzz {
 std::vector<strata::PairSource> recorded_sources(const Json& spec) {
   const std::uint64_t seed = spec.at("seed");
   std::vector<std::string> strata = spec.at("strata");
-  if (spec.contains("hunt")) return {{"hunt", spec.at("pairs"), nullptr}};
+  if (spec.contains("hunt")) return {{strata.at(0), spec.at("pairs"), nullptr}};
   if (spec.contains("scene")) {
     const Json& scene = spec["scene"];
     return sources_of(recorded_scene(scene), seed, scene.at("pairs"), strata).sources;

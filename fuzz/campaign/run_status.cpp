@@ -104,7 +104,9 @@ void RunStatus::tell(const Progress& progress, const std::map<std::string, Signa
   status_["pairs"] = progress.total;
   status_["done"] = progress.done;
   status_["rate"] = progress.seconds > 0 ? static_cast<double>(progress.done_here) / progress.seconds : 0;
-  status_["seconds_left"] = progress.seconds_left ? Json(*progress.seconds_left) : Json();
+  // After the last pair, the run measures costs and writes its results; nothing says how long that takes.
+  status_["seconds_left"] =
+      progress.seconds_left && progress.done < progress.total ? Json(*progress.seconds_left) : Json();
   status_["disagreements"] = progress.all_disagreements;
   status_["signatures"] = signatures.size();
   if (written_ >= 0 && progress.seconds - written_ < kSecondsBetween && progress.done < progress.total) return;

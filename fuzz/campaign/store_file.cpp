@@ -282,7 +282,7 @@ void expect_usable_files_of(const fs::path& database) {
 SQLite::Database opened(const fs::path& file, int how = SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE) {
   expect_file(file);  // SQLite would wait for a pipe
   expect_usable_files_of(file);
-  return {file.string(), how};
+  return {fs::absolute(file).string(), how};  // a relative name may begin like a URI
 }
 
 // Opens a store for reading only. If its last run ended normally, it is one file that nobody writes to. A killed run

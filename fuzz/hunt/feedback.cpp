@@ -61,19 +61,24 @@ struct Meter {
   }
 };
 
-template <class Real, std::size_t place>
-void measure_sites(const Pair& pair, Features& features) {
+template <std::size_t place, class Real>
+void measure_sites(const BasicPair<Real>& pair, Features& features) {
   int asked = 0;
   const Meter<Real> meter{static_cast<int>(place), &features, &asked};
-  decide_widened<WithErrorBound<Real>>(
-      pair, [&](const auto& a, const auto& b) { return std::tuple_element_t<place, Algorithms>::decide(a, b, meter); });
+  const auto number = [](const Vec3<Real>& v) {
+    using Number = WithErrorBound<Real>;
+    return Vec3<Number>{Number(v.x), Number(v.y), Number(v.z)};
+  };
+  const Vec3<WithErrorBound<Real>> a[3] = {number(pair.a[0]), number(pair.a[1]), number(pair.a[2])},
+                                   b[3] = {number(pair.b[0]), number(pair.b[1]), number(pair.b[2])};
+  std::tuple_element_t<place, Algorithms>::decide(a, b, meter);
 }
 
-void measure_sites(int algorithm, const Pair& pair, Features& features) {
+void measure_sites(int algorithm, const Pair& stored, const DoublePair& doubles, Features& features) {
   const auto one = [&]<std::size_t place>(std::integral_constant<std::size_t, place>) {
     if (algorithm != static_cast<int>(place)) return;
-    measure_sites<float, place>(pair, features);
-    measure_sites<double, place>(pair, features);
+    measure_sites<place>(stored, features);
+    measure_sites<place>(doubles, features);
   };
   [&]<std::size_t... places>(std::index_sequence<places...>) {
     (one(std::integral_constant<std::size_t, places>()), ...);
@@ -82,8 +87,8 @@ void measure_sites(int algorithm, const Pair& pair, Features& features) {
 }
 
 // The line at which the algorithm's runs in float32 and float64 first differ in an outcome; 0 if they do not.
-unsigned line_of_parting(int algorithm, const Pair& pair) {
-  const Trace<double> narrow = run_traced<float>(algorithm, pair), wide = run_traced<double>(algorithm, pair);
+unsigned line_of_parting(int algorithm, const Pair& stored, const DoublePair& doubles) {
+  const Trace<double> narrow = run_traced<float>(algorithm, stored), wide = run_traced<double>(algorithm, doubles);
   const std::size_t both = std::min(narrow.seen.size(), wide.seen.size());
   for (std::size_t i = 0; i < both; ++i) {
     if (narrow.seen[i].held != wide.seen[i].held) return narrow.seen[i].where.line();
@@ -107,25 +112,29 @@ Feedback::Feedback(const std::vector<const Lane*>& lanes) : lanes_(lanes) {
   }
 }
 
-Features Feedback::features(const Pair& pair, const PairJudge::Found& found) const {
+Features Feedback::features(const AnyPair& pair, const PairJudge::Found& found) const {
+  const Pair stored = pair.in_float32();
+  const Hulls hulls = visit(pair, [](const auto& own) { return oracle::hulls(own); });
   Features features;
-  features.push_back(feature(Kind::closeness, found.bucket + kBucketMost, number_of(oracle::hulls(pair))));
-  for (const int algorithm : algorithms_) measure_sites(algorithm, pair, features);
+  features.push_back(feature(Kind::closeness, found.bucket + kBucketMost, number_of(hulls)));
+  for (const int algorithm : algorithms_) measure_sites(algorithm, stored, pair.doubles, features);
   for (const analysis::Signature& failure : found.failures) {
     features.push_back(feature(Kind::failure, fnv1a(analysis::coarse_key(failure))));
     const auto lane =
         std::find_if(lanes_.begin(), lanes_.end(), [&](const Lane* l) { return l->info->id == failure.subject; });
     if ((*lane)->algorithm >= 0)
-      features.push_back(feature(Kind::parting, (*lane)->algorithm, line_of_parting((*lane)->algorithm, pair)));
+      features.push_back(
+          feature(Kind::parting, (*lane)->algorithm, line_of_parting((*lane)->algorithm, stored, pair.doubles)));
   }
   for (const Fused& fused : fused_) {
     if (found.verdicts[fused.lane] == found.verdicts[fused.rounded]) continue;
     const Lane& lane = *lanes_[fused.lane];
+    const AnyPair seen = analysis::seen_by(lane, pair);
     const std::size_t sites = cuda::contraction_sites(lane).size();
     std::vector<std::uint64_t> all((sites + 63) / 64, ~std::uint64_t{0});
     for (std::size_t site = 0; site < sites; ++site) {
       all[site / 64] ^= std::uint64_t{1} << site % 64;
-      if (cuda::decide_fusing(lane, pair, all) != found.verdicts[fused.lane])
+      if (cuda::decide_fusing(lane, seen, all) != found.verdicts[fused.lane])
         features.push_back(feature(Kind::contraction, fused.lane, site));
       all[site / 64] ^= std::uint64_t{1} << site % 64;
     }

@@ -26,7 +26,7 @@ class Feedback {
   explicit Feedback(const std::vector<const Lane*>& lanes);
 
   // Returns the features, sorted and distinct.   Requires: `found` belongs to the pair and these lanes.
-  Features features(const Pair& pair, const PairJudge::Found& found) const;
+  Features features(const AnyPair& pair, const PairJudge::Found& found) const;
 
  private:
   struct Fused {

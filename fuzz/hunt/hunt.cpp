@@ -77,8 +77,7 @@ class Hunter {
         status_(hunt.campaign),
         share_(share_of(hunt.campaign.shard, 0, hunt.pairs)),
         per_round_(round_pairs(share_.pairs)) {
-    hunt.campaign.sources = {
-        {"hunt", hunt.pairs, [found = found_](std::uint64_t index) { return found->all.kept.at(index).pair; }}};
+    hunt.campaign.sources = {source_of_hunt(hunt.pairs, hunt.drawn.in_doubles(), found_)};
     threads_ = hunt.campaign.threads > 0 ? hunt.campaign.threads : tbb::info::default_concurrency();
     store_.emplace(store_spec(hunt.campaign));
     if (fs::exists(merged_rounds_file(hunt.campaign.directory)))
@@ -300,7 +299,8 @@ class Hunter {
 }  // namespace
 
 Json hunt_spec(const Hunt& hunt) {
-  Json spec = {{"seed", hunt.campaign.seed}, {"pairs", hunt.pairs}, {"strata", {"hunt"}}, {"lanes", Json::array()}};
+  const std::string id = source_of_hunt(hunt.pairs, hunt.drawn.in_doubles(), nullptr).id;
+  Json spec = {{"seed", hunt.campaign.seed}, {"pairs", hunt.pairs}, {"strata", {id}}, {"lanes", Json::array()}};
   for (const Lane* lane : hunt.campaign.under_test->lanes) spec["lanes"].push_back(lane->id);
   for (const strata::PairSource& source : hunt.drawn.sources) spec["hunt"]["strata"].push_back(source.id);
   add_left_out(spec, *hunt.campaign.under_test);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Guided search: rounds of libFuzzer (round.h) whose findings are stored like a campaign's, with the single source
-// `hunt`. All rounds of a generation start from the same corpus, which the earlier generations left. So the results do
-// not depend on interruptions or on how many rounds run at once.
+// `hunt`, or `hunt/f64` if it searches pairs of doubles. All rounds of a generation start from the same corpus, which
+// the earlier generations left. So the results do not depend on interruptions or on how many rounds run at once.
 #pragma once
 
 #include <atomic>
@@ -31,7 +31,7 @@ struct HuntProgress {
   double seconds_since_kind = 0;  // since the last new kind, or the start
 };
 
-// The store's record of a hunt: as campaign_spec, with the source `hunt`, and the strata it draws from under "hunt".
+// The store's record of a hunt: as campaign_spec, with that source, and the strata it draws from under "hunt".
 Json hunt_spec(const Hunt& hunt);
 
 // Runs or resumes the hunt, or a shard of it, until it is done, its time is over, or `stop` is set. Updates status.json

@@ -26,74 +26,98 @@
 namespace graze::fuzz {
 namespace {
 
-int shared_vertices(const Pair& pair) {
-  return static_cast<int>(std::count_if(std::begin(pair.a), std::end(pair.a), [&](const Vec3<float>& u) {
+template <class Real>
+int shared_vertices(const BasicPair<Real>& pair) {
+  return static_cast<int>(std::count_if(std::begin(pair.a), std::end(pair.a), [&](const Vec3<Real>& u) {
     return std::find(std::begin(pair.b), std::end(pair.b), u) != std::end(pair.b);
   }));
 }
 
-bool same(const Pair& l, const Pair& r) { return std::memcmp(&l, &r, sizeof l) == 0; }
+template <class Draws>
+class Mutations : public testing::Test {
+ protected:
+  using Pair = DrawnPair<Draws>;
 
-// Mutates pairs of the stratum and counts those for which `holds` is true.
-template <class Holds>
-int count_after(Mutation mutation, Holds holds, strata::Stratum stratum = strata::Stratum::uniform) {
-  int count = 0;
-  for (std::uint64_t i = 0; i < 200; ++i) {
-    strata::Draws draws(1, 1000, i);
-    const Pair pair = strata::generate(1, stratum, i), other = strata::generate(2, stratum, i);
-    const Pair result = mutated(mutation, pair, other, draws);
-    count += holds(pair, other, result);
+  static Pair drawn(std::uint64_t seed, strata::Stratum stratum, std::uint64_t index) {
+    if constexpr (std::is_same_v<Draws, strata::Draws>) {
+      return strata::generate(seed, stratum, index);
+    } else {
+      return strata::generate_doubles(seed, stratum, index);
+    }
   }
-  return count;
-}
 
-TEST(Mutations, EachChangesThePairAndAFreshOneIsOfASource) {
+  // Mutates pairs of the stratum and counts those for which holds(before, after) is true.
+  template <class Holds>
+  static int count_after(Mutation mutation, Holds holds, strata::Stratum stratum = strata::Stratum::uniform) {
+    int count = 0;
+    for (std::uint64_t i = 0; i < 200; ++i) {
+      Draws draws(1, 1000, i);
+      const Pair pair = drawn(1, stratum, i), other = drawn(2, stratum, i);
+      count += holds(pair, mutated(mutation, pair, other, draws));
+    }
+    return count;
+  }
+};
+using EitherType = testing::Types<strata::Draws, strata::DoubleDraws>;
+TYPED_TEST_SUITE(Mutations, EitherType);
+
+TYPED_TEST(Mutations, EachChangesThePairAndAFreshOneIsOfASource) {
+  using Own = DrawnPair<TypeParam>;
   for (int m = 1; m < kMutationCount; ++m) {
-    const int changed =
-        count_after(static_cast<Mutation>(m), [](const Pair& p, const Pair&, const Pair& r) { return !same(p, r); });
+    const int changed = this->count_after(static_cast<Mutation>(m), [](const Own& before, const Own& after) {
+      return std::memcmp(&before, &after, sizeof before) != 0;
+    });
     EXPECT_GT(changed, 100) << kMutationIds[static_cast<std::size_t>(m)];
   }
-  const Drawn drawn{strata::stratum_sources(1, 10, {"lattice"}), nullptr};
-  strata::Draws draws(1, 1000, 1);
-  const Pair pair = fresh_pair(drawn, draws);
+  const bool in_doubles = sizeof(Own) == sizeof(DoublePair);
+  const Drawn drawn{strata::stratum_sources(1, 10, {in_doubles ? "lattice_15" : "lattice"},
+                                            in_doubles ? PairTypes::f64 : PairTypes::f32),
+                    nullptr};
+  EXPECT_EQ(drawn.in_doubles(), in_doubles);
+  TypeParam draws(1, 1000, 1);
+  const Own pair = fresh_pair(drawn, draws);
   for (int i = 0; i < kCoordinates; ++i) EXPECT_EQ(coordinates(pair)[i], std::nearbyint(coordinates(pair)[i]));
 }
 
-TEST(Mutations, DoWhatTheyAreNamedAfter) {
+TYPED_TEST(Mutations, DoWhatTheyAreNamedAfter) {
+  using Own = DrawnPair<TypeParam>;
   const auto shares = [](int vertices) {
-    return [vertices](const Pair&, const Pair&, const Pair& r) { return shared_vertices(r) == vertices; };
+    return [vertices](const Own&, const Own& after) { return shared_vertices(after) == vertices; };
   };
-  EXPECT_EQ(count_after(Mutation::onto_vertex, shares(1)), 200);
-  EXPECT_EQ(count_after(Mutation::shared_edge, shares(2)), 200);
-  const auto flat = [](const Pair&, const Pair&, const Pair& r) { return oracle::hulls(r).coplanar; };
-  EXPECT_EQ(count_after(Mutation::coplanar,
-                        [](const Pair&, const Pair&, const Pair& r) {
-                          return oracle::cgal_verdict(r) == Verdict::intersects &&
-                                 oracle::margin_bucket(r, Verdict::intersects) < make_bucket(-1, 7);
-                        }),
+  EXPECT_EQ(this->count_after(Mutation::onto_vertex, shares(1)), 200);
+  EXPECT_EQ(this->count_after(Mutation::shared_edge, shares(2)), 200);
+  const auto flat = [](const Own&, const Own& after) { return oracle::hulls(after).coplanar; };
+  EXPECT_EQ(this->count_after(Mutation::coplanar,
+                              [](const Own&, const Own& after) {
+                                return oracle::cgal_verdict(after) == Verdict::intersects &&
+                                       oracle::margin_bucket(after, Verdict::intersects) < make_bucket(-1, 7);
+                              }),
             0)
       << "deeper than 2^8 ulps, they are far from a common plane";
-  EXPECT_GT(count_after(Mutation::coplanar, flat, strata::Stratum::lattice), 20);
-  const auto degenerate = [](const Pair&, const Pair&, const Pair& r) {
-    const Hulls hulls = oracle::hulls(r);
+  const auto of_whole_numbers =
+      sizeof(Own) == sizeof(DoublePair) ? strata::Stratum::lattice_15 : strata::Stratum::lattice;
+  EXPECT_GT(this->count_after(Mutation::coplanar, flat, of_whole_numbers), 10);
+  const auto degenerate = [](const Own&, const Own& after) {
+    const Hulls hulls = oracle::hulls(after);
     return std::min(hulls.dimension_a, hulls.dimension_b) < 2;
   };
-  EXPECT_GT(count_after(Mutation::collinear, degenerate), 30);
-  EXPECT_EQ(count_after(Mutation::reordered,
-                        [](const Pair& p, const Pair&, const Pair& r) {
-                          return oracle::cgal_verdict(p) == oracle::cgal_verdict(r);
-                        }),
+  EXPECT_GT(this->count_after(Mutation::collinear, degenerate), 30);
+  EXPECT_EQ(this->count_after(Mutation::reordered,
+                              [](const Own& before, const Own& after) {
+                                return oracle::cgal_verdict(before) == oracle::cgal_verdict(after);
+                              }),
             200);
-  EXPECT_EQ(count_after(Mutation::ulps,
-                        [](const Pair& p, const Pair&, const Pair& r) {
-                          int changed = 0;
-                          for (int i = 0; i < kCoordinates; ++i) changed += coordinates(p)[i] != coordinates(r)[i];
-                          return changed >= 1 && changed <= 3;
-                        }),
+  EXPECT_EQ(this->count_after(Mutation::ulps,
+                              [](const Own& before, const Own& after) {
+                                int changed = 0;
+                                for (int i = 0; i < kCoordinates; ++i)
+                                  changed += coordinates(before)[i] != coordinates(after)[i];
+                                return changed >= 1 && changed <= 3;
+                              }),
             200);
 }
 
-TEST(Mutations, StayWithinAScene) {
+TEST(MutationsInAScene, StayWithinIt) {
   const strata::Scene scene = strata::resolved(strata::parse_scene(
       "scene.toml", "extent = [[-4, 4], [0, 8], [1, 2]]\nedges = [0.5, 2]\ngrid = { power_of_two = -6 }\n"));
   Drawn drawn{
@@ -153,7 +177,7 @@ class HuntFiles : public CampaignFiles {
   Hunt hunt_of(const std::string& name, int threads) const {
     Hunt hunt;
     hunt.pairs = 5000;
-    hunt.drawn.sources = strata::stratum_sources(3, hunt.pairs, {});
+    hunt.drawn.sources = strata::stratum_sources(3, hunt.pairs, {}, types_);
     hunt.campaign.seed = 3;
     hunt.campaign.under_test = &under_test_;
     hunt.campaign.threads = threads;
@@ -184,16 +208,16 @@ class HuntFiles : public CampaignFiles {
   std::size_t expect_cases_are_true(const std::string& name, const Json& summary) const {
     Campaign campaign;
     campaign.under_test = &under_test_;
-    campaign.sources = {{"hunt", 5000, nullptr}};
+    campaign.sources = {source_of_hunt(5000, types_ == PairTypes::f64, nullptr)};
     PairJudge judge(campaign);
     BatchResult counts = no_counts(campaign);
     std::size_t cases = 0;
     for (const Json& row : summary["signatures"]) {
-      for (const corpus::Entry& entry : corpus::read_pairs(case_file(root_ / name, row))) {
-        const auto failures = judge.judge(entry.pair, cases++, counts).failures;
+      for (const corpus::Entry& entry : corpus::read_pairs(case_file(root_ / name, row), PairTypes::both)) {
+        const auto failures = judge.judge(corpus::pair_of(entry), cases++, counts).failures;
         EXPECT_TRUE(std::any_of(failures.begin(), failures.end(),
                                 [&](const auto& f) { return analysis::key(f) == row["key"].get<std::string>(); }));
-        EXPECT_EQ(corpus::origin_of(entry).substr(0, 7), "hunt:3:");
+        EXPECT_TRUE(corpus::origin_of(entry).starts_with(campaign.sources[0].id + ":3:"));
       }
     }
     return cases;
@@ -204,6 +228,7 @@ class HuntFiles : public CampaignFiles {
     EXPECT_EQ(read_whole(root_ / one / "hunt.json"), read_whole(root_ / other / "hunt.json"));
   }
 
+  PairTypes types_ = PairTypes::f32;
   SelectedLanes under_test_ = select_lanes(
       {"moller_1997/f32/cpu", "moller_1997/f32/cuda-*fma", "projected_sat/f32/cpu", "exact/*"}, Executor::twin);
 };
@@ -335,6 +360,42 @@ TEST_F(HuntFiles, ShardsMergeByKindInAnyOrder) {
   merge({parts, root_ / "repaired", false});
   expect_same_hunt("merged", "repaired");
   EXPECT_THROW(run("merged", 1), UsageError);
+}
+
+class HuntOfDoubles : public HuntFiles {
+ protected:
+  HuntOfDoubles() {
+    types_ = PairTypes::f64;
+    under_test_ = select_lanes({"moller_1997/*/cpu", "moller_1997/f64/cuda-*fma", "exact/*"}, Executor::twin);
+    select_for_doubles(under_test_);
+  }
+};
+
+TEST_F(HuntOfDoubles, IsTheSameBytesOnAnyThreadsAndItsPartsMerge) {
+  const Json summary = run("whole", 2);
+  ASSERT_TRUE(summary["complete"].get<bool>());
+  EXPECT_EQ(summary["strata"]["hunt/f64"]["pairs"], 5000);
+  run("one", 1);
+  expect_same_hunt("whole", "one");
+  EXPECT_GT(expect_cases_are_true("whole", summary), 20u);
+  std::size_t beyond_float32 = 0, wrong_in_double = 0;
+  for (const Json& row : summary["signatures"]) {
+    wrong_in_double += row["key"].get<std::string>().find("f64") != std::string::npos;
+    for (const corpus::Entry& entry : corpus::read_pairs(case_file(root_ / "whole", row), PairTypes::both)) {
+      ASSERT_TRUE(entry.doubles);
+      const DoublePair stored = in_doubles(stored_in_float32(*entry.doubles));
+      beyond_float32 += std::memcmp(&stored, &*entry.doubles, sizeof stored) != 0;
+    }
+  }
+  EXPECT_GT(wrong_in_double, 10u);
+  EXPECT_GT(beyond_float32, 20u);
+
+  run_shard("part-1", {1, 2});
+  EXPECT_FALSE(run_shard("part-2", {2, 2}, 2)["complete"].get<bool>());
+  run_shard("part-2", {2, 2});
+  const Outcome merged = merge({{root_ / "part-2", root_ / "part-1"}, root_ / "merged", false});
+  EXPECT_EQ(merged.summary["strata"]["hunt/f64"]["pairs"], 5000);
+  EXPECT_GT(expect_cases_are_true("merged", merged.summary), 20u);
 }
 
 TEST_F(HuntFiles, SaysWhatWentWrongInARound) {

@@ -47,6 +47,17 @@ Json HuntRounds::told() const {
   return {{"pairs", all.pairs}, {"units", all.units.size()}, {"mutations", mutations}, {"kinds", in_order}};
 }
 
+strata::PairSource source_of_hunt(std::uint64_t pairs, bool in_doubles, std::shared_ptr<const HuntRounds> rounds) {
+  strata::PairSource source{"hunt" + std::string(in_doubles ? strata::kInDoubles : ""), pairs, nullptr};
+  const auto pair = [rounds](std::uint64_t index) { return rounds->all.kept.at(index).pair; };
+  if (in_doubles) {
+    source.double_pair = [pair](std::uint64_t index) { return pair(index).doubles; };
+  } else {
+    source.pair = [pair](std::uint64_t index) { return pair(index).floats.value(); };
+  }
+  return source;
+}
+
 fs::path rounds_folder(const fs::path& hunt) { return hunt / "hunt"; }
 std::uint64_t round_pairs(std::uint64_t pairs) {
   return std::clamp(pairs / 32, std::uint64_t{256}, std::uint64_t{32768});

@@ -24,6 +24,9 @@ struct HuntRounds {
   Json told() const;
 };
 
+// The only source of a hunt's campaign: of its cases, whose pairs the rounds keep.
+strata::PairSource source_of_hunt(std::uint64_t pairs, bool in_doubles, std::shared_ptr<const HuntRounds> rounds);
+
 // The folder of a hunt's rounds.
 std::filesystem::path rounds_folder(const std::filesystem::path& hunt);
 // The number of pairs in a round of a hunt, or of a shard, with this many pairs.

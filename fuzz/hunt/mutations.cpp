@@ -4,52 +4,66 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <span>
+#include <type_traits>
 
 #include "strata/scene/place.h"
 
 namespace graze::fuzz {
 namespace {
 
-using strata::Draws;
 using strata::Vec;
 
-Vec wide(const Vec3<float>& v) {
+template <class Real>
+Vec wide(const Vec3<Real>& v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
 
+template <class Real>
+void store(Vec3<Real>& vertex, const Vec& v) {
+  vertex = {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
+}
+
 // The two triangles, in either order.
+template <class Real>
 struct Sides {
-  Vec3<float>* own;
-  const Vec3<float>* other;
+  Vec3<Real>* own;
+  const Vec3<Real>* other;
 };
 
-Sides choose(Pair& pair, Draws& draws) { return draws.coin() ? Sides{pair.a, pair.b} : Sides{pair.b, pair.a}; }
+template <class Real>
+Sides<Real> choose(BasicPair<Real>& pair, strata::Draws& draws) {
+  return draws.coin() ? Sides<Real>{pair.a, pair.b} : Sides<Real>{pair.b, pair.a};
+}
 
-void move(std::span<Vec3<float>> vertices, const Vec& by) {
-  for (Vec3<float>& vertex : vertices) vertex = strata::rounded(wide(vertex) + by);
+template <class Real>
+void shift(Vec3<Real>* triangle, const Vec& by) {
+  for (int i = 0; i < 3; ++i) store(triangle[i], wide(triangle[i]) + by);
 }
 
 // Moves the vertex to `to`, alone or together with its triangle.
-void bring(Vec3<float>* triangle, std::uint32_t vertex, const Vec& to, bool alone) {
-  if (!alone) move({triangle, 3}, to - wide(triangle[vertex]));
-  triangle[vertex] = strata::rounded(to);
+template <class Real>
+void bring(Vec3<Real>* triangle, std::uint32_t vertex, const Vec& to, bool alone) {
+  if (!alone) shift(triangle, to - wide(triangle[vertex]));
+  store(triangle[vertex], to);
 }
 
 // A place on a segment; often an end or a simple fraction.
+template <class Draws>
 double draw_share(Draws& draws) {
   constexpr double kShares[] = {0, 1, 0.5, 0.25, 0.75};
   const std::uint32_t kind = draws.below(8);
   return kind < 5 ? kShares[kind] : kind < 7 ? draws.positive() : 2 * draws.real();
 }
 
-Vec point_between(const Vec3<float>& from, const Vec3<float>& to, double share) {
+template <class Real>
+Vec point_between(const Vec3<Real>& from, const Vec3<Real>& to, double share) {
   return wide(from) + (wide(to) - wide(from)) * share;
 }
 
-void by_ulps(Pair& pair, Draws& draws) {
+template <class Real>
+void by_ulps(BasicPair<Real>& pair, strata::Draws& draws) {
   const std::uint32_t vertex = draws.below(6);
-  Vec3<float>& v = vertex < 3 ? pair.a[vertex] : pair.b[vertex - 3];
+  Vec3<Real>& v = vertex < 3 ? pair.a[vertex] : pair.b[vertex - 3];
   const bool whole = draws.below(4) == 0;
   const int axis = draws.between(0, 2), reach = 1 << draws.below(6);
   for (int i = 0; i < 3; ++i) {
@@ -58,8 +72,9 @@ void by_ulps(Pair& pair, Draws& draws) {
   }
 }
 
-void onto_edge(Pair& pair, Draws& draws) {
-  const Sides sides = choose(pair, draws);
+template <class Draws>
+void onto_edge(DrawnPair<Draws>& pair, Draws& draws) {
+  const auto sides = choose(pair, draws);
   const std::uint32_t from = draws.below(3), vertex = draws.below(3);
   const Vec place = point_between(sides.other[from], sides.other[(from + 1) % 3], draw_share(draws));
   if (draws.coin()) {
@@ -67,11 +82,12 @@ void onto_edge(Pair& pair, Draws& draws) {
     return bring(sides.own, vertex, place, alone);
   }
   const Vec own = point_between(sides.own[vertex], sides.own[(vertex + 1) % 3], draw_share(draws));
-  move({sides.own, 3}, place - own);
+  shift(sides.own, place - own);
 }
 
 // Moves the point onto the plane, along one axis or the normal.
-Vec onto_plane(const Vec& point, const Vec3<float>* plane, bool along_axis) {
+template <class Real>
+Vec onto_plane(const Vec& point, const Vec3<Real>* plane, bool along_axis) {
   const Vec origin = wide(plane[0]), normal = cross(wide(plane[1]) - origin, wide(plane[2]) - origin);
   const int axis = dominant_axis(normal);
   const double distance = dot(normal, point - origin), largest = component(normal, axis);
@@ -80,9 +96,11 @@ Vec onto_plane(const Vec& point, const Vec3<float>* plane, bool along_axis) {
   return point - normal * (distance / dot(normal, normal));
 }
 
-void scale(Pair& pair, Draws& draws) {
+template <class Real>
+void scale(BasicPair<Real>& pair, strata::Draws& draws) {
+  constexpr int kFar = sizeof(Real) == sizeof(float) ? 60 : 500;
   const std::uint32_t what = draws.below(6);  // 0: both, 1: a, 2: b, from 3 on: an axis
-  const float factor = static_cast<float>(strata::power_of_two(draws.coin() ? draws.integer(4) : draws.integer(60)));
+  const Real factor = static_cast<Real>(strata::power_of_two(draws.coin() ? draws.integer(4) : draws.integer(kFar)));
   for (int i = 0; i < kCoordinates; ++i) {
     const bool meant =
         what == 0 || (what == 1 && i < 9) || (what == 2 && i >= 9) || static_cast<int>(what) - 3 == i % 3;
@@ -90,38 +108,42 @@ void scale(Pair& pair, Draws& draws) {
   }
 }
 
-double largest_of(const Pair& pair) {
+template <class Real>
+double largest_of(const BasicPair<Real>& pair) {
   double largest = 0;
   for (int i = 0; i < kCoordinates; ++i)
     largest = std::max(largest, std::fabs(static_cast<double>(coordinates(pair)[i])));
   return largest;
 }
 
-void move_both(Pair& pair, Draws& draws) {
+template <class Draws>
+void move_both(DrawnPair<Draws>& pair, Draws& draws) {
   if (draws.coin()) {  // a vertex to the origin
     const std::uint32_t vertex = draws.below(6);
     const Vec by = wide(vertex < 3 ? pair.a[vertex] : pair.b[vertex - 3]) * -1.0;
-    move(pair.a, by);
-    return move(pair.b, by);
+    shift(pair.a, by);
+    return shift(pair.b, by);
   }
   const double far = largest_of(pair) * strata::power_of_two(draws.integer(12));
   const Vec by = draws.reals() * far;
-  move(pair.a, by);
-  move(pair.b, by);
+  shift(pair.a, by);
+  shift(pair.b, by);
 }
 
-void onto_grid(Pair& pair, Draws& draws) {
+template <class Draws>
+void onto_grid(DrawnPair<Draws>& pair, Draws& draws) {
   int exponent = 0;
   std::frexp(largest_of(pair), &exponent);
-  const double step = std::ldexp(1.0, exponent - draws.between(1, 20));
+  const double step = std::ldexp(1.0, exponent - draws.between(1, Draws::kBits - 4));
   for (int i = 0; i < kCoordinates; ++i) {
-    float& x = coordinates(pair)[i];
-    x = static_cast<float>(std::nearbyint(static_cast<double>(x) / step) * step);
+    auto& x = coordinates(pair)[i];
+    x = static_cast<typename Draws::Real>(std::nearbyint(static_cast<double>(x) / step) * step);
   }
 }
 
-void mirror(Pair& pair, Draws& draws) {
-  const Sides sides = choose(pair, draws);
+template <class Real>
+void mirror(BasicPair<Real>& pair, strata::Draws& draws) {
+  const auto sides = choose(pair, draws);
   const int axis = draws.between(0, 2), other_axis = draws.between(0, 2);
   const std::uint32_t through = draws.below(3);
   const bool swap = draws.coin(), at_origin = draws.coin();
@@ -130,14 +152,15 @@ void mirror(Pair& pair, Draws& draws) {
     const Vec centre = at_origin ? Vec{0, 0, 0} : wide(sides.other[through]);
     if (swap) std::swap(component(v, axis), component(v, other_axis));
     if (!swap || axis == other_axis) component(v, axis) = 2 * component(centre, axis) - component(v, axis);
-    sides.own[i] = strata::rounded(v);
+    store(sides.own[i], v);
   }
 }
 
-void cross_with(Pair& pair, const Pair& other, Draws& draws) {
-  const Vec3<float>* theirs = draws.coin() ? other.a : other.b;
-  Vec3<float>* own = draws.coin() ? pair.a : pair.b;
-  const Vec3<float>* kept = own == pair.a ? pair.b : pair.a;
+template <class Real>
+void cross_with(BasicPair<Real>& pair, const BasicPair<Real>& other, strata::Draws& draws) {
+  const Vec3<Real>* theirs = draws.coin() ? other.a : other.b;
+  Vec3<Real>* own = draws.coin() ? pair.a : pair.b;
+  const Vec3<Real>* kept = own == pair.a ? pair.b : pair.a;
   std::copy_n(theirs, 3, own);
   if (!draws.coin()) return;
   const std::uint32_t from = draws.below(3), to = draws.below(3);
@@ -160,8 +183,9 @@ bool has_size_of(const strata::Scene& scene, const Vec3<float> (&t)[3]) {
 
 }  // namespace
 
-Pair mutated(Mutation mutation, const Pair& pair, const Pair& other, Draws& draws) {
-  Pair result = pair;
+template <class Draws>
+DrawnPair<Draws> mutated(Mutation mutation, const DrawnPair<Draws>& pair, const DrawnPair<Draws>& other, Draws& draws) {
+  DrawnPair<Draws> result = pair;
   switch (mutation) {
     case Mutation::fresh:
       break;
@@ -169,7 +193,7 @@ Pair mutated(Mutation mutation, const Pair& pair, const Pair& other, Draws& draw
       by_ulps(result, draws);
       break;
     case Mutation::onto_vertex: {
-      const Sides sides = choose(result, draws);
+      const auto sides = choose(result, draws);
       const std::uint32_t from = draws.below(3), to = draws.below(3);
       bring(sides.own, from, wide(sides.other[to]), draws.coin());
       break;
@@ -178,28 +202,27 @@ Pair mutated(Mutation mutation, const Pair& pair, const Pair& other, Draws& draw
       onto_edge(result, draws);
       break;
     case Mutation::onto_plane: {
-      const Sides sides = choose(result, draws);
+      const auto sides = choose(result, draws);
       const std::uint32_t vertex = draws.below(3);
       const Vec place = onto_plane(wide(sides.own[vertex]), sides.other, draws.coin());
       bring(sides.own, vertex, place, draws.coin());
       break;
     }
     case Mutation::coplanar: {
-      const Sides sides = choose(result, draws);
+      const auto sides = choose(result, draws);
       const bool along_axis = draws.coin();
-      for (int i = 0; i < 3; ++i)
-        sides.own[i] = strata::rounded(onto_plane(wide(sides.own[i]), sides.other, along_axis));
+      for (int i = 0; i < 3; ++i) store(sides.own[i], onto_plane(wide(sides.own[i]), sides.other, along_axis));
       break;
     }
     case Mutation::collinear: {
-      const Sides sides = choose(result, draws);
+      const auto sides = choose(result, draws);
       const std::uint32_t vertex = draws.below(3);
-      sides.own[vertex] =
-          strata::rounded(point_between(sides.own[(vertex + 1) % 3], sides.own[(vertex + 2) % 3], draw_share(draws)));
+      store(sides.own[vertex],
+            point_between(sides.own[(vertex + 1) % 3], sides.own[(vertex + 2) % 3], draw_share(draws)));
       break;
     }
     case Mutation::shared_edge: {
-      const Sides sides = choose(result, draws);
+      const auto sides = choose(result, draws);
       const std::uint32_t from = draws.below(3), to = draws.below(3), step = 1 + draws.below(2);
       sides.own[from] = sides.other[to];
       sides.own[(from + 1) % 3] = sides.other[(to + step) % 3];
@@ -227,10 +250,16 @@ Pair mutated(Mutation mutation, const Pair& pair, const Pair& other, Draws& draw
   return result;
 }
 
-Pair fresh_pair(const Drawn& drawn, Draws& draws) {
+template <class Draws>
+DrawnPair<Draws> fresh_pair(const Drawn& drawn, Draws& draws) {
   const strata::PairSource& source = drawn.sources[draws.below(static_cast<std::uint32_t>(drawn.sources.size()))];
   const std::uint64_t high = draws.below(1 << 16);
-  return source.pair(high << 32 | draws.word());
+  const std::uint64_t index = high << 32 | draws.word();
+  if constexpr (std::is_same_v<typename Draws::Real, float>) {
+    return source.pair(index);
+  } else {
+    return source.double_pair(index);
+  }
 }
 
 bool fit(const strata::Scene& scene, Pair& pair) {
@@ -241,17 +270,29 @@ bool fit(const strata::Scene& scene, Pair& pair) {
   return true;
 }
 
-Pair next_pair(const Drawn& drawn, const Pair& pair, const Pair* other, Draws& draws, Mutation& mutation) {
+template <class Draws>
+DrawnPair<Draws> next_pair(const Drawn& drawn, const DrawnPair<Draws>& pair, const DrawnPair<Draws>* other,
+                           Draws& draws, Mutation& mutation) {
   for (int attempt = 0; attempt < 4; ++attempt) {
     // If libFuzzer offers a second pair, it wants a crossing.
     mutation = other ? Mutation::crossed : static_cast<Mutation>(draws.below(kMutationCount - 1));
     if (mutation == Mutation::fresh) break;
-    Pair result = mutated(mutation, pair, other ? *other : pair, draws);
-    if (!is_finite(result) || (drawn.scene && !fit(*drawn.scene, result))) continue;
+    DrawnPair<Draws> result = mutated(mutation, pair, other ? *other : pair, draws);
+    if (!is_finite(result)) continue;
+    if constexpr (std::is_same_v<typename Draws::Real, float>) {  // scenes are of float32
+      if (drawn.scene && !fit(*drawn.scene, result)) continue;
+    }
     if (std::memcmp(&result, &pair, sizeof pair) != 0) return result;
   }
   mutation = Mutation::fresh;
   return fresh_pair(drawn, draws);
 }
+
+template Pair mutated(Mutation, const Pair&, const Pair&, strata::Draws&);
+template DoublePair mutated(Mutation, const DoublePair&, const DoublePair&, strata::DoubleDraws&);
+template Pair fresh_pair(const Drawn&, strata::Draws&);
+template DoublePair fresh_pair(const Drawn&, strata::DoubleDraws&);
+template Pair next_pair(const Drawn&, const Pair&, const Pair*, strata::Draws&, Mutation&);
+template DoublePair next_pair(const Drawn&, const DoublePair&, const DoublePair*, strata::DoubleDraws&, Mutation&);
 
 }  // namespace graze::fuzz

@@ -35,18 +35,27 @@ inline constexpr std::array<std::string_view, 14> kMutationIds{
     "shared_edge", "scaled", "moved",       "on_grid",   "mirrored",   "reordered", "crossed"};
 inline constexpr int kMutationCount = static_cast<int>(kMutationIds.size());
 
-// The sources that pairs are drawn from and, in a scene, the envelope that they must stay in.
+// The sources that pairs are drawn from, all of one coordinate type, and, in a scene, the envelope that they must stay
+// in.
 struct Drawn {
   std::vector<strata::PairSource> sources;
   const strata::Scene* scene = nullptr;
+
+  bool in_doubles() const { return sources.front().in_doubles(); }
 };
+
+// For pairs of float32, Draws is strata::Draws; for pairs of doubles, strata::DoubleDraws.
+template <class Draws>
+using DrawnPair = BasicPair<typename Draws::Real>;
 
 // Applies the mutation to the pair; `crossed` takes triangles from `other`. The result is not finite if numbers
 // overflow.
-Pair mutated(Mutation mutation, const Pair& pair, const Pair& other, strata::Draws& draws);
+template <class Draws>
+DrawnPair<Draws> mutated(Mutation mutation, const DrawnPair<Draws>& pair, const DrawnPair<Draws>& other, Draws& draws);
 
 // A pair of one of the sources.
-Pair fresh_pair(const Drawn& drawn, strata::Draws& draws);
+template <class Draws>
+DrawnPair<Draws> fresh_pair(const Drawn& drawn, Draws& draws);
 
 // Rounds the pair into the scene: onto its grid, within its extent.
 // Returns: false if a triangle is larger, or a proper triangle is thinner, than the scene allows.
@@ -55,6 +64,8 @@ bool fit(const strata::Scene& scene, Pair& pair);
 // Applies one mutation, and stores which one in `mutation`. An attempt fails if the result is not finite, does not fit
 // the scene, or equals the pair. After four failed attempts it draws a fresh pair. `other`: null if no pair is
 // available for crossing.
-Pair next_pair(const Drawn& drawn, const Pair& pair, const Pair* other, strata::Draws& draws, Mutation& mutation);
+template <class Draws>
+DrawnPair<Draws> next_pair(const Drawn& drawn, const DrawnPair<Draws>& pair, const DrawnPair<Draws>* other,
+                           Draws& draws, Mutation& mutation);
 
 }  // namespace graze::fuzz

@@ -80,39 +80,44 @@ class Round {
   // Returns libFuzzer's next input: first the units of the corpus, then mutations of the pairs that it kept.
   std::size_t next(std::uint8_t* data, std::size_t size, const std::uint8_t* other_data, std::uint32_t seed) {
     given_ = nullptr;
-    Pair pair, other;
+    const auto put = [data](const auto& pair) {
+      std::memcpy(data, &pair, sizeof pair);
+      return sizeof pair;
+    };
     if (next_unit_ < task_.corpus->size()) {
       given_ = &(*task_.corpus)[next_unit_++];
-      pair = given_->pair;
-    } else {
-      strata::Draws draws(seed, kMutations, turn_++);
+      return visit(given_->pair, put);
+    }
+    const auto draw = [&](auto draws) {
+      DrawnPair<decltype(draws)> pair, other;
       if (size == sizeof pair) std::memcpy(&pair, data, sizeof pair);
       if (other_data) std::memcpy(&other, other_data, sizeof other);
       mutation_ = Mutation::fresh;
-      pair = size == sizeof pair ? next_pair(*task_.drawn, pair, other_data ? &other : nullptr, draws, mutation_)
-                                 : fresh_pair(*task_.drawn, draws);
-    }
-    std::memcpy(data, &pair, sizeof pair);
-    return sizeof pair;
+      return put(size == sizeof pair ? next_pair(*task_.drawn, pair, other_data ? &other : nullptr, draws, mutation_)
+                                     : fresh_pair(*task_.drawn, draws));
+    };
+    const std::uint64_t turn = turn_++;
+    return task_.drawn->in_doubles() ? draw(strata::DoubleDraws(seed, kMutations, turn))
+                                     : draw(strata::Draws(seed, kMutations, turn));
   }
 
+  std::size_t pair_size() const { return task_.drawn->in_doubles() ? sizeof(DoublePair) : sizeof(Pair); }
   bool has_units_left() const { return next_unit_ < task_.corpus->size(); }
 
   void one(const std::uint8_t* data, std::size_t size) {
-    Pair pair;
-    if (size != sizeof pair) {  // libFuzzer's own first input
+    const std::optional<AnyPair> pair = pair_from(data, size);
+    if (!pair) {  // libFuzzer's own first input
       extra_counters[0] = 1;
       return;
     }
-    std::memcpy(&pair, data, sizeof pair);
     if (given_) {
       for (const std::uint16_t f : given_->features) extra_counters[f] = 1;
       return;
     }
     if (pairs_.size() == task_.range.pairs) finish();
     const std::uint64_t index = task_.range.first + pairs_.size();
-    const PairJudge::Found& found = judge_->judge(pair, index, counts_);
-    Unit unit{pair, feedback_.features(pair, found)};
+    const PairJudge::Found& found = judge_->judge(*pair, index, counts_);
+    Unit unit{*pair, feedback_.features(*pair, found)};
     MutationCounts& counts = mutations_[static_cast<std::size_t>(mutation_)];
     ++counts.pairs;
     counts.disagreements += !found.failures.empty();
@@ -123,7 +128,7 @@ class Round {
       ++counts.units;
       units_.push_back(std::move(unit));
     }
-    pairs_.push_back({pair, mutation_});
+    pairs_.push_back({*pair, mutation_});
   }
 
   // This process ends here, whether or not something throws.
@@ -193,7 +198,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* data, std::size_t size, const std::uint8_t* other,
                                                  std::size_t other_size, std::uint8_t* out, std::size_t,
                                                  unsigned seed) {
-  if (current->has_units_left() || size != sizeof(Pair) || other_size != sizeof(Pair) ||
+  if (current->has_units_left() || size != current->pair_size() || other_size != size ||
       seed % (kMutationCount - 1) != 0)
     return 0;
   std::memcpy(out, data, size);
@@ -217,7 +222,7 @@ pid_t start_round(const RoundTask& task, const std::filesystem::path& file) {
   current = &round;
   // The seed is never 0, because libFuzzer would use the time of day instead.
   const std::uint64_t seed = fnv1a(fmt::format("{} {}", task.campaign->seed, task.range.first)) % 0xffffffffu + 1;
-  const std::string length = fmt::format("-max_len={}", sizeof(Pair)), seeded = fmt::format("-seed={}", seed);
+  const std::string length = fmt::format("-max_len={}", round.pair_size()), seeded = fmt::format("-seed={}", seed);
   // The entropic schedule is off: with a hundred features a pair, it costs more here than the lanes and the oracle.
   std::vector<const char*> words{"graze",
                                  length.c_str(),

@@ -18,7 +18,7 @@ namespace graze::fuzz {
 
 // A pair that was the first to show these features.
 struct Unit {
-  Pair pair;
+  AnyPair pair;
   Features features;
 };
 
@@ -29,7 +29,7 @@ struct MutationCounts {
 };
 
 struct FoundPair {
-  Pair pair;
+  AnyPair pair;
   Mutation mutation;
 };
 

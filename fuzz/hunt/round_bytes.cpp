@@ -14,14 +14,15 @@ using Json = nlohmann::ordered_json;
 
 Json binary(const std::string& bytes) { return Json::binary({bytes.begin(), bytes.end()}); }
 
-Json to_json(const Pair& pair) { return binary({reinterpret_cast<const char*>(&pair), sizeof pair}); }
+Json to_json(const AnyPair& pair) {
+  return visit(pair, [](const auto& own) { return binary({reinterpret_cast<const char*>(&own), sizeof own}); });
+}
 
-Pair pair_of(const Json& json) {
+AnyPair pair_of(const Json& json) {
   const auto& bytes = json.get_binary();
-  if (bytes.size() != sizeof(Pair)) throw Damaged("a pair's length");
-  Pair pair;
-  std::memcpy(&pair, bytes.data(), sizeof pair);
-  return pair;
+  const std::optional<AnyPair> pair = pair_from(bytes.data(), bytes.size());
+  if (!pair) throw Damaged("a pair's length");
+  return *pair;
 }
 
 Mutation mutation_of(const Json& json) {
@@ -81,7 +82,20 @@ std::string hash_of(const std::string& bytes, std::uint64_t campaign) {
   return {reinterpret_cast<const char*>(&hash), sizeof hash};
 }
 
+template <class Real>
+AnyPair copied(const void* bytes) {
+  BasicPair<Real> pair;
+  std::memcpy(&pair, bytes, sizeof pair);
+  return pair;
+}
+
 }  // namespace
+
+std::optional<AnyPair> pair_from(const void* bytes, std::size_t size) {
+  if (size == sizeof(Pair)) return copied<float>(bytes);
+  if (size == sizeof(DoublePair)) return copied<double>(bytes);
+  return std::nullopt;
+}
 
 bool are_of_result(const std::string& bytes) {
   const Json json = Json::from_cbor(bytes, true, false);

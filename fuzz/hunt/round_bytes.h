@@ -10,6 +10,9 @@
 
 namespace graze::fuzz {
 
+// The pair of the type that has this size; nothing for other sizes.
+std::optional<AnyPair> pair_from(const void* bytes, std::size_t size);
+
 std::string error_bytes(const std::string& what, bool apart);
 std::string result_bytes(const RoundResult& result);
 bool are_of_result(const std::string& bytes);  // whether result_bytes or error_bytes made them

@@ -115,6 +115,7 @@ Json add_meshes(const Json& spec, Collected& to) {
 // Adds the scene and its meshes, which it names relative to its folder.   Returns: its name.
 std::string add_scene(const Json& recorded, Collected& to) {
   const NamedScene scene = recorded_scene(recorded);
+  sources_of(scene, 0, 1, {});  // which notices a mesh that changed
   const fs::path file = scene.file;
   std::vector<fs::path> inputs(scene.scene.meshes.files.begin(), scene.scene.meshes.files.end());
   if (!scene.scene.meshes.poses.empty()) inputs.emplace_back(scene.scene.meshes.poses);

@@ -230,7 +230,7 @@ TEST(Failures, OfACaseAreAllItsWrongAlgorithms) {
   EXPECT_NE(found[0].seen, found_in_cases({{kShifted}}, build, liars.lanes, liars.decide())[0].seen);
 }
 
-// An exact lane has no marks in the file; the truth is its record.
+// Where the file has no mark of an exact lane, the truth is its record.
 TEST_F(Regression, AnExactLaneThatIsWrongIsAChange) {
   for (const Lane& lane : lanes()) {
     if (lane.id == "exact/f32/cpu") liars.lanes.push_back(&lane);
@@ -241,6 +241,18 @@ TEST_F(Regression, AnExactLaneThatIsWrongIsAChange) {
   const Verified found = verify(corpus, liars.lanes, liars.decide());
   ASSERT_EQ(found.changes.size(), 1u);
   EXPECT_TRUE(names(found.changes[0].what, {"exact/f32/cpu", "intersects", "disjoint (wrong)"}));
+}
+
+TEST_F(Regression, ARecordOfAnExactLaneThatIsNotTheTruthIsAChange) {
+  for (const Lane& lane : lanes()) {
+    if (lane.id == "exact/f32/cpu") liars.lanes.push_back(&lane);
+  }
+  for (const char mark : {'?', '-', '~'}) {
+    corpus.begin()->second.marks["exact/f32/cpu"] = mark;
+    const Verified found = verify(corpus, liars.lanes, liars.decide());
+    ASSERT_EQ(found.changes.size(), 1u) << mark;
+    EXPECT_TRUE(names(found.changes[0].what, {"exact/f32/cpu", "intersects (right)"}));
+  }
 }
 
 }  // namespace

@@ -247,7 +247,8 @@ void join_rounds(const std::vector<StoreSpec>& stores, const std::vector<std::ui
   write_whole(merged_rounds_file(campaign.directory),
               round_bytes(found->all, hunt_checksum(campaign.spec, campaign.build)));
   write_whole(campaign.directory / "hunt.json", found->told().dump(1) + "\n");
-  campaign.sources[0].pair = [found](std::uint64_t index) { return found->all.kept.at(index).pair; };
+  const strata::PairSource& source = campaign.sources[0];
+  campaign.sources = {source_of_hunt(source.pairs, strata::stratum_in_doubles(source.id).has_value(), found)};
 }
 
 Outcome write_results(const Campaign& campaign, Store& store, bool complete) {

@@ -203,6 +203,8 @@ class Arrays(unittest.TestCase):
             (ValueError, "float32", lambda: graze.Pair([0.1] * 18)),
             (ValueError, "1e39", lambda: graze.Pair("1e39" + " 0" * 17)),
             (ValueError, "no lane", lambda: graze.verdicts("no/f32/cpu", drawn)),
+            (ValueError, "no lane", lambda: graze.verdicts("exact/f32/cpu/rel:1", drawn)),
+            (ValueError, "no twin", lambda: graze.verdicts("moller_1997/f32/cuda-fma/bound", drawn)),
             (ValueError, "policy", lambda: graze.verdicts("moller_1997/f32/cpu/rel:x", drawn)),
             (ValueError, "reference", lambda: graze.meets(drawn[:, 0], drawn[:, 1])),
             (ValueError, "either", lambda: graze.given(either="sometimes")),

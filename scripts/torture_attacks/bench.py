@@ -45,9 +45,23 @@ class Bench:
 
     def campaign(self, name):
         """The arguments of the campaign of that name, or of the hunt, except --out."""
-        seed = str(random.Random(f"{self.seed} {name}").randrange(1 << 32))
+        drawn = random.Random(f"{self.seed} {name}")
+        seed = str(drawn.randrange(1 << 32))
         if name == "hunt":
-            return ["hunt", "--runs", "12000", "--seed", seed, "--lanes", "interval_overlap/f32/cpu", "--threads", "2"]
+            coordinates = drawn.choice(["f32", "f64"])
+            return [
+                "hunt",
+                "--runs",
+                "12000",
+                "--seed",
+                seed,
+                "--coordinates",
+                coordinates,
+                "--lanes",
+                "interval_overlap/f32/cpu",
+                "--threads",
+                "2",
+            ]
         many = "near_edge_edge,degenerate,uniform,lattice,near_vertex_face,coplanar_wide"
         pairs, strata = {
             "large": ("240000", many),

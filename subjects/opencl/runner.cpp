@@ -142,7 +142,8 @@ class OnDevice {
 
   bool has(bool in_double) const { return kernels_[in_double].id != nullptr; }
 
-  // Compiles the subject for float or double. Some devices compile when a kernel first runs, so it runs once.
+  // Compiles the subject for float or double. Some devices compile when a kernel first runs, so it runs once, for no
+  // pair: a call of the subject could fail.
   // Returns: the first error of the source; empty if there is none.
   std::string compile(bool in_double) {
     if (in_double && !device_.has_double()) return device_.text(CL_DEVICE_NAME) + " has no double";
@@ -165,7 +166,9 @@ class OnDevice {
                                        &kernel.group_size, nullptr),
           "clGetKernelWorkGroupInfo");
     kernel.group_size = std::min<std::size_t>(kernel.group_size, 64);
-    answer(std::vector<double>(18).data(), 1, in_double);
+    launch(0, in_double);
+    cl_int unread = 0;
+    read(&unread, sizeof unread);  // waits
     return "";
   }
 
@@ -173,19 +176,10 @@ class OnDevice {
   std::vector<cl_int> answer(const void* pairs, cl_uint count, bool in_double) const {
     constexpr cl_int kNone = 2;  // stays if the kernel does not run
     std::vector<cl_int> answers(count, kNone);
-    const Kernel& kernel = kernels_[in_double];
-    const std::size_t bytes = 18 * (in_double ? sizeof(double) : sizeof(float)) * count;
-    const std::size_t items = (count + kernel.group_size - 1) / kernel.group_size * kernel.group_size;
-    write(pairs_, pairs, bytes);
+    write(pairs_, pairs, 18 * (in_double ? sizeof(double) : sizeof(float)) * count);
     write(answers_, answers.data(), count * sizeof(cl_int));
-    check(cl->clSetKernelArg(kernel.id, 0, sizeof pairs_, &pairs_), "clSetKernelArg");
-    check(cl->clSetKernelArg(kernel.id, 1, sizeof answers_, &answers_), "clSetKernelArg");
-    check(cl->clSetKernelArg(kernel.id, 2, sizeof count, &count), "clSetKernelArg");
-    check(cl->clEnqueueNDRangeKernel(queue_, kernel.id, 1, nullptr, &items, &kernel.group_size, 0, nullptr, nullptr),
-          "clEnqueueNDRangeKernel");
-    check(cl->clEnqueueReadBuffer(queue_, answers_, CL_TRUE, 0, count * sizeof(cl_int), answers.data(), 0, nullptr,
-                                  nullptr),
-          "clEnqueueReadBuffer");
+    launch(count, in_double);
+    read(answers.data(), count * sizeof(cl_int));
     if (std::any_of(answers.begin(), answers.end(), [](cl_int said) { return said < -1 || said > 1; }))
       throw Failure(1, "the kernel left a pair without an answer");
     return answers;
@@ -196,6 +190,23 @@ class OnDevice {
     cl_kernel id = nullptr;
     std::size_t group_size = 0;  // always the same, because some devices compile for each size
   };
+
+  // Starts the kernel on the pairs that were written, by whole groups.
+  void launch(cl_uint count, bool in_double) const {
+    const Kernel& kernel = kernels_[in_double];
+    const std::size_t groups = std::max<std::size_t>(1, (count + kernel.group_size - 1) / kernel.group_size);
+    const std::size_t items = groups * kernel.group_size;
+    check(cl->clSetKernelArg(kernel.id, 0, sizeof pairs_, &pairs_), "clSetKernelArg");
+    check(cl->clSetKernelArg(kernel.id, 1, sizeof answers_, &answers_), "clSetKernelArg");
+    check(cl->clSetKernelArg(kernel.id, 2, sizeof count, &count), "clSetKernelArg");
+    check(cl->clEnqueueNDRangeKernel(queue_, kernel.id, 1, nullptr, &items, &kernel.group_size, 0, nullptr, nullptr),
+          "clEnqueueNDRangeKernel");
+  }
+
+  void read(void* answers, std::size_t bytes) const {
+    check(cl->clEnqueueReadBuffer(queue_, answers_, CL_TRUE, 0, bytes, answers, 0, nullptr, nullptr),
+          "clEnqueueReadBuffer");
+  }
 
   void write(cl_mem to, const void* from, std::size_t bytes) const {
     check(cl->clEnqueueWriteBuffer(queue_, to, CL_TRUE, 0, bytes, from, 0, nullptr, nullptr), "clEnqueueWriteBuffer");

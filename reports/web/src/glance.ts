@@ -64,7 +64,8 @@ export function glance(report: Report, costs: Costs | null) {
       return { name: row.name, group: id, x: x(share), words: `${row.name}\n${id} pairs: ${in_full(share)}` };
     }),
   );
-  const pair = `${cost_ground(report) === null ? 'a pair' : 'a general pair'}, many pairs a call`;
+  const of_type = report.groups.some(({ id }) => id === 'general/f64') ? ' of float32' : '';
+  const pair = `${cost_ground(report) === null ? 'a pair' : `a general pair${of_type}`}, many pairs a call`;
   const title = `Wrong verdicts of each lane, by kind of pair${rows.some((row) => row.cost) ? `, and its cost for ${pair}` : ''}`;
   const element = h('div', { class: 'chart' });
   const said = rows

@@ -306,14 +306,13 @@ std::string sentence(const Explanation& explanation, const AlgorithmInfo* subjec
     }
   }
   const Lane& lane = *first->lane;
-  const std::string also = others.empty() ? "" : "; also wrong: " + others;
-  if (first->by_experiment())
-    return fmt::format("{}/{} ({}) says {}, but {}: {}{}.", lane.info->id, name(lane.scalar), same,
-                       name(first->verdict), phrase(explanation.pair, explanation.truth), reason_by_experiment(*first),
-                       also);
-  return fmt::format("{}/{} ({}) says {}, but {}: {}; {}{}.", lane.info->id, name(lane.scalar), same,
-                     name(first->verdict), phrase(explanation.pair, explanation.truth), reason(*first) + doubt(*first),
-                     remedy(*first), also);
+  const bool stored = lane.scalar == Scalar::f32 && !explanation.pair.floats && first->cause != Cause::stored;
+  const std::string also = others.empty() ? "" : "; also wrong: " + others,
+                    why = first->by_experiment() ? reason_by_experiment(*first)
+                                                 : reason(*first) + doubt(*first) + "; " + remedy(*first);
+  return fmt::format("{}/{} ({}) says {}, but {}: {}{}{}.", lane.info->id, name(lane.scalar), same,
+                     name(first->verdict), phrase(explanation.pair, explanation.truth),
+                     stored ? "on the pair as float32 stores it, " : "", why, also);
 }
 
 namespace {

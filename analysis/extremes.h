@@ -21,7 +21,7 @@ inline constexpr double kAsRight = 2;            // a lane that errs at most so 
 // What is shown in one direction from the origin.
 struct RightSide {
   int right = 0;             // as right up to this exponent: the last before the first that is not shown to be
-  int last = 0;              // the last exponent with pairs
+  int last = 0;              // the last exponent with pairs, even if they are too few
   std::optional<int> worse;  // the first exponent at which the lane is shown to be less right
 };
 

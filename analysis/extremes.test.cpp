@@ -50,7 +50,8 @@ TEST(RightRange, LeavesOutFewPairs) {
   ASSERT_TRUE(range);
   EXPECT_EQ(range->origin.exponent, 6);
   EXPECT_EQ(range->up.right, 8);
-  EXPECT_EQ(range->up.last, 8);
+  EXPECT_EQ(range->up.last, 9);
+  EXPECT_EQ(range->down.last, 5);
   EXPECT_FALSE(range->up.worse);
 }
 

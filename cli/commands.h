@@ -127,8 +127,9 @@ strata::SceneSources drawn_from_scene(const std::string& file, std::uint64_t see
 strata::SceneSources drawn(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
                            const std::vector<std::string>& globs, PairTypes types = PairTypes::f32);
 
-// Adds --coordinates to a verb that draws pairs of either type.
-void add_coordinates_option(CLI::App& command, PairTypes& types);
+// Adds --coordinates to a verb that draws pairs of either type, or of both at once.
+enum class OfBothTypes { no, yes };
+void add_coordinates_option(CLI::App& command, PairTypes& types, OfBothTypes both = OfBothTypes::yes);
 // Throws: UsageError if doubles are to be drawn from a scene.
 void expect_float32_scene(PairTypes types);
 

@@ -578,6 +578,20 @@ TEST_F(Doubles, VerdictsOfOnesOwnCodeAreComparedOnThem) {
   EXPECT_GT(mended, 0u);
 }
 
+// A lane in float decides what float32 stores, and what is said of its verdict is said of that pair.
+TEST_F(Doubles, AFloatLanesCauseIsOfTheStoredPair) {
+  std::ofstream(shell.folder / "p.pairs")
+      << "0 1.1920928955078125 0 1 0 0 -1 0 0 0 1.1920928359031677 1 0 1.1920928955078125 0 0 1.1920928955078125 -1 | "
+         "coordinates=f64\n";
+  const std::string explain = "graze explain p.pairs --lanes 'moller_1997/*/cpu'";
+  const Ran json = shell(explain + " --json"), told = shell(explain);
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_NE(json.out.find(": on the pair as float32 stores it, the algorithm itself is wrong here"), std::string::npos)
+      << json.out;
+  EXPECT_NE(told.out.find("on the stored pair: no number of"), std::string::npos) << told.out;
+  EXPECT_NE(shell("graze check p.pairs --lanes 'exact/f64/*'").out.find("exact/f64"), std::string::npos);
+}
+
 TEST_F(Doubles, AreSearchedByAHunt) {
   const std::string hunt =
       "graze hunt --coordinates f64 --runs 1500 --seed 3 --lanes 'moller_1997/*/cpu,exact/*/cpu' --out h";
@@ -601,7 +615,7 @@ TEST_F(Doubles, AreSearchedByAHunt) {
   const std::string before = contents(shell.folder / "h/summary.json");
   expect_done(hunt + " && graze corpus add h --corpus k --top 3 --lanes '*/cpu'");
   EXPECT_EQ(contents(shell.folder / "h/summary.json"), before);
-  expect_error("graze hunt --coordinates both --out b", 2, {"hunt", "--coordinates"});
+  expect_error("graze hunt --coordinates both --out b", 2, {"--coordinates", "both"});
   expect_error("echo 'extent = [[0, 1], [0, 1], [0, 1]]' > s.toml; graze hunt --coordinates f64 --scene s.toml --out b",
                2, {"--coordinates", "scenes"});
 }

@@ -95,8 +95,8 @@ std::string free_coordinates(const analysis::LaneExplanation& lane) {
   return names.empty() ? " none" : all ? " each of them, alone" : names;
 }
 
-std::string lane_text(const analysis::LaneExplanation& lane, const analysis::LaneExplanation* before,
-                      const reports::Screen& screen) {
+std::string lane_text(const AnyPair& pair, const analysis::LaneExplanation& lane,
+                      const analysis::LaneExplanation* before, const reports::Screen& screen) {
   std::string text;
   const auto line = [&](int indent, const std::string& words) {
     text += reports::wrapped(words, screen.columns, indent, indent + 2);
@@ -134,7 +134,8 @@ std::string lane_text(const analysis::LaneExplanation& lane, const analysis::Lan
     text += steps_text(lane, screen);
   }
   contractions();
-  line(4, fmt::format("mantissa bits from which on it is right: {}",
+  const bool stored = lane.lane->scalar == Scalar::f32 && !pair.floats;
+  line(4, fmt::format("mantissa bits from which on it is right{}: {}", stored ? " on the stored pair" : "",
                       lane.cause == analysis::Cause::logic ? "no number of bits helps"
                       : lane.bits_needed == 0              ? fmt::format("none up to {} is known", oracle::kMostBits)
                                                            : fmt::format("{}", lane.bits_needed)));
@@ -210,7 +211,7 @@ std::vector<std::string> details_of(const fuzz::SelectedLanes& under_test, const
   std::vector<std::string> blocks = {'\n' + pair.str(), side_by_side(under_test.lanes, explanation.pair, screen)};
   const analysis::LaneExplanation* before = nullptr;
   for (const analysis::LaneExplanation& lane : explanation.lanes) {
-    blocks.push_back('\n' + lane_text(lane, before, screen));
+    blocks.push_back('\n' + lane_text(explanation.pair, lane, before, screen));
     if (lane.lane->variant == Variant::cpu) before = &lane;
   }
   return blocks;

@@ -14,7 +14,6 @@
 #include "cli/results.h"
 #include "cli/screen.h"
 #include "cli/shard_option.h"
-#include "core/error.h"
 #include "core/text.h"
 #include "fuzz/files.h"
 #include "fuzz/hunt/hunt.h"
@@ -53,7 +52,7 @@ std::vector<std::string> details(const fuzz::HuntProgress& progress) {
 void print_mutations(const std::filesystem::path& directory) {
   const Json told = Json::parse(fuzz::read_whole(directory / "hunt.json"));
   reports::TextTable table(
-      {{"mutation", reports::Align::left}, {"pairs"}, {"some lane is wrong"}, {"kept to continue"}, {"new kinds"}});
+      {{"mutation", reports::Align::left}, {"pairs"}, {"some lane is wrong"}, {"new in its round"}, {"new kinds"}});
   for (const Json& row : told.at("mutations")) {
     const auto count = [&](const char* what) { return reports::grouped(row.at(what).get<std::uint64_t>()); };
     table.add({row.at("mutation").get<std::string>(), count("pairs"), count("disagreements"), count("units"),
@@ -70,8 +69,6 @@ int hunt(const HuntOptions& options) {
         "graze hunt is not in this build, which found no libFuzzer of clang; install libclang-rt-14-dev and build "
         "again");
   }
-  if (options.coordinates == PairTypes::both)
-    throw UsageError("a hunt searches pairs of one type; give --coordinates f32 or f64, and run one hunt for each");
   if (!options.scene.empty()) expect_float32_scene(options.coordinates);
   LaneOptions lanes = options.lanes;
   lanes.executor = fuzz::Executor::twin;
@@ -165,7 +162,7 @@ void add_hunt(CLI::App& app, int& status) {
       "Part of the search to run: the K-th of N, with its share of the runs, in a directory of its own. `graze merge` "
       "joins the parts by kind of failure");
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to start from");
-  add_coordinates_option(*command, options->coordinates);
+  add_coordinates_option(*command, options->coordinates, OfBothTypes::no);
   add_lane_options(*command, options->lanes, Executors::twins);
   add_scene_option(*command, options->scene);
   command->add_flag("--json", options->json, "Print the summary as JSON");

@@ -203,15 +203,16 @@ strata::SceneSources drawn_from_scene(const std::string& file, std::uint64_t see
   return drawn;
 }
 
-void add_coordinates_option(CLI::App& command, PairTypes& types) {
+void add_coordinates_option(CLI::App& command, PairTypes& types, OfBothTypes both) {
   static_assert(static_cast<int>(PairTypes::f32) == 0 && static_cast<int>(PairTypes::f64) == 1 &&
                 static_cast<int>(PairTypes::both) == 2);
   command
       .add_option("--coordinates", types,
                   "Coordinates of the pairs. f64: doubles, which lanes in double decide as they are, and lanes in "
                   "float as float32 stores them; see docs/double.md")
-      ->transform(one_of({"f32", "f64", "both"}, Chosen::place))
-      ->option_text("f32|f64|both")
+      ->transform(both == OfBothTypes::yes ? one_of({"f32", "f64", "both"}, Chosen::place)
+                                           : one_of({"f32", "f64"}, Chosen::place))
+      ->option_text(both == OfBothTypes::yes ? "f32|f64|both" : "f32|f64")
       ->default_str("f32");
 }
 

@@ -74,13 +74,19 @@ std::string costs_in_words(const CallCosts& costs) {
          not_measured;
 }
 
-std::string exact_in_words(const Lane& exact, const reports::CampaignCounts& counts) {
+// own: the user's lane.
+std::string exact_in_words(const Lane& exact, const reports::ReportLane& own, const reports::CampaignCounts& counts) {
   const std::uint64_t not_right =
       counts.total.lanes[static_cast<std::size_t>(counts.find(exact.lane_name()))].not_right();
   return fmt::format(
-      "Instead: {} is {}.", exact.id,
+      "Instead: {} is {}{}.", exact.id,
       not_right == 0 ? fmt::format("right on all {} pairs", reports::grouped(counts.total.pairs))
-                     : fmt::format("not right on {}, which must never happen", reports::counted(not_right, "pair")));
+                     : fmt::format("not right on {}, which must never happen", reports::counted(not_right, "pair")),
+      own.name.scalar == name(Scalar::f64)
+          ? fmt::format(", which are of float32; of pairs of doubles {} is right, and `graze fuzz --coordinates f64` "
+                        "draws them",
+                        fuzz::kExactDoubles)
+          : "");
 }
 
 std::string left_out_in_words(const std::vector<strata::LeftOut>& left_out) {
@@ -236,7 +242,7 @@ std::string text_of(const Answer& answer, const reports::Screen& screen) {
     if (!answer.epsilon.why_not.empty()) after.push_back(answer.epsilon.why_not);
     if (!answer.epsilon.tune.empty()) after.push_back("Tune it: " + answer.epsilon.tune);
   }
-  after.push_back(exact_in_words(*answer.costs.exact.lane, counts));
+  after.push_back(exact_in_words(*answer.costs.exact.lane, counts.lanes[lane], counts));
   const std::string costs = costs_in_words(answer.costs), &dir = answer.directory;
   after.push_back(costs);
   if (std::string text = not_covered_text(answer.summary["spec"]); !text.empty()) {

@@ -194,7 +194,10 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
   if (needs_device && !under_test.device) throw std::runtime_error("expected a CUDA device, found: " + why_not);
   for (const Lane& lane : lanes()) {
     if (!matches_any(globs, lane.id)) continue;
-    if (is_exact_on_doubles(lane) && std::find(globs.begin(), globs.end(), lane.id) == globs.end()) continue;
+    const auto names_it = [&](const std::string& glob) {
+      return glob.starts_with("exact/f64/") && matches_any({glob}, lane.id);
+    };
+    if (is_exact_on_doubles(lane) && std::none_of(globs.begin(), globs.end(), names_it)) continue;
     const std::string why = why_unavailable(lane, under_test.device.get(), why_not);
     if (why.empty()) {
       under_test.lanes.push_back(&lane);

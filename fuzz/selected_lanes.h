@@ -50,7 +50,7 @@ inline constexpr char kLeaveOut = '!';
 // Adds the exact lane to the patterns, unless one of them selects it or leaves it out. If none selects lanes, all are
 // selected already.
 inline constexpr const char* kExactLane = "exact/f32/cpu";
-// The exact lanes of doubles run only on pairs of doubles, or where they are named in full.
+// The exact lanes of doubles run only on pairs of doubles, or where a pattern begins with "exact/f64/".
 inline constexpr const char* kExactDoubles = "exact/f64/cpu";
 inline bool is_exact_on_doubles(const Lane& lane) { return lane.exact && lane.scalar == Scalar::f64; }
 std::vector<std::string> with_exact_lane(std::vector<std::string> patterns);

@@ -165,8 +165,8 @@ ForeignCall foreign_call(const Lane& lane, const AnyPair& pair, std::string_view
   }
   if (opened.kind == "command") {
     call.command = plain + end;
-    call.decide =
-        fmt::format(R"(// The program is asked about this pair alone, by its line, in the folder in which it was tested.
+    call.decide = fmt::format(
+        R"(// The program is asked about this pair alone, by its line, in the folder in which it was tested.
 static int decide(const {}*, const {}*) {{
   FILE* program = popen({},
                         "r");
@@ -181,9 +181,9 @@ static int decide(const {}*, const {}*) {{
   return said == '?' ? -1 : said - '0';
 }}
 )",
-                    real, real,
-                    cpp_string("cd " + shell_word(std::filesystem::current_path().string()) + " && echo '" +
-                               hex_line(analysis::seen_by(lane, pair)) + "' | (" + opened.wanted.what.substr(4) + ")"));
+        real, real,
+        cpp_string("cd " + shell_word(std::filesystem::current_path().string()) + " && echo '" +
+                   hex_line(analysis::seen_by(lane, pair)) + "' | (" + opened.wanted.what.substr(4) + "\n)"));
     return call;
   }
   const std::string file = opened.file.string();

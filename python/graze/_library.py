@@ -135,7 +135,7 @@ def floats(array: Any, shape: tuple[int, ...], what: str, doubles: bool = True) 
         found = found[np.newaxis]
     if found.ndim != len(shape) + 1 or found.shape[1:] != shape:
         raise ValueError(f"{what}: the shape is {found.shape}, but (n, {', '.join(map(str, shape))}) is needed")
-    return np.ascontiguousarray(found)
+    return np.require(found, requirements=["C", "ALIGNED"])
 
 
 def count_of(number: Any, what: str) -> int:

@@ -202,6 +202,7 @@ class Arrays(unittest.TestCase):
             (ValueError, "18 numbers", lambda: graze.Pair("1 2 3")),
             (ValueError, "float32", lambda: graze.Pair([0.1] * 18)),
             (ValueError, "1e39", lambda: graze.Pair("1e39" + " 0" * 17)),
+            (ValueError, "1e400", lambda: graze.Pair("1e400" + " 0" * 17)),
             (ValueError, "no lane", lambda: graze.verdicts("no/f32/cpu", drawn)),
             (ValueError, "no lane", lambda: graze.verdicts("exact/f32/cpu/rel:1", drawn)),
             (ValueError, "no twin", lambda: graze.verdicts("moller_1997/f32/cuda-fma/bound", drawn)),
@@ -211,6 +212,11 @@ class Arrays(unittest.TestCase):
         ):
             with self.assertRaisesRegex(error, words):
                 call()
+        records = np.zeros(4, np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")]))
+        records["corners"] = drawn[:4, 0]
+        self.assertTrue(
+            (graze.meets(records["corners"][1], records["corners"]) == graze.meets(drawn[1, 0], drawn[:4, 0])).all()
+        )
         for empty in (drawn[:0], np.empty((0, 2, 3, 3), np.float32)):
             self.assertEqual(len(graze.truth(empty)), 0)
         self.assertEqual(len(graze.self_intersections(drawn[:0, 0])), 0)

@@ -109,8 +109,8 @@ def which(r):
         f"In float64 `separating_axes` errs least, on {share('general', axes)} of hard general pairs, against "
         f"{percent(others[0], pairs)} to {percent(others[-1], pairs)} of the other {word(len(others))} published "
         "tests",
-        f"The default campaign asks every test on {count(wrong_in(r, 'all', axes)[1])} pairs, most of them near "
-        "contact by design, so the shares compare tests and are not those of your scene. On `uniform`, where "
+        f"The default campaign asked every test on {count(wrong_in(r, 'all', axes)[1])} pairs of nineteen strata "
+        "(`thesis_special` and `nested` came later), most of them near contact by design, so the shares compare tests and are not those of your scene. On `uniform`, where "
         f"triangles are random, {word(len(right))} of {word(len(both))} lanes (a test in a precision) are right on "
         f"all {count(wrong_in(r, 'uniform', axes)[1])} pairs (95 %: wrong on at most "
         f"{at_most_percent(wrong_in(r, 'uniform', axes)[1])}); `projected_sat` is wrong on "

@@ -306,7 +306,7 @@ std::string sentence(const Explanation& explanation, const AlgorithmInfo* subjec
     }
   }
   const Lane& lane = *first->lane;
-  const bool stored = lane.scalar == Scalar::f32 && !explanation.pair.floats && first->cause != Cause::stored;
+  const bool stored = decides_stored(lane, explanation.pair) && first->cause != Cause::stored;
   const std::string also = others.empty() ? "" : "; also wrong: " + others,
                     why = first->by_experiment() ? reason_by_experiment(*first)
                                                  : reason(*first) + doubt(*first) + "; " + remedy(*first);

@@ -59,8 +59,7 @@ std::string_view name(Contraction rule) {
 }
 
 AnyPair seen_by(const Lane& lane, const AnyPair& pair) {
-  if (pair.floats || lane.scalar == Scalar::f64) return pair;
-  return stored_in_float32(pair.doubles);
+  return decides_stored(lane, pair) ? stored_in_float32(pair.doubles) : pair;
 }
 
 std::vector<Verdict> verdicts_seen_by(const Lane&, const DecideBlock& block, std::span<const Pair> pairs) {

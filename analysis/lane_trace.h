@@ -23,13 +23,14 @@ struct Replay {
   Trace<double> run;
 };
 
-// The pair that the lane decides: of doubles, lanes in float32 decide what float32 stores of it.
+// Whether the lane decides what float32 stores of the pair, not the pair itself.
+inline bool decides_stored(const Lane& lane, const AnyPair& pair) { return lane.scalar == Scalar::f32 && !pair.floats; }
+
+// The pair that the lane decides.
 AnyPair seen_by(const Lane& lane, const AnyPair& pair);
 
 // Whether it is an exact lane that decides the pair itself, not what float32 stores of it.
-inline bool is_never_wrong(const Lane& lane, const AnyPair& pair) {
-  return lane.exact && (pair.floats || lane.scalar == Scalar::f64);
-}
+inline bool is_never_wrong(const Lane& lane, const AnyPair& pair) { return lane.exact && !decides_stored(lane, pair); }
 
 // The lane's verdicts on the pairs, by its own block or its twin's; each on what it sees of the pair.
 std::vector<Verdict> verdicts_seen_by(const Lane& lane, const DecideBlock& block, std::span<const Pair> pairs);

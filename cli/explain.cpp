@@ -134,7 +134,7 @@ std::string lane_text(const AnyPair& pair, const analysis::LaneExplanation& lane
     text += steps_text(lane, screen);
   }
   contractions();
-  const bool stored = lane.lane->scalar == Scalar::f32 && !pair.floats;
+  const bool stored = analysis::decides_stored(*lane.lane, pair);
   line(4, fmt::format("mantissa bits from which on it is right{}: {}", stored ? " on the stored pair" : "",
                       lane.cause == analysis::Cause::logic ? "no number of bits helps"
                       : lane.bits_needed == 0              ? fmt::format("none up to {} is known", oracle::kMostBits)

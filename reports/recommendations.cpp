@@ -215,13 +215,13 @@ Sentence least_wrong_lane(const CampaignCounts& counts, const Costs* costs) {
   const StratumCounts& total = counts.total;
   const auto less = [&](std::size_t l, std::size_t r) { return not_right(counts, l) < not_right(counts, r); };
   const std::size_t least = *std::min_element(lanes.begin(), lanes.end(), less);
-  const bool any_declines = !declining(counts, lanes).empty();
   // Pairs that all the lanes given decide, at least.
   const auto decided = [&](const LaneIndices& of) {
     std::uint64_t pairs = total.pairs;
     for (const std::size_t l : of) pairs = std::min(pairs, total.pairs - total.lanes[l].declined);
     return pairs;
   };
+  const bool any_declines = decided(lanes) < total.pairs;
   const auto bound = [](std::uint64_t pairs) { return rate_words(bound_of_none(pairs), Bound::upper); };
   if (std::all_of(lanes.begin(), lanes.end(), [&](std::size_t l) { return total.wrong(l) == 0; })) {
     const std::uint64_t pairs = decided(lanes);

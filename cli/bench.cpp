@@ -100,19 +100,21 @@ std::string table_of(const Bench& bench, std::size_t group) {
 // Describes the device's limits and the speed of the exact lane.
 std::string shares(const Bench& bench) {
   std::string text;
-  for (const char* data : {"resident", "host"}) {
-    const BenchRow* best = nullptr;
-    for (const BenchRow& row : bench.rows) {
-      if (row.lane == "exact" && row.mode == "all" && row.executor == "one GPU" && row.data == data &&
-          (!best || row.rate() > best->rate()))
-        best = &row;
+  for (const auto& [lane, size] : {std::pair(kExact, 36), {kExactInDoubles, 72}}) {
+    for (const char* data : {"resident", "host"}) {
+      const BenchRow* best = nullptr;
+      for (const BenchRow& row : bench.rows) {
+        if (row.lane == lane && row.mode == "all" && row.executor == "one GPU" && row.data == data &&
+            (!best || row.rate() > best->rate()))
+          best = &row;
+      }
+      if (!best) continue;
+      const bool resident = best->data == "resident";
+      const double limit = resident ? bench.machine.copy_bytes_per_second : bench.machine.to_device_bytes_per_second;
+      text += fmt::format("{}, one GPU, {}: at most {:.1f} x 10^9 triangles/s, {:.1f} GB/s, {:.0f} % of {}\n", lane,
+                          data, best->rate() / 1e9, best->rate() * size / 1e9, best->rate() * size * 100 / limit,
+                          resident ? "a copy within it" : "a copy from pinned memory");
     }
-    if (!best) continue;
-    const bool resident = best->data == "resident";
-    const double limit = resident ? bench.machine.copy_bytes_per_second : bench.machine.to_device_bytes_per_second;
-    text += fmt::format("exact, one GPU, {}: at most {:.1f} x 10^9 triangles/s, {:.1f} GB/s, {:.0f} % of {}\n", data,
-                        best->rate() / 1e9, best->rate() * 36 / 1e9, best->rate() * 3600 / limit,
-                        resident ? "a copy within it" : "a copy from pinned memory");
   }
   const cuda::KernelNeeds& needs = bench.machine.exact_query;
   if (needs.threads > 0)

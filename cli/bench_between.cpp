@@ -49,7 +49,7 @@ void measure_between(const std::vector<std::string>& files, Bench& bench,
   };
   std::vector<Way> ways;
   for (const char* executor : {"one-core", "all-cores"}) {
-    Decider decider = exact_decider(executor, false);
+    Decider decider = exact_decider(executor);
     if (decider.threads == 1 && executor == std::string("all-cores")) continue;
     ways.push_back({"exact", decider});
     decider.decide = by_cgal;
@@ -58,7 +58,7 @@ void measure_between(const std::vector<std::string>& files, Bench& bench,
     ways.push_back({"boxes alone", decider});
   }
   std::string why_not;
-  if (cuda::count_query_devices(why_not) > 0) ways.push_back({"exact", exact_decider("one-gpu", false)});
+  if (cuda::count_query_devices(why_not) > 0) ways.push_back({"exact", exact_decider("one-gpu")});
 
   const std::size_t group = bench.rows.empty() ? 0 : bench.rows.back().group + 1;
   std::vector<FoundPair> exact;

@@ -29,7 +29,7 @@ using query::Triangle;
 constexpr std::uint64_t kDrawn = 1'000'000;   // distinct triangles; larger arrays repeat them
 constexpr std::uint64_t kInTree = 1'000'000;  // more triangles would take minutes and gigabytes
 constexpr std::uint64_t kByLanes = 1'000'000, kByCudaLanes = 10'000'000;  // for inexact lanes: they are slower
-constexpr std::uint64_t kOnOneCore = 100'000'000;
+constexpr std::uint64_t kOnOneCore = 100'000'000, kInDoubles = 100'000'000;
 constexpr int kTimes = 3;
 constexpr Triangle kThesis = {2, -2, 4, 1, 5, -2, 1, -3, -3};
 
@@ -96,7 +96,8 @@ class Measuring {
   void measure(const Array& array) {
     const graze_triangles host = query::rows_of(std::span<const Triangle>(array.triangles));
     std::vector<std::uint8_t> exact(array.triangles.size());
-    by_executors(array, host, "all", "exact", exact, nullptr);
+    by_executors(array, host, "all", kExact, exact, nullptr);
+    if (host.count <= kInDoubles) by_executors_in_doubles(array, exact);
     for (const std::string& lane : options_.lanes) {
       const std::uint64_t most = is_cuda(lane) && devices_ > 0 ? kByCudaLanes : kByLanes;
       if (host.count <= most)
@@ -107,7 +108,7 @@ class Measuring {
     if (array.name == "thesis") {
       const Array with_hit = any_array(array.triangles.size());
       std::vector<std::uint8_t> none;
-      by_executors(with_hit, query::rows_of(std::span<const Triangle>(with_hit.triangles)), "any", "exact", none,
+      by_executors(with_hit, query::rows_of(std::span<const Triangle>(with_hit.triangles)), "any", kExact, none,
                    nullptr);
     }
     if (array.triangles.size() <= kInTree) {
@@ -119,15 +120,36 @@ class Measuring {
     ++group_;
   }
 
-  // The lane's verdicts are written to `bytes` or, if `exact` is given, compared with it.
   void by_executors(const Array& array, const graze_triangles& host, const std::string& mode, const std::string& lane,
                     std::vector<std::uint8_t>& bytes, const std::vector<std::uint8_t>* exact) {
-    BenchRow row{group_, array.name, host.count, "", "host", mode, lane, 0, 0, 0, {}, 0};
-    graze_query query = query::query_of(array.reference, host);
+    by_executors(array.name, query::query_of(array.reference, host), sizeof(Triangle), mode, lane, bytes, exact);
+  }
+
+  // The exact lane again, on the same numbers as doubles.
+  void by_executors_in_doubles(const Array& array, std::vector<std::uint8_t>& exact) {
+    const auto widened = [](const Triangle& t) {
+      query::DoubleTriangle wide;
+      std::copy(t.begin(), t.end(), wide.begin());
+      return wide;
+    };
+    const query::DoubleTriangle reference = widened(array.reference);
+    std::vector<query::DoubleTriangle> triangles(array.triangles.size());
+    std::transform(array.triangles.begin(), array.triangles.end(), triangles.begin(), widened);
+    const graze_triangles host = query::rows_of(std::span<const query::DoubleTriangle>(triangles));
+    by_executors(array.name, query::query_of(reference, host), sizeof triangles[0], "all", kExactInDoubles, exact,
+                 &exact);
+  }
+
+  // The lane's verdicts are written to `bytes` or, if `exact` is given, compared with it. Each triangle has `size`
+  // bytes.
+  void by_executors(const std::string& array, graze_query query, std::size_t size, const std::string& mode,
+                    const std::string& lane, std::vector<std::uint8_t>& bytes, const std::vector<std::uint8_t>* exact) {
+    const graze_triangles host = query.parts[0];
+    BenchRow row{group_, array, host.count, "", "host", mode, lane, 0, 0, 0, {}, 0};
     query.mode = mode == "any" ? GRAZE_ANY : GRAZE_ALL;
-    const bool by_twin = is_cuda(lane) && devices_ == 0;
-    const bool on_host = !is_cuda(lane) || by_twin, on_device = lane == "exact" || !on_host;
-    query.lane = lane.c_str();
+    const bool by_twin = is_cuda(lane) && devices_ == 0, is_exact = lane == kExact || lane == kExactInDoubles;
+    const bool on_host = !is_cuda(lane) || by_twin, on_device = is_exact || !on_host;
+    query.lane = is_exact ? nullptr : lane.c_str();
     if (on_host) {
       const std::string twin = by_twin ? ", twin" : is_foreign(lane) ? ", its process" : "";
       if (host.count <= kOnOneCore) add(row, query, GRAZE_ONE_CORE, "one core" + twin, &bytes, exact);
@@ -140,16 +162,16 @@ class Measuring {
     std::vector<std::unique_ptr<cuda::DeviceMemory>> memories;
     std::vector<graze_triangles> parts;
     for (int d = 0; d < devices_; ++d) {
-      memories.push_back(cuda::device_memory(d, host.count * sizeof(Triangle)));
-      memories.back()->fill(host.rows, host.count * sizeof(Triangle));
+      memories.push_back(cuda::device_memory(d, host.count * size));
+      memories.back()->fill(host.rows, host.count * size);
       parts.push_back(host);
       parts.back().device = d;
-      parts.back().rows = static_cast<const float*>(memories.back()->data);
+      parts.back().rows = memories.back()->data;
       if (d > 0 && mode == "any") break;
     }
     query.parts = parts.data();
     add(row, query, GRAZE_ONE_GPU, "one GPU", nullptr, nullptr);
-    if (lane == "exact" && mode == "all") {
+    if (is_exact && mode == "all") {
       graze_query split = query;
       split.launch_seconds = bench_.rows.back().seconds / 8;
       row.data = "resident, split";
@@ -179,7 +201,7 @@ class Measuring {
       row.hits = answer.hits;
       if (k > 0) row.seconds = std::min(row.seconds, answer.seconds);
     }
-    if (row.lane == "exact" && row.mode == "all") expect_hits(row);
+    if (row.lane == kExact && row.mode == "all") expect_hits(row);
     if (exact) {
       row.mismatches = 0;
       for (std::size_t i = 0; i < found.size(); ++i) *row.mismatches += found[i] != (*exact)[i];
@@ -190,7 +212,7 @@ class Measuring {
   // All executors must find the same hits in one array, which is stored once on each device.
   void expect_hits(const BenchRow& row) const {
     for (const BenchRow& other : bench_.rows) {
-      if (other.group != row.group || other.lane != "exact" || other.mode != "all") continue;
+      if (other.group != row.group || other.lane != kExact || other.mode != "all") continue;
       if (other.hits * row.triangles == row.hits * other.triangles) continue;
       throw std::runtime_error(fmt::format("{} and {} disagree: {} hits among {} triangles, {} among {}",
                                            other.executor, row.executor, other.hits, other.triangles, row.hits,
@@ -216,7 +238,7 @@ class Measuring {
   void find_crossover() {
     const auto time_of = [&](const BenchRow& like, const char* executor) {
       for (const BenchRow& row : bench_.rows) {
-        if (row.array == "thesis" && row.triangles == like.triangles && row.lane == "exact" && row.mode == "all" &&
+        if (row.array == "thesis" && row.triangles == like.triangles && row.lane == kExact && row.mode == "all" &&
             row.data == "host" && row.executor == executor)
           return row.seconds;
       }

@@ -16,6 +16,8 @@
 
 namespace graze::cli {
 
+inline constexpr const char *kExact = "exact", *kExactInDoubles = "exact, doubles";
+
 struct BenchOptions {
   std::vector<std::uint64_t> sizes;
   std::vector<query::Triangle> mesh;  // measured as well, unless empty
@@ -30,7 +32,7 @@ struct BenchRow {
   std::string executor;               // "one core", "all cores", "one GPU", "2 GPUs"; "one core, twin"
   std::string data;                   // "host", "resident"; "resident, split": in launches of an eighth of the time
   std::string mode;                   // "all", "any"; "between" of two meshes
-  std::string lane;                   // "exact"; "CGAL AABB tree"; "boxes alone"
+  std::string lane;                   // kExact, kExactInDoubles; "CGAL AABB tree"; "boxes alone"
   double seconds, build_seconds = 0;  // of building the tree
   std::uint64_t hits;
   std::optional<std::uint64_t> mismatches;  // triangles on which this lane differs from the exact one

@@ -95,7 +95,7 @@ void expect_same_code(const std::vector<std::string>& names) {
 void add(const CorpusOptions& options) {
   expect_same_code(options.names);
   for (const std::string& name : options.names) open_subjects_of(name, options.lanes.resubject);
-  const fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
+  fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
   const fuzz::DecideLanes by_bench = decide_by(under_test);
   const Json build = fuzz::build_info(under_test);
   std::vector<std::pair<std::string, std::vector<fuzz::FoundFailure>>> found;
@@ -121,6 +121,10 @@ void add(const CorpusOptions& options) {
   std::array<std::size_t, 4> count{};
   const std::size_t& not_run = count[3];
   std::vector<std::string> with_not_run;
+  for (const auto& [name, failures] : found) {
+    if (std::any_of(failures.begin(), failures.end(), [](const auto& failure) { return !failure.pair.floats; }))
+      fuzz::add_exact_on_doubles(under_test);
+  }
   for (const auto& [name, failures] : found) {
     const std::size_t before = not_run;
     for (const fuzz::FoundFailure& failure : failures) {
@@ -177,10 +181,14 @@ std::string not_run(const fuzz::RegressionCorpus& corpus) {
   return text;
 }
 
+bool has_doubles(const fuzz::RegressionCorpus& corpus) {
+  return std::any_of(corpus.begin(), corpus.end(), [](const auto& row) { return !row.second.pair.floats; });
+}
+
 // "Not run on pairs of doubles: …": lanes that decide the corpus's pairs of float32 alone.
 std::string not_run_on_doubles(const fuzz::RegressionCorpus& corpus, const fuzz::SelectedLanes& under_test) {
   std::vector<std::string> ids;
-  if (std::any_of(corpus.begin(), corpus.end(), [](const auto& row) { return !row.second.pair.floats; })) {
+  if (has_doubles(corpus)) {
     for (const Lane* lane : under_test.lanes) {
       if (!fuzz::takes(*lane, DoublePair{})) ids.push_back(lane->id);
     }
@@ -203,11 +211,12 @@ std::vector<reports::JunitCase> tests_of(const std::string& file, const fuzz::Re
 }
 
 int verify(const CorpusOptions& options) {
-  const fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
+  fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
   std::optional<fuzz::FolderLock> lock;
   if (options.update && std::filesystem::exists(options.folder))
     lock.emplace(options.folder, fuzz::FolderLock::WhenTaken::wait);
   fuzz::RegressionCorpus corpus = read_corpus(options);
+  if (has_doubles(corpus)) fuzz::add_exact_on_doubles(under_test);
   const fuzz::Verified result = graze::fuzz::verify(corpus, under_test.lanes, decide_by(under_test));
   std::array<std::size_t, 3> states{};
   for (const auto& [signature, c] : corpus) ++states[static_cast<std::size_t>(c.state)];

@@ -149,14 +149,10 @@ std::string csv_of(std::span<const FoundPair> pairs) {
   return fmt::to_string(text);
 }
 
-Decider exact_decider(const std::string& executor, bool of_doubles) {
+Decider exact_decider(const std::string& executor) {
   const int cores = tbb::info::default_concurrency();
   if (executor == "one-core") return {executor, 1, kBlock, decide_on_cores};
   if (executor != "one-gpu") return {"all-cores", cores, kBlock, decide_on_cores};
-  if (of_doubles)
-    throw std::runtime_error(
-        "--executor one-gpu: the device decides float32, which does not hold these coordinates; leave it out, and the "
-        "cores decide them as doubles");
   struct Shared {
     std::mutex turn;
     std::unique_ptr<cuda::Device> device;
@@ -166,9 +162,9 @@ Decider exact_decider(const std::string& executor, bool of_doubles) {
   std::string why_not;
   shared->device = cuda::open_device(why_not);
   if (!shared->device) throw std::runtime_error("--executor one-gpu: there is no CUDA device: " + why_not);
-  return {executor, cores, kDeviceBlock, [shared, lane = find_lane("exact/f32/cuda")](Candidates& of) {
+  return {executor, cores, kDeviceBlock, [shared, lane = find_lane("exact/f64/cuda")](Candidates& of) {
             const std::lock_guard lock(shared->turn);
-            shared->device->decide(of.pairs, std::span(&lane, 1), shared->bits);
+            shared->device->decide(of.pairs, std::span(&lane, 1), shared->bits, of.pairs_of_doubles);
             std::copy_n(shared->bits[0].intersects.begin(), of.intersect.size(), of.intersect.begin());
           }};
 }

@@ -81,8 +81,8 @@ struct Decider {
 };
 
 // executor: auto, one-core, all-cores or one-gpu. auto takes all cores.
-// Throws: std::runtime_error if there is no device, or if it would have to decide doubles.
-Decider exact_decider(const std::string& executor, bool of_doubles);
+// Throws: std::runtime_error if there is no device.
+Decider exact_decider(const std::string& executor);
 
 // The pairs to keep: the first `most` in the order of (i, j), all or only those that pierce.
 struct Kept {

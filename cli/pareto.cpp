@@ -90,7 +90,7 @@ analysis::Pareto offers_of(const ParetoOptions& options, const Measured& measure
   }
   if (options.device) {
     const cuda::DeviceCosts costs =
-        cuda::measure_on_device(measured.lanes, analysis::first_pairs(sources, kPairsOnDevice).floats, 21);
+        cuda::measure_on_device(measured.lanes, analysis::first_pairs(sources, kPairsOnDevice), 21);
     pareto.machine = costs.device;
     pareto.threads_at_once = costs.threads_at_once;
     for (std::size_t l = 0; l < costs.of.size(); ++l) {

@@ -347,17 +347,13 @@ void query_mesh(const QueryOptions& options, int& status) {
   const Input of_references = read_references(options.files[0]),
               of_mesh = read_mesh(options.files[1], strata::Coordinates::any);
   const QueryLanes lanes = query_lanes(options.lanes, {"exact"});
-  // Other lanes, and GPUs, take float32.
-  const bool on_cores =
-      std::none_of(options.executors.begin(), options.executors.end(),
-                   [](const std::string& executor) { return executor.ends_with("gpu") || executor.ends_with("gpus"); });
   const bool has_doubles = of_references.rounding.beyond > 0 || of_mesh.rounding.beyond > 0,
-             are_doubles = has_doubles && on_cores && lanes.ids == std::vector<std::string>{"exact"};
+             are_doubles = has_doubles && lanes.ids == std::vector<std::string>{"exact"};
   say_notes(of_references, of_mesh, options.exact_input, are_doubles);
   if (has_doubles && !are_doubles && matches_any(lanes.ids, "exact"))
     fmt::print(stderr,
-               "graze: exact decides the rounded triangles too, as {}; alone and on cores it decides the doubles\n",
-               on_cores ? "the other lanes take float32" : "GPUs take float32");
+               "graze: exact decides the rounded triangles too, as the other lanes take float32; alone it decides the "
+               "doubles\n");
   are_doubles ? answer<double>(options, lanes, in_doubles(of_references), in_doubles(of_mesh), status)
               : answer<float>(options, lanes, of_references.triangles, of_mesh.triangles, status);
 }

@@ -234,7 +234,7 @@ TEST_F(QueryCommand, BenchMeasuresAndCompares) {
       "graze bench --triangles 1e3,2e4 --mesh mesh.obj --lanes interval_overlap/f32/cpu,exact/f32/cpu --json --plot "
       "speed.svg");
   EXPECT_GE(found["machine"]["threads"], 1);
-  int exact = 0, others = 0, trees = 0;
+  int exact = 0, in_doubles = 0, others = 0, trees = 0;
   std::uint64_t hits = 0;
   for (const Json& row : found["rows"]) {
     EXPECT_GT(row["seconds"], 0);
@@ -244,9 +244,10 @@ TEST_F(QueryCommand, BenchMeasuresAndCompares) {
       hits = row["hits"];
       ++exact;
     }
-    if (row["lane"] == "exact/f32/cpu") {
+    if (row["lane"] == "exact/f32/cpu" || (row["lane"] == "exact, doubles" && row["data"] == "host")) {
       EXPECT_EQ(row["mismatches"], 0);
     }
+    in_doubles += row["lane"] == "exact, doubles" && of_20000;
     if (row["lane"] == "interval_overlap/f32/cpu" && of_20000 && row["executor"] == "one core") {
       EXPECT_GT(row["mismatches"], 0);
       ++others;
@@ -264,6 +265,7 @@ TEST_F(QueryCommand, BenchMeasuresAndCompares) {
     }
   }
   EXPECT_GE(exact, 1);
+  EXPECT_EQ(in_doubles, exact);
   EXPECT_GE(others, 1);
   EXPECT_EQ(trees, 1);
   std::set<std::string> executors;

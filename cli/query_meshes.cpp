@@ -169,7 +169,7 @@ void query_meshes(const MeshQuestion& question, int& status) {
   if (!question.obj.empty()) expect_replaceable(question.obj, obj_of({}));
   Search search = opened(question);
   catch_interrupts();
-  const Decider decider = exact_decider(question.executor, search.meshes.are_doubles());
+  const Decider decider = exact_decider(question.executor);
   search.executor = decider.executor;
   const std::size_t triangles = search.meshes.a.size();
   Progress progress("triangles", triangles, isatty(STDERR_FILENO), error_screen());

@@ -169,7 +169,7 @@ std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
     sentences.push_back("Cost of the CUDA lanes: not measured, because they run as twins here (" + why_not + ").");
   } else if (!on_device.empty()) {
     const cuda::DeviceCosts there =
-        cuda::measure_on_device(on_device, analysis::first_pairs(sources, std::size_t{1} << 20).floats, 9);
+        cuda::measure_on_device(on_device, analysis::first_pairs(sources, std::size_t{1} << 20), 9);
     sentences.push_back(sentence(" on " + there.device + ", 2^20 pairs a call that are there already", on_device,
                                  [&](std::size_t l) { return analysis::quartiles(there.of[l].resident); }));
   }
@@ -201,8 +201,8 @@ int tune(const TuneOptions& options) {
   const Lane* const lane = &lane_to_tune(options);
   TunePairs pairs = tune_pairs(options);
   expect_takes(*lane, pairs);
-  std::string why_not;  // a device draws and decides float32 alone
-  const bool on_device = backends::backend_of(*lane).has_device && !pairs.in_doubles() && cuda::open_device(why_not);
+  std::string why_not;
+  const bool on_device = backends::backend_of(*lane).has_device && cuda::open_device(why_not);
   if (const std::string why = backends::why_not_on_host(*lane); !on_device && !why.empty())
     throw UsageError(cannot("run", lane->id, why));
   std::optional<subjects::TunableSource> source;  // of own code

@@ -36,7 +36,7 @@ std::uint64_t count_different_runs(const Lane&, const Lane&, const strata::PairS
   throw std::runtime_error("cannot compare values on a device: built without CUDA");
 }
 
-DeviceCosts measure_on_device(std::span<const Lane* const>, const std::vector<Pair>&, int) {
+DeviceCosts measure_on_device(std::span<const Lane* const>, const strata::PairBlock&, int) {
   throw std::runtime_error("cannot measure costs on a device: built without CUDA");
 }
 

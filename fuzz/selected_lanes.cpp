@@ -226,7 +226,7 @@ bool takes(const Lane& lane, const AnyPair& pair) {
   return pair.floats || lane.scalar == Scalar::f32 || backends::on_host(lane).decides_doubles();
 }
 
-std::vector<LaneLeftOut> select_for_doubles(SelectedLanes& under_test) {
+void add_exact_on_doubles(SelectedLanes& under_test) {
   for (const Lane& lane : lanes()) {
     if (!is_exact_on_doubles(lane) || !matches_any(under_test.asked, lane.id) ||
         std::find(under_test.lanes.begin(), under_test.lanes.end(), &lane) != under_test.lanes.end())
@@ -236,8 +236,12 @@ std::vector<LaneLeftOut> select_for_doubles(SelectedLanes& under_test) {
   }
   sort_by_subject(under_test);
   under_test.of_doubles = true;
+}
+
+std::vector<LaneLeftOut> select_for_doubles(SelectedLanes& under_test) {
+  add_exact_on_doubles(under_test);
   return leave_out(under_test, [&](const Lane& lane) {
-    const bool by_device = under_test.device && backend_of(lane).has_device && !lane.under;
+    const bool by_device = under_test.device && backend_of(lane).has_device && lane.scalar == Scalar::f64;
     return by_device || takes(lane, DoublePair{}) ? "" : "takes pairs of float32 alone";
   });
 }

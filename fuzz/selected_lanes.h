@@ -65,6 +65,9 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
 // table, and none of `not_opened`.
 void expect_each_matches(const std::vector<std::string>& globs, const std::vector<LaneLeftOut>& not_opened = {});
 
+// Adds the exact lanes of pairs of doubles that the patterns select.
+void add_exact_on_doubles(SelectedLanes& under_test);
+
 // Makes the lanes those of pairs of doubles: adds the exact lane for them if the patterns select it, and leaves out the
 // lanes in double that take float32 pairs alone.   Returns: these.   Throws: as expect_each_runs.
 std::vector<LaneLeftOut> select_for_doubles(SelectedLanes& under_test);

@@ -143,12 +143,12 @@ std::vector<std::string> parts_of(std::string_view names) {
 // Finds the pairs of triangles that intersect within a mesh, or between two, sorted. boxes: those of the triangles.
 template <class Real>
 void find_intersections(Triangles<Real> first, Triangles<Real> second, const strata::BoxSlabs& boxes,
-                        bool only_piercing) {
+                        bool only_piercing, const int& stop) {
   tbb::enumerable_thread_specific<std::vector<std::array<std::uint32_t, 2>>> parts;
   tbb::parallel_for(std::size_t{0}, boxes.size(), [&](std::size_t slab) {
     std::vector<std::array<std::uint32_t, 2>>& part = parts.local();
     boxes.pairs(slab, [&](std::uint32_t i, std::uint32_t j) {
-      if (stop_requested.load(std::memory_order_relaxed)) throw Stopped();
+      if (__atomic_load_n(&stop, __ATOMIC_RELAXED)) throw Stopped();
       const Triangle<Real>&of_a = first[i], &of_b = second[j];
       const Relation r = relation_of(BasicPair<Real>{{of_a[0], of_a[1], of_a[2]}, {of_b[0], of_b[1], of_b[2]}});
       if (only_piercing ? pierces(r) : r.intersects()) part.push_back({i, j});
@@ -285,15 +285,16 @@ int graze_py_meets(const void* reference, const void* triangles, int doubles, st
 }
 
 // The pairs of triangles that intersect within a mesh (b null), or between two; only_piercing: without those that only
-// touch. Sets their number; graze_py_take copies them, sorted, for the same thread.
+// touch. Sets their number; graze_py_take copies them, sorted, for the same thread. Ends soon after another thread
+// makes `stop` nonzero.
 int graze_py_intersections(const void* a, std::uint64_t count_a, const void* b, std::uint64_t count_b, int doubles,
-                           int only_piercing, std::uint64_t* count) {
+                           int only_piercing, std::uint64_t* count, const int* stop) {
   return guarded([&] {
     const auto search = [&]<class Real>(Real, const auto& boxes_of) {
       const auto first = triangles_of<Real>(a, count_a), second = b ? triangles_of<Real>(b, count_b) : first;
       const auto boxes = boxes_of(first), others = b ? boxes_of(second) : decltype(boxes_of(second))();
       const strata::BoxSlabs slabs(boxes, b ? std::optional<Triangles<float>>(others) : std::nullopt);
-      find_intersections<Real>(first, second, slabs, only_piercing != 0);
+      find_intersections<Real>(first, second, slabs, only_piercing != 0, *stop);
     };
     doubles ? search(double{}, rounded) : search(float{}, [](Triangles<float> t) { return t; });
     *count = found.size();
@@ -304,9 +305,6 @@ void graze_py_take(std::uint32_t* indices) {
   if (!found.empty()) std::memcpy(indices, found.data(), found.size() * sizeof found[0]);
   found = {};
 }
-
-// Asks calls in other threads to stop soon; 0 withdraws the request.
-void graze_py_stop(int stop) { stop_requested = stop != 0; }
 
 struct graze_py_options {
   const char* strata;

@@ -56,7 +56,9 @@ void graze_context::answer(const graze_query& query, graze_answer& answer) {
       failed = std::current_exception();
     }
   } else {
-    graze::cuda::DeviceQuestion asked{{static_cast<const float*>(question.references), question.reference_count * 9},
+    graze::cuda::DeviceQuestion asked{question.in_doubles,
+                                      question.references,
+                                      question.reference_count,
                                       question.parts,
                                       question.places,
                                       &question.lane,

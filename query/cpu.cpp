@@ -159,7 +159,7 @@ class Worker {
     open_.reserve(kTogether);
     for (std::uint64_t r = 0; r < question.reference_count; ++r) {
       finite_.push_back(is_finite(at(r)));
-      references_.push_back(seen_from_itself(at(r)));
+      references_.push_back(exact::prepare(at(r)));
     }
   }
 
@@ -196,13 +196,6 @@ class Worker {
  private:
   // A reference's coordinates.
   const Real* at(std::size_t r) const { return static_cast<const Real*>(question_.references) + 9 * r; }
-
-  static exact::PreparedTriangle seen_from_itself(const float* reference) { return exact::prepare(reference); }
-  static exact::PreparedTriangle seen_from_itself(const double* reference) {
-    float seen[9];
-    for (int k = 0; k < 9; ++k) seen[k] = static_cast<float>(reference[k] - reference[k % 3]);
-    return exact::prepare(seen, true);
-  }
 
   // Adds the pairs that the slabs leave open. Their bits are set when they are decided.
   void gather(std::size_t r, std::uint64_t open, std::uint64_t& hits) {

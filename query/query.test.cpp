@@ -201,7 +201,7 @@ TEST(Query, DoublesInEveryLayoutTellTheSame) {
   }
 }
 
-TEST(Query, DoublesAreForTheExactLaneOnCores) {
+TEST(Query, DoublesAreForTheExactLane) {
   const std::vector<DoubleTriangle> triangles(10, DoubleTriangle{0, 0, 0, 1, 0, 0, 0, 1, 0});
   graze_triangles part = rows_of(std::span<const DoubleTriangle>(triangles));
   const auto wrong = [&](const auto& change, const std::string& message) {
@@ -213,12 +213,8 @@ TEST(Query, DoublesAreForTheExactLaneOnCores) {
   wrong([](auto& q) { q.coordinates = 2; }, "coordinates: expected 0 or 1, found 2");
   wrong([](auto& q) { q.lane = "moller_1997/f64/cpu"; },
         "lane: expected exact for doubles, found 'moller_1997/f64/cpu'");
-  for (const int executor : {GRAZE_ONE_GPU, GRAZE_ALL_GPUS}) {
-    wrong([&](auto& q) { q.executor = executor; },
-          "coordinates: expected floats for GPUs, found doubles, which are decided on cores");
-  }
-  wrong([&](auto&) { part.device = 0; },
-        "coordinates: expected floats for GPUs, found doubles, which are decided on cores");
+  wrong([](auto& q) { q.lane = "moller_1997/f64/cuda-fma"; },
+        "lane: expected exact for doubles, found 'moller_1997/f64/cuda-fma'");
   wrong([&](auto&) { part.stride = 76; },
         "parts[0]: expected a stride of 72 to 9223372036854775807 bytes that is a multiple of 8, found 76");
   wrong([&](auto&) { part.rows = static_cast<const float*>(part.rows) + 1; },

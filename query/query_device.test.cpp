@@ -53,12 +53,13 @@ class QueryDevice : public testing::Test {
   }
 
   // The same triangles in device 0's memory.
+  template <class Triangle>
   std::unique_ptr<cuda::DeviceMemory> resident(const std::vector<Triangle>& triangles, graze_triangles& part) {
     auto memory = cuda::device_memory(0, std::max<std::size_t>(1, triangles.size()) * sizeof(Triangle));
     memory->fill(triangles.data(), triangles.size() * sizeof(Triangle));
-    part = part_of(triangles);
+    part = rows_of(std::span<const Triangle>(triangles));
     part.device = 0;
-    part.rows = static_cast<const float*>(memory->data);
+    part.rows = memory->data;
     return memory;
   }
 
@@ -197,6 +198,88 @@ TEST_F(QueryDevice, LayoutsAreTheCores) {
     expect_same(all_of(query, host[k].count), cores);
     query.parts = &device[k];
     expect_same(all_of(query, host[k].count), cores);
+  }
+}
+
+// Doubles of all strata, some not finite, streamed and resident: a few references against many triangles, and the first
+// triangle of each pair against the second one.
+TEST_F(QueryDevice, DoublesOfAllStrataAreTheCores) {
+  for (const strata::StratumInfo& row : strata::kDoubleStrata) {
+    SCOPED_TRACE(row.id);
+    for (const std::size_t each : {25'000, 200}) {
+      std::vector<DoubleTriangle> references, triangles;
+      for (std::uint64_t i = 0; i < (each == 200 ? 40'000u : 100'000u); ++i) {
+        const DoublePair pair = strata::generate_doubles(13, row.stratum, i);
+        if (i % each == 0) references.push_back(triangle(pair.a));
+        triangles.push_back(triangle(pair.b));
+        if (i % 16 == 0) triangles.push_back(references.back());
+        if (i % 1001 == 3) triangles.back()[i % 9] = i % 2 ? NAN : -INFINITY;
+      }
+      references.push_back(references.front());
+      references.back()[4] = INFINITY;
+      graze_triangles on_device;
+      const auto memory = resident(triangles, on_device);
+      const graze_triangles part = rows_of(std::span<const DoubleTriangle>(triangles));
+      graze_query query = query_of(references[0], part);
+      query.references = references[0].data();
+      query.reference_count = references.size();
+      query.executor = GRAZE_ALL_CORES;
+      const Found cores = all_of(query, triangles.size());
+      EXPECT_GT(cores.answer.hits, 2'000u);
+      EXPECT_GT(cores.answer.declined, triangles.size());
+      query.executor = GRAZE_ONE_GPU;
+      expect_same(all_of(query, triangles.size()), cores);
+      query.parts = &on_device;
+      expect_same(all_of(query, triangles.size()), cores);
+      query.mode = GRAZE_ANY;
+      EXPECT_EQ(context_.run(query).first, cores.answer.first);
+    }
+  }
+}
+
+TEST_F(QueryDevice, DoublesInEveryLayoutAreTheCores) {
+  std::vector<DoubleTriangle> triangles;
+  std::vector<std::array<double, 11>> wide;
+  std::vector<std::array<double, 3>> vertices;
+  std::vector<std::array<std::uint32_t, 3>> faces;
+  constexpr std::size_t kCount = 100'003;
+  std::vector<double> columns(9 * kCount);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const DoubleTriangle t = triangle(strata::generate_doubles(14, strata::Stratum::uniform, i).b);
+    const auto v = static_cast<std::uint32_t>(vertices.size());
+    wide.push_back({});
+    for (std::size_t k = 0; k < 9; ++k) columns[k * kCount + i] = wide.back()[k] = t[k];
+    for (std::size_t k = 0; k < 9; k += 3) vertices.push_back({t[k], t[k + 1], t[k + 2]});
+    faces.push_back({v, v + 1, i == 70'000 ? 4'000'000'000u : v + 2});
+  }
+  const DoubleTriangle reference = triangle(strata::generate_doubles(14, strata::Stratum::uniform, 0).a);
+  const auto on_device = [](const auto& host) {
+    auto memory = cuda::device_memory(0, host.size() * sizeof host[0]);
+    memory->fill(host.data(), memory->bytes);
+    return memory;
+  };
+  const auto of_columns = on_device(columns), of_vertices = on_device(vertices), of_faces = on_device(faces),
+             of_wide = on_device(wide);
+  std::array<const double*, 9> at;
+  for (std::size_t k = 0; k < 9; ++k) at[k] = columns.data() + k * kCount;
+  graze_triangles host[3] = {columns_of(at, kCount), mesh_of(vertices, faces),
+                             rows_of(std::span<const std::array<double, 11>>(wide))};
+  graze_triangles device[3] = {host[0], host[1], host[2]};
+  for (graze_triangles& part : device) part.device = 0;
+  for (std::size_t k = 0; k < 9; ++k) device[0].columns[k] = static_cast<const double*>(of_columns->data) + k * kCount;
+  device[1].vertices = of_vertices->data;
+  device[1].faces = static_cast<const std::uint32_t*>(of_faces->data);
+  device[2].rows = of_wide->data;
+  for (int k = 0; k < 3; ++k) {
+    SCOPED_TRACE(k);
+    graze_query query = query_of(reference, host[k]);
+    query.executor = GRAZE_ALL_CORES;
+    const Found cores = all_of(query, kCount);
+    EXPECT_GT(cores.answer.hits, 1000u);
+    query.executor = GRAZE_ONE_GPU;
+    expect_same(all_of(query, kCount), cores);
+    query.parts = &device[k];
+    expect_same(all_of(query, kCount), cores);
   }
 }
 

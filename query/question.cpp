@@ -19,8 +19,8 @@ namespace {
 constexpr std::uint64_t kMostTriangles = GRAZE_MOST_TRIANGLES, kMostReferences = 1 << 16, kMostParts = 1 << 16,
                         kMostPairs = std::uint64_t{1} << 62;
 
-// Nanoseconds, for GRAZE_AUTO only: one verdict on one core, and the transfer of one triangle to a device, measured on
-// an H200 and its host (docs/measurements.md). The time to start CUDA is assumed, not measured.
+// Nanoseconds, for GRAZE_AUTO only: one verdict on one core, and the transfer of a triangle of floats to a device,
+// measured on an H200 and its host (docs/measurements.md). The time to start CUDA is assumed, not measured.
 constexpr double kOnCore = 11, kToDevice = 0.7, kStart = 3e8;
 constexpr std::uint64_t kWorthThreads = 1 << 14;
 
@@ -144,9 +144,10 @@ bool has_device() {
 
 // Whether a device would answer sooner, including its start-up time.
 bool device_is_faster(const Question& question, int threads) {
-  const double triangles = static_cast<double>(question.triangles);
+  const double triangles = static_cast<double>(question.triangles),
+               to_device = kToDevice * (question.in_doubles ? 2 : 1);
   const double by_cores = triangles * static_cast<double>(question.reference_count) * kOnCore / threads;
-  return by_cores > kStart + triangles * kToDevice && has_device();
+  return by_cores > kStart + triangles * to_device && has_device();
 }
 
 void choose_executor(const graze_query& query, bool any_lane, Question& question) {
@@ -157,7 +158,7 @@ void choose_executor(const graze_query& query, bool any_lane, Question& question
   if (executor == GRAZE_AUTO) {
     const bool small = question.triangles * question.reference_count < kWorthThreads;
     const bool on_device = resident || (is_of_device(question.lane) && (!decide || has_device())) ||
-                           (any_lane && !question.in_doubles && device_is_faster(question, cores));
+                           (any_lane && device_is_faster(question, cores));
     executor = on_device ? GRAZE_ALL_GPUS : small ? GRAZE_ONE_CORE : GRAZE_ALL_CORES;
   }
   question.executor = executor;
@@ -168,11 +169,10 @@ void choose_executor(const graze_query& query, bool any_lane, Question& question
     question.threads = executor == GRAZE_ONE_CORE ? 1 : cores;
     return;
   }
-  expect(!question.in_doubles, "coordinates: expected floats for GPUs, found doubles, which are decided on cores");
   expect(any_lane || is_of_device(question.lane),
          "lane: expected a CUDA lane for GPUs, found '" + question.lane.id + "'");
   const int count = device_count("executor");
-  if (any_lane) question.lane = *find_lane("exact/f32/cuda");
+  if (any_lane) question.lane = *find_lane(question.in_doubles ? "exact/f64/cuda" : "exact/f32/cuda");
   if (!resident) {
     for (int d = 0; d < (executor == GRAZE_ONE_GPU ? 1 : count); ++d) question.devices.push_back(d);
     return;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/lanes/lanes.h"
-#include "cuda/query/triangles.h"
+#include "cuda/lanes/triangles.h"
 #include "query/include/graze/query_c.h"
 
 namespace graze::query {

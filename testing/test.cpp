@@ -49,13 +49,20 @@ bool accepts(unsigned outside, Verdict verdict, const Pair& pair, const Relation
          (!is_failure(verdict) && verdict != Verdict::declined && is_outside(outside, pair, relation));
 }
 
+// A value that no verdict has counts as crashed.
+Verdict checked(Verdict said) { return said <= Verdict::unstable ? said : Verdict::crashed; }
+
 struct Tested {
   const DecidePairs& decide_pairs;
   unsigned outside;
 
+  void decide(const Pair* pairs, std::size_t count, Verdict* verdicts) const {
+    decide_pairs(pairs, count, verdicts);
+    std::transform(verdicts, verdicts + count, verdicts, checked);
+  }
   Verdict decide(const Pair& pair) const {
     Verdict verdict = Verdict::declined;
-    decide_pairs(&pair, 1, &verdict);
+    decide(&pair, 1, &verdict);
     return verdict;
   }
   bool accepts(Verdict verdict, const Pair& pair, const Relation& relation) const {
@@ -197,7 +204,7 @@ TestResult tested_with(std::string_view name, const Tested& tested, const std::v
       pairs.resize(std::min<std::uint64_t>(kBlock, source.pairs - done));
       verdicts.assign(pairs.size(), Verdict::declined);
       for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = source.pair(done + i);
-      tested.decide_pairs(pairs.data(), pairs.size(), verdicts.data());
+      tested.decide(pairs.data(), pairs.size(), verdicts.data());
       for (std::size_t i = 0; i < pairs.size(); ++i) {
         const Pair& pair = pairs[i];
         const Relation relation = relation_of(pair);
@@ -275,7 +282,8 @@ TestResult test_overlap(std::string_view name, const std::function<int(const flo
   return test_pairs(name, decide, options);
 }
 
-std::string fault_of(const Pair& pair, Verdict verdict, const TestOptions& options) {
+std::string fault_of(const Pair& pair, Verdict said, const TestOptions& options) {
+  const Verdict verdict = checked(said);
   const Relation relation = truth(pair);
   if (verdict == relation.verdict || verdict == Verdict::declined) return "";
   if (relation.verdict == Verdict::declined) return "";  // a coordinate that is not finite: no answer is wrong

@@ -124,6 +124,14 @@ inline PreparedTriangle prepare(const float* v, bool rounded = false) {
   return r;
 }
 
+// Of doubles, as seen from the reference's first vertex: a difference of doubles has a small relative error wherever
+// the triangles are. is_beyond takes the differences of the other triangle likewise.
+inline PreparedTriangle prepare(const double* v) {
+  float seen[9];
+  for (int k = 0; k < 9; ++k) seen[k] = static_cast<float>(v[k] - v[k % 3]);
+  return prepare(seen, true);
+}
+
 // The sum of the triangle's nine magnitudes. It is not finite if one of them is not, or if it overflows.
 GRAZE_HD inline float size_of(const float* t) {
   float sum = detail::magnitude(t[0]);

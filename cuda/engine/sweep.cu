@@ -60,23 +60,39 @@ std::vector<ErrorCounts> count_errors(const Lane& zero, std::span<const Lane> la
   std::vector<ErrorCounts> counts(lanes.size());
   DeviceArray<ErrorCounts> on_device;
   DeviceArray<float> coordinates;
+  DeviceArray<double> coordinates_in_double;
   DeviceArray<std::uint32_t> words;
   DeviceExact exact;
   Drawing drawing;
   ErrorCounts* totals = on_device.at_least(lanes.size());
   check(cudaMemcpy(totals, counts.data(), counts.size() * sizeof *totals, cudaMemcpyHostToDevice));
-  float* block = coordinates.at_least(std::size_t{kPairsAtOnce} * kCoordinates);
+  const std::size_t numbers = std::size_t{kPairsAtOnce} * kCoordinates;
+  float* block = coordinates.at_least(numbers);
+  double* in_doubles = source.in_doubles() ? coordinates_in_double.at_least(numbers) : nullptr;
   std::uint32_t* word = words.at_least(6 * kWords);
   const Bits truth{word, word + kWords}, without{word + 2 * kWords, word + 3 * kWords},
       under{word + 4 * kWords, word + 5 * kWords};
   for (std::uint64_t first = 0; first < source.pairs; first += kPairsAtOnce) {
     const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(kPairsAtOnce, source.pairs - first));
-    drawing.draw(source, first, count, block, nullptr);
     const DevicePairs pairs{block, count, count};
-    exact.decide(pairs, truth.intersects, truth.declined, nullptr, nullptr);
-    launch_lane(zero, exact, pairs, without.intersects, without.declined, nullptr);
+    const DeviceDoubles doubles{in_doubles, count, count};
+    if (in_doubles) {
+      drawing.draw(source, first, count, in_doubles, block, nullptr);
+      exact.decide(doubles, truth.intersects, truth.declined, nullptr, nullptr);
+    } else {
+      drawing.draw(source, first, count, block, nullptr);
+      exact.decide(pairs, truth.intersects, truth.declined, nullptr, nullptr);
+    }
+    const auto decide = [&](const Lane& lane, const Bits& to) {
+      if (in_doubles && lane.scalar == Scalar::f64) {
+        launch_lane(lane, exact, doubles, to.intersects, to.declined, nullptr);
+      } else {
+        launch_lane(lane, exact, pairs, to.intersects, to.declined, nullptr);
+      }
+    };
+    decide(zero, without);
     for (std::size_t l = 0; l < lanes.size(); ++l) {
-      launch_lane(lanes[l], exact, pairs, under.intersects, under.declined, nullptr);
+      decide(lanes[l], under);
       add_errors<<<(count / 32 + kThreads) / kThreads, kThreads>>>(truth, without, under, count, first, totals + l);
     }
     check(cudaGetLastError());

@@ -9,34 +9,36 @@
 namespace graze::cuda {
 inline namespace GRAZE_FP {
 
-template <int algorithm, class Real>
-__global__ void bound_pairs(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined) {
+template <int algorithm, class Real, class Pairs>
+__global__ void bound_pairs(Pairs pairs, std::uint32_t* intersects, std::uint32_t* declined) {
   vote<Real>(pairs, intersects, declined, [](const auto& a, const auto& b) {
     return decide_bounded<std::tuple_element_t<algorithm, Algorithms>>(a, b);
   });
 }
 
-template <int algorithm, class Real>
-void launch_bound(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream) {
+template <int algorithm, class Real, class Pairs>
+void launch_bound(Pairs pairs, std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream) {
   bound_pairs<algorithm, Real><<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, intersects, declined);
 }
 
 // Null for algorithms that would be wrong even without rounding.
-template <int algorithm, class Real>
-constexpr LaunchDecide launch() {
+template <int algorithm, class Real, class Pairs>
+constexpr auto launch() -> decltype(&launch_bound<algorithm, Real, Pairs>) {
   if constexpr (std::tuple_element_t<algorithm, Algorithms>::kInfo.right_without_rounding) {
-    return launch_bound<algorithm, Real>;
+    return launch_bound<algorithm, Real, Pairs>;
   } else {
     return nullptr;
   }
 }
 
 template <int... algorithm>
-constexpr DeviceKernels<LaunchDecide> launchers(std::integer_sequence<int, algorithm...>) {
-  return {std::array<LaunchDecide, 2>{launch<algorithm, float>(), launch<algorithm, double>()}...};
+constexpr BoundKernels kernels(std::integer_sequence<int, algorithm...>) {
+  return {{std::array<LaunchDecide, 2>{launch<algorithm, float, DevicePairs>(),
+                                       launch<algorithm, double, DevicePairs>()}...},
+          {launch<algorithm, double, DeviceDoubles>()...}};
 }
 
-extern const DeviceKernels<LaunchDecide> kBoundKernels = launchers(std::make_integer_sequence<int, kAlgorithmCount>());
+extern const BoundKernels kBoundKernels = kernels(std::make_integer_sequence<int, kAlgorithmCount>());
 
 }  // namespace GRAZE_FP
 }  // namespace graze::cuda

@@ -14,8 +14,8 @@ namespace graze::cuda {
 #define GRAZE_DECLARE(name)                                \
   namespace name {                                         \
   extern const VariantKernels kKernels;                    \
-  extern const DeviceKernels<LaunchWithin> kPolicyKernels; \
-  extern const DeviceKernels<LaunchDecide> kBoundKernels;  \
+  extern const WithinKernels kPolicyKernels;               \
+  extern const BoundKernels kBoundKernels;                 \
   extern const DeviceKernels<LaunchValues> kRecordKernels; \
   }
 #define GRAZE_DECLARE_host_rounded(name)
@@ -35,9 +35,9 @@ namespace {
 
 struct KernelTables {
   const VariantKernels* kernels = nullptr;
-  const DeviceKernels<LaunchWithin>* within = nullptr;
+  const WithinKernels* within = nullptr;
   const DeviceKernels<LaunchValues>* record = nullptr;
-  const DeviceKernels<LaunchDecide>* bound = nullptr;  // null for fast math, which has no error bound
+  const BoundKernels* bound = nullptr;  // null for fast math, which has no error bound
 };
 
 const KernelTables& tables_of(Variant variant) {
@@ -98,30 +98,42 @@ std::string version(int packed) { return std::to_string(packed / 1000) + "." + s
 
 const VariantKernels& kernels_of(Variant variant) { return *tables_of(variant).kernels; }
 
-void launch_lane(const Lane& lane, DeviceExact& exact, DevicePairs pairs, std::uint32_t* intersects,
-                 std::uint32_t* declined, cudaStream_t stream) {
-  if (lane.algorithm < 0) return exact.decide(pairs, intersects, declined, nullptr, stream);
-  const KernelTables& tables = tables_of(lane.variant);
+namespace {
+
+// The kernels of a lane for pairs of one coordinate type.
+template <class Decide, class Within, class Pairs>
+void launch(const Lane& lane, Decide decide, Within within, Decide bound, DeviceExact& exact, Pairs pairs,
+            std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream) {
   if (!lane.under) {
-    of_lane(tables.kernels->decide, lane)(pairs, intersects, declined, stream);
+    decide(pairs, intersects, declined, stream);
   } else if (lane.under->kind == Policy::Kind::tolerances) {
-    of_lane(*tables.within, lane)(lane.under->epsilons, pairs, intersects, declined, stream);
+    within(lane.under->epsilons, pairs, intersects, declined, stream);
   } else {
-    of_lane(*tables.bound, lane)(pairs, intersects, declined, stream);
+    bound(pairs, intersects, declined, stream);
     check(cudaGetLastError());
     if (lane.under->kind == Policy::Kind::filtered) exact.decide_declined(pairs, intersects, declined, stream);
   }
   check(cudaGetLastError());
 }
 
+}  // namespace
+
+void launch_lane(const Lane& lane, DeviceExact& exact, DevicePairs pairs, std::uint32_t* intersects,
+                 std::uint32_t* declined, cudaStream_t stream) {
+  if (lane.algorithm < 0) return exact.decide(pairs, intersects, declined, nullptr, stream);
+  const KernelTables& tables = tables_of(lane.variant);
+  launch(lane, of_lane(tables.kernels->decide, lane), of_lane(tables.within->floats, lane),
+         tables.bound ? of_lane(tables.bound->floats, lane) : nullptr, exact, pairs, intersects, declined, stream);
+}
+
 void launch_lane(const Lane& lane, DeviceExact& exact, DeviceDoubles pairs, std::uint32_t* intersects,
                  std::uint32_t* declined, cudaStream_t stream) {
-  if (lane.under || lane.scalar != Scalar::f64)
-    throw std::logic_error(lane.id + ": expected a lane in double without a policy");
+  if (lane.scalar != Scalar::f64) throw std::logic_error(lane.id + ": expected a lane in double");
   if (lane.algorithm < 0) return exact.decide(pairs, intersects, declined, nullptr, stream);
-  kernels_of(lane.variant)
-      .decide_doubles[static_cast<std::size_t>(lane.algorithm)](pairs, intersects, declined, stream);
-  check(cudaGetLastError());
+  const KernelTables& tables = tables_of(lane.variant);
+  const auto algorithm = static_cast<std::size_t>(lane.algorithm);
+  launch(lane, tables.kernels->decide_doubles[algorithm], tables.within->doubles[algorithm],
+         tables.bound ? tables.bound->doubles[algorithm] : nullptr, exact, pairs, intersects, declined, stream);
 }
 
 void launch_record(const Lane& lane, DevicePairs pairs, void* values, std::uint64_t stride, RecordedPath* paths) {
@@ -148,12 +160,13 @@ class CudaDevice final : public Device {
   void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes, std::vector<VerdictBits>& bits,
               std::span<const DoublePair> doubles) override {
     bits.resize(cuda_lanes.size());
-    if (pairs.empty()) return;
+    const std::size_t size = std::max(pairs.size(), doubles.size());
+    if (size == 0) return;
     check(cudaSetDevice(0));  // an engine of another device may have left that one current
     // Whole thread blocks, so that each writes whole words.
-    const std::size_t stride = (pairs.size() + kThreads - 1) / kThreads * kThreads;
-    const auto stride32 = static_cast<std::uint32_t>(stride), count = static_cast<std::uint32_t>(pairs.size());
-    const DevicePairs block{floats_.copied(pairs, stride), stride32, count};
+    const std::size_t stride = (size + kThreads - 1) / kThreads * kThreads;
+    const auto stride32 = static_cast<std::uint32_t>(stride), count = static_cast<std::uint32_t>(size);
+    const DevicePairs block{pairs.empty() ? nullptr : floats_.copied(pairs, stride), stride32, count};
     const DeviceDoubles of_doubles{doubles.empty() ? nullptr : doubles_.copied(doubles, stride), stride32, count};
     const std::size_t words = stride / 64;
     std::uint64_t* intersects = intersects_.at_least(words * cuda_lanes.size());

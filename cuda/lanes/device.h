@@ -18,9 +18,9 @@ class Device {
  public:
   virtual ~Device() = default;
 
-  // Decides the pairs by each lane; bits[k] has the verdicts of cuda_lanes[k]. If doubles is not empty, the pairs are
-  // its pairs as stored in float32, and lanes in double decide the doubles.
-  // Requires: CUDA lanes; with doubles, those in double have no policy.
+  // Decides the pairs by each lane; bits[k] has the verdicts of cuda_lanes[k]. If doubles is not empty, lanes in double
+  // decide the doubles, and the pairs are those as stored in float32; none if all lanes are in double.
+  // Requires: CUDA lanes.
   // Throws: std::runtime_error on any CUDA error.
   virtual void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,
                       std::vector<VerdictBits>& bits, std::span<const DoublePair> doubles = {}) = 0;

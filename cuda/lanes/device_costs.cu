@@ -84,6 +84,32 @@ class Pinned {
   void* data_ = nullptr;
 };
 
+// Pairs in pinned memory and on the device, in the layout of the kernels.
+template <class Real, class Pairs>
+class Columns {
+ public:
+  explicit Columns(const std::vector<BasicPair<Real>>& pairs)
+      : count_(pairs.size()), bytes_(count_ * sizeof(BasicPair<Real>)), columns_(bytes_ + 1) {
+    for (std::size_t i = 0; i < count_; ++i) {
+      for (std::size_t c = 0; c < kCoordinates; ++c)
+        columns_.template as<Real>()[c * count_ + i] = coordinates(pairs[i])[c];
+    }
+    on_device_.at_least(count_ * kCoordinates);
+  }
+  Pairs pairs() {
+    return {on_device_.at_least(0), static_cast<std::uint32_t>(count_), static_cast<std::uint32_t>(count_)};
+  }
+  void bring(cudaStream_t stream) {
+    check(
+        cudaMemcpyAsync(on_device_.at_least(0), columns_.template as<Real>(), bytes_, cudaMemcpyHostToDevice, stream));
+  }
+
+ private:
+  std::size_t count_, bytes_;
+  Pinned columns_;
+  DeviceArray<Real> on_device_;
+};
+
 KernelNeeds needs_of(const void* kernel) {
   cudaFuncAttributes attributes;
   check(cudaFuncGetAttributes(&attributes, kernel));
@@ -94,30 +120,28 @@ KernelNeeds needs_of(const void* kernel) {
 
 }  // namespace
 
-DeviceCosts measure_on_device(std::span<const Lane* const> lanes, const std::vector<Pair>& pairs, int passes) {
+DeviceCosts measure_on_device(std::span<const Lane* const> lanes, const strata::PairBlock& pairs, int passes) {
   check(cudaSetDevice(0));
   cudaDeviceProp properties;
   check(cudaGetDeviceProperties(&properties, 0));
   DeviceCosts costs{properties.name, properties.maxThreadsPerMultiProcessor, std::vector<DeviceCost>(lanes.size())};
-  const std::size_t count = pairs.size(), bytes = count * sizeof(Pair);
+  const std::size_t count = pairs.size();
   const std::size_t words = (count + kThreads - 1) / kThreads * (kThreads / 32);
-  const Pinned columns(bytes), verdicts(2 * words * sizeof(std::uint32_t));
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t c = 0; c < kCoordinates; ++c) columns.as<float>()[c * count + i] = coordinates(pairs[i])[c];
-  }
+  const Pinned verdicts(2 * words * sizeof(std::uint32_t));
   const Stream stream;
-  DeviceArray<float> on_device;
+  Columns<float, DevicePairs> floats(pairs.floats);
+  Columns<double, DeviceDoubles> doubles(pairs.doubles);
   DeviceArray<std::uint32_t> bits;
   DeviceExact exact;
-  float* to = on_device.at_least(count * kCoordinates);
   std::uint32_t* intersects = bits.at_least(2 * words);
-  const DevicePairs block{to, static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(count)};
-  const auto bring = [&] { check(cudaMemcpyAsync(to, columns.as<float>(), bytes, cudaMemcpyHostToDevice, stream)); };
+  const auto in_doubles = [&](const Lane& lane) { return pairs.in_doubles() && lane.scalar == Scalar::f64; };
+  const auto bring = [&](const Lane& lane) { in_doubles(lane) ? doubles.bring(stream) : floats.bring(stream); };
   const auto decide = [&](const Lane& lane) {
-    launch_lane(lane, exact, block, intersects, intersects + words, stream);
+    const auto launch = [&](const auto& of) { launch_lane(lane, exact, of, intersects, intersects + words, stream); };
+    in_doubles(lane) ? launch(doubles.pairs()) : launch(floats.pairs());
   };
-  bring();
   for (std::size_t l = 0; l < lanes.size(); ++l) {
+    bring(*lanes[l]);
     decide(*lanes[l]);  // allocates
     check(cudaStreamSynchronize(stream));
     costs.of[l].needs = needs_of(stream.first_kernel([&] { decide(*lanes[l]); }));
@@ -128,7 +152,7 @@ DeviceCosts measure_on_device(std::span<const Lane* const> lanes, const std::vec
         for (int k = 0; k < kLaunches; ++k) decide(*lanes[l]);
       });
       const double with_copies = stream.time([&] {
-        bring();
+        bring(*lanes[l]);
         decide(*lanes[l]);
         check(cudaMemcpyAsync(verdicts.as<void>(), intersects, 2 * words * sizeof *intersects, cudaMemcpyDeviceToHost,
                               stream));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/lanes/lanes.h"
+#include "strata/pair_source.h"
 
 namespace graze::cuda {
 
@@ -32,7 +33,8 @@ struct DeviceCosts {
   std::vector<DeviceCost> of;  // for each lane
 };
 
+// Of pairs of doubles, lanes in double decide the doubles, and the others what float32 stores.
 // Requires: CUDA lanes, pairs.   Throws: std::runtime_error on any CUDA error, or without a device.
-DeviceCosts measure_on_device(std::span<const Lane* const> lanes, const std::vector<Pair>& pairs, int passes);
+DeviceCosts measure_on_device(std::span<const Lane* const> lanes, const strata::PairBlock& pairs, int passes);
 
 }  // namespace graze::cuda

@@ -8,6 +8,7 @@ namespace graze::cuda {
 
 // A block of pairs: 18 arrays of `stride` floats, ax0[] ay0[] … bz2[], of which `count` are in use.
 struct DevicePairs {
+  using Real = float;
   const float* coordinates;
   std::uint32_t stride;
   std::uint32_t count;
@@ -15,6 +16,7 @@ struct DevicePairs {
 
 // The same for pairs of doubles.
 struct DeviceDoubles {
+  using Real = double;
   const double* coordinates;
   std::uint32_t stride;
   std::uint32_t count;

@@ -11,12 +11,35 @@
 #include "core/exact/exact.h"
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/pair_list.h"
+#include "cuda/lanes/triangles.h"
 
 namespace graze {
 struct Lane;
 }
 
 namespace graze::cuda {
+
+// Pairs of doubles: pair i has triangle first + i of b, and that of a, or the reference if a is empty.
+struct ArrayPairs {
+  using Real = double;
+  TriangleArray a, b;
+  double reference[9];
+  std::uint64_t first;
+};
+
+__device__ inline void load(const ArrayPairs& pairs, std::uint32_t i, double* c) {
+  if (pairs.a.count > 0) {
+    pairs.a.load(pairs.first + i, c);
+  } else {
+    for (int k = 0; k < 9; ++k) c[k] = pairs.reference[k];
+  }
+  pairs.b.load(pairs.first + i, c + 9);
+}
+
+// Decides the pairs of the first list, which the filter left open. The other lists must be empty: the steps fill them.
+inline constexpr int kDoubleLists = 4;
+void launch_double_steps(const ArrayPairs& pairs, const PairList* lists, std::uint32_t* intersects,
+                         unsigned long long* stages, cudaStream_t stream);
 
 // Lists of pairs: two that the filter leaves open, and those that a step of the exact decision leaves to a later one.
 inline constexpr int kExactLists = 6;
@@ -34,6 +57,7 @@ class DeviceExact {
   // Decides only the pairs whose bit in `declined` is set: those that a filter left open. Pairs that are not finite
   // stay declined.
   void decide_declined(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream);
+  void decide_declined(DeviceDoubles pairs, std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream);
 
  private:
   void empty_lists(std::uint32_t pairs, cudaStream_t stream);
@@ -46,7 +70,7 @@ class DeviceExact {
 // Starts the kernels of a CUDA lane. They write the same words as DeviceExact::decide.
 void launch_lane(const Lane& lane, DeviceExact& exact, DevicePairs pairs, std::uint32_t* intersects,
                  std::uint32_t* declined, cudaStream_t stream);
-// Requires: a lane in double without a policy.
+// Requires: a lane in double.
 void launch_lane(const Lane& lane, DeviceExact& exact, DeviceDoubles pairs, std::uint32_t* intersects,
                  std::uint32_t* declined, cudaStream_t stream);
 

@@ -2,7 +2,7 @@
 // The steps of the exact decision after the filter. The first steps take the pairs whose determinants fit in floats or
 // in doubles. The next ones use residues, then 128-bit integers or closer bounds, then wide integers. Each step lists
 // the pairs that it cannot decide, so that a warp does not wait for one hard pair in 32. Pairs is any type with
-// load(pairs, i, coordinates). Device code only.
+// load(pairs, i, coordinates), whose coordinates are of type Real. Device code only.
 #pragma once
 
 #include "core/exact/exact.h"
@@ -51,14 +51,65 @@ __device__ bool floats_hold(const float* c) {
   return whole;
 }
 
-// The list of launch_exact_steps for a pair: 0 or 1.
+// The list for a pair that the filter leaves open: 0 if floats hold it, which no pair of doubles asks, else 1.
 __device__ int list_of(const float* c) { return floats_hold(c) ? 0 : 1; }
+__device__ int list_of(const double*) { return 1; }
+
+// The filter, with one thread for each pair, and a shared vertex. Lists the pairs that it leaves open.
+template <int kThreadBlocks, class Pairs>
+__global__ void __launch_bounds__(kThreads, kThreadBlocks)
+    decide_most(Pairs pairs, PairList in_floats, PairList left, std::uint32_t* intersects, std::uint32_t* declined,
+                unsigned long long* stages) {
+  const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
+  bool finite = true;
+  int list = -1;
+  Finding found = Finding::disjoint;
+  if (i < pairs.count) {
+    typename Pairs::Real c[kCoordinates];
+    load(pairs, i, c);
+    for (const auto x : c) finite = finite && is_finite(x);
+    if (finite) found = exact::detail::filter(c, c + 9);
+    if (found == Finding::unsure && exact::detail::shared_vertex(c, c + 9) >= 0) found = Finding::intersects;
+    if (found == Finding::unsure) list = list_of(c);
+  }
+  const std::uint32_t yes_word = __ballot_sync(0xffffffffu, found == Finding::crosses || found == Finding::intersects);
+  const std::uint32_t declined_word = __ballot_sync(0xffffffffu, !finite);
+  const std::uint32_t decided = __ballot_sync(0xffffffffu, i < pairs.count && found != Finding::unsure);
+  if (threadIdx.x % 32 == 0) {
+    intersects[i / 32] = yes_word;
+    declined[i / 32] = declined_word;
+    count(stages, Stage::bounded, static_cast<std::uint32_t>(__popc(decided)));
+  }
+  add_of_block(in_floats, left, list, i);
+}
+
+// Lists the finite pairs that a filter declined, and clears their bits in `declined`.
+template <class Pairs>
+__global__ void __launch_bounds__(kThreads)
+    list_declined(Pairs pairs, PairList in_floats, PairList left, std::uint32_t* intersects, std::uint32_t* declined) {
+  const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
+  bool finite = true;
+  int list = -1;
+  if (i < pairs.count && (declined[i / 32] >> i % 32 & 1)) {
+    typename Pairs::Real c[kCoordinates];
+    load(pairs, i, c);
+    for (const auto x : c) finite = finite && is_finite(x);
+    if (finite && exact::detail::shared_vertex(c, c + 9) >= 0) {
+      set_bit(intersects, i);
+    } else if (finite) {
+      list = list_of(c);
+    }
+  }
+  const std::uint32_t declined_word = __ballot_sync(0xffffffffu, !finite);
+  if (threadIdx.x % 32 == 0) declined[i / 32] = declined_word;
+  add_of_block(in_floats, left, list, i);
+}
 
 // Calls decide(coordinates, yes) for each pair of a list. It returns the stage that decided, and sets `yes` to
 // whether the pair intersects. If it returns kLeft, the pair goes to the list `left`.
 constexpr int kLeft = exact::kStages;
 
-template <class Real = float, class Pairs, class Decide>
+template <class Pairs, class Decide>
 __device__ void decide_listed(const Pairs& pairs, const PairList& from, const PairList& left, std::uint32_t* intersects,
                               unsigned long long* stages, const Decide& decide) {
   const std::uint32_t count = *from.count;
@@ -68,7 +119,7 @@ __device__ void decide_listed(const Pairs& pairs, const PairList& from, const Pa
     const std::uint32_t i = n < count ? from.at[n] : 0;
     bool is_left = false;
     if (n < count) {
-      Real c[kCoordinates];
+      typename Pairs::Real c[kCoordinates];
       load(pairs, i, c);
       bool yes = false;
       const int stage = decide(c, yes);
@@ -96,7 +147,7 @@ __global__ void __launch_bounds__(kThreads, 3)
 template <class Kinds, int kThreadBlocks, class Pairs>
 __global__ void __launch_bounds__(kThreads, kThreadBlocks)
     decide_by(Pairs pairs, PairList from, PairList left, std::uint32_t* intersects, unsigned long long* stages) {
-  decide_listed(pairs, from, left, intersects, stages, [](const float* c, bool& yes) {
+  decide_listed(pairs, from, left, intersects, stages, [](const auto* c, bool& yes) {
     const Grid grid = exact::detail::grid_of(c, c + 9);
     if (!Kinds::hold(grid)) return kLeft;
     return Kinds::visit(grid, [&](auto numbers) {
@@ -123,11 +174,16 @@ __global__ void __launch_bounds__(kThreads, 2)
   });
 }
 
+// Whether double-double numbers hold a pair's determinants without over- or underflow.
+__device__ bool is_moderate(const float*) { return true; }
+__device__ bool is_moderate(const double* c) { return exact::detail::is_moderate(exact::detail::grid_of(c, c + 9)); }
+
 // Decides by closer bounds, in double-double precision.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads, 2)
     decide_closely(Pairs pairs, PairList from, PairList left, std::uint32_t* intersects, unsigned long long* stages) {
-  decide_listed(pairs, from, left, intersects, stages, [](const float* c, bool& yes) {
+  decide_listed(pairs, from, left, intersects, stages, [](const auto* c, bool& yes) {
+    if (!is_moderate(c)) return kLeft;
     const Finding found = by_planes(exact::detail::triangles<DoubleDoubleNumbers>(c, c + 9));
     yes = found == Finding::crosses || found == Finding::intersects;
     return found == Finding::unsure ? kLeft : static_cast<int>(Stage::bounded);

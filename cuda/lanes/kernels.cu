@@ -16,14 +16,19 @@ __global__ void decide_pairs(DevicePairs pairs, std::uint32_t* intersects, std::
              [](const auto& a, const auto& b) { return std::tuple_element_t<algorithm, Algorithms>::decide(a, b); });
 }
 
-template <int algorithm, class Real>
-__global__ void trace_pairs(DevicePairs pairs, std::uint64_t* hashes) {
+template <int algorithm, class Real, class Pairs>
+__device__ void trace(const Pairs& pairs, std::uint64_t* hashes) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= pairs.count) return;
   const Triangles<Real> t = widened<Real>(pairs, i);
   std::uint64_t hash = 0;
   const Verdict verdict = std::tuple_element_t<algorithm, Algorithms>::decide(t.a, t.b, TracePolicy{&hash});
   hashes[i] = hash ^ static_cast<std::uint64_t>(verdict);
+}
+
+template <int algorithm, class Real>
+__global__ void trace_pairs(DevicePairs pairs, std::uint64_t* hashes) {
+  trace<algorithm, Real>(pairs, hashes);
 }
 
 // The same for pairs of doubles, which lanes in double decide. Real is double.
@@ -35,12 +40,7 @@ __global__ void decide_double_pairs(DeviceDoubles pairs, std::uint32_t* intersec
 
 template <int algorithm, class Real>
 __global__ void trace_double_pairs(DeviceDoubles pairs, std::uint64_t* hashes) {
-  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
-  if (i >= pairs.count) return;
-  const Triangles<Real> t = widened<Real>(pairs, i);
-  std::uint64_t hash = 0;
-  const Verdict verdict = std::tuple_element_t<algorithm, Algorithms>::decide(t.a, t.b, TracePolicy{&hash});
-  hashes[i] = hash ^ static_cast<std::uint64_t>(verdict);
+  trace<algorithm, Real>(pairs, hashes);
 }
 
 template <int algorithm, class Real>

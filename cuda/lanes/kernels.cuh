@@ -25,14 +25,16 @@ using LaunchDecide = void (*)(DevicePairs pairs, std::uint32_t* intersects, std:
 // Starts a kernel that writes each pair's trace hash; see cuda/lanes/trace.h.
 using LaunchTrace = void (*)(DevicePairs pairs, std::uint64_t* hashes, cudaStream_t stream);
 
+// As LaunchDecide, for lanes with tolerances.
+using LaunchWithin = void (*)(const Epsilons& epsilons, DevicePairs pairs, std::uint32_t* intersects,
+                              std::uint32_t* declined, cudaStream_t stream);
+
 // The same for pairs of doubles.
 using LaunchDecideDoubles = void (*)(DeviceDoubles pairs, std::uint32_t* intersects, std::uint32_t* declined,
                                      cudaStream_t stream);
 using LaunchTraceDoubles = void (*)(DeviceDoubles pairs, std::uint64_t* hashes, cudaStream_t stream);
-
-// As LaunchDecide, for lanes with tolerances.
-using LaunchWithin = void (*)(const Epsilons& epsilons, DevicePairs pairs, std::uint32_t* intersects,
-                              std::uint32_t* declined, cudaStream_t stream);
+using LaunchWithinDoubles = void (*)(const Epsilons& epsilons, DeviceDoubles pairs, std::uint32_t* intersects,
+                                     std::uint32_t* declined, cudaStream_t stream);
 
 // Starts a kernel that records the values of each pair; see core/lanes/records.h. `values` are the lane's scalars.
 using LaunchValues = void (*)(DevicePairs pairs, void* values, std::uint64_t stride, RecordedPath* paths,
@@ -41,12 +43,25 @@ using LaunchValues = void (*)(DevicePairs pairs, void* values, std::uint64_t str
 template <class Launch>
 using DeviceKernels = std::array<std::array<Launch, 2>, kAlgorithmCount>;
 
+// Those of lanes in double, for pairs of doubles.
+template <class Launch>
+using DoubleKernels = std::array<Launch, kAlgorithmCount>;
+
 struct VariantKernels {
   DeviceKernels<LaunchDecide> decide;
   DeviceKernels<LaunchTrace> trace;
-  std::array<LaunchDecideDoubles, kAlgorithmCount> decide_doubles;  // in double
-  std::array<LaunchTraceDoubles, kAlgorithmCount> trace_doubles;
+  DoubleKernels<LaunchDecideDoubles> decide_doubles;
+  DoubleKernels<LaunchTraceDoubles> trace_doubles;
 };
+
+// Of the lanes with tolerances, and of those under certified bounds.
+template <class Launch, class LaunchDoubles>
+struct PolicyKernels {
+  DeviceKernels<Launch> floats;
+  DoubleKernels<LaunchDoubles> doubles;
+};
+using WithinKernels = PolicyKernels<LaunchWithin, LaunchWithinDoubles>;
+using BoundKernels = PolicyKernels<LaunchDecide, LaunchDecideDoubles>;
 
 template <class Pairs>
 constexpr std::uint32_t thread_blocks(const Pairs& pairs) {

@@ -4,8 +4,6 @@
 // each) and writes a bit. Before that, the exact lane must give the same bits as the host on a sample. Without a
 // device, prints a line and succeeds.
 #include <benchmark/benchmark.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
@@ -28,6 +26,7 @@
 #include "cuda/lanes/device.h"
 #include "cuda/lanes/device_event.cuh"
 #include "cuda/lanes/device_memory.cuh"
+#include "cuda/lanes/draw_on_cores.h"
 #include "cuda/lanes/exact_kernels.cuh"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/stratum_kernels.cuh"
@@ -52,13 +51,9 @@ void draw(const strata::StratumInfo& stratum, std::uint64_t first, float* to) {
 
 // On all CPU cores, then copied.
 void draw(const strata::StratumInfo& stratum, std::uint64_t first, double* to) {
-  std::vector<double> columns(kNumbers);
-  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, kPairs, 4096), [&](const auto& part) {
-    for (std::uint32_t i = part.begin(); i != part.end(); ++i) {
-      const DoublePair pair = strata::generate_doubles(1, stratum.stratum, first + i);
-      for (std::size_t c = 0; c < kCoordinates; ++c) columns[c * kPairs + i] = coordinates(pair)[c];
-    }
-  });
+  std::vector<double> columns;
+  draw_on_cores([&](std::uint64_t index) { return strata::generate_doubles(1, stratum.stratum, index); }, first, kPairs,
+                columns);
   check(cudaMemcpy(to, columns.data(), kNumbers * sizeof(double), cudaMemcpyHostToDevice));
 }
 
@@ -202,13 +197,6 @@ bool device_is_host(std::uint64_t first, std::uint64_t end) {
   return same;
 }
 
-void launch(const Lane& lane, Resident<float>& resident) {
-  launch_lane(lane, resident.exact, resident.pairs(), resident.intersects_bits(), resident.declined_bits(), nullptr);
-}
-void launch(const Lane& lane, Resident<double>& resident) {
-  launch_lane(lane, resident.exact, resident.pairs(), resident.intersects_bits(), resident.declined_bits(), nullptr);
-}
-
 template <class Real>
 void measure_lane(benchmark::State& state, Resident<Real>& resident, const strata::StratumInfo& stratum,
                   const Lane& lane) {
@@ -224,7 +212,9 @@ void measure_lane(benchmark::State& state, Resident<Real>& resident, const strat
     constexpr const char* kNames[] = {"bounded", "doubles", "int128", "wide"};
     for (int s = 0; s < exact::kStages; ++s) state.counters[kNames[s]] = static_cast<double>(stages[s]);
   }
-  measure(state, kPairs, double{kPairs} * sizeof(BasicPair<Real>), [&] { launch(lane, resident); });
+  measure(state, kPairs, double{kPairs} * sizeof(BasicPair<Real>), [&] {
+    launch_lane(lane, resident.exact, resident.pairs(), resident.intersects_bits(), resident.declined_bits(), nullptr);
+  });
 }
 
 // The total time of a sweep over 64 tolerances, including drawing and judging the pairs.

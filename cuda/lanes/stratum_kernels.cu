@@ -2,13 +2,11 @@
 // Compiled with -fmad=false: without contraction the strata have the same bits as on the host.
 #include "cuda/lanes/stratum_kernels.cuh"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <array>
 #include <utility>
 
 #include "cuda/lanes/device_memory.cuh"
+#include "cuda/lanes/draw_on_cores.h"
 #include "strata/scene/scene.h"
 #include "strata/strata.h"
 
@@ -71,6 +69,11 @@ constexpr std::array<GenerateIn, sizeof...(kStratum)> generators_in(std::index_s
   return {generate_pairs_in<static_cast<strata::Stratum>(kStratum)>...};
 }
 
+__global__ void store_in_float32(const double* from, std::size_t count, float* to) {
+  const std::size_t i = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
+  if (i < count) to[i] = static_cast<float>(from[i]);
+}
+
 constexpr std::uint32_t kBlock = 256;
 constexpr std::uint32_t blocks(std::uint32_t threads) { return (threads + kBlock - 1) / kBlock; }
 
@@ -92,16 +95,19 @@ void Drawing::draw(const strata::PairSource& source, std::uint64_t first, std::u
   } else if (source.stratum >= 0) {
     launch_generate(to, count, source.seed, source.stratum, first, stream);
   } else {
-    brought_.resize(std::size_t{count} * kCoordinates);
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, 4096), [&](const auto& part) {
-      for (std::uint32_t i = part.begin(); i != part.end(); ++i) {
-        const Pair pair = source.pair(first + i);
-        for (std::size_t c = 0; c < kCoordinates; ++c) brought_[c * count + i] = coordinates(pair)[c];
-      }
-    });
+    draw_on_cores(source.pair, first, count, brought_);
     // The memory is not pinned, so the copy has read it when this returns.
     check(cudaMemcpyAsync(to, brought_.data(), brought_.size() * sizeof(float), cudaMemcpyHostToDevice, stream));
   }
+  check(cudaGetLastError());
+}
+
+void Drawing::draw(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, double* to,
+                   float* stored, cudaStream_t stream) {
+  draw_on_cores(source.double_pair, first, count, brought_doubles_);
+  const std::size_t numbers = brought_doubles_.size();
+  check(cudaMemcpyAsync(to, brought_doubles_.data(), numbers * sizeof *to, cudaMemcpyHostToDevice, stream));
+  store_in_float32<<<blocks(static_cast<std::uint32_t>(numbers)), kBlock, 0, stream>>>(to, numbers, stored);
   check(cudaGetLastError());
 }
 

@@ -33,8 +33,13 @@ class Drawing {
   void draw(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, float* coordinates,
             cudaStream_t stream);
 
+  // The same for a source of doubles. `stored` gets the pairs as float32 stores them.
+  void draw(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, double* coordinates,
+            float* stored, cudaStream_t stream);
+
  private:
   std::vector<float> brought_;
+  std::vector<double> brought_doubles_;
 };
 
 // Counts the set bits of (a ^ b), where bit i % 32 of word i / 32 is index i. Bits from `count` on are ignored.

@@ -65,7 +65,8 @@ class Stream {
 // The outputs of a chunk's kernels.
 struct Verdicts {
   DeviceArray<std::uint32_t> hits, declined, lists, counts, not_finite;
-  DeviceArray<float> columns, triangles;
+  DeviceArray<float> columns;
+  DeviceArray<char> triangles;
   DeviceArray<QueryCounts> found;
   DeviceExact exact;  // of a lane with a filter
 };
@@ -74,19 +75,20 @@ struct Slot {
   Stream stream;
   Event start, stop, done;
   Verdicts verdicts;
-  PinnedArray<float> triangles;
+  PinnedArray<char> triangles;
   PinnedArray<std::uint64_t> hits, declined;
   PinnedArray<QueryCounts> found;
   std::optional<QueryRange> range;  // the range in progress
 };
 
 // Copies or packs the triangles into memory from which a device copies fast.
-void pack(const TriangleArray& array, std::uint64_t first, std::uint64_t count, float* to) {
-  constexpr std::uint64_t kPart = 1 << 14;
+template <class Real>
+void pack(const TriangleArray& array, std::uint64_t first, std::uint64_t count, Real* to) {
+  constexpr std::uint64_t kPart = 1 << 14, kEach = 9 * sizeof(Real);
   tbb::parallel_for(std::uint64_t{0}, (count + kPart - 1) / kPart, [&](std::uint64_t part) {
     const std::uint64_t begin = part * kPart, end = std::min(count, begin + kPart);
-    if (array.packed()) {
-      std::memcpy(to + 9 * begin, array.rows + 36 * (first + begin), 36 * (end - begin));
+    if (array.packed(sizeof(Real))) {
+      std::memcpy(to + 9 * begin, array.rows + kEach * (first + begin), kEach * (end - begin));
     } else {
       for (std::uint64_t i = begin; i < end; ++i) array.load(first + i, to + 9 * i);
     }
@@ -103,19 +105,23 @@ class Run {
  public:
   Run(const DeviceQuestion& question, QueryWork& work, int device, Slot* slots)
       : question_(question), work_(work), device_(device), slots_(slots) {
-    for (std::size_t r = 0; r < question.references.size() / 9; ++r)
-      references_.push_back(exact::prepare(question.references.data() + 9 * r));
+    for (std::size_t r = 0; r < question.reference_count; ++r)
+      references_.push_back(question.in_doubles
+                                ? exact::prepare(doubles(r))
+                                : exact::prepare(static_cast<const float*>(question.references) + 9 * r));
     resident_ = std::any_of(question.places.begin(), question.places.end(), [&](int p) { return p == device; });
-    pinned_ = !resident_ && std::all_of(question.parts.begin(), question.parts.end(), [](const TriangleArray& part) {
-      return part.count == 0 || (part.packed() && is_pinned(part.rows));
-    });
+    pinned_ =
+        !resident_ && std::all_of(question.parts.begin(), question.parts.end(), [this](const TriangleArray& part) {
+          return part.count == 0 || (part.packed(real_) && is_pinned(part.rows));
+        });
     most_ = !question.lane->exact ? kMostOfLane : resident_ ? kMostResident : kMostStreamed;
     most_ = std::max<std::uint64_t>(1 << 12, most_ / references_.size() / 64 * 64);
     std::size_t free = 0, all = 0;
     check(cudaMemGetInfo(&free, &all));
     // Bytes per triangle in all slots: lists, verdicts and, where copied, the triangles. At most half of the free
     // memory.
-    const std::size_t bytes = (resident_ ? 32 : 3 * 60) + references_.size() + (question.lane->exact ? 0 : 3 * 76);
+    const std::size_t bytes =
+        (resident_ ? 32 : 3 * (24 + 9 * real_)) + references_.size() + (question.lane->exact ? 0 : 3 * 76);
     while (most_ > 1 << 12 && most_ * bytes > free / 2) most_ /= 2;
     // The first chunks may be large if the time that a launch may take is not very short.
     const bool at_leisure = resident_ && question.lane->exact && question.launch_seconds >= 0.05;
@@ -163,16 +169,22 @@ class Run {
     QueryChunk chunk{question_.parts[range.part], range.first_in_part, count};
     Verdicts& at = shared.verdicts;
     if (!resident_) {
-      const void* from = chunk.array.rows + 36 * range.first_in_part;
+      const std::size_t each = 9 * real_;
+      const char* from = chunk.array.rows + each * range.first_in_part;
       if (!pinned_) {
-        float* packed = slot.triangles.at_least(9 * range.count);
-        pack(chunk.array, range.first_in_part, range.count, packed);
+        char* packed = slot.triangles.at_least(each * range.count);
+        if (question_.in_doubles) {
+          pack(chunk.array, range.first_in_part, range.count, reinterpret_cast<double*>(packed));
+        } else {
+          pack(chunk.array, range.first_in_part, range.count, reinterpret_cast<float*>(packed));
+        }
         from = packed;
       }
-      float* triangles = at.triangles.at_least(9 * range.count);
-      check(cudaMemcpyAsync(triangles, from, 36 * range.count, cudaMemcpyHostToDevice, stream));
+      char* triangles = at.triangles.at_least(each * range.count);
+      check(cudaMemcpyAsync(triangles, from, each * range.count, cudaMemcpyHostToDevice, stream));
       chunk = {{}, 0, count};
-      chunk.array.rows = reinterpret_cast<const char*>(triangles);
+      chunk.array.rows = triangles;
+      chunk.array.stride = each;
       chunk.array.count = count;
     }
     const std::size_t words = row_words(count), rows = references_.size();
@@ -181,7 +193,7 @@ class Run {
     check(cudaMemsetAsync(found, 0, rows * sizeof *found, stream));
     check(cudaEventRecord(slot.start, stream));
     for (std::size_t r = 0; r < rows; ++r) {
-      decide(at, references_[r], chunk, hits + r * words, declined + r * words, stream);
+      decide(at, r, chunk, hits + r * words, declined + r * words, stream);
       check(cudaMemsetAsync(&found[r].first, 0xff, sizeof found[r].first, stream));
       launch_count(count, hits + r * words, declined + r * words, found + r, stream);
       put(range, r, hits + r * words, declined + r * words, stream);
@@ -202,11 +214,16 @@ class Run {
     check(cudaMemcpyAsync(to.at_least(words / 2), from, words * sizeof *from, cudaMemcpyDeviceToHost, stream));
   }
 
-  void decide(Verdicts& at, const exact::PreparedTriangle& reference, const QueryChunk& chunk, std::uint32_t* hits,
-              std::uint32_t* declined, cudaStream_t stream) {
-    if (question_.lane->exact)
-      return launch_exact_query(reference, chunk, at.lists.at_least(2 * std::size_t{chunk.count}),
-                                at.counts.at_least(kQueryLists), hits, declined, stream);
+  void decide(Verdicts& at, std::size_t r, const QueryChunk& chunk, std::uint32_t* hits, std::uint32_t* declined,
+              cudaStream_t stream) {
+    const exact::PreparedTriangle& reference = references_[r];
+    if (question_.lane->exact) {
+      std::uint32_t* lists = at.lists.at_least(2 * std::size_t{chunk.count});
+      std::uint32_t* counts = at.counts.at_least(kQueryLists);
+      if (question_.in_doubles)
+        return launch_exact_query(reference, doubles(r), chunk, lists, counts, hits, declined, stream);
+      return launch_exact_query(reference, chunk, lists, counts, hits, declined, stream);
+    }
     const std::uint32_t words = row_words(chunk.count);
     float* columns = at.columns.at_least(std::size_t{words} * 32 * kCoordinates);
     std::uint32_t* not_finite = at.not_finite.at_least(words);
@@ -214,6 +231,8 @@ class Run {
     launch_lane(*question_.lane, at.exact, {columns, words * 32, chunk.count}, hits, declined, stream);
     launch_decline(words, not_finite, hits, declined, stream);
   }
+
+  const double* doubles(std::size_t r) const { return static_cast<const double*>(question_.references) + 9 * r; }
 
   // Writes the caller's outputs in device memory.
   void put(const QueryRange& range, std::size_t r, const std::uint32_t* hits, const std::uint32_t* declined,
@@ -250,6 +269,7 @@ class Run {
   }
 
   const DeviceQuestion& question_;
+  const std::size_t real_ = question_.in_doubles ? sizeof(double) : sizeof(float);
   QueryWork& work_;
   int device_;
   Slot* slots_;

@@ -10,7 +10,7 @@
 
 #include "core/lanes/lanes.h"
 #include "cuda/lanes/device_failure.h"
-#include "cuda/query/triangles.h"
+#include "cuda/lanes/triangles.h"
 
 namespace graze::cuda {
 
@@ -46,10 +46,12 @@ class QueryWork {
 };
 
 struct DeviceQuestion {
-  std::span<const float> references;  // nine for each reference
+  bool in_doubles = false;           // the coordinates of references and triangles; otherwise in floats
+  const void* references = nullptr;  // nine coordinates for each reference
+  std::uint64_t reference_count = 0;
   std::span<const TriangleArray> parts;
   std::span<const int> places;  // for each part: the device whose memory holds it, -1: host
-  const Lane* lane = nullptr;   // a CUDA lane
+  const Lane* lane = nullptr;   // a CUDA lane; the exact one for doubles
   bool any = false;
   unsigned char *bytes = nullptr, *bits = nullptr;  // device memory or null; a row for each reference
   std::uint64_t triangles = 0;

@@ -3,6 +3,8 @@
 // pairs for other lanes.
 #include "cuda/query/query_kernels.cuh"
 
+#include <algorithm>
+
 #include "cuda/lanes/exact_steps.cuh"
 
 namespace graze::cuda {
@@ -10,6 +12,7 @@ namespace {
 
 // The pairs as the steps of the exact decision read them.
 struct QueryPairs {
+  using Real = float;
   exact::PreparedTriangle reference;
   QueryChunk chunk;
 };
@@ -55,6 +58,39 @@ __global__ void __launch_bounds__(kThreads, 3)
     if (found == Finding::crosses) set_bit(hits, i);
     if (found == Finding::unsure) left.add(i);
   }
+}
+
+// Triangles of doubles, as the reference's slabs see them from its first vertex. Lists those that are not beyond one.
+__global__ void __launch_bounds__(kThreads)
+    decide_doubles_by_slabs(const __grid_constant__ exact::PreparedTriangle seen,
+                            const __grid_constant__ ArrayPairs pairs, std::uint32_t count, PairList left,
+                            std::uint32_t* hits, std::uint32_t* declined) {
+  const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
+  bool open = false, finite = true;
+  if (i < count) {
+    double c[kCoordinates];
+    load(pairs, i, c);
+    float differences[9];
+    for (int k = 0; k < 9; ++k) differences[k] = static_cast<float>(c[9 + k] - c[k % 3]);
+    open = !exact::is_beyond(seen, differences);
+    for (int k = 0; open && k < kCoordinates; ++k) finite = finite && is_finite(c[k]);
+  }
+  const std::uint32_t declined_word = __ballot_sync(0xffffffffu, !finite);
+  if (threadIdx.x % 32 == 0) {
+    hits[i / 32] = 0;
+    declined[i / 32] = declined_word;
+  }
+  add_of_block(left, left, open && finite ? 0 : -1, i);
+}
+
+// The filter in doubles, and a shared vertex.
+__global__ void __launch_bounds__(kThreads, 2)
+    filter_doubles(const __grid_constant__ ArrayPairs pairs, PairList from, PairList left, std::uint32_t* hits) {
+  decide_listed(pairs, from, left, hits, nullptr, [](const double* c, bool& yes) {
+    const Finding found = exact::detail::filter(c, c + 9);
+    yes = found == Finding::crosses || (found == Finding::unsure && exact::detail::shared_vertex(c, c + 9) >= 0);
+    return found == Finding::unsure && !yes ? kLeft : static_cast<int>(Stage::bounded);
+  });
 }
 
 __global__ void __launch_bounds__(kThreads)
@@ -125,14 +161,38 @@ std::uint32_t blocks_for(std::uint32_t things) { return (things + kThreads - 1) 
 
 }  // namespace
 
+namespace {
+
+// Each list reuses the memory of the list before the previous one, which is no longer needed.
+struct QueryLists {
+  PairList left[kQueryLists];
+
+  QueryLists(std::uint32_t* places, std::uint32_t* counts, std::uint32_t triangles, cudaStream_t stream) {
+    check(cudaMemsetAsync(counts, 0, kQueryLists * sizeof *counts, stream));
+    for (std::uint32_t k = 0; k < kQueryLists; ++k) left[k] = {places + (k % 2) * triangles, counts + k};
+  }
+};
+
+}  // namespace
+
+void launch_exact_query(const exact::PreparedTriangle& seen, const double* reference, const QueryChunk& chunk,
+                        std::uint32_t* lists, std::uint32_t* counts, std::uint32_t* hits, std::uint32_t* declined,
+                        cudaStream_t stream) {
+  const auto [left] = QueryLists(lists, counts, chunk.count, stream);
+  ArrayPairs pairs{{}, chunk.array, {}, chunk.first};
+  std::copy_n(reference, 9, pairs.reference);
+  decide_doubles_by_slabs<<<blocks_for(chunk.count), kThreads, 0, stream>>>(seen, pairs, chunk.count, left[0], hits,
+                                                                            declined);
+  filter_doubles<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], hits);
+  static_assert(1 + kDoubleLists <= kQueryLists);
+  launch_double_steps(pairs, left + 1, hits, nullptr, stream);
+}
+
 void launch_exact_query(const exact::PreparedTriangle& reference, const QueryChunk& chunk, std::uint32_t* lists,
                         std::uint32_t* counts, std::uint32_t* hits, std::uint32_t* declined, cudaStream_t stream) {
-  check(cudaMemsetAsync(counts, 0, kQueryLists * sizeof *counts, stream));
+  const auto [left] = QueryLists(lists, counts, chunk.count, stream);
   check(cudaMemsetAsync(declined, 0, row_words(chunk.count) * sizeof *declined, stream));
   const QueryPairs pairs{reference, chunk};
-  // Each list reuses the memory of the list before the previous one, which is no longer needed.
-  PairList left[kQueryLists];
-  for (std::uint32_t k = 0; k < kQueryLists; ++k) left[k] = {lists + (k % 2) * chunk.count, counts + k};
   launch_slabs(reference, chunk, left[0], hits, stream);
   decide_on_grid<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], hits, declined);
   filter_listed<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[1], left[2], hits);

@@ -35,6 +35,11 @@ void launch_slabs(const exact::PreparedTriangle& reference, const QueryChunk& ch
 void launch_exact_query(const exact::PreparedTriangle& reference, const QueryChunk& chunk, std::uint32_t* lists,
                         std::uint32_t* counts, std::uint32_t* hits, std::uint32_t* declined, cudaStream_t stream);
 
+// The same for triangles of doubles. `seen` is the reference as prepared from its doubles.
+void launch_exact_query(const exact::PreparedTriangle& seen, const double* reference, const QueryChunk& chunk,
+                        std::uint32_t* lists, std::uint32_t* counts, std::uint32_t* hits, std::uint32_t* declined,
+                        cudaStream_t stream);
+
 // Writes each triangle of the chunk as a pair with the reference: 18 columns of row_words(count) * 32 floats. Also
 // marks the triangles that are not finite.
 void launch_pair_up(const exact::PreparedTriangle& reference, const QueryChunk& chunk, float* columns,

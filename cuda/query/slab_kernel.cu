@@ -163,8 +163,8 @@ void launch_slabs(const exact::PreparedTriangle& reference, const QueryChunk& ch
   int device = 0, processors = 0;
   check(cudaGetDevice(&device));
   check(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device));
-  const bool by_vectors =
-      chunk.array.packed() && chunk.first % 4 == 0 && reinterpret_cast<std::uintptr_t>(chunk.array.rows) % 16 == 0;
+  const bool by_vectors = chunk.array.packed(sizeof(float)) && chunk.first % 4 == 0 &&
+                          reinterpret_cast<std::uintptr_t>(chunk.array.rows) % 16 == 0;
   const std::uint32_t tiles = (chunk.count + kTile - 1) / kTile, wanted = (tiles + kWarps - 1) / kWarps;
   const std::uint32_t blocks = std::min(wanted, static_cast<std::uint32_t>(processors) * kBlocks);
   if (const std::size_t behind = row_words(chunk.count) - tiles * kEach; behind > 0)

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cuda/twin/prove.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -15,6 +12,7 @@
 #include "core/lanes/lanes.h"
 #include "cuda/lanes/device.h"
 #include "cuda/lanes/device_memory.cuh"
+#include "cuda/lanes/draw_on_cores.h"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/stratum_kernels.cuh"
 #include "cuda/twin/explicit_ptx.h"
@@ -92,13 +90,8 @@ struct OfDoubles {
   }
   // On all CPU cores, then copied.
   void draw(std::uint64_t seed, std::size_t s, std::uint64_t first, std::uint32_t n, double* to) {
-    drawn_.resize(std::size_t{n} * kCoordinates);
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, n, 4096), [&](const auto& part) {
-      for (std::uint32_t i = part.begin(); i != part.end(); ++i) {
-        const DoublePair pair = strata::generate_doubles(seed, kStrata[s].stratum, first + i);
-        for (std::size_t c = 0; c < kCoordinates; ++c) drawn_[c * n + i] = coordinates(pair)[c];
-      }
-    });
+    draw_on_cores([&](std::uint64_t index) { return strata::generate_doubles(seed, kStrata[s].stratum, index); }, first,
+                  n, drawn_);
     check(cudaMemcpy(to, drawn_.data(), drawn_.size() * sizeof(double), cudaMemcpyHostToDevice));
   }
 

@@ -96,8 +96,10 @@ bool is_contracted_otherwise(const Lane& lane) {
 DecideBlock policy_twin(const Lane& lane) {
   const TwinTable* table = kTables[static_cast<int>(lane.variant)].policies;
   if (!table || lane.under->kind != Policy::Kind::tolerances || is_contracted_otherwise(lane)) return nullptr;
+  const bool relative = lane.under->epsilons.any_relative();
+  const auto within = [&](const auto& twin) { return relative ? twin.relative : twin.absolute; };
   const TwinRow& row = row_of(*table, lane);
-  return {lane.under->epsilons.any_relative() ? row.relative : row.absolute, lane.under->epsilons};
+  return {{.within = within(row)}, {.within = within(row.doubles)}, lane.under->epsilons};
 }
 
 }  // namespace

@@ -55,11 +55,11 @@ void decide_block(const AnyPair* pairs, std::size_t count, u64* intersects, u64*
               [](const AnyPair& pair) { return decide_one<Kernel>(pair, AllFused{}); });
 }
 
-template <class Kernel>
-void decide_within(const Epsilons& epsilons, const Pair* pairs, std::size_t count, u64* intersects, u64* declined) {
+template <class Kernel, class AnyPair>
+void decide_within(const Epsilons& epsilons, const AnyPair* pairs, std::size_t count, u64* intersects, u64* declined) {
   const Tolerances<std::conditional_t<Kernel::kScalar == Scalar::f32, float, double>> tolerances(epsilons);
   decide_each(pairs, count, intersects, declined,
-              [&](const Pair& pair) { return decide_one<Kernel>(pair, AllFused{}, tolerances); });
+              [&](const AnyPair& pair) { return decide_one<Kernel>(pair, AllFused{}, tolerances); });
 }
 
 template <class Kernel, class AnyPair>
@@ -132,14 +132,18 @@ constexpr void enter(TwinTable& table) {
       row.sites = std::span<const ContractionSite>(Kernel::kSites, Kernel::kSiteCount);
     }
   } else if constexpr (Kernel::kName == "absolute_pairs") {
-    row.absolute = decide_within<Kernel>;
+    row.absolute = decide_within<Kernel, Pair>;
   } else if constexpr (Kernel::kName == "relative_pairs") {
-    row.relative = decide_within<Kernel>;
+    row.relative = decide_within<Kernel, Pair>;
 #ifndef __wasm__  // which has no pairs of doubles
   } else if constexpr (Kernel::kName == "decide_double_pairs") {
     enter_decide<Kernel, DoublePair>(row.doubles);
   } else if constexpr (Kernel::kName == "trace_double_pairs") {
     enter_trace<Kernel, DoublePair>(row.doubles);
+  } else if constexpr (Kernel::kName == "absolute_double_pairs") {
+    row.doubles.absolute = decide_within<Kernel, DoublePair>;
+  } else if constexpr (Kernel::kName == "relative_double_pairs") {
+    row.doubles.relative = decide_within<Kernel, DoublePair>;
 #endif
   }
 }

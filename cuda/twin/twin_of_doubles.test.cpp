@@ -112,6 +112,21 @@ TEST_P(TwinOfDoubles, FusingAllSitesIsCudaFmaAndNoneIsCudaNofma) {
   EXPECT_EQ(wrong, 0);
 }
 
+TEST_P(TwinOfDoubles, UnderTolerancesIsTheCpuLaneWithoutContractionAndAnotherWithIt) {
+  if (!has_policy_twins()) GTEST_SKIP() << "built without twins of lanes under tolerances";
+  bool contraction_matters = false;
+  for (const char* policy : {"abs:1e-9", "rel:16", "plane_distance=rel:3,separation=abs:1e-12"}) {
+    const auto verdicts = [&](Variant variant) {
+      return verdicts_in_double(block_on_host(lane_under(sibling(variant), policy)));
+    };
+    const std::vector<Verdict> of_cpu = verdicts(Variant::cpu);
+    EXPECT_TRUE(verdicts(Variant::cuda_nofma) == of_cpu) << policy;
+    EXPECT_FALSE(of_cpu == verdicts_in_double(block_on_host(sibling(Variant::cpu)))) << policy;
+    contraction_matters = contraction_matters || verdicts(Variant::cuda_fma) != of_cpu;
+  }
+  EXPECT_TRUE(contraction_matters);
+}
+
 TEST_P(TwinOfDoubles, WithFmaFromTheLibraryIsTheSame) {
   const TwinRow& portable = twin_cuda_fma_portable::kTwinTable.rows[static_cast<std::size_t>(lane().algorithm)][1];
   EXPECT_TRUE(verdicts_in_double({{portable.decide}, {portable.doubles.decide}}) ==

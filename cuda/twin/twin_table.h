@@ -15,6 +15,7 @@ namespace graze::cuda {
 template <class AnyPair>
 struct TwinFunctions {
   DecideFunction<AnyPair> decide = nullptr;
+  DecideWithin<AnyPair> absolute = nullptr, relative = nullptr;  // with tolerances: absolute; also relative
   TraceFunction<AnyPair> trace = nullptr;
   Verdict (*decide_fusing)(const AnyPair& pair, const std::uint64_t* fused) = nullptr;
   const char* hash = "";
@@ -25,9 +26,8 @@ struct TwinFunctions {
 };
 
 struct TwinRow : TwinFunctions<Pair> {
-  TwinFunctions<DoublePair> doubles;                           // of lanes in double
-  DecideBlock::Within absolute = nullptr, relative = nullptr;  // with tolerances: absolute; also relative
-  RecordBlock record = nullptr;                                // its sites are `sites`
+  TwinFunctions<DoublePair> doubles;  // of lanes in double
+  RecordBlock record = nullptr;       // its sites are `sites`
   void (*record_fusing)(const Pair* pairs, std::size_t count, const Records& to, const std::uint64_t* fused) = nullptr;
 };
 

@@ -110,6 +110,25 @@ TEST_F(DeviceTest, DoublesAreDecidedAsByTheTwins) {
   EXPECT_EQ(counts.size(), 6u) << counts;
 }
 
+TEST_F(DeviceTest, LanesUnderTolerancesDecideDoublesAsTheirTwins) {
+  const std::vector<std::string> globs = {"*/f64/cuda-nofma/abs:1e-9", "*/f64/cuda-nofma/rel:16",
+                                          "*/f64/cuda-fma/abs:1e-9", "*/f64/cuda-fma/rel:16",
+                                          "*/f64/cuda-fma/plane_distance=rel:3,separation=abs:1e-12"};
+  SelectedLanes by_twins = select_lanes(globs, Executor::twin), on_device = select_lanes(globs, Executor::device);
+  EXPECT_TRUE(select_for_doubles(by_twins).empty());
+  EXPECT_TRUE(select_for_doubles(on_device).empty());
+  ASSERT_EQ(by_twins.lanes.size(), globs.size() * 5);
+  const auto of_doubles = [&](const SelectedLanes& under_test, const std::string& name) {
+    Campaign c = campaign(under_test, name, 0, 0);
+    c.sources = strata::stratum_sources(6, 28 * 3'000, {}, PairTypes::f64);
+    return c;
+  };
+  run(of_doubles(by_twins, "twins"));
+  const Json summary = run(of_doubles(on_device, "device"));
+  expect_same_bytes("twins", "device");
+  EXPECT_GT(summary["signatures"].size(), 1000u);
+}
+
 TEST_F(DeviceTest, TwinsOfDoublesAreProven) {
   const cuda::ProofRecord record =
       cuda::prove_twin({.pairs = 28 * 40'000, .twin_pairs = 28 * 4'000, .of_doubles = true});
@@ -139,7 +158,8 @@ TEST_F(DeviceTest, ScenesAreDrawnOnTheDeviceAsOnTheHost) {
 
 TEST_F(DeviceTest, SweepsCountAsTheTwinsDo) {
   std::vector<strata::PairSource> sources = sources_in_scenes(5, 60'000);
-  for (strata::PairSource& source : strata::stratum_sources(5, 60'000, {})) sources.push_back(std::move(source));
+  for (strata::PairSource& source : strata::stratum_sources(5, 120'000, {}, PairTypes::both))
+    sources.push_back(std::move(source));
   const std::vector<std::string> policies = {"", "abs:1e-6", "rel:1", "rel:64", "rel:1e9", "plane_distance=abs:1e-3"};
   for (const char* id : {"moller_1997/f32/cuda-fma", "guigue_devillers_2003/f64/cuda-nofma"}) {
     const Lane& lane = *find_lane(id);
@@ -148,6 +168,7 @@ TEST_F(DeviceTest, SweepsCountAsTheTwinsDo) {
     EXPECT_EQ(there, analysis::host_sweep(lane)(policies, sources)) << id;
     EXPECT_GT(there[1].fixed + there[1].broken, 100u);
   }
+  std::erase_if(sources, [](const strata::PairSource& source) { return source.in_doubles(); });
   const Lane& filtered = *find_lane("guigue_devillers_2003/f32/cuda-fma");
   const auto found = analysis::device_sweep([&](const std::string& policy) {
     return policy.empty() ? filtered : lane_under(filtered, policy);
@@ -156,25 +177,39 @@ TEST_F(DeviceTest, SweepsCountAsTheTwinsDo) {
   EXPECT_GT(found[1].declined, 1000u);
 }
 
-TEST_F(DeviceTest, CostsAreOfEachLaneAndNameItsKernel) {
-  std::vector<Pair> pairs;
-  const auto source = strata::stratum_sources(1, 1u << 20, {"near_edge_edge"}).front();
-  for (std::uint64_t i = 0; i < source.pairs; ++i) pairs.push_back(source.pair(i));
-  const Lane bound = lane_under(*find_lane("moller_1997/f64/cuda-fma"), "filtered");
-  const Lane* lanes[] = {find_lane("moller_1997/f32/cuda-fma"), find_lane("exact/f32/cuda"), &bound};
-  const cuda::DeviceCosts costs = cuda::measure_on_device(lanes, pairs, 5);
-  ASSERT_EQ(costs.of.size(), 3u);
-  EXPECT_GE(costs.threads_at_once, 1024);
-  for (const cuda::DeviceCost& cost : costs.of) {
-    ASSERT_EQ(cost.resident.size(), 5u);
-    for (std::size_t pass = 0; pass < 5; ++pass) {
-      EXPECT_GT(cost.resident[pass], 0);
-      EXPECT_GT(cost.with_copies[pass], 0.1);  // 72 bytes at 720 GB/s: no link is as fast
-    }
-    EXPECT_GT(cost.needs.registers, 15);
-    EXPECT_GT(cost.needs.active_threads, 0);
+// No bound is wrong on doubles whose determinants stay within a double's range.
+TEST_F(DeviceTest, BoundsAndFiltersHoldOnDoubles) {
+  const std::vector<strata::PairSource> sources =
+      strata::stratum_sources(5, 400'000, {"near_*", "uniform", "large_offset", "lattice*"}, PairTypes::f64);
+  for (const char* id : {"guigue_devillers_2003/f64/cuda-fma", "guigue_devillers_2003/f64/cuda-nofma"}) {
+    const Lane& lane = *find_lane(id);
+    const auto found = analysis::device_sweep([&](const std::string& policy) {
+      return policy.empty() ? lane : lane_under(lane, policy);
+    })(std::vector<std::string>{"filtered", "bound"}, sources);
+    EXPECT_EQ(found[0].wrong() + found[0].declined + found[1].wrong(), 0u) << id;
+    EXPECT_GT(found[1].declined, 1000u) << id;
   }
-  EXPECT_GT(costs.of[2].needs.registers, costs.of[0].needs.registers);
+}
+
+TEST_F(DeviceTest, CostsAreOfEachLaneAndNameItsKernel) {
+  const Lane bound = lane_under(*find_lane("moller_1997/f64/cuda-fma"), "filtered");
+  const Lane* lanes[] = {find_lane("moller_1997/f32/cuda-fma"), find_lane("exact/f64/cuda"), &bound};
+  for (const PairTypes type : {PairTypes::f32, PairTypes::f64}) {
+    const auto source = strata::stratum_sources(1, 1u << 20, {"near_edge_edge"}, type).front();
+    const cuda::DeviceCosts costs = cuda::measure_on_device(lanes, strata::pairs_of(source, 0, source.pairs), 5);
+    ASSERT_EQ(costs.of.size(), 3u);
+    EXPECT_GE(costs.threads_at_once, 1024);
+    for (const cuda::DeviceCost& cost : costs.of) {
+      ASSERT_EQ(cost.resident.size(), 5u);
+      for (std::size_t pass = 0; pass < 5; ++pass) {
+        EXPECT_GT(cost.resident[pass], 0);
+        EXPECT_GT(cost.with_copies[pass], 0.1);  // 72 bytes at 720 GB/s: no link is as fast
+      }
+      EXPECT_GT(cost.needs.registers, 15);
+      EXPECT_GT(cost.needs.active_threads, 0);
+    }
+    EXPECT_GT(costs.of[2].needs.registers, costs.of[0].needs.registers);
+  }
 }
 
 TEST_F(DeviceTest, LanesUnderTolerancesLeaveTheSameBytesByTheirTwins) {

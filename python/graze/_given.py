@@ -51,8 +51,13 @@ class _Tested:
             return _RAISED
         return verdict_of(answer, self.name)
 
+    def end(self, failure: BaseException) -> None:
+        self.ended_by = failure
+
     def decide(self, floats: Any, count: int, verdicts: Any) -> int:
         try:
+            if self.ended_by:
+                return 1
             pairs = np.array(np.ctypeslib.as_array(floats, (count, 2, 3, 3)))
             pairs.flags.writeable = False
             np.ctypeslib.as_array(verdicts, (count,))[:] = self.of_pairs(pairs)
@@ -77,10 +82,13 @@ def _check(tested: _Tested, name: str, options: _library.Options, examples: list
         if _library.text():
             return f"{name} is wrong on an example: {_words(pair, _library.text())}"
     result, decide = _library.Result(), _library.Decide(tested.decide)
-    try:
-        _library.call("test", name.encode(), decide, ctypes.byref(options), ctypes.byref(result))
-    except KeyboardInterrupt:
-        raise tested.ended_by or KeyboardInterrupt
+    with _library.failures_on_entering(tested.decide, tested.end):
+        try:
+            _library.call("test", name.encode(), decide, ctypes.byref(options), ctypes.byref(result))
+        except KeyboardInterrupt:
+            raise tested.ended_by or KeyboardInterrupt
+    if tested.ended_by:
+        raise tested.ended_by
     if result.passed:
         return None
     summary, _, fault = _library.text().rpartition("\n")

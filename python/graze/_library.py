@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The shared library beside this file, and how arrays and failures pass through it. ctypes releases the interpreter's
 lock during a call."""
+import contextlib
 import ctypes
 import pathlib
+import sys
 import threading
 import time
-from typing import Any, Callable
+from typing import Any, Callable, Iterator
 
 import numpy as np
 
@@ -51,15 +53,33 @@ def call(function: str, *arguments: Any) -> None:
         raise ValueError(_library.graze_py_error().decode())
 
 
+@contextlib.contextmanager
+def failures_on_entering(callback: Callable[..., Any], end: Callable[[BaseException], None]) -> Iterator[None]:
+    """Calls end() with what a signal's handler raises before the first line of a callback, which ctypes only prints."""
+    before = sys.unraisablehook
+
+    def hook(unraisable: Any) -> None:
+        if unraisable.object == callback and unraisable.exc_value is not None:
+            end(unraisable.exc_value)
+        else:
+            before(unraisable)
+
+    sys.unraisablehook = hook
+    try:
+        yield
+    finally:
+        sys.unraisablehook = before
+
+
 def call_in_thread(function: str, *arguments: Any, then: Callable[[], None]) -> None:
-    """As call, for one long call: Ctrl+C asks it to stop, and is raised when it has. `then` runs in the same thread
-    after it, because what it found is kept for that thread."""
-    _library.graze_py_stop(0)
+    """As call, for one long call whose last argument asks it to stop: Ctrl+C does, and is raised when it has stopped.
+    `then` runs in the same thread after it, because what it found is kept for that thread."""
+    stop = ctypes.c_int(0)
     failures: list[BaseException] = []
 
     def run() -> None:
         try:
-            call(function, *arguments)
+            call(function, *arguments, ctypes.byref(stop))
             then()
         except BaseException as failure:  # raised again below, in the caller's thread
             failures.append(failure)
@@ -71,7 +91,7 @@ def call_in_thread(function: str, *arguments: Any, then: Callable[[], None]) -> 
             thread.join(0.1)
     except BaseException:
         while thread in threading.enumerate():  # even one that is only about to start
-            _library.graze_py_stop(1)
+            stop.value = 1
             time.sleep(0.01)
         raise
     if failures:

@@ -75,7 +75,11 @@ class Arrays(unittest.TestCase):
         for lane in ("moller_1997/f32/cpu", "moller_1997/f32/cuda-fma"):
             of_stored = graze.verdicts(lane, drawn.astype(np.float32))
             self.assertTrue((graze.verdicts(lane, drawn) == of_stored).all(), lane)
-        for lane in ("moller_1997/f64/cuda-nofma", "separating_axes/f64/cuda-nofma"):
+        for lane in (
+            "moller_1997/f64/cuda-nofma",
+            "separating_axes/f64/cuda-nofma",
+            "moller_1997/f64/cuda-nofma/rel:9",
+        ):
             of_cpu = graze.verdicts(lane.replace("cuda-nofma", "cpu"), drawn)
             self.assertTrue((graze.verdicts(lane, drawn) == of_cpu).all(), lane)
         wrong = {
@@ -190,7 +194,6 @@ class Arrays(unittest.TestCase):
             (TypeError, "float64", lambda: graze.margin(drawn.astype(float))),
             (ValueError, "coordinates", lambda: graze.pairs(coordinates="f16")),
             (ValueError, "large_offset", lambda: graze.pairs("large_offset")),
-            (ValueError, "float32", lambda: graze.verdicts("moller_1997/f64/cuda-fma/rel:9", drawn.astype(float))),
             (ValueError, r"\(n, 2, 3, 3\)", lambda: graze.truth(drawn[0, 0])),
             (ValueError, "no_such", lambda: graze.pairs("no_such")),
             (ValueError, "seed", lambda: graze.pairs(seed=-1)),
@@ -273,6 +276,31 @@ class Arrays(unittest.TestCase):
             graze.self_intersections(triangles, touching=True)
         self.assertEqual(threading.active_count(), threads)
         self.assertGreater(len(graze.self_intersections(triangles[:2].repeat(2, axis=0), touching=True)), 0)
+
+    def test_an_interrupted_search_leaves_others_alone(self):
+        triangles = graze.pairs(count=3000).reshape(-1, 3, 3)
+        expected = graze.self_intersections(triangles, touching=True)
+        others: list = []
+
+        def search():
+            others.append(graze.self_intersections(triangles, touching=True))
+
+        caller = threading.current_thread()
+
+        class Interrupted(threading.Thread):
+            def join(self, timeout=None):
+                if threading.current_thread() is caller:
+                    raise KeyboardInterrupt
+                super().join(timeout)
+
+        threads = [threading.Thread(target=search) for _ in range(8)]
+        for thread in threads:
+            thread.start()
+        with unittest.mock.patch("threading.Thread", Interrupted), self.assertRaises(KeyboardInterrupt):
+            graze.self_intersections(graze.pairs(count=20000).reshape(-1, 3, 3), touching=True)
+        for thread in threads:
+            thread.join()
+        self.assertEqual([len(found) for found in others], [len(expected)] * 8)
 
     def test_arrays_live_as_long_as_their_address(self):
         array = np.zeros(3, np.float32)

@@ -4,6 +4,7 @@ import importlib.util
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -117,6 +118,23 @@ class Given(unittest.TestCase):
             graze.given(pairs=10, vectorized=True)(lambda a, b: True)()
         with self.assertRaises(SystemExit):
             graze.given(pairs=10)(lambda a, b: sys.exit(3))()
+
+    def test_what_a_signal_handler_raises_ends_the_test(self):
+        class Alarm(BaseException):
+            pass
+
+        def ring(*_):
+            raise Alarm
+
+        before = signal.signal(signal.SIGALRM, ring)
+        try:
+            for k in range(30):
+                signal.setitimer(signal.ITIMER_REAL, 0.01 + k / 1000)
+                with self.assertRaises(Alarm):
+                    graze.given("uniform", pairs=10**8, vectorized=True)(lambda a, b: np.zeros(len(a), bool))()
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, before)
 
     def test_answers_of_numpy_and_masked_answers(self):
         for kind in (bool, int, np.bool_, np.int8, np.uint64):

@@ -30,7 +30,7 @@ enum graze_status {
 /* The type of coordinates. */
 enum graze_coordinates {
   GRAZE_F32 = 0, /* float */
-  GRAZE_F64 = 1  /* double: only exact, and on cores */
+  GRAZE_F64 = 1  /* double: only exact */
 };
 
 enum graze_layout {

@@ -60,7 +60,7 @@ TestResult test_overlap(std::string_view name, const std::function<int(const flo
                         const TestOptions& options = {});
 
 // As test_overlap, for code that decides many pairs in a call. It sets the verdict of each of `count` pairs, at most
-// 4096. What it throws ends the test.
+// 4096. A value that no verdict has counts as crashed. What it throws ends the test.
 using DecidePairs = std::function<void(const Pair* pairs, std::size_t count, Verdict* verdicts)>;
 TestResult test_pairs(std::string_view name, const DecidePairs& decide, const TestOptions& options = {});
 

@@ -49,7 +49,8 @@ struct TriangleArray {
     }
   }
 
-  bool packed() const { return layout == Layout::rows && stride == 36; }
+  // Rows without gaps, of coordinates of this size.
+  bool packed(std::size_t size) const { return layout == Layout::rows && stride == 9 * size; }
 };
 
 }  // namespace graze::cuda

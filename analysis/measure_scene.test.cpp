@@ -123,6 +123,54 @@ TEST(MeasureScene, KindsAndMarginsAreThoseOfThePairs) {
   EXPECT_NEAR(file.margins.at(0), 4.0 / 6, 1e-5);  // the neighbours and the coplanar pairs
 }
 
+// A survey in metres to the centimetre, in coordinates of which float32 has steps of half a metre.
+TEST(MeasureScene, DoublesAreMeasuredAsTheyAre) {
+  const auto at = [](int i, int j) -> Vec3<double> {
+    const auto centimetres = [](double x) { return std::round(x * 100) / 100; };
+    return {centimetres(500000.25 + 0.37 * i + 0.01 * j), centimetres(5400000.01 + 0.41 * j),
+            centimetres(30 + std::sin(0.7 * i) + std::cos(0.9 * j))};
+  };
+  std::vector<std::array<Vec3<double>, 3>> mesh;
+  for (int i = 0; i < 8; ++i) {
+    for (int j = 0; j < 8; ++j) {
+      mesh.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  std::vector<DoublePair> pairs;
+  std::vector<Pair> stored;
+  std::vector<double> edges;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    double squared = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3<double> e = mesh[i][(k + 1) % 3] - mesh[i][k];
+      squared = std::max(squared, dot(e, e));
+    }
+    edges.push_back(std::sqrt(squared));
+    for (std::size_t j = 0; j < i; ++j) {
+      pairs.push_back({{mesh[j][0], mesh[j][1], mesh[j][2]}, {mesh[i][0], mesh[i][1], mesh[i][2]}});
+      stored.push_back(stored_in_float32(pairs.back()));
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  DoubleSceneSample sample = sample_of(pairs);
+  sample.triangles = mesh;
+  const strata::SceneFile file = measure_scene(sample, "survey");
+  EXPECT_TRUE(file.in_doubles);
+  EXPECT_EQ(file.extent[0], (std::array<double, 2>{500000.25, 500003.29}));
+  EXPECT_EQ(file.extent[1], (std::array<double, 2>{5400000.01, 5400003.29}));
+  EXPECT_EQ(file.grid, (GridSpec{true, 2}));
+  EXPECT_NEAR(file.edges.front(), edges.front(), 1e-5);
+  EXPECT_NEAR(file.edges.back(), edges.back(), 1e-5);
+  EXPECT_EQ(file.mix[static_cast<std::size_t>(strata::Kind::degenerate)], 0);
+  EXPECT_EQ(strata::parse_scene("s", strata::scene_text(file)), file);
+  // As float32 stores it, it is another scene.
+  const strata::SceneFile other = measure_scene(sample_of(stored), "survey");
+  EXPECT_FALSE(other.in_doubles);
+  EXPECT_NE(other.grid, file.grid);
+  EXPECT_GT(other.mix[static_cast<std::size_t>(strata::Kind::degenerate)], 0);
+}
+
 std::optional<GridSpec> grid_found(double step, bool decimal, int places) {
   std::vector<Triangle> mesh = sheet(12, step, {30, 70, 900});
   for (Triangle& t : mesh) {
@@ -169,7 +217,7 @@ double near_share(const Draw& draw) {
   constexpr int kPairs = 4000;
   int near = 0;
   for (std::uint64_t i = 0; i < kPairs; ++i) {
-    const Pair pair = draw(i);
+    const auto pair = draw(i);
     near += std::fabs(oracle::truth(pair).margin_ulps) < 16;
   }
   return static_cast<double>(near) / kPairs;
@@ -192,25 +240,49 @@ TEST(SceneStrata, NearContactsAreNearInTheScenesUlps) {
   }
 }
 
+TEST(SceneStrata, NearContactsOfDoublesAreNearInTheScenesUlps) {
+  for (const char* text :
+       {"extent = [[500000, 500300], [5400000, 5400300], [0, 60]]\nedges = [0.02, 30]",
+        "extent = [[500000, 500300], [5400000, 5400300], [0, 60]]\nedges = [0.02, 30]\ngrid = { power_of_two = -26 }",
+        "extent = [-1, 1]\nedges = [0.01, 0.5]", "extent = [-1e30, 1e30]\nedges = [1e28, 3e29]"}) {
+    const strata::Scene scene =
+        strata::resolved(strata::parse_scene("s", std::string("coordinates = \"f64\"\n") + text));
+    for (const Stratum stratum :
+         {Stratum::near_vertex_face, Stratum::near_edge_edge, Stratum::near_vertex_edge, Stratum::near_vertex_vertex}) {
+      const double without = near_share([&](std::uint64_t i) { return strata::generate_doubles(1, stratum, i); });
+      const double within = near_share([&](std::uint64_t i) { return strata::generate_doubles(1, stratum, scene, i); });
+      EXPECT_GT(without, 0.6);
+      EXPECT_GT(within, 0.9 * without) << text << ' ' << static_cast<int>(stratum);
+      EXPECT_LT(within, 0.999);  // and some are not
+    }
+  }
+}
+
 // Both decisions of the oracle agree, and both verdicts occur, in scene strata as in others.
 TEST(SceneStrata, BothVerdictsOccurAndTheOraclesDecisionsAgree) {
   const strata::SceneFile file = strata::parse_scene("s",
                                                      "extent = [[1000, 1800], [-540, -500], [3, 900]]\nedges = [0.5, "
                                                      "20]\naspect = [1.2, 3000]\ngrid = { power_of_two = -5 }");
-  const strata::Scene scene = strata::resolved(file);
+  const strata::Scene scene = strata::resolved(file), of_doubles = strata::resolved(strata::with_type(file, true));
   for (const strata::StratumInfo& row : strata::kStrata) {
     if (strata::left_out(file, row.stratum)) continue;
-    int intersecting = 0;
+    int intersecting = 0, of_doubles_intersecting = 0;
     for (std::uint64_t i = 0; i < 10'000; ++i) {
       const Pair pair = strata::generate(2, row.stratum, scene, i);
       const bool intersects = oracle::cgal_verdict(pair) == Verdict::intersects;
       ASSERT_EQ(intersects, oracle::gmp_contact(pair) != Contact::none) << row.id << i;
       intersecting += intersects;
+      const DoublePair doubles = strata::generate_doubles(2, row.stratum, of_doubles, i);
+      const bool doubles_intersect = oracle::cgal_verdict(doubles) == Verdict::intersects;
+      ASSERT_EQ(doubles_intersect, oracle::gmp_contact(doubles) != Contact::none) << row.id << i;
+      of_doubles_intersecting += doubles_intersect;
     }
     const bool shared = strata::kind_of(row.stratum) == strata::Kind::shared_vertex ||
                         strata::kind_of(row.stratum) == strata::Kind::shared_edge;
     EXPECT_GT(intersecting, 200) << row.id;
     EXPECT_EQ(intersecting == 10'000, shared) << row.id << intersecting;
+    EXPECT_GT(of_doubles_intersecting, 200) << row.id;
+    EXPECT_EQ(of_doubles_intersecting == 10'000, shared) << row.id << of_doubles_intersecting;
   }
 }
 

@@ -48,12 +48,12 @@ std::vector<corpus::Entry> read_cases(const std::string& name, PairTypes taken) 
     const fuzz::SceneCase named{name.substr(0, at), name.substr(at + 1, middle - at - 1),
                                 number(name.substr(middle + 1, last - middle - 1), name),
                                 number(name.substr(last + 1), name)};
-    return {{fuzz::draw_again(named),
-             {{"stratum", named.id},
-              {"seed", std::to_string(named.seed)},
-              {"index", std::to_string(named.index)},
-              {"scene", named.scene}},
-             0}};
+    if (strata::stratum_in_doubles(named.id) && taken == PairTypes::f32)
+      throw UsageError(name + " is a pair of doubles; this takes pairs of float32");
+    return {corpus::entry_of(fuzz::draw_again(named), {{"stratum", named.id},
+                                                       {"seed", std::to_string(named.seed)},
+                                                       {"index", std::to_string(named.index)},
+                                                       {"scene", named.scene}})};
   }
   const std::string stratum = name.substr(0, std::min(first, name.size()));
   const bool in_doubles = strata::stratum_in_doubles(stratum).has_value();

@@ -108,10 +108,11 @@ CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::str
 // Writes the report of the campaign, as `graze report DIR` does, and prints nothing.   Throws: as it.
 void write_report(const std::string& directory);
 
-// Adds --scene to a verb that draws pairs.
+// Adds --scene to a verb that draws pairs, after --coordinates, if it has that option.
 void add_scene_option(CLI::App& command, std::string& file);
 
-// Measures the mesh and writes its scene to the file, as `graze scene MESH --out FILE` does.   Throws: as it.
+// Measures the mesh in float32 and writes its scene to the file, as `graze scene MESH --out FILE` does.   Throws: as
+// it.
 void write_scene_of(const std::string& mesh, const std::string& out);
 
 // Prints the sentences of `graze scene --sufficient RATE`: the cheapest published host lane that is wrong on at most
@@ -121,17 +122,19 @@ void print_sufficient(const std::string& scene, double rate);
 // Draws from the scene; sets `recorded` to what the verb's results record under "scene".
 // Throws: as fuzz::open_scene and strata::scene_sources.
 strata::SceneSources drawn_from_scene(const std::string& file, std::uint64_t seed, std::uint64_t pairs,
-                                      const std::vector<std::string>& globs, fuzz::Json& recorded);
+                                      const std::vector<std::string>& globs, PairTypes types, fuzz::Json& recorded);
 
-// The same without recording; if `scene` is empty, draws from the strata.   Throws: as expect_float32_scene, too.
+// The same without recording; if `scene` is empty, draws from the strata.
 strata::SceneSources drawn(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
                            const std::vector<std::string>& globs, PairTypes types = PairTypes::f32);
 
 // Adds --coordinates to a verb that draws pairs of either type, or of both at once.
 enum class OfBothTypes { no, yes };
 void add_coordinates_option(CLI::App& command, PairTypes& types, OfBothTypes both = OfBothTypes::yes);
-// Throws: UsageError if doubles are to be drawn from a scene.
-void expect_float32_scene(PairTypes types);
+// Without --coordinates, pairs in a scene have the scene's type.   Throws: as fuzz::open_scene.
+void take_type_of_scene(const CLI::App& command, const std::string& scene, PairTypes& types);
+// Throws: UsageError, naming the verb, if the scene is one of doubles.
+void expect_float32_scene(const std::string& scene, const char* verb);
 
 // Lists the strata that the scene cannot contain, with the reasons, below a heading; empty for none.
 std::string left_out_text(const std::vector<strata::LeftOut>& left_out);

@@ -212,9 +212,9 @@ int discrepancy(DiscrepancyOptions options) {
     if (options.scene.empty()) {
       spec.sources = strata::stratum_sources(seed, options.pairs, options.strata, options.coordinates);
     } else {
-      expect_float32_scene(options.coordinates);
       fuzz::Json recorded;
-      strata::SceneSources all = drawn_from_scene(options.scene, seed, options.pairs, options.strata, recorded);
+      strata::SceneSources all =
+          drawn_from_scene(options.scene, seed, options.pairs, options.strata, options.coordinates, recorded);
       spec.sources = std::move(all.sources);
       left_out = left_out_text(all.left_out);
       scene = recorded.at("name");
@@ -346,7 +346,10 @@ void add_discrepancy(CLI::App& app, int& status) {
                                "--executor", "--out", "--subject"})
     command->get_option("--compare")->excludes(silenced);
   command->get_option("--campaign")->excludes("--seed");
-  command->callback([options, &status] { status = discrepancy(*options); });
+  command->callback([options, command, &status] {
+    take_type_of_scene(*command, options->scene, options->coordinates);
+    status = discrepancy(*options);
+  });
 }
 
 }  // namespace graze::cli

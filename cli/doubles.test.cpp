@@ -3,7 +3,11 @@
 // pairs of float32 alone.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
+#include <optional>
+#include <regex>
+#include <sstream>
 
 #include "cli/run_graze.h"
 #include "corpus/pair_format.h"
@@ -13,7 +17,34 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-class Doubles : public CommandTest {};
+class Doubles : public CommandTest {
+ protected:
+  // A scene in metres, where float32 has steps of half a metre, on millimetres.
+  void write_survey() const {
+    std::ofstream(shell.folder / "survey.toml")
+        << "coordinates = \"f64\"\nunits = \"m\"\nextent = [[500000, 500300], [5400000, 5400300], [0, 60]]\n"
+           "edges = [0.02, 30]\naspect = [1.2, 4, 3000]\ngrid = { decimals = 3 }\n";
+  }
+
+  // text: of pairs.
+  static void expect_within_survey(const std::string& text) {
+    std::istringstream in(text);
+    int pairs = 0;
+    for (corpus::PairReader reader(in, "text", PairTypes::both);;) {
+      const std::optional<corpus::Entry> entry = reader.next();
+      if (!entry) break;
+      ASSERT_TRUE(entry->doubles.has_value());
+      ++pairs;
+      for (int k = 0; k < kCoordinates; ++k) {
+        constexpr double kLow[] = {500000, 5400000, 0}, kHigh[] = {500300, 5400300, 60};
+        const double x = coordinates(*entry->doubles)[k];
+        EXPECT_TRUE(kLow[k % 3] <= x && x <= kHigh[k % 3]) << text;
+        EXPECT_EQ(std::nearbyint(x * 1000) / 1000, x) << text;
+      }
+    }
+    EXPECT_GT(pairs, 0);
+  }
+};
 
 constexpr const char* kCampaign =
     "graze fuzz --coordinates f64 --strata 'stored,near_vertex_face' --pairs 600 --lanes '*/cpu' --out c > printed";
@@ -626,8 +657,150 @@ TEST_F(Doubles, AreSearchedByAHunt) {
   expect_done(hunt + " && graze corpus add h --corpus k --top 3 --lanes '*/cpu'");
   EXPECT_EQ(contents(shell.folder / "h/summary.json"), before);
   expect_error("graze hunt --coordinates both --out b", 2, {"--coordinates", "both"});
-  expect_error("echo 'extent = [[0, 1], [0, 1], [0, 1]]' > s.toml; graze hunt --coordinates f64 --scene s.toml --out b",
-               2, {"--coordinates", "scenes"});
+  write_survey();
+  expect_done("graze hunt --scene survey.toml --runs 300 --seed 3 --lanes 'moller_1997/*/cpu,exact/*/cpu' --out s");
+  const Json survey = Json::parse(contents(shell.folder / "s/summary.json"));
+  EXPECT_EQ(survey["strata"]["hunt/f64"]["pairs"], 300);
+  EXPECT_EQ(shell("graze repro s/" + survey["signatures"][0]["case"].get<std::string>()).status, 0);
+  expect_within_survey(contents(shell.folder / ("s/" + survey["signatures"][0]["case"].get<std::string>())));
+}
+
+// A scene draws the type that its file names, and cases of a campaign in it are drawn again by their names.
+TEST_F(Doubles, ASceneIsDrawnInItsDoubles) {
+  write_survey();
+  const std::string lanes = "--lanes 'moller_1997/*/cpu,exact/*/cpu' ";
+  const std::string fuzz = "graze fuzz --scene survey.toml --pairs 6000 " + lanes;
+  const Ran ran = shell(fuzz + "--threads 2 --out one");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.out.find("  large_offset/f64: your coordinates stay within 0 … 5400300 m\n"), std::string::npos)
+      << ran.out;
+  const Json summary = Json::parse(contents(shell.folder / "one/summary.json"));
+  EXPECT_EQ(summary["spec"]["strata"].size(), 15u) << summary["spec"]["strata"];
+  std::uint64_t pairs = 0, stored = 0;
+  for (const auto& [id, row] : summary["strata"].items()) {
+    EXPECT_TRUE(id.ends_with("/f64")) << id;
+    pairs += row["pairs"].get<std::uint64_t>();
+    stored += row["lanes"]["exact/f32/cpu"]["stored"].get<std::uint64_t>();
+    for (const char* wrong : {"false_positive", "false_negative", "declined"})
+      EXPECT_EQ(row["lanes"]["exact/f64/cpu"][wrong], 0) << id;
+  }
+  EXPECT_EQ(pairs, 6000u);
+  EXPECT_GT(stored, 1000u);  // float32 has steps of half a metre there
+  // Killed, it resumes to the same bytes; in parts, it merges to them.
+  for (const int write : {20, 60})
+    ASSERT_EQ(shell(signal_at_write(SIGKILL, write) + fuzz + "--threads 1 --out two").status, 128 + SIGKILL) << write;
+  expect_done(fuzz + "--threads 1 --out two && cmp one/summary.json two/summary.json && diff -r one/cases two/cases");
+  expect_done(fuzz + "--shard 1/2 --out p1 && " + fuzz + "--shard 2/2 --out p2 && graze merge p1 p2 --out merged");
+  EXPECT_EQ(Json::parse(contents(shell.folder / "merged/summary.json"))["strata"], summary["strata"]);
+  // A case says where it is from, and each of its names draws it again.
+  const std::string file = "one/" + summary["signatures"][0]["case"].get<std::string>();
+  const std::string text = contents(shell.folder / file);
+  expect_within_survey(text);
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(text, found, std::regex("stratum=(\\S+) seed=(\\d+) index=(\\d+) scene=(\\S+) ")))
+      << text;
+  const std::string id = found[1], numbers = ":" + found[2].str() + ":" + found[3].str(), scene = found[4];
+  EXPECT_TRUE(scene.starts_with("survey.toml#")) << scene;
+  const Ran again = shell("graze repro " + file);
+  EXPECT_EQ(again.status, 0) << again.out << again.err;
+  EXPECT_NE(again.out.find("(as recorded)"), std::string::npos) << again.out;
+  const auto vertices_of = [&](const std::string& name) {
+    const Ran repro = shell("graze repro '" + name + "' --emit obj");
+    EXPECT_EQ(repro.status, 0) << name << repro.err;
+    return repro.out.substr(std::min(repro.out.find("\nv "), repro.out.size()));
+  };
+  const std::string vertices = vertices_of(file);
+  EXPECT_GT(vertices.size(), 60u);
+  for (const std::string& of : {scene, std::string("survey.toml"), std::string("one")})
+    EXPECT_EQ(vertices_of(id + '@' + of + numbers), vertices) << of;
+  // The verbs that take a campaign take this one.
+  expect_done("graze minimize one > minimised && graze failures one > kinds && graze report one > report");
+  EXPECT_NE(contents(shell.folder / "one/failures.json").find("/f64@survey.toml#"), std::string::npos);
+  const std::string command = Json::parse(contents(shell.folder / "one/report.json"))["run"]["command"];
+  EXPECT_NE(command.find("--scene survey.toml --pairs 6000 --seed 1 --coordinates f64 --lanes"), std::string::npos)
+      << command;
+  expect_done(command.substr(0, command.find("--out")) + "--out one && cmp one/summary.json two/summary.json");
+  const Ran dumped = shell("graze dump one --pairs 30 --format pairs");
+  EXPECT_NE(dumped.out.find("scene=" + scene), std::string::npos) << dumped.err;
+  expect_within_survey(dumped.out);
+  expect_done("graze pack one --out one.pack && graze tune moller_1997/f64/cpu --from one --pairs 500 --out from");
+  // Of both types, where float32 is fine enough.
+  std::ofstream(shell.folder / "hall.toml") << "extent = [-20, 20]\nedges = [0.5, 4]\n";
+  expect_done("graze fuzz --scene hall.toml --coordinates both --pairs 600 --strata uniform,near_edge_edge " + lanes +
+              "--out b && graze report b");
+  const Json both = Json::parse(contents(shell.folder / "b/summary.json"));
+  for (const char* source : {"uniform", "uniform/f64", "near_edge_edge", "near_edge_edge/f64"})
+    EXPECT_EQ(both["strata"][source]["pairs"], 150) << source;
+  const std::string of_both = Json::parse(contents(shell.folder / "b/report.json"))["run"]["command"];
+  expect_done(of_both.substr(0, of_both.find("--out")) + "--out b2 && cmp b/summary.json b2/summary.json");
+}
+
+// A mesh whose numbers float32 does not hold becomes a scene of doubles, which has its own pairs as they are.
+TEST_F(Doubles, AMeshOfDoublesBecomesASceneOfDoubles) {
+  std::ofstream off(shell.folder / "site.off");
+  off << "OFF\n36 50 0\n";
+  for (int i = 0; i < 36; ++i)
+    off << fmt::format("{:.2f} {:.2f} {:.2f}\n", 500000.25 + i % 6 * 0.37, 5400000.01 + i / 6 * 0.41, i * i % 7 * 0.13);
+  for (int i = 0; i < 5; ++i) {
+    for (int j = 0; j < 5; ++j) {
+      const int v = 6 * i + j;
+      off << fmt::format("3 {} {} {}\n3 {} {} {}\n", v, v + 1, v + 7, v, v + 7, v + 6);
+    }
+  }
+  off.close();
+  const Ran ran = shell("graze scene site.off --units m --out site.toml");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.err.find("have more digits than float32 holds"), std::string::npos) << ran.err;
+  const std::string text = contents(shell.folder / "site.toml");
+  for (const char* line : {"\ncoordinates = \"f64\"\n", "\nextent = [[500000.25, 500002.1], [5400000.01, 5400002.06], ",
+                           "\ngrid = { decimals = 2 }\n"})
+    EXPECT_NE(text.find(line), std::string::npos) << line << text;
+  expect_done("graze fuzz --scene site.toml --pairs 900 --lanes 'moller_1997/*/cpu,exact/*/cpu' --out s");
+  const Json strata = Json::parse(contents(shell.folder / "s/summary.json"))["strata"];
+  for (const char* source : {"mesh/f64", "mesh_ulps/f64", "mesh_moved/f64", "shared_edge/f64"})
+    EXPECT_GT(strata[source]["pairs"], 0) << source;
+  // Its own pairs are those that fuzz --mesh draws, in another order.
+  expect_done("graze fuzz --mesh site.off --coordinates f64 --lanes 'moller_1997/*/cpu,exact/*/cpu' --out m");
+  const Json of_mesh = Json::parse(contents(shell.folder / "m/summary.json"))["strata"]["mesh/f64"];
+  expect_done(
+      "graze fuzz --scene site.toml --strata mesh --pairs 100k --lanes 'moller_1997/*/cpu,exact/*/cpu' --out own");
+  EXPECT_EQ(Json::parse(contents(shell.folder / "own/summary.json"))["strata"]["mesh/f64"]["lanes"], of_mesh["lanes"]);
+  // float32 is asked for by name; here it is too coarse for a scene.
+  expect_error("graze fuzz --scene site.toml --coordinates f32 --out f", 2, {"float32", "8 ulps", "doubles"});
+  EXPECT_EQ(shell("graze scene site.off --coordinates f32").out.find("coordinates ="), std::string::npos);
+  // Pairs of doubles are measured too.
+  expect_done("graze dump m --format pairs > m.pairs && graze scene m.pairs | grep -q '^coordinates = \"f64\"'");
+}
+
+// Every verb that draws doubles draws them in a scene.
+TEST_F(Doubles, EveryVerbDrawsAScenesDoubles) {
+  write_survey();
+  std::ofstream(shell.folder / "mine.c") << "int meet(const double* a, const double* b) { return a[0] < b[0]; }\n";
+  std::ofstream(shell.folder / "subjects.txt") << "mine=mine.c:meet\n";
+  expect_done("graze tune moller_1997/f64/cpu --scene survey.toml --pairs 2000 --out t | tee told");
+  EXPECT_NE(contents(shell.folder / "told").find("large_offset/f64: your coordinates"), std::string::npos);
+  expect_done("graze pareto --scene survey.toml --pairs 1000 --lanes 'moller_1997/f64/cpu,exact/f64/cpu' --out p");
+  expect_done("graze invariants --scene survey.toml --pairs 200 --lanes 'exact/f64/cpu' --out i");
+  const Json invariants = Json::parse(contents(shell.folder / "i/invariants.json"));
+  EXPECT_EQ(invariants["scene"], "survey.toml");
+  expect_done("graze league --subjects subjects.txt --scene survey.toml --pairs 300 --out l");
+  EXPECT_NE(contents(shell.folder / "l/league.md").find("--scene survey.toml --coordinates f64"), std::string::npos);
+  expect_done("graze plan --scene survey.toml --pairs 1e6 --lanes 'exact/f64/cpu'");
+  expect_done("graze plan --coordinates both --pairs 1e6 --lanes 'exact/f64/cpu'");
+  expect_done(
+      "graze discrepancy mine/f64/cpu exact/f64/cpu --subject mine=mine.c:meet --scene survey.toml --pairs 500 "
+      "--out d");
+  EXPECT_TRUE(
+      Json::parse(contents(shell.folder / "d/discrepancy.json"))["verdicts"][0]["strata"].contains("uniform/f64"));
+  // What takes float32 alone says so.
+  expect_error("graze discrepancy moller_1997/f32/cpu moller_1997/f32/cpu-fma --scene survey.toml", 2,
+               {"pairs of float32 alone"});
+  expect_error("graze scene survey.toml --sufficient 0.01", 2, {"survey.toml", "float32", "doubles", "--sufficient"});
+  expect_error("graze try mine.c:meet survey.toml", 2, {"try", "survey.toml", "float32", "doubles"});
+  expect_error("graze view uniform/f64@survey.toml:1:2", 2, {"doubles", "float32"});
+  expect_error("graze fuzz --scene survey.toml --strata large_offset --out n", 2, {"large_offset/f64", "5400300"});
+  expect_error("sed 's/, 30]/, 3]/' survey.toml > fine.toml; graze explain uniform@fine.toml:1:2", 2,
+               {"float32", "8 ulps", "doubles"});
 }
 
 TEST_F(Doubles, VerbsThatTakeFloat32AloneSaySo) {
@@ -635,11 +808,7 @@ TEST_F(Doubles, VerbsThatTakeFloat32AloneSaySo) {
   const Json summary = Json::parse(contents(shell.folder / "c/summary.json"));
   const std::string file = "c/" + summary["signatures"][0]["case"].get<std::string>();
   for (const auto& [command, word] : std::map<std::string, std::string>{
-           {"graze tune moller_1997/f32/cpu --scene a.toml --coordinates f64", "--coordinates"},
-           {"graze pareto --scene a.toml --coordinates both", "--coordinates"},
-           {"graze invariants --scene a.toml --coordinates f64", "--coordinates"},
-           {"graze discrepancy moller_1997/f32/cpu moller_1997/f32/cpu-fma --campaign c", "pairs of float32 alone"},
-           {"graze fuzz --coordinates f64 --scene a.toml --out m", "--coordinates"}})
+           {"graze discrepancy moller_1997/f32/cpu moller_1997/f32/cpu-fma --campaign c", "pairs of float32 alone"}})
     expect_error(command, 2, {word});
   expect_error("graze view " + file, 1, {file, "doubles"});
   expect_error("graze fuzz --coordinates f16 --out m", 2, {"f16"});

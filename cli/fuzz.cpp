@@ -151,7 +151,7 @@ fuzz::Campaign campaign_of(const FuzzOptions& options, const fuzz::SelectedLanes
   Json scene_spec;
   if (!options.scene.empty()) {
     strata::SceneSources drawn =
-        drawn_from_scene(options.scene, options.seed, options.pairs, options.strata, scene_spec);
+        drawn_from_scene(options.scene, options.seed, options.pairs, options.strata, options.coordinates, scene_spec);
     say_notes(drawn.notes, drawn.rounding, options.exact_input);
     campaign.sources = std::move(drawn.sources);
     left_out = std::move(drawn.left_out);
@@ -250,7 +250,6 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
 int start(const FuzzOptions& options) {
   if (!options.junit.empty() && !options.shard.whole())
     throw UsageError("--junit is for whole campaigns; a shard has a part of the pairs alone");
-  if (!options.scene.empty()) expect_float32_scene(options.coordinates);
   if (!options.scratch.empty() && options.shard.whole())
     throw UsageError("--scratch is for shards alone; add --shard K/N");
   if (!fuzz::started_by_mpirun()) return fuzz(options, nullptr);
@@ -382,7 +381,10 @@ void add_fuzz(CLI::App& app, int& status) {
   command->add_flag("--json", options->json, "Print the summary as JSON");
   add_junit(*command, options->junit, "one test for each lane and stratum");
   command->add_flag("--require-device", options->require_device, "Fail if there is no CUDA device");
-  command->callback([options, &status] { status = start(*options); });
+  command->callback([options, command, &status] {
+    take_type_of_scene(*command, options->scene, options->coordinates);
+    status = start(*options);
+  });
 }
 
 }  // namespace graze::cli

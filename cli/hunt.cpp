@@ -69,7 +69,6 @@ int hunt(const HuntOptions& options) {
         "graze hunt is not in this build, which found no libFuzzer of clang; install libclang-rt-14-dev and build "
         "again");
   }
-  if (!options.scene.empty()) expect_float32_scene(options.coordinates);
   LaneOptions lanes = options.lanes;
   lanes.executor = fuzz::Executor::twin;
   fuzz::SelectedLanes under_test = selected_lanes(lanes);
@@ -87,10 +86,11 @@ int hunt(const HuntOptions& options) {
   std::optional<strata::Scene> scene;
   if (!options.scene.empty()) {
     strata::SceneSources drawn =
-        drawn_from_scene(options.scene, options.seed, options.runs, options.strata, scene_spec);
+        drawn_from_scene(options.scene, options.seed, options.runs, options.strata, options.coordinates, scene_spec);
     hunt.drawn.sources = std::move(drawn.sources);
     left_out = std::move(drawn.left_out);
-    hunt.drawn.scene = &scene.emplace(strata::resolved(fuzz::open_scene(options.scene).scene));
+    hunt.drawn.scene = &scene.emplace(strata::resolved(
+        strata::with_type(fuzz::open_scene(options.scene).scene, options.coordinates == PairTypes::f64)));
   } else {
     hunt.drawn.sources = strata::stratum_sources(options.seed, options.runs, options.strata, options.coordinates);
   }
@@ -166,7 +166,10 @@ void add_hunt(CLI::App& app, int& status) {
   add_lane_options(*command, options->lanes, Executors::twins);
   add_scene_option(*command, options->scene);
   command->add_flag("--json", options->json, "Print the summary as JSON");
-  command->callback([options, &status] { status = hunt(*options); });
+  command->callback([options, command, &status] {
+    take_type_of_scene(*command, options->scene, options->coordinates);
+    status = hunt(*options);
+  });
 }
 
 }  // namespace graze::cli

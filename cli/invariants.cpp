@@ -25,7 +25,6 @@ struct InvariantsOptions {
 };
 
 int invariants(const InvariantsOptions& options) {
-  if (!options.scene.empty()) expect_float32_scene(options.coordinates);
   fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
   if (options.coordinates != PairTypes::f32) take_doubles(under_test);
   analysis::InvariantSpec spec;
@@ -84,7 +83,10 @@ void add_invariants(CLI::App& app, int& status) {
   command->add_option("--out", options->out, "Folder for invariants.json and the simplest cases")
       ->capture_default_str()
       ->option_text("DIR");
-  command->callback([options, &status] { status = invariants(*options); });
+  command->callback([options, command, &status] {
+    take_type_of_scene(*command, options->scene, options->coordinates);
+    status = invariants(*options);
+  });
 }
 
 }  // namespace graze::cli

@@ -190,7 +190,10 @@ void add_league(CLI::App& app, int& status) {
   command->add_option("--out", options->out, "Directory for league.json, league.md and drawings")
       ->capture_default_str()
       ->option_text("DIR");
-  command->callback([options, &status] { status = league(*options); });
+  command->callback([options, command, &status] {
+    take_type_of_scene(*command, options->scene, options->coordinates);
+    status = league(*options);
+  });
 }
 
 }  // namespace graze::cli

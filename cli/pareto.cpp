@@ -201,7 +201,10 @@ void add_pareto(CLI::App& app, int& status) {
   command->add_option("--out", options->out, "Folder for pareto.json and the pictures")
       ->capture_default_str()
       ->option_text("DIR");
-  command->callback([options, &status] { status = pareto(*options); });
+  command->callback([options, command, &status] {
+    take_type_of_scene(*command, options->scene, options->coordinates);
+    status = pareto(*options);
+  });
 }
 
 }  // namespace graze::cli

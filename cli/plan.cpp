@@ -20,6 +20,7 @@ struct PlanOptions {
   std::uint64_t pairs = 1'000'000, gpus = 0, cores = 1;
   double rate = 0;
   std::vector<std::string> strata;
+  PairTypes coordinates = PairTypes::f32;
   std::string scene;
   LaneOptions lanes;
   bool json = false;
@@ -40,13 +41,16 @@ std::string size_of(double bytes) {
 }
 
 int plan(const PlanOptions& options) {
-  const fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
+  fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
+  if (options.coordinates != PairTypes::f32) take_doubles(under_test);
   fuzz::Campaign campaign;
   campaign.under_test = &under_test;
   Json scene;
-  campaign.sources = options.scene.empty()
-                         ? strata::stratum_sources(campaign.seed, options.pairs, options.strata)
-                         : drawn_from_scene(options.scene, campaign.seed, options.pairs, options.strata, scene).sources;
+  campaign.sources =
+      options.scene.empty()
+          ? strata::stratum_sources(campaign.seed, options.pairs, options.strata, options.coordinates)
+          : drawn_from_scene(options.scene, campaign.seed, options.pairs, options.strata, options.coordinates, scene)
+                .sources;
   campaign.spec = fuzz::campaign_spec(campaign);
   if (!scene.is_null()) campaign.spec["scene"] = scene;
   const bool gpu = options.gpus > 0;
@@ -104,6 +108,7 @@ void add_plan(CLI::App& app, int& status) {
   auto options = std::make_shared<PlanOptions>();
   add_count(*command, "--pairs", options->pairs, 1, kMostWhole, "Number of pairs in total");
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
+  add_coordinates_option(*command, options->coordinates);
   add_scene_option(*command, options->scene);
   add_lane_options(*command, options->lanes);
   CLI::Option* cores = add_count(*command, "--cores", options->cores, 1, 10'000'000, "Number of cores that run it");
@@ -117,7 +122,10 @@ void add_plan(CLI::App& app, int& status) {
       ->check(number(1e-3, 1e15))
       ->option_text("PAIRS");
   command->add_flag("--json", options->json, "Print one JSON object");
-  command->callback([options, &status] { status = plan(*options); });
+  command->callback([options, command, &status] {
+    take_type_of_scene(*command, options->scene, options->coordinates);
+    status = plan(*options);
+  });
 }
 
 }  // namespace graze::cli

@@ -28,7 +28,8 @@ namespace fs = std::filesystem;
 struct SceneVerb {
   std::vector<std::string> files;
   std::string out, poses, units = "units";
-  double sufficient = 0;  // the rate; 0: not asked
+  std::optional<PairTypes> coordinates;  // none: those that the input needs
+  double sufficient = 0;                 // the rate; 0: not asked
   bool exact_input = false;
 };
 
@@ -37,15 +38,34 @@ std::string relative_to(const fs::path& folder, const std::string& file) {
   return path.is_absolute() ? file : path.lexically_normal().lexically_proximate(folder.lexically_normal()).string();
 }
 
-analysis::SceneSample sample_of_pairs(const std::string& file, bool exact_input) {
+// What is measured, in its own type.
+struct Measured {
+  strata::SceneFile scene;
+  std::size_t triangles;
+  std::uint64_t pairs;
+};
+
+template <class Real>
+Measured measured(const analysis::BasicSceneSample<Real>& sample, const std::string& name) {
+  return {analysis::measure_scene(sample, name), sample.triangles.size(), sample.pairs};
+}
+
+Measured measured_pairs(const std::string& file, const SceneVerb& options) {
   std::vector<Pair> pairs;
-  for (const corpus::Entry& entry : corpus::read_pairs(file)) {
-    if (!is_finite(entry.pair))
+  std::vector<DoublePair> doubles;
+  bool of_doubles = options.coordinates == PairTypes::f64;
+  for (const corpus::Entry& entry : corpus::read_pairs(file, PairTypes::both)) {
+    const bool finite = options.coordinates == PairTypes::f32
+                            ? is_finite(entry.pair)
+                            : corpus::visit(entry, [](const auto& pair) { return is_finite(pair); });
+    if (!finite)
       throw std::runtime_error(fmt::format("cannot measure {}, line {}: a coordinate is not finite", file, entry.line));
-    if (exact_input) expect_exact_input(file, entry);
+    if (options.exact_input) expect_exact_input(file, entry);
+    of_doubles |= entry.doubles && !options.coordinates;
     pairs.push_back(entry.pair);
+    doubles.push_back(corpus::pair_of(entry).doubles);
   }
-  return analysis::sample_of(pairs);
+  return of_doubles ? measured(analysis::sample_of(doubles), file) : measured(analysis::sample_of(pairs), file);
 }
 
 template <class Real>
@@ -66,8 +86,48 @@ std::uint64_t changed_by_storing(const strata::MeshPairs& mesh) {
       std::plus<>());
 }
 
+// Measures the meshes, and names them in the scene.   text: receives what float32 would change, as a comment.
+Measured measured_meshes(const SceneVerb& options, std::string& text) {
+  const auto found = std::make_shared<strata::MeshPairs>(
+      strata::read_bodies({options.files.begin(), options.files.end()}, options.poses));
+  const bool needs_doubles = !found->in_doubles.empty() && found->rounding.beyond > 0;
+  const bool in_doubles = options.coordinates ? *options.coordinates == PairTypes::f64 : needs_doubles;
+  say_notes(in_doubles && !options.exact_input ? found->notes_of_doubles : found->notes, found->rounding,
+            options.exact_input);
+  if (const std::uint64_t changed = changed_by_storing(*found); changed > 0) {
+    const std::string count = fmt::format("{}{} of {} pairs have another verdict",
+                                          in_doubles ? "" : "as the scene has them, ", changed, found->size());
+    fmt::print(stderr, "graze: stored in float32, {}\n", count);
+    text += fmt::format("# Stored in float32, {}{}.\n", count,
+                        in_doubles ? "" : "; `graze scene --coordinates f64` keeps their doubles");
+  }
+  const auto sample_of = [&]<class Real>(const std::vector<std::array<Vec3<Real>, 3>>& triangles, const auto& pair) {
+    return measured(analysis::BasicSceneSample<Real>{triangles, found->size(), pair}, options.files[0]);
+  };
+  Measured result;
+  if (in_doubles) {
+    std::vector<std::array<Vec3<double>, 3>> triangles = found->in_doubles;
+    for (std::size_t t = triangles.size(); t < found->triangles.size(); ++t) {
+      const auto wide = [&](int i) {
+        const Vec3<float>& v = found->triangles[t][static_cast<std::size_t>(i)];
+        return Vec3<double>{v.x, v.y, v.z};
+      };
+      triangles.push_back({wide(0), wide(1), wide(2)});
+    }
+    result = sample_of(triangles, [found](std::uint64_t index) { return found->double_pair(index); });
+  } else {
+    result = sample_of(found->triangles, [found](std::uint64_t index) { return found->pair(index); });
+  }
+  strata::SceneMeshes& meshes = result.scene.meshes;
+  const fs::path folder = fs::path(options.out).parent_path();
+  for (const std::string& file : options.files) meshes.files.push_back(relative_to(folder, file));
+  if (!options.poses.empty()) meshes.poses = relative_to(folder, options.poses);
+  meshes.content = found->content_hash;
+  return result;
+}
+
 // Measures, and writes the scene to the file of --out, or to standard output without one.
-analysis::SceneSample write_scene(const SceneVerb& options) {
+Measured write_scene(const SceneVerb& options) {
   for (const std::string& file : options.files) expect_utf8("graze scene", file);
   expect_utf8("--poses", options.poses);
   const bool pairs = fs::path(options.files[0]).extension() == ".pairs";
@@ -77,36 +137,13 @@ analysis::SceneSample write_scene(const SceneVerb& options) {
   if (!options.poses.empty() && (pairs || options.files.size() > 1))
     throw UsageError("--poses is for one mesh, but got " +
                      (pairs ? "pairs" : fmt::format("{} files", options.files.size())));
-  analysis::SceneSample sample;
-  strata::SceneMeshes meshes;
-  std::uint64_t changed = 0;
-  if (pairs) {
-    sample = sample_of_pairs(options.files[0], options.exact_input);
-  } else {
-    auto found = std::make_shared<strata::MeshPairs>(
-        strata::read_bodies({options.files.begin(), options.files.end()}, options.poses));
-    say_notes(found->notes, found->rounding, options.exact_input);
-    changed = changed_by_storing(*found);
-    sample = {found->triangles, found->size(), [found](std::uint64_t index) { return found->pair(index); }};
-    const fs::path folder = fs::path(options.out).parent_path();
-    for (const std::string& file : options.files) meshes.files.push_back(relative_to(folder, file));
-    if (!options.poses.empty()) meshes.poses = relative_to(folder, options.poses);
-    meshes.content = found->content_hash;
-  }
-  strata::SceneFile measured = analysis::measure_scene(sample, options.files[0]);
-  measured.units = options.units;
-  measured.meshes = meshes;
+  std::string changed;
+  Measured result = pairs ? measured_pairs(options.files[0], options) : measured_meshes(options, changed);
+  result.scene.units = options.units;
   std::string text =
       "# Where graze draws pairs from. Edit it as you like: extent and edges are needed, all else has a default.\n";
-  text += fmt::format("# Of {} triangles, {} pairs whose boxes overlap.\n", sample.triangles.size(), sample.pairs);
-  if (changed > 0) {
-    const std::string count = fmt::format("{} of {} pairs have another verdict", changed, sample.pairs);
-    fmt::print(stderr, "graze: stored in float32, as the scene has them, {}\n", count);
-    text += fmt::format(
-        "# Stored in float32, as the scene has them, {}; `graze fuzz --mesh --coordinates f64` draws their doubles.\n",
-        count);
-  }
-  text += strata::scene_text(measured);
+  text += fmt::format("# Of {} triangles, {} pairs whose boxes overlap.\n", result.triangles, result.pairs);
+  text += changed + strata::scene_text(result.scene);
   try {
     strata::parse_scene("scene", text);
   } catch (const std::runtime_error& error) {
@@ -117,14 +154,14 @@ analysis::SceneSample write_scene(const SceneVerb& options) {
   } else {
     write_result(options.out, text, fuzz::NamedBy::user);
   }
-  return sample;
+  return result;
 }
 
 void scene(const SceneVerb& options) {
-  const analysis::SceneSample sample = write_scene(options);
+  const Measured measured = write_scene(options);
   if (options.out.empty()) return;
   fmt::print("Wrote {}: {} triangles, {} pairs whose boxes overlap.\n", printable(options.out),
-             reports::grouped(sample.triangles.size()), reports::grouped(sample.pairs));
+             reports::grouped(measured.triangles), reports::grouped(measured.pairs));
   if (options.sufficient > 0) print_sufficient(options.out, options.sufficient);
   fmt::print("Next: graze fuzz --scene {}\n", path_word(options.out));
 }
@@ -135,6 +172,7 @@ void write_scene_of(const std::string& mesh, const std::string& out) {
   SceneVerb options;
   options.files = {mesh};
   options.out = out;
+  options.coordinates = PairTypes::f32;
   write_scene(options);
 }
 
@@ -166,6 +204,13 @@ void add_scene(CLI::App& app, int&) {
       ->capture_default_str()
       ->option_text("NAME");
   command->add_option("--out", options->out, "File for the scene (default: standard output)")->option_text("FILE");
+  static_assert(static_cast<int>(PairTypes::f32) == 0 && static_cast<int>(PairTypes::f64) == 1);
+  command
+      ->add_option("--coordinates", options->coordinates,
+                   "Coordinates of the scene: float32, or doubles as they are in the file")
+      ->transform(one_of({"f32", "f64"}, Chosen::place))
+      ->option_text("f32|f64")
+      ->default_str("f64 if one has more digits than float32 holds");
   add_exact_input(*command, options->exact_input);
   command
       ->add_option("--sufficient", options->sufficient,
@@ -181,7 +226,7 @@ void add_scene(CLI::App& app, int&) {
     if (!is_scene) return scene(*options);
     if (options->files.size() > 1 || options->sufficient == 0)
       throw UsageError("graze scene measures meshes or pairs; a scene that exists needs --sufficient");
-    for (const char* measures : {"--poses", "--units", "--exact-input"}) {
+    for (const char* measures : {"--poses", "--units", "--coordinates", "--exact-input"}) {
       if (command->count(measures) > 0)
         throw UsageError(std::string(measures) + " is for meshes and pairs that are measured, not for a scene");
     }
@@ -192,13 +237,15 @@ void add_scene(CLI::App& app, int&) {
 void add_scene_option(CLI::App& command, std::string& file) {
   command.add_option("--scene", file, "Scene to draw pairs in, a file that `graze scene` or a person has written")
       ->option_text("FILE");
+  if (CLI::Option* types = command.get_option_no_throw("--coordinates"))
+    types->default_str("f32, or those of the scene");
 }
 
 strata::SceneSources drawn_from_scene(const std::string& file, std::uint64_t seed, std::uint64_t pairs,
-                                      const std::vector<std::string>& globs, fuzz::Json& recorded) {
+                                      const std::vector<std::string>& globs, PairTypes types, fuzz::Json& recorded) {
   expect_utf8("--scene", file);
   const fuzz::NamedScene scene = fuzz::open_scene(file);
-  strata::SceneSources drawn = fuzz::sources_of(scene, seed, pairs, globs);
+  strata::SceneSources drawn = fuzz::sources_of(scene, seed, pairs, globs, types);
   recorded = fuzz::scene_spec(scene, pairs, drawn);
   return drawn;
 }
@@ -216,16 +263,22 @@ void add_coordinates_option(CLI::App& command, PairTypes& types, OfBothTypes bot
       ->default_str("f32");
 }
 
-void expect_float32_scene(PairTypes types) {
-  if (types != PairTypes::f32) throw UsageError("--coordinates is for strata and meshes; scenes are read as float32");
+void take_type_of_scene(const CLI::App& command, const std::string& scene, PairTypes& types) {
+  if (scene.empty() || command.count("--coordinates") > 0) return;
+  expect_utf8("--scene", scene);
+  types = fuzz::open_scene(scene).scene.in_doubles ? PairTypes::f64 : PairTypes::f32;
+}
+
+void expect_float32_scene(const std::string& scene, const char* verb) {
+  if (fuzz::open_scene(scene).scene.in_doubles)
+    throw UsageError(fmt::format("`graze {}` draws pairs of float32, and {} is a scene of doubles", verb, scene));
 }
 
 strata::SceneSources drawn(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
                            const std::vector<std::string>& globs, PairTypes types) {
   fuzz::Json recorded;
   if (scene.empty()) return {strata::stratum_sources(seed, pairs, globs, types), {}, {}, {}};
-  expect_float32_scene(types);
-  return drawn_from_scene(scene, seed, pairs, globs, recorded);
+  return drawn_from_scene(scene, seed, pairs, globs, types, recorded);
 }
 
 std::string left_out_text(const std::vector<strata::LeftOut>& left_out) {

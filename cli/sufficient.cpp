@@ -37,6 +37,7 @@ std::vector<strata::PairSource> pairs_before(const std::string& scene, std::uint
 }  // namespace
 
 void print_sufficient(const std::string& scene, double rate) {
+  expect_float32_scene(scene, "scene --sufficient");
   const std::uint64_t pairs = pairs_for(rate);
   analysis::TuneSpec spec;
   spec.sources = pairs_before(scene, 1, pairs / 10);

@@ -277,6 +277,7 @@ int try_source(const TryOptions& options) {
   FuzzOptions fuzz = campaign_options(options, answer.code);
   const fuzz::SelectedLanes under_test = lanes_of_campaign(fuzz);
   if (is_scene(options.where)) {
+    expect_float32_scene(options.where, "try");
     fuzz.scene = options.where;
   } else if (!options.where.empty()) {
     fuzz.scene = answer.scene = fuzz.out + ".toml";

@@ -339,7 +339,7 @@ void add_tune(CLI::App& app, int& status) {
                    "Folder for the JSON file, curves.svg, policy.h (without --agree) and the smallest cases")
       ->default_str("tuned; with --agree: agreed")
       ->option_text("DIR");
-  command->callback([options, forbid, max_other, &status] {
+  command->callback([options, command, forbid, max_other, &status] {
     if (options->agree != (options->lanes.size() == 2) || options->lanes.size() > 2)
       throw UsageError(fmt::format("give one lane, or two lanes with --agree; got {} lane{} {} --agree",
                                    options->lanes.size(), options->lanes.size() == 1 ? "" : "s",
@@ -350,6 +350,7 @@ void add_tune(CLI::App& app, int& status) {
         (options->agree || static_cast<analysis::Forbid>(options->forbid) == analysis::Forbid::any))
       throw UsageError(
           "--max-other limits the other kind of error; it needs --forbid false-negative or false-positive");
+    take_type_of_scene(*command, options->scene, options->coordinates);
     status = options->agree ? agree(*options) : tune(*options);
   });
 }

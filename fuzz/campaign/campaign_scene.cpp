@@ -29,8 +29,13 @@ NamedScene scene_of_campaign(const fs::path& directory) {
 NamedScene open_scene(const std::string& file) { return {file, strata::read_scene(file)}; }
 
 strata::SceneSources sources_of(const NamedScene& scene, std::uint64_t seed, std::uint64_t pairs,
-                                const std::vector<std::string>& globs) {
-  return strata::scene_sources(scene.scene, fs::path(scene.file).parent_path(), seed, pairs, globs);
+                                const std::vector<std::string>& globs, std::optional<PairTypes> types) {
+  return strata::scene_sources(scene.scene, fs::path(scene.file).parent_path(), seed, pairs, globs, types);
+}
+
+strata::SceneSources recorded_sources_of(const NamedScene& scene, std::uint64_t seed, std::uint64_t pairs,
+                                         const std::vector<std::string>& names) {
+  return strata::named_scene_sources(scene.scene, fs::path(scene.file).parent_path(), seed, pairs, names);
 }
 
 Json scene_spec(const NamedScene& scene, std::uint64_t pairs, const strata::SceneSources& drawn) {
@@ -48,7 +53,7 @@ NamedScene recorded_scene(const Json& recorded) {
   return {file, strata::parse_scene(file, recorded.at("text").get<std::string>())};
 }
 
-Pair draw_again(const SceneCase& named) {
+AnyPair draw_again(const SceneCase& named) {
   const std::size_t hash = named.scene.rfind('#');
   const bool whole = hash == std::string::npos || fs::exists(named.scene);
   const std::string file = whole ? named.scene : named.scene.substr(0, hash);
@@ -58,9 +63,11 @@ Pair draw_again(const SceneCase& named) {
         "draw from", file,
         fmt::format("the scene has changed: it is {}, not {}; a campaign directory has its own scene: {}@DIR:{}:{}",
                     scene.name(), named.scene, named.id, named.seed, named.index)));
-  const strata::SceneSources drawn = sources_of(scene, named.seed, 1, {named.id});
+  const bool in_doubles = strata::stratum_in_doubles(named.id).has_value();
+  const strata::SceneSources drawn =
+      sources_of(scene, named.seed, 1, {named.id}, in_doubles ? PairTypes::f64 : PairTypes::f32);
   if (drawn.sources.size() != 1) throw UsageError(named.id + " matches several strata of the scene; name one");
-  return drawn.sources.front().pair(named.index);
+  return drawn.sources.front().any_pair(named.index);
 }
 
 }  // namespace graze::fuzz

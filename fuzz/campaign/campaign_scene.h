@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,11 @@ NamedScene open_scene(const std::string& file);
 
 // As strata::scene_sources; looks for meshes beside the scene's file.
 strata::SceneSources sources_of(const NamedScene& scene, std::uint64_t seed, std::uint64_t pairs,
-                                const std::vector<std::string>& globs);
+                                const std::vector<std::string>& globs, std::optional<PairTypes> types = std::nullopt);
+
+// As strata::named_scene_sources: the sources that a campaign recorded.
+strata::SceneSources recorded_sources_of(const NamedScene& scene, std::uint64_t seed, std::uint64_t pairs,
+                                         const std::vector<std::string>& names);
 
 // Returns a campaign's record under "scene": {"file", "name", "pairs" requested, "text", "left_out": {stratum: why}}.
 nlohmann::ordered_json scene_spec(const NamedScene& scene, std::uint64_t pairs, const strata::SceneSources& drawn);
@@ -37,7 +42,8 @@ struct SceneCase {
   std::uint64_t seed, index;
 };
 
-// Draws the named pair.   Throws: UsageError; std::runtime_error if the scene's file has changed.
-Pair draw_again(const SceneCase& named);
+// Draws the named pair; of doubles, ID ends in "/f64".   Throws: UsageError; std::runtime_error if the scene's file has
+// changed.
+AnyPair draw_again(const SceneCase& named);
 
 }  // namespace graze::fuzz

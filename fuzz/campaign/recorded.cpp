@@ -24,7 +24,7 @@ std::vector<strata::PairSource> recorded_sources(const Json& spec) {
   if (spec.contains("hunt")) return {{strata.at(0), spec.at("pairs"), nullptr}};
   if (spec.contains("scene")) {
     const Json& scene = spec["scene"];
-    return sources_of(recorded_scene(scene), seed, scene.at("pairs"), strata).sources;
+    return recorded_sources_of(recorded_scene(scene), seed, scene.at("pairs"), strata).sources;
   }
   std::uint64_t pairs = spec.at("pairs");
   std::vector<strata::PairSource> of_mesh;
@@ -137,7 +137,8 @@ std::vector<std::string> command_words(const Json& spec, const Shard& shard, con
                     [&](const std::string& id) { return std::find(strata.begin(), strata.end(), id) != strata.end(); }))
       strata = all_strata;
   }
-  if (of_doubles > 0) add("--coordinates", coordinates == PairTypes::f64 ? "f64" : "both");
+  if (of_doubles > 0 || (scene && recorded_scene(spec["scene"]).scene.in_doubles))
+    add("--coordinates", of_doubles == 0 ? "f32" : coordinates == PairTypes::f64 ? "f64" : "both");
   if (!strata.empty() && (mesh || strata != all_strata)) add("--strata", fmt::format("{}", fmt::join(strata, ",")));
   std::vector<subjects::Toolchain> toolchains;
   for (const Json& row : spec.value("subjects", Json::array())) {

@@ -3,6 +3,7 @@
 // mutations that do what their names say.
 #include "fuzz/hunt/hunt.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +22,7 @@
 #include "fuzz/hunt/round_bytes.h"
 #include "fuzz/shards/merge.h"
 #include "strata/scene/envelope.h"
-#include "strata/scene/place.h"
+#include "strata/scene/sources.h"
 
 namespace graze::fuzz {
 namespace {
@@ -117,21 +118,25 @@ TYPED_TEST(Mutations, DoWhatTheyAreNamedAfter) {
             200);
 }
 
-TEST(MutationsInAScene, StayWithinIt) {
-  const strata::Scene scene = strata::resolved(strata::parse_scene(
-      "scene.toml", "extent = [[-4, 4], [0, 8], [1, 2]]\nedges = [0.5, 2]\ngrid = { power_of_two = -6 }\n"));
-  Drawn drawn{
-      {{"uniform", 10, [&scene](std::uint64_t i) { return strata::generate(1, strata::Stratum::uniform, scene, i); }}},
-      &scene};
+// Of a scene around `origin` on a grid of 2^-6.   type: the line of its file that names its type.
+template <class Draws>
+void expect_within_the_scene(const std::string& type, double origin) {
+  using Real = typename Draws::Real;
+  const strata::SceneFile file = strata::parse_scene(
+      "scene.toml",
+      fmt::format("{}extent = [[{}, {}], [0, 8], [1, 2]]\nedges = [0.5, 2]\ngrid = {{ power_of_two = -6 }}\n", type,
+                  origin - 4, origin + 4));
+  const strata::Scene scene = strata::resolved(file);
+  const Drawn drawn{strata::scene_sources(file, "", 1, 10, {"uniform"}).sources, &scene};
   int mutations = 0;
-  strata::Draws first(1, 1000, 0);
-  Pair pair = fresh_pair(drawn, first);
+  Draws first(1, 1000, 0);
+  BasicPair<Real> pair = fresh_pair(drawn, first);
   for (std::uint64_t i = 0; i < 2000; ++i) {
-    strata::Draws draws(1, 1001, i);
+    Draws draws(1, 1001, i);
     Mutation mutation;
-    pair = next_pair(drawn, pair, nullptr, draws, mutation);
+    pair = next_pair<Draws>(drawn, pair, nullptr, draws, mutation);
     mutations += mutation != Mutation::fresh;
-    for (const Vec3<float>& v : {pair.a[0], pair.a[1], pair.a[2], pair.b[0], pair.b[1], pair.b[2]}) {
+    for (const Vec3<Real>& v : {pair.a[0], pair.a[1], pair.a[2], pair.b[0], pair.b[1], pair.b[2]}) {
       for (int axis = 0; axis < 3; ++axis) {
         const double x = static_cast<double>(component(v, axis));
         ASSERT_GE(x, component(scene.low, axis));
@@ -141,6 +146,11 @@ TEST(MutationsInAScene, StayWithinIt) {
     }
   }
   EXPECT_GT(mutations, 1000);
+}
+
+TEST(MutationsInAScene, StayWithinIt) {
+  expect_within_the_scene<strata::Draws>("", 0);
+  expect_within_the_scene<strata::DoubleDraws>("coordinates = \"f64\"\n", 5400000);  // float32: steps of 1/2
 }
 
 TEST(Feedback, ShowsMarginsFailuresAndContractions) {

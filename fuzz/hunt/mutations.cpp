@@ -167,12 +167,14 @@ void cross_with(BasicPair<Real>& pair, const BasicPair<Real>& other, strata::Dra
   bring(own, from, wide(kept[to]), false);
 }
 
-double edge_length(const Vec3<float>& u, const Vec3<float>& v) {
+template <class Real>
+double edge_length(const Vec3<Real>& u, const Vec3<Real>& v) {
   const Vec edge = wide(v) - wide(u);
   return std::sqrt(dot(edge, edge));
 }
 
-bool has_size_of(const strata::Scene& scene, const Vec3<float> (&t)[3]) {
+template <class Real>
+bool has_size_of(const strata::Scene& scene, const Vec3<Real> (&t)[3]) {
   constexpr double kRoom = 1 + 0x1p-20;  // for the rounding of coordinates and of this computation
   const double longest = std::max({edge_length(t[0], t[1]), edge_length(t[1], t[2]), edge_length(t[2], t[0])});
   if (longest > scene.edges.at[strata::kQuantiles - 1] * kRoom) return false;
@@ -262,9 +264,10 @@ DrawnPair<Draws> fresh_pair(const Drawn& drawn, Draws& draws) {
   }
 }
 
-bool fit(const strata::Scene& scene, Pair& pair) {
-  for (Vec3<float>(*triangle)[3] : {&pair.a, &pair.b}) {
-    for (Vec3<float>& vertex : *triangle) vertex = strata::in_scene::stored(scene, wide(vertex));
+template <class Real>
+bool fit(const strata::Scene& scene, BasicPair<Real>& pair) {
+  for (Vec3<Real>(*triangle)[3] : {&pair.a, &pair.b}) {
+    for (Vec3<Real>& vertex : *triangle) vertex = strata::in_scene::stored<Real>(scene, wide(vertex));
     if (!has_size_of(scene, *triangle)) return false;
   }
   return true;
@@ -279,9 +282,7 @@ DrawnPair<Draws> next_pair(const Drawn& drawn, const DrawnPair<Draws>& pair, con
     if (mutation == Mutation::fresh) break;
     DrawnPair<Draws> result = mutated(mutation, pair, other ? *other : pair, draws);
     if (!is_finite(result)) continue;
-    if constexpr (std::is_same_v<typename Draws::Real, float>) {  // scenes are of float32
-      if (drawn.scene && !fit(*drawn.scene, result)) continue;
-    }
+    if (drawn.scene && !fit(*drawn.scene, result)) continue;
     if (std::memcmp(&result, &pair, sizeof pair) != 0) return result;
   }
   mutation = Mutation::fresh;
@@ -292,6 +293,8 @@ template Pair mutated(Mutation, const Pair&, const Pair&, strata::Draws&);
 template DoublePair mutated(Mutation, const DoublePair&, const DoublePair&, strata::DoubleDraws&);
 template Pair fresh_pair(const Drawn&, strata::Draws&);
 template DoublePair fresh_pair(const Drawn&, strata::DoubleDraws&);
+template bool fit(const strata::Scene&, Pair&);
+template bool fit(const strata::Scene&, DoublePair&);
 template Pair next_pair(const Drawn&, const Pair&, const Pair*, strata::Draws&, Mutation&);
 template DoublePair next_pair(const Drawn&, const DoublePair&, const DoublePair*, strata::DoubleDraws&, Mutation&);
 

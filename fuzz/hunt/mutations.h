@@ -35,8 +35,8 @@ inline constexpr std::array<std::string_view, 14> kMutationIds{
     "shared_edge", "scaled", "moved",       "on_grid",   "mirrored",   "reordered", "crossed"};
 inline constexpr int kMutationCount = static_cast<int>(kMutationIds.size());
 
-// The sources that pairs are drawn from, all of one coordinate type, and, in a scene, the envelope that they must stay
-// in.
+// The sources that pairs are drawn from, all of one coordinate type, and, in a scene, the envelope for that type, in
+// which pairs must stay.
 struct Drawn {
   std::vector<strata::PairSource> sources;
   const strata::Scene* scene = nullptr;
@@ -59,7 +59,8 @@ DrawnPair<Draws> fresh_pair(const Drawn& drawn, Draws& draws);
 
 // Rounds the pair into the scene: onto its grid, within its extent.
 // Returns: false if a triangle is larger, or a proper triangle is thinner, than the scene allows.
-bool fit(const strata::Scene& scene, Pair& pair);
+template <class Real>
+bool fit(const strata::Scene& scene, BasicPair<Real>& pair);
 
 // Applies one mutation, and stores which one in `mutation`. An attempt fails if the result is not finite, does not fit
 // the scene, or equals the pair. After four failed attempts it draws a fresh pair. `other`: null if no pair is

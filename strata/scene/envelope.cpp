@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.h"
+
 namespace graze::strata {
 namespace {
 
@@ -31,7 +33,7 @@ Quantiles spread(const std::vector<double>& values) {
 double largest_of(const SceneFile& scene) {
   double largest = 0;
   for (const auto& [low, high] : scene.extent)
-    largest = std::max({largest, std::fabs(as_float32(low)), std::fabs(as_float32(high))});
+    largest = std::max({largest, std::fabs(as_stored(scene, low)), std::fabs(as_stored(scene, high))});
   return largest;
 }
 
@@ -51,15 +53,39 @@ std::string coordinates_stay_within(const SceneFile& scene) {
   return fmt::format("your coordinates stay within {} … {} {}", low, high, scene.units);
 }
 
+// The number of the point of a grid that is nearest to x, or nearly if there are 2^51 of them.
+double number_at(const Grid& grid, double x) {
+  const double steps = grid.decimal ? x * grid.scale : x / grid.scale;
+  return std::fabs(steps) < 0x1p51 ? in_scene::number_of(grid, x) : std::trunc(steps);
+}
+
 }  // namespace
+
+double ulp_of(const SceneFile& scene, double largest) {
+  return std::ldexp(
+      1.0, scene.in_doubles ? std::max(floor_log2(largest) - 52, -1074) : std::max(floor_log2(largest) - 23, -149));
+}
+
+SceneFile with_type(const SceneFile& scene, bool in_doubles) {
+  if (scene.in_doubles == in_doubles) return scene;
+  SceneFile other = scene;
+  other.in_doubles = in_doubles;
+  try {
+    parse_scene("", scene_text(other));
+  } catch (const std::runtime_error& error) {
+    const std::string what = error.what();
+    throw UsageError(fmt::format("cannot draw pairs of {} in a scene of {}{}; draw pairs of its own type",
+                                 in_doubles ? "doubles" : "float32", in_doubles ? "float32" : "doubles",
+                                 what.substr(what.find(": "))));
+  }
+  return other;
+}
 
 Scene resolved(const SceneFile& file) {
   Scene scene{};
   scene.edges = spread(file.edges);
   scene.aspect = spread(file.aspect);
-  const double largest = largest_of(file);
-  const int ulp = std::max(floor_log2(largest) - 23, -149);
-  scene.exact = {std::ldexp(1.0, ulp), false};
+  scene.exact = {ulp_of(file, largest_of(file)), false};
   if (file.grid) {
     scene.on_grid = true;
     double scale = 1;
@@ -69,15 +95,15 @@ Scene resolved(const SceneFile& file) {
   }
   for (int axis = 0; axis < 3; ++axis) {
     const auto& [from, to] = file.extent[static_cast<std::size_t>(axis)];
-    double low = as_float32(from), high = as_float32(to);
-    // The first and last grid points that still lie within [low, high] after rounding to float32.
+    double low = as_stored(file, from), high = as_stored(file, to);
+    // The first and last grid points that still lie within [low, high] after rounding.
     const auto first_on = [&](const Grid& grid) {
-      const double n = in_scene::number_of(grid, low);
-      return as_float32(in_scene::point_of(grid, n)) < low ? n + 1 : n;
+      const double n = number_at(grid, low);
+      return as_stored(file, in_scene::point_of(grid, n)) < low ? n + 1 : n;
     };
     const auto last_on = [&](const Grid& grid) {
-      const double n = in_scene::number_of(grid, high);
-      return as_float32(in_scene::point_of(grid, n)) > high ? n - 1 : n;
+      const double n = number_at(grid, high);
+      return as_stored(file, in_scene::point_of(grid, n)) > high ? n - 1 : n;
     };
     component(scene.first, axis) = first_on(scene.exact);
     component(scene.last, axis) = last_on(scene.exact);
@@ -114,7 +140,15 @@ std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum) {
     case Stratum::thesis:
     case Stratum::thesis_special:
       return "its triangles are fixed numbers, not those of a scene";
+    case Stratum::lattice_15:
+    case Stratum::float_born:
+    case Stratum::decimal_born:
+    case Stratum::construction_born:
+    case Stratum::stored:
+      return "its triangles have sizes of their own, not those of a scene";
     case Stratum::far_from_origin:
+    case Stratum::large_offset:
+    case Stratum::radians:
       return coordinates_stay_within(scene);
     case Stratum::extreme_scale:
       return fmt::format("{}, your triangles' longest edges within {} … {}", coordinates_stay_within(scene),

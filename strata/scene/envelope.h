@@ -10,8 +10,12 @@
 
 namespace graze::strata {
 
-// Requires: parse_scene accepted `scene`.
+// The numbers for pairs of the scene's own type.   Requires: parse_scene accepted `scene`.
 Scene resolved(const SceneFile& scene);
+
+// The scene for pairs of the other type, if that is asked for.
+// Throws: UsageError if the scene would not be valid, as where float32 is too coarse for one of doubles.
+SceneFile with_type(const SceneFile& scene, bool in_doubles);
 
 // Why the scene cannot contain the stratum, worded to follow "left out, for"; nothing if it can.
 std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum);
@@ -19,7 +23,11 @@ std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum);
 // The kind of pairs that the stratum draws in a scene.
 Kind kind_of(Stratum stratum);
 
-// The coordinate rounded to float32, as a scene stores it.
+// The coordinate as the scene stores it: rounded to float32, unless its coordinates are doubles.
 inline double as_float32(double x) { return static_cast<double>(static_cast<float>(x)); }
+inline double as_stored(const SceneFile& scene, double x) { return scene.in_doubles ? x : as_float32(x); }
+
+// An ulp of the largest of these coordinates.
+double ulp_of(const SceneFile& scene, double largest);
 
 }  // namespace graze::strata

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exact contacts and exactly coplanar pairs on a scene's grid of powers of two, or on the ulps of its largest
-// coordinate. On a decimal grid they are exact for the decimal numbers, before rounding to float32.
+// coordinate. On a decimal grid they are exact for the decimal numbers, before rounding.
 #pragma once
 
 #include "strata/coplanar.h"
@@ -10,39 +10,51 @@ namespace graze::strata::in_scene {
 inline namespace GRAZE_FP {
 
 // How far integer coordinates may reach, by axis.
+template <class Integer>
 struct Reach {
-  int axis[3];
+  Integer axis[3];
 };
 
 // `most`, or less if the extent must hold `widths` times the reach.
-GRAZE_HD inline Reach reach_within(const Scene& scene, int most, double widths) {
-  Reach reach{{most, most, most}};
+template <class Integer>
+GRAZE_HD Reach<Integer> reach_within(const Scene& scene, Integer most, double widths) {
+  Reach<Integer> reach{{most, most, most}};
   for (int axis = 0; axis < 3; ++axis) {
     const double room = (component(scene.last, axis) - component(scene.first, axis)) / widths;
-    if (room < most) reach.axis[axis] = static_cast<int>(room);
+    if (room < static_cast<double>(most)) reach.axis[axis] = static_cast<Integer>(room);
   }
   return reach;
 }
 
-GRAZE_HD inline Vec draw_whole(Draws& draws, const Reach& reach, int times = 1) {
+GRAZE_HD inline Vec draw_whole(auto& draws, const auto& reach, int times = 1) {
   return {static_cast<double>(draws.integer(reach.axis[0] * times)),
           static_cast<double>(draws.integer(reach.axis[1] * times)),
           static_cast<double>(draws.integer(reach.axis[2] * times))};
 }
 
 // A random longest edge, in grid steps.
-GRAZE_HD inline double draw_edge_in_steps(Draws& draws, const Scene& scene) {
+GRAZE_HD inline double draw_edge_in_steps(auto& draws, const Scene& scene) {
   const double edge = draw_from(draws, scene.edges, {});
   return scene.exact.decimal ? edge * scene.exact.scale : edge / scene.exact.scale;
 }
 
+// A whole number near x.
+GRAZE_INLINE double whole(const Draws&, double x) { return nearest_whole(x); }
+GRAZE_INLINE double whole(const DoubleDraws&, double x) { return static_cast<double>(static_cast<std::int64_t>(x)); }
+
 // Moves integer coordinates to a random place in the extent.
-GRAZE_HD inline Pair finished_on_grid(Draws& draws, const Scene& scene, const Draft& draft) {
+template <class D>
+GRAZE_HD BasicPair<typename D::Real> finished_on_grid(D& draws, const Scene& scene, Draft draft) {
+  if constexpr (D::kBits == 53) {  // to begin at 0, so that no sum below needs a 54th bit
+    const Vec least{span_of(draft, 0).low, span_of(draft, 1).low, span_of(draft, 2).low};
+    move(draft.a, least * -1.0);
+    move(draft.b, least * -1.0);
+  }
   Vec to{0, 0, 0};
   for (int axis = 0; axis < 3; ++axis) {
     const Interval span = span_of(draft, axis);
     const double low = component(scene.first, axis) - span.low, high = component(scene.last, axis) - span.high;
-    component(to, axis) = clamped(nearest_whole(low + (high - low) * draws.positive()), low, high);
+    component(to, axis) = clamped(whole(draws, low + (high - low) * draws.positive()), low, high);
   }
   Draft placed;
   for (int i = 0; i < 3; ++i) {
@@ -57,11 +69,10 @@ GRAZE_HD inline Pair finished_on_grid(Draws& draws, const Scene& scene, const Dr
 inline constexpr int kWeight = 8;         // the largest multiple of a step
 inline constexpr double kEdgeSteps = 42;  // an edge is at most this many times the reach of a step: 24 * sqrt(3)
 
-GRAZE_HD inline double draw_weight(Draws& draws) { return 1.0 + draws.below(kWeight); }
+GRAZE_HD inline double draw_weight(auto& draws) { return 1.0 + draws.below(kWeight); }
 
 // An edge through the origin along e, or a vertex at the origin; the rest of the triangle lies on the given side.
-GRAZE_HD inline void put_exact_edge(Draws& draws, const Reach& reach, const Vec& e, const Vec& side,
-                                    Vec (&triangle)[3]) {
+GRAZE_HD inline void put_exact_edge(auto& draws, const auto& reach, const Vec& e, const Vec& side, Vec (&triangle)[3]) {
   const double back = draw_weight(draws);
   const double forth = draw_weight(draws);
   triangle[0] = e * -back;
@@ -69,18 +80,20 @@ GRAZE_HD inline void put_exact_edge(Draws& draws, const Reach& reach, const Vec&
   triangle[2] = toward(side, draw_whole(draws, reach, kWeight));
 }
 
-GRAZE_HD inline void put_exact_vertex(Draws& draws, const Reach& reach, const Vec& side, Vec (&triangle)[3]) {
+GRAZE_HD inline void put_exact_vertex(auto& draws, const auto& reach, const Vec& side, Vec (&triangle)[3]) {
   triangle[0] = {0, 0, 0};
   triangle[1] = toward(side, draw_whole(draws, reach, kWeight));
   triangle[2] = toward(side, draw_whole(draws, reach, kWeight));
 }
 
 // Half of the pairs touch exactly. In a quarter each, one coordinate of b[0] is one step more or less.
-GRAZE_HD inline Pair exact_contact(Draws& draws, const Scene& scene) {
+template <class D>
+GRAZE_HD BasicPair<typename D::Real> exact_contact(D& draws, const Scene& scene) {
   const Touch touch = static_cast<Touch>(draws.below(3));
-  // Up to 2^14, so that the products that determine sides are exact.
-  const double most = clamped(draw_edge_in_steps(draws, scene) / kEdgeSteps, 1, 0x1p14);
-  const Reach reach = reach_within(scene, static_cast<int>(most), 4 * kWeight + 2);
+  // Up to 2^14, so that the products that determine sides are exact. Edges of doubles take more steps: there
+  // a product rounds, and hardly ever changes its sign by that.
+  const double most = clamped(draw_edge_in_steps(draws, scene) / kEdgeSteps, 1, D::kBits == 53 ? 0x1p46 : 0x1p14);
+  const auto reach = reach_within(scene, static_cast<typename D::Integer>(most), 4 * kWeight + 2);
   const Vec u = draw_whole(draws, reach);
   const Vec v = draw_whole(draws, reach);
   const Vec away = cross(u, v), back = away * -1.0;
@@ -109,21 +122,24 @@ GRAZE_HD inline Pair exact_contact(Draws& draws, const Scene& scene) {
 }
 
 // Tilted planes. The bits of an edge are split at random between the chart and the grid pair on it.
-GRAZE_HD inline Pair coplanar_wide(Draws& draws, const Scene& scene) {
-  const int most = static_cast<int>(clamped(draw_edge_in_steps(draws, scene) / 8, 8, 0x1p22));
+template <class D>
+GRAZE_HD BasicPair<typename D::Real> coplanar_wide(D& draws, const Scene& scene) {
+  constexpr bool kWide = D::kBits == 53;
+  const auto most =
+      static_cast<typename D::Integer>(clamped(draw_edge_in_steps(draws, scene) / 8, 8, kWide ? 0x1p50 : 0x1p22));
   int bits = 3;
-  while (bits < 19 && (2 << bits) <= most) ++bits;
+  while (bits < (kWide ? 28 : 19) && (2 << bits) <= most) ++bits;
   bits = draws.between(3, bits);
-  const Reach reach = reach_within(scene, most >> bits, 4.0 * ((1 << bits) + 1));
+  const auto reach = reach_within(scene, most >> bits, 4.0 * ((1 << bits) + 1));
   const Chart chart{{0, 0, 0}, draw_whole(draws, reach), draw_whole(draws, reach)};
   return finished_on_grid(draws, scene, laid(chart, draw_grid_pair(draws, 1 << bits)));
 }
 
 // Six grid points in a cube.
-GRAZE_HD inline Pair lattice(Draws& draws, const Scene& scene) {
+GRAZE_HD inline auto lattice(auto& draws, const Scene& scene) {
   const double edge = scene.edges.at[kQuantiles - 1] * 0.57735;  // edge of a cube over its diagonal
   const double steps = scene.exact.decimal ? edge * scene.exact.scale : edge / scene.exact.scale;
-  const Reach reach = reach_within(scene, static_cast<int>(steps), 1);
+  const Reach<int> reach = reach_within(scene, static_cast<int>(steps), 1);
   Draft draft;
   for (int i = 0; i < 6; ++i) {
     for (int axis = 0; axis < 3; ++axis) {

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uintmax_t kMostBytes = 1 << 20;
 constexpr double kMostCoordinate = 0x1p126;
-constexpr double kLeastUlps = 8;         // so that float32 does not turn all triangles into points
+constexpr double kLeastUlps = 8;         // so that rounding does not turn all triangles into points
 constexpr double kLeastAspect = 1.1547;  // aspect of an equilateral triangle, 2 / sqrt(3), to five digits
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }
@@ -44,11 +44,16 @@ class Reader {
   Reader(const std::string& name, const toml::table& root) : name_(name), root_(root) {}
 
   SceneFile scene() {
-    keys(root_, "a scene", {"units", "extent", "edges", "aspect", "grid", "mix", "margins", "meshes"});
+    keys(root_, "a scene", {"units", "coordinates", "extent", "edges", "aspect", "grid", "mix", "margins", "meshes"});
     SceneFile scene;
     if (const toml::node* node = root_.get("units")) {
       scene.units = text(*node);
       if (!is_units(scene.units)) fail(*node, "units of " + kUnits, shown(scene.units));
+    }
+    if (const toml::node* node = root_.get("coordinates")) {
+      const auto type = node->value_exact<std::string>();
+      if (type != "f32" && type != "f64") fail(*node, "\"f32\" or \"f64\"", found_text(*node));
+      scene.in_doubles = type == "f64";
     }
     read_extent(scene);
     read_sizes(scene);
@@ -123,7 +128,7 @@ class Reader {
     }
     double squares = 0;
     for (const auto& [low, high] : scene.extent) {
-      const double size = as_float32(high) - as_float32(low);
+      const double size = as_stored(scene, high) - as_stored(scene, low);
       squares += size * size;
       largest_ = std::max({largest_, std::fabs(low), std::fabs(high)});
     }
@@ -153,7 +158,7 @@ class Reader {
     if (scene.edges.back() > diagonal_ * 1.00001)
       fail(*edges, fmt::format("edges of at most {:.6g}, the diagonal of the extent", diagonal_),
            fmt::format("{}", scene.edges.back()));
-    const double ulp = std::ldexp(1.0, std::max(floor_log2(largest_) - 23, -149));
+    const double ulp = ulp_of(scene, largest_);
     if (scene.edges.back() < kLeastUlps * ulp)
       fail(
           *edges,
@@ -268,8 +273,8 @@ SceneFile read_scene(const std::filesystem::path& file) {
 bool is_units(std::string_view text) { return text.size() <= 32 && std::none_of(text.begin(), text.end(), is_control); }
 
 std::string scene_text(const SceneFile& scene) {
-  std::string text =
-      fmt::format("units = {}\n# Least and greatest coordinate of x, y and z.\nextent = [", toml_string(scene.units));
+  std::string text = fmt::format("units = {}\n{}# Least and greatest coordinate of x, y and z.\nextent = [",
+                                 toml_string(scene.units), scene.in_doubles ? "coordinates = \"f64\"\n" : "");
   for (std::size_t axis = 0; axis < 3; ++axis)
     text += fmt::format("{}[{}, {}]", axis > 0 ? ", " : "", scene.extent[axis][0], scene.extent[axis][1]);
   text += "]\n# Longest edge of a triangle, and that edge over the height on it: quantiles, from least to greatest.\n";

@@ -39,6 +39,7 @@ struct SceneMeshes {
 // The initial values are the defaults for fields that a file may omit. extent and edges have no default.
 struct SceneFile {
   std::string units = "units";
+  bool in_doubles = false;                        // the coordinates are doubles, not float32
   std::array<std::array<double, 2>, 3> extent{};  // least and greatest coordinate on each axis
   std::vector<double> edges;                      // of triangles' longest edges: 1, 2, 3, 5, 9, 17 or 33 quantiles
   std::vector<double> aspect{1.2, 2, 10};         // longest edge divided by the height on it, as quantiles too

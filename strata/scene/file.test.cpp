@@ -74,6 +74,26 @@ TEST(SceneFile, WhatIsWrittenIsRead) {
   EXPECT_NE(before, scene_name("s.toml", scene));
 }
 
+TEST(SceneFile, SaysWhichTypeItsCoordinatesHave) {
+  const std::string utm = "extent = [[500000.01, 500000.02], [0, 1], [0, 1]]\nedges = [0.01, 1]\n";
+  EXPECT_FALSE(parse_scene("s", utm).in_doubles);
+  EXPECT_FALSE(parse_scene("s", "coordinates = \"f32\"\n" + utm).in_doubles);
+  EXPECT_EQ(scene_text(parse_scene("s", "coordinates = \"f32\"\n" + utm)), scene_text(parse_scene("s", utm)));
+  const SceneFile doubles = parse_scene("s", "coordinates = \"f64\"\n" + utm);
+  EXPECT_TRUE(doubles.in_doubles);
+  EXPECT_EQ(resolved(doubles).low.x, 500000.01);
+  EXPECT_EQ(resolved(parse_scene("s", utm)).low.x, 500000);
+  EXPECT_EQ(parse_scene("s", scene_text(doubles)), doubles);
+  EXPECT_NE(scene_name("s", doubles), scene_name("s", parse_scene("s", utm)));
+  // Triangles that float32 would turn into points.
+  const std::string fine = "extent = [1e6, 2e6]\nedges = [0.125, 0.5]";
+  EXPECT_TRUE(names(error_of(fine), {"s.toml:2", "8 ulps"}));
+  EXPECT_EQ(error_of("coordinates = \"f64\"\n" + fine), "none");
+  EXPECT_TRUE(names(error_of("coordinates = \"f64\"\nextent = [1e6, 2e6]\nedges = 1e-10"), {"s.toml:3", "8 ulps"}));
+  for (const char* wrong : {"\"f16\"", "64", "true"})
+    EXPECT_TRUE(names(error_of(std::string("coordinates = ") + wrong + "\n" + fine), {"s.toml:1", "f32", "f64"}));
+}
+
 TEST(SceneFile, MistakesAreNamedByTheirLine) {
   const std::string edges = "edges = [0.5, 40]\n";
   const std::string extent = "extent = [-400, 400]\n";
@@ -83,7 +103,7 @@ TEST(SceneFile, MistakesAreNamedByTheirLine) {
   expect_named(extent, {"s.toml:1", "edges"});
   expect_named(edges, {"s.toml:1", "extent"});
   expect_named(kThree + "\nextend = 3\n",
-               {"s.toml:5", "extend", "extent", "units", "aspect", "grid", "mix", "margins"});
+               {"s.toml:5", "extend", "extent", "units", "coordinates", "aspect", "grid", "mix", "margins"});
   expect_named("extent = [[0, 1], [3, 2], [0, 1]]\n" + edges, {"s.toml:1", "3", "2"});
   expect_named("extent = [[0, 1], [0, 2]]\n" + edges, {"s.toml:1", "x", "y", "z", "2"});
   expect_named("extent = [nan, 1]\n" + edges, {"s.toml:1", "nan"});

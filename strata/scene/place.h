@@ -20,34 +20,39 @@ GRAZE_INLINE double number_of(const Grid& grid, double x) {
 }
 
 // The coordinate as the scene stores it.
-GRAZE_INLINE float stored(const Scene& scene, int axis, double x) {
+template <class Real>
+GRAZE_INLINE Real stored(const Scene& scene, int axis, double x) {
   const double inside = clamped(x, component(scene.low, axis), component(scene.high, axis));
-  return static_cast<float>(scene.on_grid ? point_of(scene.grid, number_of(scene.grid, inside)) : inside);
+  return static_cast<Real>(scene.on_grid ? point_of(scene.grid, number_of(scene.grid, inside)) : inside);
 }
 
 // The coordinate moved by that many grid steps, but kept within the extent. It moves by ulps if there is no grid or a
 // grid step does not change it.
-GRAZE_INLINE float pushed(const Scene& scene, int axis, float x, int steps) {
+template <class Real>
+GRAZE_INLINE Real pushed(const Scene& scene, int axis, Real x, int steps) {
   if (scene.on_grid) {
     const double n = number_of(scene.grid, static_cast<double>(x)) + steps;
-    const float y = stored(scene, axis, point_of(scene.grid, n));
+    const Real y = stored<Real>(scene, axis, point_of(scene.grid, n));
     if (y != x) return y;
   }
-  return stored(scene, axis, static_cast<double>(nudged(x, steps)));
+  return stored<Real>(scene, axis, static_cast<double>(nudged(x, steps)));
 }
 
-GRAZE_INLINE Vec3<float> pushed(const Scene& scene, const Vec3<float>& v, int axis, int steps) {
+template <class Real>
+GRAZE_INLINE Vec3<Real> pushed(const Scene& scene, const Vec3<Real>& v, int axis, int steps) {
   return {axis == 0 ? pushed(scene, 0, v.x, steps) : v.x, axis == 1 ? pushed(scene, 1, v.y, steps) : v.y,
           axis == 2 ? pushed(scene, 2, v.z, steps) : v.z};
 }
 
-GRAZE_INLINE Vec3<float> stored(const Scene& scene, const Vec& v) {
-  return {stored(scene, 0, v.x), stored(scene, 1, v.y), stored(scene, 2, v.z)};
+template <class Real>
+GRAZE_INLINE Vec3<Real> stored(const Scene& scene, const Vec& v) {
+  return {stored<Real>(scene, 0, v.x), stored<Real>(scene, 1, v.y), stored<Real>(scene, 2, v.z)};
 }
 
-GRAZE_INLINE Pair stored(const Scene& scene, const Draft& draft) {
-  return {{stored(scene, draft.a[0]), stored(scene, draft.a[1]), stored(scene, draft.a[2])},
-          {stored(scene, draft.b[0]), stored(scene, draft.b[1]), stored(scene, draft.b[2])}};
+template <class Real>
+GRAZE_INLINE BasicPair<Real> stored(const Scene& scene, const Draft& draft) {
+  return {{stored<Real>(scene, draft.a[0]), stored<Real>(scene, draft.a[1]), stored<Real>(scene, draft.a[2])},
+          {stored<Real>(scene, draft.b[0]), stored<Real>(scene, draft.b[1]), stored<Real>(scene, draft.b[2])}};
 }
 
 struct Interval {
@@ -66,7 +71,7 @@ GRAZE_INLINE Interval span_of(const Draft& draft, int axis) {
 }
 
 // Moves the draft to a random place in the extent. First flattens it along axes in which it does not fit.
-GRAZE_HD inline void place(Draws& draws, const Scene& scene, Draft& draft) {
+GRAZE_HD inline void place(auto& draws, const Scene& scene, Draft& draft) {
   Vec by{1, 1, 1};
   for (int axis = 0; axis < 3; ++axis) {
     const Interval span = span_of(draft, axis);
@@ -86,9 +91,10 @@ GRAZE_HD inline void place(Draws& draws, const Scene& scene, Draft& draft) {
 }
 
 // Like `finished` of strata/contact.h, but within the scene.
-GRAZE_HD inline Pair finished(Draws& draws, const Scene& scene, Draft& draft, const Push& push) {
+template <class D>
+GRAZE_HD BasicPair<typename D::Real> finished(D& draws, const Scene& scene, Draft& draft, const Push& push) {
   place(draws, scene, draft);
-  Pair pair = stored(scene, draft);
+  BasicPair<typename D::Real> pair = stored<typename D::Real>(scene, draft);
   pair.b[0] = pushed(scene, pair.b[0], push.axis, push.ulps);
   return shuffled(draws, pair);
 }

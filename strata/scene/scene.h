@@ -15,15 +15,16 @@ struct Quantiles {
   double at[kQuantiles];
 };
 
-// Numbered points of an axis. Number n is at n * scale, or for decimals at n / scale, rounded to float32.
+// Numbered points of an axis. Number n is at n * scale, or for decimals at n / scale, rounded to the type of the
+// coordinates.
 struct Grid {
   double scale = 1;
   bool decimal = false;
 };
 
-// Made by resolved() of strata/scene/envelope.h from a scene's file.
+// Made by resolved() of strata/scene/envelope.h from a scene's file, for pairs of float32 or of doubles.
 struct Scene {
-  Vec3<double> low, high;  // least and greatest coordinate on each axis; float32 numbers on the grid
+  Vec3<double> low, high;  // least and greatest coordinate on each axis; numbers of their type, on the grid
   Quantiles edges;         // longest edge of a triangle
   Quantiles aspect;        // longest edge divided by the height on it, at least 2 / sqrt(3)
   bool on_grid = false;    // whether all coordinates are on `grid`
@@ -36,8 +37,12 @@ inline namespace GRAZE_FP {
 
 // The pair with this index. It lies within the extent and on the grid, and no edge is longer than the longest, up to
 // rounding. A pair that does not fit the extent along an axis is flattened along it.
-// Requires: the scene can contain the stratum, see left_out(); compiled without contraction.
+// Requires: the scene can contain the stratum, see left_out(), and is one of float32; compiled without contraction.
 GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, const Scene& scene, std::uint64_t index);
+
+// Likewise in doubles, in a scene of doubles.
+GRAZE_HD inline DoublePair generate_doubles(std::uint64_t seed, Stratum stratum, const Scene& scene,
+                                            std::uint64_t index);
 
 }  // namespace GRAZE_FP
 }  // namespace graze::strata

@@ -8,7 +8,7 @@ namespace graze::strata {
 namespace in_scene {
 inline namespace GRAZE_FP {
 
-GRAZE_HD inline Pair near_contact(Draws& draws, const Scene& scene, Touch touch, const Space& space,
+GRAZE_HD inline auto near_contact(auto& draws, const Scene& scene, Touch touch, const Space& space,
                                   const Sizes& sizes_a = {}, const Sizes& sizes_b = {}) {
   const Form a = draw_form(draws, scene, sizes_a);
   const Form b = draw_form(draws, scene, sizes_b);
@@ -20,7 +20,7 @@ GRAZE_HD inline Pair near_contact(Draws& draws, const Scene& scene, Touch touch,
 }
 
 // Anywhere, as long as the boxes overlap.
-GRAZE_HD inline Pair uniform(Draws& draws, const Scene& scene) {
+GRAZE_HD inline auto uniform(auto& draws, const Scene& scene) {
   Draft draft;
   const Space plane_a = draw_plane(draws);
   put_face(draws, plane_a, draw_form(draws, scene), draft.a);
@@ -36,7 +36,7 @@ GRAZE_HD inline Pair uniform(Draws& draws, const Scene& scene) {
 }
 
 // Two triangles in a plane: half touch, or nearly, half overlap or lie apart.
-GRAZE_HD inline Pair coplanar(Draws& draws, const Scene& scene, const Space& plane) {
+GRAZE_HD inline auto coplanar(auto& draws, const Scene& scene, const Space& plane) {
   if (draws.coin()) {
     const Touch touch = draws.coin() ? Touch::vertex_edge : draws.coin() ? Touch::edge_edge : Touch::vertex_vertex;
     const Form a = draw_form(draws, scene);
@@ -63,7 +63,7 @@ GRAZE_HD inline Pair coplanar(Draws& draws, const Scene& scene, const Space& pla
 // A large triangle and a small one, in one plane. In half of the pairs both share an inner point of the large one, and
 // the small one is usually inside; it pierces the face in a quarter of these. In the other half it touches an edge from
 // inside or outside, or nearly.
-GRAZE_HD inline Pair nested(Draws& draws, const Scene& scene) {
+GRAZE_HD inline auto nested(auto& draws, const Scene& scene) {
   const bool tilted = draws.coin();
   const int normal = draws.between(0, 2);
   const Space any = draw_plane(draws);
@@ -90,8 +90,10 @@ GRAZE_HD inline Pair nested(Draws& draws, const Scene& scene) {
   return finished(draws, scene, draft, {});
 }
 
-// Half tilted, and parallel until rounding: by up to 2^-40 of the size; half along two axes, by up to 4 steps or ulps.
-GRAZE_HD inline Pair parallel(Draws& draws, const Scene& scene) {
+// Half tilted, and parallel until rounding: by up to 2^-40 of the size (doubles: 2^-100); half along two axes, by up to
+// 4 steps or ulps.
+template <class D>
+GRAZE_HD BasicPair<typename D::Real> parallel(D& draws, const Scene& scene) {
   const bool tilted = draws.coin();
   const int normal = draws.between(0, 2);
   const Space plane = tilted ? draw_plane(draws) : axis_plane(normal);
@@ -102,20 +104,20 @@ GRAZE_HD inline Pair parallel(Draws& draws, const Scene& scene) {
   const Form other = draw_form(draws, scene);
   put_face(draws, {true, turned, draw_across(draws, plane, turned)}, other, draft.b);
   const double gap = draws.sign();
-  const int halvings = draws.between(0, 40);
+  const int halvings = draws.between(0, draws.kGap);
   const int steps = draws.integer(4);
   if (tilted) move(draft.b, cross(plane.x, plane.y) * (gap * power_of_two(-halvings) * form.length));
   place(draws, scene, draft);
-  Pair pair = stored(scene, draft);
+  BasicPair<typename D::Real> pair = stored<typename D::Real>(scene, draft);
   if (!tilted) {
-    for (Vec3<float>& vertex : pair.b) vertex = pushed(scene, vertex, normal, steps);
+    for (auto& vertex : pair.b) vertex = pushed(scene, vertex, normal, steps);
   }
   return shuffled(draws, pair);
 }
 
 // A segment through or from the origin; its third vertex is an end or, along an axis, where rounding cannot part it
 // from the line, anywhere on it.
-GRAZE_HD inline void put_segment(Draws& draws, const Vec& e, bool along_axis, double length, Vec (&triangle)[3]) {
+GRAZE_HD inline void put_segment(auto& draws, const Vec& e, bool along_axis, double length, Vec (&triangle)[3]) {
   const double back = draws.coin() ? length * draws.positive() : 0;
   const double third = length * draws.positive();
   const bool end = draws.coin();
@@ -125,7 +127,8 @@ GRAZE_HD inline void put_segment(Draws& draws, const Vec& e, bool along_axis, do
 }
 
 // B is a segment or a point, A anything; both at one point, then half of the time B is a few steps or ulps off.
-GRAZE_HD inline Pair degenerate(Draws& draws, const Scene& scene) {
+template <class D>
+GRAZE_HD BasicPair<typename D::Real> degenerate(D& draws, const Scene& scene) {
   const Form a = draw_form(draws, scene);
   const Form b = draw_form(draws, scene);
   const bool along_axis = draws.coin();
@@ -147,19 +150,19 @@ GRAZE_HD inline Pair degenerate(Draws& draws, const Scene& scene) {
   const int push_axis = draws.between(0, 2);
   const int steps = draws.coin() ? draws.integer(8) : 0;
   place(draws, scene, draft);
-  Pair pair = stored(scene, draft);
-  for (Vec3<float>& vertex : pair.b) vertex = pushed(scene, vertex, push_axis, steps);
+  BasicPair<typename D::Real> pair = stored<typename D::Real>(scene, draft);
+  for (auto& vertex : pair.b) vertex = pushed(scene, vertex, push_axis, steps);
   return shuffled(draws, pair);
 }
 
-// How a neighbour's plane is turned out of the first triangle's: half not at all, half by 2^0 … 2^-30.
-GRAZE_HD inline double draw_lift(Draws& draws) {
+// How a neighbour's plane is turned out of the first triangle's: half not at all, half by 2^0 … 2^-30 (doubles: 2^-90).
+GRAZE_HD inline double draw_lift(auto& draws) {
   const double sign = draws.sign();
-  const double lift = sign * power_of_two(-draws.between(0, 30));
+  const double lift = sign * power_of_two(-draws.between(0, draws.kGap - 10));
   return draws.coin() ? lift : 0;
 }
 
-GRAZE_HD inline Pair shared_vertex(Draws& draws, const Scene& scene) {
+GRAZE_HD inline auto shared_vertex(auto& draws, const Scene& scene) {
   const Space plane = draw_plane(draws);
   const double lift = draw_lift(draws);
   const Space other{true, plane.x, unit(plane.y + cross(plane.x, plane.y) * lift)};
@@ -172,7 +175,7 @@ GRAZE_HD inline Pair shared_vertex(Draws& draws, const Scene& scene) {
 }
 
 // The neighbour is the triangle itself, mirrored, so that its edges are as long.
-GRAZE_HD inline Pair shared_edge(Draws& draws, const Scene& scene) {
+GRAZE_HD inline auto shared_edge(auto& draws, const Scene& scene) {
   const Space plane = draw_plane(draws);
   const double lift = draw_lift(draws);
   const bool folded = draws.coin(), mirrored = draws.coin();
@@ -191,8 +194,8 @@ GRAZE_HD inline Pair shared_edge(Draws& draws, const Scene& scene) {
 
 inline namespace GRAZE_FP {
 
-GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, const Scene& scene, std::uint64_t index) {
-  Draws draws(seed, 0x100u + static_cast<std::uint32_t>(stratum), index);  // not those of strata without a scene
+template <class D>
+GRAZE_HD BasicPair<typename D::Real> generate_by(D draws, Stratum stratum, const Scene& scene) {
   switch (stratum) {
     case Stratum::uniform:
       return in_scene::uniform(draws, scene);
@@ -247,6 +250,16 @@ GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, const Scene& 
       break;  // never in a scene
   }
   return {};
+}
+
+GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, const Scene& scene, std::uint64_t index) {
+  // Not the words of strata without a scene.
+  return generate_by(Draws(seed, 0x100u + static_cast<std::uint32_t>(stratum), index), stratum, scene);
+}
+
+GRAZE_HD inline DoublePair generate_doubles(std::uint64_t seed, Stratum stratum, const Scene& scene,
+                                            std::uint64_t index) {
+  return generate_by(DoubleDraws(seed, 0x100u + static_cast<std::uint32_t>(stratum), index), stratum, scene);
 }
 
 }  // namespace GRAZE_FP

@@ -8,13 +8,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
 
 #include "core/error.h"
 #include "core/message_testing.h"
+#include "core/relation_of.h"
 #include "strata/golden.h"
+#include "strata/groups.h"
 #include "strata/mesh.h"
 #include "strata/scene/envelope.h"
 #include "strata/scene/sources.h"
@@ -180,6 +184,160 @@ TEST(Scene, SameBytesAsEver) {
   EXPECT_EQ(hash, 0xdc88fa2cdcf2a5e5u) << std::hex << hash;  // if it changes, every case of a scene has another meaning
 }
 
+// The same scenes in doubles, and one whose steps float32 does not hold: a site survey in millimetres.
+std::vector<std::pair<std::string, SceneFile>> double_scenes() {
+  std::vector<std::pair<std::string, SceneFile>> scenes;
+  for (const auto& [name, text] : kScenes)
+    scenes.emplace_back(name, parse_scene(name, std::string("coordinates = \"f64\"\n") + text));
+  scenes.emplace_back("survey", parse_scene("survey",
+                                            "coordinates = \"f64\"\nextent = [[500000, 500300.5], [5400000, "
+                                            "5400300], [0.001, 60]]\nedges = [0.02, 30]\ngrid = { decimals = 3 }"));
+  return scenes;
+}
+
+double longest(const Vec3<double> (&v)[3]) {
+  return std::max({length(v[1] - v[0]), length(v[2] - v[1]), length(v[0] - v[2])});
+}
+
+double largest_of(const SceneFile& file) {
+  double largest = 0;
+  for (const auto& [low, high] : file.extent) largest = std::max({largest, std::fabs(low), std::fabs(high)});
+  return largest;
+}
+
+TEST(DoubleScene, EveryPairIsWithinTheExtentOnTheGridAndOfTheSizes) {
+  constexpr std::uint64_t kPairs = 20'000;
+  for (const auto& [name, file] : double_scenes()) {
+    const Scene scene = resolved(file);
+    const double ulp = ulp_of(file, largest_of(file));
+    const double step =
+        std::max(ulp, scene.on_grid ? (scene.grid.decimal ? 1 / scene.grid.scale : scene.grid.scale) : 0);
+    const double most = scene.edges.at[kQuantiles - 1] * (1 + 0x1p-40) + 20 * step;
+    int drawn = 0;
+    for (const StratumInfo& row : kDoubleStrata) {
+      if (left_out(file, row.stratum)) continue;
+      ++drawn;
+      std::set<std::uint64_t> kinds;
+      int finer = 0;
+      for (std::uint64_t i = 0; i < kPairs; ++i) {
+        const DoublePair pair = generate_doubles(3, row.stratum, scene, i);
+        for (int k = 0; k < kCoordinates; ++k) {
+          const double x = coordinates(pair)[k];
+          const auto& [low, high] = file.extent[static_cast<std::size_t>(k % 3)];
+          ASSERT_TRUE(low <= x && x <= high) << name << ' ' << row.id << ':' << i << ' ' << x;
+          ASSERT_TRUE(!file.grid || in_scene::point_of(scene.grid, in_scene::number_of(scene.grid, x)) == x)
+              << name << ' ' << row.id << ':' << i << ' ' << x;
+        }
+        ASSERT_LE(longest(pair.a), most) << name << ' ' << row.id << ':' << i;
+        ASSERT_LE(longest(pair.b), most) << name << ' ' << row.id << ':' << i;
+        if (i < 1000) kinds.insert(hash_bits(pair));
+        finer += hash_bits(in_doubles(stored_in_float32(pair))) != hash_bits(pair);
+      }
+      EXPECT_GT(kinds.size(), 900u) << name << ' ' << row.id;  // not one pair repeated
+      if (!file.grid || name == "survey") {
+        EXPECT_GT(finer, 0.99 * kPairs) << name << ' ' << row.id;
+      }
+    }
+    EXPECT_GE(drawn, 11) << name;
+  }
+}
+
+// Whether the triangles touch once one coordinate is moved by a step.
+bool touches_a_step_away(const DoublePair& pair, double step) {
+  for (int k = 0; k < kCoordinates; ++k) {
+    for (const double by : {step, -step}) {
+      DoublePair moved = pair;
+      coordinates(moved)[k] += by;
+      if (relation_of(moved).touches()) return true;
+    }
+  }
+  return false;
+}
+
+TEST(DoubleScene, ExactStrataAreExact) {
+  for (const auto& [name, file] : double_scenes()) {
+    const Scene scene = resolved(file);
+    if (scene.exact.decimal || left_out(file, Stratum::exact_contact)) continue;
+    int touching = 0, inexact = 0, tilted = 0, wide = 0;
+    for (std::uint64_t i = 0; i < 10'000; ++i) {
+      const DoublePair contact = generate_doubles(1, Stratum::exact_contact, scene, i);
+      const bool touches = relation_of(contact).touches();
+      touching += touches;
+      inexact += i < 2'000 && !touches && !touches_a_step_away(contact, scene.exact.scale);
+      const DoublePair coplanar = generate_doubles(1, Stratum::coplanar_wide, scene, i);
+      ASSERT_TRUE(relation_of(coplanar).hulls.coplanar) << name << ' ' << i;
+      for (const DoublePair& pair : {contact, coplanar}) {
+        for (int k = 0; k < kCoordinates; ++k) {
+          const double n = coordinates(pair)[k] / scene.exact.scale;
+          ASSERT_EQ(n, std::trunc(n)) << name << ' ' << i;
+          wide += k == 0 && std::fabs(n) > 0x1p40;
+        }
+      }
+      int spread = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        double low = component(coplanar.a[0], axis), high = low;
+        for (const auto& v : {coplanar.a[1], coplanar.a[2], coplanar.b[0], coplanar.b[1], coplanar.b[2]}) {
+          low = std::min(low, component(v, axis));
+          high = std::max(high, component(v, axis));
+        }
+        spread += high > low;
+      }
+      tilted += spread == 3;
+    }
+    EXPECT_LE(inexact, file.grid ? 20 : 0) << name;  // edges of a few steps may be parallel
+    EXPECT_GT(touching, 4'850) << name;              // half of them
+    if (name != "plane") {                           // where all are coplanar
+      EXPECT_LT(touching, 7'000) << name;
+      EXPECT_GT(tilted, 7'000) << name;
+    }
+    if (!file.grid) {
+      EXPECT_GT(wide, 10'000) << name;
+    }
+  }
+}
+
+TEST(DoubleScene, APointOfADecimalGridIsTheNearestDouble) {
+  const auto [name, file] = double_scenes().back();
+  const Scene scene = resolved(file);
+  for (std::uint64_t i = 0; i < 10'000; ++i) {
+    const DoublePair pair = generate_doubles(1, Stratum::near_edge_edge, scene, i);
+    for (int k = 0; k < kCoordinates; ++k) {
+      const double x = coordinates(pair)[k];
+      char decimal[64];
+      std::snprintf(decimal, sizeof decimal, "%.3f", x);
+      ASSERT_EQ(std::strtod(decimal, nullptr), x) << i;
+    }
+  }
+}
+
+TEST(DoubleScene, NeighboursShareTheirVerticesBitForBit) {
+  for (const auto& [name, file] : double_scenes()) {
+    const Scene scene = resolved(file);
+    const auto shared = [](const DoublePair& pair) {
+      int count = 0;
+      for (const auto& u : pair.a) count += std::count(std::begin(pair.b), std::end(pair.b), u) > 0;
+      return count;
+    };
+    for (std::uint64_t i = 0; i < 5'000; ++i) {
+      ASSERT_GE(shared(generate_doubles(1, Stratum::shared_vertex, scene, i)), 1) << name << ' ' << i;
+      ASSERT_GE(shared(generate_doubles(1, Stratum::shared_edge, scene, i)), 2) << name << ' ' << i;
+    }
+  }
+}
+
+TEST(DoubleScene, SameBytesAsEver) {
+  std::uint64_t hash = kHashStart;
+  for (const auto& [name, file] : double_scenes()) {
+    const Scene scene = resolved(file);
+    for (const StratumInfo& row : kDoubleStrata) {
+      if (left_out(file, row.stratum)) continue;
+      for (std::uint64_t i = 0; i < 100; ++i)
+        hash = hash_bits(generate_doubles(kGoldenSeed, row.stratum, scene, i), hash);
+    }
+  }
+  EXPECT_EQ(hash, 0xd9b008bd3258f4a9u) << std::hex << hash;
+}
+
 std::string why(const char* text, Stratum stratum) {
   return left_out(parse_scene("s", text), stratum).value_or("drawn");
 }
@@ -204,6 +362,58 @@ TEST(Scene, WhatItCannotContainIsLeftOutWithTheReason) {
   EXPECT_EQ(why(kScenes[2].second, Stratum::lattice), "your longest edge takes 2.4e+03 grid steps, more than 64");
   EXPECT_EQ(why("extent = [0, 9]\nedges = 1\n[mix]\ngeneral = 1", Stratum::degenerate),
             "your mix has no pairs of the kind degenerate");
+}
+
+TEST(DoubleScene, StrataOfDoublesAloneAreLeftOutWithTheReason) {
+  const char* survey = "coordinates = \"f64\"\nextent = [[500000, 500300], [9, 80], [7, 9]]\nedges = [0.5, 4]";
+  EXPECT_EQ(why(survey, Stratum::large_offset), "your coordinates stay within 7 … 500300 units");
+  EXPECT_EQ(why(survey, Stratum::radians), "your coordinates stay within 7 … 500300 units");
+  for (const Stratum stratum :
+       {Stratum::lattice_15, Stratum::float_born, Stratum::decimal_born, Stratum::construction_born, Stratum::stored})
+    EXPECT_EQ(why(survey, stratum), "its triangles have sizes of their own, not those of a scene");
+  EXPECT_EQ(why(survey, Stratum::exact_contact), "drawn");
+}
+
+TEST(SceneSources, AreThoseOfTheType) {
+  const SceneFile file = parse_scene("s", "extent = [0, 9]\nedges = [0.5, 1]");
+  const SceneFile fine =
+      parse_scene("s", "coordinates = \"f64\"\nextent = [[500000, 500009], [0, 9], [0, 9]]\nedges = [0.01, 0.2]");
+  for (const PairSource& source : scene_sources(file, "", 1, 100, {}).sources) EXPECT_FALSE(source.in_doubles());
+  for (const PairSource& source : scene_sources(fine, "", 1, 100, {}).sources) {
+    EXPECT_TRUE(source.in_doubles() && source.id.ends_with("/f64") && source.stratum < 0) << source.id;
+    EXPECT_EQ(group_of_name(source.id), group_of_name(source.id.substr(0, source.id.size() - 4)));
+  }
+  // Float32 has steps of 1/32 there.
+  try {
+    scene_sources(fine, "", 1, 100, {}, PairTypes::f32);
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_TRUE(names(error.what(), {"float32", "0.25", "8 ulps", "0.2", "doubles"})) << error.what();
+  }
+  // Of both types, each has its pairs, and the shares add up.
+  const SceneSources both = scene_sources(file, "", 1, 10'001, {"near_*", "uniform/f64"}, PairTypes::both);
+  ASSERT_EQ(both.sources.size(), 9u);
+  std::vector<std::string> ids;
+  std::uint64_t sum = 0;
+  for (const PairSource& source : both.sources) {
+    ids.push_back(source.id);
+    sum += source.pairs;
+  }
+  EXPECT_EQ(sum, 10'001u);
+  EXPECT_EQ(both.sources[0].id, "near_vertex_face");
+  EXPECT_EQ(hash_bits(both.sources[0].pair(5)), hash_bits(generate(1, Stratum::near_vertex_face, resolved(file), 5)));
+  EXPECT_EQ(both.sources[4].id, "uniform/f64");
+  EXPECT_EQ(hash_bits(both.sources[4].double_pair(5)),
+            hash_bits(generate_doubles(1, Stratum::uniform, resolved(with_type(file, true)), 5)));
+  // By its names alone, a campaign finds the same sources again.
+  const SceneSources again = named_scene_sources(file, "", 1, 10'001, ids);
+  ASSERT_EQ(again.sources.size(), ids.size());
+  for (std::size_t s = 0; s < ids.size(); ++s) {
+    EXPECT_EQ(again.sources[s].id, ids[s]);
+    EXPECT_EQ(again.sources[s].pairs, both.sources[s].pairs);
+  }
+  EXPECT_EQ(named_scene_sources(file, "", 1, 100, {"uniform"}).sources.size(), 1u);
+  EXPECT_THROW(scene_sources(file, "", 1, 7, {"uniform/f64"}), UsageError);
 }
 
 TEST(SceneSources, AreSharedByTheMix) {
@@ -286,6 +496,46 @@ TEST_F(SceneMesh, ItsPairsAreDrawnAsTheyAreByUlpsAndByMotions) {
     moved += !all.count(hash_bits(by_motion));
   }
   EXPECT_GT(moved, 9'900);
+}
+
+TEST_F(SceneMesh, ItsDoublesAreDrawnAsTheyAreByUlpsAndByMotions) {
+  {
+    std::ifstream in(folder_ / "m.off");
+    std::string text((std::istreambuf_iterator<char>(in)), {});
+    for (std::size_t at = text.find("\n10"); at < text.size(); at = text.find("\n10", at + 1))
+      text.replace(at, 3, "\n5400000.010");  // 100 becomes 5400000.0100, 105 5400000.0105
+    std::ofstream(folder_ / "far.off") << text;
+  }
+  const MeshPairs own = read_bodies({folder_ / "far.off"});
+  ASSERT_FALSE(own.in_doubles.empty());
+  SceneFile file =
+      parse_scene("s", "coordinates = \"f64\"\nextent = [[5400000.01, 5400000.0105], [0, 5], [0, 6]]\nedges = [1, 6]");
+  file.meshes = {{"far.off"}, "", own.content_hash};
+  const SceneSources drawn = scene_sources(file, folder_, 5, 30'000, {"mesh*"});
+  ASSERT_EQ(drawn.sources.size(), 3u);
+  EXPECT_EQ(drawn.sources[0].id, "mesh/f64");
+  EXPECT_EQ(drawn.sources[0].pairs, own.size());
+  EXPECT_EQ(drawn.notes[0], own.notes_of_doubles[0]);
+  std::set<std::uint64_t> seen, all;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    seen.insert(hash_bits(drawn.sources[0].double_pair(i)));
+    all.insert(hash_bits(own.double_pair(i)));
+  }
+  EXPECT_EQ(seen, all);
+  int moved = 0;
+  for (std::uint64_t i = 0; i < 10'000; ++i) {
+    for (const std::size_t s : {1, 2}) {
+      const DoublePair pair = drawn.sources[s].double_pair(i);
+      for (int k = 0; k < kCoordinates; ++k) {
+        const auto& [low, high] = file.extent[static_cast<std::size_t>(k % 3)];
+        ASSERT_TRUE(low <= coordinates(pair)[k] && coordinates(pair)[k] <= high) << i;
+      }
+      moved += !all.count(hash_bits(pair));
+    }
+  }
+  EXPECT_GT(moved, 19'500);
+  file.extent[0] = {5400000.01, 5400000.0104};
+  EXPECT_THROW(scene_sources(file, folder_, 1, 10, {}), std::runtime_error);
 }
 
 TEST_F(SceneMesh, AnotherMeshOrOneOutsideIsRefused) {

@@ -4,9 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <numeric>
+#include <span>
+#include <type_traits>
 
 #include "core/cannot.h"
 #include "core/error.h"
@@ -25,30 +29,46 @@ struct MeshSourceInfo {
 };
 constexpr MeshSourceInfo kMeshSources[] = {{as_it_is, "mesh"}, {by_ulps, "mesh_ulps"}, {by_motions, "mesh_moved"}};
 
+// The meshes of a scene, and the scene for pairs of one type.
 struct Meshes {
   Scene scene;
-  MeshPairs pairs;
+  std::shared_ptr<const MeshPairs> pairs;
   std::uint64_t stride;  // coprime to the number of pairs: visits all pairs, in scattered order
 };
 
-// Visits every pair once before it repeats any.
-Pair own_pair(const Meshes& meshes, std::uint64_t index) {
-  const std::uint64_t size = meshes.pairs.size();
-  return meshes.pairs.pair(static_cast<std::size_t>(index % size * meshes.stride % size));
+template <class D>
+using DrawnPair = BasicPair<typename D::Real>;
+
+template <class D>
+DrawnPair<D> pair_at(const Meshes& meshes, std::size_t index) {
+  if constexpr (std::is_same_v<DrawnPair<D>, Pair>) {
+    return meshes.pairs->pair(index);
+  } else {
+    return meshes.pairs->double_pair(index);
+  }
 }
 
-Pair draw_own(Draws& draws, const Meshes& meshes) {
-  return meshes.pairs.pair(draws.below(static_cast<std::uint32_t>(meshes.pairs.size())));
+// Visits every pair once before it repeats any.
+template <class D>
+DrawnPair<D> own_pair(const Meshes& meshes, std::uint64_t index) {
+  const std::uint64_t size = meshes.pairs->size();
+  return pair_at<D>(meshes, static_cast<std::size_t>(index % size * meshes.stride % size));
+}
+
+template <class D>
+DrawnPair<D> draw_own(D& draws, const Meshes& meshes) {
+  return pair_at<D>(meshes, draws.below(static_cast<std::uint32_t>(meshes.pairs->size())));
 }
 
 // Moves B by up to 8 grid steps or ulps on each axis, or one of its vertices along one axis.
-Pair pair_by_ulps(const Meshes& meshes, std::uint64_t seed, std::uint64_t index) {
-  Draws draws(seed, 0x201, index);
-  Pair pair = draw_own(draws, meshes);
+template <class D>
+DrawnPair<D> pair_by_ulps(const Meshes& meshes, std::uint64_t seed, std::uint64_t index) {
+  D draws(seed, 0x201, index);
+  DrawnPair<D> pair = draw_own(draws, meshes);
   if (draws.coin()) {
     for (int axis = 0; axis < 3; ++axis) {
       const int steps = draws.integer(8);
-      for (Vec3<float>& vertex : pair.b) vertex = in_scene::pushed(meshes.scene, vertex, axis, steps);
+      for (auto& vertex : pair.b) vertex = in_scene::pushed(meshes.scene, vertex, axis, steps);
     }
   } else {
     const std::uint32_t vertex = draws.below(3);
@@ -67,20 +87,21 @@ Vec turned(double w, const Vec& q, const Vec& v) {
 
 // Rotates the pair at random and puts it at a random place. It is not rotated if the rotated pair does not fit the
 // extent.
-Pair pair_by_motion(const Meshes& meshes, std::uint64_t seed, std::uint64_t index) {
-  Draws draws(seed, 0x202, index);
-  const Pair pair = draw_own(draws, meshes);
+template <class D>
+DrawnPair<D> pair_by_motion(const Meshes& meshes, std::uint64_t seed, std::uint64_t index) {
+  D draws(seed, 0x202, index);
+  const DrawnPair<D> pair = draw_own(draws, meshes);
   double w = draws.real();
   Vec q = draws.reals();
   const double squared = w * w + dot(q, q);
   const double one = squared > 0 ? 1 / std::sqrt(squared) : 0;
   w = one > 0 ? w * one : 1;
   q = q * one;
-  const Vec from{double{pair.a[0].x}, double{pair.a[0].y}, double{pair.a[0].z}};
+  const auto wide = [](const auto& v) { return Vec{double{v.x}, double{v.y}, double{v.z}}; };
+  const Vec from = wide(pair.a[0]);
   Draft still, turns;
   for (int i = 0; i < 6; ++i) {
-    const Vec3<float>& v = i < 3 ? pair.a[i] : pair.b[i - 3];
-    const Vec to = Vec{double{v.x}, double{v.y}, double{v.z}} - from;
+    const Vec to = wide(i < 3 ? pair.a[i] : pair.b[i - 3]) - from;
     (i < 3 ? still.a[i] : still.b[i - 3]) = to;
     (i < 3 ? turns.a[i] : turns.b[i - 3]) = turned(w, q, to);
   }
@@ -92,53 +113,118 @@ Pair pair_by_motion(const Meshes& meshes, std::uint64_t seed, std::uint64_t inde
   return in_scene::finished(draws, meshes.scene, fits ? turns : still, {});
 }
 
-std::shared_ptr<const Meshes> open_meshes(const SceneFile& scene, const std::filesystem::path& folder) {
-  const auto meshes = std::make_shared<Meshes>();
-  meshes->scene = resolved(scene);
+std::shared_ptr<const MeshPairs> read_meshes(const SceneFile& scene, const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const std::string& file : scene.meshes.files) files.push_back(folder / file);
-  meshes->pairs =
-      read_bodies(files, scene.meshes.poses.empty() ? std::filesystem::path() : folder / scene.meshes.poses);
-  if (meshes->pairs.content_hash != scene.meshes.content)
+  auto pairs = std::make_shared<MeshPairs>(
+      read_bodies(files, scene.meshes.poses.empty() ? std::filesystem::path() : folder / scene.meshes.poses));
+  if (pairs->content_hash != scene.meshes.content)
     throw std::runtime_error(cannot("use", files[0],
                                     fmt::format("the mesh has changed since the scene was measured: its hash is "
                                                 "{:016x}, not {:016x}; run `graze scene` again",
-                                                meshes->pairs.content_hash, scene.meshes.content)));
-  for (const auto& triangle : meshes->pairs.triangles) {
-    for (const Vec3<float>& v : triangle) {
+                                                pairs->content_hash, scene.meshes.content)));
+  return pairs;
+}
+
+template <class Triangles>
+void expect_within(const SceneFile& scene, const std::filesystem::path& folder, const Triangles& triangles) {
+  for (const auto& triangle : triangles) {
+    for (const auto& v : triangle) {
       for (int axis = 0; axis < 3; ++axis) {
         const double x = static_cast<double>(component(v, axis));
         const auto& [low, high] = scene.extent[static_cast<std::size_t>(axis)];
-        if (as_float32(low) <= x && x <= as_float32(high)) continue;
+        if (as_stored(scene, low) <= x && x <= as_stored(scene, high)) continue;
         throw std::runtime_error(
-            cannot("use", files[0],
+            cannot("use", folder / scene.meshes.files[0],
                    fmt::format("{} = {} is outside the scene's extent, {} to {}", "xyz"[axis], x, low, high)));
       }
     }
   }
-  const std::uint64_t size = meshes->pairs.size();
-  meshes->stride = size * 2 / 5 + 1;
-  while (std::gcd(meshes->stride, size) != 1) ++meshes->stride;
-  return meshes;
 }
 
-std::function<Pair(std::uint64_t)> drawn_from(const std::shared_ptr<const Meshes>& meshes, MeshSource source,
-                                              std::uint64_t seed) {
-  if (source == as_it_is) return [meshes](std::uint64_t index) { return own_pair(*meshes, index); };
-  if (source == by_ulps) return [meshes, seed](std::uint64_t index) { return pair_by_ulps(*meshes, seed, index); };
-  return [meshes, seed](std::uint64_t index) { return pair_by_motion(*meshes, seed, index); };
+std::shared_ptr<const Meshes> meshes_of(const SceneFile& scene, const std::filesystem::path& folder,
+                                        const std::shared_ptr<const MeshPairs>& pairs) {
+  if (scene.in_doubles && !pairs->in_doubles.empty()) {
+    expect_within(scene, folder, pairs->in_doubles);
+  } else {
+    expect_within(scene, folder, pairs->triangles);
+  }
+  const std::uint64_t size = pairs->size();
+  std::uint64_t stride = size * 2 / 5 + 1;
+  while (std::gcd(stride, size) != 1) ++stride;
+  return std::make_shared<Meshes>(Meshes{resolved(scene), pairs, stride});
 }
 
-void expect_names(const std::vector<std::string>& globs) {
-  std::vector<std::string> ids;
-  for (const StratumInfo& row : kStrata) ids.emplace_back(row.id);
-  for (const MeshSourceInfo& row : kMeshSources) ids.emplace_back(row.id);
+// A source of pairs of the type that draw(index) returns.
+template <class Draw>
+PairSource source_of(std::string_view id, const Draw& draw) {
+  if constexpr (std::is_same_v<decltype(draw(0)), Pair>) {
+    return {std::string(id), 0, draw};
+  } else {
+    PairSource source{std::string(id) + std::string(kInDoubles), 0, nullptr};
+    source.double_pair = draw;
+    return source;
+  }
+}
+
+template <class D>
+PairSource source_of(const MeshSourceInfo& row, const std::shared_ptr<const Meshes>& meshes, std::uint64_t seed) {
+  if (row.source == as_it_is)
+    return source_of(row.id, [meshes](std::uint64_t index) { return own_pair<D>(*meshes, index); });
+  if (row.source == by_ulps)
+    return source_of(row.id, [meshes, seed](std::uint64_t index) { return pair_by_ulps<D>(*meshes, seed, index); });
+  return source_of(row.id, [meshes, seed](std::uint64_t index) { return pair_by_motion<D>(*meshes, seed, index); });
+}
+
+PairSource source_of(const StratumInfo& row, const std::shared_ptr<const Scene>& scene, bool in_doubles,
+                     std::uint64_t seed) {
+  PairSource source;
+  if (in_doubles) {
+    source = source_of(row.id, [seed, stratum = row.stratum, scene](std::uint64_t index) {
+      return generate_doubles(seed, stratum, *scene, index);
+    });
+  } else {
+    source = source_of(row.id, [seed, stratum = row.stratum, scene](std::uint64_t index) {
+      return generate(seed, stratum, *scene, index);
+    });
+    source.stratum = static_cast<int>(row.stratum);
+    source.scene = scene;
+  }
+  source.seed = seed;
+  return source;
+}
+
+std::span<const StratumInfo> strata_of(bool in_doubles) {
+  return in_doubles ? std::span<const StratumInfo>(kDoubleStrata) : std::span<const StratumInfo>(kStrata);
+}
+
+std::string name_of(std::string_view id, bool in_doubles) {
+  return std::string(id) + std::string(in_doubles ? kInDoubles : "");
+}
+
+// The types to draw, float32 first: false for float32, true for doubles.
+std::vector<bool> types_of(const SceneFile& scene, std::optional<PairTypes> types) {
+  if (!types) return {scene.in_doubles};
+  if (*types == PairTypes::both) return {false, true};
+  return {*types == PairTypes::f64};
+}
+
+// Patterns that match the sources of doubles with or without "/f64".
+std::vector<std::string> patterns_of(const std::vector<std::string>& globs, const std::vector<bool>& types) {
+  std::vector<std::string> ids, patterns = globs;
+  for (const bool in_doubles : types) {
+    for (const StratumInfo& row : strata_of(in_doubles)) ids.push_back(name_of(row.id, in_doubles));
+    for (const MeshSourceInfo& row : kMeshSources) ids.push_back(name_of(row.id, in_doubles));
+  }
   for (const std::string& glob : globs) {
-    if (std::none_of(ids.begin(), ids.end(), [&](const std::string& id) { return matches_any({glob}, id); }))
+    patterns.push_back(glob + std::string(kInDoubles));
+    const auto is_meant = [&](const std::string& id) { return matches_any({glob, patterns.back()}, id); };
+    if (std::none_of(ids.begin(), ids.end(), is_meant))
       throw UsageError("no stratum matches '" + printable(glob) +
                        "'; `graze strata` lists them, and a scene has mesh, mesh_ulps and mesh_moved" +
                        did_you_mean(glob, ids));
   }
+  return patterns;
 }
 
 // Divides `pairs` among the sources by weight; the shares add up to `pairs`.
@@ -156,49 +242,53 @@ void share(std::vector<PairSource>& sources, const std::vector<double>& weights,
   }
 }
 
-}  // namespace
-
-SceneSources scene_sources(const SceneFile& file, const std::filesystem::path& folder, std::uint64_t seed,
-                           std::uint64_t pairs, const std::vector<std::string>& globs) {
-  expect_names(globs);
+// is_wanted: tells by name. are_named: the user named sources, so those of meshes must exist.
+SceneSources sources_of(const SceneFile& file, const std::filesystem::path& folder, std::uint64_t seed,
+                        std::uint64_t pairs, const std::vector<bool>& types, bool are_named,
+                        const std::function<bool(const std::string&)>& is_wanted) {
   SceneSources result;
   std::vector<double> weights;
-  const auto scene = std::make_shared<const Scene>(resolved(file));
+  std::vector<Kind> kinds;
   std::array<double, kKinds> of_kind{};
-  for (const StratumInfo& row : kStrata) {
-    if (!matches_any(globs, row.id)) continue;
-    if (auto why = left_out(file, row.stratum)) {
-      result.left_out.push_back({std::string(row.id), std::move(*why)});
-      continue;
+  for (const bool in_doubles : types) {
+    const SceneFile typed = with_type(file, in_doubles);
+    const auto scene = std::make_shared<const Scene>(resolved(typed));
+    for (const StratumInfo& row : strata_of(in_doubles)) {
+      const std::string id = name_of(row.id, in_doubles);
+      if (!is_wanted(id)) continue;
+      if (auto why = left_out(typed, row.stratum)) {
+        result.left_out.push_back({id, std::move(*why)});
+        continue;
+      }
+      result.sources.push_back(source_of(row, scene, in_doubles, seed));
+      kinds.push_back(kind_of(row.stratum));
+      ++of_kind[static_cast<std::size_t>(kinds.back())];
     }
-    result.sources.push_back(
-        {std::string(row.id), 0,
-         [seed, stratum = row.stratum, scene](std::uint64_t index) { return generate(seed, stratum, *scene, index); },
-         static_cast<int>(row.stratum), Axis::none, seed, scene});
-    ++of_kind[static_cast<std::size_t>(kind_of(row.stratum))];
-    weights.push_back(static_cast<double>(static_cast<int>(kind_of(row.stratum))));
   }
-  for (double& weight : weights) {
-    const auto kind = static_cast<std::size_t>(weight);
-    weight = file.mix[kind] / of_kind[kind];
-  }
+  for (const Kind kind : kinds)
+    weights.push_back(file.mix[static_cast<std::size_t>(kind)] / of_kind[static_cast<std::size_t>(kind)]);
   const double of_strata = std::accumulate(weights.begin(), weights.end(), 0.0);
   const std::size_t strata = weights.size();
-  std::shared_ptr<const Meshes> meshes;
-  for (const MeshSourceInfo& row : kMeshSources) {
-    if (!matches_any(globs, row.id)) continue;
-    if (file.meshes.files.empty()) {
-      if (globs.empty()) continue;
-      result.left_out.push_back({std::string(row.id), "your scene names no mesh"});
-      continue;
+  std::shared_ptr<const MeshPairs> mesh;
+  for (const bool in_doubles : types) {
+    std::shared_ptr<const Meshes> meshes;
+    for (const MeshSourceInfo& row : kMeshSources) {
+      const std::string id = name_of(row.id, in_doubles);
+      if (!is_wanted(id)) continue;
+      if (file.meshes.files.empty()) {
+        if (are_named) result.left_out.push_back({id, "your scene names no mesh"});
+        continue;
+      }
+      if (!mesh) mesh = read_meshes(file, folder);
+      if (!meshes) meshes = meshes_of(with_type(file, in_doubles), folder, mesh);
+      result.sources.push_back(in_doubles ? source_of<DoubleDraws>(row, meshes, seed)
+                                          : source_of<Draws>(row, meshes, seed));
+      weights.push_back(0);
     }
-    if (!meshes) {
-      meshes = open_meshes(file, folder);
-      result.notes = meshes->pairs.notes;
-      result.rounding = meshes->pairs.rounding;
-    }
-    result.sources.push_back({std::string(row.id), 0, drawn_from(meshes, row.source, seed)});
-    weights.push_back(0);
+  }
+  if (mesh) {
+    result.notes = types.front() ? mesh->notes_of_doubles : mesh->notes;
+    result.rounding = mesh->rounding;
   }
   for (std::size_t s = strata; s < weights.size(); ++s)
     weights[s] = (of_strata > 0 ? of_strata : 1) / static_cast<double>(weights.size() - strata);
@@ -206,15 +296,43 @@ SceneSources scene_sources(const SceneFile& file, const std::filesystem::path& f
     throw UsageError(fmt::format("the scene cannot contain {}: {}; choose other --strata", result.left_out[0].id,
                                  result.left_out[0].why));
   share(result.sources, weights, pairs);
+  std::uint64_t run = pairs, of_mesh = 0;
   for (PairSource& source : result.sources) {
-    if (source.id != "mesh" || source.pairs <= meshes->pairs.size()) continue;
+    if (stratum_in_doubles(source.id).value_or(source.id) != "mesh" || source.pairs <= mesh->size()) continue;
+    of_mesh = source.pairs;
+    run -= source.pairs - mesh->size();
+    source.pairs = mesh->size();
+  }
+  if (run < pairs)
     result.notes.push_back(
         fmt::format("{} of the {} pairs run: the scene's meshes have only {} pairs of triangles whose boxes overlap, "
                     "and their share is {}",
-                    pairs - source.pairs + meshes->pairs.size(), pairs, meshes->pairs.size(), source.pairs));
-    source.pairs = meshes->pairs.size();
-  }
+                    run, pairs, mesh->size(), of_mesh));
   return result;
+}
+
+}  // namespace
+
+SceneSources scene_sources(const SceneFile& file, const std::filesystem::path& folder, std::uint64_t seed,
+                           std::uint64_t pairs, const std::vector<std::string>& globs,
+                           std::optional<PairTypes> wanted) {
+  const std::vector<bool> types = types_of(file, wanted);
+  const std::vector<std::string> patterns = patterns_of(globs, types);
+  return sources_of(file, folder, seed, pairs, types, !globs.empty(),
+                    [&](const std::string& id) { return matches_any(patterns, id); });
+}
+
+SceneSources named_scene_sources(const SceneFile& file, const std::filesystem::path& folder, std::uint64_t seed,
+                                 std::uint64_t pairs, const std::vector<std::string>& names) {
+  std::vector<bool> types;
+  for (const bool in_doubles : {false, true}) {
+    if (std::any_of(names.begin(), names.end(),
+                    [&](const std::string& name) { return stratum_in_doubles(name).has_value() == in_doubles; }))
+      types.push_back(in_doubles);
+  }
+  patterns_of(names, types);  // which notices unknown ones
+  return sources_of(file, folder, seed, pairs, types, true,
+                    [&](const std::string& id) { return std::find(names.begin(), names.end(), id) != names.end(); });
 }
 
 }  // namespace graze::strata

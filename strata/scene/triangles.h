@@ -22,7 +22,7 @@ struct Sizes {
 GRAZE_HD inline Sizes largest_eighth() { return {{0.875, 1}, {}}; }
 GRAZE_HD inline Sizes smallest_eighth() { return {{0, 0.125}, {}}; }
 
-GRAZE_HD inline double draw_from(Draws& draws, const Quantiles& quantiles, const Part& part) {
+GRAZE_HD inline double draw_from(auto& draws, const Quantiles& quantiles, const Part& part) {
   const double fraction = part.from + (part.to - part.from) * draws.positive();
   const double at = fraction * (kQuantiles - 1);
   int i = static_cast<int>(at);
@@ -47,7 +47,7 @@ struct Form {
   double length, height, foot;
 };
 
-GRAZE_HD inline Form draw_form(Draws& draws, const Scene& scene, const Sizes& sizes = {}) {
+GRAZE_HD inline Form draw_form(auto& draws, const Scene& scene, const Sizes& sizes = {}) {
   const double length = draw_from(draws, scene.edges, sizes.edges);
   const double flat = 1 / draw_from(draws, scene.aspect, sizes.aspect);
   double most = 1 - flat * flat;  // the foot's distance from either end, divided by the edge, squared
@@ -76,7 +76,7 @@ struct Space {
   Vec x{1, 0, 0}, y{0, 1, 0};
 };
 
-GRAZE_HD inline Vec draw_direction(Draws& draws, const Space& space) {
+GRAZE_HD inline Vec draw_direction(auto& draws, const Space& space) {
   const Vec v = draws.reals();
   if (!space.flat) return unit(v);
   const double squared = v.x * v.x + v.y * v.y;
@@ -84,7 +84,7 @@ GRAZE_HD inline Vec draw_direction(Draws& draws, const Space& space) {
 }
 
 // A random direction perpendicular to f.
-GRAZE_HD inline Vec draw_across(Draws& draws, const Space& space, const Vec& f) {
+GRAZE_HD inline Vec draw_across(auto& draws, const Space& space, const Vec& f) {
   const Vec v = draws.reals();
   if (space.flat) return unit(cross(cross(space.x, space.y), f)) * (v.x < 0 ? -1.0 : 1.0);
   const Vec w = cross(f, v);
@@ -92,7 +92,7 @@ GRAZE_HD inline Vec draw_across(Draws& draws, const Space& space, const Vec& f) 
 }
 
 // A plane through the origin: of random direction, or spanned by two coordinate axes.
-GRAZE_HD inline Space draw_plane(Draws& draws) {
+GRAZE_HD inline Space draw_plane(auto& draws) {
   const Vec x = draw_direction(draws, {});
   return {true, x, draw_across(draws, {}, x)};
 }
@@ -101,7 +101,7 @@ GRAZE_HD inline Space axis_plane(int normal) {
 }
 
 // A triangle of the form: a randomly chosen corner, as vertex [0], is at the origin. The others lie on the given side.
-GRAZE_HD inline void put_vertex(Draws& draws, const Space& space, const Form& form, const Vec& side,
+GRAZE_HD inline void put_vertex(auto& draws, const Space& space, const Form& form, const Vec& side,
                                 Vec (&triangle)[3]) {
   const std::uint32_t corner = draws.below(3);
   const Vec any = toward(side, draw_direction(draws, space));
@@ -125,7 +125,7 @@ GRAZE_HD inline void put_vertex(Draws& draws, const Space& space, const Form& fo
 }
 
 // A triangle whose edge [0][1] passes through the origin along e. e is perpendicular to the side.
-GRAZE_HD inline void put_edge(Draws& draws, const Space& space, const Form& form, const Vec& e, const Vec& side,
+GRAZE_HD inline void put_edge(auto& draws, const Space& space, const Form& form, const Vec& e, const Vec& side,
                               Vec (&triangle)[3]) {
   const Form seen = seen_from(form, draws.below(3));
   const double back = seen.length * draws.positive();
@@ -136,7 +136,7 @@ GRAZE_HD inline void put_edge(Draws& draws, const Space& space, const Form& form
 }
 
 // A triangle in the plane, with the origin inside.
-GRAZE_HD inline void put_face(Draws& draws, const Space& plane, const Form& form, Vec (&triangle)[3]) {
+GRAZE_HD inline void put_face(auto& draws, const Space& plane, const Form& form, Vec (&triangle)[3]) {
   const double w0 = draws.positive();
   const double w1 = draws.positive();
   const double w2 = draws.positive();
@@ -149,7 +149,7 @@ GRAZE_HD inline void put_face(Draws& draws, const Space& plane, const Form& form
 
 // Two triangles that meet only at the origin if nothing is rounded. Within a plane their edges lie along each other.
 // Returns: the direction that separates B from A, of length 1.
-GRAZE_HD inline Vec put_contact(Draws& draws, Touch touch, const Space& space, const Form& form_a, const Form& form_b,
+GRAZE_HD inline Vec put_contact(auto& draws, Touch touch, const Space& space, const Form& form_a, const Form& form_b,
                                 Draft& draft) {
   const Vec u = draw_direction(draws, space);
   const Vec v = draw_direction(draws, space);

@@ -43,9 +43,11 @@ std::vector<corpus::Entry> read_cases(const std::string& name, PairTypes taken) 
   const std::size_t at = std::min(name.find('@'), name.size());
   const std::size_t middle = last == std::string::npos || last == 0 ? std::string::npos : name.rfind(':', last - 1);
   std::error_code ignored;
-  if (at < name.size() && middle != std::string::npos && at < middle && name.find('/') > at &&
+  const std::string source = name.substr(0, at);
+  const bool is_source = strata::stratum_in_doubles(source).value_or(source).find('/') == std::string::npos;
+  if (at < name.size() && middle != std::string::npos && at < middle && is_source &&
       !std::filesystem::exists(name, ignored)) {
-    const fuzz::SceneCase named{name.substr(0, at), name.substr(at + 1, middle - at - 1),
+    const fuzz::SceneCase named{source, name.substr(at + 1, middle - at - 1),
                                 number(name.substr(middle + 1, last - middle - 1), name),
                                 number(name.substr(last + 1), name)};
     if (strata::stratum_in_doubles(named.id) && taken == PairTypes::f32)

@@ -675,19 +675,19 @@ TEST_F(Doubles, ASceneIsDrawnInItsDoubles) {
   EXPECT_NE(ran.out.find("  large_offset/f64: your coordinates stay within 0 … 5400300 m\n"), std::string::npos)
       << ran.out;
   const Json summary = Json::parse(contents(shell.folder / "one/summary.json"));
-  EXPECT_EQ(summary["spec"]["strata"].size(), 15u) << summary["spec"]["strata"];
+  EXPECT_EQ(summary["spec"]["strata"].size(), 16u) << summary["spec"]["strata"];
   std::uint64_t pairs = 0, stored = 0;
   for (const auto& [id, row] : summary["strata"].items()) {
     EXPECT_TRUE(id.ends_with("/f64")) << id;
     pairs += row["pairs"].get<std::uint64_t>();
-    stored += row["lanes"]["exact/f32/cpu"]["stored"].get<std::uint64_t>();
+    stored += row["lanes"]["exact/f32/cpu"].value("stored", std::uint64_t{0});
     for (const char* wrong : {"false_positive", "false_negative", "declined"})
       EXPECT_EQ(row["lanes"]["exact/f64/cpu"][wrong], 0) << id;
   }
   EXPECT_EQ(pairs, 6000u);
-  EXPECT_GT(stored, 1000u);  // float32 has steps of half a metre there
+  EXPECT_GT(stored, 600u);  // float32 has steps of half a metre there
   // Killed, it resumes to the same bytes; in parts, it merges to them.
-  for (const int write : {20, 60})
+  for (const int write : {5, 15})
     ASSERT_EQ(shell(signal_at_write(SIGKILL, write) + fuzz + "--threads 1 --out two").status, 128 + SIGKILL) << write;
   expect_done(fuzz + "--threads 1 --out two && cmp one/summary.json two/summary.json && diff -r one/cases two/cases");
   expect_done(fuzz + "--shard 1/2 --out p1 && " + fuzz + "--shard 2/2 --out p2 && graze merge p1 p2 --out merged");
@@ -723,14 +723,14 @@ TEST_F(Doubles, ASceneIsDrawnInItsDoubles) {
   const Ran dumped = shell("graze dump one --pairs 30 --format pairs");
   EXPECT_NE(dumped.out.find("scene=" + scene), std::string::npos) << dumped.err;
   expect_within_survey(dumped.out);
-  expect_done("graze pack one --out one.pack && graze tune moller_1997/f64/cpu --from one --pairs 500 --out from");
+  expect_done("graze pack one --out one.sqlar && graze tune moller_1997/f64/cpu --from one --pairs 500 --out from");
   // Of both types, where float32 is fine enough.
   std::ofstream(shell.folder / "hall.toml") << "extent = [-20, 20]\nedges = [0.5, 4]\n";
   expect_done("graze fuzz --scene hall.toml --coordinates both --pairs 600 --strata uniform,near_edge_edge " + lanes +
               "--out b && graze report b");
   const Json both = Json::parse(contents(shell.folder / "b/summary.json"));
   for (const char* source : {"uniform", "uniform/f64", "near_edge_edge", "near_edge_edge/f64"})
-    EXPECT_EQ(both["strata"][source]["pairs"], 150) << source;
+    EXPECT_NEAR(both["strata"][source]["pairs"].get<int>(), 150, 1) << source;
   const std::string of_both = Json::parse(contents(shell.folder / "b/report.json"))["run"]["command"];
   expect_done(of_both.substr(0, of_both.find("--out")) + "--out b2 && cmp b/summary.json b2/summary.json");
 }
@@ -767,7 +767,8 @@ TEST_F(Doubles, AMeshOfDoublesBecomesASceneOfDoubles) {
   EXPECT_EQ(Json::parse(contents(shell.folder / "own/summary.json"))["strata"]["mesh/f64"]["lanes"], of_mesh["lanes"]);
   // float32 is asked for by name; here it is too coarse for a scene.
   expect_error("graze fuzz --scene site.toml --coordinates f32 --out f", 2, {"float32", "8 ulps", "doubles"});
-  EXPECT_EQ(shell("graze scene site.off --coordinates f32").out.find("coordinates ="), std::string::npos);
+  EXPECT_NE(shell("graze scene site.off --coordinates f32").err.find("8 ulps"), std::string::npos);
+  expect_done("graze scene site.off --coordinates f64 | sed 1,3d | cmp - <(sed 's/\"m\"/\"units\"/;1,3d' site.toml)");
   // Pairs of doubles are measured too.
   expect_done("graze dump m --format pairs > m.pairs && graze scene m.pairs | grep -q '^coordinates = \"f64\"'");
 }

@@ -33,8 +33,21 @@ struct CountingSink {
   }
 };
 
-template <class Algorithm, class Real>
-void compare_block(std::span<const Pair> pairs, const Records& first, const Records& second,
+// Calls f with the triangles of the pair in the lane's scalar.
+template <class Real, class F>
+void in_scalar(const Pair& pair, const F& f) {
+  decide_widened<Real>(pair, [&](const auto& a, const auto& b) {
+    f(a, b);
+    return Verdict::declined;
+  });
+}
+template <class Real, class F>
+void in_scalar(const DoublePair& pair, const F& f) {
+  f(pair.a, pair.b);
+}
+
+template <class Algorithm, class Real, class Coordinate>
+void compare_block(std::span<const BasicPair<Coordinate>> pairs, const Records& first, const Records& second,
                    const std::uint8_t* degrees, Axis axis, DiscrepancyCounts& to) {
   CountingSink sink{to};
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -42,18 +55,28 @@ void compare_block(std::span<const Pair> pairs, const Records& first, const Reco
     const auto run = [i](const Records& of) {
       return Run<Real>{{static_cast<const Real*>(of.values) + i, of.stride}, of.paths[i]};
     };
-    decide_widened<Real>(pairs[i], [&](const auto& a, const auto& b) {
+    in_scalar<Real>(pairs[i], [&](const auto& a, const auto& b) {
       compare_runs<Algorithm>(a, b, run(first), run(second), degrees, axis, sink);
-      return Verdict::declined;
     });
   }
 }
 
-using CompareBlock = decltype(&compare_block<ProjectedSat, float>);
+template <class Coordinate>
+using CompareBlock = decltype(&compare_block<ProjectedSat, double, Coordinate>);
 
-template <class... Algorithm>
-constexpr std::array<std::array<CompareBlock, 2>, kAlgorithmCount> compare_blocks(const std::tuple<Algorithm...>*) {
-  return {std::array<CompareBlock, 2>{compare_block<Algorithm, float>, compare_block<Algorithm, double>}...};
+// [algorithm][scalar]. Pairs of doubles are compared in double alone, so their entries for float are never called.
+template <class Coordinate, class... Algorithm>
+constexpr std::array<std::array<CompareBlock<Coordinate>, 2>, kAlgorithmCount> compare_blocks(
+    const std::tuple<Algorithm...>*) {
+  return {std::array<CompareBlock<Coordinate>, 2>{compare_block<Algorithm, Coordinate, Coordinate>,
+                                                  compare_block<Algorithm, double, Coordinate>}...};
+}
+
+void record(const Lane& lane, std::span<const Pair> pairs, const Records& to) {
+  record_on_host(lane)(pairs.data(), pairs.size(), to);
+}
+void record(const Lane& lane, std::span<const DoublePair> pairs, const Records& to) {
+  record_doubles_on_host(lane)(pairs.data(), pairs.size(), to);
 }
 
 // The records of one lane on a block of pairs.
@@ -62,21 +85,36 @@ struct Kept {
   std::vector<RecordedPath> paths;
   Records records;
 
-  Kept(const Lane& lane, std::span<const Pair> pairs)
+  template <class Coordinate>
+  Kept(const Lane& lane, std::span<const BasicPair<Coordinate>> pairs)
       : values(2 * questions_of(lane.algorithm).size() * pairs.size()),
         paths(pairs.size()),
         records{values.data(), pairs.size(), paths.data()} {
-    record_on_host(lane)(pairs.data(), pairs.size(), records);
+    record(lane, pairs, records);
   }
 };
 
 // Pairs on which the lane's own verdict is not the recorded one.
-std::uint64_t unlike(const Lane& lane, std::span<const Pair> pairs, const Kept& kept) {
+template <class Coordinate>
+std::uint64_t unlike(const Lane& lane, std::span<const BasicPair<Coordinate>> pairs, const Kept& kept) {
   const std::vector<Verdict> verdicts = verdicts_of(backends::on_host(lane), pairs);
   std::uint64_t count = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i)
     count += is_finite(pairs[i]) && verdicts[i] != recorded_verdict(kept.paths[i].path);
   return count;
+}
+
+template <class Coordinate>
+void count_block(const LanesCompared& lanes, std::span<const BasicPair<Coordinate>> pairs, Axis axis,
+                 DiscrepancyCounts& to) {
+  static constexpr auto kCompare = compare_blocks<Coordinate>(static_cast<const Algorithms*>(nullptr));
+  const Lane& lane = *lanes.first;
+  const Kept first(lane, pairs), second(*lanes.second, pairs);
+  const std::vector<std::uint8_t> degrees = degrees_of(lane.algorithm);
+  kCompare[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)](
+      pairs, first.records, second.records, degrees.data(), axis, to);
+  to.unlike[0] += unlike(*lanes.first, pairs, first);
+  to.unlike[1] += unlike(*lanes.second, pairs, second);
 }
 
 // Collects the values of both runs with the certified ones.
@@ -99,17 +137,15 @@ struct Beside {
   }
 };
 
-template <class Algorithm, class Real>
-void values_beside(const Pair& pair, const Records& first, const Records& second, std::vector<ValueBeside>& values) {
+template <class Algorithm, class Real, class Coordinate>
+void values_beside(const BasicPair<Coordinate>& pair, const Records& first, const Records& second,
+                   std::vector<ValueBeside>& values) {
   const auto run = [](const Records& of) {
     return Run<Real>{{static_cast<const Real*>(of.values), of.stride}, *of.paths};
   };
   const Run<Real> l = run(first), r = run(second);
   Beside<Real> beside{l, r, values};
-  decide_widened<Real>(pair, [&](const auto& a, const auto& b) {
-    run_led<Algorithm>(a, b, l.values, l.path, beside);
-    return Verdict::declined;
-  });
+  in_scalar<Real>(pair, [&](const auto& a, const auto& b) { run_led<Algorithm>(a, b, l.values, l.path, beside); });
   for (int question = 0; question < kMostQuestions; ++question) {
     if ((r.path.asked & ~l.path.asked) >> question & 1) {
       for (int which = 0; which < 2; ++which)
@@ -118,23 +154,34 @@ void values_beside(const Pair& pair, const Records& first, const Records& second
   }
 }
 
-using ValuesBeside = decltype(&values_beside<ProjectedSat, float>);
+template <class Coordinate>
+using ValuesBeside = decltype(&values_beside<ProjectedSat, double, Coordinate>);
 
-template <class... Algorithm>
-constexpr std::array<std::array<ValuesBeside, 2>, kAlgorithmCount> values_of_both(const std::tuple<Algorithm...>*) {
-  return {std::array<ValuesBeside, 2>{values_beside<Algorithm, float>, values_beside<Algorithm, double>}...};
+// As compare_blocks.
+template <class Coordinate, class... Algorithm>
+constexpr std::array<std::array<ValuesBeside<Coordinate>, 2>, kAlgorithmCount> values_of_both(
+    const std::tuple<Algorithm...>*) {
+  return {std::array<ValuesBeside<Coordinate>, 2>{values_beside<Algorithm, Coordinate, Coordinate>,
+                                                  values_beside<Algorithm, double, Coordinate>}...};
+}
+
+template <class Coordinate>
+RunsBeside runs_of_both(const LanesCompared& lanes, const BasicPair<Coordinate>& pair) {
+  static constexpr auto kBeside = values_of_both<Coordinate>(static_cast<const Algorithms*>(nullptr));
+  const Lane& lane = *lanes.first;
+  const std::span<const BasicPair<Coordinate>> one(&pair, 1);
+  const Kept first(lane, one), second(*lanes.second, one);
+  RunsBeside runs{{}, first.paths[0], second.paths[0]};
+  kBeside[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)](pair, first.records,
+                                                                                           second.records, runs.values);
+  return runs;
 }
 
 }  // namespace
 
-RunsBeside runs_beside(const LanesCompared& lanes, const Pair& pair) {
-  static constexpr auto kBeside = values_of_both(static_cast<const Algorithms*>(nullptr));
-  const Lane& lane = *lanes.first;
-  const Kept first(lane, {&pair, 1}), second(*lanes.second, {&pair, 1});
-  RunsBeside runs{{}, first.paths[0], second.paths[0]};
-  kBeside[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)](pair, first.records,
-                                                                                           second.records, runs.values);
-  const std::vector<Question>& questions = questions_of(lane.algorithm);
+RunsBeside runs_beside(const LanesCompared& lanes, const AnyPair& pair) {
+  RunsBeside runs = visit(pair, [&](const auto& own) { return runs_of_both(lanes, own); });
+  const std::vector<Question>& questions = questions_of(lanes.first->algorithm);
   std::erase_if(runs.values, [&](const ValueBeside& value) {  // questions about one value have no other
     return static_cast<std::size_t>(value.which) >= questions[static_cast<std::size_t>(value.question)].of.size();
   });
@@ -175,6 +222,11 @@ RecordBlock record_on_host(const Lane& lane) {
   return own ? own : cuda::twin_record(lane);
 }
 
+RecordFunction<DoublePair> record_doubles_on_host(const Lane& lane) {
+  const RecordFunction<DoublePair> own = host_record_of_doubles(lane);
+  return own ? own : cuda::twin_record_of_doubles(lane);
+}
+
 std::string why_not_compared(const Lane& l, const Lane& r) {
   if (l.algorithm < 0 || l.algorithm != r.algorithm || l.scalar != r.scalar)
     return fmt::format(
@@ -209,14 +261,11 @@ LanesCompared::LanesCompared(const Lane& l, const Lane& r) : first(&l), second(&
 }
 
 void count_discrepancies(const LanesCompared& lanes, std::span<const Pair> pairs, Axis axis, DiscrepancyCounts& to) {
-  static constexpr auto kCompare = compare_blocks(static_cast<const Algorithms*>(nullptr));
-  const Lane& lane = *lanes.first;
-  const Kept first(lane, pairs), second(*lanes.second, pairs);
-  const std::vector<std::uint8_t> degrees = degrees_of(lane.algorithm);
-  kCompare[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)](
-      pairs, first.records, second.records, degrees.data(), axis, to);
-  to.unlike[0] += unlike(*lanes.first, pairs, first);
-  to.unlike[1] += unlike(*lanes.second, pairs, second);
+  count_block(lanes, pairs, axis, to);
+}
+void count_discrepancies(const LanesCompared& lanes, std::span<const DoublePair> pairs, Axis axis,
+                         DiscrepancyCounts& to) {
+  count_block(lanes, pairs, axis, to);
 }
 
 namespace {
@@ -259,12 +308,14 @@ Discrepancies discrepancies(const DiscrepancySpec& spec) {
     const SourceBlock& block = blocks[b];
     const auto source = static_cast<std::size_t>(block.source);
     if (std::all_of(done.begin(), done.end(), [source](const auto& of) { return of[source]; })) return;
-    std::vector<Pair> pairs;
-    for (std::uint64_t i = 0; i < block.count; ++i) pairs.push_back(spec.sources[source].pair(block.first + i));
-    Discrepancies& result = results.local();
-    for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
-      if (!done[l][source]) count_discrepancies(spec.lanes[l], pairs, spec.sources[source].axis, result[l][source]);
-    }
+    const auto count = [&](const auto& pairs) {
+      Discrepancies& result = results.local();
+      for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
+        if (!done[l][source]) count_discrepancies(spec.lanes[l], pairs, spec.sources[source].axis, result[l][source]);
+      }
+    };
+    const strata::PairBlock pairs = strata::pairs_of(spec.sources[source], block.first, block.count);
+    pairs.in_doubles() ? count(pairs.doubles) : count(pairs.floats);
   });
   for (const Discrepancies& some : results) {
     for (std::size_t l = 0; l < all.size(); ++l) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/any_pair.h"
 #include "core/discrepancy/led.h"
 #include "core/discrepancy/questions.h"
 #include "core/lanes/records.h"
@@ -30,12 +31,14 @@ struct DiscrepancyCounts {
 
 // Records of a lane on the host: its own, or those of its twin. Null if there is none.
 RecordBlock record_on_host(const Lane& lane);
+RecordFunction<DoublePair> record_doubles_on_host(const Lane& lane);  // null for lanes in float as well
 
 // Why the values of two lanes cannot be compared on the host; empty if they can: they are lanes of one algorithm and
 // scalar that record their values.
 std::string why_not_compared(const Lane& l, const Lane& r);
 
-// Two lanes to compare. Their values are recorded on the host.
+// Two lanes to compare. Their values are recorded on the host. Lanes in float are compared on pairs of float32 alone,
+// lanes in double on pairs of either type.
 struct LanesCompared {
   const Lane *first, *second;
 
@@ -62,8 +65,8 @@ struct RunsBeside {
   RecordedPath first, second;
 };
 
-// Requires: a finite pair.
-RunsBeside runs_beside(const LanesCompared& lanes, const Pair& pair);
+// Requires: a finite pair; of doubles only for lanes in double.
+RunsBeside runs_beside(const LanesCompared& lanes, const AnyPair& pair);
 
 // The bucket of a lane's error in ulps, "0", "1/2", "2^k", "not finite" or "unknown"; as in core/discrepancy/count.h.
 std::string error_bucket_of(Scalar scalar, double value, const Certified& exact);
@@ -82,10 +85,14 @@ struct DiscrepancySpec {
 // counts[comparison][source]. The same counts on host and device, for any number of threads. On a device, the kernels
 // of cuda-nofma compute a host lane's values. If the host lane is compared with cuda-nofma itself, the host records its
 // own values too; if any bit differs, the comparison runs on the host.
+// Requires: no source of doubles where a lane is in float.
 using Discrepancies = std::vector<std::vector<DiscrepancyCounts>>;
 Discrepancies discrepancies(const DiscrepancySpec& spec);
 
 // Counts one block of pairs, for tests and for engines. axis: that of their stratum.
 void count_discrepancies(const LanesCompared& lanes, std::span<const Pair> pairs, Axis axis, DiscrepancyCounts& to);
+// Requires: lanes in double.
+void count_discrepancies(const LanesCompared& lanes, std::span<const DoublePair> pairs, Axis axis,
+                         DiscrepancyCounts& to);
 
 }  // namespace graze::analysis

@@ -37,6 +37,22 @@ Discrepancies counted(const std::vector<LanesCompared>& lanes, std::uint64_t see
   return discrepancies({lanes, strata::stratum_sources(seed, pairs, strata), threads, false});
 }
 
+// Sources of all strata of float32, and for lanes in double of all strata of doubles.
+std::vector<strata::PairSource> sources_for(const Lane& of, std::uint64_t seed, std::uint64_t pairs_of_each) {
+  std::vector<strata::PairSource> sources = strata::stratum_sources(seed, strata::kStrataCount * pairs_of_each, {});
+  if (of.scalar == Scalar::f32) return sources;
+  for (strata::PairSource& source :
+       strata::stratum_sources(seed, std::size(strata::kDoubleStrata) * pairs_of_each, {}, PairTypes::f64))
+    sources.push_back(std::move(source));
+  return sources;
+}
+
+// Those of the lanes that are in double.
+std::vector<LanesCompared> in_double(std::vector<LanesCompared> lanes) {
+  std::erase_if(lanes, [](const LanesCompared& both) { return both.first->scalar == Scalar::f32; });
+  return lanes;
+}
+
 std::uint64_t count(const DiscrepancyCounts& of, int at) { return of.counts[static_cast<std::size_t>(at)]; }
 
 // Keeps the questions in the order in which they are asked.
@@ -61,23 +77,20 @@ struct InOrder {
 };
 
 template <std::size_t... algorithm>
-std::vector<At> asked_in_order(int wanted, const Pair& pair, Scalar scalar, std::index_sequence<algorithm...>) {
+std::vector<At> asked_in_order(int wanted, const AnyPair& pair, Scalar scalar, std::index_sequence<algorithm...>) {
   std::vector<At> asked;
-  const auto run = [&](auto real, auto of) {
-    using Real = decltype(real);
-    decide_widened<Real>(pair, [&](const auto& a, const auto& b) {
-      return std::tuple_element_t<decltype(of)::value, Algorithms>::decide(a, b, InOrder{&asked});
-    });
-  };
   const auto in = [&](auto of) {
     if (static_cast<int>(decltype(of)::value) != wanted) return;
-    scalar == Scalar::f32 ? run(0.0f, of) : run(0.0, of);
+    const auto run = [&](const auto& own) {
+      std::tuple_element_t<decltype(of)::value, Algorithms>::decide(own.a, own.b, InOrder{&asked});
+    };
+    scalar == Scalar::f32 ? run(*pair.floats) : run(pair.doubles);
   };
   (in(std::integral_constant<std::size_t, algorithm>()), ...);
   return asked;
 }
 
-std::vector<At> asked_in_order(const Lane& of, const Pair& pair) {
+std::vector<At> asked_in_order(const Lane& of, const AnyPair& pair) {
   return asked_in_order(of.algorithm, pair, of.scalar, std::make_index_sequence<kAlgorithmCount>());
 }
 
@@ -127,6 +140,102 @@ TEST(Discrepancy, WithoutContractionNoBitDiffers) {
       }
     }
     EXPECT_GT(compared, 10'000u) << lanes[l].second->id;
+  }
+}
+
+TEST(Discrepancy, WithoutContractionNoBitDiffersOnDoubles) {
+  const std::vector<LanesCompared> lanes = in_double(published(Variant::cpu, Variant::cuda_nofma)),
+                                   fused = in_double(published(Variant::cpu, Variant::cuda_fma));
+  ASSERT_EQ(lanes.size(), std::size_t{kAlgorithmCount});
+  const auto sources = strata::stratum_sources(11, std::size(strata::kDoubleStrata) * 300, {}, PairTypes::f64);
+  const Discrepancies found = discrepancies({lanes, sources, 0, false}),
+                      by_contraction = discrepancies({fused, sources, 0, false});
+  for (std::size_t l = 0; l < lanes.size(); ++l) {
+    std::uint64_t compared = 0, differs = 0;
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      const DiscrepancyCounts& of = found[l][s];
+      EXPECT_EQ(count(of, pair_counts::pairs), 300u) << sources[s].id;
+      for (const int field : {pair_counts::differs, pair_counts::choice, pair_counts::verdict})
+        EXPECT_EQ(count(of, field), 0u) << lanes[l].second->id << ' ' << sources[s].id;
+      EXPECT_EQ(of.unlike[0] + of.unlike[1], 0u);
+      for (std::size_t q = 0; q < questions_of(lanes[l].first->algorithm).size(); ++q) {
+        const int at = value_at(static_cast<int>(q), 0);
+        compared += count(of, at + value_counts::compared);
+        EXPECT_EQ(count(of, at + value_counts::compared), count(of, at + value_counts::equal));
+      }
+      differs += count(by_contraction[l][s], pair_counts::differs);
+    }
+    EXPECT_GT(compared, 10'000u) << lanes[l].second->id;
+    EXPECT_GT(differs, 1'000u) << lanes[l].second->id;
+  }
+}
+
+// The same pairs as doubles.
+strata::PairSource widened(const strata::PairSource& source) {
+  strata::PairSource result = source;
+  result.stratum = -1;
+  result.pair = nullptr;
+  result.double_pair = [draw = source.pair](std::uint64_t index) { return in_doubles(draw(index)); };
+  return result;
+}
+
+TEST(Discrepancy, APairOfFloat32CountsAsTheSamePairOfDoubles) {
+  const auto sources = strata::stratum_sources(12, strata::kStrataCount * 200, {});
+  std::vector<strata::PairSource> doubles;
+  for (const strata::PairSource& source : sources) doubles.push_back(widened(source));
+  const auto simpler = [](const AnyPair&, const AnyPair&) { return false; };
+  for (const Variant second : {Variant::cuda_fma, Variant::cuda_nofma, Variant::cpu_fma}) {
+    const std::vector<LanesCompared> lanes = in_double(published(Variant::cpu, second));
+    EXPECT_EQ(discrepancies({lanes, doubles, 0, false}), discrepancies({lanes, sources, 0, false})) << name(second);
+    if (second != Variant::cuda_fma) continue;
+    for (const LanesCompared& both : lanes) {
+      const Origins of_floats = origins(*both.second, sources, 50, 0, simpler),
+                    of_doubles = origins(*both.second, doubles, 50, 0, simpler);
+      EXPECT_EQ(of_doubles.pairs, of_floats.pairs);
+      EXPECT_EQ(of_doubles.verdicts, of_floats.verdicts);
+      EXPECT_EQ(of_doubles.lines.size(), of_floats.lines.size());
+      for (const FusedLine& line : of_floats.lines) {
+        const auto same = std::find_if(of_doubles.lines.begin(), of_doubles.lines.end(), [&](const FusedLine& other) {
+          return other.at == line.at && other.from == line.from;
+        });
+        ASSERT_NE(same, of_doubles.lines.end()) << line.at.file << ':' << line.at.line;
+        EXPECT_EQ(same->values, line.values);
+        EXPECT_EQ(same->verdicts_alone, line.verdicts_alone);
+        EXPECT_EQ(same->verdicts_fixed, line.verdicts_fixed);
+      }
+    }
+  }
+}
+
+// Sources of both types at once: the counts are those of each, and a line's are their sum.
+TEST(Discrepancy, SourcesOfBothTypesAddUp) {
+  const LanesCompared lanes{lane("moller_1997/f64/cpu"), lane("moller_1997/f64/cuda-fma")};
+  auto floats = strata::stratum_sources(3, 2'000, {"near_edge_edge", "thesis"});
+  const auto doubles = strata::stratum_sources(3, 2'000, {"near_edge_edge", "stored"}, PairTypes::f64);
+  auto both = floats;
+  both.insert(both.end(), doubles.begin(), doubles.end());
+  Discrepancies parts[] = {discrepancies({{lanes}, floats, 0, false}), discrepancies({{lanes}, doubles, 0, false})};
+  parts[0][0].insert(parts[0][0].end(), parts[1][0].begin(), parts[1][0].end());
+  EXPECT_EQ(discrepancies({{lanes}, both, 1, false}), parts[0]);
+  const auto simpler = [](const AnyPair&, const AnyPair&) { return false; };
+  const Origins of_floats = origins(*lanes.second, floats, 400, 1, simpler),
+                of_doubles = origins(*lanes.second, doubles, 400, 2, simpler),
+                of_both = origins(*lanes.second, both, 400, 2, simpler);
+  EXPECT_EQ(of_both.pairs, of_floats.pairs + of_doubles.pairs);
+  EXPECT_GT(of_floats.verdicts, 0u);
+  EXPECT_GT(of_doubles.verdicts, 0u);
+  EXPECT_EQ(of_both.verdicts, of_floats.verdicts + of_doubles.verdicts);
+  for (const FusedLine& line : of_both.lines) {
+    std::uint64_t values = 0, fixed = 0;
+    for (const Origins* part : {&of_floats, &of_doubles}) {
+      for (const FusedLine& other : part->lines) {
+        if (!(other.at == line.at) || !(other.from == line.from)) continue;
+        values += other.values;
+        fixed += other.verdicts_fixed;
+      }
+    }
+    EXPECT_EQ(line.values, values) << line.at.file << ':' << line.at.line;
+    EXPECT_EQ(line.verdicts_fixed, fixed) << line.at.file << ':' << line.at.line;
   }
 }
 
@@ -202,24 +311,25 @@ TEST(Discrepancy, EachCountIsPartOfTheOneBefore) {
 }
 
 TEST(Discrepancy, CountsTheVerdictsThatTheLanesGive) {
-  const std::vector<LanesCompared> lanes = published(Variant::cpu, Variant::cuda_fma);
-  const auto sources = strata::stratum_sources(9, strata::kStrataCount * 200, {});
-  const Discrepancies found = discrepancies({lanes, sources, 0, false});
-  std::uint64_t all = 0;
-  for (std::size_t l = 0; l < lanes.size(); ++l) {
-    for (std::size_t s = 0; s < sources.size(); ++s) {
-      std::vector<Pair> pairs;
-      for (std::uint64_t i = 0; i < sources[s].pairs; ++i) pairs.push_back(sources[s].pair(i));
-      const std::vector<Verdict> first = verdicts_of(lanes[l].first->decide, pairs),
-                                 second = verdicts_of(cuda::block_on_host(*lanes[l].second), pairs);
+  for (const LanesCompared& lanes : published(Variant::cpu, Variant::cuda_fma)) {
+    std::uint64_t of_type[2] = {0, 0};
+    for (const strata::PairSource& source : sources_for(*lanes.first, 9, 200)) {
+      const DiscrepancyCounts found = discrepancies({{lanes}, {source}, 0, false})[0][0];
+      const strata::PairBlock pairs = strata::pairs_of(source, 0, source.pairs);
+      const auto verdicts = [&](const DecideBlock& block) {
+        return pairs.in_doubles() ? verdicts_of(block, pairs.doubles) : verdicts_of(block, pairs.floats);
+      };
+      const std::vector<Verdict> first = verdicts(lanes.first->decide),
+                                 second = verdicts(cuda::block_on_host(*lanes.second));
       std::uint64_t differ = 0;
       for (std::size_t i = 0; i < pairs.size(); ++i) differ += first[i] != second[i];
-      EXPECT_EQ(count(found[l][s], pair_counts::verdict), differ) << lanes[l].second->id << ", " << sources[s].id;
-      EXPECT_EQ(found[l][s].unlike[0] + found[l][s].unlike[1], 0u);
-      all += differ;
+      EXPECT_EQ(count(found, pair_counts::verdict), differ) << lanes.second->id << ", " << source.id;
+      EXPECT_EQ(found.unlike[0] + found.unlike[1], 0u);
+      of_type[pairs.in_doubles()] += differ;
     }
+    EXPECT_GT(of_type[0] + of_type[1], 20u) << lanes.second->id;
+    EXPECT_EQ(of_type[1] > 0, lanes.first->scalar == Scalar::f64) << lanes.second->id;
   }
-  EXPECT_GT(all, 100u);
 }
 
 TEST(Discrepancy, IsTheSameForAnyNumberOfThreadsAndInParts) {
@@ -255,17 +365,19 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
   for (const auto& [first, second] : published(Variant::cpu, Variant::cuda_nofma)) {
     const std::vector<Question>& questions = questions_of(first->algorithm);
     const std::vector<std::uint8_t> degrees = degrees_of(first->algorithm);
-    for (const strata::PairSource& source : strata::stratum_sources(6, strata::kStrataCount * 12, {})) {
-      if (source.id == "extreme_scale") continue;  // MPFR's ulps ignore the limits of the exponents
+    for (const strata::PairSource& source : sources_for(*first, 6, 12)) {
+      if (source.id.starts_with("extreme_scale")) continue;  // MPFR's ulps ignore the limits of the exponents
       for (std::uint64_t i = 0; i < source.pairs; ++i) {
-        const Pair pair = source.pair(i);
+        const AnyPair pair = source.any_pair(i);
         DiscrepancyCounts of(first->algorithm);
-        count_discrepancies({*first, *second}, {&pair, 1}, Axis::none, of);
+        visit(pair, [&](const auto& own) {
+          count_discrepancies({*first, *second}, std::span(&own, 1), Axis::none, of);
+        });
         const std::vector<At> asked = asked_in_order(*first, pair);
         const RunsBeside runs = runs_beside({*first, *second}, pair);
         const Replay run = replay(*first, pair);
         const std::vector<oracle::ExactStep> steps =
-            oracle::exact_steps(first->algorithm, first->scalar, in_doubles(pair), run.run);
+            oracle::exact_steps(first->algorithm, first->scalar, pair.doubles, run.run);
         std::size_t next = 0;
         for (std::size_t k = 0; k < steps.size(); ++k) {
           if (!run.run.seen[k].site) continue;
@@ -305,7 +417,7 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
       }
     }
   }
-  EXPECT_GT(checked, 20'000u);
+  EXPECT_GT(checked, 30'000u);
   EXPECT_LT(unknown * 10, checked);
   EXPECT_LT(others * 10, checked);
 }
@@ -315,9 +427,9 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
 TEST(Discrepancy, BoundsOfTheRoundingErrorHold) {
   std::uint64_t bounded = 0, near = 0, unbounded = 0;
   for (const LanesCompared& lanes : published(Variant::cpu, Variant::cuda_fma)) {
-    for (const strata::PairSource& source : strata::stratum_sources(8, strata::kStrataCount * 60, {})) {
+    for (const strata::PairSource& source : sources_for(*lanes.first, 8, 60)) {
       for (std::uint64_t i = 0; i < source.pairs; ++i) {
-        for (const ValueBeside& value : runs_beside(lanes, source.pair(i)).values) {
+        for (const ValueBeside& value : runs_beside(lanes, source.any_pair(i)).values) {
           if (!value.compared) continue;
           const auto& [exact, rounding] = *value.unrounded;
           if (!(rounding < HUGE_VAL)) {
@@ -335,17 +447,20 @@ TEST(Discrepancy, BoundsOfTheRoundingErrorHold) {
       }
     }
   }
-  EXPECT_GT(bounded, 50'000u);
-  EXPECT_GT(near, 5'000u);  // they are not much too wide
+  EXPECT_GT(bounded, 80'000u);
+  EXPECT_GT(near, 8'000u);  // they are not much too wide
   EXPECT_LT(unbounded * 5, bounded);
 }
 
 TEST(Discrepancy, NoSignDiffersBeyondTwoBounds) {
   double widest = 0;
   for (const Variant second : {Variant::cuda_fma, Variant::cpu_fma}) {
-    for (const std::vector<DiscrepancyCounts>& found :
-         counted(published(Variant::cpu, second), 7, strata::kStrataCount * 500)) {
-      for (const DiscrepancyCounts& of : found) {
+    Discrepancies found = counted(published(Variant::cpu, second), 7, strata::kStrataCount * 500);
+    const auto doubles = strata::stratum_sources(7, std::size(strata::kDoubleStrata) * 500, {}, PairTypes::f64);
+    for (auto& of_doubles : discrepancies({in_double(published(Variant::cpu, second)), doubles, 0, false}))
+      found.push_back(std::move(of_doubles));
+    for (const std::vector<DiscrepancyCounts>& of_lanes : found) {
+      for (const DiscrepancyCounts& of : of_lanes) {
         for (std::size_t at = band_maxima::in_bounds; at < of.maxima.size(); at += band_maxima::kFields)
           widest = std::max(widest, std::bit_cast<double>(of.maxima[at]));
       }
@@ -491,7 +606,7 @@ TEST(Discrepancy, FindsAPlantedUlp) {
 // In a run with one fused line, only that line rounds differently, so every difference must start there.
 TEST(Discrepancy, OriginsFindTheLineThatWasPlanted) {
   const Lane& of = lane("moller_1997/f32/cuda-fma");
-  const auto simpler = [](const Pair&, const Pair&) { return false; };
+  const auto simpler = [](const AnyPair&, const AnyPair&) { return false; };
   const auto sources = strata::stratum_sources(2, 3000, {"thesis", "near_edge_edge", "near_vertex_face"});
   const Origins found = origins(of, sources, 1000, 1, simpler);
   EXPECT_EQ(found.pairs, 3000u);
@@ -534,7 +649,8 @@ TEST(Discrepancy, OriginsFindTheLineThatWasPlanted) {
     EXPECT_EQ(again.lines[l].verdicts_fixed, found.lines[l].verdicts_fixed);
     ASSERT_EQ(again.lines[l].simplest.has_value(), found.lines[l].simplest.has_value());
     if (found.lines[l].simplest) {
-      EXPECT_EQ(std::memcmp(&*again.lines[l].simplest, &*found.lines[l].simplest, sizeof(Pair)), 0);
+      const DoublePair &first = again.lines[l].simplest->doubles, &second = found.lines[l].simplest->doubles;
+      EXPECT_EQ(std::memcmp(&first, &second, sizeof first), 0);
     }
   }
 }

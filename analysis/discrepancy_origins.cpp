@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
+#include <type_traits>
 
 #include "analysis/sweep.h"
 #include "core/discrepancy/count.h"
@@ -17,9 +19,13 @@ namespace {
 
 constexpr std::uint64_t kPairsTraced = 64;  // pairs
 
-std::vector<FusedLine> lines_of(const Lane& lane) {
-  const std::span<const cuda::ContractionSite> sites = cuda::record_sites(lane);
-  std::vector<FusedLine> lines;
+using Mask = std::vector<std::uint64_t> FusedLine::*;
+
+using Sites = std::span<const cuda::ContractionSite>;
+
+std::size_t words_of(Sites sites) { return (sites.size() + 63) / 64; }
+
+void add_lines(Sites sites, Mask mask, std::vector<FusedLine>& lines) {
   for (std::size_t s = 0; s < sites.size(); ++s) {
     const auto known = std::find_if(lines.begin(), lines.end(), [&](const FusedLine& line) {
       return line.at == sites[s].at && line.from == sites[s].from;
@@ -27,8 +33,21 @@ std::vector<FusedLine> lines_of(const Lane& lane) {
     FusedLine& line = known == lines.end() ? lines.emplace_back() : *known;
     line.at = sites[s].at;
     line.from = sites[s].from;
-    line.mask.resize((sites.size() + 63) / 64);
-    line.mask[s / 64] |= std::uint64_t{1} << s % 64;
+    (line.*mask).resize(words_of(sites));
+    (line.*mask)[s / 64] |= std::uint64_t{1} << s % 64;
+  }
+}
+
+// The lines of the kernels that the sources' pairs need.
+std::vector<FusedLine> lines_of(const Lane& lane, Sources sources) {
+  const Sites of_floats = cuda::record_sites(lane), of_doubles = cuda::record_sites_of_doubles(lane);
+  std::vector<FusedLine> lines;
+  if (!std::all_of(sources.begin(), sources.end(), std::mem_fn(&strata::PairSource::in_doubles)))
+    add_lines(of_floats, &FusedLine::mask, lines);
+  if (any_in_doubles(sources)) add_lines(of_doubles, &FusedLine::mask_of_doubles, lines);
+  for (FusedLine& line : lines) {  // a line may have no site in one of them
+    line.mask.resize(words_of(of_floats));
+    line.mask_of_doubles.resize(words_of(of_doubles));
   }
   return lines;
 }
@@ -37,7 +56,8 @@ std::vector<FusedLine> lines_of(const Lane& lane) {
 template <class Real>
 class FusedRun {
  public:
-  FusedRun(const Lane& lane, std::span<const Pair> pairs, std::span<const std::uint64_t> mask)
+  template <class Coordinate>
+  FusedRun(const Lane& lane, std::span<const BasicPair<Coordinate>> pairs, std::span<const std::uint64_t> mask)
       : values_(2 * questions_of(lane.algorithm).size() * pairs.size()), paths_(pairs.size()) {
     cuda::record_fusing(lane, pairs, {values_.data(), pairs.size(), paths_.data()}, mask);
   }
@@ -52,18 +72,17 @@ class FusedRun {
   std::vector<RecordedPath> paths_;
 };
 
-template <class Real>
+template <class Real, class Coordinate>
 class Examination {
  public:
-  Examination(const Lane& lane, std::span<const Pair> pairs,
-              const std::function<bool(const Pair&, const Pair&)>& simpler, Origins& to)
+  Examination(const Lane& lane, std::span<const BasicPair<Coordinate>> pairs, const Simpler& simpler, Origins& to)
       : lane_(lane), pairs_(pairs), simpler_(simpler), to_(to) {}
 
   void run() {
-    const std::vector<std::uint64_t> none(to_.lines[0].mask.size()), all(none.size(), ~std::uint64_t{0});
+    const std::vector<std::uint64_t> none((to_.lines[0].*kMask).size()), all(none.size(), ~std::uint64_t{0});
     const FusedRun<Real> rounded(lane_, pairs_, none), fused(lane_, pairs_, all);
     std::vector<FusedRun<Real>> alone;
-    for (const FusedLine& line : to_.lines) alone.emplace_back(lane_, pairs_, line.mask);
+    for (const FusedLine& line : to_.lines) alone.emplace_back(lane_, pairs_, line.*kMask);
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
       if (!is_finite(pairs_[i])) continue;
       ++to_.pairs;
@@ -73,6 +92,8 @@ class Examination {
   }
 
  private:
+  static constexpr Mask kMask = std::is_same_v<Coordinate, float> ? &FusedLine::mask : &FusedLine::mask_of_doubles;
+
   // Whether both runs have the value, with the same meaning, and with different bits.
   static bool differs(std::size_t i, const Question& question, int q, int which, const FusedRun<Real>& l,
                       const FusedRun<Real>& r) {
@@ -115,8 +136,8 @@ class Examination {
       bool decides = alone[l].verdict(i) != without;
       line.verdicts_alone += decides;
       if (changed) {
-        std::vector<std::uint64_t> others(line.mask.size());
-        for (std::size_t w = 0; w < others.size(); ++w) others[w] = ~line.mask[w];
+        std::vector<std::uint64_t> others(line.*kMask);
+        for (std::uint64_t& word : others) word = ~word;
         const bool fixed = FusedRun<Real>(lane_, pairs_.subspan(i, 1), others).verdict(0) == without;
         line.verdicts_fixed += fixed;
         decides = decides || fixed;
@@ -126,12 +147,17 @@ class Examination {
   }
 
   const Lane& lane_;
-  std::span<const Pair> pairs_;
-  const std::function<bool(const Pair&, const Pair&)>& simpler_;
+  std::span<const BasicPair<Coordinate>> pairs_;
+  const Simpler& simpler_;
   Origins& to_;
 };
 
-void add(Origins& to, const Origins& some, const std::function<bool(const Pair&, const Pair&)>& simpler) {
+template <class Real, class Coordinate>
+void examine(const Lane& lane, const std::vector<BasicPair<Coordinate>>& pairs, const Simpler& simpler, Origins& to) {
+  Examination<Real, Coordinate>(lane, pairs, simpler, to).run();
+}
+
+void add(Origins& to, const Origins& some, const Simpler& simpler) {
   to.pairs += some.pairs;
   to.verdicts += some.verdicts;
   for (std::size_t l = 0; l < to.lines.size(); ++l) {
@@ -139,7 +165,7 @@ void add(Origins& to, const Origins& some, const std::function<bool(const Pair&,
     line.values += some.lines[l].values;
     line.verdicts_alone += some.lines[l].verdicts_alone;
     line.verdicts_fixed += some.lines[l].verdicts_fixed;
-    const std::optional<Pair>& other = some.lines[l].simplest;
+    const std::optional<AnyPair>& other = some.lines[l].simplest;
     if (other && (!line.simplest || simpler(*other, *line.simplest))) line.simplest = other;
   }
   for (const auto& [place, start] : some.starts) {
@@ -155,32 +181,35 @@ void add(Origins& to, const Origins& some, const std::function<bool(const Pair&,
 bool has_origins(const Lane& lane) { return !cuda::record_sites(lane).empty(); }
 
 Origins origins(const Lane& lane, const std::vector<strata::PairSource>& sources, std::uint64_t pairs, int threads,
-                const std::function<bool(const Pair&, const Pair&)>& simpler) {
+                const Simpler& simpler) {
   std::vector<strata::PairSource> first = sources;
   for (strata::PairSource& source : first) source.pairs = std::min(source.pairs, pairs);
   const std::vector<SourceBlock> blocks = blocks_of(first, kPairsTraced);
   const auto most = static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, most);
-  // Equally simple pairs are ordered by their bits, so that the simplest does not depend on the threads.
-  const std::function<bool(const Pair&, const Pair&)> before = [&](const Pair& l, const Pair& r) {
+  // Equally simple pairs are ordered by their coordinates and type, so that the simplest does not depend on the
+  // threads.
+  const Simpler before = [&](const AnyPair& l, const AnyPair& r) {
     if (simpler(l, r) != simpler(r, l)) return simpler(l, r);
-    return std::lexicographical_compare(coordinates(l), coordinates(l) + kCoordinates, coordinates(r),
-                                        coordinates(r) + kCoordinates);
+    const double *of_l = coordinates(l.doubles), *of_r = coordinates(r.doubles);
+    const auto [differs, other] = std::mismatch(of_l, of_l + kCoordinates, of_r);
+    return differs == of_l + kCoordinates ? l.floats && !r.floats : *differs < *other;
   };
   const auto nothing_yet = [&] {
     Origins nothing;
-    nothing.lines = lines_of(lane);
+    nothing.lines = lines_of(lane, first);
     return nothing;
   };
   tbb::enumerable_thread_specific<Origins> results(nothing_yet);
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
-    std::vector<Pair> block;
     const strata::PairSource& source = first[static_cast<std::size_t>(blocks[b].source)];
-    for (std::uint64_t i = 0; i < blocks[b].count; ++i) block.push_back(source.pair(blocks[b].first + i));
-    if (lane.scalar == Scalar::f32) {
-      Examination<float>(lane, block, before, results.local()).run();
+    const strata::PairBlock block = strata::pairs_of(source, blocks[b].first, blocks[b].count);
+    if (block.in_doubles()) {
+      examine<double>(lane, block.doubles, before, results.local());
+    } else if (lane.scalar == Scalar::f32) {
+      examine<float>(lane, block.floats, before, results.local());
     } else {
-      Examination<double>(lane, block, before, results.local()).run();
+      examine<double>(lane, block.floats, before, results.local());
     }
   });
   Origins all = nothing_yet();

@@ -15,13 +15,13 @@ namespace graze::analysis {
 
 // The contractions of one source line.
 struct FusedLine {
-  cuda::SourceLine at, from;  // as in cuda::ContractionSite
-  std::vector<std::uint64_t> mask;
-  std::uint64_t values = 0;          // fusing it alone changes this many values
-  std::uint64_t verdicts_alone = 0;  // …and this many verdicts
+  cuda::SourceLine at, from;                         // as in cuda::ContractionSite
+  std::vector<std::uint64_t> mask, mask_of_doubles;  // its sites in the kernel of each coordinate type
+  std::uint64_t values = 0;                          // fusing it alone changes this many values
+  std::uint64_t verdicts_alone = 0;                  // …and this many verdicts
   std::uint64_t verdicts_fixed = 0;  // of the verdicts that all contractions together change: rounding this line's
                                      // products gives back the verdict without contraction
-  std::optional<Pair> simplest;      // of the pairs of the two counts before
+  std::optional<AnyPair> simplest;   // of the pairs of the two counts before
 };
 
 // A value that differs, and the first line that makes it differ if it alone is fused.
@@ -32,8 +32,11 @@ struct Start {
   std::array<std::uint64_t, 64> growth = {};
 };
 
+// Orders pairs, the simpler one first.
+using Simpler = std::function<bool(const AnyPair&, const AnyPair&)>;
+
 struct Origins {
-  std::vector<FusedLine> lines;                 // in program order
+  std::vector<FusedLine> lines;                 // in program order; those of the kernel for doubles alone come last
   std::map<std::pair<int, int>, Start> starts;  // of values: question, and 0 or 1
   std::uint64_t pairs = 0, verdicts = 0;        // asked, and those on which contraction changes the verdict
 };
@@ -42,8 +45,8 @@ struct Origins {
 bool has_origins(const Lane& lane);
 
 // Examines the first `pairs` pairs of each source. `simpler` orders pairs for FusedLine::simplest.
-// The same for any number of threads.   Requires: has_origins.
+// The same for any number of threads.   Requires: has_origins; sources of doubles only for a lane in double.
 Origins origins(const Lane& lane, const std::vector<strata::PairSource>& sources, std::uint64_t pairs, int threads,
-                const std::function<bool(const Pair&, const Pair&)>& simpler);
+                const Simpler& simpler);
 
 }  // namespace graze::analysis

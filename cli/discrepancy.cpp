@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "backends/backends.h"
@@ -185,10 +186,23 @@ int compare(const std::vector<std::string>& names) {
   return 0;
 }
 
-// Throws: UsageError if values are compared, or a lane takes float32 alone.
-void expect_take_doubles(const Comparisons& comparisons) {
-  if (!comparisons.values.empty())
-    throw UsageError("values are compared on pairs of float32 alone; only verdicts of your own code on doubles too");
+constexpr const char* kFloat32Alone = "values of lanes in float are compared on pairs of float32 alone";
+
+// Without named lanes, leaves out those whose values are not compared on doubles, and says so.
+// Throws: UsageError if the user named a lane that takes float32 alone.
+void keep_for_doubles(Comparisons& comparisons, bool named) {
+  std::erase_if(comparisons.values, [&](const analysis::LanesCompared& lanes) {
+    if (lanes.first->scalar == Scalar::f64) return false;
+    if (named)
+      throw UsageError(cannot("compare", lanes.first->id, fmt::format("{}; name lanes in double", kFloat32Alone)));
+    std::vector<fuzz::LaneLeftOut>& left_out = comparisons.of_subjects.left_out;
+    for (const Lane* lane : {lanes.first, lanes.second}) {
+      if (std::none_of(left_out.begin(), left_out.end(), [&](const auto& row) { return row.id == lane->id; }))
+        left_out.push_back({lane->id, kFloat32Alone});
+    }
+    return true;
+  });
+  if (!comparisons.values.empty()) say_left_out(comparisons.of_subjects.left_out);
   for (const analysis::TwoDeciders& deciders : comparisons.verdicts) {
     for (const Lane* lane : deciders.lanes) {
       if (!fuzz::takes(*lane, DoublePair{}))
@@ -202,9 +216,8 @@ int discrepancy(DiscrepancyOptions options) {
   if (!options.compare.empty()) return compare(options.compare);
   open_subjects(options.subjects);
   if (!options.campaign.empty()) open_subjects_of(options.campaign, options.subjects.resubject);
-  const Comparisons comparisons = comparisons_of(options);
+  Comparisons comparisons = comparisons_of(options);
   analysis::DiscrepancySpec spec;
-  spec.lanes = comparisons.values;
   std::uint64_t seed = options.seed;
   std::string scene;  // its name in results
   std::string left_out;
@@ -226,7 +239,8 @@ int discrepancy(DiscrepancyOptions options) {
     scene = of_campaign.scene;
   }
   const bool in_doubles = analysis::any_in_doubles(spec.sources);
-  if (in_doubles) expect_take_doubles(comparisons);
+  if (in_doubles) keep_for_doubles(comparisons, !options.lanes.empty());
+  spec.lanes = comparisons.values;
   spec.threads = options.threads;
   std::string why_not;
   spec.on_device = options.executor != kTwin && cuda::open_device(why_not);
@@ -269,6 +283,11 @@ int discrepancy(DiscrepancyOptions options) {
   const fuzz::Json build = fuzz::build_info({});
   for (const char* key : {"version", "commit", "compiler", "cuda"}) json["build"][key] = build.at(key);
   if (!scene.empty()) json["scene"] = scene;
+  if (in_doubles) {
+    const bool all =
+        std::all_of(spec.sources.begin(), spec.sources.end(), std::mem_fn(&strata::PairSource::in_doubles));
+    json["coordinates"] = all ? "f64" : "both";
+  }
   json.update(reports::discrepancy_json(found));
   std::string csv = reports::discrepancy_csv(found);
   for (const fuzz::Json& of : verdicts) {

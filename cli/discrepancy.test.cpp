@@ -43,11 +43,18 @@ TEST_F(DiscrepancyCommand, CountsAreThoseOfAProgramThatSharesNoCode) {
         Case{"moller_1997/f64/cpu", "moller_1997/f64/cuda-fma", "coplanar_wide"},
         Case{"separating_axes/f32/cpu", "separating_axes/f32/cpu-fma", "near_edge_edge"},
         Case{"guigue_devillers_2003/f32/cuda-fma", "guigue_devillers_2003/f32/cpu", "extreme_scale"},
-        Case{"projected_sat/f64/cpu", "projected_sat/f64/cuda-fma", "lattice"}}) {
-    const std::string lanes = std::string(first) + " " + second, pairs = std::string(" --pairs 200 ");
+        Case{"projected_sat/f64/cpu", "projected_sat/f64/cuda-fma", "lattice"},
+        Case{"interval_overlap/f64/cpu", "interval_overlap/f64/cuda-fma", "near_edge_edge/f64"},
+        Case{"moller_1997/f64/cuda-fma", "moller_1997/f64/cuda-nofma", "stored/f64"},
+        Case{"guigue_devillers_2003/f64/cpu", "guigue_devillers_2003/f64/cuda-fma", "extreme_scale/f64"},
+        Case{"separating_axes/f64/cpu", "separating_axes/f64/cpu-fma", "large_offset/f64"},
+        Case{"projected_sat/f64/cpu", "projected_sat/f64/cuda-fma", "construction_born/f64"}}) {
+    const std::string lanes = std::string(first) + " " + second;
+    const std::string pairs =
+        std::string(stratum).ends_with("/f64") ? " --coordinates f64 --pairs 200 " : " --pairs 200 ";
     expect_done("graze discrepancy " + lanes + " --executor twin --strata " + stratum + pairs + "--seed 5 --out d");
     const Ran ran =
-        shell("graze dump " + std::string(stratum) + ":5" + pairs + "--values " + first + "," + second +
+        shell("graze dump " + std::string(stratum) + ":5 --pairs 200 --values " + first + "," + second +
               " | python3 -B " GRAZE_SOURCE_DIR "/scripts/recount_discrepancy d/discrepancy.json " + stratum);
     EXPECT_EQ(ran.status, 0) << lanes << '\n' << ran.out << ran.err;
     EXPECT_NE(ran.out.find("200 pairs, "), std::string::npos) << ran.out;

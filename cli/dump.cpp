@@ -128,13 +128,13 @@ void dump_values(const DumpOptions& options) {
   const analysis::LanesCompared lanes = compared_lanes(options.values);
   const std::vector<Question>& questions = questions_of(lanes.first->algorithm);
   const CampaignPairs dumped = drawn_for(options);
-  strata::expect_float32(dumped.sources, "dump --values");
+  if (lanes.first->scalar == Scalar::f32) strata::expect_float32(dumped.sources, "dump --values");
   std::cout << "stratum,seed,index,question,value,first,second,compared,exact_high,exact_low,bound,rounding\n";
   const auto number = [](const std::optional<double>& x) { return x ? fmt::format("{:a}", *x) : ""; };
   for (const strata::PairSource& source : dumped.sources) {
     for (std::uint64_t index = 0; index < source.pairs && std::cout; ++index) {
-      const Pair pair = source.pair(index);
-      if (!is_finite(pair)) continue;
+      const AnyPair pair = source.any_pair(index);
+      if (!is_finite(pair.doubles)) continue;
       const analysis::RunsBeside runs = analysis::runs_beside(lanes, pair);
       const std::string place = fmt::format("{},{},{}", source.id, dumped.seed, index);
       std::cout << fmt::format("{},,,{} {:x},{} {:x},,,,,\n", place, name(recorded_verdict(runs.first.path)),

@@ -143,12 +143,13 @@ std::string lane_text(const AnyPair& pair, const analysis::LaneExplanation& lane
   return text;
 }
 
-// The runs of two lanes side by side, if the user named exactly two and both record their values; else empty.
+// The runs of two lanes side by side, if the user named exactly two and both record their values; else empty. Lanes in
+// float have none on a pair of doubles.
 std::string side_by_side(const std::vector<const Lane*>& lanes, const AnyPair& pair, const reports::Screen& screen) {
-  if (lanes.size() != 2 || !pair.floats || !is_finite(*pair.floats) ||
+  if (lanes.size() != 2 || !is_finite(pair.doubles) || analysis::decides_stored(*lanes[0], pair) ||
       !analysis::why_not_compared(*lanes[0], *lanes[1]).empty())
     return "";
-  return '\n' + reports::side_by_side({*lanes[0], *lanes[1]}, *pair.floats, screen);
+  return '\n' + reports::side_by_side({*lanes[0], *lanes[1]}, pair, screen);
 }
 
 // What two kernels of the user's code cost: the lane's, and the one that -fmad=false makes.

@@ -25,7 +25,7 @@ class DiscrepancyResult : public testing::Test {
     spec.lanes.emplace_back(lane("interval_overlap/f32/cpu"), lane("interval_overlap/f32/cuda-fma"));
     spec.lanes.emplace_back(lane("moller_1997/f64/cpu"), lane("moller_1997/f64/cuda-nofma"));
     spec.sources = strata::stratum_sources(4, 9000, {"thesis", "near_edge_edge", "extreme_scale"});
-    const auto simpler = [](const Pair&, const Pair&) { return false; };
+    const auto simpler = [](const AnyPair&, const AnyPair&) { return false; };
     const DiscrepancyResults results{
         spec,
         analysis::discrepancies(spec),

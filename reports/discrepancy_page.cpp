@@ -151,6 +151,13 @@ std::string lines_table(const Json& origins) {
   return text + "</table></div>\n";
 }
 
+// The coordinate types of the pairs, where some are doubles.
+std::string coordinates_words(const Json& json) {
+  if (!json.contains("coordinates")) return "";
+  return text_at(json, "coordinates") == "f64" ? ", with coordinates in double"
+                                               : ", with coordinates in float32 or in double";
+}
+
 // The build that made the results, if they record it.
 std::string build_words(const Json& json) {
   if (!json.contains("build")) return "";
@@ -184,9 +191,9 @@ std::string discrepancy_page(const Json& json) {
   text += "<h1>CPU against GPU, value by value</h1>\n<ol>\n";
   for (const std::string& sentence : discrepancy_answer(json)) text += "<li>" + html(sentence) + "</li>\n";
   text += fmt::format(
-      "</ol>\n<p>{} pairs of triangles for each pair of lanes, seed {}{}. All counts are in the JSON and CSV files "
+      "</ol>\n<p>{} pairs of triangles{} for each pair of lanes, seed {}{}. All counts are in the JSON and CSV files "
       "beside this page.{}</p>\n",
-      grouped(number_at(json, "pairs")), number_at(json, "seed"),
+      grouped(number_at(json, "pairs")), coordinates_words(json), number_at(json, "seed"),
       json.contains("scene") ? ", scene " + html(text_at(json, "scene")) : "", html(build_words(json)));
   if (json.at("lanes").size() > 1) text += "<h2>Share of the pairs</h2>\n" + lanes_table(json);
   text += "<p class=\"paper\">Sections that are closed on the screen are not printed.</p>\n";

@@ -49,7 +49,7 @@ bool goes_otherwise(const Question& question, const ValueBeside* left, const Val
 
 }  // namespace
 
-std::string side_by_side(const analysis::LanesCompared& lanes, const Pair& pair, const Screen& screen) {
+std::string side_by_side(const analysis::LanesCompared& lanes, const AnyPair& pair, const Screen& screen) {
   const analysis::RunsBeside runs = analysis::runs_beside(lanes, pair);
   const std::vector<Question>& questions = questions_of(lanes.first->algorithm);
   const Scalar scalar = lanes.first->scalar;

@@ -407,17 +407,6 @@ GRAZE_HD double extent_of(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3]) {
   return largest;
 }
 
-// A pair from its coordinates in the lane's scalar.
-template <class Real>
-GRAZE_HD Pair narrowed(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3]) {
-  Pair pair;
-  for (int v = 0; v < 3; ++v) {
-    pair.a[v] = {static_cast<float>(a[v].x), static_cast<float>(a[v].y), static_cast<float>(a[v].z)};
-    pair.b[v] = {static_cast<float>(b[v].x), static_cast<float>(b[v].y), static_cast<float>(b[v].z)};
-  }
-  return pair;
-}
-
 // Compares the runs of two lanes on one pair. axis: that of the pair's stratum.
 template <class Algorithm, class Real, class Sink>
 GRAZE_HD void compare_runs(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Run<Real>& first,
@@ -426,7 +415,13 @@ GRAZE_HD void compare_runs(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], c
   run_led<Algorithm>(a, b, first.values, first.path, comparison);
   comparison.count_pair(0);
   comparison.count_sites();
-  if (axis != Axis::none) comparison.count_pair(place_at(place_on_axis(narrowed(a, b), axis)));
+  if (axis == Axis::none) return;
+  BasicPair<Real> pair;
+  for (int v = 0; v < 3; ++v) {
+    pair.a[v] = a[v];
+    pair.b[v] = b[v];
+  }
+  comparison.count_pair(place_at(place_on_axis(pair, axis)));
 }
 
 }  // namespace GRAZE_FP

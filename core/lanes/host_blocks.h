@@ -12,7 +12,8 @@ namespace graze {
 template <class Block>
 using BlockTable = std::array<std::array<Block, 2>, kAlgorithmCount>;
 using HostBlocks = BlockTable<DecideBlock::Function>;
-using HostDoubleBlocks = std::array<DecideFunction<DoublePair>, kAlgorithmCount>;  // in double
+using HostDoubleBlocks = std::array<DecideFunction<DoublePair>, kAlgorithmCount>;   // in double
+using HostDoubleRecords = std::array<RecordFunction<DoublePair>, kAlgorithmCount>;  // in double
 
 // The block functions of each kind of policy; null if the algorithm or the variant does not have it.
 template <class AnyPair>
@@ -31,6 +32,7 @@ using HostDoublePolicyBlocks = std::array<PolicyFunctions<DoublePair>, kAlgorith
   extern const HostPolicyBlocks kHostPolicyBlocks;             \
   extern const HostDoublePolicyBlocks kHostDoublePolicyBlocks; \
   extern const BlockTable<RecordBlock> kHostRecords;           \
+  extern const HostDoubleRecords kHostDoubleRecords;           \
   }
 #define GRAZE_DECLARE_device(name)
 #define GRAZE_DECLARE_program(name)

@@ -17,9 +17,12 @@ struct Records {
   RecordedPath* paths;
 };
 
-using RecordBlock = void (*)(const Pair* pairs, std::size_t count, const Records& to);
+template <class AnyPair>
+using RecordFunction = void (*)(const AnyPair* pairs, std::size_t count, const Records& to);
+using RecordBlock = RecordFunction<Pair>;
 
 // Null for CUDA lanes, foreign code, exact lanes and lanes under a policy.
 RecordBlock host_record(const Lane& lane);
+RecordFunction<DoublePair> host_record_of_doubles(const Lane& lane);  // of a lane in double
 
 }  // namespace graze

@@ -15,8 +15,10 @@
 #include "core/fnv1a.h"
 #include "core/lanes/records.h"
 #include "cuda/lanes/device_memory.cuh"
+#include "cuda/lanes/draw_on_cores.h"
 #include "cuda/lanes/exact_kernels.cuh"
 #include "cuda/lanes/kernels.cuh"
+#include "cuda/lanes/record_kernels.cuh"
 #include "cuda/lanes/stratum_kernels.cuh"
 #include "cuda/lanes/vote.cuh"
 
@@ -49,9 +51,9 @@ struct DeviceRecords {
   const std::uint32_t *intersects, *declined;  // of the lane itself
 };
 
-template <int algorithm, class Real>
+template <int algorithm, class Real, class Pairs>
 __global__ void __launch_bounds__(128)
-    compare_pairs(DevicePairs pairs, DeviceRecords first, DeviceRecords second, const std::uint8_t* degrees, Axis axis,
+    compare_pairs(Pairs pairs, DeviceRecords first, DeviceRecords second, const std::uint8_t* degrees, Axis axis,
                   std::uint64_t* counts, std::uint64_t* maxima, std::uint64_t* unlike) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= pairs.count) return;
@@ -74,21 +76,23 @@ __global__ void __launch_bounds__(128)
   compare_runs<std::tuple_element_t<algorithm, Algorithms>>(t.a, t.b, runs[0], runs[1], degrees, axis, sink);
 }
 
-using LaunchCompare = void (*)(DevicePairs pairs, const DeviceRecords& first, const DeviceRecords& second,
+template <class Pairs>
+using LaunchCompare = void (*)(Pairs pairs, const DeviceRecords& first, const DeviceRecords& second,
                                const std::uint8_t* degrees, Axis axis, std::uint64_t* counts, std::uint64_t* maxima,
                                std::uint64_t* unlike);
 
-template <int algorithm, class Real>
-void launch_compare(DevicePairs pairs, const DeviceRecords& first, const DeviceRecords& second,
-                    const std::uint8_t* degrees, Axis axis, std::uint64_t* counts, std::uint64_t* maxima,
-                    std::uint64_t* unlike) {
+template <int algorithm, class Real, class Pairs>
+void launch_compare(Pairs pairs, const DeviceRecords& first, const DeviceRecords& second, const std::uint8_t* degrees,
+                    Axis axis, std::uint64_t* counts, std::uint64_t* maxima, std::uint64_t* unlike) {
   compare_pairs<algorithm, Real>
       <<<(pairs.count + 127) / 128, 128>>>(pairs, first, second, degrees, axis, counts, maxima, unlike);
 }
 
-template <int... algorithm>
-constexpr DeviceKernels<LaunchCompare> launchers(std::integer_sequence<int, algorithm...>) {
-  return {std::array<LaunchCompare, 2>{launch_compare<algorithm, float>, launch_compare<algorithm, double>}...};
+// Pairs of doubles are compared in double alone, so their entries for float are never called.
+template <class Pairs, int... algorithm>
+constexpr DeviceKernels<LaunchCompare<Pairs>> launchers(std::integer_sequence<int, algorithm...>) {
+  return {std::array<LaunchCompare<Pairs>, 2>{launch_compare<algorithm, typename Pairs::Real, Pairs>,
+                                              launch_compare<algorithm, double, Pairs>}...};
 }
 
 // Each thread hashes one pair: its path and the values of its questions.
@@ -119,7 +123,8 @@ class DeviceRun {
     paths_.at_least(kPairsAtOnce);
     bits_.at_least(kPairsAtOnce / 16);
   }
-  DeviceRecords record(DevicePairs pairs, DeviceExact& exact) {
+  template <class Pairs>
+  DeviceRecords record(Pairs pairs, DeviceExact& exact) {
     std::uint32_t* intersects = bits_.at_least(0);
     std::uint32_t* declined = intersects + kPairsAtOnce / 32;
     launch_record(lane_, pairs, values_.at_least(0), kPairsAtOnce, paths_.at_least(0));
@@ -134,34 +139,36 @@ class DeviceRun {
   DeviceArray<std::uint32_t> bits_;
 };
 
+void draw(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, float* to) {
+  Drawing().draw(source, first, count, to, nullptr);
+}
+void draw(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, double* to) {
+  std::vector<double> drawn;
+  draw_on_cores(source.double_pair, first, count, drawn);
+  check(cudaMemcpy(to, drawn.data(), drawn.size() * sizeof(double), cudaMemcpyHostToDevice));
+}
+
 // Draws the source in blocks and calls with_block(pairs).
-template <class WithBlock>
+template <class Pairs, class WithBlock>
 void for_each_block(const strata::PairSource& source, const WithBlock& with_block) {
   check(cudaSetDevice(0));
-  DeviceArray<float> coordinates;
-  Drawing drawing;
-  float* block = coordinates.at_least(std::size_t{kPairsAtOnce} * kCoordinates);
+  DeviceArray<typename Pairs::Real> coordinates;
+  auto* block = coordinates.at_least(std::size_t{kPairsAtOnce} * kCoordinates);
   for (std::uint64_t first = 0; first < source.pairs; first += kPairsAtOnce) {
     const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(kPairsAtOnce, source.pairs - first));
-    drawing.draw(source, first, count, block, nullptr);
-    with_block(DevicePairs{block, count, count});
+    draw(source, first, count, block);
+    with_block(Pairs{block, count, count});
     check(cudaGetLastError());
   }
 }
 
-}  // namespace
-}  // namespace GRAZE_FP
-
-bool records_on_device(const Lane& lane) {
-  if (lane.algorithm < 0 || lane.under) return false;
-  return lane.is_cuda() || info_of(lane.variant).arithmetic == Arithmetic::rounded;
-}
-
-void count_discrepancies(const Lane& first, const Lane& second, const strata::PairSource& source,
-                         const DiscrepancySums& to) {
-  static constexpr DeviceKernels<LaunchCompare> kCompare =
-      launchers(std::make_integer_sequence<int, kAlgorithmCount>());
-  const LaunchCompare compare =
+// As count_discrepancies, of a source of pairs in this layout.
+template <class Pairs>
+void count_on_device(const Lane& first, const Lane& second, const strata::PairSource& source,
+                     const DiscrepancySums& to) {
+  static constexpr DeviceKernels<LaunchCompare<Pairs>> kCompare =
+      launchers<Pairs>(std::make_integer_sequence<int, kAlgorithmCount>());
+  const LaunchCompare<Pairs> compare =
       kCompare[static_cast<std::size_t>(first.algorithm)][static_cast<std::size_t>(first.scalar)];
   check(cudaSetDevice(0));
   const std::vector<std::uint8_t> degrees = degrees_of(first.algorithm);
@@ -178,7 +185,7 @@ void count_discrepancies(const Lane& first, const Lane& second, const strata::Pa
   }
   DeviceExact exact;
   DeviceRun runs[2] = {DeviceRun(first), DeviceRun(second)};
-  for_each_block(source, [&](DevicePairs pairs) {
+  for_each_block<Pairs>(source, [&](Pairs pairs) {
     const DeviceRecords of_first = runs[0].record(pairs, exact), of_second = runs[1].record(pairs, exact);
     compare(pairs, of_first, of_second, degrees_on_device.at_least(0), source.axis, places[0], places[1], places[2]);
   });
@@ -186,8 +193,11 @@ void count_discrepancies(const Lane& first, const Lane& second, const strata::Pa
     check(cudaMemcpy(parts[p].data(), places[p], parts[p].size_bytes(), cudaMemcpyDeviceToHost));
 }
 
-std::uint64_t count_different_runs(const Lane& host, const Lane& device, const strata::PairSource& source) {
-  const RecordBlock record = host_record(host);
+// As count_different_runs; record: the host lane's records of such pairs.
+template <class Pairs>
+std::uint64_t different_runs(const Lane& host, RecordFunction<BasicPair<typename Pairs::Real>> record,
+                             const Lane& device, const strata::PairSource& source) {
+  using Coordinate = typename Pairs::Real;
   const std::uint64_t two_values = two_values_of(host.algorithm);
   const std::size_t slots = 2 * questions_of(host.algorithm).size();
   const bool single = host.scalar == Scalar::f32;
@@ -195,9 +205,9 @@ std::uint64_t count_different_runs(const Lane& host, const Lane& device, const s
   DeviceRun run(device);
   DeviceArray<std::uint64_t> hashes_on_device;
   std::vector<std::uint64_t> hashes(kPairsAtOnce);
-  std::vector<float> drawn(std::size_t{kPairsAtOnce} * kCoordinates);
+  std::vector<Coordinate> drawn(std::size_t{kPairsAtOnce} * kCoordinates);
   std::atomic<std::uint64_t> different = 0;
-  for_each_block(source, [&](DevicePairs pairs) {
+  for_each_block<Pairs>(source, [&](Pairs pairs) {
     const DeviceRecords records = run.record(pairs, exact);
     std::uint64_t* found = hashes_on_device.at_least(kPairsAtOnce);
     const std::uint32_t blocks = (pairs.count + kThreads - 1) / kThreads;
@@ -209,11 +219,11 @@ std::uint64_t count_different_runs(const Lane& host, const Lane& device, const s
                                       pairs.count, two_values, found);
     }
     check(cudaMemcpy(hashes.data(), found, pairs.count * sizeof *found, cudaMemcpyDeviceToHost));
-    check(cudaMemcpy(drawn.data(), pairs.coordinates, std::size_t{kCoordinates} * pairs.count * sizeof(float),
+    check(cudaMemcpy(drawn.data(), pairs.coordinates, std::size_t{kCoordinates} * pairs.count * sizeof(Coordinate),
                      cudaMemcpyDeviceToHost));
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, pairs.count, 256), [&](const auto& range) {
       const std::size_t count = range.size();
-      std::vector<Pair> block(count);
+      std::vector<BasicPair<Coordinate>> block(count);
       for (std::size_t c = 0; c < kCoordinates; ++c) {
         for (std::size_t i = 0; i < count; ++i) coordinates(block[i])[c] = drawn[c * pairs.count + range.begin() + i];
       }
@@ -231,6 +241,25 @@ std::uint64_t count_different_runs(const Lane& host, const Lane& device, const s
     });
   });
   return different;
+}
+
+}  // namespace
+}  // namespace GRAZE_FP
+
+bool records_on_device(const Lane& lane) {
+  if (lane.algorithm < 0 || lane.under) return false;
+  return lane.is_cuda() || info_of(lane.variant).arithmetic == Arithmetic::rounded;
+}
+
+void count_discrepancies(const Lane& first, const Lane& second, const strata::PairSource& source,
+                         const DiscrepancySums& to) {
+  source.in_doubles() ? count_on_device<DeviceDoubles>(first, second, source, to)
+                      : count_on_device<DevicePairs>(first, second, source, to);
+}
+
+std::uint64_t count_different_runs(const Lane& host, const Lane& device, const strata::PairSource& source) {
+  return source.in_doubles() ? different_runs<DeviceDoubles>(host, host_record_of_doubles(host), device, source)
+                             : different_runs<DevicePairs>(host, host_record(host), device, source);
 }
 
 }  // namespace graze::cuda

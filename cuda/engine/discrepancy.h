@@ -20,8 +20,9 @@ struct DiscrepancySums {
 // contraction. The kernels of cuda-nofma compute a host lane's values; count_different_runs checks them.
 bool records_on_device(const Lane& lane);
 
-// Compares both lanes on all pairs of the source.   Requires: records_on_device of both; the algorithm and the scalar
-// are the same.   Throws: std::runtime_error on any CUDA error.
+// Compares both lanes on all pairs of the source. Pairs of doubles are drawn by all CPU cores.
+// Requires: records_on_device of both; the algorithm and the scalar are the same, in double for a source of doubles.
+// Throws: std::runtime_error on any CUDA error.
 void count_discrepancies(const Lane& first, const Lane& second, const strata::PairSource& source,
                          const DiscrepancySums& to);
 

@@ -8,6 +8,7 @@
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/exact_kernels.cuh"
 #include "cuda/lanes/kernels.cuh"
+#include "cuda/lanes/record_kernels.cuh"
 
 namespace graze::cuda {
 
@@ -16,7 +17,7 @@ namespace graze::cuda {
   extern const VariantKernels kKernels;                    \
   extern const WithinKernels kPolicyKernels;               \
   extern const BoundKernels kBoundKernels;                 \
-  extern const DeviceKernels<LaunchValues> kRecordKernels; \
+  extern const RecordKernels kRecordKernels;               \
   }
 #define GRAZE_DECLARE_host_rounded(name)
 #define GRAZE_DECLARE_host_contracted(name)
@@ -36,7 +37,7 @@ namespace {
 struct KernelTables {
   const VariantKernels* kernels = nullptr;
   const WithinKernels* within = nullptr;
-  const DeviceKernels<LaunchValues>* record = nullptr;
+  const RecordKernels* record = nullptr;
   const BoundKernels* bound = nullptr;  // null for fast math, which has no error bound
 };
 
@@ -137,7 +138,14 @@ void launch_lane(const Lane& lane, DeviceExact& exact, DeviceDoubles pairs, std:
 }
 
 void launch_record(const Lane& lane, DevicePairs pairs, void* values, std::uint64_t stride, RecordedPath* paths) {
-  of_lane(*tables_of(lane.variant).record, lane)(pairs, values, stride, paths, nullptr);
+  of_lane(tables_of(lane.variant).record->floats, lane)(pairs, values, stride, paths, nullptr);
+  check(cudaGetLastError());
+}
+
+void launch_record(const Lane& lane, DeviceDoubles pairs, void* values, std::uint64_t stride, RecordedPath* paths) {
+  if (lane.scalar != Scalar::f64) throw std::logic_error(lane.id + ": expected a lane in double");
+  tables_of(lane.variant)
+      .record->doubles[static_cast<std::size_t>(lane.algorithm)](pairs, values, stride, paths, nullptr);
   check(cudaGetLastError());
 }
 

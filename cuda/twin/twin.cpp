@@ -134,10 +134,16 @@ const TwinRow& record_row(const Lane& lane) {
 }  // namespace
 
 RecordBlock twin_record(const Lane& lane) { return record_row(lane).record; }
+RecordFunction<DoublePair> twin_record_of_doubles(const Lane& lane) { return record_row(lane).doubles.record; }
 std::span<const ContractionSite> record_sites(const Lane& lane) { return record_row(lane).sites; }
+std::span<const ContractionSite> record_sites_of_doubles(const Lane& lane) { return record_row(lane).doubles.sites; }
 void record_fusing(const Lane& lane, std::span<const Pair> pairs, const Records& to,
                    std::span<const std::uint64_t> fused) {
   record_row(lane).record_fusing(pairs.data(), pairs.size(), to, fused.data());
+}
+void record_fusing(const Lane& lane, std::span<const DoublePair> pairs, const Records& to,
+                   std::span<const std::uint64_t> fused) {
+  record_row(lane).doubles.record_fusing(pairs.data(), pairs.size(), to, fused.data());
 }
 
 bool has_policy_twins() { return kHasPolicyTwins; }

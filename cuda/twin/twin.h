@@ -30,6 +30,7 @@ TraceFunction<DoublePair> twin_trace_of_doubles(const Lane& lane);
 
 // The twin's records; null when there is none, and in builds of scripts/campaign.
 RecordBlock twin_record(const Lane& lane);
+RecordFunction<DoublePair> twin_record_of_doubles(const Lane& lane);  // of a lane in double
 
 // Whether lanes with tolerances have twins; they have none in builds of scripts/campaign.
 bool has_policy_twins();
@@ -111,7 +112,11 @@ Verdict decide_comparing(const Lane& lane, const Pair& pair, std::span<const std
 // The contraction sites of the twin that records, and its records when sites whose bit is not set round twice; see
 // decide_fusing.
 std::span<const ContractionSite> record_sites(const Lane& lane);
+std::span<const ContractionSite> record_sites_of_doubles(const Lane& lane);
 void record_fusing(const Lane& lane, std::span<const Pair> pairs, const Records& to,
+                   std::span<const std::uint64_t> fused);
+// Requires: a lane in double.
+void record_fusing(const Lane& lane, std::span<const DoublePair> pairs, const Records& to,
                    std::span<const std::uint64_t> fused);
 
 }  // namespace graze::cuda

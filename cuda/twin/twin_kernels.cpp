@@ -72,8 +72,8 @@ void trace_block(const AnyPair* pairs, std::size_t count, u64* hashes) {
   }
 }
 
-template <class Kernel, class Fuse>
-void record_each(const Pair* pairs, std::size_t count, const Records& to, const Fuse& fuse) {
+template <class Kernel, class AnyPair, class Fuse>
+void record_each(const AnyPair* pairs, std::size_t count, const Records& to, const Fuse& fuse) {
   constexpr std::size_t kSize = Kernel::kScalar == Scalar::f32 ? sizeof(float) : sizeof(double);
   for (std::size_t i = 0; i < count; ++i) {
     const Block block(pairs[i]);
@@ -85,13 +85,13 @@ void record_each(const Pair* pairs, std::size_t count, const Records& to, const 
   }
 }
 
-template <class Kernel>
-void record_block(const Pair* pairs, std::size_t count, const Records& to) {
+template <class Kernel, class AnyPair>
+void record_block(const AnyPair* pairs, std::size_t count, const Records& to) {
   record_each<Kernel>(pairs, count, to, AllFused{});
 }
 
-template <class Kernel>
-void record_fusing(const Pair* pairs, std::size_t count, const Records& to, const u64* fused) {
+template <class Kernel, class AnyPair>
+void record_fusing(const AnyPair* pairs, std::size_t count, const Records& to, const u64* fused) {
   record_each<Kernel>(pairs, count, to, SomeFused{fused});
 }
 
@@ -118,6 +118,15 @@ constexpr void enter_trace(TwinFunctions<AnyPair>& twin) {
   twin.trace_symbol = Kernel::kSymbol;
 }
 
+template <class Kernel, class AnyPair>
+constexpr void enter_record(TwinFunctions<AnyPair>& twin) {
+  twin.record = record_block<Kernel, AnyPair>;
+  if constexpr (Kernel::kSiteCount > 0) {
+    twin.record_fusing = record_fusing<Kernel, AnyPair>;
+    twin.sites = std::span<const ContractionSite>(Kernel::kSites, Kernel::kSiteCount);
+  }
+}
+
 template <class Kernel>
 constexpr void enter(TwinTable& table) {
   TwinRow& row = table.rows[static_cast<std::size_t>(Kernel::kInteger)][static_cast<std::size_t>(Kernel::kScalar)];
@@ -126,11 +135,7 @@ constexpr void enter(TwinTable& table) {
   } else if constexpr (Kernel::kName == "trace_pairs") {
     enter_trace<Kernel, Pair>(row);
   } else if constexpr (Kernel::kName == "record_pairs") {
-    row.record = record_block<Kernel>;
-    if constexpr (Kernel::kSiteCount > 0) {
-      row.record_fusing = record_fusing<Kernel>;
-      row.sites = std::span<const ContractionSite>(Kernel::kSites, Kernel::kSiteCount);
-    }
+    enter_record<Kernel, Pair>(row);
   } else if constexpr (Kernel::kName == "absolute_pairs") {
     row.absolute = decide_within<Kernel, Pair>;
   } else if constexpr (Kernel::kName == "relative_pairs") {
@@ -144,6 +149,8 @@ constexpr void enter(TwinTable& table) {
     row.doubles.absolute = decide_within<Kernel, DoublePair>;
   } else if constexpr (Kernel::kName == "relative_double_pairs") {
     row.doubles.relative = decide_within<Kernel, DoublePair>;
+  } else if constexpr (Kernel::kName == "record_double_pairs") {
+    enter_record<Kernel, DoublePair>(row.doubles);
 #endif
   }
 }

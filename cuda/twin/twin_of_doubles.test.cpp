@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "core/discrepancy/count.h"
+#include "core/discrepancy/questions.h"
 #include "cuda/lanes/trace.h"
 #include "cuda/twin/twin_table.h"
 #include "strata/strata.h"
@@ -146,6 +148,97 @@ TEST_P(TwinOfDoubles, HasItsOwnKernelsAndSites) {
   }
 }
 
+// A lane's records of a block of pairs.
+struct BlockRun {
+  std::vector<double> values;
+  std::vector<RecordedPath> paths;
+
+  template <class Record>
+  BlockRun(const Lane& lane, std::size_t pairs, const Record& record)
+      : values(2 * questions_of(lane.algorithm).size() * pairs), paths(pairs) {
+    record(Records{values.data(), pairs, paths.data()});
+  }
+  // In how many pairs the path or some value's bits differ. NaNs are alike.
+  std::size_t differences(const BlockRun& other) const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      bool differs = paths[i].asked != other.paths[i].asked || paths[i].path != other.paths[i].path;
+      for (std::size_t at = i; at < values.size(); at += paths.size())
+        differs = differs || !same_bits(values[at], other.values[at]);
+      count += differs;
+    }
+    return count;
+  }
+};
+
+// Records all pairs of the sample in blocks and calls with_block(pairs of the block, index of its first pair).
+template <class WithBlock>
+void for_each_block(const WithBlock& with_block) {
+  const std::span<const DoublePair> pairs = double_sample();
+  for (std::size_t first = 0; first < pairs.size(); first += 500) with_block(pairs.subspan(first, 500), first);
+}
+
+template <class Function>
+BlockRun recorded(const Lane& lane, std::span<const DoublePair> pairs, const Function& function) {
+  return {lane, pairs.size(), [&](const Records& to) { function(pairs.data(), pairs.size(), to); }};
+}
+
+TEST_P(TwinOfDoubles, RecordsWithoutContractionAreTheCpuLanes) {
+  const Lane &cpu = sibling(Variant::cpu), &nofma = sibling(Variant::cuda_nofma);
+  ASSERT_EQ(double_sample().size() % 500, 0u);
+  std::size_t by_contraction = 0;
+  for_each_block([&](std::span<const DoublePair> pairs, std::size_t first) {
+    const BlockRun host = recorded(cpu, pairs, host_record_of_doubles(cpu));
+    ASSERT_EQ(recorded(nofma, pairs, twin_record_of_doubles(nofma)).differences(host), 0u) << first;
+    by_contraction += recorded(lane(), pairs, twin_record_of_doubles(lane())).differences(host);
+  });
+  EXPECT_GT(by_contraction * 5, double_sample().size());
+}
+
+TEST_P(TwinOfDoubles, RecordedVerdictsAreTheVerdicts) {
+  for (const Variant variant : {Variant::cuda_fma, Variant::cuda_nofma}) {
+    const std::vector<Verdict> verdicts = verdicts_in_double(block_on_host(sibling(variant)));
+    std::size_t differ = 0;
+    for_each_block([&](std::span<const DoublePair> pairs, std::size_t first) {
+      const BlockRun run = recorded(sibling(variant), pairs, twin_record_of_doubles(sibling(variant)));
+      for (std::size_t i = 0; i < pairs.size(); ++i)
+        differ += recorded_verdict(run.paths[i].path) != verdicts[first + i];
+    });
+    EXPECT_EQ(differ, 0u) << name(variant);
+  }
+}
+
+TEST_P(TwinOfDoubles, RecordsFusingAllSitesAreThoseOfCudaFmaAndNoneThoseOfCudaNofma) {
+  const std::size_t sites = record_sites_of_doubles(lane()).size();
+  ASSERT_GT(sites, 0u);
+  const std::vector<std::uint64_t> none((sites + 63) / 64, 0), all(none.size(), ~std::uint64_t{0});
+  for_each_block([&](std::span<const DoublePair> pairs, std::size_t first) {
+    if (first % 5'000 != 0) return;  // some of each stratum
+    for (const auto& [variant, mask] : {std::pair(Variant::cuda_fma, all), {Variant::cuda_nofma, none}}) {
+      const BlockRun run = recorded(sibling(variant), pairs, twin_record_of_doubles(sibling(variant)));
+      const BlockRun fusing(lane(), pairs.size(),
+                            [&, &of = mask](const Records& to) { record_fusing(lane(), pairs, to, of); });
+      EXPECT_EQ(fusing.differences(run), 0u) << first;
+    }
+  });
+  for (const ContractionSite& site : record_sites_of_doubles(lane())) {
+    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(GRAZE_SOURCE_DIR) / site.at.file)) << site.at.file;
+    EXPECT_GT(site.at.line, 0);
+  }
+}
+
+TEST_P(TwinOfDoubles, RecordsOfFloatsAreThoseOfTheTwinOfFloats) {
+  std::vector<Pair> floats;
+  std::vector<DoublePair> doubles;
+  for (std::uint64_t i = 0; i < 10'000; ++i) {
+    floats.push_back(strata::generate(7, strata::kStrata[i % strata::kStrataCount].stratum, i));
+    doubles.push_back(in_doubles(floats.back()));
+  }
+  const BlockRun of_floats(lane(), floats.size(),
+                           [&](const Records& to) { twin_record(lane())(floats.data(), floats.size(), to); });
+  EXPECT_EQ(recorded(lane(), doubles, twin_record_of_doubles(lane())).differences(of_floats), 0u);
+}
+
 // The evidence is that of the record for these kernels, not for those of float32.
 TEST_P(TwinOfDoubles, EvidenceSaysWhatTheRecordSays) {
   const auto record =
@@ -169,6 +262,9 @@ TEST_P(TwinOfDoubles, EvidenceSaysWhatTheRecordSays) {
 TEST(TwinOfDoubles, LanesInFloatHaveNone) {
   EXPECT_EQ(twin_of_doubles(*find_lane("moller_1997/f32/cuda-fma")), nullptr);
   EXPECT_FALSE(block_on_host(*find_lane("moller_1997/f32/cuda-fma")).decides_doubles());
+  EXPECT_EQ(twin_record_of_doubles(*find_lane("moller_1997/f32/cuda-fma")), nullptr);
+  EXPECT_TRUE(record_sites_of_doubles(*find_lane("moller_1997/f32/cuda-fma")).empty());
+  EXPECT_EQ(host_record_of_doubles(*find_lane("moller_1997/f32/cpu")), nullptr);
 }
 
 }  // namespace

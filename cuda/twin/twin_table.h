@@ -18,6 +18,10 @@ struct TwinFunctions {
   DecideWithin<AnyPair> absolute = nullptr, relative = nullptr;  // with tolerances: absolute; also relative
   TraceFunction<AnyPair> trace = nullptr;
   Verdict (*decide_fusing)(const AnyPair& pair, const std::uint64_t* fused) = nullptr;
+  // Of the kernel that records, in a table of its own: `sites` are then those of this kernel.
+  RecordFunction<AnyPair> record = nullptr;
+  void (*record_fusing)(const AnyPair* pairs, std::size_t count, const Records& to,
+                        const std::uint64_t* fused) = nullptr;
   const char* hash = "";
   const char* trace_hash = "";
   const char* symbol = "";  // name of the kernel that it replays
@@ -27,8 +31,6 @@ struct TwinFunctions {
 
 struct TwinRow : TwinFunctions<Pair> {
   TwinFunctions<DoublePair> doubles;  // of lanes in double
-  RecordBlock record = nullptr;       // its sites are `sites`
-  void (*record_fusing)(const Pair* pairs, std::size_t count, const Records& to, const std::uint64_t* fused) = nullptr;
 };
 
 struct TwinTable {

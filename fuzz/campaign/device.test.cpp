@@ -68,6 +68,30 @@ TEST_F(DeviceTest, DiscrepanciesAreThoseOfTheHost) {
   EXPECT_GT(verdicts, 1000u);
 }
 
+TEST_F(DeviceTest, DiscrepanciesOfDoublesAreThoseOfTheHost) {
+  std::uint64_t verdicts = 0;
+  for (const Variant second : {Variant::cuda_fma, Variant::cuda_nofma}) {
+    analysis::DiscrepancySpec spec;
+    spec.sources = strata::stratum_sources(8, 28 * 700, {}, PairTypes::f64);
+    for (const Lane& lane : published_lanes()) {
+      if (lane.variant == Variant::cpu && lane.scalar == Scalar::f64)
+        spec.lanes.emplace_back(lane, *counterpart(lane, second));
+    }
+    std::uint64_t different = 0;
+    for (const strata::PairSource& source : spec.sources)
+      different += cuda::count_different_runs(*spec.lanes[0].first, *spec.lanes[0].second, source);
+    EXPECT_EQ(different > 1000, second == Variant::cuda_fma) << different;
+    EXPECT_EQ(different == 0, second == Variant::cuda_nofma) << different;
+    const analysis::Discrepancies on_host = analysis::discrepancies(spec);
+    spec.on_device = true;
+    EXPECT_EQ(analysis::discrepancies(spec), on_host) << name(second);
+    for (const auto& of_lanes : on_host) {
+      for (const analysis::DiscrepancyCounts& counts : of_lanes) verdicts += counts.counts[5];  // pair_counts::verdict
+    }
+  }
+  EXPECT_GT(verdicts, 100u);
+}
+
 // A host lane has the same values as cuda-nofma, and count_different_runs finds lanes that do not.
 TEST_F(DeviceTest, RunsThatDifferAreFound) {
   const strata::PairSource source = strata::stratum_sources(8, 50'000, {"thesis"})[0];

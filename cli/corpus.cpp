@@ -122,7 +122,7 @@ void add(const CorpusOptions& options) {
   const std::size_t& not_run = count[3];
   std::vector<std::string> with_not_run;
   for (const auto& [name, failures] : found) {
-    if (std::any_of(failures.begin(), failures.end(), [](const auto& failure) { return !failure.pair.floats; }))
+    if (std::any_of(failures.begin(), failures.end(), [](const auto& failure) { return bool(failure.entry.doubles); }))
       fuzz::add_exact_on_doubles(under_test);
   }
   for (const auto& [name, failures] : found) {

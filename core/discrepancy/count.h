@@ -133,8 +133,10 @@ GRAZE_HD inline bool answers_otherwise(int order, int other, bool at_most) {
 
 // floor(log2(x)) of a positive number; for zero, less than for any other number.
 GRAZE_HD inline int log2_of(const DoubleDouble& x) {
-  const int k = floor_log2(x.hi);
-  return x.lo < 0 && x.hi == scalbn(1.0, k) ? k - 1 : k;
+  const bool is_subnormal = x.hi < 0x1p-1022;  // floor_log2 takes normal numbers
+  const double scale = is_subnormal ? 0x1p+54 : 1, hi = x.hi * scale, lo = x.lo * scale;
+  const int k = floor_log2(hi);
+  return (lo < 0 && hi == scalbn(1.0, k) ? k - 1 : k) - (is_subnormal ? 54 : 0);
 }
 
 // log2 of the ulp of numbers of this size.

@@ -12,12 +12,12 @@
 
 namespace graze::cuda {
 
-#define GRAZE_DECLARE(name)                                \
-  namespace name {                                         \
-  extern const VariantKernels kKernels;                    \
-  extern const WithinKernels kPolicyKernels;               \
-  extern const BoundKernels kBoundKernels;                 \
-  extern const RecordKernels kRecordKernels;               \
+#define GRAZE_DECLARE(name)                  \
+  namespace name {                           \
+  extern const VariantKernels kKernels;      \
+  extern const WithinKernels kPolicyKernels; \
+  extern const BoundKernels kBoundKernels;   \
+  extern const RecordKernels kRecordKernels; \
   }
 #define GRAZE_DECLARE_host_rounded(name)
 #define GRAZE_DECLARE_host_contracted(name)

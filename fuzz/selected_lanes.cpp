@@ -267,7 +267,9 @@ std::span<const LaneVerdicts> BlockVerdicts::decide(std::span<const Pair> pairs,
     if (!under_test_.on_device(l)) continue;
     const LaneVerdicts twin = verdicts_[l];
     const auto words_of = [&](std::span<const std::uint64_t> bits) { return bits.subspan(begin / 64, words); };
-    verdicts_[l] = {words_of(next_device->intersects), words_of(next_device->declined)};
+    const bool in_doubles = !doubles.empty() && under_test_.lanes[l]->scalar == Scalar::f64;
+    verdicts_[l] = {words_of(next_device->intersects), words_of(next_device->declined), nullptr, nullptr,
+                    in_doubles ? doubles.data() : nullptr};
     ++next_device;
     for (std::size_t i = 0; block && i < pairs.size(); ++i) {
       if (verdicts_[l].at(i) != twin.at(i)) apart(l, i);

@@ -112,11 +112,6 @@ std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& 
   if (choice == EngineChoice::cpu || (choice == EngineChoice::automatic && !campaign.under_test->device)) return {};
   if (!campaign.under_test->device)
     throw std::runtime_error("--engine gpu needs a CUDA device, and there is none; use --engine cpu");
-  for (const strata::PairSource& source : campaign.sources) {
-    if (!source.in_doubles()) continue;
-    if (choice == EngineChoice::automatic) return {};
-    throw UsageError("--engine gpu draws pairs of float32, and " + source.id + " has pairs of doubles");
-  }
   std::string hindrance;
   for (std::size_t l = 0; l < campaign.under_test->lanes.size(); ++l) {
     if (!campaign.under_test->on_device(l) || campaign.under_test->on_both(l))

@@ -118,8 +118,8 @@ TEST_F(DeviceTest, GpuEngineCpuEngineAndTwinsLeaveTheSameBytesOverAllStrata) {
 TEST_F(DeviceTest, DoublesAreDecidedAsByTheTwins) {
   select_for_doubles(twins_);
   select_for_doubles(on_device_);
-  const auto of_doubles = [&](const SelectedLanes& under_test, const std::string& name) {
-    Campaign c = campaign(under_test, name, 0, 0);
+  const auto of_doubles = [&](const SelectedLanes& under_test, const std::string& name, std::size_t engines = 0) {
+    Campaign c = campaign(under_test, name, 0, engines);
     c.sources = strata::stratum_sources(6, 28 * 5'000, {}, PairTypes::f64);
     return c;
   };
@@ -127,11 +127,30 @@ TEST_F(DeviceTest, DoublesAreDecidedAsByTheTwins) {
   const Json summary = run(of_doubles(on_device_, "device"));
   expect_same_bytes("twins", "device");
   EXPECT_GT(summary["signatures"].size(), 1000u);
+  run(of_doubles(on_device_, "engine", 1));
+  expect_same_bytes("twins", "engine");
+  const Json timings = Json::parse(read_whole(root_ / "engine" / "timings.json"));
+  EXPECT_GT(timings["oracle"]["exact"].get<std::uint64_t>(), 28u * 5'000 * 95 / 100);  // the host judged few
   // Fast math has no twin: its lanes decide doubles on a device alone.
   SelectedLanes fast = select_lanes({"*/f64/cuda-fast", "moller_1997/f64/cpu-fma"}, Executor::device);
   EXPECT_TRUE(select_for_doubles(fast).empty());
   const Json counts = run(of_doubles(fast, "fast"))["strata"]["near_edge_edge/f64"]["lanes"];
   EXPECT_EQ(counts.size(), 6u) << counts;
+}
+
+// Sources of both types take turns on one engine, which ends in the middle of a stratum.
+TEST_F(DeviceTest, TheEngineTakesBothTypesInParts) {
+  select_for_doubles(twins_);
+  select_for_doubles(on_device_);
+  const auto of_both = [&](const SelectedLanes& under_test, const std::string& name, std::size_t engines) {
+    Campaign c = campaign(under_test, name, 0, engines);
+    c.sources = strata::stratum_sources(6, 49 * 501, {}, PairTypes::both);
+    c.engine_batch = 333;
+    return c;
+  };
+  run(of_both(twins_, "twins", 0));
+  EXPECT_EQ(run_in_parts(of_both(on_device_, "engine", 1)), 49 * 2);
+  expect_same_bytes("twins", "engine");
 }
 
 TEST_F(DeviceTest, LanesUnderTolerancesDecideDoublesAsTheirTwins) {

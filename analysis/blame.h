@@ -29,6 +29,6 @@ Blame blame(const Lane& lane, const AnyPair& pair, const std::function<void()>& 
 
 // The same for foreign code, which may crash or hang when some of its operations are fused. The search runs in a
 // separate process, and each verdict may take `seconds`. Deterministic if the code never takes longer.
-Blame blame_apart(const Lane& lane, const Pair& pair, double seconds);
+Blame blame_apart(const Lane& lane, const AnyPair& pair, double seconds);
 
 }  // namespace graze::analysis

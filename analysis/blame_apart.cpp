@@ -6,7 +6,7 @@
 
 namespace graze::analysis {
 
-Blame blame_apart(const Lane& lane, const Pair& pair, double seconds) {
+Blame blame_apart(const Lane& lane, const AnyPair& pair, double seconds) {
   // The result: whether the set is the smallest, whether its lines decide, then its sites as raw memory. The sites'
   // pointers to text are valid in both processes.
   std::string bytes;

@@ -61,15 +61,18 @@ void compare_block(std::span<const BasicPair<Coordinate>> pairs, const Records& 
   }
 }
 
-template <class Coordinate>
-using CompareBlock = decltype(&compare_block<ProjectedSat, double, Coordinate>);
-
-// [algorithm][scalar]. Pairs of doubles are compared in double alone, so their entries for float are never called.
-template <class Coordinate, class... Algorithm>
-constexpr std::array<std::array<CompareBlock<Coordinate>, 2>, kAlgorithmCount> compare_blocks(
-    const std::tuple<Algorithm...>*) {
-  return {std::array<CompareBlock<Coordinate>, 2>{compare_block<Algorithm, Coordinate, Coordinate>,
-                                                  compare_block<Algorithm, double, Coordinate>}...};
+// Calls f<Algorithm, Real>() for the lane's algorithm and scalar.   Requires: pairs of doubles have a lane in double.
+template <class Coordinate, class F>
+void for_lane(const Lane& lane, const F& f) {
+  const auto call = [&]<class... Algorithm>(const std::tuple<Algorithm...>*) {
+    int algorithm = 0;
+    const auto in = [&]<class Own>() {
+      if (algorithm++ != lane.algorithm) return;
+      lane.scalar == Scalar::f64 ? f.template operator()<Own, double>() : f.template operator()<Own, Coordinate>();
+    };
+    (in.template operator()<Algorithm>(), ...);
+  };
+  call(static_cast<const Algorithms*>(nullptr));
 }
 
 void record(const Lane& lane, std::span<const Pair> pairs, const Records& to) {
@@ -107,12 +110,12 @@ std::uint64_t unlike(const Lane& lane, std::span<const BasicPair<Coordinate>> pa
 template <class Coordinate>
 void count_block(const LanesCompared& lanes, std::span<const BasicPair<Coordinate>> pairs, Axis axis,
                  DiscrepancyCounts& to) {
-  static constexpr auto kCompare = compare_blocks<Coordinate>(static_cast<const Algorithms*>(nullptr));
   const Lane& lane = *lanes.first;
   const Kept first(lane, pairs), second(*lanes.second, pairs);
   const std::vector<std::uint8_t> degrees = degrees_of(lane.algorithm);
-  kCompare[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)](
-      pairs, first.records, second.records, degrees.data(), axis, to);
+  for_lane<Coordinate>(lane, [&]<class Algorithm, class Real>() {
+    compare_block<Algorithm, Real>(pairs, first.records, second.records, degrees.data(), axis, to);
+  });
   to.unlike[0] += unlike(*lanes.first, pairs, first);
   to.unlike[1] += unlike(*lanes.second, pairs, second);
 }
@@ -155,25 +158,14 @@ void values_beside(const BasicPair<Coordinate>& pair, const Records& first, cons
 }
 
 template <class Coordinate>
-using ValuesBeside = decltype(&values_beside<ProjectedSat, double, Coordinate>);
-
-// As compare_blocks.
-template <class Coordinate, class... Algorithm>
-constexpr std::array<std::array<ValuesBeside<Coordinate>, 2>, kAlgorithmCount> values_of_both(
-    const std::tuple<Algorithm...>*) {
-  return {std::array<ValuesBeside<Coordinate>, 2>{values_beside<Algorithm, Coordinate, Coordinate>,
-                                                  values_beside<Algorithm, double, Coordinate>}...};
-}
-
-template <class Coordinate>
 RunsBeside runs_of_both(const LanesCompared& lanes, const BasicPair<Coordinate>& pair) {
-  static constexpr auto kBeside = values_of_both<Coordinate>(static_cast<const Algorithms*>(nullptr));
   const Lane& lane = *lanes.first;
   const std::span<const BasicPair<Coordinate>> one(&pair, 1);
   const Kept first(lane, one), second(*lanes.second, one);
   RunsBeside runs{{}, first.paths[0], second.paths[0]};
-  kBeside[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)](pair, first.records,
-                                                                                           second.records, runs.values);
+  for_lane<Coordinate>(lane, [&]<class Algorithm, class Real>() {
+    values_beside<Algorithm, Real>(pair, first.records, second.records, runs.values);
+  });
   return runs;
 }
 

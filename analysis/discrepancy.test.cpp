@@ -243,8 +243,9 @@ TEST(Discrepancy, SourcesOfBothTypesAddUp) {
 // 532 and the verdict on 1 in 3,330. Those figures cover all six distances, but the algorithm computes the last three
 // only if the first three do not separate. So this test takes the last three from the pair with its triangles swapped.
 TEST(Discrepancy, FindsTheSharesThatWereMeasuredByHand) {
+  constexpr int kPairs = 100'000;
   const LanesCompared lanes{lane("interval_overlap/f32/cpu"), lane("interval_overlap/f32/cuda-fma")};
-  const strata::PairSource source = strata::stratum_sources(2012, 200'000, {"thesis"})[0];
+  const strata::PairSource source = strata::stratum_sources(2012, kPairs, {"thesis"})[0];
   double differs = 0, signs = 0, verdicts = 0;
   for (std::uint64_t i = 0; i < source.pairs; ++i) {
     const Pair pair = source.pair(i), swapped{{pair.b[0], pair.b[1], pair.b[2]}, {pair.a[0], pair.a[1], pair.a[2]}};
@@ -263,7 +264,7 @@ TEST(Discrepancy, FindsTheSharesThatWereMeasuredByHand) {
     verdicts += static_cast<double>(count(of, pair_counts::verdict));
   }
   const auto expect = [](double counted, double share, const char* what) {
-    EXPECT_NEAR(counted, 200'000 * share, 4 * std::sqrt(200'000 * share * (1 - share)) + 1) << what;
+    EXPECT_NEAR(counted, kPairs * share, 4 * std::sqrt(kPairs * share * (1 - share)) + 1) << what;
   };
   expect(differs, 0.597, "a distance differs");
   expect(signs, 1.0 / 532, "its sign differs");

@@ -182,7 +182,7 @@ LaneExplanation account_of_foreign(const Lane& lane, Verdict verdict, const AnyP
   result.experiment = std::move(found.evidence);
   result.line = std::move(found.line);
   if (result.cause == Cause::contraction && !cuda::contraction_sites(lane).empty()) {
-    result.contractions = blame_apart(lane, pair.floats.value(), cuda::most_seconds(lane));
+    result.contractions = blame_apart(lane, pair, cuda::most_seconds(lane));
     if (!result.contractions.why_not.empty())
       result.experiment += "; which products matter is not known, for " + result.contractions.why_not;
     const Lane* cpu = counterpart(lane, Variant::cpu);

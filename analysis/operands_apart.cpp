@@ -37,7 +37,7 @@ class OperandCounts {
     }
   }
 
-  void count(const Pair& pair) {
+  void count(const AnyPair& pair) {
     run(pair, none_, rounded_run_);
     run(pair, all_, fused_run_);
     const bool differs = rounded_run_.verdict != fused_run_.verdict;
@@ -58,7 +58,7 @@ class OperandCounts {
   const OperandsApart& result() const { return result_; }
 
  private:
-  void run(const Pair& pair, const std::vector<std::uint64_t>& fused, Run& to) const {
+  void run(const AnyPair& pair, const std::vector<std::uint64_t>& fused, Run& to) const {
     to.verdict = cuda::decide_comparing(fused_, pair, fused, to.made, to.count);
   }
 
@@ -105,9 +105,9 @@ OperandsApart operands_apart(const Lane& fused, const std::vector<strata::PairSo
       [&](const ApartFrom& apart) {
         for (const strata::PairSource& source : sources) {
           for (std::uint64_t i = 0; i < std::min(pairs, source.pairs); ++i) {
-            const Pair pair = source.pair(i);
+            const AnyPair pair = source.any_pair(i);
             apart.alive();
-            if (is_finite(pair)) counts.count(pair);
+            if (is_finite(pair.doubles)) counts.count(pair);
           }
         }
         const OperandsApart& found = counts.result();

@@ -111,9 +111,9 @@ void write_report(const std::string& directory);
 // Adds --scene to a verb that draws pairs, after --coordinates, if it has that option.
 void add_scene_option(CLI::App& command, std::string& file);
 
-// Measures the mesh in float32 and writes its scene to the file, as `graze scene MESH --out FILE` does.   Throws: as
-// it.
-void write_scene_of(const std::string& mesh, const std::string& out);
+// Measures the mesh, in this type or else in the one it needs, and writes its scene to the file, as
+// `graze scene MESH --out FILE` does.   Throws: as it.
+void write_scene_of(const std::string& mesh, const std::string& out, std::optional<PairTypes> type);
 
 // Prints the sentences of `graze scene --sufficient RATE`: the cheapest published host lane that is wrong on at most
 // this share of the scene's pairs, what `exact` costs, and the strata that the scene leaves out.   Throws: as drawn.
@@ -133,8 +133,7 @@ enum class OfBothTypes { no, yes };
 void add_coordinates_option(CLI::App& command, PairTypes& types, OfBothTypes both = OfBothTypes::yes);
 // Without --coordinates, pairs in a scene have the scene's type.   Throws: as fuzz::open_scene.
 void take_type_of_scene(const CLI::App& command, const std::string& scene, PairTypes& types);
-// Throws: UsageError, naming the verb, if the scene is one of doubles.
-void expect_float32_scene(const std::string& scene, const char* verb);
+PairTypes type_of_scene(const std::string& scene);
 
 // Lists the strata that the scene cannot contain, with the reasons, below a heading; empty for none.
 std::string left_out_text(const std::vector<strata::LeftOut>& left_out);

@@ -258,7 +258,7 @@ int discrepancy(DiscrepancyOptions options) {
   for (const analysis::TwoDeciders& deciders : comparisons.verdicts) {
     const Lane &first = *deciders.lanes[0], &second = *deciders.lanes[1];
     std::optional<analysis::OperandsApart> operands;
-    if (!in_doubles && analysis::shows_operands(first, second))
+    if (analysis::shows_operands(first, second))
       operands = analysis::operands_apart(second, spec.sources, kOriginPairs / spec.sources.size());
     const auto apart = analysis::verdicts_apart(deciders, spec.sources, options.threads, shows_better);
     verdicts.push_back(reports::verdicts_json(deciders, spec.sources, apart, operands ? &*operands : nullptr));

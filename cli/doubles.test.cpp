@@ -857,12 +857,84 @@ TEST_F(Doubles, EveryVerbDrawsAScenesDoubles) {
   // What takes float32 alone says so.
   expect_error("graze discrepancy moller_1997/f32/cpu moller_1997/f32/cpu-fma --scene survey.toml", 2,
                {"pairs of float32 alone"});
-  expect_error("graze scene survey.toml --sufficient 0.01", 2, {"survey.toml", "float32", "doubles", "--sufficient"});
-  expect_error("graze try mine.c:meet survey.toml", 2, {"try", "survey.toml", "float32", "doubles"});
   expect_error("graze view uniform/f64@survey.toml:1:2", 2, {"doubles", "float32"});
   expect_error("graze fuzz --scene survey.toml --strata large_offset --out n", 2, {"large_offset/f64", "5400300"});
   expect_error("sed 's/, 30]/, 3]/' survey.toml > fine.toml; graze explain uniform@fine.toml:1:2", 2,
                {"float32", "8 ulps", "doubles"});
+}
+
+// What is said to suffice keeps the rate in a fresh campaign of the scene's doubles.
+TEST_F(Doubles, WhatSufficesIsJudgedOnAScenesDoubles) {
+  write_survey();
+  const Ran ran = shell("graze scene survey.toml --sufficient 0.05 | tr '\\n' ' '");
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(
+      ran.out, found,
+      std::regex("(?:use|that suffices is):? ([a-z_0-9]+/f64/cpu[^,]*), at 95 % confidence wrong on under")))
+      << ran.out << ran.err;
+  EXPECT_NE(ran.out.find("exact/f64/cpu"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("No published lane of f32 is shown to suffice"), std::string::npos) << ran.out;
+  const std::string lane = found[1];
+  expect_done("graze fuzz --scene survey.toml --pairs 40k --seed 77 --lanes " + lane + " --out fresh");
+  const Json summary = Json::parse(contents(shell.folder / "fresh/summary.json"));
+  double wrong = 0, pairs = 0;
+  for (const auto& [source, row] : summary["strata"].items()) {
+    EXPECT_TRUE(source.ends_with("/f64")) << source;
+    pairs += row["pairs"].get<double>();
+    for (const char* kind : {"false_positive", "false_negative"}) wrong += row["lanes"][lane][kind].get<double>();
+  }
+  EXPECT_LT(wrong / pairs, 0.055) << lane;
+}
+
+// Boxes alone, of doubles and of floats: on a site in UTM coordinates the first get its doubles.
+TEST_F(Doubles, TryTakesTheDoublesOfCodeInDouble) {
+  write_survey();
+  for (const char* real : {"double", "float"}) {
+    std::ofstream(shell.folder / (std::string(real) + ".cpp"))
+        << "#include <algorithm>\nbool meet(const " << real << " p[9], const " << real
+        << " q[9]) {\n  for (int i = 0; i < 3; ++i)\n    if (std::max({p[i], p[i + 3], p[i + 6]}) + 1e-9 < "
+           "std::min({q[i], q[i "
+           "+ 3], q[i + 6]}) ||\n        std::max({q[i], q[i + 3], q[i + 6]}) < std::min({p[i], p[i + 3], p[i + 6]}))\n"
+           "      return false;\n  return true;\n}\n";
+  }
+  std::ofstream(shell.folder / "walls.off")
+      << "OFF\n9 3 0\n500000.25 5400000.01 0\n500003.25 5400000.01 0\n500000.25 5400000.01 3\n500000.25 5400000.02 "
+         "0\n500003.25 5400000.02 0\n500000.25 5400000.02 3\n500001.25 5399999.01 1\n500001.25 5400001.01 1\n500001.25 "
+         "5399999.01 3\n3 0 1 2\n3 3 4 5\n3 6 7 8\n";
+  const auto tried = [&](const std::string& arguments) {
+    const Ran ran = shell("export XDG_CACHE_HOME=$PWD/cache; graze try " + arguments + " --pairs 300 --json");
+    EXPECT_EQ(ran.status, 0) << arguments << ran.err;
+    return Json::parse(ran.out, nullptr, false);
+  };
+  for (const std::string in : {"walls.off", "survey.toml", "--coordinates f64"}) {
+    const Json answer = tried("double.cpp:meet " + in);
+    EXPECT_EQ(answer["lane"], "double/f64/cpu") << in;
+    EXPECT_GT(answer["wrong"]["count"], 25) << in;
+    EXPECT_EQ(answer["test"], "try/case.cpp") << in;
+    EXPECT_EQ(answer["nanoseconds_a_call"]["exact"]["lane"], "exact/f64/cpu") << in;
+    EXPECT_NE(answer["epsilon"].get<std::string>().find("1e-9"), std::string::npos) << answer["epsilon"];
+    const Json strata = Json::parse(contents(shell.folder / "try/summary.json"))["strata"];
+    for (const auto& [source, row] : strata.items()) {
+      EXPECT_TRUE(source.ends_with("/f64")) << source;
+      const Json lanes = row["lanes"];
+      ASSERT_TRUE(lanes.contains("exact/f64/cpu"));
+    }
+    const std::string file = answer["failures"][0]["case"];
+    EXPECT_NE(contents(shell.folder / file).find("coordinates=f64"), std::string::npos) << file;
+    expect_done("export XDG_CACHE_HOME=$PWD/cache; graze explain " + file);
+    EXPECT_EQ(answer["again"].get<std::string>().find("--coordinates f64") != std::string::npos, in.starts_with("--"))
+        << answer["again"];
+  }
+  // The screen names the exact lane of doubles, and the command for more keeps the type.
+  const Ran screen =
+      shell("export XDG_CACHE_HOME=$PWD/cache; graze try double.cpp:meet --coordinates f64 --pairs 300 --out screen");
+  EXPECT_NE(screen.out.find("Instead: exact/f64/cpu is right on all 300 pairs."), std::string::npos) << screen.out;
+  // Code in float gets a mesh as float32 stores it, unless the user asks; then errors by storing are its own.
+  tried("float.cpp:meet walls.off --out f");
+  EXPECT_TRUE(Json::parse(contents(shell.folder / "f/summary.json"))["strata"].contains("mesh"));
+  tried("float.cpp:meet survey.toml --out g");
+  const Json stored = Json::parse(contents(shell.folder / "g/summary.json"))["strata"]["uniform/f64"]["lanes"];
+  EXPECT_TRUE(stored["float/f32/cpu"].contains("stored")) << stored;
 }
 
 TEST_F(Doubles, VerbsThatTakeFloat32AloneSaySo) {

@@ -246,6 +246,37 @@ TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
 }
 
 // The cpu lane of a __host__ __device__ function is what its CUDA lanes are compared with.
+// As the test below, on a pair of doubles.
+TEST_F(OwnCodeTest, CudaInDoubleIsExplainedOnDoubles) {
+  shell(
+      "cat > own.cu <<'EOF'\n"
+      "__host__ __device__ inline double product(const double* t) {\n"
+      "  return t[0] * t[1] - t[3] * t[4];\n"
+      "}\n"
+      "__host__ __device__ bool both(const double* a, const double* b) {\n"
+      "  return product(a) != 0;\n"
+      "}\nEOF\n"
+      "echo '0x1.0000000000001p+0 0x1.0000000000001p+0 1 0x1.0000000000002p+0 1 1 3 3 1  0x1.0000000000003p+0 1 9 "
+      "0x1.0000000000006p+0 1.5 9 0 2 9' > p");
+  const std::string cached = "export XDG_CACHE_HOME=$PWD/cache; ", both = " --subject own=./own.cu:both ";
+  const Ran named = shell(cached + "graze explain p --lanes 'own/*'" + both + "| tr -s ' \\n' ' '");
+  if (named.err.find("NVRTC") != std::string::npos) GTEST_SKIP() << "no NVRTC";
+  EXPECT_NE(
+      named.out.find("own/f64/cuda-fma differs from cpu by contraction at own.cu:2 (inlined at own.cu:5): with the "
+                     "products there rounded it says disjoint, as cpu does."),
+      std::string::npos)
+      << named.out << named.err;
+  // The operands of its comparison differ by line.
+  expect_done(cached +
+              "graze discrepancy own/f64/cuda-nofma own/f64/cuda-fma --coordinates f64 --strata exact_contact --pairs "
+              "300 --executor twin --out d" +
+              both);
+  const auto found = nlohmann::json::parse(contents(shell.folder / "d/discrepancy.json"));
+  const auto& operands = found["verdicts"][0]["operands"];
+  EXPECT_GT(operands["lines"][0]["differs"].get<int>(), 50) << operands;
+  EXPECT_NE(operands["lines"][0]["line"].get<std::string>().find("own.cu:5"), std::string::npos) << operands;
+}
+
 TEST_F(OwnCodeTest, CudaAgainstCpuIsExplained) {
   shell(
       "cat > own.cu <<'EOF'\n"

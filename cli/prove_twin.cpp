@@ -25,15 +25,15 @@ cuda::ProofRecord record_of(const cuda::ProofOptions& options, const LaneOptions
   open_subjects(lanes);
   std::vector<cuda::NamedBuild> builds = subjects::cuda_builds();
   std::erase_if(builds, [&](const cuda::NamedBuild& named) {
-    return named.build->twin.empty() || !matches_any(options.lanes, named.lane);
+    return named.build->twin.empty() || !matches_any(options.lanes, named.lane) ||
+           (options.of_doubles && named.build->scalar != Scalar::f64);
   });
   if (lanes.subjects.empty()) return cuda::prove_twin(options);
-  if (options.of_doubles)
-    throw UsageError("--coordinates f64: the twins of subjects take pairs of float32 alone; leave out --coordinates");
-  if (builds.empty()) throw UsageError("none of the subjects is a CUDA source with a twin");
+  const std::string of = options.of_doubles ? "of a function of doubles " : "";
+  if (builds.empty()) throw UsageError("none of the subjects is a CUDA source " + of + "with a twin");
   for (const std::string& name : subject_names(lanes)) {
     if (std::none_of(builds.begin(), builds.end(), [&](auto& named) { return named.lane.starts_with(name + '/'); }))
-      throw UsageError(fmt::format("--subject {}: it is no CUDA source with a twin that --lanes selects", name));
+      throw UsageError(fmt::format("--subject {}: it is no CUDA source {}with a twin that --lanes selects", name, of));
   }
   if (out.empty())
     out = subjects::proof_file(subjects::opened(parse_lane_name(builds[0].lane)->subject)->file).string();

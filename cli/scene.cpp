@@ -168,11 +168,11 @@ void scene(const SceneVerb& options) {
 
 }  // namespace
 
-void write_scene_of(const std::string& mesh, const std::string& out) {
+void write_scene_of(const std::string& mesh, const std::string& out, std::optional<PairTypes> type) {
   SceneVerb options;
   options.files = {mesh};
   options.out = out;
-  options.coordinates = PairTypes::f32;
+  options.coordinates = type;
   write_scene(options);
 }
 
@@ -266,12 +266,11 @@ void add_coordinates_option(CLI::App& command, PairTypes& types, OfBothTypes bot
 void take_type_of_scene(const CLI::App& command, const std::string& scene, PairTypes& types) {
   if (scene.empty() || command.count("--coordinates") > 0) return;
   expect_utf8("--scene", scene);
-  types = fuzz::open_scene(scene).scene.in_doubles ? PairTypes::f64 : PairTypes::f32;
+  types = type_of_scene(scene);
 }
 
-void expect_float32_scene(const std::string& scene, const char* verb) {
-  if (fuzz::open_scene(scene).scene.in_doubles)
-    throw UsageError(fmt::format("`graze {}` draws pairs of float32, and {} is a scene of doubles", verb, scene));
+PairTypes type_of_scene(const std::string& scene) {
+  return fuzz::open_scene(scene).scene.in_doubles ? PairTypes::f64 : PairTypes::f32;
 }
 
 strata::SceneSources drawn(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,

@@ -7,10 +7,10 @@
 
 #include "analysis/pareto.h"
 #include "analysis/tuning.h"
-#include "backends/backends.h"
 #include "cli/commands.h"
 #include "cli/screen.h"
 #include "fuzz/campaign/campaign.h"
+#include "fuzz/selected_lanes.h"
 #include "reports/cost_words.h"
 #include "reports/sufficient.h"
 #include "reports/terminal.h"
@@ -28,8 +28,9 @@ constexpr int kPasses = 9;
 std::uint64_t pairs_for(double rate) { return std::max<std::uint64_t>(100'000, std::llround(std::ceil(6 / rate))); }
 
 // Pairs to choose on and to judge by: all but a mesh's own, which do not depend on the seed and are left for the end.
-std::vector<strata::PairSource> pairs_before(const std::string& scene, std::uint64_t seed, std::uint64_t pairs) {
-  std::vector<strata::PairSource> sources = drawn(scene, seed, pairs, {}).sources;
+std::vector<strata::PairSource> pairs_before(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
+                                             PairTypes types) {
+  std::vector<strata::PairSource> sources = drawn(scene, seed, pairs, {}, types).sources;
   std::erase_if(sources, [](const strata::PairSource& source) { return source.id == "mesh"; });
   return sources;
 }
@@ -37,11 +38,11 @@ std::vector<strata::PairSource> pairs_before(const std::string& scene, std::uint
 }  // namespace
 
 void print_sufficient(const std::string& scene, double rate) {
-  expect_float32_scene(scene, "scene --sufficient");
+  const PairTypes types = type_of_scene(scene);
   const std::uint64_t pairs = pairs_for(rate);
   analysis::TuneSpec spec;
-  spec.sources = pairs_before(scene, 1, pairs / 10);
-  spec.others = pairs_before(scene, 2, pairs);
+  spec.sources = pairs_before(scene, 1, pairs / 10, types);
+  spec.others = pairs_before(scene, 2, pairs, types);
   spec.max_rate = rate;
   std::vector<Candidate> candidates;
   std::vector<Lane> lanes;  // under their tolerances
@@ -58,13 +59,13 @@ void print_sufficient(const std::string& scene, double rate) {
     lanes.push_back(lane);
     candidates.push_back({lane.id, lane.scalar, analysis::TuneResult::satisfied, tuned.zero_confirmed, bound, {}});
   }
-  const Lane& exact = backends::exact_beside(lanes.front());
+  const Lane& exact = *find_lane(types == PairTypes::f64 ? fuzz::kExactDoubles : fuzz::kExactLane);
   std::vector<DecideBlock> timed{exact.decide};
   for (const Lane& lane : lanes) timed.push_back(lane.decide);
   const std::vector<analysis::Cost> costs =
       analysis::costs_of(timed, analysis::first_pairs(spec.others, kTimed), kPasses);
   for (std::size_t c = 0; c < candidates.size(); ++c) candidates[c].cost = costs[c + 1];
-  const strata::SceneSources last = drawn(scene, 3, pairs, {});
+  const strata::SceneSources last = drawn(scene, 3, pairs, {}, types);
   // The cheapest was chosen among lanes that passed by their errors on these pairs, so others confirm it.
   for (int best; (best = reports::cheapest_sufficient(candidates)) >= 0;) {
     Candidate& chosen = candidates[static_cast<std::size_t>(best)];

@@ -59,6 +59,7 @@ struct TryOptions {
   std::string source, where;
   std::uint64_t pairs = 0;  // 0: the default of the kind of code
   double timeout = 0;       // likewise
+  bool names_coordinates = false;
   FuzzOptions fuzz;
   bool json = false;
 };
@@ -77,7 +78,7 @@ FuzzOptions campaign_options(const TryOptions& options, const TriedCode& code) {
   fuzz.out = folder_named(options.fuzz.out);
   fuzz.pairs = options.pairs > 0 ? options.pairs : code.is_program ? kPairsOfProgram : kPairsOfCode;
   fuzz.lanes.subjects = {code.name + '=' + code.what};
-  fuzz.lanes.globs = {code.name + "/*"};
+  fuzz.lanes.globs = {code.name + "/*", "exact/*/cpu"};
   fuzz.lanes.timeout = options.timeout > 0 ? options.timeout : code.is_program ? kProgramsTimeout : 1;
   return fuzz;
 }
@@ -90,6 +91,8 @@ std::string with_more_pairs(const TryOptions& options, const FuzzOptions& fuzz) 
   if (fuzz.seed != FuzzOptions().seed) command += fmt::format(" --seed {}", fuzz.seed);
   for (const std::string& flags : fuzz.lanes.flags) command += ' ' + shell_word("--flags=" + flags);
   if (options.timeout > 0) command += fmt::format(" --subject-timeout {}", options.timeout);
+  if (options.names_coordinates)
+    command += fmt::format(" --coordinates {}", fuzz.coordinates == PairTypes::f64 ? "f64" : "f32");
   if (fuzz.out != kOut) command += " --out " + path_word(fuzz.out);
   if (fuzz::may_replace_foreign) command += " --force";
   return command;
@@ -142,8 +145,8 @@ Json minimised_kinds(const fuzz::SelectedLanes& under_test, const fs::path& dire
         if (done.contains(place)) {
           left -= left > 0;
         } else {
-          of_kind.emplace_back(simplicity(fuzz::read_cases(directory, summary["spec"], rows[place]).front().pair),
-                               place);
+          const corpus::Entry simplest = fuzz::read_cases(directory, summary["spec"], rows[place]).front();
+          of_kind.emplace_back(visit(simplest, [](const auto& pair) { return simplicity(pair); }), place);
         }
       }
       std::sort(of_kind.begin(), of_kind.end());
@@ -178,7 +181,8 @@ std::string write_test(const Answer& answer, const fuzz::SelectedLanes& under_te
   if (answer.told.empty()) return "";
   const std::string file = case_of(answer, answer.told[0]), test = answer.directory + "/case.cpp";
   try {
-    std::string program = emit(reports::SnippetKind::gtest, file, corpus::read_pairs(file), under_test);
+    std::string program =
+        emit(reports::SnippetKind::gtest, file, corpus::read_pairs(file, PairTypes::both), under_test);
     const fs::path source = subjects::opened(answer.code.name)->file;
     const std::string absolute = "#include \"" + source.string();
     if (const std::size_t at = program.find(absolute); at != program.npos)
@@ -244,7 +248,9 @@ void expect_answers(const TriedCode& code, const fuzz::SelectedLanes& under_test
   std::string failed;
   bool all_crashed = true, unstable = false;
   for (std::uint64_t i = 0; i < std::min(kAsked, source.pairs); ++i) {
-    const Verdict verdict = decide_one(decide, source.pair(i));
+    const AnyPair pair = source.any_pair(i);
+    const bool as_it_is = !pair.floats && decide.decides_doubles();
+    const Verdict verdict = as_it_is ? decide_one(decide, pair.doubles) : decide_one(decide, pair.in_float32());
     if (!is_failure(verdict)) return;
     all_crashed &= verdict == Verdict::crashed;
     unstable |= verdict == Verdict::unstable;
@@ -252,7 +258,7 @@ void expect_answers(const TriedCode& code, const fuzz::SelectedLanes& under_test
   }
   std::string hint = "call it by hand to see why";
   if (code.is_program) {
-    const std::string pair = fuzz::pair_text(source.pair(0)),
+    const std::string pair = fuzz::pair_text(source.any_pair(0).in_float32()),
                       words = all_crashed ? last_words(code, pair, seconds) : "";
     hint =
         fmt::format("{}; to see {}: {}",
@@ -275,14 +281,21 @@ int try_source(const TryOptions& options) {
   Answer answer;
   answer.code = code_of(options.source, out);
   FuzzOptions fuzz = campaign_options(options, answer.code);
-  const fuzz::SelectedLanes under_test = lanes_of_campaign(fuzz);
+  fuzz::SelectedLanes under_test = lanes_of_campaign(fuzz);
+  const bool in_double = std::any_of(under_test.lanes.begin(), under_test.lanes.end(), [&](const Lane* lane) {
+    return lane->lane_name().subject == answer.code.name && lane->scalar == Scalar::f64;
+  });
   if (is_scene(options.where)) {
-    expect_float32_scene(options.where, "try");
     fuzz.scene = options.where;
   } else if (!options.where.empty()) {
     fuzz.scene = answer.scene = fuzz.out + ".toml";
-    write_scene_of(options.where, fuzz.scene);
+    write_scene_of(options.where, fuzz.scene,
+                   options.names_coordinates ? std::optional(fuzz.coordinates)
+                   : in_double               ? std::nullopt
+                                             : std::optional(PairTypes::f32));
   }
+  if (!fuzz.scene.empty() && !options.names_coordinates) fuzz.coordinates = type_of_scene(fuzz.scene);
+  if (fuzz.coordinates == PairTypes::f64) take_doubles(under_test);
   const fuzz::Campaign campaign = campaign_of(fuzz, under_test, answer.left_out);
   catch_interrupts();
   expect_answers(answer.code, under_test, campaign.sources.front(), fuzz.lanes.timeout);
@@ -344,6 +357,9 @@ void add_try(CLI::App& app, int& status) {
       ->transform(whole_number(1, kMostWhole))
       ->option_text("N");
   add_count(*command, "--seed", options->fuzz.seed, 0, kMostWhole, "Seed of the pairs");
+  add_coordinates_option(*command, options->fuzz.coordinates, OfBothTypes::no);
+  command->get_option("--coordinates")
+      ->default_str("f32, those of the scene, or f64 for a mesh that needs it and code in double");
   add_threads_option(*command, options->fuzz.threads);
   command
       ->add_option("--flags", options->fuzz.lanes.flags, "Compiler flags for a source, such as --flags='-O3 -Iinclude'")
@@ -361,7 +377,10 @@ void add_try(CLI::App& app, int& status) {
       ->option_text("DIR");
   command->add_flag("--json", options->json, "Print the answer as JSON");
   add_junit(*command, options->fuzz.junit, "one test for each build and stratum");
-  command->callback([options, &status] { status = try_source(*options); });
+  command->callback([options, command, &status] {
+    options->names_coordinates = command->count("--coordinates") > 0;
+    status = try_source(*options);
+  });
 }
 
 }  // namespace graze::cli

@@ -336,7 +336,7 @@ TEST_F(TryCommand, NamesTheEpsilonAndTheCommandThatTunesIt) {
   EXPECT_EQ(answer_of("tiny.cpp:meet --pairs 300 --out tiny")["wrong"]["count"], changed[1] - changed[0] + changed[2]);
   const Ran screen = shell("graze try one.cpp:meet --pairs 300");
   EXPECT_NE(screen.out.find("\nTune it: graze tune one/f32/cpu --from try\n"), std::string::npos) << screen.out;
-  expect_done("export XDG_CACHE_HOME=$PWD/cache; " + one["tune"].get<std::string>());
+  expect_done("export XDG_CACHE_HOME=$PWD/cache; " + one["tune"].get<std::string>() + " --pairs 2000");
   write("two.cpp", "const float kEps = 1e-6f;\nconst float kTol = 1e-4f;\n" + by_x + "kEps * kTol; }\n");
   const Json two = answer_of("two.cpp:meet --pairs 300 --out two");
   EXPECT_TRUE(names(two["epsilon"].get<std::string>(), {"1e-6f at two.cpp:1 and 1e-4f at two.cpp:2"}))

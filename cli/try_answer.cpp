@@ -76,17 +76,18 @@ std::string costs_in_words(const CallCosts& costs) {
 
 // own: the user's lane.
 std::string exact_in_words(const Lane& exact, const reports::ReportLane& own, const reports::CampaignCounts& counts) {
+  const bool of_float32 = exact.scalar == Scalar::f32;
   const std::uint64_t not_right =
       counts.total.lanes[static_cast<std::size_t>(counts.find(exact.lane_name()))].not_right();
-  return fmt::format(
-      "Instead: {} is {}{}.", exact.id,
-      not_right == 0 ? fmt::format("right on all {} pairs", reports::grouped(counts.total.pairs))
-                     : fmt::format("not right on {}, which must never happen", reports::counted(not_right, "pair")),
-      own.name.scalar == name(Scalar::f64)
-          ? fmt::format(", which are of float32; of pairs of doubles {} is right, and `graze fuzz --coordinates f64` "
-                        "draws them",
-                        fuzz::kExactDoubles)
-          : "");
+  return fmt::format("Instead: {} is {}{}.", exact.id,
+                     not_right == 0
+                         ? fmt::format("right on all {} pairs", reports::grouped(counts.total.pairs))
+                         : fmt::format("not right on {}, which must never happen", reports::counted(not_right, "pair")),
+                     of_float32 && own.name.scalar == name(Scalar::f64)
+                         ? fmt::format(", which are of float32; of pairs of doubles {} is right, and --coordinates f64 "
+                                       "draws them",
+                                       fuzz::kExactDoubles)
+                         : "");
 }
 
 std::string left_out_in_words(const std::vector<strata::LeftOut>& left_out) {
@@ -103,9 +104,10 @@ std::string left_out_in_words(const std::vector<strata::LeftOut>& left_out) {
 }  // namespace
 
 CallCosts call_costs(const Lane& own, const std::vector<strata::PairSource>& sources) {
-  std::vector<const Lane*> timed = {&own, find_lane(fuzz::kExactLane)};
+  const bool in_doubles = analysis::any_in_doubles(sources);
+  std::vector<const Lane*> timed = {&own, find_lane(in_doubles ? fuzz::kExactDoubles : fuzz::kExactLane)};
   for (const Lane& lane : published_lanes()) {
-    if (lane.variant == Variant::cpu && lane.scalar == Scalar::f32) timed.push_back(&lane);
+    if (lane.variant == Variant::cpu && lane.scalar == (in_doubles ? Scalar::f64 : Scalar::f32)) timed.push_back(&lane);
   }
   const strata::PairBlock pairs = analysis::first_pairs(sources, kPairsCalled);
   const std::vector<std::optional<analysis::Cost>> costs =

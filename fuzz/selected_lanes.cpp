@@ -241,7 +241,7 @@ void add_exact_on_doubles(SelectedLanes& under_test) {
 std::vector<LaneLeftOut> select_for_doubles(SelectedLanes& under_test) {
   add_exact_on_doubles(under_test);
   return leave_out(under_test, [&](const Lane& lane) {
-    const bool by_device = under_test.device && backend_of(lane).has_device && lane.scalar == Scalar::f64;
+    const bool by_device = under_test.device && backend_of(lane).has_device;
     return by_device || takes(lane, DoublePair{}) ? "" : "takes pairs of float32 alone";
   });
 }
@@ -267,7 +267,9 @@ std::span<const LaneVerdicts> BlockVerdicts::decide(std::span<const Pair> pairs,
     if (!under_test_.on_device(l)) continue;
     const LaneVerdicts twin = verdicts_[l];
     const auto words_of = [&](std::span<const std::uint64_t> bits) { return bits.subspan(begin / 64, words); };
-    verdicts_[l] = {words_of(next_device->intersects), words_of(next_device->declined)};
+    const bool in_doubles = !doubles.empty() && under_test_.lanes[l]->scalar == Scalar::f64;
+    verdicts_[l] = {words_of(next_device->intersects), words_of(next_device->declined), nullptr, nullptr,
+                    in_doubles ? doubles.data() : nullptr};
     ++next_device;
     for (std::size_t i = 0; block && i < pairs.size(); ++i) {
       if (verdicts_[l].at(i) != twin.at(i)) apart(l, i);

@@ -9,6 +9,7 @@
 
 #include "core/margin/margin.h"
 #include "core/margin/single_precision.h"
+#include "core/margin/stored_margin.h"
 #include "core/margin/tie_proof.h"
 #include "oracle/exact_margin.h"
 #include "oracle/test_pairs.h"
@@ -23,7 +24,8 @@ using oracle_test::PairSource;
 
 constexpr std::uint64_t kSeed = 20240502;
 
-SquaredMargin exact_margin(const Pair& pair, Verdict verdict) {
+template <class Real>
+SquaredMargin exact_margin(const BasicPair<Real>& pair, Verdict verdict) {
   const Grid grid = grid_of(pair);
   const LargePair large = large_integers(pair, grid);
   return verdict == Verdict::disjoint ? exact_distance(large, grid.exponent)
@@ -42,6 +44,13 @@ bool expect_bounds(const Pair& pair, Verdict verdict, double exact, Bucket expec
   return true;
 }
 
+template <class Real>
+Bucket exact_bucket(const BasicPair<Real>& pair, Verdict verdict) {
+  const SquaredMargin exact = exact_margin(pair, verdict);
+  return exact.numerator == 0 ? Bucket{0}
+                              : make_bucket(verdict == Verdict::disjoint ? 1 : -1, floor_log2(exact) - log2_ulp(pair));
+}
+
 TEST(MarginBucket, IsTheExactMarginsBucket) {
   for (const Kind kind : oracle_test::kKinds) {
     PairSource source(kind, kSeed);
@@ -51,8 +60,7 @@ TEST(MarginBucket, IsTheExactMarginsBucket) {
       const Pair pair = source.next();
       const Verdict verdict = cgal_verdict(pair);
       const SquaredMargin exact = exact_margin(pair, verdict);
-      const int ulp = log2_ulp(pair), sign = verdict == Verdict::disjoint ? 1 : -1;
-      const Bucket expected = exact.numerator == 0 ? Bucket{0} : make_bucket(sign, floor_log2(exact) - ulp);
+      const Bucket expected = exact_bucket(pair, verdict);
       ASSERT_EQ(margin_bucket(pair, verdict), expected) << hex(pair);
 
       const bool by_double = expect_bounds<double>(pair, verdict, rounded(exact), expected);
@@ -63,6 +71,22 @@ TEST(MarginBucket, IsTheExactMarginsBucket) {
     }
     RecordProperty("more_by_two_doubles_kind_" + std::to_string(static_cast<int>(kind)), more);
     RecordProperty("certain_percent_kind_" + std::to_string(static_cast<int>(kind)), 100 * certain / kPairs);
+  }
+}
+
+// Pairs of doubles near 1, of the whole range, and with subnormal or huge coordinates.
+TEST(MarginBucket, OfDoublesIsTheExactMarginsBucket) {
+  for (const Kind kind : oracle_test::kKinds) {
+    oracle_test::BasicPairSource<double> source(kind, kSeed + 7);
+    for (int n = 0; n < 3000; ++n) {
+      DoublePair pair = source.next();
+      const int shift[] = {0, 0, -1000, 900};
+      double* c = &pair.a[0].x;
+      for (int i = 0; i < kCoordinates; ++i) c[i] = std::ldexp(c[i], shift[n % 4]);
+      if (!is_finite(pair)) continue;
+      const Verdict verdict = cgal_verdict(pair);
+      ASSERT_EQ(margin_bucket(pair, verdict), exact_bucket(pair, verdict)) << hex(pair);
+    }
   }
 }
 
@@ -260,6 +284,59 @@ bool holds(const MarginBounds& bounds, const SquaredMargin& exact) {
   return lo * lo <= squared && squared <= hi * hi;
 }
 
+TEST(MarginBounds, HoldTheExactMarginOfDoublesOnTheGridOfFloats) {
+  int tried = 0, certain = 0, more = 0;
+  for (const Kind kind : oracle_test::kKinds) {
+    oracle_test::BasicPairSource<double> source(kind, kSeed + 6);
+    for (int n = 0; n < 1000; ++n) {
+      const DoublePair pair = source.next();
+      if (!on_grid_of_floats(pair)) continue;
+      ++tried;
+      const Verdict verdict = cgal_verdict(pair);
+      const SquaredMargin exact = exact_margin(pair, verdict);
+      bool decided[2] = {};
+      for (const int k : {0, 1}) {
+        const MarginBounds bounds =
+            k == 0 ? margin_bounds<double>(pair, verdict) : margin_bounds<DoubleDouble>(pair, verdict);
+        ASSERT_TRUE(std::isfinite(bounds.hi) && holds(bounds, exact)) << hex(pair);
+        Bucket bucket;
+        decided[k] = bucket_from_bounds(bounds, verdict, log2_ulp(pair), bucket);
+        if (decided[k]) {
+          ASSERT_EQ(bucket, exact_bucket(pair, verdict)) << hex(pair);
+        }
+      }
+      certain += decided[0];
+      more += decided[1] && !decided[0];
+    }
+  }
+  EXPECT_GT(tried, 7'000);
+  EXPECT_GT(certain, tried / 2);
+  EXPECT_GT(more, 500);  // near contact
+}
+
+TEST(MarginBuckets, OfWideStoredMarginsAreTheWidest) {
+  constexpr Bucket kOpen = 99;
+  for (const int sign : {-1, 1}) {
+    EXPECT_EQ(wide_bucket(make_bucket(sign, 4), kOpen), kOpen);
+    EXPECT_EQ(wide_bucket(make_bucket(sign, 5), kOpen), make_bucket(sign, kBucketHighest));
+    EXPECT_EQ(wide_bucket(make_bucket(sign, kBucketHighest), kOpen), make_bucket(sign, kBucketHighest));
+  }
+  EXPECT_EQ(wide_bucket(0, kOpen), kOpen);
+}
+
+TEST(MarginBounds, KnowWhichDoublesAreOnTheGridOfFloats) {
+  const auto is_on_it = [](double x) {
+    DoublePair pair{};
+    pair.b[2].z = x;
+    return on_grid_of_floats(pair);
+  };
+  EXPECT_TRUE(is_on_it(0));
+  EXPECT_TRUE(is_on_it(-0x1.fffffffffffffp127));
+  EXPECT_FALSE(is_on_it(0x1p128));
+  EXPECT_TRUE(is_on_it(0x1p-149));
+  EXPECT_FALSE(is_on_it(0x1.8p-149));
+}
+
 TEST(GuessedDistance, BoundsHoldTheExactDistance) {
   int finite = 0;
   const auto expect_held = [&](const Pair& pair) {
@@ -319,23 +396,29 @@ TEST(QuickDepth, OverlapsByNothingWhereItTouchesTheAxis) {
 }
 
 TEST(TieProof, ShiftsByAnyNumberOfBits) {
-  const tie_proof::Big x = tie_proof::big(0x123456789abcdef);
-  tie_proof::Big expected = x;
+  const auto x = tie_proof::big<8>(0x123456789abcdef);
+  auto expected = x;
   for (int bits = 0; bits < 448; ++bits, expected = expected + expected)
     ASSERT_TRUE(tie_proof::shifted_up(x, bits) == expected) << bits;
 }
 
-// Two parallel triangles at a distance of 1, with coordinates of 1 and of 40 bits, and in much smaller units.
+// Two parallel triangles at a distance of 1, with coordinates of 1 and of 40 or 61 bits, and in much smaller units.
 TEST(TieProof, RefusesWhatIsTooLarge) {
-  const auto is_proven = [](float largest, int exponent) {
-    const float a[9] = {0, 0, 0, largest, 0, 0, 0, 1, 0}, b[9] = {0, 0, 1, 1, 0, 1, 0, 1, 1};
+  const auto is_proven = []<class Real>(Real largest, int exponent) {
+    const Real a[9] = {0, 0, 0, largest, 0, 0, 0, 1, 0}, b[9] = {0, 0, 1, 1, 0, 1, 0, 1, 1};
     return are_apart_by(a, b, kNormalA, exponent);
   };
-  EXPECT_FALSE(is_proven(1, 1));
-  for (int exponent = 0; exponent >= -80; --exponent) EXPECT_TRUE(is_proven(1, exponent)) << exponent;
-  EXPECT_FALSE(is_proven(1, -81));
+  EXPECT_FALSE(is_proven(1.f, 1));
+  for (int exponent = 0; exponent >= -80; --exponent) EXPECT_TRUE(is_proven(1.f, exponent)) << exponent;
+  EXPECT_FALSE(is_proven(1.f, -81));
   EXPECT_TRUE(is_proven(0x1p39f, 0));
   EXPECT_FALSE(is_proven(0x1p40f, 0));
+  EXPECT_FALSE(is_proven(1., 1));
+  for (int exponent = 0; exponent >= -200; --exponent) EXPECT_TRUE(is_proven(1., exponent)) << exponent;
+  EXPECT_FALSE(is_proven(1., -201));
+  EXPECT_TRUE(is_proven(0x1p60, 0));
+  EXPECT_TRUE(is_proven(0x1p60, -200));
+  EXPECT_FALSE(is_proven(0x1p61, 0));
 }
 
 // Square roots that lie exactly or almost exactly half-way between two doubles.

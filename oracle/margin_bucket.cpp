@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The margin's bucket. Certified double-precision bounds nearly always decide it, otherwise integers. Nothing is
-// rounded.
+// The margin's bucket. Certified bounds nearly always decide it, in double or, for pairs of doubles, in double-double
+// numbers; otherwise integers do. Nothing is rounded.
+#include <cmath>
+
 #include "core/margin/margin.h"
+#include "core/margin/scaled_pair.h"
 #include "oracle/exact_margin.h"
 #include "oracle/integer_pair.h"
 #include "oracle/truth.h"
@@ -27,38 +30,45 @@ bool touches(const SmallPair& small, std::uint32_t axes) {
   return false;
 }
 
-}  // namespace
+// Bounds of the margin in units in which the pair's ulp is 2^ulp.
+struct Bounds {
+  MarginBounds margin;
+  int ulp;
+};
 
-Bucket margin_bucket(const Pair& pair, Verdict verdict) {
-  const int ulp = log2_ulp(pair);
-  const MarginBounds bounds = margin_bounds(pair, verdict);
+Bounds bounds_of(const Pair& pair, Verdict verdict) { return {margin_bounds(pair, verdict), log2_ulp(pair)}; }
+Bounds bounds_of(const DoublePair& pair, Verdict verdict) {
+  const ScaledPair scaled(pair);
+  if (!scaled.fits) return {{0, INFINITY, 0, kAllAxes}, 0};
+  return {margin_bounds<DoubleDouble>(scaled.pair, verdict), scaled.ulp};
+}
+
+template <class Real>
+Bucket bucket_of(const BasicPair<Real>& pair, Verdict verdict) {
+  const Bounds bounds = bounds_of(pair, verdict);
   Bucket bucket;
-  if (bucket_from_bounds(bounds, verdict, ulp, bucket)) return bucket;
+  if (bucket_from_bounds(bounds.margin, verdict, bounds.ulp, bucket)) return bucket;
 
   const Grid grid = grid_of(pair);
+  const int ulp = log2_ulp(pair);
   if (verdict == Verdict::intersects) {
-    if (grid.is_small() && touches(small_integers(pair, grid), bounds.axes)) return 0;
-    const SquaredMargin depth = exact_depth(large_integers(pair, grid), grid.exponent, bounds.axes);
+    if (grid.is_small() && touches(small_integers(pair, grid), bounds.margin.axes)) return 0;
+    const SquaredMargin depth = exact_depth(large_integers(pair, grid), grid.exponent, bounds.margin.axes);
     return depth.numerator == 0 ? Bucket{0} : make_bucket(-1, floor_log2(depth) - ulp);
   }
   // Most often the distance is a power of two. The rounded lower bound just misses it; an exact lower bound does not.
   const LargePair large = large_integers(pair, grid);
-  const SquaredMargin lower = exact_separation(large, grid.exponent, bounds.direction);
+  const SquaredMargin lower = exact_separation(large, grid.exponent, bounds.margin.direction);
   if (lower.numerator != 0) {
     const Bucket nearest = make_bucket(1, floor_log2(lower) - ulp);
-    if (nearest == make_bucket(1, graze::floor_log2(bounds.hi) - ulp)) return nearest;
+    if (nearest == make_bucket(1, graze::floor_log2(bounds.margin.hi) - bounds.ulp)) return nearest;
   }
   return make_bucket(1, floor_log2(exact_distance(large, grid.exponent)) - ulp);
 }
 
-Bucket margin_bucket(const DoublePair& pair, Verdict verdict) {
-  const Grid grid = grid_of(pair);
-  const LargePair large = large_integers(pair, grid);
-  const bool apart = verdict == Verdict::disjoint;
-  const SquaredMargin margin =
-      apart ? exact_distance(large, grid.exponent) : exact_depth(large, grid.exponent, kAllAxes);
-  if (margin.numerator == 0) return 0;
-  return make_bucket(apart ? 1 : -1, floor_log2(margin) - log2_ulp(pair));
-}
+}  // namespace
+
+Bucket margin_bucket(const Pair& pair, Verdict verdict) { return bucket_of(pair, verdict); }
+Bucket margin_bucket(const DoublePair& pair, Verdict verdict) { return bucket_of(pair, verdict); }
 
 }  // namespace graze::oracle

@@ -102,7 +102,8 @@ LaneIndices own_lanes(const CampaignCounts& counts) {
   LaneIndices found;
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
     const LaneName& lane = counts.lanes[l].name;
-    if (counts.lanes[l].exact || is_published(lane.subject)) continue;
+    const Lane* row = counts.lanes[l].row;
+    if ((row && row->exact) || is_published(lane.subject)) continue;
     const auto same = std::find_if(found.begin(), found.end(),
                                    [&](std::size_t other) { return counts.lanes[other].name.subject == lane.subject; });
     if (same == found.end()) {
@@ -224,15 +225,17 @@ std::uint64_t wrong_pairs(const Json& summary, std::string_view subject) {
   return sum;
 }
 
-Pair pair_of_kind(const Json& kind) {
+AnyPair pair_of_kind(const Json& kind) {
   std::istringstream in(kind.at("simplest").at("pair").get<std::string>());
-  return corpus::PairReader(in, "failures.json").next().value().pair;
+  return corpus::pair_of(corpus::PairReader(in, "failures.json", PairTypes::both).next().value());
 }
 
-std::string pair_on_a_line(const Pair& pair) {
+std::string pair_on_a_line(const AnyPair& pair) {
   std::string text;
-  for (int c = 0; c < kCoordinates; ++c)
-    text += fmt::format("{}{}", c == 0 ? "" : c == 9 ? "   " : c % 3 == 0 ? "  " : " ", coordinates(pair)[c]);
+  for (int c = 0; c < kCoordinates; ++c) {
+    text += c == 0 ? "" : c == 9 ? "   " : c % 3 == 0 ? "  " : " ";
+    text += visit(pair, [c](const auto& own) { return fmt::format("{}", coordinates(own)[c]); });
+  }
   return text;
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/pair.h"
+#include "core/any_pair.h"
 #include "reports/counts.h"
 #include "reports/lane_words.h"
 #include "reports/screen.h"
@@ -61,10 +61,10 @@ std::string kinds_heading(const CampaignCounts& counts, std::size_t lane, std::s
 std::uint64_t wrong_pairs(const nlohmann::ordered_json& summary, std::string_view subject);
 
 // The pair that failures.json stores as 18 hex floats.
-Pair pair_of_kind(const nlohmann::ordered_json& kind);
+AnyPair pair_of_kind(const nlohmann::ordered_json& kind);
 
 // The 18 coordinates as the shortest decimals that give the same bits. `graze check` reads them.
-std::string pair_on_a_line(const Pair& pair);
+std::string pair_on_a_line(const AnyPair& pair);
 
 // What a negligible number in place of the epsilon does to the campaign's pairs.
 struct EpsilonEffect {

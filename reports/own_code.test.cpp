@@ -141,8 +141,11 @@ TEST(OwnCode, AKindsSentenceLeavesTheLanesOut) {
 }
 
 TEST(OwnCode, APairOnALineHasTheSameBits) {
-  const Pair pair = pair_of_kind(kind_of("mine", "logic", "general", 1));
+  const AnyPair pair = pair_of_kind(kind_of("mine", "logic", "general", 1));
   EXPECT_EQ(pair_on_a_line(pair), "0 0 0  1 0 0  0 1 0   0.1 0 0  1 0 0  0 1 -0.125");
+  DoublePair doubles = pair.doubles;
+  doubles.b[0].x = 0.1;
+  EXPECT_EQ(pair_on_a_line(doubles), pair_on_a_line(pair));  // each as its own type prints it
 }
 
 TEST(OwnCode, AnEpsilonIsNamedOnlyIfAFailureShowsIt) {

@@ -50,7 +50,8 @@ GRAZE_HD inline DoublePair large_offset(DoubleDraws& draws) {
   Contact contact = draw_contact(draws, draw_touch(draws), real_grain(draws));
   const Push push = draw_push(draws);
   move(contact.draft.b, contact.away * push.gap);
-  scale_all(contact.draft, (0.1 + 0.9 * draws.positive()) / power_of_ten(draws.between(1, 3)));
+  const double size = 0.1 + 0.9 * draws.positive();
+  scale_all(contact.draft, size / power_of_ten(draws.between(1, 3)));
   const double far = power_of_ten(draws.between(5, 7));
   const Vec to = draws.reals();
   move_all(contact.draft, normalised(to) * far);
@@ -71,7 +72,8 @@ GRAZE_HD inline DoublePair float_born(DoubleDraws& draws) {
       {(w * w + x * x - y * y - z * z) / size, 2 * (x * y - w * z) / size, 2 * (x * z + w * y) / size},
       {2 * (x * y + w * z) / size, (w * w - x * x + y * y - z * z) / size, 2 * (y * z - w * x) / size},
       {2 * (x * z - w * y) / size, 2 * (y * z + w * x) / size, (w * w - x * x - y * y + z * z) / size}};
-  const Vec offset = draws.reals() * power_of_two(draws.between(0, 10));
+  const double far = power_of_two(draws.between(0, 10));
+  const Vec offset = draws.reals() * far;
   const auto moved = [&](const Vec3<float>& v) {
     const Vec at{v.x, v.y, v.z};
     return Vec{dot(rows[0], at), dot(rows[1], at), dot(rows[2], at)} + offset;
@@ -137,7 +139,8 @@ GRAZE_HD inline DoublePair construction_born(DoubleDraws& draws) {
 // A near contact whose gap is about that of float32's numbers there; of 32 the first that float32 changes, else the
 // last. Nearly always one is found.
 GRAZE_HD inline DoublePair stored(DoubleDraws& draws) {
-  DoublePair pair;
+  DoublePair pair{};
+#ifndef __CUDA_ARCH__
   for (int attempt = 0; attempt < 32; ++attempt) {
     Contact contact = draw_contact(draws, draw_touch(draws), real_grain(draws));
     const double sign = draws.sign();
@@ -154,6 +157,7 @@ GRAZE_HD inline DoublePair stored(DoubleDraws& draws) {
     if (exact::intersects(&pair.a[0].x, &pair.b[0].x) != exact::intersects(&in_float32.a[0].x, &in_float32.b[0].x))
       break;
   }
+#endif
   return shuffled(draws, pair);
 }
 

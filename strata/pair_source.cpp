@@ -31,6 +31,7 @@ PairSource double_source_of(std::uint64_t, const StratumInfo& row) {
 #else
 PairSource double_source_of(std::uint64_t seed, const StratumInfo& row) {
   PairSource source{std::string(row.id) + std::string(kInDoubles), 0, nullptr, -1, wide(row.axis), seed};
+  if (is_drawn_on_devices(row.stratum)) source.stratum = static_cast<int>(row.stratum);
   source.double_pair = [seed, stratum = row.stratum](std::uint64_t index) {
     return generate_doubles(seed, stratum, index);
   };

@@ -23,7 +23,7 @@ struct PairSource {
   std::string id;
   std::uint64_t pairs = 0;                        // the campaign takes the indices [0, pairs)
   std::function<Pair(std::uint64_t index)> pair;  // null if the coordinates are doubles
-  // For drawing the same pairs on a device: the stratum's index in kStrata; -1 if only `pair` can draw them.
+  // For drawing the same pairs on a device: the stratum; -1 if only `pair` or `double_pair` can draw them.
   int stratum = -1;
   Axis axis = Axis::none;  // the stratum's
   std::uint64_t seed = 0;

@@ -45,6 +45,9 @@ inline constexpr StratumInfo kDoubleStrata[] = {
 };
 inline constexpr int kDoubleStrataCount = sizeof kDoubleStrata / sizeof kDoubleStrata[0];
 
+// Whether device code can draw the stratum. `stored` decides pairs exactly, which device compilers take minutes for.
+constexpr bool is_drawn_on_devices(Stratum stratum) { return stratum != Stratum::stored; }
+
 inline namespace GRAZE_FP {
 
 // The pair with this index. It is finite in every stratum.

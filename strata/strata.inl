@@ -55,13 +55,27 @@ GRAZE_HD BasicPair<typename D::Real> lattice(D& draws) {
           {draw_lattice(draws), draw_lattice(draws), draw_lattice(draws)}};
 }
 
+// Compiles the code of one stratum.
+template <Stratum stratum, class D>
+GRAZE_HD BasicPair<typename D::Real> draw_stratum(D draws) {
+  using strata::Touch;
+#define GRAZE_STRATUM(name, group, kind, axis, draw, what) \
+  if constexpr (stratum == Stratum::name) {                \
+    return strata::draw;                                   \
+  } else
+#include "strata/strata.inc"
+
+#include "strata/double_strata.inc"
+#undef GRAZE_STRATUM
+  { return {}; }
+}
+
 template <class D>
 GRAZE_HD BasicPair<typename D::Real> generate_by(D draws, Stratum stratum) {
-  using strata::Touch;
   switch (stratum) {
-#define GRAZE_STRATUM(name, group, kind, axis, draw, what) \
-  case Stratum::name:                                      \
-    return strata::draw;
+#define GRAZE_STRATUM(name, ...) \
+  case Stratum::name:            \
+    return draw_stratum<Stratum::name>(draws);
 #include "strata/strata.inc"
     default:
       break;
@@ -75,6 +89,11 @@ GRAZE_HD BasicPair<typename D::Real> generate_by(D draws, Stratum stratum) {
     }
   }
   return {};
+}
+
+template <Stratum stratum, class D>
+GRAZE_HD BasicPair<typename D::Real> generate_one(std::uint64_t seed, std::uint64_t index) {
+  return draw_stratum<stratum>(D(seed, static_cast<std::uint32_t>(stratum), index));
 }
 
 GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, std::uint64_t index) {

@@ -43,6 +43,7 @@
 #include <fstream>
 #include <functional>
 #include <memory>
+#include <span>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -343,9 +344,9 @@ class OnDevice {
     device_ = cuda::open_on_device(build);
   }
 
-  // Pairs are float32 here, even if the scalar is double.
-  void operator()(const float* from, std::size_t count, signed char* answers) const {
-    device_->decide({reinterpret_cast<const Pair*>(from), count}, answers);
+  template <class Number>
+  void operator()(const Number* from, std::size_t count, signed char* answers) const {
+    device_->decide(std::span(reinterpret_cast<const BasicPair<Number>*>(from), count), answers);
   }
 
  private:
@@ -401,19 +402,19 @@ constexpr int kNotReady = 99;  // exit status of a worker that cannot start its 
       return 0;
     });
   }
+  const auto serve_by = [](const auto& asking) {
+    serve([&](const Question& question) { return asking.ask(question); });
+  };
 #ifdef GRAZE_SUBJECT_DEVICE
   if (kind == "device") {
     const OnDevice device(scalar);
-    const Asking<float> asking(nullptr, [&](auto... asked) { device(asked...); });
-    serve([&](const Question& question) { return asking.ask(question); });
+    const auto decide = [&](auto... asked) { device(asked...); };
+    scalar == "f64" ? serve_by(Asking<double>(nullptr, decide)) : serve_by(Asking<float>(nullptr, decide));
   }
 #endif
-  if (scalar == "f64") {
-    const Asking<double> asking(subject.f64, subject.block_f64);
-    serve([&](const Question& question) { return asking.ask(question); });
-  }
-  const Asking<float> asking(subject.f32, subject.block_f32);
-  serve([&](const Question& question) { return asking.ask(question); });
+  scalar == "f64" ? serve_by(Asking<double>(subject.f64, subject.block_f64))
+                  : serve_by(Asking<float>(subject.f32, subject.block_f32));
+  std::abort();  // serve does not return
 }
 
 // Loads the code, then forks a worker, and another whenever one ends.

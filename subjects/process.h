@@ -58,7 +58,7 @@ class ForeignProcesses : public ForeignCode {
                       std::uint64_t* declined) override;
   Verdict failure(const Pair& pair) override;
   Verdict failure_on_doubles(const DoublePair& pair) override;
-  bool decides_doubles() const override { return scalar_ == Scalar::f64 && code_.kind != "device"; }
+  bool decides_doubles() const override { return scalar_ == Scalar::f64; }
 
   // Processor time of the code for the pairs of the last decide, asked once. It is measured in the code's own process,
   // without communication. Nothing for a command, or if the code failed on a pair.

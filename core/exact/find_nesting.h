@@ -101,8 +101,10 @@ GRAZE_HD Nesting nesting(const Triangles<Numbers>& t, const Relation& r) {
   return result;
 }
 
-// By doubles with error bounds.   Returns: false if rounding leaves it in doubt.
-GRAZE_HD inline bool nesting_quickly(const float* a, const float* b, const Relation& r, Nesting& nesting) {
+// By doubles with error bounds.
+// Requires: floats, or doubles on a moderate grid.   Returns: false if rounding leaves it in doubt.
+template <class Real>
+GRAZE_HD bool nesting_quickly(const Real* a, const Real* b, const Relation& r, Nesting& nesting) {
   nesting = Nesting::none;
   if (!may_nest(r)) return true;
   return !r.hulls.coplanar && nesting_in_space(triangles<BoundedNumbers>(a, b), nesting);

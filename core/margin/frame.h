@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "core/exact/grid.h"
 #include "core/margin/directions.h"
 #include "core/margin/double_double.h"
 #include "core/pair.h"
@@ -70,9 +71,19 @@ GRAZE_HD inline bool differences_are_exact(const Pair& pair) {
   }
   return high <= low + 28;
 }
+GRAZE_HD inline bool differences_are_exact(const DoublePair& pair) {
+  return exact::detail::grid_of(&pair.a[0].x, &pair.b[0].x).bits <= 52;
+}
 
-template <class Real = double>
-GRAZE_HD MarginFrame<Real> make_margin_frame(const Pair& pair) {
+// Whether the coordinates are multiples of 2^-149 below 2^128, as floats are.
+GRAZE_HD inline bool on_grid_of_floats(const DoublePair& pair) {
+  const exact::detail::Grid grid = exact::detail::grid_of(&pair.a[0].x, &pair.b[0].x);
+  return grid.exponent >= -149 && grid.exponent + grid.bits <= 128;
+}
+
+// Requires: floats, or doubles on the grid of floats.
+template <class Real = double, class Coordinate>
+GRAZE_HD MarginFrame<Real> make_margin_frame(const BasicPair<Coordinate>& pair) {
   MarginFrame<Real> f;
   f.exact = differences_are_exact(pair);
   for (int i = 0; i < 3; ++i) {

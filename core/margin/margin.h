@@ -14,9 +14,9 @@ namespace graze {
 inline namespace GRAZE_FP {
 
 // Certified bounds of |margin|. Real: double, or DoubleDouble, whose bounds are closer after much cancellation.
-// Requires: finite coordinates; verdict is the pair's true verdict, not declined.
-template <class Real = double>
-GRAZE_HD MarginBounds margin_bounds(const Pair& pair, Verdict verdict) {
+// Requires: finite floats, or doubles on the grid of floats; verdict is the pair's true verdict, not declined.
+template <class Real = double, class Coordinate>
+GRAZE_HD MarginBounds margin_bounds(const BasicPair<Coordinate>& pair, Verdict verdict) {
   const MarginFrame<Real> frame = make_margin_frame<Real>(pair);
   return verdict == Verdict::disjoint ? distance_bounds(frame) : depth_bounds(frame);
 }

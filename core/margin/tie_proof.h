@@ -15,19 +15,21 @@
 namespace graze {
 namespace tie_proof {
 
-using Big = exact::detail::Wide<8>;
+template <class Big>
 using Vector = exact::detail::Vec<Big>;
 
-GRAZE_HD inline Big big(std::int64_t x) {
-  Big result;
-  for (int i = 0; i < 8; ++i) result.limb[i] = i == 0 ? static_cast<std::uint64_t>(x) : x < 0 ? ~std::uint64_t{0} : 0;
+template <int N>
+GRAZE_HD exact::detail::Wide<N> big(std::int64_t x) {
+  exact::detail::Wide<N> result;
+  for (int i = 0; i < N; ++i) result.limb[i] = i == 0 ? static_cast<std::uint64_t>(x) : x < 0 ? ~std::uint64_t{0} : 0;
   return result;
 }
 
-GRAZE_HD inline Big shifted_up(const Big& x, int bits) {
-  Big result;
+template <int N>
+GRAZE_HD exact::detail::Wide<N> shifted_up(const exact::detail::Wide<N>& x, int bits) {
+  exact::detail::Wide<N> result;
   const int limbs = bits / 64, rest = bits % 64;
-  for (int i = 7; i >= limbs; --i) {
+  for (int i = N - 1; i >= limbs; --i) {
     result.limb[i] = x.limb[i - limbs] << rest;
     if (rest != 0 && i > limbs) result.limb[i] |= x.limb[i - limbs - 1] >> (64 - rest);
   }
@@ -35,37 +37,44 @@ GRAZE_HD inline Big shifted_up(const Big& x, int bits) {
 }
 
 // Direction number d of core/margin/directions.h.
-GRAZE_HD inline Vector direction(const Vector (&a)[3], const Vector (&b)[3], int d) {
+template <class Big>
+GRAZE_HD Vector<Big> direction(const Vector<Big> (&a)[3], const Vector<Big> (&b)[3], int d) {
   using exact::detail::cross;
-  const auto edge = [](const Vector(&v)[3], int i) { return v[i == 2 ? 0 : i + 1] - v[i]; };
+  const auto edge = [](const Vector<Big>(&v)[3], int i) { return v[i == 2 ? 0 : i + 1] - v[i]; };
   if (d == kNormalA) return cross<Big>(edge(a, 0), edge(a, 1));
   if (d == kNormalB) return cross<Big>(edge(b, 0), edge(b, 1));
   if (d < kSeparatingAxes) return cross<Big>(edge(a, d / 3), edge(b, d % 3));
   const int first = d < kFromEdgeB ? kFromEdgeA : d < kFromVertex ? kFromEdgeB : kFromVertex;
   const int i = (d - first) / 3, j = (d - first) % 3;
-  const Vector between = b[j] - a[i];
+  const Vector<Big> between = b[j] - a[i];
   if (first == kFromVertex) return between;
-  const Vector e = first == kFromEdgeA ? edge(a, i) : edge(b, j);
+  const Vector<Big> e = first == kFromEdgeA ? edge(a, i) : edge(b, j);
   return cross<Big>(cross<Big>(e, between), e);
 }
 
 }  // namespace tie_proof
 
 // Whether the disjoint triangles are at least 2^exponent apart along direction d (of core/margin/directions.h). Bits on
-// their grid: coordinates at most kIntBits = 40, a direction 3 * 41 + 4, the gap along it 170, its square 340 of 512.
-// Returns: false also if the numbers are too large to tell.
-GRAZE_HD inline bool are_apart_by(const float* a, const float* b, int d, int exponent) {
+// the grid of floats: coordinates at most kIntBits = 40, a direction 3 * 41 + 4, the gap along it 170, its square 340
+// of 512. Of doubles: coordinates at most kMediumBits = 61, a direction 3 * 62 + 4, the gap along it 254, its square
+// 508, shifted by 400, of 1024. Returns: false also if the numbers are too large to tell.
+template <class Real>
+GRAZE_HD bool are_apart_by(const Real* a, const Real* b, int d, int exponent) {
   using namespace tie_proof;
+  constexpr bool kFloats = sizeof(Real) == sizeof(float);
+  constexpr int kLimbs = kFloats ? 8 : 16, kBits = kFloats ? exact::detail::kIntBits : exact::detail::kMediumBits;
+  constexpr int kMostShift = kFloats ? 120 : 200, kLeastShift = kFloats ? -80 : -200;
+  using Big = exact::detail::Wide<kLimbs>;
   const exact::detail::Grid grid = exact::detail::grid_of(a, b);
   const int shift = exponent - grid.exponent;
-  if (grid.bits > exact::detail::kIntBits || shift > 120 || shift < -80) return false;
+  if (grid.bits > kBits || shift > kMostShift || shift < kLeastShift) return false;
   const auto t = exact::detail::triangles<exact::detail::NarrowNumbers>(a, b, grid.exponent);
-  Vector va[3], vb[3];
+  Vector<Big> va[3], vb[3];
   for (int i = 0; i < 3; ++i) {
-    va[i] = {big(t.a[i].x), big(t.a[i].y), big(t.a[i].z)};
-    vb[i] = {big(t.b[i].x), big(t.b[i].y), big(t.b[i].z)};
+    va[i] = {big<kLimbs>(t.a[i].x), big<kLimbs>(t.a[i].y), big<kLimbs>(t.a[i].z)};
+    vb[i] = {big<kLimbs>(t.b[i].x), big<kLimbs>(t.b[i].y), big<kLimbs>(t.b[i].z)};
   }
-  const Vector n = direction(va, vb, d);
+  const Vector<Big> n = direction<Big>(va, vb, d);
   Big at_a[3], at_b[3];
   for (int i = 0; i < 3; ++i) {
     at_a[i] = exact::detail::dot<Big>(n, va[i] - va[0]);

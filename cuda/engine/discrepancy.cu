@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 #include "core/discrepancy/count.h"
@@ -15,10 +16,8 @@
 #include "core/fnv1a.h"
 #include "core/lanes/records.h"
 #include "cuda/lanes/device_memory.cuh"
-#include "cuda/lanes/draw_on_cores.h"
 #include "cuda/lanes/exact_kernels.cuh"
 #include "cuda/lanes/kernels.cuh"
-#include "cuda/lanes/record_kernels.cuh"
 #include "cuda/lanes/stratum_kernels.cuh"
 #include "cuda/lanes/vote.cuh"
 
@@ -139,24 +138,20 @@ class DeviceRun {
   DeviceArray<std::uint32_t> bits_;
 };
 
-void draw(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, float* to) {
-  Drawing().draw(source, first, count, to, nullptr);
-}
-void draw(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, double* to) {
-  std::vector<double> drawn;
-  draw_on_cores(source.double_pair, first, count, drawn);
-  check(cudaMemcpy(to, drawn.data(), drawn.size() * sizeof(double), cudaMemcpyHostToDevice));
-}
-
 // Draws the source in blocks and calls with_block(pairs).
 template <class Pairs, class WithBlock>
 void for_each_block(const strata::PairSource& source, const WithBlock& with_block) {
   check(cudaSetDevice(0));
+  Drawing drawing;
   DeviceArray<typename Pairs::Real> coordinates;
   auto* block = coordinates.at_least(std::size_t{kPairsAtOnce} * kCoordinates);
   for (std::uint64_t first = 0; first < source.pairs; first += kPairsAtOnce) {
     const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(kPairsAtOnce, source.pairs - first));
-    draw(source, first, count, block);
+    if constexpr (std::is_same_v<Pairs, DeviceDoubles>) {
+      drawing.draw(source, first, count, block, nullptr, nullptr);
+    } else {
+      drawing.draw(source, first, count, block, nullptr);
+    }
     with_block(Pairs{block, count, count});
     check(cudaGetLastError());
   }

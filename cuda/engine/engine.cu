@@ -2,6 +2,7 @@
 #include "cuda/engine/engine.h"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "cuda/engine/engine_kernels.cuh"
 #include "cuda/engine/engine_run.h"
@@ -22,10 +23,12 @@ struct Buffers {
   std::uint32_t* left;  // pairs that all blocks so far have left to the host; pinned memory
   DeviceExact exact;
   DeviceArray<float> coordinates;
-  DeviceArray<std::uint32_t> truth, wrong, lane_words, places, lengths;
+  DeviceArray<double> doubles;
+  DeviceArray<std::uint32_t> truth, wrong, stored, lane_words, places, lengths;
   DeviceArray<std::int8_t> buckets;
   DeviceArray<std::uint16_t> relations;
   DeviceArray<LaneWords> lanes;
+  DeviceArray<const std::uint32_t*> changed_for_lane;
   std::vector<LaneWords> lanes_on_host;  // the same on the host
 
   Buffers() {
@@ -40,33 +43,49 @@ struct Buffers {
   }
 };
 
+template <class Block>
+constexpr bool kOfDoubles = std::is_same_v<Block, DoubleEngineBlock>;
+
 class CudaEngine final : public DeviceEngine {
  public:
   CudaEngine(int ordinal, std::span<const Lane* const> lanes)
-      : ordinal_(ordinal), lanes_(lanes.begin(), lanes.end()), groups_(lane_groups(lanes)) {
+      : ordinal_(ordinal),
+        lanes_(lanes.begin(), lanes.end()),
+        groups_{lane_groups(lanes, false), lane_groups(lanes, true)} {
     check(cudaSetDevice(ordinal_));
     check(cudaSetDeviceFlags(cudaDeviceLmemResizeToMax));  // otherwise kernels with other stack sizes wait
     for (std::unique_ptr<Buffers>& buffers : buffers_) buffers = std::make_unique<Buffers>();
-    LaneGroup* groups = groups_on_device_.at_least(groups_.size());
-    check(cudaMemcpy(groups, groups_.data(), groups_.size() * sizeof *groups, cudaMemcpyHostToDevice));
+    for (const bool of_doubles : {false, true}) {
+      const std::vector<LaneGroup>& of = groups_[of_doubles];
+      LaneGroup* groups = groups_on_device_[of_doubles].at_least(of.size());
+      check(cudaMemcpy(groups, of.data(), of.size() * sizeof *groups, cudaMemcpyHostToDevice));
+    }
   }
   ~CudaEngine() override { cudaSetDevice(ordinal_); }
 
   EngineResult run(const strata::PairSource& source, std::uint64_t first, std::uint64_t count) override {
     check(cudaSetDevice(ordinal_));
-    const EngineBlock empty = begin(source.axis);
+    return source.in_doubles() ? run_in<DoubleEngineBlock>(source, first, count)
+                               : run_in<EngineBlock>(source, first, count);
+  }
+
+ private:
+  template <class Block>
+  EngineResult run_in(const strata::PairSource& source, std::uint64_t first, std::uint64_t count) {
+    const Block empty = begin<Block>(source.axis);
     const std::uint32_t block_pairs = static_cast<std::uint32_t>(std::min<std::uint64_t>(kLimits.block_pairs, count));
-    EngineBlock blocks[kBlocksAtOnce];
+    Block blocks[kBlocksAtOnce];
     for (int k = 0; k < kBlocksAtOnce; ++k) {
-      blocks[k] = with_memory(empty, *buffers_[k], block_pairs);
+      blocks[k] = empty;
+      give_memory(blocks[k], *buffers_[k], block_pairs);
       *buffers_[k]->left = 0;
     }
     const std::uint64_t done = run_blocks(
         kLimits, first, count,
         [&](int b, std::uint64_t at, std::uint32_t pairs) {
-          EngineBlock& block = blocks[b % kBlocksAtOnce];
-          block.pairs.count = pairs;
-          block.pairs.stride = pairs;
+          Block& block = blocks[b % kBlocksAtOnce];
+          block.pairs.count = block.pairs.stride = pairs;
+          if constexpr (kOfDoubles<Block>) block.doubles.count = block.doubles.stride = pairs;
           block.first = at;
           judge(block, *buffers_[b % kBlocksAtOnce], source);
         },
@@ -76,29 +95,35 @@ class CudaEngine final : public DeviceEngine {
     return result;
   }
 
- private:
   // Clears the memory that accumulates over blocks.
-  EngineBlock begin(Axis axis) {
-    EngineBlock block{};
+  template <class Block>
+  Block begin(Axis axis) {
+    const std::vector<LaneGroup>& groups = groups_[kOfDoubles<Block>];
+    const std::size_t counters = engine_counters<Block>(lanes_.size());
+    Block block{};
     block.axis = axis;
+    block.lanes.groups = groups_on_device_[kOfDoubles<Block>].at_least(0);
+    block.lanes.group_count = static_cast<std::uint32_t>(groups.size());
     std::uint32_t* lengths = lengths_.at_least(2);
     block.undecided = {undecided_.at_least(kLimits.undecided), kLimits.undecided, lengths};
     SignatureTable& table = block.signatures;
-    table = {nullptr, kLimits.signatures, key_words(groups_), lengths + 1};
+    table = {nullptr, kLimits.signatures, key_words(groups), lengths + 1};
     table.rows = rows_.at_least(std::size_t{table.size} * table.row_words());
-    block.counts = counts_.at_least(2 * counters() + 1);
-    block.extreme_counts = block.counts + counters();
-    block.disagreements = block.counts + 2 * counters();
+    block.counts = counts_.at_least(2 * counters + 1);
+    block.extreme_counts = block.counts + counters;
+    block.disagreements = block.counts + 2 * counters;
     check(cudaMemset(lengths, 0, 2 * sizeof *lengths));
-    check(cudaMemset(block.counts, 0, (2 * counters() + 1) * sizeof *block.counts));
+    check(cudaMemset(block.counts, 0, (2 * counters + 1) * sizeof *block.counts));
     const std::size_t row_bytes = table.row_words() * sizeof *table.rows, case_bytes = kEngineCases * sizeof kNoCase;
     check(cudaMemset(table.rows, 0, table.size * row_bytes));
     check(cudaMemset2D(table.cases(table.rows), row_bytes, 0xff, case_bytes, table.size));  // kNoCase
     return block;
   }
 
-  EngineBlock with_memory(EngineBlock block, Buffers& buffers, std::size_t pairs) {
-    const std::size_t words = (pairs + kThreads - 1) / kThreads * kThreads / 32;
+  static std::size_t words_of(std::size_t pairs) { return (pairs + kThreads - 1) / kThreads * kThreads / 32; }
+
+  void give_memory(EngineBlock& block, Buffers& buffers, std::size_t pairs) {
+    const std::size_t words = words_of(pairs);
     block.pairs.coordinates = buffers.coordinates.at_least(pairs * kCoordinates);
     block.truth = buffers.truth.at_least(words);
     block.wrong = buffers.wrong.at_least(words);
@@ -116,29 +141,68 @@ class CudaEngine final : public DeviceEngine {
         buffers.lanes_on_host.push_back({of_lanes + 2 * words * l, of_lanes + 2 * words * l + words});
       }
     }
-    LaneWords* table = buffers.lanes.at_least(lanes_.size());
-    check(cudaMemcpy(table, buffers.lanes_on_host.data(), lanes_.size() * sizeof *table, cudaMemcpyHostToDevice));
-    block.lanes = {table, static_cast<std::uint32_t>(lanes_.size()), groups_on_device_.at_least(0),
-                   static_cast<std::uint32_t>(groups_.size())};
+    bring_lanes(block, buffers);
     std::uint32_t* places = buffers.places.at_least(kEngineLists * pairs);
     std::uint32_t* lengths = buffers.lengths.at_least(kEngineLists);
     for (int k = 0; k < kEngineLists; ++k) block.lists[k] = {places + pairs * static_cast<std::size_t>(k), lengths + k};
-    return block;
   }
 
-  void judge(const EngineBlock& block, Buffers& buffers, const strata::PairSource& source) {
+  void bring_lanes(EngineBlock& block, Buffers& buffers) {
+    LaneWords* table = buffers.lanes.at_least(lanes_.size());
+    check(cudaMemcpy(table, buffers.lanes_on_host.data(), lanes_.size() * sizeof *table, cudaMemcpyHostToDevice));
+    block.lanes.lanes = table;
+    block.lanes.count = static_cast<std::uint32_t>(lanes_.size());
+  }
+
+  void give_memory(DoubleEngineBlock& block, Buffers& buffers, std::size_t pairs) {
+    give_memory(static_cast<EngineBlock&>(block), buffers, pairs);
+    const std::size_t words = words_of(pairs);
+    block.doubles.coordinates = buffers.doubles.at_least(pairs * kCoordinates);
+    std::uint32_t* stored = buffers.stored.at_least(3 * words);
+    block.stored = {stored, stored + words};
+    block.changed = stored + 2 * words;
+    std::vector<const std::uint32_t*> changed;
+    for (std::size_t l = 0; l < lanes_.size(); ++l) {
+      const bool of_stored = lanes_[l]->scalar == Scalar::f32;
+      if (of_stored && lanes_[l]->exact) buffers.lanes_on_host[l] = block.stored;
+      changed.push_back(of_stored ? block.changed : nullptr);
+    }
+    bring_lanes(block, buffers);
+    const std::uint32_t** for_lane = buffers.changed_for_lane.at_least(changed.size());
+    check(cudaMemcpy(for_lane, changed.data(), changed.size() * sizeof *for_lane, cudaMemcpyHostToDevice));
+    block.changed_for_lane = for_lane;
+  }
+
+  // Starts the drawing of the pairs, and their decision exactly and by the lanes. Pairs are finite, so nothing is
+  // declined. `wrong` receives the unused declined bits, and is overwritten later.
+  void decide(const EngineBlock& block, Buffers& buffers, const strata::PairSource& source) {
+    drawing_.draw(source, block.first, block.pairs.count, buffers.coordinates.at_least(0), buffers.stream);
+    buffers.exact.decide(block.pairs, buffers.truth.at_least(0), block.wrong, nullptr, buffers.stream);
+    for (std::size_t l = 0; l < lanes_.size(); ++l) decide_by(l, block.pairs, buffers);
+  }
+  void decide(const DoubleEngineBlock& block, Buffers& buffers, const strata::PairSource& source) {
+    drawing_.draw(source, block.first, block.pairs.count, buffers.doubles.at_least(0), buffers.coordinates.at_least(0),
+                  buffers.stream);
+    buffers.exact.decide(block.doubles, buffers.truth.at_least(0), block.wrong, nullptr, buffers.stream);
+    buffers.exact.decide(block.pairs, const_cast<std::uint32_t*>(block.stored.intersects),
+                         const_cast<std::uint32_t*>(block.stored.declined), nullptr, buffers.stream);
+    for (std::size_t l = 0; l < lanes_.size(); ++l)
+      lanes_[l]->scalar == Scalar::f64 ? decide_by(l, block.doubles, buffers) : decide_by(l, block.pairs, buffers);
+  }
+
+  template <class Pairs>
+  void decide_by(std::size_t l, const Pairs& pairs, Buffers& buffers) {
+    const LaneWords& words = buffers.lanes_on_host[l];
+    if (!lanes_[l]->exact)
+      launch_lane(*lanes_[l], buffers.exact, pairs, const_cast<std::uint32_t*>(words.intersects),
+                  const_cast<std::uint32_t*>(words.declined), buffers.stream);
+  }
+
+  template <class Block>
+  void judge(const Block& block, Buffers& buffers, const strata::PairSource& source) {
     const cudaStream_t stream = buffers.stream;
     check(cudaEventSynchronize(buffers.done));  // limits the blocks in progress to the number of buffers
-    drawing_.draw(source, block.first, block.pairs.count, buffers.coordinates.at_least(0), stream);
-    std::uint32_t* truth = buffers.truth.at_least(0);
-    // Pairs are finite, so nothing is declined. `wrong` receives the unused declined bits, and is overwritten later.
-    buffers.exact.decide(block.pairs, truth, block.wrong, nullptr, stream);
-    for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      const LaneWords& words = buffers.lanes_on_host[l];
-      if (words.intersects == truth) continue;
-      launch_lane(*lanes_[l], buffers.exact, block.pairs, const_cast<std::uint32_t*>(words.intersects),
-                  const_cast<std::uint32_t*>(words.declined), stream);
-    }
+    decide(block, buffers, source);
     check(cudaMemsetAsync(block.lists[0].count, 0, kEngineLists * sizeof(std::uint32_t), stream));
     launch_engine(block, stream);
     check(cudaMemcpyAsync(buffers.left, block.undecided.count, sizeof *buffers.left, cudaMemcpyDeviceToHost, stream));
@@ -155,7 +219,8 @@ class CudaEngine final : public DeviceEngine {
     return most + kBlocksAtOnce * block_pairs;
   }
 
-  EngineResult fetch(const EngineBlock& block) {
+  template <class Block>
+  EngineResult fetch(const Block& block) {
     std::uint32_t lengths[2];
     check(cudaMemcpy(lengths, block.undecided.count, sizeof lengths, cudaMemcpyDeviceToHost));
     EngineTotals totals{lengths[0], lengths[1], {}, {}, {}};
@@ -165,18 +230,16 @@ class CudaEngine final : public DeviceEngine {
     };
     bring(totals.undecided, block.undecided.indices, std::min(totals.left, kLimits.undecided));
     bring(totals.rows, block.signatures.rows, std::size_t{block.signatures.size} * block.signatures.row_words());
-    bring(totals.counts, block.counts, 2 * counters() + 1);
-    return result_of(std::move(totals), block.signatures, groups_, block.axis);
+    bring(totals.counts, block.counts, 2 * engine_counters<Block>(lanes_.size()) + 1);
+    return result_of(std::move(totals), block.signatures, groups_[kOfDoubles<Block>], block.axis);
   }
-
-  std::size_t counters() const { return engine_counters(lanes_.size()); }
 
   int ordinal_;
   std::vector<const Lane*> lanes_;
-  std::vector<LaneGroup> groups_;
+  std::vector<LaneGroup> groups_[2];  // on pairs of float32, and on doubles
   Drawing drawing_;
   std::unique_ptr<Buffers> buffers_[kBlocksAtOnce];
-  DeviceArray<LaneGroup> groups_on_device_;
+  DeviceArray<LaneGroup> groups_on_device_[2];
   DeviceArray<std::uint32_t> lengths_;
   DeviceArray<std::uint64_t> undecided_, counts_, rows_;
 };

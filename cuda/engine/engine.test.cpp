@@ -169,6 +169,63 @@ TEST_F(EngineTest, GroupsAreRunsOfOneAlgorithmWithoutTheExactLanes) {
   EXPECT_EQ(key_words({}), 1u);
 }
 
+// On doubles, exact lanes of float32 fail where storing a pair changes its verdict.
+TEST_F(EngineTest, GroupsOnDoublesHoldTheExactLanes) {
+  const std::vector<LaneGroup> groups = lane_groups(lanes_, true);
+  ASSERT_EQ(groups.size(), 4u);
+  EXPECT_EQ(groups[3].first, 76u);
+  EXPECT_EQ(groups[3].count, 1u);
+}
+
+// The counts of lanes in float, in double, and of both exact lanes.
+TEST(EngineOnDoubles, CountsAsThePlainWayAndLeavesFewPairs) {
+  constexpr std::uint64_t kCount = 1000;
+  constexpr const char* kLanes[] = {"moller_1997/f32/cpu", "moller_1997/f64/cpu", "exact/f32/cpu", "exact/f64/cpu"};
+  std::vector<const Lane*> lanes;
+  std::vector<DecideBlock> on_host;
+  for (const char* id : kLanes) {
+    lanes.push_back(find_lane(id));
+    on_host.push_back(lanes.back()->decide);
+  }
+  std::uint64_t stored = 0;
+  for (const strata::PairSource& source : strata::stratum_sources(kSeed, 1, {}, PairTypes::f64)) {
+    EngineLimits limits;
+    limits.block_pairs = 300;
+    const EngineResult result = make_host_engine(lanes, on_host, limits)->run(source, 7, kCount);
+    EXPECT_EQ(result.done, kCount);
+    EXPECT_LT(result.undecided.size(), kCount * (source.id == "mixed_scale/f64" ? 60 : 3) / 100) << source.id;
+    std::vector<std::uint64_t> counts(engine_counters<DoubleEngineBlock>(lanes.size())), extremes(counts.size());
+    for (std::uint64_t index = 7; index < 7 + kCount; ++index) {
+      if (std::binary_search(result.undecided.begin(), result.undecided.end(), index)) continue;
+      const DoublePair pair = source.double_pair(index);
+      const Pair in_float32 = stored_in_float32(pair);
+      const Verdict truth = oracle::cgal_verdict(pair);
+      const Bucket bucket = oracle::margin_bucket(pair, truth);
+      const bool changed = !is_finite(in_float32) || truth_of(in_float32) != truth;
+      for (const auto& [into, place] : {std::pair{&counts, bucket}, {&extremes, place_on_axis(pair, source.axis)}}) {
+        const auto count = [&, at = static_cast<std::size_t>(place + kBucketMost)](std::size_t counter, bool yes) {
+          (*into)[counter * kBucketCount + at] += yes;
+        };
+        count(0, true);
+        count(1, truth == Verdict::intersects);
+        for (std::size_t l = 0; l < lanes.size(); ++l) {
+          const bool in_float = lanes[l]->scalar == Scalar::f32;
+          const Verdict verdict = in_float ? decide_one(on_host[l], in_float32) : decide_one(on_host[l], pair);
+          count(2 + 4 * l, verdict == Verdict::intersects && truth == Verdict::disjoint);
+          count(3 + 4 * l, verdict == Verdict::disjoint && truth == Verdict::intersects);
+          count(4 + 4 * l, verdict == Verdict::declined);
+          const bool by_storing = in_float && changed && is_wrong(verdict, truth);
+          count(5 + 4 * l, by_storing);
+          stored += by_storing;
+        }
+      }
+    }
+    EXPECT_EQ(result.counts, counts) << source.id;
+    EXPECT_EQ(result.extreme_counts, source.axis == Axis::none ? std::vector<std::uint64_t>{} : extremes) << source.id;
+  }
+  EXPECT_GT(stored, 1000u);
+}
+
 template <class Do>
 std::string error_of(const Do& act) {
   try {

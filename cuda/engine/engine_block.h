@@ -59,6 +59,8 @@ enum EngineList {
 };
 
 struct EngineBlock {
+  static constexpr std::uint32_t kCountersOfLane = counters_of_lane(false);
+
   DevicePairs pairs;
   std::uint64_t first;  // index of the block's first pair
   const std::uint32_t* truth;
@@ -76,10 +78,21 @@ struct EngineBlock {
   std::uint64_t* disagreements;
 };
 
-inline constexpr std::uint32_t kCountersOfPairs = 2, kCountersOfLane = 3;
+// A block of doubles. `pairs` are what float32 stores of them; all else is that of the doubles.
+struct DoubleEngineBlock : EngineBlock {
+  static constexpr std::uint32_t kCountersOfLane = counters_of_lane(true);
 
+  DeviceDoubles doubles;
+  LaneWords stored;        // the exact verdicts of the stored pairs; declined: beyond float32's range
+  std::uint32_t* changed;  // pairs whose verdict storing changes, or which float32 cannot store
+  const std::uint32_t* const* changed_for_lane;  // `changed` for lanes that decide the stored pairs; null for others
+};
+
+inline constexpr std::uint32_t kCountersOfPairs = 2;
+
+template <class Block = EngineBlock>
 GRAZE_HD constexpr std::size_t engine_counters(std::size_t lanes) {
-  return (kCountersOfPairs + kCountersOfLane * lanes) * kBucketCount;
+  return (kCountersOfPairs + Block::kCountersOfLane * lanes) * kBucketCount;
 }
 
 GRAZE_HD inline bool bit(const std::uint32_t* words, std::uint32_t i) { return words[i / 32] >> (i % 32) & 1; }

@@ -9,28 +9,28 @@
 namespace graze::cuda {
 namespace {
 
-template <class Step>
-__global__ void __launch_bounds__(kThreads) for_words(EngineBlock block) {
+template <class Step, class Block>
+__global__ void __launch_bounds__(kThreads) for_words(Block block) {
   const std::uint32_t word = blockIdx.x * kThreads + threadIdx.x;
   if (word * 32 < block.pairs.count) Step()(block, word);
 }
 
-template <class Step>
-__device__ void take(const EngineBlock& block, std::uint32_t i) {
+template <class Step, class Block>
+__device__ void take(const Block& block, std::uint32_t i) {
   if (i >= block.pairs.count) return;
   float c[kCoordinates];
   load(block.pairs, i, c);
   Step()(block, i, c);
 }
 
-template <class Step>
-__global__ void __launch_bounds__(kThreads, Step::kThreadBlocks) for_pairs(EngineBlock block) {
+template <class Step, class Block>
+__global__ void __launch_bounds__(kThreads, Step::kThreadBlocks) for_pairs(Block block) {
   take<Step>(block, blockIdx.x * kThreads + threadIdx.x);
 }
 
 // The threads of a block take its disjoint pairs first, then the others, so that few warps diverge.
-template <class Step>
-__global__ void __launch_bounds__(kThreads, Step::kThreadBlocks) for_pairs_by_verdict(EngineBlock block) {
+template <class Step, class Block>
+__global__ void __launch_bounds__(kThreads, Step::kThreadBlocks) for_pairs_by_verdict(Block block) {
   __shared__ std::uint16_t order[kThreads];
   const std::uint32_t word = threadIdx.x / 32, in_word = threadIdx.x % 32, first = blockIdx.x * (kThreads / 32);
   std::uint32_t meet = 0, before = 0;  // intersecting pairs: all, and those before this thread's pair
@@ -45,8 +45,8 @@ __global__ void __launch_bounds__(kThreads, Step::kThreadBlocks) for_pairs_by_ve
   take<Step>(block, blockIdx.x * kThreads + order[threadIdx.x]);
 }
 
-template <class Step>
-__global__ void __launch_bounds__(kThreads, Step::kThreadBlocks) for_listed(EngineBlock block, EngineList which) {
+template <class Step, class Block>
+__global__ void __launch_bounds__(kThreads, Step::kThreadBlocks) for_listed(Block block, EngineList which) {
   const PairList& list = block.lists[which];
   for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *list.count; n += gridDim.x * kThreads) {
     float c[kCoordinates];
@@ -98,17 +98,19 @@ __global__ void __launch_bounds__(kThreads) add_signatures(EngineBlock block, En
 
 constexpr unsigned kBlocks = 1024;
 constexpr std::size_t kSharedBytes = 48 << 10;  // available to a thread block on every device
+template <class Block>
 constexpr std::uint32_t kLanesAtOnce =
-    (kSharedBytes / sizeof(std::uint32_t) / kBucketCount - kCountersOfPairs) / kCountersOfLane;
+    (kSharedBytes / sizeof(std::uint32_t) / kBucketCount - kCountersOfPairs) / Block::kCountersOfLane;
 
 // Counts by bucket or by extreme. One warp for each word: the first thread of each bucket counts all pairs of that
 // bucket. Blocks with the same y take the same range of lanes, as many as shared memory has counters for.
-__global__ void __launch_bounds__(kThreads) tally(EngineBlock block, bool by_extreme) {
+template <class Block>
+__global__ void __launch_bounds__(kThreads) tally(Block block, bool by_extreme) {
   extern __shared__ std::uint32_t counts[];
   const std::int8_t* const buckets = by_extreme ? block.extremes : block.buckets;
   const std::uint32_t from = block.lanes.count * blockIdx.y / gridDim.y;
   const std::uint32_t to = block.lanes.count * (blockIdx.y + 1) / gridDim.y;
-  const auto counters = static_cast<std::uint32_t>(engine_counters(to - from));
+  const auto counters = static_cast<std::uint32_t>(engine_counters<Block>(to - from));
   for (std::uint32_t k = threadIdx.x; k < counters; k += kThreads) counts[k] = 0;
   __syncthreads();
   std::uint32_t disagreements = 0;
@@ -133,36 +135,38 @@ __global__ void __launch_bounds__(kThreads) tally(EngineBlock block, bool by_ext
   for (std::uint32_t k = threadIdx.x; k < counters; k += kThreads) {
     const bool of_pairs = k < kCountersOfPairs * kBucketCount;
     if (counts[k] && (first_chunk || !of_pairs))
-      add(&into[k + (of_pairs ? 0 : from * kCountersOfLane * kBucketCount)], counts[k]);
+      add(&into[k + (of_pairs ? 0 : from * Block::kCountersOfLane * kBucketCount)], counts[k]);
   }
 }
 
+template <class Block>
 struct DeviceRun {
-  const EngineBlock& block;
+  const Block& block;
   cudaStream_t stream;
 
   static std::uint32_t thread_blocks(std::uint32_t threads) { return (threads + kThreads - 1) / kThreads; }
 
   template <class Step>
   void words(Step) const {
-    for_words<Step><<<thread_blocks((block.pairs.count + 31) / 32), kThreads, 0, stream>>>(block);
+    for_words<Step, Block><<<thread_blocks((block.pairs.count + 31) / 32), kThreads, 0, stream>>>(block);
   }
   template <class Step>
   void pairs(Step) const {
-    for_pairs<Step><<<thread_blocks(block.pairs.count), kThreads, 0, stream>>>(block);
+    for_pairs<Step, Block><<<thread_blocks(block.pairs.count), kThreads, 0, stream>>>(block);
   }
   template <class Step>
   void pairs_by_verdict(Step) const {
-    for_pairs_by_verdict<Step><<<thread_blocks(block.pairs.count), kThreads, 0, stream>>>(block);
+    for_pairs_by_verdict<Step, Block><<<thread_blocks(block.pairs.count), kThreads, 0, stream>>>(block);
   }
   template <class Step>
   void listed(Step, EngineList list) const {
-    for_listed<Step><<<kBlocks, kThreads, 0, stream>>>(block, list);
+    for_listed<Step, Block><<<kBlocks, kThreads, 0, stream>>>(block, list);
   }
   void add_signatures(EngineList list) const { cuda::add_signatures<<<kBlocks, kThreads, 0, stream>>>(block, list); }
   void tally(bool by_extreme) const {
-    const std::uint32_t chunks = (block.lanes.count + kLanesAtOnce - 1) / kLanesAtOnce;
-    const std::size_t shared = engine_counters((block.lanes.count + chunks - 1) / chunks) * sizeof(std::uint32_t);
+    const std::uint32_t chunks = (block.lanes.count + kLanesAtOnce<Block> - 1) / kLanesAtOnce<Block>;
+    const std::size_t shared =
+        engine_counters<Block>((block.lanes.count + chunks - 1) / chunks) * sizeof(std::uint32_t);
     cuda::tally<<<dim3(kBlocks, chunks), kThreads, shared, stream>>>(block, by_extreme);
   }
 };
@@ -170,7 +174,12 @@ struct DeviceRun {
 }  // namespace
 
 void launch_engine(const EngineBlock& block, cudaStream_t stream) {
-  run_steps(block, DeviceRun{block, stream});
+  run_steps(block, DeviceRun<EngineBlock>{block, stream});
+  check(cudaGetLastError());
+}
+
+void launch_engine(const DoubleEngineBlock& block, cudaStream_t stream) {
+  run_steps(block, DeviceRun<DoubleEngineBlock>{block, stream});
   check(cudaGetLastError());
 }
 

@@ -10,5 +10,7 @@ namespace graze::cuda {
 
 // Requires: truth and the lanes' words are written, and the lists are empty.
 void launch_engine(const EngineBlock& block, cudaStream_t stream);
+// Requires: the same, and the words of `stored`.
+void launch_engine(const DoubleEngineBlock& block, cudaStream_t stream);
 
 }  // namespace graze::cuda

@@ -26,11 +26,11 @@ EngineSignature signature_of(std::uint64_t* row, const SignatureTable& table, st
 
 }  // namespace
 
-std::vector<LaneGroup> lane_groups(std::span<const Lane* const> lanes) {
+std::vector<LaneGroup> lane_groups(std::span<const Lane* const> lanes, bool of_doubles) {
   std::vector<LaneGroup> groups;
   for (std::size_t first = 0, end; first < lanes.size(); first = end) {
     for (end = first; end < lanes.size() && lanes[end]->info == lanes[first]->info;) ++end;
-    if (!lanes[first]->exact)
+    if (of_doubles || !lanes[first]->exact)
       groups.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end - first)});
   }
   return groups;

@@ -5,12 +5,16 @@
 // only if a lane is wrong or the margin may be zero. Then everything is counted.
 #pragma once
 
+#include <type_traits>
+
 #include "core/exact/exact.h"
 #include "core/exact/find_nesting.h"
 #include "core/judged_bits.h"
 #include "core/margin/axis.h"
 #include "core/margin/margin.h"
+#include "core/margin/scaled_pair.h"
 #include "core/margin/single_precision.h"
+#include "core/margin/stored_margin.h"
 #include "core/margin/tie_proof.h"
 #include "cuda/engine/engine_block.h"
 
@@ -30,7 +34,8 @@ struct MarkWrong {
   }
 };
 
-GRAZE_HD inline Pair pair_of(const float* c) {
+template <class Real>
+GRAZE_HD BasicPair<Real> pair_of(const Real* c) {
   return {{{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {c[6], c[7], c[8]}},
           {{c[9], c[10], c[11]}, {c[12], c[13], c[14]}, {c[15], c[16], c[17]}}};
 }
@@ -69,16 +74,22 @@ GRAZE_HD inline void leave_to_host(const EngineBlock& block, std::uint32_t i) {
   if (n < block.undecided.size) block.undecided.indices[n] = block.first + i;
 }
 
+// The bucket that the bounds leave, or kUndecided. ulp: log2 of the pair's ulp.   Requires: the margin is not zero.
+template <class Coordinate>
+GRAZE_HD Bucket bucket_within(const Coordinate* c, const MarginBounds& bounds, Verdict verdict, int ulp) {
+  const int upper = floor_log2(bounds.hi);
+  Bucket bucket;
+  if (bucket_from_bounds(bounds, verdict, ulp, bucket)) return bucket;
+  if (verdict == Verdict::intersects) return upper - ulp <= kBucketLowest ? make_bucket(-1, kBucketLowest) : kUndecided;
+  return are_apart_by(c, c + 9, bounds.direction, upper) ? make_bucket(1, upper - ulp) : kUndecided;
+}
+
 // The bucket by all axes and features in numbers of this type, or kUndecided.   Requires: the margin is not zero.
 template <class Real>
 GRAZE_HD Bucket bucket_by_bounds(const float* c, Verdict verdict) {
   const Pair pair = pair_of(c);
   const MarginBounds bounds = margin_bounds<Real>(pair, verdict);
-  const int ulp = log2_ulp(pair), upper = floor_log2(bounds.hi);
-  Bucket bucket;
-  if (bucket_from_bounds(bounds, verdict, ulp, bucket)) return bucket;
-  if (verdict == Verdict::intersects) return upper - ulp <= kBucketLowest ? make_bucket(-1, kBucketLowest) : kUndecided;
-  return are_apart_by(c, c + 9, bounds.direction, upper) ? make_bucket(1, upper - ulp) : kUndecided;
+  return bucket_within(c, bounds, verdict, log2_ulp(pair));
 }
 
 struct BreakTie {
@@ -96,8 +107,9 @@ GRAZE_HD inline bool has_signatures(const EngineBlock& block, std::uint32_t i) {
 
 // The nesting of a pair on which some lane is wrong; for others it is not needed.
 // Returns: false if rounding leaves it in doubt.
-GRAZE_HD inline bool nest_quickly(const EngineBlock& block, std::uint32_t i, const float* c, const Relation& r,
-                                  Nesting& nesting) {
+template <class Real>
+GRAZE_HD bool nest_quickly(const EngineBlock& block, std::uint32_t i, const Real* c, const Relation& r,
+                           Nesting& nesting) {
   nesting = Nesting::none;
   return !bit(block.wrong, i) || exact::detail::nesting_quickly(c, c + 9, r, nesting);
 }
@@ -143,14 +155,19 @@ struct RelateByBounds {
   }
 };
 
+template <class Numbers, class Real>
+GRAZE_HD void relate_by_axes(const EngineBlock& block, std::uint32_t i, const Real* c) {
+  const int exponent = exact::detail::grid_of(c, c + 9).exponent;
+  const exact::detail::Triangles<Numbers> t = exact::detail::triangles<Numbers>(c, c + 9, exponent);
+  const Relation r = by_axes(t);
+  settle(block, i, r, bit(block.wrong, i) ? exact::detail::nesting(t, r) : Nesting::none);
+}
+
 template <class Numbers>
 struct RelateByAxes {
   static constexpr int kThreadBlocks = 1;
   GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
-    const int exponent = exact::detail::grid_of(c, c + 9).exponent;
-    const exact::detail::Triangles<Numbers> t = exact::detail::triangles<Numbers>(c, c + 9, exponent);
-    const Relation r = by_axes(t);
-    settle(block, i, r, bit(block.wrong, i) ? exact::detail::nesting(t, r) : Nesting::none);
+    relate_by_axes<Numbers>(block, i, c);
   }
 };
 
@@ -180,10 +197,109 @@ struct PlaceExtreme {
   }
 };
 
+// The steps for blocks of doubles. Their single precision is that of the stored pair, which shows wide margins. Bounds
+// in double-double numbers measure the others. What neither decides goes to the host, and so do pairs whose relation
+// needs more than the bits of `RelatingDoubles`.
+using RelatingDoubles = exact::detail::LongNumbers;
+
+struct FindChanged {
+  GRAZE_HD void operator()(const DoubleEngineBlock& block, std::uint32_t word) const {
+    block.changed[word] = (block.stored.intersects[word] ^ block.truth[word]) | block.stored.declined[word];
+  }
+};
+
+GRAZE_HD inline ScaledPair scaled_pair(const DoubleEngineBlock& block, std::uint32_t i) {
+  double c[kCoordinates];
+  load(block.doubles, i, c);
+  return ScaledPair(pair_of(c));
+}
+
+GRAZE_HD inline void give_up(const EngineBlock& block, std::uint32_t i) {
+  block.buckets[i] = kUndecided;
+  leave_to_host(block, i);
+}
+
+struct MeasureStored {
+  static constexpr int kThreadBlocks = 2;
+  GRAZE_HD void operator()(const DoubleEngineBlock& block, std::uint32_t i, const float* stored) const {
+    Bucket bucket;
+    const Verdict verdict = bit(block.truth, i) ? Verdict::intersects : Verdict::disjoint;
+    const bool measured = !bit(block.changed, i) && bucket_by_single(pair_of(stored), verdict, bucket);
+    bucket = measured ? wide_bucket(bucket, kUndecided) : kUndecided;
+    block.buckets[i] = bucket;
+    if (bucket == kUndecided) {
+      block.lists[verdict == Verdict::intersects ? kOpenDepths : kOpenGaps].add(i);
+    } else if (bit(block.wrong, i)) {
+      block.lists[kRelated].add(i);
+    }
+  }
+};
+
+template <Verdict verdict>
+struct MeasureDoubles {
+  static constexpr int kThreadBlocks = 1;
+  GRAZE_HD void operator()(const DoubleEngineBlock& block, std::uint32_t i, const float*) const {
+    const ScaledPair scaled = scaled_pair(block, i);
+    if (!scaled.fits) return leave_to_host(block, i);
+    const MarginBounds bounds = margin_bounds<DoubleDouble>(scaled.pair, verdict);
+    Bucket bucket;
+    if constexpr (verdict == Verdict::disjoint) {
+      bucket = bucket_within(&scaled.pair.a[0].x, bounds, verdict, scaled.ulp);
+      if (bucket == kUndecided) return leave_to_host(block, i);
+    } else if (!bucket_from_bounds(bounds, verdict, scaled.ulp, bucket)) {
+      bucket = kUndecided;  // the margin may be zero
+    }
+    block.buckets[i] = bucket;
+    if (bucket == kUndecided || bit(block.wrong, i)) block.lists[kRelated].add(i);
+  }
+};
+
+struct RelateDoubles {
+  static constexpr int kThreadBlocks = 1;
+  GRAZE_HD void operator()(const DoubleEngineBlock& block, std::uint32_t i, const float*) const {
+    using namespace exact::detail;
+    const ScaledPair scaled = scaled_pair(block, i);
+    if (!scaled.fits) return give_up(block, i);
+    const double *a = &scaled.pair.a[0].x, *b = &scaled.pair.b[0].x;
+    Relation r;
+    Nesting nesting;
+    if ((relate_quickly(a, b, r) || relate_by_bounds(a, b, r)) && nest_quickly(block, i, a, r, nesting))
+      return settle(block, i, r, nesting);
+    RelatingDoubles::holds(grid_of(a, b)) ? block.lists[kByLong].add(i) : give_up(block, i);
+  }
+};
+
+struct RelateDoublesByAxes {
+  static constexpr int kThreadBlocks = 1;
+  GRAZE_HD void operator()(const DoubleEngineBlock& block, std::uint32_t i, const float*) const {
+    const ScaledPair scaled = scaled_pair(block, i);
+    relate_by_axes<RelatingDoubles>(block, i, &scaled.pair.a[0].x);
+  }
+};
+
+struct SettleDoubleDepth {
+  static constexpr int kThreadBlocks = 1;
+  GRAZE_HD void operator()(const DoubleEngineBlock& block, std::uint32_t i, const float*) const {
+    const ScaledPair scaled = scaled_pair(block, i);
+    const MarginBounds bounds = margin_bounds<DoubleDouble>(scaled.pair, Verdict::intersects);
+    block.buckets[i] = bucket_within(&scaled.pair.a[0].x, bounds, Verdict::intersects, scaled.ulp);
+    if (block.buckets[i] == kUndecided) leave_to_host(block, i);
+  }
+};
+
+struct PlaceExtremeOfDoubles {
+  static constexpr int kThreadBlocks = 1;
+  GRAZE_HD void operator()(const DoubleEngineBlock& block, std::uint32_t i, const float*) const {
+    double c[kCoordinates];
+    load(block.doubles, i, c);
+    block.extremes[i] = block.buckets[i] == kUndecided ? kUndecided : place_on_axis(pair_of(c), block.axis);
+  }
+};
+
 // Calls add(counter, pairs) for each counter of lanes [from, to) to which pairs of the word contribute. same: the
 // pairs, all of one bucket. Counters are laid out as in EngineResult, starting with lane `from`.
-template <class Add>
-GRAZE_HD void count_word(const EngineBlock& block, std::uint32_t word, std::uint32_t same, std::uint32_t from,
+template <class Block, class Add>
+GRAZE_HD void count_word(const Block& block, std::uint32_t word, std::uint32_t same, std::uint32_t from,
                          std::uint32_t to, const Add& add) {
   const std::uint32_t truth = block.truth[word];
   add(0, same);
@@ -191,10 +307,14 @@ GRAZE_HD void count_word(const EngineBlock& block, std::uint32_t word, std::uint
   for (std::uint32_t l = from; l < to; ++l) {
     const LaneWords& lane = block.lanes.lanes[l];
     const JudgedBits<std::uint32_t> bits = judge(lane.intersects[word], lane.declined[word], truth, same);
-    const std::uint32_t counter = kCountersOfPairs + kCountersOfLane * (l - from);
+    const std::uint32_t counter = kCountersOfPairs + Block::kCountersOfLane * (l - from);
     add(counter, bits.false_positive);
     add(counter + 1, bits.false_negative);
     add(counter + 2, bits.declined);
+    if constexpr (std::is_same_v<Block, DoubleEngineBlock>) {
+      const std::uint32_t* changed = block.changed_for_lane[l];
+      add(counter + 3, changed ? bits.wrong() & changed[word] : 0);
+    }
   }
 }
 
@@ -224,6 +344,23 @@ void run_steps(const EngineBlock& block, const Run& run) {
   run.tally(false);
   if (block.axis == Axis::none) return;
   run.pairs(PlaceExtreme{});
+  run.tally(true);
+}
+
+template <class Run>
+void run_steps(const DoubleEngineBlock& block, const Run& run) {
+  run.words(MarkWrong{});
+  run.words(FindChanged{});
+  run.pairs_by_verdict(MeasureStored{});
+  run.listed(MeasureDoubles<Verdict::disjoint>{}, kOpenGaps);
+  run.listed(MeasureDoubles<Verdict::intersects>{}, kOpenDepths);
+  run.listed(RelateDoubles{}, kRelated);
+  run.listed(RelateDoublesByAxes{}, kByLong);
+  run.listed(SettleDoubleDepth{}, kDepths);
+  run.add_signatures(kRelated);
+  run.tally(false);
+  if (block.axis == Axis::none) return;
+  run.pairs(PlaceExtremeOfDoubles{});
   run.tally(true);
 }
 

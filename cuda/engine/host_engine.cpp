@@ -11,8 +11,9 @@ namespace graze::cuda {
 namespace {
 
 // Runs the steps of one block, pair by pair.
+template <class Block>
 struct HostRun {
-  const EngineBlock& block;
+  const Block& block;
 
   std::uint32_t word_count() const { return (block.pairs.count + 31) / 32; }
 
@@ -72,18 +73,24 @@ struct HostRun {
 class HostEngine final : public DeviceEngine {
  public:
   HostEngine(std::span<const Lane* const> lanes, std::span<const DecideBlock> on_host, const EngineLimits& limits)
-      : on_host_(on_host.begin(), on_host.end()), groups_(lane_groups(lanes)), limits_(limits) {
-    for (const Lane* lane : lanes) is_truth_.push_back(lane->exact);
-  }
+      : on_host_(on_host.begin(), on_host.end()), row_of_(lanes.begin(), lanes.end()), limits_(limits) {}
 
   EngineResult run(const strata::PairSource& source, std::uint64_t first, std::uint64_t count) override {
-    const std::size_t counters = engine_counters(on_host_.size());
+    groups_ = lane_groups(row_of_, source.in_doubles());
+    return source.in_doubles() ? run_in<DoubleEngineBlock>(source, first, count)
+                               : run_in<EngineBlock>(source, first, count);
+  }
+
+ private:
+  template <class Block>
+  EngineResult run_in(const strata::PairSource& source, std::uint64_t first, std::uint64_t count) {
+    const std::size_t counters = engine_counters<Block>(on_host_.size());
     const std::uint32_t block_pairs = static_cast<std::uint32_t>(std::min<std::uint64_t>(limits_.block_pairs, count));
     EngineTotals totals;
     const auto most_undecided = static_cast<std::uint32_t>(std::min<std::uint64_t>(limits_.undecided, count));
     totals.undecided.resize(most_undecided);
     totals.counts.resize(2 * counters + 1);
-    EngineBlock block{};
+    Block block{};
     block.axis = source.axis;
     block.signatures = {nullptr, limits_.signatures, key_words(groups_), &totals.full};
     totals.rows.resize(std::size_t{block.signatures.size} * block.signatures.row_words());
@@ -101,7 +108,7 @@ class HostEngine final : public DeviceEngine {
           block.first = at;
           block.pairs.count = pairs;
           decide(block, source);
-          run_steps(block, HostRun{block});
+          run_steps(block, HostRun<Block>{block});
         },
         [&] { return totals.left; });
     EngineResult result = result_of(std::move(totals), block.signatures, groups_, block.axis);
@@ -109,26 +116,25 @@ class HostEngine final : public DeviceEngine {
     return result;
   }
 
- private:
   void give_memory(EngineBlock& block, std::uint32_t pairs) {
     words_ = (pairs + 63) / 64;
     coordinates_.resize(std::size_t{pairs} * kCoordinates);
-    bits_.assign(words_ * (2 * on_host_.size() + 3), 0);
+    bits_.assign(words_ * (2 * on_host_.size() + kColumns), 0);
     buckets_.resize(2 * std::size_t{pairs});
     relations_.resize(pairs);
     places_.resize(std::size_t{kEngineLists} * pairs);
     block.pairs = {coordinates_.data(), pairs, pairs};
-    block.truth = words(0);
-    block.wrong = words(1);
+    block.truth = words(kTruth);
+    block.wrong = words(kWrong);
     block.buckets = buckets_.data();
     block.extremes = buckets_.data() + pairs;
     block.relations = relations_.data();
     lanes_.clear();
     for (std::size_t l = 0; l < on_host_.size(); ++l) {
-      if (is_truth_[l]) {
-        lanes_.push_back({words(0), words(2)});  // the exact lane declines nothing
+      if (row_of_[l]->exact) {
+        lanes_.push_back({words(kTruth), words(kNone)});  // the exact lane declines nothing
       } else {
-        lanes_.push_back({words(3 + 2 * l), words(4 + 2 * l)});
+        lanes_.push_back({words(of_lane(l)), words(of_lane(l) + 1)});
       }
     }
     block.lanes = {lanes_.data(), static_cast<std::uint32_t>(lanes_.size()), groups_.data(),
@@ -136,37 +142,94 @@ class HostEngine final : public DeviceEngine {
     for (std::size_t k = 0; k < kEngineLists; ++k) block.lists[k] = {&places_[k * pairs], &lengths_[k]};
   }
 
-  std::uint32_t* words(std::size_t column) { return reinterpret_cast<std::uint32_t*>(&bits_[column * words_]); }
+  void give_memory(DoubleEngineBlock& block, std::uint32_t pairs) {
+    give_memory(static_cast<EngineBlock&>(block), pairs);
+    doubles_.resize(std::size_t{pairs} * kCoordinates);
+    block.doubles = {doubles_.data(), pairs, pairs};
+    block.stored = {words(kStored), words(kBeyond)};
+    block.changed = words(kChanged);
+    changed_for_lane_.clear();
+    for (std::size_t l = 0; l < on_host_.size(); ++l) {
+      const bool of_stored = row_of_[l]->scalar == Scalar::f32;
+      if (of_stored && row_of_[l]->exact) lanes_[l] = block.stored;
+      changed_for_lane_.push_back(of_stored ? block.changed : nullptr);
+    }
+    block.changed_for_lane = changed_for_lane_.data();
+  }
+
+  // The columns of bits_; two more for each lane.
+  enum { kTruth, kWrong, kNone, kStored, kBeyond, kChanged, kColumns };
+  static std::size_t of_lane(std::size_t l) { return kColumns + 2 * l; }
+  std::uint64_t* column(std::size_t k) { return &bits_[k * words_]; }
+  std::uint32_t* words(std::size_t k) { return reinterpret_cast<std::uint32_t*>(column(k)); }
 
   // Draws the pairs, then decides them exactly and by the lanes.
   void decide(const EngineBlock& block, const strata::PairSource& source) {
     std::vector<Pair> pairs(block.pairs.count);
-    std::fill_n(&bits_[0], words_, 0);
+    for (std::uint32_t i = 0; i < block.pairs.count; ++i) pairs[i] = source.pair(block.first + i);
+    put(pairs, coordinates_, block.pairs.stride);
+    decide_exactly(pairs, kTruth, kNone);
+    decide_by_lanes(pairs, [](const Lane&) { return true; });
+    std::fill_n(lengths_, static_cast<std::size_t>(kEngineLists), 0u);
+  }
+  void decide(const DoubleEngineBlock& block, const strata::PairSource& source) {
+    std::vector<DoublePair> doubles(block.pairs.count);
+    std::vector<Pair> stored(block.pairs.count);
     for (std::uint32_t i = 0; i < block.pairs.count; ++i) {
-      pairs[i] = source.pair(block.first + i);
-      const float* c = coordinates(pairs[i]);
-      for (std::size_t k = 0; k < kCoordinates; ++k) coordinates_[k * block.pairs.stride + i] = c[k];
-      bits_[i / 64] |= std::uint64_t{exact::intersects(c, c + 9)} << (i % 64);
+      doubles[i] = source.double_pair(block.first + i);
+      stored[i] = stored_in_float32(doubles[i]);
     }
-    for (std::size_t l = 0; l < on_host_.size(); ++l) {
-      if (!is_truth_[l])
-        on_host_[l](pairs.data(), pairs.size(), &bits_[(3 + 2 * l) * words_], &bits_[(4 + 2 * l) * words_]);
-    }
+    put(doubles, doubles_, block.doubles.stride);
+    put(stored, coordinates_, block.pairs.stride);
+    decide_exactly(doubles, kTruth, kNone);
+    decide_exactly(stored, kStored, kBeyond);
+    decide_by_lanes(doubles, [](const Lane& lane) { return lane.scalar == Scalar::f64; });
+    decide_by_lanes(stored, [](const Lane& lane) { return lane.scalar == Scalar::f32; });
     std::fill_n(lengths_, static_cast<std::size_t>(kEngineLists), 0u);
   }
 
+  template <class Real>
+  static void put(const std::vector<BasicPair<Real>>& pairs, std::vector<Real>& columns, std::size_t stride) {
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      for (std::size_t k = 0; k < kCoordinates; ++k) columns[k * stride + i] = coordinates(pairs[i])[k];
+    }
+  }
+
+  template <class Real>
+  void decide_exactly(const std::vector<BasicPair<Real>>& pairs, std::size_t intersects, std::size_t declined) {
+    std::fill_n(column(intersects), words_, 0);
+    std::fill_n(column(declined), words_, 0);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const Real* c = coordinates(pairs[i]);
+      const bool finite = is_finite(pairs[i]);
+      column(declined)[i / 64] |= std::uint64_t{!finite} << (i % 64);
+      column(intersects)[i / 64] |= std::uint64_t{finite && exact::intersects(c, c + 9)} << (i % 64);
+    }
+  }
+
+  // By those lanes that `which` accepts.
+  template <class AnyPair, class Which>
+  void decide_by_lanes(const std::vector<AnyPair>& pairs, const Which& which) {
+    for (std::size_t l = 0; l < on_host_.size(); ++l) {
+      if (!row_of_[l]->exact && which(*row_of_[l]))
+        on_host_[l](pairs.data(), pairs.size(), column(of_lane(l)), column(of_lane(l) + 1));
+    }
+  }
+
   std::vector<DecideBlock> on_host_;
-  std::vector<bool> is_truth_;
+  std::vector<const Lane*> row_of_;
   std::vector<LaneGroup> groups_;
   EngineLimits limits_;
-  std::size_t words_ = 0;            // 64-bit words of a column of bits_
-  std::vector<std::uint64_t> bits_;  // truth, wrong, none, then each lane's two columns
+  std::size_t words_ = 0;  // 64-bit words of a column of bits_
+  std::vector<std::uint64_t> bits_;
   std::vector<float> coordinates_;
+  std::vector<double> doubles_;
   std::vector<std::int8_t> buckets_;
   std::vector<std::uint16_t> relations_;
   std::vector<std::uint32_t> places_;
   std::uint32_t lengths_[kEngineLists] = {};
   std::vector<LaneWords> lanes_;
+  std::vector<const std::uint32_t*> changed_for_lane_;
 };
 
 }  // namespace

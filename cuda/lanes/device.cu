@@ -8,7 +8,6 @@
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/exact_kernels.cuh"
 #include "cuda/lanes/kernels.cuh"
-#include "cuda/lanes/record_kernels.cuh"
 
 namespace graze::cuda {
 

@@ -76,5 +76,7 @@ void launch_lane(const Lane& lane, DeviceExact& exact, DeviceDoubles pairs, std:
 
 // Starts the kernel of a published CUDA lane that records its values; see core/lanes/records.h.
 void launch_record(const Lane& lane, DevicePairs pairs, void* values, std::uint64_t stride, RecordedPath* paths);
+// Requires: a lane in double.
+void launch_record(const Lane& lane, DeviceDoubles pairs, void* values, std::uint64_t stride, RecordedPath* paths);
 
 }  // namespace graze::cuda

@@ -39,6 +39,8 @@ using LaunchWithinDoubles = void (*)(const Epsilons& epsilons, DeviceDoubles pai
 // Starts a kernel that records the values of each pair; see core/lanes/records.h. `values` are the lane's scalars.
 using LaunchValues = void (*)(DevicePairs pairs, void* values, std::uint64_t stride, RecordedPath* paths,
                               cudaStream_t stream);
+using LaunchValuesDoubles = void (*)(DeviceDoubles pairs, void* values, std::uint64_t stride, RecordedPath* paths,
+                                     cudaStream_t stream);
 
 template <class Launch>
 using DeviceKernels = std::array<std::array<Launch, 2>, kAlgorithmCount>;
@@ -54,14 +56,15 @@ struct VariantKernels {
   DoubleKernels<LaunchTraceDoubles> trace_doubles;
 };
 
-// Of the lanes with tolerances, and of those under certified bounds.
+// For pairs of both coordinate types.
 template <class Launch, class LaunchDoubles>
-struct PolicyKernels {
+struct KernelsOfBoth {
   DeviceKernels<Launch> floats;
   DoubleKernels<LaunchDoubles> doubles;
 };
-using WithinKernels = PolicyKernels<LaunchWithin, LaunchWithinDoubles>;
-using BoundKernels = PolicyKernels<LaunchDecide, LaunchDecideDoubles>;
+using WithinKernels = KernelsOfBoth<LaunchWithin, LaunchWithinDoubles>;  // lanes with tolerances
+using BoundKernels = KernelsOfBoth<LaunchDecide, LaunchDecideDoubles>;   // lanes under certified bounds
+using RecordKernels = KernelsOfBoth<LaunchValues, LaunchValuesDoubles>;
 
 template <class Pairs>
 constexpr std::uint32_t thread_blocks(const Pairs& pairs) {

@@ -26,7 +26,6 @@
 #include "cuda/lanes/device.h"
 #include "cuda/lanes/device_event.cuh"
 #include "cuda/lanes/device_memory.cuh"
-#include "cuda/lanes/draw_on_cores.h"
 #include "cuda/lanes/exact_kernels.cuh"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/stratum_kernels.cuh"
@@ -51,10 +50,8 @@ void draw(const strata::StratumInfo& stratum, std::uint64_t first, float* to) {
 
 // On all CPU cores, then copied.
 void draw(const strata::StratumInfo& stratum, std::uint64_t first, double* to) {
-  std::vector<double> columns;
-  draw_on_cores([&](std::uint64_t index) { return strata::generate_doubles(1, stratum.stratum, index); }, first, kPairs,
-                columns);
-  check(cudaMemcpy(to, columns.data(), kNumbers * sizeof(double), cudaMemcpyHostToDevice));
+  const std::string name = std::string(stratum.id) + std::string(strata::kInDoubles);
+  Drawing().draw(strata::named_sources(1, kPairs, {name}).front(), first, kPairs, to, nullptr, nullptr);
 }
 
 // The pairs of one stratum, and the memory to which the lanes write.

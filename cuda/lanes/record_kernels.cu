@@ -3,7 +3,8 @@
 // and in its own namespace GRAZE_FP. Define nothing else here, or the linker would mix the variants. The twins are
 // generated from the PTX of this file.
 #include "core/algorithms/recording.h"
-#include "cuda/lanes/record_kernels.cuh"
+#include "core/lanes/lanes.h"
+#include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/vote.cuh"
 
 namespace graze::cuda {

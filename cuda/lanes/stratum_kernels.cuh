@@ -24,6 +24,9 @@ struct Differences {
 // Writes pairs [first, first + count) of the stratum.
 void launch_generate(float* coordinates, std::uint32_t count, std::uint64_t seed, int stratum, std::uint64_t first,
                      cudaStream_t stream);
+// The same of a source of doubles, in its scene if it has one.   Requires: its stratum is known.
+void launch_generate(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, double* coordinates,
+                     cudaStream_t stream);
 
 // Brings a source's pairs to a device. They are drawn on the device if it has the kernels, else by all CPU cores and
 // copied.
@@ -33,7 +36,7 @@ class Drawing {
   void draw(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, float* coordinates,
             cudaStream_t stream);
 
-  // The same for a source of doubles. `stored` gets the pairs as float32 stores them.
+  // The same for a source of doubles. `stored`, if not null, gets the pairs as float32 stores them.
   void draw(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, double* coordinates,
             float* stored, cudaStream_t stream);
 

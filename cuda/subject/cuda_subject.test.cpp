@@ -113,6 +113,33 @@ TEST_F(CudaSubject, KnowsFloatAndDoubleAndNames) {
             Scalar::f32);
 }
 
+TEST_F(CudaSubject, InDoubleDecidesDoublesAsTheyAre) {
+  const std::string rounds = "__device__ bool f(const Real a[9], const Real b[9]) { return a[0] * a[1] - b[0] > 0; }";
+  const DoublePair doubles[] = {{{{1 + 0x1p-52, 1 + 0x1p-52, 0}}, {{1 + 0x1p-51, 0, 0}}},
+                                {{{1 + 0x1p-51, 1, 0}}, {{1, 0, 0}}}};
+  const auto in_double = build("using Real = double;\n" + rounds, "f");
+  for (const CudaBuild& one : {in_double[0], in_double[1]}) {
+    const bool fuses = one.variant == Variant::cuda_fma;
+    const TwinLibrary twin(one.twin, Scalar::f64);
+    std::int8_t answers[2] = {};
+    twin.decide(std::span(doubles), answers);
+    EXPECT_EQ(answers[0], fuses);  // the product is rounded to the difference's other operand
+    EXPECT_EQ(answers[1], 1);
+    const std::uint64_t all = ~std::uint64_t{0}, none = 0;
+    EXPECT_EQ(twin.decide_fusing(doubles[0], {&all, 1}), fuses);
+    EXPECT_EQ(twin.decide_fusing(doubles[0], {&none, 1}), 0);
+    const Pair stored[] = {stored_in_float32(doubles[0]), stored_in_float32(doubles[1])};
+    twin.decide(std::span(stored), answers);
+    EXPECT_EQ(answers[1], 0);
+  }
+  const auto in_float = build("using Real = float;\n" + rounds, "f");
+  const TwinLibrary twin(in_float[0].twin, Scalar::f32);
+  const std::uint64_t none = 0;
+  std::int8_t answers[2] = {};
+  EXPECT_EQ(twin.decide_fusing(doubles[1], {&none, 1}), 0);  // as float32 stores the pair
+  EXPECT_THROW(twin.decide(std::span(doubles), answers), std::logic_error);
+}
+
 TEST_F(CudaSubject, SaysWhatItFound) {
   const std::string expected =
       "mine.cu: expected __device__ bool intersects(const float a[9], const float b[9]), or int, or with double; ";

@@ -47,6 +47,18 @@ TEST_F(StylesOnADevice, EqualTheirTwins) {
   }
 }
 
+TEST_F(StylesOnADevice, EqualTheirTwinsOnDoubles) {
+  std::vector<NamedBuild> builds;
+  for (const StyleBuild& style : styles_) builds.push_back({style.name, &style.build});
+  const ProofRecord record = prove_subjects(builds, {.twin_pairs = 1'000'000, .of_doubles = true});
+  ASSERT_GE(record.lanes.size(), 3u);
+  for (const LaneProof& lane : record.lanes) {
+    EXPECT_NE(lane.lane.find("/f64/"), std::string::npos) << lane.lane;
+    EXPECT_TRUE(lane.verified()) << lane.lane << ": " << lane.twin_differences() << " of " << lane.twin_pairs();
+    EXPECT_EQ(lane.strata.size(), 28u);
+  }
+}
+
 TEST_F(StylesOnADevice, AWrongTwinShows) {  // the twin of another variant
   const auto of = [&](const std::string& name) {
     for (const StyleBuild& style : styles_) {

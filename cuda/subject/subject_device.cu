@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <stdexcept>
 #include <thread>
 
 #include "cuda/lanes/device.h"
@@ -10,6 +11,7 @@
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/stratum_kernels.cuh"
 #include "cuda/twin/twin_library.h"
+#include "strata/pair_source.h"
 #include "strata/strata.h"
 
 namespace graze::cuda {
@@ -37,22 +39,14 @@ class Subject final : public SubjectOnDevice {
   }
   ~Subject() override { cudaLibraryUnload(library_); }
 
-  void decide(std::span<const Pair> pairs, std::int8_t* answers) override {
-    std::vector<float> columns;
-    for (std::size_t first = 0; first < pairs.size(); first += kBlock) {
-      const auto n = static_cast<unsigned>(std::min<std::size_t>(kBlock, pairs.size() - first));
-      columns.resize(std::size_t{n} * kCoordinates);
-      for (unsigned i = 0; i < n; ++i) {
-        for (unsigned c = 0; c < kCoordinates; ++c) columns[std::size_t{c} * n + i] = coordinates(pairs[first + i])[c];
-      }
-      float* at = coordinates_.at_least(columns.size());
-      check(cudaMemcpy(at, columns.data(), columns.size() * sizeof(float), cudaMemcpyHostToDevice));
-      decide_block(at, n, answers + first);
-    }
+  void decide(std::span<const Pair> pairs, std::int8_t* answers) override { decide_all(pairs, floats_, answers); }
+  void decide(std::span<const DoublePair> pairs, std::int8_t* answers) override {
+    decide_all(pairs, doubles_, answers);
   }
 
   // coordinates: device memory, 18 arrays of n.
-  void decide_block(const float* coordinates, unsigned n, std::int8_t* answers) {
+  template <class Real>
+  void decide_block(const Real* coordinates, unsigned n, std::int8_t* answers) {
     launch(in_its_type(coordinates, n), n);
     check(cudaMemcpy(answers, answers_.at_least(n), n, cudaMemcpyDeviceToHost));
   }
@@ -66,6 +60,10 @@ class Subject final : public SubjectOnDevice {
     check(cudaGetLastError());
     return wide;
   }
+  const void* in_its_type(const double* coordinates, unsigned) {
+    if (scalar_ != Scalar::f64) throw std::logic_error("a kernel of floats cannot decide doubles");
+    return coordinates;
+  }
 
   void launch(const void* from, unsigned n) {
     signed char* answers_at = answers_.at_least(n);
@@ -75,18 +73,34 @@ class Subject final : public SubjectOnDevice {
   }
 
  private:
+  template <class Real>
+  void decide_all(std::span<const BasicPair<Real>> pairs, DeviceArray<Real>& on_device, std::int8_t* answers) {
+    std::vector<Real> columns;
+    for (std::size_t first = 0; first < pairs.size(); first += kBlock) {
+      const auto n = static_cast<unsigned>(std::min<std::size_t>(kBlock, pairs.size() - first));
+      columns.resize(std::size_t{n} * kCoordinates);
+      for (unsigned i = 0; i < n; ++i) {
+        for (unsigned c = 0; c < kCoordinates; ++c) columns[std::size_t{c} * n + i] = coordinates(pairs[first + i])[c];
+      }
+      Real* at = on_device.at_least(columns.size());
+      check(cudaMemcpy(at, columns.data(), columns.size() * sizeof(Real), cudaMemcpyHostToDevice));
+      decide_block(at, n, answers + first);
+    }
+  }
+
   Scalar scalar_;
   cudaLibrary_t library_ = nullptr;
   cudaKernel_t kernel_ = nullptr;
-  DeviceArray<float> coordinates_;
-  DeviceArray<double> wide_;
+  DeviceArray<float> floats_;
+  DeviceArray<double> doubles_, wide_;
   DeviceArray<signed char> answers_;
 };
 
 // Copies the block's pairs from the device, as its kernels saw them.
-void fetch(const float* on_device, std::vector<Pair>& pairs) {
-  std::vector<float> columns(pairs.size() * kCoordinates);
-  check(cudaMemcpy(columns.data(), on_device, columns.size() * sizeof(float), cudaMemcpyDeviceToHost));
+template <class Real>
+void fetch(const Real* on_device, std::vector<BasicPair<Real>>& pairs) {
+  std::vector<Real> columns(pairs.size() * kCoordinates);
+  check(cudaMemcpy(columns.data(), on_device, columns.size() * sizeof(Real), cudaMemcpyDeviceToHost));
   const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
   std::vector<std::thread> workers;
   for (std::size_t t = 0; t < threads; ++t) {
@@ -99,7 +113,8 @@ void fetch(const float* on_device, std::vector<Pair>& pairs) {
   for (std::thread& worker : workers) worker.join();
 }
 
-void compare(Subject& subject, const TwinLibrary& twin, const float* on_device, const std::vector<Pair>& pairs,
+template <class Real>
+void compare(Subject& subject, const TwinLibrary& twin, const Real* on_device, std::span<const BasicPair<Real>> pairs,
              std::uint64_t first, StratumProof& row) {
   std::vector<std::int8_t> there(pairs.size()), here(pairs.size());
   subject.decide_block(on_device, static_cast<unsigned>(pairs.size()), there.data());
@@ -166,29 +181,38 @@ ProofRecord prove_subjects(std::span<const NamedBuild> builds, const ProofOption
   std::vector<std::unique_ptr<Subject>> subjects;
   std::vector<std::unique_ptr<TwinLibrary>> twins;
   for (const auto& [lane, build] : builds) {
-    if (build->twin.empty()) continue;
+    if (build->twin.empty() || (options.of_doubles && build->scalar != Scalar::f64)) continue;
     record.toolkit = build->toolkit;
     subjects.push_back(std::make_unique<Subject>(*build));
     twins.push_back(std::make_unique<TwinLibrary>(build->twin, build->scalar));
-    record.lanes.push_back({lane, build->hash, "", std::vector<StratumProof>(strata::kStrataCount)});
+    record.lanes.push_back({lane, build->hash, "", {}});
   }
-  DeviceArray<float> coordinates_of_block;
-  for (int s = 0; s < strata::kStrataCount; ++s) {
-    const std::uint64_t count = options.twin_pairs / strata::kStrataCount +
-                                (static_cast<std::uint64_t>(s) < options.twin_pairs % strata::kStrataCount);
-    for (LaneProof& lane : record.lanes) lane.strata[static_cast<std::size_t>(s)].stratum = strata::kStrata[s].id;
-    for (std::uint64_t first = 0; first < count; first += kBlock) {
-      std::vector<Pair> pairs(std::min<std::uint64_t>(kBlock, count - first));
-      float* on_device = coordinates_of_block.at_least(pairs.size() * kCoordinates);
-      launch_generate(on_device, static_cast<std::uint32_t>(pairs.size()), options.seed, s, first, nullptr);
-      check(cudaGetLastError());
+  Drawing drawing;
+  DeviceArray<float> floats;
+  DeviceArray<double> doubles;
+  for (const strata::PairSource& source : strata::stratum_sources(
+           options.seed, options.twin_pairs, {}, options.of_doubles ? PairTypes::f64 : PairTypes::f32)) {
+    for (LaneProof& lane : record.lanes) lane.strata.push_back({source.id});
+    const auto prove_block = [&]<class Real>(std::uint64_t first, std::vector<BasicPair<Real>> pairs, Real* on_device) {
       fetch(on_device, pairs);
       for (std::size_t l = 0; l < record.lanes.size(); ++l)
-        compare(*subjects[l], *twins[l], on_device, pairs, first, record.lanes[l].strata[static_cast<std::size_t>(s)]);
+        compare<Real>(*subjects[l], *twins[l], on_device, pairs, first, record.lanes[l].strata.back());
+    };
+    for (std::uint64_t first = 0; first < source.pairs; first += kBlock) {
+      const auto n = static_cast<std::uint32_t>(std::min<std::uint64_t>(kBlock, source.pairs - first));
+      const std::size_t numbers = std::size_t{n} * kCoordinates;
+      if (source.in_doubles()) {
+        double* on_device = doubles.at_least(numbers);
+        drawing.draw(source, first, n, on_device, nullptr, nullptr);
+        prove_block(first, std::vector<DoublePair>(n), on_device);
+      } else {
+        float* on_device = floats.at_least(numbers);
+        drawing.draw(source, first, n, on_device, nullptr);
+        prove_block(first, std::vector<Pair>(n), on_device);
+      }
     }
     record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (options.progress)
-      options.progress(std::string(strata::kStrata[s].id) + ": " + std::to_string(count) + " pairs");
+    if (options.progress) options.progress(source.id + ": " + std::to_string(source.pairs) + " pairs");
   }
   return record;
 }

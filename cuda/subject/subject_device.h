@@ -23,6 +23,8 @@ class SubjectOnDevice {
   // Throws: std::runtime_error on any CUDA error. After an error that the user's code causes, this process has no
   // device.
   virtual void decide(std::span<const Pair> pairs, std::int8_t* answers) = 0;
+  // Requires: a kernel of doubles.
+  virtual void decide(std::span<const DoublePair> pairs, std::int8_t* answers) = 0;
 };
 
 // Throws: std::runtime_error without a device, when built without CUDA, or when the driver refuses the PTX.
@@ -37,9 +39,9 @@ struct SubjectCosts {
 };
 SubjectCosts time_subjects(std::span<const CudaBuild> builds, std::uint32_t count, int passes);
 
-// Compares each build that has a twin with that twin, on `options.twin_pairs` pairs over all strata. In the record, the
-// twin decided all counted pairs, and there are no trace hashes.
-// Throws: as open_on_device.
+// Compares each build that has a twin with that twin, on `options.twin_pairs` pairs over all strata; of doubles, each
+// such build of a function of doubles. In the record, the twin decided all counted pairs, and there are no trace
+// hashes. Throws: as open_on_device.
 struct NamedBuild {
   std::string lane;  // "mine/f32/cuda-fma"
   const CudaBuild* build;

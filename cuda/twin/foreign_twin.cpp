@@ -44,7 +44,7 @@ std::span<const ContractionSite> contraction_sites(const Lane& lane) {
 }
 
 std::span<const ContractionSite> contraction_sites(const Lane& lane, const AnyPair& pair) {
-  return pair.floats ? contraction_sites(lane) : twin_row(lane).doubles.sites;
+  return pair.floats || lane.foreign ? contraction_sites(lane) : twin_row(lane).doubles.sites;
 }
 
 std::span<const ComparisonSite> comparison_sites(const Lane& lane) {
@@ -52,7 +52,7 @@ std::span<const ComparisonSite> comparison_sites(const Lane& lane) {
   return found == foreign_twins().end() ? std::span<const ComparisonSite>() : found->second.library->comparisons();
 }
 
-Verdict decide_comparing(const Lane& lane, const Pair& pair, std::span<const std::uint64_t> fused,
+Verdict decide_comparing(const Lane& lane, const AnyPair& pair, std::span<const std::uint64_t> fused,
                          std::span<Comparison> made, std::size_t& count) {
   const int answer = foreign_twins().at(lane.id).library->decide_fusing(pair, fused, made, &count);
   return answer < 0 ? Verdict::declined : answer > 0 ? Verdict::intersects : Verdict::disjoint;
@@ -60,7 +60,7 @@ Verdict decide_comparing(const Lane& lane, const Pair& pair, std::span<const std
 
 Verdict decide_fusing(const Lane& lane, const AnyPair& pair, std::span<const std::uint64_t> fused) {
   std::size_t none = 0;
-  if (lane.foreign) return decide_comparing(lane, pair.floats.value(), fused, {}, none);
+  if (lane.foreign) return decide_comparing(lane, pair, fused, {}, none);
   const auto decide = [&](const auto& twin, const auto& own) {
     if (!twin.decide_fusing || fused.size() * 64 < twin.sites.size())
       throw std::invalid_argument("decide_fusing: no such twin, or too few bits for its sites");

@@ -12,7 +12,6 @@
 #include "core/lanes/lanes.h"
 #include "cuda/lanes/device.h"
 #include "cuda/lanes/device_memory.cuh"
-#include "cuda/lanes/draw_on_cores.h"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/stratum_kernels.cuh"
 #include "cuda/twin/explicit_ptx.h"
@@ -88,15 +87,13 @@ struct OfDoubles {
     kernels_of(lane.variant).decide_doubles[a](block, yes, no_answer, nullptr);
     kernels_of(lane.variant).trace_doubles[a](block, hashes, nullptr);
   }
-  // On all CPU cores, then copied.
   void draw(std::uint64_t seed, std::size_t s, std::uint64_t first, std::uint32_t n, double* to) {
-    draw_on_cores([&](std::uint64_t index) { return strata::generate_doubles(seed, kStrata[s].stratum, index); }, first,
-                  n, drawn_);
-    check(cudaMemcpy(to, drawn_.data(), drawn_.size() * sizeof(double), cudaMemcpyHostToDevice));
+    const std::string name = std::string(kStrata[s].id) + std::string(kSuffix);
+    drawing_.draw(strata::named_sources(seed, 1, {name}).front(), first, n, to, nullptr, nullptr);
   }
 
  private:
-  std::vector<double> drawn_;
+  Drawing drawing_;
 };
 
 template <class Coordinates>

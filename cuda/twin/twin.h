@@ -92,7 +92,7 @@ double most_seconds(const Lane& lane);  // for one verdict.   Requires: a foreig
 // The verdict of a lane with contraction sites when sites whose bit is not set round twice. No bit set gives
 // cuda-nofma; all bits set give the lane itself. Bit i % 64 of word i / 64 belongs to site i. Foreign code runs in this
 // process and may crash or not return.
-// Requires: (sites + 63) / 64 words; a pair of doubles only for a lane in double that is not foreign.
+// Requires: (sites + 63) / 64 words; a pair of doubles only for a lane in double, or a foreign one.
 Verdict decide_fusing(const Lane& lane, const AnyPair& pair, std::span<const std::uint64_t> fused);
 
 // The comparisons of numbers in a foreign CUDA lane with contraction sites, in program order. `min`, `max` and tests of
@@ -106,7 +106,7 @@ struct Comparison {
 
 // decide_fusing of such a lane. `made` gets the first comparisons that it makes, as many as fit, and `count` their
 // number.
-Verdict decide_comparing(const Lane& lane, const Pair& pair, std::span<const std::uint64_t> fused,
+Verdict decide_comparing(const Lane& lane, const AnyPair& pair, std::span<const std::uint64_t> fused,
                          std::span<Comparison> made, std::size_t& count);
 
 // The contraction sites of the twin that records, and its records when sites whose bit is not set round twice; see

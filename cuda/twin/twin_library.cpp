@@ -16,12 +16,31 @@ constexpr std::size_t kPart = 1 << 13;  // pairs that a thread takes at a time
 using Block32 = void (*)(const float*, std::size_t, signed char*);
 using Block64 = void (*)(const double*, std::size_t, signed char*);
 
+void decide_part(void* block, Scalar scalar, std::span<const DoublePair> pairs, signed char* answers) {
+  if (scalar != Scalar::f64) throw std::logic_error("a twin in float cannot decide doubles");
+  reinterpret_cast<Block64>(block)(coordinates(pairs[0]), pairs.size(), answers);
+}
 void decide_part(void* block, Scalar scalar, std::span<const Pair> pairs, signed char* answers) {
   if (scalar == Scalar::f32) return reinterpret_cast<Block32>(block)(coordinates(pairs[0]), pairs.size(), answers);
-  std::vector<double> wide(pairs.size() * kCoordinates);
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    std::copy_n(coordinates(pairs[i]), kCoordinates, wide.begin() + static_cast<std::ptrdiff_t>(i * kCoordinates));
-  reinterpret_cast<Block64>(block)(wide.data(), pairs.size(), answers);
+  std::vector<DoublePair> wide;
+  for (const Pair& pair : pairs) wide.push_back(in_doubles(pair));
+  decide_part(block, scalar, wide, answers);
+}
+
+// Shares the pairs among threads, which call decide(pairs, answers).
+template <class AnyPair, class Decide>
+void on_all_cores(std::span<const AnyPair> pairs, std::int8_t* answers, const Decide& decide) {
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t at = next.fetch_add(kPart); at < pairs.size(); at = next.fetch_add(kPart))
+      decide(pairs.subspan(at, std::min(kPart, pairs.size() - at)), answers + at);
+  };
+  const std::size_t parts = (pairs.size() + kPart - 1) / kPart;
+  std::vector<std::thread> threads;
+  for (std::size_t t = 1; t < std::min<std::size_t>(parts, std::thread::hardware_concurrency()); ++t)
+    threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
 }
 
 }  // namespace
@@ -52,22 +71,13 @@ TwinLibrary::TwinLibrary(const std::filesystem::path& file, Scalar scalar)
 TwinLibrary::~TwinLibrary() { dlclose(library_); }
 
 void TwinLibrary::decide(std::span<const Pair> pairs, std::int8_t* answers) const {
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t at = next.fetch_add(kPart); at < pairs.size(); at = next.fetch_add(kPart)) {
-      const std::size_t n = std::min(kPart, pairs.size() - at);
-      decide_part(block_, scalar_, pairs.subspan(at, n), answers + at);
-    }
-  };
-  const std::size_t parts = (pairs.size() + kPart - 1) / kPart;
-  std::vector<std::thread> threads;
-  for (std::size_t t = 1; t < std::min<std::size_t>(parts, std::thread::hardware_concurrency()); ++t)
-    threads.emplace_back(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
+  on_all_cores(pairs, answers, [&](auto part, auto* to) { decide_part(block_, scalar_, part, to); });
+}
+void TwinLibrary::decide(std::span<const DoublePair> pairs, std::int8_t* answers) const {
+  on_all_cores(pairs, answers, [&](auto part, auto* to) { decide_part(block_, scalar_, part, to); });
 }
 
-int TwinLibrary::decide_fusing(const Pair& pair, std::span<const std::uint64_t> fused, std::span<Comparison> made,
+int TwinLibrary::decide_fusing(const AnyPair& pair, std::span<const std::uint64_t> fused, std::span<Comparison> made,
                                std::size_t* count) const {
   if (fused.size() * 64 < sites_.size()) throw std::invalid_argument("decide_fusing: too few bits for the sites");
   std::size_t stored = 0;
@@ -77,11 +87,10 @@ int TwinLibrary::decide_fusing(const Pair& pair, std::span<const std::uint64_t> 
     answer = reinterpret_cast<Decide>(fusing_)(coordinates, fused.data(), made.data(), made.size(), &stored);
   };
   if (scalar_ == Scalar::f32) {
-    run(coordinates(pair));
+    const Pair floats = pair.in_float32();
+    run(coordinates(floats));
   } else {
-    double wide[kCoordinates];
-    std::copy_n(coordinates(pair), kCoordinates, wide);
-    run(wide);
+    run(coordinates(pair.doubles));
   }
   if (count) *count = stored;
   return answer;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/any_pair.h"
 #include "core/lanes/lanes.h"
 #include "core/pair.h"
 #include "cuda/twin/twin.h"
@@ -36,15 +37,18 @@ class TwinLibrary {
 
   // Answers for each pair: -1 declined, 0 disjoint, 1 intersects. Uses several threads if there are many pairs.
   void decide(std::span<const Pair> pairs, std::int8_t* answers) const;
+  // Requires: a twin in double.
+  void decide(std::span<const DoublePair> pairs, std::int8_t* answers) const;
 
   const std::vector<TwinSite>& sites() const { return sites_; }
 
   std::span<const ComparisonSite> comparisons() const { return comparisons_; }
 
   // The answer when sites whose bit is not set round twice. Bit i % 64 of word i / 64 belongs to site i. `made`
-  // gets the first comparisons that the kernel makes, as many as fit, and `count` their number.
+  // gets the first comparisons that the kernel makes, as many as fit, and `count` their number. A twin in float decides
+  // what float32 stores of a pair of doubles.
   // Throws: std::invalid_argument for too few bits.
-  int decide_fusing(const Pair& pair, std::span<const std::uint64_t> fused, std::span<Comparison> made = {},
+  int decide_fusing(const AnyPair& pair, std::span<const std::uint64_t> fused, std::span<Comparison> made = {},
                     std::size_t* count = nullptr) const;
 
  private:

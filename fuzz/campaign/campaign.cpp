@@ -26,8 +26,9 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::uint64_t kBatchPairs = 65536;                  // pairs in a transaction of the CPU engine
-constexpr std::uint64_t kDrawnHere = std::uint64_t{1} << 25;  // batch limit for pairs that a device cannot draw
+constexpr std::uint64_t kBatchPairs = 65536;  // pairs in a transaction of the CPU engine
+// Batch limit for pairs that the cores draw for a device, and for doubles, of which a device leaves many to the cores.
+constexpr std::uint64_t kOfCores = std::uint64_t{1} << 25;
 
 // Chooses the next batch. It comes from the source with the fewest pairs done, so that an interrupted campaign has seen
 // all sources. A large source with unknown cost first gets a small batch, so that the remaining time is known early.
@@ -51,7 +52,8 @@ std::optional<PairRange> next_batch(const Campaign& campaign, const Store& store
     return store.missing(static_cast<int>(*unknown), std::min(few, kLarge / 4));
   }
   std::uint64_t most = campaign.engines.empty() ? kBatchPairs : campaign.engine_batch * campaign.engines.size();
-  if (campaign.sources[*next].stratum < 0) most = std::min(most, kDrawnHere);
+  const strata::PairSource& source = campaign.sources[*next];
+  if (source.stratum < 0 || source.in_doubles()) most = std::min(most, kOfCores);
   return store.missing(static_cast<int>(*next), most);
 }
 
@@ -112,11 +114,6 @@ std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& 
   if (choice == EngineChoice::cpu || (choice == EngineChoice::automatic && !campaign.under_test->device)) return {};
   if (!campaign.under_test->device)
     throw std::runtime_error("--engine gpu needs a CUDA device, and there is none; use --engine cpu");
-  for (const strata::PairSource& source : campaign.sources) {
-    if (!source.in_doubles()) continue;
-    if (choice == EngineChoice::automatic) return {};
-    throw UsageError("--engine gpu draws pairs of float32, and " + source.id + " has pairs of doubles");
-  }
   std::string hindrance;
   for (std::size_t l = 0; l < campaign.under_test->lanes.size(); ++l) {
     if (!campaign.under_test->on_device(l) || campaign.under_test->on_both(l))

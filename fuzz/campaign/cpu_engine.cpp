@@ -7,11 +7,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <numeric>
 
 #include "analysis/convention.h"
 #include "analysis/signature.h"
+#include "core/margin/stored_margin.h"
 #include "core/margin_blocks/buckets.h"
 #include "core/relation_of.h"
 #include "fuzz/campaign/signature_counts.h"
@@ -176,13 +176,8 @@ class BlockJudge {
       changed_by_storing_[w] = (changed_by_storing_[w] ^ truth_[w]) | none_[w];
   }
 
-  // The buckets of pairs of doubles whose margin is wide already as float32 stores them; the others stay open. Storing
-  // moves each vertex by less than an ulp of float32. The distance of two hulls, and the depth, which is the least
-  // translation that separates them, change by no more than the vertices of both move. So a margin of 2^kWide such ulps
-  // stays above 2^(kWide - 1), which are more than 2^kBucketHighest ulps of double.
+  // The buckets of pairs of doubles whose margin is wide already as float32 stores them; the others stay open.
   void find_wide_margins(std::span<const Pair> stored) {
-    constexpr int kWide = 5;
-    static_assert(kWide - 1 + 29 >= kBucketHighest);
     std::vector<Pair> unchanged;
     std::vector<std::size_t> places;
     analysis::Bits intersects(truth_.size());
@@ -197,9 +192,7 @@ class BlockJudge {
       margin_buckets(coordinates(unchanged.front()), places.size(), intersects.data(), of_stored.data());
     buckets_.assign(stored.size(), kOpenBucket);
     for (std::size_t k = 0; k < places.size(); ++k) {
-      const int size = std::abs(int{of_stored[k]});
-      if (of_stored[k] != kOpenBucket && size >= make_bucket(1, kWide))
-        buckets_[places[k]] = make_bucket(sign_of(of_stored[k]), kBucketHighest);
+      if (of_stored[k] != kOpenBucket) buckets_[places[k]] = wide_bucket(of_stored[k], kOpenBucket);
     }
   }
 

@@ -11,8 +11,11 @@
 #include "analysis/sweep.h"
 #include "cuda/engine/discrepancy.h"
 #include "cuda/lanes/device_costs.h"
+#include "cuda/lanes/drawing_testing.h"
 #include "cuda/twin/prove.h"
 #include "fuzz/campaign/campaign_testing.h"
+#include "strata/scene/file.h"
+#include "strata/scene/sources.h"
 #include "strata/strata.h"
 
 namespace graze::fuzz {
@@ -45,10 +48,49 @@ class DeviceTest : public CampaignFiles {
     return c;
   }
 
+  // The same on all strata of doubles, or of both types.
+  Campaign campaign_of_doubles(const SelectedLanes& under_test, const std::string& name, std::uint64_t pairs,
+                               std::size_t engines = 0, PairTypes types = PairTypes::f64) const {
+    Campaign c = campaign(under_test, name, 0, engines);
+    c.sources = strata::stratum_sources(6, pairs, {}, types);
+    return c;
+  }
+
   const std::vector<std::string> kWithTwins = {"*/cuda-nofma", "*/cuda-fma", "*/cuda"};
   SelectedLanes twins_ = select_lanes(kWithTwins, Executor::twin);
   SelectedLanes on_device_;
 };
+
+#ifdef GRAZE_HAS_NVCC
+// The bits of every stratum of both types, without a scene and in one of each type.
+TEST_F(DeviceTest, StrataHaveTheBitsOfTheHost) {
+  constexpr std::uint32_t kPairs = 20'000;
+  const std::vector<std::string> scenes = {
+      "extent = [-7, 9]\nedges = [0.1, 2]",
+      "coordinates = \"f64\"\nextent = [[500000, 500009], [0, 9], [0, 9]]\nedges = [0.01, 0.2]",
+      "coordinates = \"f64\"\nextent = [-8, 8]\nedges = [0.1, 2]\ngrid = { decimals = 3 }"};
+  std::vector<strata::PairSource> sources = strata::stratum_sources(5, 49, {}, PairTypes::both);
+  for (const std::string& text : scenes) {
+    const strata::SceneFile scene = strata::parse_scene("s", text);
+    for (strata::PairSource& source :
+         strata::scene_sources(scene, "", 5, 1'000, {}, scene.in_doubles ? PairTypes::f64 : PairTypes::f32).sources)
+      sources.push_back(std::move(source));
+  }
+  int on_device = 0;
+  for (const strata::PairSource& source : sources) {
+    on_device += source.in_doubles() && source.stratum >= 0;
+    const strata::PairBlock drawn = cuda::drawn_for_device(source, 7, kPairs),
+                            expected = strata::pairs_of(source, 7, kPairs);
+    const auto bytes = [](const auto& pairs) {
+      return std::string_view(reinterpret_cast<const char*>(pairs.data()), pairs.size() * sizeof pairs[0]);
+    };
+    EXPECT_EQ(drawn.size(), kPairs);
+    EXPECT_TRUE(bytes(drawn.floats) == bytes(expected.floats)) << source.id << (source.scene ? " in a scene" : "");
+    EXPECT_TRUE(bytes(drawn.doubles) == bytes(expected.doubles)) << source.id << (source.scene ? " in a scene" : "");
+  }
+  EXPECT_GE(on_device, 27 + 2 * 15);  // all but `stored`
+}
+#endif
 
 TEST_F(DeviceTest, DiscrepanciesAreThoseOfTheHost) {
   std::uint64_t verdicts = 0;
@@ -118,20 +160,34 @@ TEST_F(DeviceTest, GpuEngineCpuEngineAndTwinsLeaveTheSameBytesOverAllStrata) {
 TEST_F(DeviceTest, DoublesAreDecidedAsByTheTwins) {
   select_for_doubles(twins_);
   select_for_doubles(on_device_);
-  const auto of_doubles = [&](const SelectedLanes& under_test, const std::string& name) {
-    Campaign c = campaign(under_test, name, 0, 0);
-    c.sources = strata::stratum_sources(6, 28 * 5'000, {}, PairTypes::f64);
-    return c;
-  };
-  run(of_doubles(twins_, "twins"));
-  const Json summary = run(of_doubles(on_device_, "device"));
+  constexpr std::uint64_t kPairs = 28 * 5'000;
+  run(campaign_of_doubles(twins_, "twins", kPairs));
+  const Json summary = run(campaign_of_doubles(on_device_, "device", kPairs));
   expect_same_bytes("twins", "device");
   EXPECT_GT(summary["signatures"].size(), 1000u);
+  run(campaign_of_doubles(on_device_, "engine", kPairs, 1));
+  expect_same_bytes("twins", "engine");
+  const Json timings = Json::parse(read_whole(root_ / "engine" / "timings.json"));
+  EXPECT_GT(timings["oracle"]["exact"].get<std::uint64_t>(), kPairs * 95 / 100);  // the host judged few
   // Fast math has no twin: its lanes decide doubles on a device alone.
   SelectedLanes fast = select_lanes({"*/f64/cuda-fast", "moller_1997/f64/cpu-fma"}, Executor::device);
   EXPECT_TRUE(select_for_doubles(fast).empty());
-  const Json counts = run(of_doubles(fast, "fast"))["strata"]["near_edge_edge/f64"]["lanes"];
+  const Json counts = run(campaign_of_doubles(fast, "fast", kPairs))["strata"]["near_edge_edge/f64"]["lanes"];
   EXPECT_EQ(counts.size(), 6u) << counts;
+}
+
+// Sources of both types take turns on one engine, which ends in the middle of a stratum.
+TEST_F(DeviceTest, TheEngineTakesBothTypesInParts) {
+  select_for_doubles(twins_);
+  select_for_doubles(on_device_);
+  const auto of_both = [&](const SelectedLanes& under_test, const std::string& name, std::size_t engines) {
+    Campaign c = campaign_of_doubles(under_test, name, 49 * 501, engines, PairTypes::both);
+    c.engine_batch = 333;
+    return c;
+  };
+  run(of_both(twins_, "twins", 0));
+  EXPECT_EQ(run_in_parts(of_both(on_device_, "engine", 1)), 49 * 2);
+  expect_same_bytes("twins", "engine");
 }
 
 TEST_F(DeviceTest, LanesUnderTolerancesDecideDoublesAsTheirTwins) {
@@ -142,13 +198,8 @@ TEST_F(DeviceTest, LanesUnderTolerancesDecideDoublesAsTheirTwins) {
   EXPECT_TRUE(select_for_doubles(by_twins).empty());
   EXPECT_TRUE(select_for_doubles(on_device).empty());
   ASSERT_EQ(by_twins.lanes.size(), globs.size() * 5);
-  const auto of_doubles = [&](const SelectedLanes& under_test, const std::string& name) {
-    Campaign c = campaign(under_test, name, 0, 0);
-    c.sources = strata::stratum_sources(6, 28 * 3'000, {}, PairTypes::f64);
-    return c;
-  };
-  run(of_doubles(by_twins, "twins"));
-  const Json summary = run(of_doubles(on_device, "device"));
+  run(campaign_of_doubles(by_twins, "twins", 28 * 3'000));
+  const Json summary = run(campaign_of_doubles(on_device, "device", 28 * 3'000));
   expect_same_bytes("twins", "device");
   EXPECT_GT(summary["signatures"].size(), 1000u);
 }

@@ -19,22 +19,28 @@ analysis::Signature signature_of(const cuda::EngineSignature& row, std::span<con
 }
 
 // Adds counts in the layout of EngineResult.
-void add(const std::vector<std::uint64_t>& counts, int lanes, analysis::Tally& tally) {
+void add(const std::vector<std::uint64_t>& counts, int lanes, bool of_doubles, analysis::Tally& tally) {
+  const int of_lane = static_cast<int>(cuda::counters_of_lane(of_doubles));
   const auto counter = [&](int c, int b) {
     return counts[static_cast<std::size_t>(c * kBucketCount + b + kBucketMost)];
   };
   for (int b = -kBucketMost; b <= kBucketMost; ++b) {
     const auto bucket = static_cast<Bucket>(b);
     tally.add(bucket, counter(0, b), counter(1, b));
-    for (int l = 0; l < lanes; ++l)  // differs_from_cpu is 0, because no cpu lane runs
-      tally.add(bucket, l, {counter(2 + 3 * l, b), counter(3 + 3 * l, b), counter(4 + 3 * l, b), 0});
+    for (int l = 0; l < lanes; ++l) {
+      const int first = 2 + of_lane * l;
+      analysis::LaneCounts of{{counter(first, b), counter(first + 1, b), counter(first + 2, b)}};
+      if (of_doubles) of.stored = counter(first + 3, b);
+      tally.add(bucket, l, of);  // differs_from_cpu is 0, because no cpu lane runs
+    }
   }
 }
 
-void add(const cuda::EngineResult& found, int source, std::span<const Lane* const> lanes, BatchResult& result) {
+void add(const cuda::EngineResult& found, int source, bool of_doubles, std::span<const Lane* const> lanes,
+         BatchResult& result) {
   const int count = static_cast<int>(lanes.size());
-  add(found.counts, count, result.tally);
-  if (!found.extreme_counts.empty()) add(found.extreme_counts, count, result.extremes);
+  add(found.counts, count, of_doubles, result.tally);
+  if (!found.extreme_counts.empty()) add(found.extreme_counts, count, of_doubles, result.extremes);
   for (int b = 0; b < kBucketCount; ++b) result.exact += found.counts[static_cast<std::size_t>(b)];
   for (const cuda::EngineSignature& row : found.signatures) {
     SignatureCount one;
@@ -66,7 +72,7 @@ BatchResult GpuEngine::judge(int source, std::uint64_t first, std::uint64_t coun
   std::vector<std::uint64_t> undecided;
   for (auto& run : runs) {
     for (const cuda::EngineResult& found : run.get()) {
-      add(found, source, lanes, result);
+      add(found, source, campaign_.sources[static_cast<std::size_t>(source)].in_doubles(), lanes, result);
       undecided.insert(undecided.end(), found.undecided.begin(), found.undecided.end());
     }
   }

@@ -125,5 +125,80 @@ TEST_F(GpuEngineTest, TheOracleFindsAnEngineThatIsWrongOnOneSignature) {
   EXPECT_THROW(run(c), oracle::OracleMismatch);
 }
 
+// Lanes in double decide the doubles, lanes in float what float32 stores of them.
+class GpuEngineOnDoubles : public GpuEngineTest {
+ protected:
+  GpuEngineOnDoubles() { select_for_doubles(twins_); }
+
+  Campaign of_doubles(const std::string& name, std::uint64_t pairs, int engines,
+                      const std::vector<std::string>& strata = {}, PairTypes types = PairTypes::f64,
+                      const cuda::EngineLimits& limits = {}) const {
+    Campaign c = campaign(twins_, name, 1, engines, 3, {"uniform"}, limits);
+    c.sources = strata::stratum_sources(3, pairs, strata, types);
+    c.spec = campaign_spec(c);
+    return c;
+  }
+};
+
+TEST_F(GpuEngineOnDoubles, LeavesTheBytesOfTheCpuEngineOverAllStrata) {
+  constexpr std::uint64_t kPairsOfDoubles = 28 * 400 + 7;
+  run(of_doubles("cpu", kPairsOfDoubles, 0));
+  const Json summary = run(of_doubles("engine", kPairsOfDoubles, 1));
+  expect_same_bytes("cpu", "engine");
+  EXPECT_GT(summary["signatures"].size(), 1000u);
+  std::uint64_t stored = 0, signatures_of_exact = 0;
+  for (const auto& [stratum, row] : summary["strata"].items())
+    stored += row["lanes"]["exact/f32/cuda"]["stored"].get<std::uint64_t>();
+  for (const Json& row : summary["signatures"])
+    signatures_of_exact += row["key"].get<std::string>().find("exact:") != std::string::npos;
+  EXPECT_GT(stored, 1000u);
+  EXPECT_GT(signatures_of_exact, 50u);
+  const Json timings = Json::parse(read_whole(root_ / "engine" / "timings.json"));
+  EXPECT_GT(timings["oracle"]["exact"].get<std::uint64_t>(),
+            kPairsOfDoubles * 95 / 100);  // the steps decided nearly all
+}
+
+TEST_F(GpuEngineOnDoubles, BothTypesTwoEnginesAndInterruptionsChangeNothing) {
+  const std::vector<std::string> strata = {"degenerate", "extreme_scale", "mixed_scale", "far_from_origin", "stored"};
+  run(of_doubles("cpu", 9 * 200, 0, strata, PairTypes::both));
+  cuda::EngineLimits limits;
+  limits.block_pairs = 30;
+  limits.signatures = 1u << 10;
+  limits.undecided = 31;  // so that runs end early
+  Campaign parts = of_doubles("parts", 9 * 200, 2, strata, PairTypes::both, limits);
+  ASSERT_EQ(parts.sources.size(), 9u);
+  parts.engine_batch = 77;  // 154 of a stratum's 200 pairs
+  EXPECT_EQ(run_in_parts(parts), 9 * 2);
+  expect_same_bytes("cpu", "parts");
+}
+
+TEST_F(GpuEngineOnDoubles, LeavesTheBytesOfTheCpuEngineInAScene) {
+  const auto scene =
+      strata::parse_scene("s", "extent = [[120000, 120800], [-5400, -5000], [300, 900]]\nedges = [0.5, 40]");
+  for (const int engines : {0, 1}) {
+    Campaign c = of_doubles(engines ? "engine" : "cpu", 1, engines, {"uniform"});
+    c.sources = strata::scene_sources(scene, "", 4, 3'000, {}, PairTypes::f64).sources;
+    c.spec = campaign_spec(c);
+    ASSERT_TRUE(c.sources.front().in_doubles());
+    EXPECT_GT(run(c)["signatures"].size(), 300u);
+  }
+  expect_same_bytes("cpu", "engine");
+}
+
+TEST_F(GpuEngineOnDoubles, OddCountsLeaveTheSameBytes) {
+  for (const std::uint64_t pairs : {1, 31, 33, 65, 257}) {
+    const std::string number = std::to_string(pairs);
+    run(of_doubles("cpu" + number, pairs, 0, {"stored"}));
+    run(of_doubles("engine" + number, pairs, 1, {"stored"}));
+    expect_same_bytes("cpu" + number, "engine" + number);
+  }
+}
+
+TEST_F(GpuEngineOnDoubles, TheOracleFindsAnEngineThatIsWrongOnOneSignature) {
+  Campaign c = of_doubles("wrong", 2'000, 1, {"near_edge_edge"});
+  c.engines[0] = std::make_unique<WrongEngine>(std::move(c.engines[0]));
+  EXPECT_THROW(run(c), oracle::OracleMismatch);
+}
+
 }  // namespace
 }  // namespace graze::fuzz

@@ -15,6 +15,7 @@ namespace graze::fuzz {
 namespace {
 
 constexpr std::uint64_t kSample = 2048, kSampleOfDevice = std::uint64_t{1} << 22;
+constexpr std::uint64_t kSampleOfDoubles = std::uint64_t{1} << 18;  // of a device too; cores judge some of them
 constexpr double kShardSeconds = 3600;    // an hour suits job schedulers; a shard that dies loses nothing
 constexpr double kRowPairs = 16777216;    // of the CPU engine; see store.cpp
 constexpr std::uint64_t kFewer = 8;       // the part of a sample that shows how its bytes grow
@@ -42,7 +43,9 @@ Sample measure(const Campaign& campaign) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
   GpuEngine device(campaign);
   Sample sample;
-  sample.pairs_of_row = campaign.engines.empty() ? kSample : kSampleOfDevice;
+  const bool of_doubles = std::any_of(campaign.sources.begin(), campaign.sources.end(),
+                                      [](const strata::PairSource& source) { return source.in_doubles(); });
+  sample.pairs_of_row = campaign.engines.empty() ? kSample : of_doubles ? kSampleOfDoubles : kSampleOfDevice;
   for (std::size_t s = 0; s < campaign.sources.size(); ++s) {
     const auto source = static_cast<int>(s);
     const auto judged = [&](std::uint64_t count) -> StoredCounts {

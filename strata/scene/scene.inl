@@ -194,8 +194,9 @@ GRAZE_HD inline auto shared_edge(auto& draws, const Scene& scene) {
 
 inline namespace GRAZE_FP {
 
-template <class D>
-GRAZE_HD BasicPair<typename D::Real> generate_by(D draws, Stratum stratum, const Scene& scene) {
+// Compiles the code of one stratum.
+template <Stratum stratum, class D>
+GRAZE_HD BasicPair<typename D::Real> draw_stratum(D draws, const Scene& scene) {
   switch (stratum) {
     case Stratum::uniform:
       return in_scene::uniform(draws, scene);
@@ -252,14 +253,33 @@ GRAZE_HD BasicPair<typename D::Real> generate_by(D draws, Stratum stratum, const
   return {};
 }
 
-GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, const Scene& scene, std::uint64_t index) {
+template <Stratum stratum, class D>
+GRAZE_HD BasicPair<typename D::Real> generate_one(std::uint64_t seed, const Scene& scene, std::uint64_t index) {
   // Not the words of strata without a scene.
-  return generate_by(Draws(seed, 0x100u + static_cast<std::uint32_t>(stratum), index), stratum, scene);
+  return draw_stratum<stratum>(D(seed, 0x100u + static_cast<std::uint32_t>(stratum), index), scene);
+}
+
+template <class D>
+GRAZE_HD BasicPair<typename D::Real> generate_by(std::uint64_t seed, Stratum stratum, const Scene& scene,
+                                                 std::uint64_t index) {
+  switch (stratum) {
+#define GRAZE_STRATUM(name, ...) \
+  case Stratum::name:            \
+    return generate_one<Stratum::name, D>(seed, scene, index);
+#include "strata/strata.inc"
+#undef GRAZE_STRATUM
+    default:
+      return {};
+  }
+}
+
+GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, const Scene& scene, std::uint64_t index) {
+  return generate_by<Draws>(seed, stratum, scene, index);
 }
 
 GRAZE_HD inline DoublePair generate_doubles(std::uint64_t seed, Stratum stratum, const Scene& scene,
                                             std::uint64_t index) {
-  return generate_by(DoubleDraws(seed, 0x100u + static_cast<std::uint32_t>(stratum), index), stratum, scene);
+  return generate_by<DoubleDraws>(seed, stratum, scene, index);
 }
 
 }  // namespace GRAZE_FP

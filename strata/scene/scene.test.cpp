@@ -380,7 +380,7 @@ TEST(SceneSources, AreThoseOfTheType) {
       parse_scene("s", "coordinates = \"f64\"\nextent = [[500000, 500009], [0, 9], [0, 9]]\nedges = [0.01, 0.2]");
   for (const PairSource& source : scene_sources(file, "", 1, 100, {}).sources) EXPECT_FALSE(source.in_doubles());
   for (const PairSource& source : scene_sources(fine, "", 1, 100, {}).sources) {
-    EXPECT_TRUE(source.in_doubles() && source.id.ends_with("/f64") && source.stratum < 0) << source.id;
+    EXPECT_TRUE(source.in_doubles() && source.id.ends_with("/f64") && source.stratum >= 0 && source.scene) << source.id;
     EXPECT_EQ(group_of_name(source.id), group_of_name(source.id.substr(0, source.id.size() - 4)));
   }
   // Float32 has steps of 1/32 there.

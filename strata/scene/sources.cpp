@@ -187,9 +187,9 @@ PairSource source_of(const StratumInfo& row, const std::shared_ptr<const Scene>&
     source = source_of(row.id, [seed, stratum = row.stratum, scene](std::uint64_t index) {
       return generate(seed, stratum, *scene, index);
     });
-    source.stratum = static_cast<int>(row.stratum);
-    source.scene = scene;
   }
+  source.stratum = static_cast<int>(row.stratum);
+  source.scene = scene;
   source.seed = seed;
   return source;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The engine on a device, as the host sees it. The device draws pairs of a stratum, with or without a scene, or takes
-// pairs from the host: those of doubles always. It decides them by lanes, judges them exactly, measures and counts
-// them. Only counts and chosen cases come back. This header needs no CUDA header, and building it needs no nvcc.
+// pairs from the host. It decides them by lanes, judges them exactly, measures and counts them. Only counts and chosen
+// cases come back. This header needs no CUDA header, and building it needs no nvcc.
 #pragma once
 
 #include <cstdint>

@@ -245,7 +245,6 @@ TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
       << late.out << late.err;
 }
 
-// The cpu lane of a __host__ __device__ function is what its CUDA lanes are compared with.
 // As the test below, on a pair of doubles.
 TEST_F(OwnCodeTest, CudaInDoubleIsExplainedOnDoubles) {
   shell(
@@ -277,6 +276,7 @@ TEST_F(OwnCodeTest, CudaInDoubleIsExplainedOnDoubles) {
   EXPECT_NE(operands["lines"][0]["line"].get<std::string>().find("own.cu:5"), std::string::npos) << operands;
 }
 
+// The cpu lane of a __host__ __device__ function is what its CUDA lanes are compared with.
 TEST_F(OwnCodeTest, CudaAgainstCpuIsExplained) {
   shell(
       "cat > own.cu <<'EOF'\n"

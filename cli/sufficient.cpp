@@ -31,7 +31,9 @@ std::uint64_t pairs_for(double rate) { return std::max<std::uint64_t>(100'000, s
 std::vector<strata::PairSource> pairs_before(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
                                              PairTypes types) {
   std::vector<strata::PairSource> sources = drawn(scene, seed, pairs, {}, types).sources;
-  std::erase_if(sources, [](const strata::PairSource& source) { return source.id == "mesh"; });
+  std::erase_if(sources, [](const strata::PairSource& source) {
+    return strata::stratum_in_doubles(source.id).value_or(source.id) == "mesh";
+  });
   return sources;
 }
 

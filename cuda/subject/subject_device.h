@@ -39,9 +39,9 @@ struct SubjectCosts {
 };
 SubjectCosts time_subjects(std::span<const CudaBuild> builds, std::uint32_t count, int passes);
 
-// Compares each build that has a twin with that twin, on `options.twin_pairs` pairs over all strata; of doubles, each
-// such build of a function of doubles. In the record, the twin decided all counted pairs, and there are no trace
-// hashes. Throws: as open_on_device.
+// Compares each build that has a twin with that twin, on `options.twin_pairs` pairs over all strata. Doubles are for
+// functions of doubles alone. In the record, the twin decided all counted pairs, and there are no trace hashes.
+// Throws: as open_on_device.
 struct NamedBuild {
   std::string lane;  // "mine/f32/cuda-fma"
   const CudaBuild* build;

@@ -857,7 +857,6 @@ TEST_F(Doubles, EveryVerbDrawsAScenesDoubles) {
   // What takes float32 alone says so.
   expect_error("graze discrepancy moller_1997/f32/cpu moller_1997/f32/cpu-fma --scene survey.toml", 2,
                {"pairs of float32 alone"});
-  expect_error("graze view uniform/f64@survey.toml:1:2", 2, {"doubles", "float32"});
   expect_error("graze fuzz --scene survey.toml --strata large_offset --out n", 2, {"large_offset/f64", "5400300"});
   expect_error("sed 's/, 30]/, 3]/' survey.toml > fine.toml; graze explain uniform@fine.toml:1:2", 2,
                {"float32", "8 ulps", "doubles"});
@@ -939,12 +938,9 @@ TEST_F(Doubles, TryTakesTheDoublesOfCodeInDouble) {
 
 TEST_F(Doubles, VerbsThatTakeFloat32AloneSaySo) {
   expect_done(kCampaign);
-  const Json summary = Json::parse(contents(shell.folder / "c/summary.json"));
-  const std::string file = "c/" + summary["signatures"][0]["case"].get<std::string>();
   for (const auto& [command, word] : std::map<std::string, std::string>{
            {"graze discrepancy moller_1997/f32/cpu moller_1997/f32/cpu-fma --campaign c", "moller_1997/f32/cpu"}})
     expect_error(command, 2, {word});
-  expect_error("graze view " + file, 1, {file, "doubles"});
   expect_error("graze fuzz --coordinates f16 --out m", 2, {"f16"});
   expect_error("graze prove-twin --coordinates both", 2, {"--coordinates", "f64"});
   expect_error("graze dump nothing/f64", 2, {"nothing/f64"});

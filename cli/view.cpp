@@ -30,6 +30,12 @@ using reports::Viewed;
 constexpr std::size_t kMostCandidates = 100'000;  // pairs of a mesh that are searched for wrong verdicts
 constexpr std::size_t kMostOfAMesh = 500;         // pairs of a mesh that are shown
 
+using Triangle = std::array<Vec3<double>, 3>;
+
+Triangle widened(const std::array<Vec3<float>, 3>& t) {
+  return {Vec3<double>{t[0].x, t[0].y, t[0].z}, {t[1].x, t[1].y, t[1].z}, {t[2].x, t[2].y, t[2].z}};
+}
+
 std::string name_of(const std::string& file, const corpus::Entry& entry) {
   if (const std::optional<std::string> numbers = corpus::numbers_of(entry)) return printable(*numbers);
   const std::string *label = corpus::field(entry, "name"), *kind = corpus::field(entry, "kind"),
@@ -56,19 +62,23 @@ class OwnCode {
   std::vector<reports::SaidOfPair> stored(const corpus::Entry& entry) const {
     std::vector<reports::SaidOfPair> said;
     if (under_test_.left_out.empty()) return said;
-    const Verdict truth = oracle::truth(entry.pair).verdict;
+    const Verdict truth = truth_of(entry).verdict;
     for (const auto& [lane, verdict] : stored_verdicts_of(entry, under_test_.left_out, truth))
       said.push_back({lane, verdict, is_wrong(verdict, truth), true});
     return said;
   }
 
-  void add_verdicts(Viewed& viewed) const {
+  void add_verdicts(Viewed& viewed) {
+    const auto in_doubles = [](const reports::ViewedPair& one) { return !one.pair.floats; };
+    if (!under_test_.lanes.empty() && std::any_of(viewed.pairs.begin(), viewed.pairs.end(), in_doubles))
+      take_doubles(under_test_);
     viewed.lanes_left_out = fuzz::left_out_json(under_test_);
     if (under_test_.lanes.empty()) return;
     for (reports::ViewedPair& one : viewed.pairs) {
       const oracle::Truth truth = oracle::truth(one.pair);
-      const std::vector<Verdict> verdicts = decide(under_test_, one.pair),
-                                 counted = analysis::excused(under_test_.lanes, verdicts, one.pair, truth);
+      const std::vector<Verdict> verdicts = decide(under_test_, one.pair);
+      const auto excuse = [&](const auto& own) { return analysis::excused(under_test_.lanes, verdicts, own, truth); };
+      const std::vector<Verdict> counted = visit(one.pair, excuse);
       for (std::size_t l = 0; l < verdicts.size(); ++l) {
         const bool wrong = truth.verdict != Verdict::declined && is_wrong(counted[l], truth.verdict);
         one.said.push_back({under_test_.lanes[l]->id, verdicts[l], wrong});
@@ -82,9 +92,10 @@ class OwnCode {
 
 void add_cases(const std::string& name, const OwnCode& own, Viewed& viewed,
                std::size_t most = reports::kMostViewedPairs) {
-  for (const corpus::Entry& entry : read_cases(name)) {
+  for (const corpus::Entry& entry : read_cases(name, PairTypes::both)) {
     if (most-- == 0 || viewed.pairs.size() == reports::kMostViewedPairs) break;
-    viewed.pairs.push_back({name_of(fs::path(name).filename().string(), entry), entry.pair, own.stored(entry)});
+    viewed.pairs.push_back(
+        {name_of(fs::path(name).filename().string(), entry), corpus::pair_of(entry), own.stored(entry)});
   }
 }
 
@@ -100,21 +111,30 @@ void add_folder(const fs::path& folder, const OwnCode& own, Viewed& viewed) {
   for (const fs::path& file : files) add_cases(file.string(), own, viewed, campaign ? 1 : reports::kMostViewedPairs);
 }
 
-// Adds the triangles, and the pairs whose boxes overlap, starting with those on which some lane is wrong.
+// The exact verdict on a pair, declined unless it is finite.
+Verdict exact_verdict(const AnyPair& pair) {
+  const Lane* lane = find_lane(pair.floats ? "exact/f32/cpu" : "exact/f64/cpu");
+  return visit(pair, [&](const auto& own) { return decide_one(lane->decide, own); });
+}
+
+// Adds the triangles, and the pairs whose boxes overlap, starting with those on which some lane is wrong. Those of a
+// mesh with more digits than float32 holds are of doubles.
 void add_mesh(const fs::path& file, bool exact_input, Viewed& viewed) {
   expect_utf8("the mesh", file.string());
   const strata::MeshPairs mesh = strata::read_mesh_pairs(file);
-  say_notes(mesh.notes, mesh.rounding, exact_input);
+  const bool in_doubles = mesh.rounding.beyond > 0;
+  say_notes(in_doubles && !exact_input ? mesh.notes_of_doubles : mesh.notes, mesh.rounding, exact_input);
   const std::size_t shown = std::min(mesh.triangles.size(), reports::kMostViewedTriangles);
-  viewed.triangles.assign(mesh.triangles.begin(), mesh.triangles.begin() + static_cast<std::ptrdiff_t>(shown));
-  const fuzz::SelectedLanes under_test = fuzz::select_lanes({}, fuzz::Executor::twin);
-  const DecideBlock exact = find_lane("exact/f32/cpu")->decide;
+  for (std::size_t i = 0; i < shown; ++i)
+    viewed.triangles.push_back(in_doubles ? mesh.in_doubles[i] : widened(mesh.triangles[i]));
+  fuzz::SelectedLanes under_test = fuzz::select_lanes({}, fuzz::Executor::twin);
+  if (in_doubles) fuzz::select_for_doubles(under_test);
   std::vector<reports::ViewedPair> others;
   for (std::size_t i = 0; i < std::min(mesh.size(), kMostCandidates) && viewed.pairs.size() < kMostOfAMesh; ++i) {
     const auto [first, second] = mesh.candidates[i];
     reports::ViewedPair one{fmt::format("{}, triangles {} and {}", file.filename().string(), first, second),
-                            mesh.pair(i)};
-    if (some_is_wrong(decide(under_test, one.pair), decide_one(exact, one.pair))) {
+                            in_doubles ? AnyPair(mesh.double_pair(i)) : mesh.pair(i)};
+    if (some_is_wrong(decide(under_test, one.pair), exact_verdict(one.pair))) {
       viewed.pairs.push_back(std::move(one));
     } else if (others.size() < kMostOfAMesh) {
       others.push_back(std::move(one));
@@ -125,9 +145,8 @@ void add_mesh(const fs::path& file, bool exact_input, Viewed& viewed) {
             std::back_inserter(viewed.pairs));
 }
 
-using Triangle = std::array<Vec3<float>, 3>;
-
-Triangle first_of(const Pair& pair) { return {pair.a[0], pair.a[1], pair.a[2]}; }
+Triangle first_of(const AnyPair& pair) { return {pair.doubles.a[0], pair.doubles.a[1], pair.doubles.a[2]}; }
+Triangle second_of(const AnyPair& pair) { return {pair.doubles.b[0], pair.doubles.b[1], pair.doubles.b[2]}; }
 
 // If all pairs are hits of `graze query` with one reference, shows them all at once.
 void show_against_the_first(Viewed& viewed) {
@@ -136,7 +155,7 @@ void show_against_the_first(Viewed& viewed) {
   };
   if (viewed.pairs.empty() || !std::all_of(viewed.pairs.begin(), viewed.pairs.end(), of_it)) return;
   for (const reports::ViewedPair& one : viewed.pairs) {
-    viewed.triangles.push_back({one.pair.b[0], one.pair.b[1], one.pair.b[2]});
+    viewed.triangles.push_back(second_of(one.pair));
     viewed.ids.push_back(std::strtoull(one.name.substr(one.name.rfind('_') + 1).c_str(), nullptr, 10));
   }
   viewed.opens_with_triangles = true;
@@ -145,23 +164,24 @@ void show_against_the_first(Viewed& viewed) {
 // Adds the triangles of `graze query REFERENCE MESH`, hits first; the hits are also the pairs.
 void add_query(const std::string& reference, const std::string& file, bool exact_input, Viewed& viewed) {
   const Input of_references = read_references(reference), of_mesh = read_mesh(file);
-  say_notes(of_references, of_mesh, exact_input);
-  const std::vector<query::Triangle>&references = of_references.triangles, &mesh = of_mesh.triangles;
-  if (references.size() != 1)
-    throw std::runtime_error(
-        fmt::format("graze view shows one reference, and {} has {}", printable(reference), references.size()));
-  const Lane* exact = find_lane("exact/f32/cpu");
+  const bool are_doubles = of_references.rounding.beyond > 0 || of_mesh.rounding.beyond > 0;
+  say_notes(of_references, of_mesh, exact_input, are_doubles);
+  if (of_references.triangles.size() != 1)
+    throw std::runtime_error(fmt::format("graze view shows one reference, and {} has {}", printable(reference),
+                                         of_references.triangles.size()));
+  const std::vector<query::DoubleTriangle> references = in_doubles(of_references), mesh = in_doubles(of_mesh);
   std::vector<Triangle> others;
   std::vector<std::size_t> other_ids;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
-    const Pair pair = pair_of(references[0], mesh[i]);
-    const bool hit = decide_one(exact->decide, pair) == Verdict::intersects;
+    const AnyPair pair = are_doubles ? AnyPair(pair_of(references[0], mesh[i]))
+                                     : pair_of(of_references.triangles[0], of_mesh.triangles[i]);
+    const bool hit = exact_verdict(pair) == Verdict::intersects;
     const bool shown = hit || (viewed.pairs.empty() && i + 1 == mesh.size());  // one if there are no hits
     if (shown && viewed.pairs.size() < kMostOfAMesh)
       viewed.pairs.push_back({fmt::format("{}, triangle {}", printable(fs::path(file).filename().string()), i), pair});
     std::vector<Triangle>& of = hit ? viewed.triangles : others;
     if (of.size() == reports::kMostViewedTriangles) continue;
-    of.push_back({pair.b[0], pair.b[1], pair.b[2]});
+    of.push_back(second_of(pair));
     (hit ? viewed.ids : other_ids).push_back(i);
   }
   const auto room =
@@ -211,7 +231,7 @@ void view(const LaneOptions& options, const std::string& what, const std::string
         "the viewer is not in this build: it needs Node with npm, clang and wasi-libc; run scripts/setup to install "
         "them and build");
   }
-  const OwnCode own(options, what);
+  OwnCode own(options, what);
   Viewed viewed = viewed_of(what, mesh, exact_input, own);
   own.add_verdicts(viewed);
   viewed.random = random;

@@ -2,6 +2,8 @@
 // `graze view` as users run it; reports/web/tests/viewer.spec.ts tests its page in a browser.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "cli/run_graze.h"
@@ -94,6 +96,67 @@ TEST_F(ViewCommand, QueriesAndTheirResults) {
   expect_error("graze view far.txt no.obj", 1, {"no.obj", "No such file or directory"});
   expect_done("graze view thesis:1:0");
   EXPECT_EQ(data("view.html")["opens"], "pair");
+}
+
+// Each pair keeps its type; if one is of doubles, the page shows all as doubles.
+TEST_F(ViewCommand, PairsOfDoublesAsTheyAre) {
+  const std::string apart =
+      "1000000.01 0 0 1000000.01 1 0 1000000.01 0 1  1000000.02 0 0 1000000.02 1 0 1000000.02 0 1";
+  const std::string bits = "412e848005";  // of 1000000.01 and of 1000000.02
+  const auto shows_doubles = [&](const std::string& command, std::size_t pairs) {
+    const Ran ran = shell("graze view " + command + " --out d.html");
+    EXPECT_EQ(ran.status, 0) << command << ran.err;
+    const nlohmann::json held = data("d.html");
+    EXPECT_EQ(held["coordinates"], "f64") << command;
+    EXPECT_EQ(held["pairs"].size(), pairs) << command;
+    EXPECT_EQ(held["pairs"][0]["bits"].get<std::string>().size(), 288u) << command;
+    const nlohmann::json lanes = held["replay"]["lanes"];
+    EXPECT_NE(std::find(lanes.begin(), lanes.end(), "exact/f64/cpu"), lanes.end()) << command;
+    EXPECT_EQ(held["replay"]["pairs"][0]["bits"].get<std::string>().size(), 288u) << command;
+    return held;
+  };
+  std::ofstream(shell.folder / "both.pairs") << "0 0 0 1 1 0 1 0 0  .75 .75 0 .75 .75 1 .5 .75 1\n"
+                                             << apart << " | coordinates=f64\n";
+  std::ofstream(shell.folder / "far.off") << "OFF\n6 2 0\n1000000.01 0 0\n1000000.01 1 0\n1000000.01 0 1\n"
+                                             "1000000.02 0 0\n1000000.02 1 0\n1000000.02 0 1\n3 0 1 2\n3 3 4 5\n";
+  const nlohmann::json both = shows_doubles("both.pairs", 2);
+  EXPECT_EQ(both["pairs"][0]["bits"].get<std::string>().substr(48, 32), "3ff00000000000003ff0000000000000");
+  EXPECT_EQ(both["pairs"][1]["bits"].get<std::string>().substr(0, 10), bits);
+  shows_doubles("uniform/f64:1:2", 1);
+  const nlohmann::json mesh = shows_doubles("far.off", 1);
+  EXPECT_EQ(mesh["triangles"][0].get<std::string>().substr(0, 10), bits);
+  EXPECT_EQ(mesh["triangles"][0].get<std::string>().size(), 144u);
+  const nlohmann::json query = shows_doubles("far.off#0 far.off", 1);
+  EXPECT_EQ(query["ids"], (std::vector<int>{0, 1}));  // one hit, itself
+  const Ran said = shell("graze view far.off");
+  EXPECT_NE(said.err.find("far.off: decided in doubles"), std::string::npos) << said.err;
+  for (const char* what : {"far.off", "far.off#0 far.off"})
+    expect_error(std::string("graze view --exact-input --out e.html ") + what, 2, {"float32", "6 of", "--exact-input"});
+  EXPECT_FALSE(std::filesystem::exists(shell.folder / "e.html"));
+}
+
+// Own code in double gets the doubles, own code in float what float32 stores of them.
+TEST_F(ViewCommand, OwnCodeIsAskedAboutDoubles) {
+  std::ofstream(shell.folder / "mine.c") << "int meet(const double* a, const double* b) { return a[0] == b[0]; }\n"
+                                            "int meet_f(const float* a, const float* b) { return a[0] == b[0]; }\n";
+  const std::string campaign =
+      "graze fuzz --coordinates f64 --strata large_offset --pairs 200 --lanes 'mine/*,exact/*' ";
+  for (const auto& [function, verdict] :
+       std::map<std::string, std::string>{{"meet", "disjoint"}, {"meet_f", "intersects"}}) {
+    const std::string subject = "--subject mine=mine.c:" + function;
+    std::ofstream(shell.folder / "far.txt")
+        << "1000000.01 0 0 1000000.01 1 0 1000000.01 0 1 1000000.02 0 0 1000000.02 1 0 "
+           "1000000.02 0 1 | coordinates=f64\n";
+    expect_done("graze view far.txt " + subject + " --out o.html");
+    const nlohmann::json said = data("o.html")["pairs"][0]["said"][0];
+    EXPECT_EQ(said["verdict"], verdict) << said;
+    EXPECT_EQ(said["wrong"], verdict == "intersects") << said;
+    expect_done(campaign + subject + " --out " + function + " && graze view " + function + " --out c.html");
+    const nlohmann::json held = data("c.html");
+    EXPECT_EQ(held["coordinates"], "f64");
+    EXPECT_GT(held["pairs"].size(), 0u);
+    EXPECT_GT(held["pairs"][0]["said"].size(), 0u);
+  }
 }
 
 TEST_F(ViewCommand, BeginsWithRandomTrianglesOf2012) {

@@ -200,6 +200,7 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
     card["kind"][field] = kind.at(field);
   card.update({{"minimised", minimised},
                {"from", from},
+               {"coordinates", name(pair.floats ? Scalar::f32 : Scalar::f64)},
                {"pair", coordinates_of(pair)},
                {"truth",
                 {{"verdict", name(truth)},

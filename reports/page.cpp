@@ -40,7 +40,14 @@ bool has_interactive_page() { return !kPageTemplate.empty(); }
 
 std::string page(const Json& report, const Json& costs, const Json& choices) {
   if (!has_interactive_page()) return plain_page(report, costs, choices);
-  return filled(with_data(kPageTemplate, "view", viewer_checks()), report, costs, choices);
+  // The viewer's parts for the coordinate types of the cards.
+  Json parts = has_viewer() ? Json::object() : Json();
+  for (const Json& card : report.at("cards")) {
+    const std::string type = card.at("coordinates");
+    if (has_viewer() && !parts.contains(type))
+      parts[type] = viewer_parts(type == name(Scalar::f64) ? Scalar::f64 : Scalar::f32);
+  }
+  return filled(with_data(kPageTemplate, "view", parts), report, costs, choices);
 }
 
 std::string filled(std::string_view page_template, const Json& report, const Json& costs, const Json& choices) {

@@ -3,17 +3,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <set>
+#include <span>
 #include <sstream>
 
+#include "analysis/lane_trace.h"
 #include "backends/backends.h"
 #include "core/lanes/lanes.h"
 #include "corpus/pair_format.h"
 #include "cuda/twin/twin.h"
 #include "oracle/truth.h"
 #include "reports/page.h"
-#include "strata/strata.h"
+#include "strata/pair_source.h"
 
 namespace graze::reports {
 namespace {
@@ -24,6 +27,8 @@ constexpr char kText[] =
 #include "viewer_template.inc"
     ;
 constexpr std::string_view kTemplate(kText, sizeof kText - 1);
+#include "viewer_modules.inc"
+constexpr std::string_view kModules[] = {{kModuleF32, sizeof kModuleF32 - 1}, {kModuleF64, sizeof kModuleF64 - 1}};
 constexpr char kCanaries[] =
 #include "canaries.inc"
     ;
@@ -31,47 +36,54 @@ constexpr char kCanaries[] =
 constexpr std::uint64_t kReplaySeed = 20120131;
 constexpr std::uint64_t kReplayed = 16;  // pairs of each stratum
 
-std::string bits_of(const float* numbers, std::size_t count) {
+// The bits of numbers, which float32 must hold unless their type is double.
+std::string bits_of(std::span<const double> numbers, Scalar type) {
   std::string text;
-  for (std::size_t i = 0; i < count; ++i) text += fmt::format("{:08x}", std::bit_cast<std::uint32_t>(numbers[i]));
+  for (const double x : numbers)
+    text += type == Scalar::f64 ? fmt::format("{:016x}", std::bit_cast<std::uint64_t>(x))
+                                : fmt::format("{:08x}", std::bit_cast<std::uint32_t>(static_cast<float>(x)));
   return text;
 }
+std::string bits_of(const AnyPair& pair, Scalar type) {
+  return bits_of(std::span(coordinates(pair.doubles), kCoordinates), type);
+}
 
-// The lanes that WebAssembly also has, if they run here.
-std::vector<const Lane*> replayed_lanes() {
+// The lanes that the module of this coordinate type also has, if they run here.
+std::vector<const Lane*> replayed_lanes(Scalar type) {
   std::vector<const Lane*> result;
   for (const Lane& lane : lanes()) {
     const bool rebuilt =
         lane.exact || backends::backend_of(lane).is_replayed || info_of(lane.variant).arithmetic == Arithmetic::rounded;
-    if (lane.exact && lane.scalar == Scalar::f64)
-      continue;  // on float32, which is all that it has, it is exact/f32/cpu
+    if (lane.exact && lane.scalar == Scalar::f64 && type == Scalar::f32) continue;  // there it is exact/f32/cpu
     if (rebuilt && !lane.foreign && !lane.under && backends::on_host(lane)) result.push_back(&lane);
   }
   return result;
 }
 
-std::vector<Pair> replayed_pairs() {
-  std::vector<Pair> pairs;
+std::vector<AnyPair> replayed_pairs(Scalar type) {
+  std::vector<AnyPair> pairs;
   std::istringstream text(kCanaries);
   corpus::PairReader canaries(text, "canaries");
-  while (const auto entry = canaries.next()) pairs.push_back(entry->pair);
-  for (const strata::StratumInfo& row : strata::kStrata) {
-    for (std::uint64_t index = 0; index < kReplayed; ++index)
-      pairs.push_back(strata::generate(kReplaySeed, row.stratum, index));
+  while (const auto entry = canaries.next()) pairs.emplace_back(entry->pair);
+  const PairTypes drawn = type == Scalar::f32 ? PairTypes::f32 : PairTypes::f64;
+  for (const strata::PairSource& stratum : strata::stratum_sources(kReplaySeed, kReplayed, {}, drawn)) {
+    for (std::uint64_t index = 0; index < kReplayed; ++index) pairs.push_back(stratum.any_pair(index));
   }
+  if (type == Scalar::f32) return pairs;
+  for (AnyPair& pair : pairs) pair.floats.reset();
   return pairs;
 }
 
-Json replay() {
-  const std::vector<const Lane*> of = replayed_lanes();
+Json replay(Scalar type) {
+  const std::vector<const Lane*> of = replayed_lanes(type);
   Json lanes = Json::array(), pairs = Json::array();
   for (const Lane* lane : of) lanes.push_back(lane->id);
-  for (const Pair& pair : replayed_pairs()) {
+  for (const AnyPair& pair : replayed_pairs(type)) {
     const oracle::Truth truth = oracle::truth(pair);
     std::string verdicts;
     for (const Lane* lane : of)
-      verdicts += static_cast<char>('0' + static_cast<int>(decide_one(backends::on_host(*lane), pair)));
-    pairs.push_back({{"bits", bits_of(coordinates(pair), kCoordinates)},
+      verdicts += static_cast<char>('0' + static_cast<int>(analysis::decide_lane(*lane, pair)));
+    pairs.push_back({{"bits", bits_of(pair, type)},
                      {"truth", name(truth.verdict)},
                      {"contact", name(truth.contact)},
                      {"verdicts", verdicts}});
@@ -80,10 +92,11 @@ Json replay() {
 }
 
 // The distinct kinds of evidence for the twins.
-std::string evidence() {
+std::string evidence(Scalar type) {
   std::set<std::string> kinds;
-  for (const Lane* lane : replayed_lanes()) {
-    if (const std::string by = backends::backend_of(*lane).evidence(*lane, false); !by.empty() && !lane->exact)
+  for (const Lane* lane : replayed_lanes(type)) {
+    if (const std::string by = backends::backend_of(*lane).evidence(*lane, type == Scalar::f64);
+        !by.empty() && !lane->exact)
       kinds.insert(by);
   }
   return fmt::format("{}", fmt::join(kinds, "; "));
@@ -93,18 +106,27 @@ std::string evidence() {
 
 bool has_viewer() { return !kTemplate.empty(); }
 
-Json viewer_checks() { return has_viewer() ? Json({{"evidence", evidence()}, {"replay", replay()}}) : Json(); }
+Json viewer_parts(Scalar coordinates) {
+  if (!has_viewer()) return nullptr;
+  return {{"module", kModules[static_cast<int>(coordinates)]},
+          {"evidence", evidence(coordinates)},
+          {"replay", replay(coordinates)}};
+}
 
 std::string viewer_page(const Viewed& viewed) {
+  const bool any_doubles =
+      std::any_of(viewed.pairs.begin(), viewed.pairs.end(), [](const ViewedPair& one) { return !one.pair.floats; });
+  const Scalar type = any_doubles ? Scalar::f64 : Scalar::f32;
   Json pairs = Json::array(), triangles = Json::array();
   for (const ViewedPair& one : viewed.pairs) {
-    pairs.push_back({{"name", one.name}, {"bits", bits_of(coordinates(one.pair), kCoordinates)}});
+    pairs.push_back({{"name", one.name}, {"bits", bits_of(one.pair, type)}});
     for (const SaidOfPair& said : one.said)
       pairs.back()["said"].push_back(
           {{"lane", said.lane}, {"verdict", name(said.verdict)}, {"wrong", said.wrong}, {"stored", said.stored}});
   }
-  for (const auto& triangle : viewed.triangles) triangles.push_back(bits_of(&triangle[0].x, 9));
-  Json data = {{"format", 1},
+  for (const auto& triangle : viewed.triangles) triangles.push_back(bits_of(std::span(&triangle[0].x, 9), type));
+  Json data = {{"format", 2},
+               {"coordinates", name(type)},
                {"title", viewed.title},
                {"pairs", pairs},
                {"triangles", triangles},
@@ -114,7 +136,7 @@ std::string viewer_page(const Viewed& viewed) {
   if (!viewed.ids.empty()) data["ids"] = viewed.ids;
   if (!viewed.lanes_left_out.is_null()) data["lanes_left_out"] = viewed.lanes_left_out;
   if (viewed.random > 0) data["random"] = viewed.random;
-  data.update(viewer_checks());
+  data.update(viewer_parts(type));
   return with_data(kTemplate, "view", data);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The viewer: one HTML file in which graze.wasm decides pairs again as they change.
+// The viewer: one HTML file in which graze.wasm, or graze_f64.wasm, decides pairs again as they change.
 #pragma once
 
 #include <array>
@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/pair.h"
+#include "core/any_pair.h"
+#include "core/lanes/lanes.h"
 #include "core/verdict.h"
 
 namespace graze::reports {
@@ -22,15 +23,16 @@ struct SaidOfPair {
 
 struct ViewedPair {
   std::string name;
-  Pair pair;
+  AnyPair pair;
   std::vector<SaidOfPair> said = {};
 };
 
 struct Viewed {
   std::string title;              // of the list of pairs
   std::vector<ViewedPair> pairs;  // empty: the special cases of 2012
-  std::vector<std::array<Vec3<float>, 3>>
-      triangles;                          // of a mesh or a query, to be seen against the first triangle of a pair
+  // Of a mesh or a query, to be seen against the first triangle of a pair. Those of float32 only beside pairs of
+  // float32.
+  std::vector<std::array<Vec3<double>, 3>> triangles;
   std::vector<std::size_t> ids;           // of these triangles; empty: they are numbered as they come
   bool opens_with_triangles = false;      // show all triangles at once instead of a pair
   nlohmann::ordered_json lanes_left_out;  // of a user's code, with the reasons; null for none
@@ -43,12 +45,13 @@ inline constexpr std::size_t kMostViewedPairs = 5000, kMostViewedTriangles = 500
 // Whether this build has the viewer of reports/web, which is built with Node and a compiler for WebAssembly.
 bool has_viewer();
 
-// Data for the viewer: the evidence of the twins, and stored verdicts against which it checks itself when it opens. The
-// verdicts are on a few hundred pairs: some of every stratum, and the canaries (cuda/twin/canaries.pairs). Null if the
-// build has no viewer.
-nlohmann::ordered_json viewer_checks();
+// What the viewer needs for pairs of this coordinate type: its module; the evidence of the twins; and stored verdicts
+// against which it checks itself when it opens. The verdicts are on a few hundred pairs: some of every stratum, and the
+// canaries (cuda/twin/canaries.pairs). Null if the build has no viewer.
+nlohmann::ordered_json viewer_parts(Scalar coordinates);
 
-// The page.   Requires: has_viewer(); at most kMostViewedPairs pairs and kMostViewedTriangles triangles.
+// The page. If any of its pairs is of doubles, all are shown as doubles.
+// Requires: has_viewer(); at most kMostViewedPairs pairs and kMostViewedTriangles triangles.
 std::string viewer_page(const Viewed& viewed);
 
 }  // namespace graze::reports

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Builds the page of SOURCE (reports/web) in BUILD, and writes it to OUT as a C++ string. If npm cannot fetch its
-# packages, for example offline, the string is empty, and reports are plain pages. Also writes the viewer, which
-# includes the module WASM, to VIEWER. Without a module that string is empty.
+# packages, for example offline, the string is empty, and reports are plain pages. Also writes the viewer to VIEWER, and
+# the modules WASM_F32 and WASM_F64 to MODULES, compressed with gzip, in base64. Without modules these strings are empty.
 file(MAKE_DIRECTORY ${BUILD})
 file(REMOVE_RECURSE ${BUILD}/src)
 foreach(part index.html view.html package.json package-lock.json tsconfig.json vite.config.js src)
@@ -10,6 +10,7 @@ endforeach()
 
 file(COPY ${SOURCE}/../../wasm/graze.js DESTINATION ${BUILD}/src/viewer)
 file(WRITE ${VIEWER} "\"\"\n")
+file(WRITE ${MODULES} "constexpr char kModuleF32[] = \"\", kModuleF64[] = \"\";\n")
 
 file(SHA256 ${BUILD}/package-lock.json lock)
 set(installed "")
@@ -30,7 +31,7 @@ if(NOT installed STREQUAL lock)
 endif()
 
 function(build script html out)
-  execute_process(COMMAND ${CMAKE_COMMAND} -E env GRAZE_WASM=${WASM} GRAZE_SOURCE=${SOURCE}/../.. ${NPM} run --silent ${script} WORKING_DIRECTORY ${BUILD}
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env GRAZE_VIEWER=${WASM_F32} GRAZE_SOURCE=${SOURCE}/../.. ${NPM} run --silent ${script} WORKING_DIRECTORY ${BUILD}
     RESULT_VARIABLE failed OUTPUT_VARIABLE said ERROR_VARIABLE said)
   if(failed)
     message(FATAL_ERROR "expected reports/web to build, found:\n${said}")
@@ -39,6 +40,12 @@ function(build script html out)
   file(WRITE ${out} "R\"graze_page(${page})graze_page\"\n")
 endfunction()
 build(build index.html ${OUT})
-if(WASM)
+if(WASM_F32)
   build(build-viewer view.html ${VIEWER})
+  file(WRITE ${MODULES} "")
+  foreach(type F32 F64)
+    execute_process(COMMAND ${NODE} -e "process.stdout.write(require('zlib').gzipSync(require('fs').readFileSync(process.argv[1]), { level: 9 }).toString('base64'))"
+      ${WASM_${type}} OUTPUT_VARIABLE module COMMAND_ERROR_IS_FATAL ANY)
+    file(APPEND ${MODULES} "constexpr char kModule${type}[] = \"${module}\";\n")
+  endforeach()
 endif()

@@ -24,7 +24,7 @@ PairSource source_of(std::uint64_t seed, const StratumInfo& row) {
 
 Axis wide(Axis axis) { return axis == Axis::scale ? Axis::wide_scale : axis; }
 
-#ifdef __wasm__  // the module draws float32 alone, and every report carries its code
+#ifdef __wasm__  // test_function.cpp draws float32 alone
 PairSource double_source_of(std::uint64_t, const StratumInfo& row) {
   throw UsageError("this build does not draw " + std::string(row.id) + std::string(kInDoubles));
 }

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <vector>
 
-#include "core/relation_of.h"
-
 namespace graze::wasm {
 namespace {
 
@@ -18,7 +16,7 @@ using Polygon = std::vector<Point>;
 
 constexpr Real kNearly = 0x1p-90L;  // relative to the sum of a value's terms: smaller values count as zero
 
-Point widened(const Vec3<float>& v) { return {v.x, v.y, v.z}; }
+Point widened(const Vec3<double>& v) { return {v.x, v.y, v.z}; }
 bool is_zero(const Point& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
 
 struct HalfSpace {
@@ -196,10 +194,12 @@ Connection push(const Point (&a)[3], const Point (&b)[3]) {
   return best;
 }
 
-void add_witness(Drawing& result, const Connection& found, const Point& from, const Point (&a)[3],
+// sign: 1 for a gap, -1 for a push.
+void add_witness(Drawing& result, const Connection& found, int sign, const Point& from, const Point (&a)[3],
                  const Point (&b)[3]) {
   if (!(found.squared > 0) || !std::isfinite(found.squared)) return;
-  const Point axis = (found.q - found.p) * (1 / std::sqrt(found.squared));
+  const Real length = std::sqrt(found.squared);
+  const Point axis = (found.q - found.p) * (1 / length);
   Real low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
   for (int i = 0; i < 3; ++i) {
     const Real along[2] = {dot(axis, a[i] - a[0]), dot(axis, b[i] - a[0])};
@@ -207,8 +207,9 @@ void add_witness(Drawing& result, const Connection& found, const Point& from, co
   }
   result.low_a = static_cast<double>(low[0] - high[0]);
   result.high_a = 0;
-  result.low_b = static_cast<double>(low[1] - high[0]);
-  result.high_b = static_cast<double>(high[1] - high[0]);
+  // The direction of a tiny gap is too imprecise for the difference of low[1] and high[0].
+  result.low_b = static_cast<double>(sign * length);
+  result.high_b = static_cast<double>(sign * length + (high[1] - low[1]));
   result.witness_count = write({found.p + from, found.q + from}, result.witness, 2);
   result.feature_a = found.feature_a;
   result.feature_b = found.feature_b;
@@ -216,16 +217,15 @@ void add_witness(Drawing& result, const Connection& found, const Point& from, co
 
 }  // namespace
 
-Drawing drawing_of(const Pair& pair) {
+Drawing drawing_of(const DoublePair& pair, const Relation& relation) {
   Point a[3], b[3];
   for (int i = 0; i < 3; ++i) {
     a[i] = widened(pair.a[i]);
     b[i] = widened(pair.b[i]);
   }
   Drawing result{};
-  const Relation relation = relation_of(pair);
   if (!relation.intersects()) {
-    add_witness(result, nearest(a, b), {}, a, b);
+    add_witness(result, nearest(a, b), 1, {}, a, b);
   } else {
     Polygon common = hull_of(a);
     for (const HalfSpace& half : half_spaces(hull_of(b))) common = clipped(common, half);
@@ -236,7 +236,7 @@ Drawing drawing_of(const Pair& pair) {
       if (common.empty()) common = hull_of(a);  // rounding lost the common points
       Point middle{};
       for (const Point& p : common) middle = middle + p * (Real(1) / static_cast<Real>(common.size()));
-      add_witness(result, push(a, b), middle, a, b);
+      add_witness(result, push(a, b), -1, middle, a, b);
     }
   }
   const Point na = normal_of(a), nb = normal_of(b);

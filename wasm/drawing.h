@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "core/exact/relation.h"
 #include "core/pair.h"
 
 namespace graze::wasm {
@@ -26,7 +27,7 @@ struct Drawing {
       feature_b;  // nearest, or that give the push its direction: 0 vertex 0, 3 edge 01, 6 face, -1 none
 };
 
-// Requires: finite coordinates.
-Drawing drawing_of(const Pair& pair);
+// relation: the pair's own.   Requires: finite coordinates.
+Drawing drawing_of(const DoublePair& pair, const Relation& relation);
 
 }  // namespace graze::wasm

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze.wasm for JavaScript and TypeScript: exact triangle-triangle intersection, and the verdicts of published
-// algorithms on the same pair. The algorithms run in float32 and float64, on the CPU and, through their twins, on the
-// GPU. Has no dependencies; runs on Node 18 or newer, and in browsers since 2021.
+// graze.wasm and graze_f64.wasm for JavaScript and TypeScript: exact triangle-triangle intersection, and the verdicts of
+// published algorithms on the same pair. The algorithms run in float32 and float64, on the CPU and, through their twins,
+// on the GPU. Has no dependencies; runs on Node 18 or newer, and in browsers since 2021.
 
-/** 18 coordinates, a[0] to a[2], then b[0] to b[2]; each is rounded to float32. @typedef {ArrayLike<number>} Pair */
+/** 18 coordinates, a[0] to a[2], then b[0] to b[2]; graze.wasm rounds each to float32, graze_f64.wasm decides the doubles. @typedef {ArrayLike<number>} Pair */
 /** @typedef {'disjoint' | 'intersects' | 'declined'} Verdict declined: a coordinate is not finite, or a lane cannot decide. */
 /** @typedef {'none' | 'point' | 'segment' | 'area'} Contact */
 /** @typedef {{ verdict: Verdict, contact: Contact, coplanar: boolean, dimensions: [number, number] }} Truth dimensions: of the two hulls, 0 point, 1 segment, 2 triangle. */
@@ -39,6 +39,11 @@ const feature_at = (of, feature) =>
 function graze_of(exports, host) {
   /** @type {WebAssembly.Memory} */
   const memory = exports.memory;
+  const in_doubles = exports.coordinate_bytes() === 8,
+    type = in_doubles ? 'double' : 'float32';
+  /** Numbers of the pairs' type in the module's memory. @param {number} at @param {number} count */
+  const numbers_at = (at, count) =>
+    in_doubles ? new Float64Array(memory.buffer, at, count) : new Float32Array(memory.buffer, at, count);
   const view = () => new DataView(memory.buffer); // made for each use, because a memory that grows detaches old views
 
   /** @param {number} at */
@@ -58,7 +63,7 @@ function graze_of(exports, host) {
   /** @param {Pair} pair @param {number} at */
   function set_pair(pair, at = exports.pairs()) {
     if (pair.length !== 18) throw new RangeError(`expected the 18 coordinates of a pair, found ${pair.length}`);
-    new Float32Array(memory.buffer, at, 18).set(pair);
+    numbers_at(at, 18).set(pair);
   }
 
   /** @param {number} at @param {number} count @returns {Point[]} */
@@ -74,7 +79,10 @@ function graze_of(exports, host) {
   const file_at = (at) => text_at(at).replace(/^.*?(?=core\/)/, '');
 
   const lanes = Array.from({ length: exports.lane_count() }, (_, i) => text_at(exports.lane_id(i)));
-  const strata = Array.from({ length: exports.stratum_count() }, (_, i) => text_at(exports.stratum_id(i)));
+  const strata = Array.from(
+    { length: exports.stratum_count() },
+    (_, i) => text_at(exports.stratum_id(i)) + (in_doubles ? '/f64' : ''),
+  );
   const verdicts_at = exports.verdicts();
 
   /** @param {string} name @param {readonly string[]} names @param {string} what */
@@ -94,16 +102,19 @@ function graze_of(exports, host) {
   }
 
   return {
+    /** The type of the pairs: 'f32', or 'f64' with graze_f64.wasm. On doubles, a lane in f32 decides the coordinates rounded to float32. */
+    coordinates: /** @type {'f32' | 'f64'} */ (in_doubles ? 'f64' : 'f32'),
     /** The lanes' names, "moller_1997/f32/cuda-fma". */
     lanes,
-    /** The strata's names. */
+    /** The strata's names; those of doubles end in "/f64". */
     strata,
     /** How many pairs fit into one call of the functions below that take several. */
     room: /** @type {number} */ (exports.room()),
-    /** The module's own functions, its texts, and the function that it calls, for those who know them. */
+    /** The module's own functions, its texts and numbers, and the function that it calls, for those who know them. */
     exports,
     text_at,
     set_text,
+    numbers_at,
     host,
 
     /**
@@ -118,8 +129,8 @@ function graze_of(exports, host) {
     },
 
     /**
-     * Whether two triangles intersect, exactly; touching counts. A double that is no float32 is refused, because rounding it
-     * could change the answer.
+     * Whether two triangles intersect, exactly; touching counts. graze.wasm refuses a double that is no float32, because
+     * rounding it could change the answer.
      * @param {ArrayLike<number>} a 9 coordinates @param {ArrayLike<number>} b @returns {boolean}
      */
     intersects(a, b) {
@@ -127,9 +138,11 @@ function graze_of(exports, host) {
         throw new RangeError(`expected 9 coordinates of each triangle, found ${a.length} and ${b.length}`);
       for (const of of [a, b])
         for (let i = 0; i < 9; ++i)
-          if (!Number.isFinite(of[i]) || Math.fround(of[i]) !== of[i])
-            throw new RangeError(`expected finite float32 numbers, found ${of[i]}; Math.fround rounds to them`);
-      const pair = new Float32Array(memory.buffer, exports.pairs(), 18);
+          if (!Number.isFinite(of[i]) || (!in_doubles && Math.fround(of[i]) !== of[i]))
+            throw new RangeError(
+              `expected finite ${type} numbers, found ${of[i]}${Number.isFinite(of[i]) ? '; Math.fround rounds to them' : ''}`,
+            );
+      const pair = numbers_at(exports.pairs(), 18);
       pair.set(a);
       pair.set(b, 9);
       exports.decide_truth(1);
@@ -149,7 +162,7 @@ function graze_of(exports, host) {
 
     /**
      * How far from touching the pair is: certified bounds of the distance of disjoint triangles, or of the smallest translation
-     * that parts intersecting ones.
+     * that parts intersecting ones. They are 0 and infinity for doubles that lie more than about 2^250 apart in size.
      * @param {Pair} pair @returns {Margin}
      */
     margin(pair) {
@@ -180,32 +193,33 @@ function graze_of(exports, host) {
     },
 
     /**
-     * The float32 nearest to a decimal or hex float, rounded once; null for what is no number of float32.
+     * The float32, or the double, nearest to a decimal or hex float, rounded once; null for what is no number of that type.
      * @param {string} text @returns {number | null}
      */
     parse(text) {
       if (text.length > 1000) return null;
       set_text(text);
-      return exports.parse(0) ? view().getFloat32(exports.pairs(), true) : null;
+      return exports.parse(0) ? numbers_at(exports.pairs(), 1)[0] : null;
     },
 
     /**
      * The pair of a stratum, the same bits as everywhere.
-     * @param {string} stratum @param {bigint} seed @param {bigint} index @returns {Float32Array}
+     * @param {string} stratum @param {bigint} seed @param {bigint} index @returns {Float32Array | Float64Array}
      */
     generate(stratum, seed, index) {
       exports.generate(place(stratum, strata, 'a stratum'), seed, index, 1);
-      return new Float32Array(memory.buffer, exports.pairs(), 18).slice();
+      return numbers_at(exports.pairs(), 18).slice();
     },
 
     /**
-     * The float32 so many steps above the number.
+     * The float32, or the double, so many steps above the number.
      * @param {number} x @param {number} ulps
      */
     nudged(x, ulps) {
-      view().setFloat32(exports.pairs(), x, true);
+      const number = numbers_at(exports.pairs(), 1);
+      number[0] = x;
       exports.nudge(0, ulps);
-      return view().getFloat32(exports.pairs(), true);
+      return number[0];
     },
 
     /**
@@ -250,7 +264,7 @@ function graze_of(exports, host) {
     },
 
     /**
-     * The comparisons of a lane without a policy, in order, and the values that its policy would see; null where they are not known.
+     * The comparisons of a lane without a policy on what it sees of the pair, in order, and the values that its policy would see; null where they are not known.
      * own: whether the values are known to be the lane's; otherwise a rule of contraction gave them, and the lane's verdict.
      * with_113_bits: what the algorithm says in such numbers throughout.
      * @param {Pair} pair @param {string} id @returns {{ own: boolean, steps: Step[], with_113_bits: Verdict } | null}
@@ -303,7 +317,7 @@ function graze_of(exports, host) {
 
 /**
  * Makes the module ready.
- * @param {BufferSource | WebAssembly.Module} bytes of graze.wasm @returns {Promise<Graze>}
+ * @param {BufferSource | WebAssembly.Module} bytes of graze.wasm or graze_f64.wasm @returns {Promise<Graze>}
  */
 export async function load(bytes) {
   const module = bytes instanceof WebAssembly.Module ? bytes : await WebAssembly.compile(bytes);

@@ -48,11 +48,12 @@ extern "C" int __cxa_thread_atexit(void (*)(void*), void*, void*) { return 0; }
 
 namespace graze {
 
-// The module takes float32 alone.
+#ifdef GRAZE_FLOAT32_ALONE
 namespace cpu {
 extern const HostDoubleBlocks kHostDoubleBlocks{};
 extern const HostDoublePolicyBlocks kHostDoublePolicyBlocks{};
 }  // namespace cpu
+#endif
 
 // These lanes exist only in the native build, because another compiler contracts differently.
 namespace cpu_fma {
@@ -71,10 +72,14 @@ extern const HostDoublePolicyBlocks kHostDoublePolicyBlocks{};
 namespace cuda {
 
 std::span<const ContractionSite> contraction_sites(const Lane& lane) { return twin_row(lane).sites; }
-std::span<const ContractionSite> contraction_sites(const Lane& lane, const AnyPair&) { return twin_row(lane).sites; }
+std::span<const ContractionSite> contraction_sites(const Lane& lane, const AnyPair& pair) {
+  return pair.floats ? twin_row(lane).sites : twin_row(lane).doubles.sites;
+}
 
 Verdict decide_fusing(const Lane& lane, const AnyPair& pair, std::span<const std::uint64_t> fused) {
-  return twin_row(lane).decide_fusing(*pair.floats, fused.data());
+  const TwinRow& row = twin_row(lane);
+  return pair.floats ? row.decide_fusing(*pair.floats, fused.data())
+                     : row.doubles.decide_fusing(pair.doubles, fused.data());
 }
 
 }  // namespace cuda

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze.wasm: the viewer's decisions. Its functions work on the module's own buffers; graze.js calls them.
+// graze.wasm, whose pairs are of float32, and graze_f64.wasm, whose pairs are of doubles: the viewer's decisions. The
+// functions work on the module's own buffers; graze.js calls them.
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -8,12 +10,11 @@
 #include "backends/backends.h"
 #include "core/exact/exact.h"
 #include "core/lanes/lanes.h"
-#include "core/margin/margin.h"
 #include "core/relation_of.h"
 #include "core/text.h"
 #include "cuda/twin/twin.h"
-#include "strata/strata.h"
 #include "wasm/drawing.h"
+#include "wasm/either_type.h"
 #include "wasm/quad.h"
 
 #define GRAZE_EXPORT(name) extern "C" [[clang::export_name(#name)]]
@@ -24,8 +25,17 @@ namespace {
 constexpr std::size_t kRoom = 1024;   // pairs in one call
 constexpr std::size_t kText = 65536;  // bytes of a text
 
-Pair pairs_in[kRoom];
-Pair map_centre;
+#ifdef GRAZE_FLOAT32_ALONE
+using Coordinate = float;
+constexpr const auto& kModuleStrata = strata::kStrata;
+#else
+using Coordinate = double;
+constexpr const auto& kModuleStrata = strata::kDoubleStrata;
+#endif
+using OwnPair = BasicPair<Coordinate>;
+
+OwnPair pairs_in[kRoom];
+OwnPair map_centre;
 char text_in[kText];
 std::uint8_t verdicts_out[kRoom];
 std::uint64_t hashes_out[kRoom];
@@ -61,8 +71,11 @@ std::vector<Decider>& deciders() {
   static std::vector<Decider> all = [] {
     std::vector<Decider> found;
     for (const Lane& lane : lanes()) {
-      if (lane.exact && lane.scalar == Scalar::f64) continue;  // of doubles, which the module does not take
-      if (DecideBlock block = backends::on_host(lane)) found.push_back({&lane, block});
+      const DecideBlock block = backends::on_host(lane);
+      const bool takes_pairs = std::is_same_v<Coordinate, float>
+                                   ? !lane.exact || lane.scalar == Scalar::f32
+                                   : lane.scalar == Scalar::f32 || block.decides_doubles();
+      if (block && takes_pairs) found.push_back({&lane, block});
     }
     return found;
   }();
@@ -77,7 +90,7 @@ DecideBlock block_under(const Lane& lane, std::string_view policy) {
   return backends::on_host(lane_under(lane, policy));
 }
 
-Verdict truth_of(const Pair& pair) {
+Verdict truth_of(const OwnPair& pair) {
   return !is_finite(pair)                                ? Verdict::declined
          : exact::intersects(&pair.a[0].x, &pair.b[0].x) ? Verdict::intersects
                                                          : Verdict::disjoint;
@@ -85,24 +98,19 @@ Verdict truth_of(const Pair& pair) {
 
 double shown(const Quad& x) { return std::abs(x.value) <= x.error ? 0 : static_cast<double>(x.value); }
 
-void nudge_in(Pair& pair, int coordinate, int ulps) {
-  float& x = coordinates(pair)[coordinate];
+void nudge_in(OwnPair& pair, int coordinate, int ulps) {
+  Coordinate& x = coordinates(pair)[coordinate];
   if (ulps != 0) x = strata::nudged(x, ulps);  // a step of zero would turn -0 into +0
 }
 
-void decide_into(const DecideBlock& decide, std::size_t count) {
-  std::uint64_t intersects[kRoom / 64], declined[kRoom / 64];
-  decide(pairs_in, count, intersects, declined);
-  for (std::size_t i = 0; i < count; ++i) {
-    verdicts_out[i] =
-        static_cast<std::uint8_t>(verdict_of_bits(intersects[i / 64] >> i % 64 & 1, declined[i / 64] >> i % 64 & 1));
-  }
-}
+std::optional<float> number_in(const char* text, float) { return parse_float32(text); }
+std::optional<double> number_in(const char* text, double) { return parse_float64(text); }
 
 }  // namespace
 
 GRAZE_EXPORT(room) int room() { return kRoom; }
-GRAZE_EXPORT(pairs) Pair* pairs() { return pairs_in; }
+GRAZE_EXPORT(coordinate_bytes) int coordinate_bytes() { return sizeof(Coordinate); }
+GRAZE_EXPORT(pairs) OwnPair* pairs() { return pairs_in; }
 GRAZE_EXPORT(text) char* text() { return text_in; }
 GRAZE_EXPORT(verdicts) std::uint8_t* verdicts() { return verdicts_out; }
 GRAZE_EXPORT(hashes) std::uint64_t* hashes() { return hashes_out; }
@@ -110,18 +118,18 @@ GRAZE_EXPORT(hashes) std::uint64_t* hashes() { return hashes_out; }
 GRAZE_EXPORT(lane_count) int lane_count() { return static_cast<int>(deciders().size()); }
 GRAZE_EXPORT(lane_id) const char* lane_id(int lane) { return deciders()[lane].lane->id.c_str(); }
 
-GRAZE_EXPORT(stratum_count) int stratum_count() { return strata::kStrataCount; }
-GRAZE_EXPORT(stratum_id) const char* stratum_id(int stratum) { return strata::kStrata[stratum].id.data(); }
+GRAZE_EXPORT(stratum_count) int stratum_count() { return static_cast<int>(std::size(kModuleStrata)); }
+GRAZE_EXPORT(stratum_id) const char* stratum_id(int stratum) { return kModuleStrata[stratum].id.data(); }
 
 // Generates `count` pairs from the index `first`.
 GRAZE_EXPORT(generate) void generate(int stratum, std::uint64_t seed, std::uint64_t first, int count) {
   for (int i = 0; i < count; ++i)
-    pairs_in[i] = strata::generate(seed, strata::kStrata[stratum].stratum, first + static_cast<std::uint64_t>(i));
+    draw(pairs_in[i], seed, kModuleStrata[stratum].stratum, first + static_cast<std::uint64_t>(i));
 }
 
-// Parses the number in the text, rounded once to float32.   Returns: whether the text is a number.
+// Parses the number in the text, rounded once to the type.   Returns: whether the text is a number.
 GRAZE_EXPORT(parse) int parse(int coordinate) {
-  const std::optional<float> value = parse_float32(text_in);
+  const std::optional<Coordinate> value = number_in(text_in, Coordinate{});
   if (value) coordinates(pairs_in[0])[coordinate] = *value;
   return value.has_value();
 }
@@ -134,9 +142,11 @@ GRAZE_EXPORT(set_policy) void set_policy() {
 
 // Writes the lane's verdicts on the pairs.   Returns: false if the lane cannot have the policy.
 GRAZE_EXPORT(decide) int decide(int lane, int count) {
-  const DecideBlock& block = deciders()[lane].decide;
-  if (!block) return 0;
-  decide_into(block, count);
+  const Decider& decider = deciders()[lane];
+  if (!decider.decide) return 0;
+  const std::vector<Verdict> said =
+      analysis::verdicts_seen_by(*decider.lane, decider.decide, std::span<const OwnPair>(pairs_in, pairs_in + count));
+  std::transform(said.begin(), said.end(), verdicts_out, [](Verdict one) { return static_cast<std::uint8_t>(one); });
   return 1;
 }
 
@@ -147,9 +157,17 @@ GRAZE_EXPORT(decide_truth) void decide_truth(int count) {
 
 // Writes the lane's trace hashes (cuda/lanes/trace.h) of the pairs.   Returns: false if the lane has none.
 GRAZE_EXPORT(trace) int trace(int lane, int count) {
-  const cuda::TraceBlock twin = cuda::twin_trace(*deciders()[lane].lane);
-  if (twin) twin(pairs_in, count, hashes_out);
-  return twin != nullptr;
+  const Lane& of = *deciders()[lane].lane;
+  if (!cuda::twin_trace(of)) return false;
+  for (int i = 0; i < count; ++i) {
+    const AnyPair seen = analysis::seen_by(of, pairs_in[i]);
+    if (seen.floats) {
+      cuda::twin_trace(of)(&*seen.floats, 1, hashes_out + i);
+    } else {
+      cuda::twin_trace_of_doubles(of)(&seen.doubles, 1, hashes_out + i);
+    }
+  }
+  return true;
 }
 
 // x y + z, rounded once, as in the twins; for the test.
@@ -157,12 +175,12 @@ GRAZE_EXPORT(fused) float fused(float x, float y, float z) { return __builtin_fm
 
 // The truth of the first pair. Exact, except for the margin's bounds; a bound of 0 is exact.
 GRAZE_EXPORT(truth) const TruthOut* truth() {
-  const Pair& pair = pairs_in[0];
+  const OwnPair& pair = pairs_in[0];
   truth_out = {};
   truth_out.verdict = static_cast<std::int32_t>(truth_of(pair));
   if (!is_finite(pair)) return &truth_out;
   const Relation r = relation_of(pair);
-  const MarginBounds bounds = r.margin_sign == 0 ? MarginBounds{} : margin_bounds(pair, r.verdict);
+  const MarginBounds bounds = r.margin_sign == 0 ? MarginBounds{} : bounds_of(pair, r.verdict);
   truth_out = {r.intersects(),      static_cast<std::int32_t>(r.contact),
                r.margin_sign,       r.hulls.dimension_a,
                r.hulls.dimension_b, r.hulls.coplanar,
@@ -176,7 +194,7 @@ GRAZE_EXPORT(nudge) void nudge(int coordinate, int ulps) { nudge_in(pairs_in[0],
 
 // Writes the pairs of one row of an ulp map (analysis/ulp_map.h) around the pair in `centre`. Between neighbours, x
 // rises by `step` ulps; y is `up` ulps above the centre's.
-GRAZE_EXPORT(centre) Pair* centre() { return &map_centre; }
+GRAZE_EXPORT(centre) OwnPair* centre() { return &map_centre; }
 GRAZE_EXPORT(map_row) void map_row(int x, int y, int up, int columns, int step) {
   for (int i = 0; i < columns; ++i) {
     pairs_in[i] = map_centre;
@@ -185,18 +203,18 @@ GRAZE_EXPORT(map_row) void map_row(int x, int y, int up, int columns, int step) 
   }
 }
 
-// Computes the lane's comparisons on the first pair and the values passed to its policy, and beside them the same path
-// with 113 bits.
-// Returns: the number of steps; -1 if nothing shows that they are the lane's own.
+// Computes the lane's comparisons on what it sees of the first pair and the values passed to its policy, and beside
+// them the same path with 113 bits. Returns: the number of steps; -1 if nothing shows that they are the lane's own.
 GRAZE_EXPORT(steps) int steps(int lane) {
   const Lane& of = *deciders()[lane].lane;
   steps_out.clear();
   if (of.algorithm < 0) return -1;
-  const analysis::Replay replay = analysis::replay(of, pairs_in[0]);
+  const AnyPair seen_pair = analysis::seen_by(of, pairs_in[0]);
+  const analysis::Replay replay = analysis::replay(of, seen_pair);
   if (replay.evidence == analysis::Evidence::none) return -1;
   steps_evidence = static_cast<int>(replay.evidence);
-  verdict_of_quads = run_traced<Quad>(of.algorithm, pairs_in[0]).verdict;
-  const Trace<Quad> exact = run_traced<Quad>(of.algorithm, pairs_in[0], path_of(replay.run));
+  verdict_of_quads = run_traced<Quad>(of.algorithm, seen_pair.doubles).verdict;
+  const Trace<Quad> exact = run_traced<Quad>(of.algorithm, seen_pair.doubles, path_of(replay.run));
   for (std::size_t i = 0; i < replay.run.seen.size(); ++i) {
     const Seen<double>& seen = replay.run.seen[i];
     const Seen<Quad>& right = exact.seen[i];
@@ -219,16 +237,17 @@ GRAZE_EXPORT(steps_at) const StepOut* steps_at() { return steps_out.data(); }
 GRAZE_EXPORT(contractions) int contractions(int lane) {
   sites_out.clear();
   const Lane& of = *deciders()[lane].lane;
-  if (cuda::contraction_sites(of).empty()) return 0;
-  for (const cuda::ContractionSite& site : analysis::blame(of, pairs_in[0]).sites)
+  const AnyPair seen = analysis::seen_by(of, pairs_in[0]);
+  if (cuda::contraction_sites(of, seen).empty()) return 0;
+  for (const cuda::ContractionSite& site : analysis::blame(of, seen).sites)
     sites_out.push_back({site.at.file, site.from.file, site.at.line, site.from.line});
   return static_cast<int>(sites_out.size());
 }
 GRAZE_EXPORT(contractions_at) const SiteOut* contractions_at() { return sites_out.data(); }
 
 // Draws the first pair.
-GRAZE_EXPORT(draw) const Drawing* draw() {
-  drawing_out = drawing_of(pairs_in[0]);
+GRAZE_EXPORT(draw) const Drawing* drawing() {
+  drawing_out = drawing_of(AnyPair(pairs_in[0]).doubles, relation_of(pairs_in[0]));
   return &drawing_out;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The native side of the comparison with graze.wasm. For blocks of pairs of every stratum, prints hashes of every
-// lane's results. graze.test.mjs computes the same with the module.   Usage: reference PAIRS
+// The native side of the comparison with graze.wasm and graze_f64.wasm. For blocks of pairs of every stratum, prints
+// hashes of every lane's results. graze.test.mjs computes the same with the module.   Usage: reference PAIRS f32|f64
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -10,10 +10,9 @@
 #include "analysis/lane_trace.h"
 #include "backends/backends.h"
 #include "core/lanes/verdicts.h"
-#include "core/margin/margin.h"
 #include "core/relation_of.h"
 #include "cuda/twin/twin.h"
-#include "strata/strata.h"
+#include "wasm/either_type.h"
 
 namespace graze {
 namespace {
@@ -39,17 +38,20 @@ void print(const char* what, const char* of, std::uint64_t block, Hash hash) {
   std::printf("%s %s %llu %u\n", what, of, static_cast<unsigned long long>(block), hash.value);
 }
 
-Hash verdicts(const DecideBlock& decide, const std::vector<Pair>& pairs) {
+template <class OwnPair>
+Hash verdicts(const Lane& lane, const DecideBlock& decide, const std::vector<OwnPair>& pairs) {
   Hash hash;
-  for (const Verdict said : verdicts_of(decide, pairs)) hash.add_value(static_cast<std::uint8_t>(said));
+  for (const Verdict said : analysis::verdicts_seen_by(lane, decide, std::span(pairs)))
+    hash.add_value(static_cast<std::uint8_t>(said));
   return hash;
 }
 
-Hash truths(const std::vector<Pair>& pairs) {
+template <class OwnPair>
+Hash truths(const std::vector<OwnPair>& pairs) {
   Hash hash;
-  for (const Pair& pair : pairs) {
+  for (const OwnPair& pair : pairs) {
     const Relation r = relation_of(pair);
-    const MarginBounds bounds = r.margin_sign == 0 ? MarginBounds{} : margin_bounds(pair, r.verdict);
+    const MarginBounds bounds = r.margin_sign == 0 ? MarginBounds{} : wasm::bounds_of(pair, r.verdict);
     for (const std::int32_t x :
          {std::int32_t{r.intersects()}, static_cast<std::int32_t>(r.contact), r.margin_sign, r.hulls.dimension_a,
           r.hulls.dimension_b, std::int32_t{r.hulls.coplanar}, log2_ulp(pair)})
@@ -62,9 +64,11 @@ Hash truths(const std::vector<Pair>& pairs) {
 
 // Hashes one lane's steps, which the viewer uses for explanations. Compilers evaluate the arguments of a call in
 // different orders, so the order of the steps does not count.
-Hash steps(const Lane& lane, const std::vector<Pair>& pairs) {
+template <class OwnPair>
+Hash steps(const Lane& lane, const std::vector<OwnPair>& pairs) {
   Hash hash;
-  for (const Pair& pair : pairs) {
+  for (const OwnPair& own : pairs) {
+    const AnyPair pair = analysis::seen_by(lane, own);
     const analysis::Replay replay = analysis::replay(lane, pair);
     if (replay.evidence == analysis::Evidence::none) continue;
     std::uint32_t sum = 0;
@@ -77,30 +81,40 @@ Hash steps(const Lane& lane, const std::vector<Pair>& pairs) {
       sum += step.value;
     }
     hash.add_value(sum);
-    if (cuda::contraction_sites(lane).empty()) continue;
+    if (cuda::contraction_sites(lane, pair).empty()) continue;
     for (const cuda::ContractionSite& site : analysis::blame(lane, pair).sites)
       hash.add_value(std::int32_t{site.at.line});
   }
   return hash;
 }
 
-void print_block(const std::string& of, std::uint64_t block, const std::vector<Pair>& pairs) {
+// The trace hash of what the lane sees of the pair.
+std::uint64_t trace_of(const Lane& lane, const AnyPair& pair) {
+  std::uint64_t hash = 0;
+  if (pair.floats) {
+    cuda::twin_trace(lane)(&*pair.floats, 1, &hash);
+  } else {
+    cuda::twin_trace_of_doubles(lane)(&pair.doubles, 1, &hash);
+  }
+  return hash;
+}
+
+template <class OwnPair>
+void print_block(const std::string& of, std::uint64_t block, const std::vector<OwnPair>& pairs) {
   Hash drawn;
-  drawn.add(pairs.data(), pairs.size() * sizeof(Pair));
+  drawn.add(pairs.data(), pairs.size() * sizeof(OwnPair));
   print("pairs", of.c_str(), block, drawn);
   print("truth", of.c_str(), block, truths(pairs));
-  const std::vector<Pair> few(pairs.begin(),
-                              pairs.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, pairs.size())));
+  const std::vector<OwnPair> few(pairs.begin(),
+                                 pairs.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, pairs.size())));
   for (const Lane& lane : lanes()) {
     const DecideBlock decide = backends::on_host(lane);
     if (!decide || lane.variant == Variant::cpu_fma || lane.variant == Variant::cpu_fast) continue;
-    if (lane.exact && lane.scalar == Scalar::f64) continue;  // see wasm/module.cpp
-    print(lane.id.c_str(), of.c_str(), block, verdicts(decide, pairs));
-    if (const cuda::TraceBlock trace = cuda::twin_trace(lane)) {
-      std::vector<std::uint64_t> hashes(pairs.size());
-      trace(pairs.data(), pairs.size(), hashes.data());
+    if (sizeof(OwnPair) == sizeof(Pair) && lane.exact && lane.scalar == Scalar::f64) continue;  // see wasm/module.cpp
+    print(lane.id.c_str(), of.c_str(), block, verdicts(lane, decide, pairs));
+    if (cuda::twin_trace(lane)) {
       Hash hash;
-      hash.add(hashes.data(), hashes.size() * sizeof hashes[0]);
+      for (const OwnPair& pair : pairs) hash.add_value(trace_of(lane, analysis::seen_by(lane, pair)));
       print(("trace:" + lane.id).c_str(), of.c_str(), block, hash);
     }
     if (block > 0) continue;  // once for each stratum
@@ -109,19 +123,20 @@ void print_block(const std::string& of, std::uint64_t block, const std::vector<P
       const bool by_bounds = policy[0] == 'b' || policy[0] == 'f';
       if (lane.exact || (by_bounds && !lane.info->right_without_rounding)) continue;
       if (const DecideBlock under = backends::on_host(lane_under(lane, policy)))
-        print((lane.id + '/' + policy).c_str(), of.c_str(), block, verdicts(under, pairs));
+        print((lane.id + '/' + policy).c_str(), of.c_str(), block, verdicts(lane, under, pairs));
     }
   }
 }
 
-void print_all(std::uint64_t count) {
-  const std::uint64_t each = (count + strata::kStrataCount - 1) / strata::kStrataCount;
-  for (const strata::StratumInfo& row : strata::kStrata) {
+template <class OwnPair>
+void print_all(std::span<const strata::StratumInfo> strata, std::uint64_t count) {
+  const std::uint64_t each = (count + strata.size() - 1) / strata.size();
+  for (const strata::StratumInfo& row : strata) {
+    const std::string name = std::string(row.id) + (sizeof(OwnPair) > sizeof(Pair) ? "/f64" : "");
     for (std::uint64_t first = 0; first < each; first += kBlock) {
-      std::vector<Pair> pairs;
-      for (std::uint64_t i = first; i < std::min(each, first + kBlock); ++i)
-        pairs.push_back(strata::generate(kSeed, row.stratum, i));
-      print_block(std::string(row.id), first / kBlock, pairs);
+      std::vector<OwnPair> pairs(std::min(each - first, kBlock));
+      for (std::uint64_t i = 0; i < pairs.size(); ++i) wasm::draw(pairs[i], kSeed, row.stratum, first + i);
+      print_block(name, first / kBlock, pairs);
     }
   }
 }
@@ -129,4 +144,12 @@ void print_all(std::uint64_t count) {
 }  // namespace
 }  // namespace graze
 
-int main(int, char** argv) { graze::print_all(argv[1] ? std::strtoull(argv[1], nullptr, 10) : 1000); }
+int main(int count, char** argv) {
+  if (count != 3) return 2;
+  const unsigned long long pairs = std::strtoull(argv[1], nullptr, 10);
+  if (std::strcmp(argv[2], "f64") == 0) {
+    graze::print_all<graze::DoublePair>(graze::strata::kDoubleStrata, pairs);
+  } else {
+    graze::print_all<graze::Pair>(graze::strata::kStrata, pairs);
+  }
+}

@@ -9,6 +9,9 @@ namespace graze::exact {
 void decide(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
   one_by_one(pairs, count, intersects, declined);
 }
+void decide(const double* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+  one_by_one(pairs, count, intersects, declined);
+}
 const char* decide_target() { return "scalar"; }
 }  // namespace graze::exact
 #else

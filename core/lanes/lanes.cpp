@@ -32,7 +32,7 @@ void decide_exactly(const Pair* pairs, std::size_t count, std::uint64_t* interse
   exact::decide(reinterpret_cast<const float*>(pairs), count, intersects, declined);
 }
 
-#ifdef __wasm__  // the module takes float32 alone, and every report carries its code
+#ifdef GRAZE_FLOAT32_ALONE  // graze.wasm; most reports carry its code
 constexpr DecideFunction<DoublePair> decide_doubles_exactly = nullptr;
 #else
 void decide_doubles_exactly(const DoublePair* pairs, std::size_t count, std::uint64_t* intersects,

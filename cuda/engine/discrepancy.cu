@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <atomic>
 #include <stdexcept>
-#include <type_traits>
 #include <vector>
 
 #include "core/discrepancy/count.h"
@@ -147,11 +146,7 @@ void for_each_block(const strata::PairSource& source, const WithBlock& with_bloc
   auto* block = coordinates.at_least(std::size_t{kPairsAtOnce} * kCoordinates);
   for (std::uint64_t first = 0; first < source.pairs; first += kPairsAtOnce) {
     const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(kPairsAtOnce, source.pairs - first));
-    if constexpr (std::is_same_v<Pairs, DeviceDoubles>) {
-      drawing.draw(source, first, count, block, nullptr, nullptr);
-    } else {
-      drawing.draw(source, first, count, block, nullptr);
-    }
+    drawing.draw(source, first, count, block, nullptr);
     with_block(Pairs{block, count, count});
     check(cudaGetLastError());
   }

@@ -181,8 +181,8 @@ class CudaEngine final : public DeviceEngine {
     for (std::size_t l = 0; l < lanes_.size(); ++l) decide_by(l, block.pairs, buffers);
   }
   void decide(const DoubleEngineBlock& block, Buffers& buffers, const strata::PairSource& source) {
-    drawing_.draw(source, block.first, block.pairs.count, buffers.doubles.at_least(0), buffers.coordinates.at_least(0),
-                  buffers.stream);
+    drawing_.draw(source, block.first, block.pairs.count, buffers.doubles.at_least(0), buffers.stream,
+                  buffers.coordinates.at_least(0));
     buffers.exact.decide(block.doubles, buffers.truth.at_least(0), block.wrong, nullptr, buffers.stream);
     buffers.exact.decide(block.pairs, const_cast<std::uint32_t*>(block.stored.intersects),
                          const_cast<std::uint32_t*>(block.stored.declined), nullptr, buffers.stream);

@@ -77,7 +77,7 @@ std::vector<ErrorCounts> count_errors(const Lane& zero, std::span<const Lane> la
     const DevicePairs pairs{block, count, count};
     const DeviceDoubles doubles{in_doubles, count, count};
     if (in_doubles) {
-      drawing.draw(source, first, count, in_doubles, block, nullptr);
+      drawing.draw(source, first, count, in_doubles, nullptr, block);
       exact.decide(doubles, truth.intersects, truth.declined, nullptr, nullptr);
     } else {
       drawing.draw(source, first, count, block, nullptr);

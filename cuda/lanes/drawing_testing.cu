@@ -27,7 +27,7 @@ strata::PairBlock drawn_for_device(const strata::PairSource& source, std::uint64
   DeviceArray<double> doubles;
   strata::PairBlock block;
   if (source.in_doubles()) {
-    drawing.draw(source, first, count, doubles.at_least(numbers), floats.at_least(numbers), nullptr);
+    drawing.draw(source, first, count, doubles.at_least(numbers), nullptr, floats.at_least(numbers));
     block.doubles = fetched(doubles.at_least(0), count);
   } else {
     drawing.draw(source, first, count, floats.at_least(numbers), nullptr);

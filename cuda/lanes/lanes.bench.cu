@@ -51,7 +51,7 @@ void draw(const strata::StratumInfo& stratum, std::uint64_t first, float* to) {
 // On all CPU cores, then copied.
 void draw(const strata::StratumInfo& stratum, std::uint64_t first, double* to) {
   const std::string name = std::string(stratum.id) + std::string(strata::kInDoubles);
-  Drawing().draw(strata::named_sources(1, kPairs, {name}).front(), first, kPairs, to, nullptr, nullptr);
+  Drawing().draw(strata::named_sources(1, kPairs, {name}).front(), first, kPairs, to, nullptr);
 }
 
 // The pairs of one stratum, and the memory to which the lanes write.

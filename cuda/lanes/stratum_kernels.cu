@@ -76,7 +76,7 @@ void Drawing::draw(const strata::PairSource& source, std::uint64_t first, std::u
 }
 
 void Drawing::draw(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, double* to,
-                   float* stored, cudaStream_t stream) {
+                   cudaStream_t stream, float* stored) {
   const std::size_t numbers = std::size_t{count} * kCoordinates;
   if (source.stratum >= 0) {
     launch_generate(source, first, count, to, stream);

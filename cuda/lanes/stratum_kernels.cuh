@@ -38,7 +38,7 @@ class Drawing {
 
   // The same for a source of doubles. `stored`, if not null, gets the pairs as float32 stores them.
   void draw(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, double* coordinates,
-            float* stored, cudaStream_t stream);
+            cudaStream_t stream, float* stored = nullptr);
 
  private:
   std::vector<float> brought_;

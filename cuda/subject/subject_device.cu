@@ -193,24 +193,17 @@ ProofRecord prove_subjects(std::span<const NamedBuild> builds, const ProofOption
   for (const strata::PairSource& source : strata::stratum_sources(
            options.seed, options.twin_pairs, {}, options.of_doubles ? PairTypes::f64 : PairTypes::f32)) {
     for (LaneProof& lane : record.lanes) lane.strata.push_back({source.id});
-    const auto prove_block = [&]<class Real>(std::uint64_t first, std::vector<BasicPair<Real>> pairs, Real* on_device) {
-      fetch(on_device, pairs);
-      for (std::size_t l = 0; l < record.lanes.size(); ++l)
-        compare<Real>(*subjects[l], *twins[l], on_device, pairs, first, record.lanes[l].strata.back());
-    };
-    for (std::uint64_t first = 0; first < source.pairs; first += kBlock) {
-      const auto n = static_cast<std::uint32_t>(std::min<std::uint64_t>(kBlock, source.pairs - first));
-      const std::size_t numbers = std::size_t{n} * kCoordinates;
-      if (source.in_doubles()) {
-        double* on_device = doubles.at_least(numbers);
-        drawing.draw(source, first, n, on_device, nullptr, nullptr);
-        prove_block(first, std::vector<DoublePair>(n), on_device);
-      } else {
-        float* on_device = floats.at_least(numbers);
-        drawing.draw(source, first, n, on_device, nullptr);
-        prove_block(first, std::vector<Pair>(n), on_device);
+    const auto prove_blocks = [&]<class Real>(DeviceArray<Real>& room) {
+      for (std::uint64_t first = 0; first < source.pairs; first += kBlock) {
+        std::vector<BasicPair<Real>> pairs(std::min<std::uint64_t>(kBlock, source.pairs - first));
+        Real* on_device = room.at_least(pairs.size() * kCoordinates);
+        drawing.draw(source, first, static_cast<std::uint32_t>(pairs.size()), on_device, nullptr);
+        fetch(on_device, pairs);
+        for (std::size_t l = 0; l < record.lanes.size(); ++l)
+          compare<Real>(*subjects[l], *twins[l], on_device, pairs, first, record.lanes[l].strata.back());
       }
-    }
+    };
+    source.in_doubles() ? prove_blocks(doubles) : prove_blocks(floats);
     record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (options.progress) options.progress(source.id + ": " + std::to_string(source.pairs) + " pairs");
   }

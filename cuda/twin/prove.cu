@@ -89,7 +89,7 @@ struct OfDoubles {
   }
   void draw(std::uint64_t seed, std::size_t s, std::uint64_t first, std::uint32_t n, double* to) {
     const std::string name = std::string(kStrata[s].id) + std::string(kSuffix);
-    drawing_.draw(strata::named_sources(seed, 1, {name}).front(), first, n, to, nullptr, nullptr);
+    drawing_.draw(strata::named_sources(seed, 1, {name}).front(), first, n, to, nullptr);
   }
 
  private:

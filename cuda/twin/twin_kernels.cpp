@@ -140,7 +140,7 @@ constexpr void enter(TwinTable& table) {
     row.absolute = decide_within<Kernel, Pair>;
   } else if constexpr (Kernel::kName == "relative_pairs") {
     row.relative = decide_within<Kernel, Pair>;
-#ifndef __wasm__  // which has no pairs of doubles
+#ifndef GRAZE_FLOAT32_ALONE
   } else if constexpr (Kernel::kName == "decide_double_pairs") {
     enter_decide<Kernel, DoublePair>(row.doubles);
   } else if constexpr (Kernel::kName == "trace_double_pairs") {

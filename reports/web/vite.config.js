@@ -1,26 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes one file that contains everything, with no chunk, style sheet or picture beside it, so that the page opens from
-// disk. The report is index.html; with --mode viewer, view.html. Both include the module that GRAZE_WASM names; without
-// it the report's cards cannot open the viewer.
+// disk. The report is index.html; with --mode viewer, view.html. GRAZE_VIEWER says whether there is a viewer, which
+// quotes source lines; its module is among the data that graze writes into the page.
 import { readFileSync, readdirSync } from 'node:fs';
-import { gzipSync } from 'node:zlib';
 import { defineConfig } from 'vite';
 import { viteSingleFile } from 'vite-plugin-singlefile';
-
-const graze_wasm = {
-  name: 'graze-wasm',
-  enforce: 'pre',
-  resolveId: (id) => (id === 'graze.wasm' ? '\0graze.wasm' : null),
-  load: (id) =>
-    id === '\0graze.wasm'
-      ? `export default "${process.env.GRAZE_WASM ? gzipSync(readFileSync(process.env.GRAZE_WASM), { level: 9 }).toString('base64') : ''}"`
-      : null,
-};
 
 // The source lines at which lanes take their steps.
 const kSources = [
   'core/vec3.h',
-  ...(process.env.GRAZE_WASM
+  ...(process.env.GRAZE_VIEWER
     ? readdirSync(`${process.env.GRAZE_SOURCE}/core/algorithms`).map((name) => `core/algorithms/${name}`)
     : []),
 ];
@@ -31,7 +20,7 @@ const sources = {
   load: (id) =>
     id === '\0graze.sources'
       ? `export default ${JSON.stringify(
-          process.env.GRAZE_WASM
+          process.env.GRAZE_VIEWER
             ? Object.fromEntries(
                 kSources
                   .filter((file) => !/(algorithms?|traced)\.h$/.test(file))
@@ -49,7 +38,7 @@ const sources = {
 
 export default defineConfig(({ mode }) => ({
   base: './',
-  plugins: [graze_wasm, sources, viteSingleFile({ removeViteModuleLoader: true })],
+  plugins: [sources, viteSingleFile({ removeViteModuleLoader: true })],
   worker: { format: 'iife' },
   build: {
     target: 'es2020',

@@ -2,28 +2,29 @@
 // Shows a card's case in the viewer, in a dialog over the report. The page contains everything that the viewer needs;
 // it is prepared when the first case is opened. The address stores the pair and the card:
 // "#kind-7&p=…&by=moller_1997/f32/cuda-fma".
-import compressed from 'graze.wasm';
 import { h } from './dom';
 import { kind_words, within } from './kind';
 import type { Report } from './report';
 import { choose, chosen, into_viewer, out_of_viewer, place_of_address, when_chosen } from './state';
-import { from_bits, to_bits, type Stored, type ViewData } from './viewer/data';
+import { from_bits, stored_as, to_bits, type_of_bits, type Scalar, type Stored, type ViewData } from './viewer/data';
 import type { Model } from './viewer/model';
 import { make_ready, no_verdicts } from './viewer/ready';
 import { viewer, type First } from './viewer/viewer';
 
 type Card = Report['cards'][number];
 
-let read: Stored | null | undefined;
-const stored = () =>
-  (read ??= JSON.parse(document.getElementById('view')?.textContent?.trim() || 'null') as Stored | null);
-export const has_viewer = () => compressed !== '' && stored() !== null;
+// What the viewer needs, for the coordinate types of the cards.
+type Parts = Partial<Record<Scalar, Stored>>;
+let read: Parts | null | undefined;
+const parts = () =>
+  (read ??= JSON.parse(document.getElementById('view')?.textContent?.trim() || 'null') as Parts | null);
+export const has_viewer = () => parts() !== null;
 
-const bits_of = ({ pair }: Card) => to_bits(Float32Array.from(pair.value));
+const bits_of = ({ coordinates, pair }: Card) => to_bits(stored_as(coordinates, pair.value));
 
 // Returns a lane of the kind that is wrong on the pair shown, preferably one that the viewer can run.
-function lane_of(report: Report, { kind, verdicts }: Card) {
-  const lanes = stored()!.replay.lanes,
+function lane_of(report: Report, { coordinates, kind, verdicts }: Card) {
+  const lanes = parts()![coordinates]!.replay.lanes,
     wrong = verdicts
       .filter((one) => one.wrong)
       .map((one) => report.lanes[one.lane].id)
@@ -50,16 +51,18 @@ export const viewer_button = (report: Report, card: Card, id: string) =>
 
 // Opens the viewer whenever the address holds a pair, now and after every link, and closes it otherwise.
 export function follow_viewer(report: Report, id_of: (place: number) => string) {
-  const checks = stored();
-  if (!checks || !has_viewer()) return;
+  if (!has_viewer()) return;
   const names = report.cards.map((card, i) => `Card ${i + 1}: ${kind_words(card.kind)}`);
-  const data: ViewData = {
-    ...checks,
-    format: 1,
+  const data_of = (type: Scalar): ViewData => ({
+    ...parts()![type]!,
+    format: 2,
+    coordinates: type,
     title: 'cards of this report',
-    pairs: report.cards.map((card, i) => ({ name: names[i], bits: bits_of(card) })),
+    pairs: report.cards.flatMap((card, i) =>
+      card.coordinates === type ? [{ name: names[i], bits: bits_of(card) }] : [],
+    ),
     triangles: [],
-  };
+  });
   const inside = h('div', {}),
     dialog = h(
       'dialog',
@@ -74,12 +77,13 @@ export function follow_viewer(report: Report, id_of: (place: number) => string) 
     out_of_viewer();
   });
   let shown: Promise<ReturnType<typeof viewer> | null> | null = null,
+    shown_type: Scalar | null = null,
     kept = '';
 
-  function first_of(bits: string): First {
+  function first_of(bits: string, type: Scalar): First {
     const place = report.cards.findIndex((_, i) => id_of(i) === place_of_address()),
       card = report.cards[place];
-    const first: First = { name: 'the pair of a link', pair: from_bits(bits), lane: chosen('by') };
+    const first: First = { name: 'the pair of a link', pair: from_bits(bits, type), lane: chosen('by') };
     if (!card || bits_of(card) !== bits) return first;
     return {
       ...first,
@@ -89,17 +93,18 @@ export function follow_viewer(report: Report, id_of: (place: number) => string) 
         : `${stored_verdicts(report, card)} These lanes are not in the viewer, which another compiler built; it shows what the published lanes say.`,
     };
   }
-  async function start(first: First) {
+  async function start(first: First, type: Scalar) {
     inside.replaceChildren(h('p', { class: 'small', role: 'status' }, 'Checking the lanes against the native build …'));
     try {
-      const made = viewer(data, await make_ready(data.replay), first, {
-        keep(model: Model) {
-          choose('p', (kept = to_bits(model.pair)));
-          choose('by', model.lane);
-        },
-        link: () => location.href,
-        active: () => dialog.open,
-      });
+      const data = data_of(type),
+        made = viewer(data, await make_ready(data), first, {
+          keep(model: Model) {
+            choose('p', (kept = to_bits(model.pair)));
+            choose('by', model.lane);
+          },
+          link: () => location.href,
+          active: () => dialog.open,
+        });
       inside.replaceChildren(
         h('div', { class: 'viewer-head' }, made.head),
         h('div', { class: 'viewer-body' }, made.body),
@@ -114,7 +119,8 @@ export function follow_viewer(report: Report, id_of: (place: number) => string) 
   }
   function follow() {
     const bits = chosen('p'),
-      valid = /^[0-9a-f]{144}$/.test(bits);
+      type = type_of_bits(bits),
+      valid = type !== null && parts()![type] !== undefined;
     if (!valid && dialog.open) {
       dialog.close();
       document
@@ -126,8 +132,9 @@ export function follow_viewer(report: Report, id_of: (place: number) => string) 
     kept = bits;
     if (!dialog.open) dialog.showModal();
     dialog.scrollTop = 0;
-    if (shown) void shown.then((made) => made?.show(first_of(bits)));
-    else shown = start(first_of(bits));
+    const first = first_of(bits, type);
+    if (shown && type === shown_type) void shown.then((made) => made?.show(first));
+    else shown = start(first, (shown_type = type));
   }
   when_chosen(follow);
   follow();

@@ -224,6 +224,7 @@ export interface Report {
     file: string;
     minimised: boolean;
     from: string; // "near_edge_edge:1:42"
+    coordinates: 'f32' | 'f64';
     pair: { decimal: string[]; hex: string[]; value: number[] }; // 18 each, a[0].x … b[2].z
     truth: { verdict: string; contact: string; margin: number; margin_ulps: number };
     // For the drawing: points in double (from exact values), the common set, and the line of both planes, clipped to

@@ -7,7 +7,7 @@ import AxeBuilder from '@axe-core/playwright';
 import { test as unwatched, type Page } from '@playwright/test';
 import type { Report } from '../src/report';
 import type { Stored } from '../src/viewer/data';
-import { expect, open_card, test, url, without_webgl } from './page';
+import { doubles_url, expect, open_card, test, url, without_webgl } from './page';
 
 test.skip(() => !process.env.GRAZE_VIEW, 'this build has no viewer');
 
@@ -37,7 +37,7 @@ async function expect_verdicts_of(page: Page, report: Report, number: number) {
 }
 
 test('a card opens in the viewer, says there what it says here, and back again', async ({ page, report }) => {
-  const { lanes } = (JSON.parse((await page.locator('#view').textContent())!) as Stored).replay;
+  const { lanes } = (JSON.parse((await page.locator('#view').textContent())!) as { f32: Stored }).f32.replay;
   const in_viewer = (card: Report['cards'][number]) => card.kind.lanes.some((lane) => lanes.includes(lane));
   const first = 1 + report.cards.findIndex(in_viewer),
     without = 1 + report.cards.findIndex((card) => !in_viewer(card));
@@ -73,6 +73,38 @@ test('a card opens in the viewer, says there what it says here, and back again',
     await expect_verdicts_of(page, report, without);
     await expect(viewer(page).locator('.message')).toContainText('are not in the viewer, which another compiler built');
     await page.goBack();
+    await expect(viewer(page)).toBeHidden();
+  }
+});
+
+test('cards of both coordinate types open, each as its own', async ({ page }) => {
+  await page.goto(doubles_url());
+  const report = JSON.parse((await page.locator('#report').textContent())!) as Report;
+  const parts = JSON.parse((await page.locator('#view').textContent())!) as Record<string, Stored>;
+  const number_of = (type: string) => 1 + report.cards.findIndex((card) => card.coordinates === type);
+  for (const [type, digits, beside] of [
+    ['f64', 288, 'exact/f64/cpu'],
+    ['f32', 144, 'exact/f32/cpu'],
+    ['f64', 288, 'exact/f64/cpu'],
+  ] as const) {
+    const number = number_of(type);
+    expect(number, `a card of ${type}`).toBeGreaterThan(0);
+    await open_card(page, number);
+    await open_button(page, number).click();
+    await expect(viewer(page).locator('#replayed')).toContainText('Same as the native build');
+    await expect(viewer(page).locator('h1')).toContainText(`Card ${number}: `);
+    await expect(viewer(page).locator('#truth')).toContainText(`Truth: ${report.cards[number - 1].truth.verdict}`);
+    await expect(viewer(page).locator(`[data-lane="${beside}"]`)).toHaveText(report.cards[number - 1].truth.verdict);
+    await expect.poll(() => page.url()).toMatch(new RegExp(`#kind-${number}&.*p=[0-9a-f]{${digits}}(&|$)`));
+    const stored = report.cards[number - 1].verdicts.map(({ lane, verdict }) => ({
+        id: report.lanes[lane].id,
+        verdict,
+      })),
+      both = stored.filter(({ id }) => parts[type].replay.lanes.includes(id));
+    expect(both.length).toBeGreaterThan(2);
+    for (const { id, verdict } of both)
+      await expect(viewer(page).locator(`[data-lane="${id}"]`)).toContainText(verdict);
+    await page.keyboard.press('Escape');
     await expect(viewer(page)).toBeHidden();
   }
 });

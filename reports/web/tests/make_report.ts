@@ -2,7 +2,7 @@
 // Makes the pages under test with the graze that GRAZE names: a real minimised campaign, and a smaller comparison with
 // the same parts but fewer rows. GRAZE_REPORT and GRAZE_COMPARE name existing pages to use instead.
 import { execFileSync } from 'node:child_process';
-import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
@@ -48,16 +48,21 @@ export default function make_report() {
     '--coordinates',
     'both',
     '--strata',
-    'uniform,stored',
+    'uniform,near_edge_edge,stored',
     '--lanes',
     'moller_1997/*/cpu,exact/*/cpu',
   ];
-  run('fuzz', '--pairs', '300', ...of_doubles, '--out', 'doubles');
+  run('fuzz', '--pairs', '500', ...of_doubles, '--out', 'doubles');
+  run('minimize', 'doubles');
   run('report', 'doubles');
   process.env.GRAZE_DOUBLES = join(folder, 'doubles', 'report.html');
   try {
     run('view', 'thesis:1:0', '--out', 'view.html');
     process.env.GRAZE_VIEW = join(folder, 'view.html');
+    const at = (x: string) => `v ${x} 0 0\nv ${x} 1 0\nv ${x} 0 1\n`;
+    writeFileSync(join(folder, 'walls.obj'), `${at('1000000.01')}${at('1000000.02')}f 1 2 3\nf 4 5 6\n`);
+    run('view', 'walls.obj', '--out', 'doubles.html');
+    process.env.GRAZE_VIEW_DOUBLES = join(folder, 'doubles.html');
   } catch {
     // a build without the viewer; cli/view.test.cpp tests whether it should have one
     process.env.GRAZE_VIEW = '';

@@ -6,22 +6,25 @@ import { without_webgl } from './page';
 
 export const file = () => process.env.GRAZE_VIEW!;
 export const url = () => pathToFileURL(file()).href;
+export const doubles_url = () => pathToFileURL(process.env.GRAZE_VIEW_DOUBLES!).href;
 
 // Without WebGL, except in tests that ask for it, because it takes most of the time if there is no GPU.
-export const test = base.extend<{ webgl: boolean; viewer: Page }>({
+export const test = base.extend<{ webgl: boolean; of_doubles: boolean; viewer: Page }>({
   webgl: [false, { option: true }],
-  viewer: async ({ page, webgl }, use) => {
+  of_doubles: [false, { option: true }],
+  viewer: async ({ page, webgl, of_doubles }, use) => {
     if (!webgl) await page.addInitScript(without_webgl);
     test.skip(!file(), 'this build has no viewer');
+    const address = of_doubles ? doubles_url() : url();
     const fetched: string[] = [],
       said: string[] = [];
     page.on('request', (request) => {
       const asked = request.url().split('#')[0];
-      if (asked !== url() && !asked.startsWith('data:') && !asked.startsWith('blob:')) fetched.push(asked);
+      if (asked !== address && !asked.startsWith('data:') && !asked.startsWith('blob:')) fetched.push(asked);
     });
     page.on('console', (message) => said.push(`${message.type()}: ${message.text()}`));
     page.on('pageerror', (error) => said.push(`error: ${error.message}`));
-    await page.goto(url());
+    await page.goto(address);
     await page.waitForSelector('#replayed');
     await use(page);
     expect(fetched, 'fetched').toEqual([]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The 18 coordinates: chosen, typed, pasted, stepped.
 import { h } from '../dom';
-import { coordinate_name, decimal, hex_float } from './data';
+import { coordinate_name, decimal, hex_float, stored_as } from './data';
 import type { Model } from './model';
 
 export const kSteps = [
@@ -17,6 +17,7 @@ export function numbers_in(text: string): string[] {
 }
 
 export function coordinates(model: Model, say: (text: string) => void) {
+  const type = model.graze.coordinates === 'f64' ? 'double' : 'float32';
   const fields = Array.from({ length: 18 }, (_, c) =>
     h('input', {
       type: 'text',
@@ -30,7 +31,7 @@ export function coordinates(model: Model, say: (text: string) => void) {
         const text = (event.target as HTMLInputElement).value,
           value = model.graze.parse(text.trim());
         if (value === null) {
-          say(`expected a number of float32 for ${coordinate_name(c)}, found '${text}'`);
+          say(`expected a number of ${type} for ${coordinate_name(c)}, found '${text}'`);
           return show(c);
         }
         model.change((pair) => (pair[c] = value));
@@ -49,9 +50,9 @@ export function coordinates(model: Model, say: (text: string) => void) {
     const values = texts.map((text) => model.graze.parse(text));
     if (texts.length !== 18 || values.some((value) => value === null))
       return say(
-        `expected the 18 coordinates of a pair, found ${texts.length} numbers${values.some((value) => value === null) ? ', not all of float32' : ''}`,
+        `expected the 18 coordinates of a pair, found ${texts.length} numbers${values.some((value) => value === null) ? `, not all of ${type}` : ''}`,
       );
-    model.show(new Float32Array(values as number[]), 'a pasted pair');
+    model.show(stored_as(model.graze.coordinates, values as number[]), 'a pasted pair');
   }
 
   const exactly = h('p', { class: 'small', id: 'exactly' });
@@ -70,7 +71,7 @@ export function coordinates(model: Model, say: (text: string) => void) {
   const shown: number[] = [];
   function show(c: number) {
     shown[c] = model.pair[c];
-    fields[c].value = decimal(shown[c]);
+    fields[c].value = decimal(shown[c], model.graze.coordinates);
   }
   function update() {
     fields.forEach((field, c) => {
@@ -106,7 +107,7 @@ export function coordinates(model: Model, say: (text: string) => void) {
       h(
         'table',
         { class: 'plain pair' },
-        h('caption', {}, 'In float32. Type one, or paste 18 numbers into any field.'),
+        h('caption', {}, `In ${type}. Type one, or paste 18 numbers into any field.`),
         h(
           'thead',
           {},

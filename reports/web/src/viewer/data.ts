@@ -3,17 +3,20 @@
 import type { Graze, Verdict } from './graze.js';
 import { kVerdicts } from './graze.js';
 
-export type Coordinates = Float32Array; // 18: a[0].x to b[2].z
+export type Scalar = 'f32' | 'f64';
+export type Coordinates = Float32Array | Float64Array; // 18: a[0].x to b[2].z
 
-// bits: 18 words of 8 hex digits. verdicts: a digit for each lane, 0 disjoint, 1 intersects, 2 declined.
+// bits: 18 words of 8 hex digits, or 16 of doubles. verdicts: a digit for each lane, 0 disjoint, 1 intersects, 2 declined.
 export interface Replay {
   lanes: string[];
   pairs: { bits: string; truth: Verdict; contact: string; verdicts: string }[];
 }
+// Of the build, for pairs of one coordinate type. module: graze.wasm or graze_f64.wasm, compressed with gzip, in base64.
 export interface Stored {
+  module: string;
   evidence: string;
   replay: Replay;
-} // of the build; `graze report` writes only these
+}
 // What a lane of the user's own code says of a pair; `stored`: in the campaign, whose code is not there any more.
 export interface Said {
   lane: string;
@@ -23,6 +26,7 @@ export interface Said {
 }
 export interface ViewData extends Stored {
   format: number;
+  coordinates: Scalar;
   title: string;
   pairs: { name: string; bits: string; said?: Said[] }[];
   lanes_left_out?: { why: Record<string, string> }; // of the user's own code
@@ -32,20 +36,34 @@ export interface ViewData extends Stored {
   random?: number; // how many random triangles are drawn first
 }
 
-export function from_bits(bits: string): Coordinates {
-  const words = new Uint32Array(bits.length / 8);
-  for (let i = 0; i < words.length; ++i) words[i] = parseInt(bits.slice(8 * i, 8 * i + 8), 16);
-  return new Float32Array(words.buffer);
+export function from_bits(bits: string, type: Scalar): Coordinates {
+  const digits = type === 'f64' ? 16 : 8,
+    words = Array.from({ length: bits.length / digits }, (_, i) => bits.slice(digits * i, digits * (i + 1)));
+  return type === 'f64'
+    ? new Float64Array(BigUint64Array.from(words, (word) => BigInt(`0x${word}`)).buffer)
+    : new Float32Array(Uint32Array.from(words, (word) => parseInt(word, 16)).buffer);
 }
 
 export function to_bits(pair: Coordinates): string {
-  return Array.from(new Uint32Array(pair.slice().buffer), (word) => word.toString(16).padStart(8, '0')).join('');
+  const { buffer } = pair.slice();
+  return pair instanceof Float64Array
+    ? Array.from(new BigUint64Array(buffer), (word) => word.toString(16).padStart(16, '0')).join('')
+    : Array.from(new Uint32Array(buffer), (word) => word.toString(16).padStart(8, '0')).join('');
 }
 
-// The shortest decimal whose nearest float32 is this number.
-export function decimal(x: number): string {
+// The coordinate type of a link's pair, by its bits; null if they are none.
+export const type_of_bits = (bits: string): Scalar | null =>
+  /^([0-9a-f]{144}|[0-9a-f]{288})$/.test(bits) ? (bits.length === 288 ? 'f64' : 'f32') : null;
+
+// The numbers, rounded to this type.
+export const stored_as = (type: Scalar, numbers: ArrayLike<number>): Coordinates =>
+  type === 'f64' ? Float64Array.from(numbers) : Float32Array.from(numbers);
+
+// The shortest decimal whose nearest number of this type is this number.
+export function decimal(x: number, type: Scalar): string {
   if (!Number.isFinite(x)) return String(x);
   if (Object.is(x, -0)) return '-0';
+  if (type === 'f64') return String(x);
   for (let digits = 1; digits < 9; ++digits) {
     const text = x.toPrecision(digits);
     if (Math.fround(Number(text)) === x) return String(Number(text));
@@ -60,10 +78,7 @@ export function hex_float(x: number): string {
   if (x === 0) return `${sign}0x0p+0`;
   let exponent = Math.floor(Math.log2(Math.abs(x)));
   if (2 ** exponent > Math.abs(x)) --exponent;
-  const digits = Math.round((Math.abs(x) / 2 ** exponent - 1) * 2 ** 24)
-    .toString(16)
-    .padStart(6, '0')
-    .replace(/0+$/, '');
+  const digits = ((Math.abs(x) / 2 ** exponent - 1) * 2 ** 52).toString(16).padStart(13, '0').replace(/0+$/, '');
   return `${sign}0x1${digits ? `.${digits}` : ''}p${exponent < 0 ? '' : '+'}${exponent}`;
 }
 
@@ -76,7 +91,7 @@ export function replay(graze: Graze, { lanes, pairs }: Replay): string[] {
     apart.push(`stored pair ${i + 1}, ${what}: here ${here}, natively ${native}`);
   if (pairs.length === 0) apart.push('this page holds no stored verdicts');
   pairs.forEach((stored, i) => {
-    const pair = from_bits(stored.bits),
+    const pair = from_bits(stored.bits, graze.coordinates),
       truth = graze.truth(pair),
       verdicts = graze.decide(pair);
     if (truth.verdict !== stored.truth) say(i, 'truth', truth.verdict, stored.truth);

@@ -14,14 +14,16 @@ type Kind = 'given' | 'random' | 'special';
 
 export function field(model: Model, data: ViewData, say: (text: string) => void, changed: () => void) {
   const { graze } = model,
-    given = data.triangles.map(from_bits);
+    special = special_cases(graze.coordinates),
+    thesis = graze.coordinates === 'f64' ? 'thesis/f64' : 'thesis',
+    given = data.triangles.map((bits) => from_bits(bits, data.coordinates));
   let kind: Kind | null = null, // null: the pair
     seed = 1n,
     own: { name: string; pair: Coordinates }, // the pair with the reference that the triangles were made for
     triangles: Coordinates[] = [],
     ids: number[] = [],
     current: Field | null = null;
-  const shown = { given: given.length, random: data.random || kFirst, special: special_cases.length };
+  const shown = { given: given.length, random: data.random || kFirst, special: special.length };
   const left: { kind: Kind | null; name: string; pair: Coordinates }[] = []; // what was drawn before
   const told = h('p', { class: 'small', id: 'field' });
 
@@ -46,15 +48,13 @@ export function field(model: Model, data: ViewData, say: (text: string) => void,
       kind === 'given'
         ? given.slice(0, shown.given)
         : kind === 'special'
-          ? special_cases.map(({ pair }) => pair.slice(9))
-          : Array.from({ length: shown.random }, (_, i) => graze.generate('thesis', seed, BigInt(i)).slice(9));
+          ? special.map(({ pair }) => pair.slice(9))
+          : Array.from({ length: shown.random }, (_, i) => graze.generate(thesis, seed, BigInt(i)).slice(9));
     ids = triangles.map((_, i) => (kind === 'given' ? (data.ids?.[i] ?? i) : i));
     changed();
   }
   const pair_of = (i: number) =>
-    kind === 'special'
-      ? special_cases[i]
-      : { name: `thesis:${seed}:${i}`, pair: graze.generate('thesis', seed, BigInt(i)) };
+    kind === 'special' ? special[i] : { name: `${thesis}:${seed}:${i}`, pair: graze.generate(thesis, seed, BigInt(i)) };
 
   function begin(next: Kind) {
     left.push({ kind: drawn(), name: model.name, pair: model.pair });
@@ -88,7 +88,7 @@ export function field(model: Model, data: ViewData, say: (text: string) => void,
       wrong: boolean[] = [];
     for (let first = 0; first < triangles.length; first += graze.room) {
       const some = triangles.slice(first, first + graze.room);
-      const room = new Float32Array(exports.memory.buffer, exports.pairs(), 18 * some.length);
+      const room = graze.numbers_at(exports.pairs(), 18 * some.length);
       some.forEach((triangle, i) => {
         room.set(model.pair.subarray(0, 9), 18 * i);
         room.set(triangle, 18 * i + 9);

@@ -7,13 +7,17 @@ import { fragment_of, from_fragment, special_cases, type Model } from './model';
 import { make_ready, no_verdicts } from './ready';
 import { viewer, type First } from './viewer';
 
-function first_of({ pairs, opens }: ViewData): First {
-  const linked = from_fragment();
+function first_of({ coordinates, pairs, opens }: ViewData): First {
+  const linked = from_fragment(coordinates);
   return linked
     ? { name: 'the pair of a link', ...linked }
     : pairs.length
-      ? { name: pairs[0].name, pair: from_bits(pairs[0].bits), lane: opens === 'triangles' ? 'exact/f32/cpu' : '' }
-      : { ...special_cases[0], lane: opens === 'random' ? 'interval_overlap/f32/cpu' : '' }; // the thesis's algorithm
+      ? {
+          name: pairs[0].name,
+          pair: from_bits(pairs[0].bits, coordinates),
+          lane: opens === 'triangles' ? `exact/${coordinates}/cpu` : '',
+        }
+      : { ...special_cases(coordinates)[0], lane: opens === 'random' ? 'interval_overlap/f32/cpu' : '' }; // the thesis's algorithm
 }
 
 async function start() {
@@ -23,7 +27,7 @@ async function start() {
     return void (page.textContent = 'This is the empty page: graze view writes one with data.');
   const data = JSON.parse(text) as ViewData;
   try {
-    const shown = viewer(data, await make_ready(data.replay), first_of(data), {
+    const shown = viewer(data, await make_ready(data), first_of(data), {
       // A page inside a notebook (about:srcdoc) has no address.
       keep: (model: Model) => location.protocol !== 'about:' && history.replaceState(null, '', fragment_of(model)),
       link: (model: Model) => `${location.href.split('#')[0]}${fragment_of(model)}`,
@@ -35,7 +39,7 @@ async function start() {
       shown.help,
     );
     addEventListener('hashchange', ({ newURL }) => {
-      const next = from_fragment(newURL);
+      const next = from_fragment(data.coordinates, newURL);
       if (next) shown.show({ name: 'the pair of a link', ...next });
     });
     shown.begin();

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Computes ulp maps, coarse to fine, off the page's main thread.
+import type { Coordinates } from './data';
 import { load, type Graze } from './graze.js';
 
 export interface MapRequest {
   number: number;
-  pair: Float32Array;
+  pair: Coordinates;
   x: number;
   y: number;
   step: number;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The viewer's state: one pair, the chosen coordinate and lane, and the history.
-import { coordinate_name, from_bits, to_bits, type Coordinates } from './data';
+import { coordinate_name, from_bits, stored_as, to_bits, type_of_bits, type Coordinates, type Scalar } from './data';
 import type { Graze, Margin, Truth, Verdict } from './graze.js';
 
 export type Centre = 'both triangles' | 'the chosen vertex' | 'the contact or gap';
@@ -21,10 +21,12 @@ const kSpecial = [
   ['B pierces the reference', 2, 0, 0.5, -2, 0, 1.5, 1, 0, 4],
   ['in the same plane', 0, 3, 1, 0, 1, 1.5, 0, 4, 3],
 ] as const;
-export const special_cases = kSpecial.map(([what, ...b], i) => ({
-  name: `special case ${i + 1} of 2012: ${what}`,
-  pair: new Float32Array([...kReference, ...b]),
-}));
+// They are numbers of float32, in either type.
+export const special_cases = (type: Scalar): { name: string; pair: Coordinates }[] =>
+  kSpecial.map(([what, ...b], i) => ({
+    name: `special case ${i + 1} of 2012: ${what}`,
+    pair: stored_as(type, Float32Array.of(...kReference, ...b)),
+  }));
 
 export const without_changed = (name: string) => name.replace(/, changed$/, '');
 
@@ -32,6 +34,7 @@ export interface Decided {
   verdicts: Record<string, Verdict | null>;
   truth: Truth;
   margin: Margin;
+  stored: Truth | null; // of doubles, the truth of what float32 stores of them, if that is another pair
 }
 
 export class Model {
@@ -61,7 +64,8 @@ export class Model {
 
   private decide(): Decided {
     const { graze, pair } = this;
-    return { verdicts: graze.decide(pair), truth: graze.truth(pair), margin: graze.margin(pair) };
+    const stored = pair.every((x) => Object.is(Math.fround(x), x)) ? null : graze.truth(Float32Array.from(pair));
+    return { verdicts: graze.decide(pair), truth: graze.truth(pair), margin: graze.margin(pair), stored };
   }
 
   private settle() {
@@ -156,10 +160,12 @@ export class Model {
   }
 }
 
-// Parses a link's "#p=…&lane=…"; null if it holds no pair.
-export function from_fragment(url = location.href): { pair: Coordinates; lane: string } | null {
+// Parses a link's "#p=…&lane=…"; null if it holds no pair that numbers of this type hold.
+export function from_fragment(type: Scalar, url = location.href): { pair: Coordinates; lane: string } | null {
   const values = new URLSearchParams(new URL(url).hash.slice(1)),
-    bits = values.get('p') ?? '';
-  return /^[0-9a-f]{144}$/.test(bits) ? { pair: from_bits(bits), lane: values.get('lane') ?? '' } : null;
+    bits = values.get('p') ?? '',
+    of_bits = type_of_bits(bits);
+  if (!of_bits || (of_bits === 'f64' && type === 'f32')) return null;
+  return { pair: stored_as(type, from_bits(bits, of_bits)), lane: values.get('lane') ?? '' };
 }
 export const fragment_of = (model: Model) => `#p=${to_bits(model.pair)}&lane=${model.lane}`;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Prepares the module, and checks it against the native build.
-import compressed from 'graze.wasm';
 import { h } from '../dom';
-import { replay, type Replay } from './data';
+import { replay, type Stored } from './data';
 import { load, type Graze } from './graze.js';
 
 async function module_of(base64: string): Promise<WebAssembly.Module> {
@@ -18,10 +17,10 @@ export interface Ready {
 }
 
 // Returns the module after it has decided the stored pairs.   Throws: its differences from the native build, in words.
-export async function make_ready(stored: Replay): Promise<Ready> {
-  const module = await module_of(compressed),
+export async function make_ready(stored: Stored): Promise<Ready> {
+  const module = await module_of(stored.module),
     graze = await load(module),
-    apart = replay(graze, stored);
+    apart = replay(graze, stored.replay);
   if (apart.length)
     throw new Error(
       `This browser decides otherwise than the native build: ${apart.slice(0, 3).join('; ')}${apart.length > 3 ? `; and ${apart.length - 3} more` : ''}.`,
@@ -29,7 +28,7 @@ export async function make_ready(stored: Replay): Promise<Ready> {
   return {
     graze,
     module,
-    said: `Same as the native build on ${stored.pairs.length} pairs, ${stored.lanes.length} lanes each.`,
+    said: `Same as the native build on ${stored.replay.pairs.length} pairs, ${stored.replay.lanes.length} lanes each.`,
   };
 }
 

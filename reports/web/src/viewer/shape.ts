@@ -220,7 +220,7 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
         shows.ids || shows.coordinates
           ? [...a, ...(field ? [] : b)].map((p, i) => ({
               p,
-              name: `${shows.ids ? `${i < 3 ? 'a' : 'b'}${i % 3}` : ''}${shows.coordinates ? ` (${points[i].map(decimal).join(', ')})` : ''}`,
+              name: `${shows.ids ? `${i < 3 ? 'a' : 'b'}${i % 3}` : ''}${shows.coordinates ? ` (${points[i].map((x) => decimal(x, model.graze.coordinates)).join(', ')})` : ''}`,
             }))
           : [],
       many_names: field && (shows.ids || shows.coordinates) ? names_of(field, points.slice(0, 3), shows, place) : [],

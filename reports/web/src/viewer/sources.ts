@@ -11,9 +11,12 @@ export type Wanted = 'any' | 'apart' | 'wrong';
 
 export function sources(model: Model, data: ViewData, say: (text: string) => void) {
   const { graze } = model,
-    given = data.pairs.map(({ name, bits }) => ({ name, pair: from_bits(bits) }));
-  const lists: Record<string, { name: string; pair: Coordinates }[]> = { given, special: special_cases };
-  const named = /^([a-z_]+):(\d+):(\d+)$/.exec(data.pairs[0]?.name ?? ''),
+    given = data.pairs.map(({ name, bits }) => ({ name, pair: from_bits(bits, data.coordinates) }));
+  const lists: Record<string, { name: string; pair: Coordinates }[]> = {
+    given,
+    special: special_cases(graze.coordinates),
+  };
+  const named = /^([a-z_]+(?:\/f64)?):(\d+):(\d+)$/.exec(data.pairs[0]?.name ?? ''),
     of_stratum = named && given.length === 1 && graze.strata.includes(named[1]) ? named : null;
   let source = of_stratum ? of_stratum[1] : given.length ? 'given' : 'special',
     seed = BigInt(of_stratum?.[2] ?? 1),

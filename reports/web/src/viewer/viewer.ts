@@ -29,11 +29,19 @@ function margin_words({ decided: { truth, margin } }: Model): string {
   const say = (x: number) => figure(x),
     [least, most] = [say(margin.least), say(margin.most)];
   const ulps = (x: number) => say(x / margin.ulp);
+  if (margin.most === Infinity) return 'margin not settled here: its sizes are too far apart';
   const range =
     least === most
       ? `${least} (${ulps(margin.least)} ulps)`
       : `between ${least} and ${most} (${ulps(margin.least)} to ${ulps(margin.most)} ulps)`;
   return margin.sign > 0 ? `${range} apart` : `${range} deep`;
+}
+
+// What float32 makes of the pair, if that is not what the doubles are.
+function stored_words({ decided: { truth, stored } }: Model): string {
+  if (!stored || (stored.verdict === truth.verdict && stored.contact === truth.contact)) return '';
+  if (stored.verdict === 'declined') return '; float32 cannot store it';
+  return `; as float32 stores it: ${stored.verdict}${stored.contact === 'none' ? '' : `, contact: ${stored.contact}`}`;
 }
 
 // The page around the viewer: its address stores the pair; keys work while it is active.
@@ -99,7 +107,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
     update_name();
     truth.replaceChildren(
       h('strong', {}, `Truth: ${decided.truth.verdict}`),
-      `, ${decided.truth.contact === 'none' || decided.truth.verdict === 'declined' ? '' : `contact: ${decided.truth.contact}, `}${margin_words(model)}${decided.truth.coplanar ? '; coplanar' : ''}`,
+      `, ${decided.truth.contact === 'none' || decided.truth.verdict === 'declined' ? '' : `contact: ${decided.truth.contact}, `}${margin_words(model)}${decided.truth.coplanar ? '; coplanar' : ''}${stored_words(model)}`,
     );
     undo.disabled = !model.can('past');
     redo.disabled = !model.can('future');

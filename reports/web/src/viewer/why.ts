@@ -97,8 +97,11 @@ export function why(model: Model) {
       says = decided.verdicts[lane];
     if (says === null) return ['This lane has no such policy.'];
     if (decided.truth.verdict === 'declined') return ['A coordinate is not finite.'];
+    const stored = lane.split('/')[1] === 'f32' ? decided.stored : null,
+      of_stored = stored && 'It decides the coordinates as float32 stores them. ';
     if (!run)
       return [
+        of_stored,
         lane.startsWith('exact/')
           ? 'It is the exact decision: integers of as many bits as it takes.'
           : 'Its steps are not known.',
@@ -108,9 +111,12 @@ export function why(model: Model) {
       policy
         ? 'Without the policy: '
         : h('strong', { class: wrong ? 'bad' : '' }, `It is ${wrong ? 'wrong' : 'right'}. `),
-      wrong
-        ? beside_exact(run, says, known!.with_113_bits)
-        : `Its ${run.filter((step) => step.relation).length} comparisons ${run.some((step) => step.relation && step.held !== step.holds) ? 'do not all go as they do with 113 bits, but the verdict stands.' : 'go as they do with 113 bits.'}`,
+      of_stored,
+      wrong && says === stored?.verdict
+        ? ['Of these its verdict is right, so the cause is ', h('strong', {}, 'rounding of the input'), '.']
+        : wrong
+          ? beside_exact(run, says, known!.with_113_bits)
+          : `Its ${run.filter((step) => step.relation).length} comparisons ${run.some((step) => step.relation && step.held !== step.holds) ? 'do not all go as they do with 113 bits, but the verdict stands.' : 'go as they do with 113 bits.'}`,
     ];
   }
 

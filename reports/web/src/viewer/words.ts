@@ -6,10 +6,7 @@ const kWords = [
   ['lane', 'an algorithm in float32 (f32) or float64 (f64), as built for the CPU or the GPU: moller_1997/f32/cuda-fma'],
   ['truth', 'what is exactly so of these coordinates, by integers of as many bits as it takes'],
   ['margin', 'how far apart the triangles are, or the shortest push that parts them; 0 where any push does'],
-  [
-    'ulp',
-    'the step from a number to the next one of its format; margins count those of the largest coordinate in float32',
-  ],
+  ['ulp', 'the step from a number to the next one of its format; margins count those of the largest coordinate'],
   ['113 bits', 'numbers with 113 binary digits; float32 has 24, float64 53'],
   ['contraction', 'a * b + c as one operation with one rounding, a fused multiply-add, where the source has two'],
   ['twin', 'the GPU’s kernel replayed bit for bit on the CPU, so that this page needs no GPU'],

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// The viewer on pairs of doubles: two parallel triangles of a model in metres, which float32 makes one.
+import { execFileSync } from 'node:child_process';
+import type { Page } from '@playwright/test';
+import { coordinate, doubles_url, expect, name, test, verdict, verdicts } from './viewer_page';
+
+test.use({ of_doubles: true });
+
+// What `graze check` says of the pair that is shown.
+async function checked(viewer: Page) {
+  await viewer.locator('#copies button', { hasText: 'check line' }).click();
+  const line = (await viewer.locator('.copied code').textContent())!;
+  return JSON.parse(
+    execFileSync(process.env.GRAZE!, ['check', '-', '--json', '--executor', 'twin'], { input: line, encoding: 'utf8' }),
+  ) as { truth: { verdict: string; contact: string }; lanes: Record<string, string>; coordinates?: string };
+}
+
+test('the truth is that of the doubles, and float lanes decide what float32 stores of them', async ({ viewer }) => {
+  await expect(viewer.locator('#truth')).toHaveText(
+    /^Truth: disjoint, 0\.01 \(.* ulps\) apart; as float32 stores it: intersects, contact: area$/,
+  );
+  await expect(viewer.locator('#replayed')).toContainText('Same as the native build');
+  await expect(verdict(viewer, 'exact/f64/cpu')).toHaveText('disjoint');
+  for (const [lane, said] of Object.entries(await verdicts(viewer)))
+    expect(said, lane).toBe(lane.includes('/f32/') ? 'intersects' : 'disjoint');
+  await verdict(viewer, 'moller_1997/f32/cpu').click();
+  await expect(viewer.locator('#why')).toContainText(
+    'It is wrong. It decides the coordinates as float32 stores them. Of these its verdict is right, so the cause is rounding of the input.',
+  );
+  await verdict(viewer, 'exact/f32/cpu').click();
+  await expect(viewer.locator('#why')).toContainText(
+    'It decides the coordinates as float32 stores them. It is the exact decision: integers',
+  );
+  await verdict(viewer, 'moller_1997/f64/cpu').click();
+  await expect(viewer.locator('#why')).toContainText('It is right.');
+  await expect(viewer.locator('#why')).not.toContainText('float32 stores');
+});
+
+test('it says what graze check says, also of pairs of strata', async ({ viewer }) => {
+  for (const stratum of ['', 'large_offset/f64', 'exact_contact/f64']) {
+    if (stratum) {
+      await viewer.getByLabel('Pairs of').selectOption(stratum);
+      await viewer.keyboard.press('Shift+n'); // a pair that shows more
+      await expect.poll(() => name(viewer), { timeout: 30_000 }).toMatch(new RegExp(`^${stratum}:1:[1-9]`));
+    }
+    const native = await checked(viewer);
+    expect(native.coordinates).toBe('f64');
+    const shown = await verdicts(viewer);
+    expect(Object.keys(shown).length).toBeGreaterThan(30);
+    for (const [lane, said] of Object.entries(shown)) expect(native.lanes[lane], `${stratum} ${lane}`).toBe(said);
+    await expect(viewer.locator('#truth')).toContainText(`Truth: ${native.truth.verdict}`);
+  }
+});
+
+test('doubles are typed, stepped and linked in full', async ({ viewer }) => {
+  await expect(coordinate(viewer, 0)).toHaveValue('1000000.01');
+  await coordinate(viewer, 4).fill('0.1');
+  await coordinate(viewer, 4).blur();
+  await expect(coordinate(viewer, 4)).toHaveValue('0.1');
+  await expect(viewer.locator('#exactly')).toHaveText(
+    'a[1].y is exactly 0x1.999999999999ap-4; an ulp of it is 1.3877787807814457e-17',
+  );
+  await viewer.locator('button', { hasText: '+ 1 ulp' }).click();
+  await expect(coordinate(viewer, 4)).toHaveValue('0.10000000000000002');
+  await coordinate(viewer, 5).fill('1e309');
+  await coordinate(viewer, 5).blur();
+  await expect(viewer.locator('.message')).toHaveText("expected a number of double for a[1].z, found '1e309'");
+  await viewer.locator('#copies button', { hasText: 'link' }).click();
+  const link = (await viewer.locator('.copied code').textContent())!;
+  expect(link).toMatch(/#p=[0-9a-f]{288}&/);
+  await expect.poll(() => viewer.url()).toBe(link);
+  await viewer.goto('about:blank');
+  await viewer.goto(link);
+  await expect(coordinate(viewer, 4)).toHaveValue('0.10000000000000002');
+  // A pair of float32 in a link is that pair in doubles.
+  await viewer.goto('about:blank');
+  await viewer.goto(`${doubles_url()}#p=${'3dcccccd'.repeat(18)}`);
+  await expect(coordinate(viewer, 4)).toHaveValue('0.10000000149011612');
+  for (const [kind, text] of [
+    ['C', 'const double a[3][3] = {{0x1.99999ap-4, '],
+    ['CUDA', '__constant__ double3'],
+    ['Python', 'float.fromhex("0x1.99999ap-4")'],
+    ['OBJ', 'v 0.10000000149011612 '],
+  ]) {
+    await viewer.locator('#copies button').getByText(kind, { exact: true }).click();
+    await expect(viewer.locator('.copied code')).toContainText(text);
+  }
+});
+
+test('maps, tolerances, many triangles and the drawing work on doubles', async ({ viewer }) => {
+  await expect(viewer.locator('#board svg polygon.triangle-b')).toHaveCount(1);
+  await viewer.locator('#map').scrollIntoViewIfNeeded();
+  await expect(viewer.locator('#map-told')).toContainText(/^256 × 256 cells of \d lanes and the truth/, {
+    timeout: 60_000,
+  });
+  await viewer.getByLabel('Held for zero').selectOption('filtered');
+  await expect(viewer.locator('#summary')).toContainText('under filtered');
+  await expect(verdict(viewer, 'guigue_devillers_2003/f64/cpu')).toHaveText('disjoint');
+  await viewer.locator('body').press('+');
+  await expect(viewer.locator('#field')).toContainText('2 triangles against a, the reference');
+  await viewer.locator('body').press('t'); // the special cases of 2012
+  await expect(viewer.locator('h1')).toHaveText('the ten special cases of 2012');
+});
+
+test('coordinates at the ends of the range are shown', async ({ viewer }) => {
+  for (const scale of ['1e308', '5e-324']) {
+    const pasted = [
+      '0',
+      '0',
+      '0',
+      scale,
+      '0',
+      '0',
+      '0',
+      scale,
+      '0',
+      '0',
+      '0',
+      scale,
+      scale,
+      '0',
+      scale,
+      '0',
+      scale,
+      scale,
+    ];
+    await coordinate(viewer, 0).evaluate((field, text) => {
+      const data = new DataTransfer();
+      data.setData('text', text);
+      field.dispatchEvent(new ClipboardEvent('paste', { clipboardData: data, cancelable: true, bubbles: true }));
+    }, pasted.join(' '));
+    await expect(coordinate(viewer, 3)).toHaveValue(String(Number(scale)));
+    const native = await checked(viewer);
+    expect(native.truth.verdict).toBe('disjoint');
+    const shown = await verdicts(viewer);
+    for (const [lane, said] of Object.entries(shown)) expect(native.lanes[lane], `${scale} ${lane}`).toBe(said);
+    await expect(viewer.locator('#truth')).toContainText('Truth: disjoint');
+    await expect(viewer.locator('#board svg polygon.triangle-b')).toHaveCount(1);
+  }
+});

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the module of each coordinate type, and the native side of their comparison, do with pairs of that type.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/margin/margin.h"
+#include "core/margin/scaled_pair.h"
+#include "strata/strata.h"
+
+namespace graze::wasm {
+
+inline void draw(Pair& pair, std::uint64_t seed, strata::Stratum stratum, std::uint64_t index) {
+  pair = strata::generate(seed, stratum, index);
+}
+inline void draw(DoublePair& pair, std::uint64_t seed, strata::Stratum stratum, std::uint64_t index) {
+  pair = strata::generate_doubles(seed, stratum, index);
+}
+
+// Certified bounds of |margin| in the unit of the coordinates; of doubles 0 and infinity where the bounds of
+// core/margin cannot hold the coordinates' exponents.
+// Requires: finite coordinates; verdict is the pair's true verdict, not declined.
+inline MarginBounds bounds_of(const Pair& pair, Verdict verdict) { return margin_bounds(pair, verdict); }
+inline MarginBounds bounds_of(const DoublePair& pair, Verdict verdict) {
+  const ScaledPair scaled(pair);
+  if (!scaled.fits) return {0, INFINITY, 0, 0};
+  MarginBounds bounds = margin_bounds<DoubleDouble>(scaled.pair, verdict);
+  const int shift = log2_ulp(pair) - scaled.ulp;
+  const auto shifted = [&](double x, double outward) {
+    const double y = std::ldexp(x, shift);
+    return std::ldexp(y, -shift) == x ? y : std::nextafter(y, outward);  // if it is subnormal or beyond the largest
+  };
+  bounds.lo = std::max(0.0, shifted(bounds.lo, -INFINITY));
+  bounds.hi = shifted(bounds.hi, INFINITY);
+  return bounds;
+}
+
+}  // namespace graze::wasm

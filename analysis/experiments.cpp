@@ -43,8 +43,10 @@ class Trial {
  private:
   Experiment cause_of_unstable() const {
     if (auto found = by_values(); found && found->settled) return *found;
-    return {Cause::unstable, true,
-            "it gives another answer when it is asked about the same pair again, or changes the rounding mode"};
+    return {
+        Cause::unstable, true,
+        "it gives another answer when it is asked about the same pair again, or changes how the processor rounds, or "
+        "what it does with subnormal numbers"};
   }
 
   Experiment cause() {

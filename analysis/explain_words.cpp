@@ -219,7 +219,7 @@ std::string reason_by_experiment(const LaneExplanation& lane) {
       case Cause::order_dependent:
         return "the code itself is wrong here: its verdict depends on the order of the vertices or triangles";
       case Cause::degenerate_input:
-        return "a triangle is a segment or a point";
+        return "the code itself is wrong here, where a triangle is a segment or a point";
       case Cause::crash:
         return "the code crashes";
       case Cause::no_answer:

@@ -151,6 +151,25 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
     write("r.json", other);
     expect_error("graze report --from r.json --out r.html", 1, {"r.json"});
   }
+  // Thresholds follow from the margins, each of which is there once.
+  const nlohmann::ordered_json all_strata = nullptr;
+  std::size_t threshold = 0;
+  while (report["thresholds"][threshold]["stratum"] != all_strata ||
+         report["thresholds"][threshold]["group"] != all_strata)
+    ++threshold;
+  const auto expect_margins = [&](const std::string& place, const nlohmann::ordered_json& value, const char* said) {
+    nlohmann::ordered_json other = report;
+    nlohmann::ordered_json& changed = other[nlohmann::ordered_json::json_pointer(place)];
+    ASSERT_NE(changed, value);
+    changed = value;
+    write("r.json", other);
+    expect_error("graze report --from r.json --out r.html", 1, {"r.json", said});
+  };
+  expect_margins(fmt::format("/thresholds/{}/disjoint/exponent", threshold), -31, "follows from the margins");
+  expect_margins("/margins/0/points/0/side", "nonsense", "a side and an exponent");
+  const nlohmann::ordered_json& points = report["margins"][0]["points"];
+  ASSERT_EQ(points[0]["side"], points[1]["side"]);
+  expect_margins("/margins/0/points/1/exponent", points[0]["exponent"], "each margin once");
   report["strata"][0]["pairs"] = 1;
   write("r.json", report);
   expect_error("graze report --from r.json --out r.html", 1, {"r.json", "3000"});

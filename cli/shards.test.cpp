@@ -234,6 +234,19 @@ TEST_F(Shards, StatusTellsWhatRunsAndWhatNeedsHelp) {
   expect_done("graze status killed --stalled 3000");
 }
 
+// Records of another campaign do not pass for a shard's own.
+TEST_F(Shards, RecordsOfAnotherCampaignAreRefused) {
+  const std::string fuzz = "graze fuzz --pairs 600 --strata thesis,near_vertex_face --lanes moller_1997/f32/cpu --out ";
+  expect_done("for k in 1 2 3; do " + fuzz + "s$k --shard $k/3 || exit 1; done; " + fuzz + "whole");
+  expect_done("graze status s1 s2 s3 whole && mkdir kept && cp s3/*.json kept");
+  expect_done("cp whole/timings.json s3");
+  expect_error("graze merge s1 s2 s3 --out m", 1, {"s3/timings.json", "600", "200"});
+  expect_done("cp kept/*.json s3 && graze merge s1 s2 s3 --out m && cp whole/status.json s3");
+  expect_error("graze status s3", 1, {"s3", "status.json is of 600 pairs", "198 to 202"});
+  expect_done("cp s2/status.json whole");
+  expect_error("graze status whole", 1, {"whole", "status.json is of 200 pairs", "600"});
+}
+
 // A run that ends while its status is read has ended, and was not killed.
 TEST_F(Shards, ARunThatEndsIsNotKilled) {
   const Ran ran = shell(
@@ -260,6 +273,7 @@ TEST_F(Shards, StatusRefusesADamagedStatus) {
                                             {"disagreements", 18446744073709551616.0, damaged},
                                             {"signatures", -1, damaged},
                                             {"signatures", 0, "0 signatures"},
+                                            {"ways", Json::array(), "0 ways"},
                                             {"signatures", 9007199254740992, "9007199254740992 signatures"},
                                             {"disagreements", whole["disagreements"].get<int>() - 1, "disagreements"},
                                             {"state", "unknown", "unknown"},

@@ -53,12 +53,19 @@ std::string state_of(const Json& status, std::int64_t silent, std::uint64_t stal
   return silent > static_cast<std::int64_t>(stalled) ? "stalled" : "running";
 }
 
-// Throws: std::runtime_error if the campaign beside the status cannot have so many signatures: at most one for each
-// lane and disagreement, and those of its summary.
-void expect_own_signatures(const fs::path& directory, const Json& status) {
-  std::uint64_t most = status.at("disagreements"), disagreements = most;
+// Throws: std::runtime_error unless the status has the pairs of the campaign beside it, or about those of its shard; or
+// if the campaign cannot have so many signatures: at most one for each lane and disagreement, and those of its summary.
+void expect_own_counts(const fs::path& directory, const Json& status) {
+  const std::uint64_t pairs = status.at("pairs");
+  std::uint64_t most = status.at("disagreements"), disagreements = most, least_pairs = pairs, most_pairs = pairs;
   try {
-    most *= fuzz::recorded_store(directory).lanes.size();
+    const fuzz::StoreSpec store = fuzz::recorded_store(directory);
+    most *= store.lanes.size();
+    // A shard has its share of each stratum, rounded down or up.
+    const std::uint64_t all = store.spec.at("pairs"), share = all / store.shard.of,
+                        slack = store.shard.whole() ? 0 : store.spec.at("strata").size();
+    least_pairs = share - std::min(share, slack);
+    most_pairs = share + slack;
     if (const fs::path file = directory / "summary.json"; status.at("state") == "done" && fs::exists(file)) {
       const Json summary = fuzz::parse_shallow(fuzz::read_whole(file));
       most = summary.at("signatures").size();
@@ -66,6 +73,12 @@ void expect_own_signatures(const fs::path& directory, const Json& status) {
     }
   } catch (const std::exception&) {  // a damaged database or summary is told by the commands that read it
   }
+  if (pairs < least_pairs || pairs > most_pairs)
+    throw std::runtime_error(
+        cannot("use", directory,
+               fmt::format("status.json is of {} pairs, but the campaign beside it has {}", pairs,
+                           least_pairs == most_pairs ? fmt::format("{}", most_pairs)
+                                                     : fmt::format("{} to {}", least_pairs, most_pairs))));
   const std::uint64_t found = status.at("signatures");
   if (found > most || status.at("disagreements") != disagreements)
     throw std::runtime_error(cannot(
@@ -105,7 +118,7 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
     if (Json now = fuzz::read_status(directory); !now.is_null()) status = std::move(now);
     row["state"] = state_of(status, silent(), stalled);
   }
-  if (fuzz::has_database(directory)) expect_own_signatures(directory, status);
+  if (fuzz::has_database(directory)) expect_own_counts(directory, status);
   for (const char* field : {"shard", "pairs", "done", "disagreements", "signatures"}) row[field] = status.at(field);
   std::size_t fresh = 0;
   for (const std::string way : status.at("ways")) fresh += known.insert(way).second;

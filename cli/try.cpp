@@ -49,10 +49,9 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostTold = 3;  // failures on the screen
 // Signatures of a kind that are minimised, those of the simplest pairs: of compiled code, and of a program.
 constexpr std::size_t kMostOfKind = 4, kMostOfProgram = 1;
-constexpr int kThreadsForPrograms = 4;            // for each core, because Graze mostly waits for the answers
-constexpr std::uint64_t kPairsOfCode = 40'000;    // of compiled code
-constexpr std::uint64_t kPairsOfProgram = 2'000;  // of a program, which answers each pair by a line of text
-constexpr double kProgramsTimeout = 10;           // seconds; a program may take some to start
+constexpr int kThreadsForPrograms = 4;          // for each core, because Graze mostly waits for the answers
+constexpr std::uint64_t kPairsOfCode = 40'000;  // of compiled code
+constexpr double kProgramsTimeout = 10;         // seconds; a program may take some to start
 constexpr const char* kOut = "try";
 
 struct TryOptions {

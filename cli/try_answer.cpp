@@ -226,9 +226,9 @@ std::string text_of(const Answer& answer, const reports::Screen& screen) {
   const std::size_t lane = reports::own_lanes(counts).front();
   std::vector<std::string> before = {reports::wrong_words(counts, lane), reports::wrong_by_kind(counts, lane)};
   if (const std::string builds = reports::other_builds(counts, lane); !builds.empty()) before.push_back(builds);
-  if (answer.code.is_program)
+  if (answer.code.is_program && counts.total.pairs == kPairsOfProgram)
     before.push_back(fmt::format("A program answers slowly, so it got {} pairs; --pairs sets another number.",
-                                 reports::grouped(counts.total.pairs)));
+                                 reports::grouped(kPairsOfProgram)));
   if (!answer.left_out.empty()) before.push_back(left_out_in_words(answer.left_out));
   std::vector<reports::ScreenFailure> failures;
   const std::uint64_t wrong = reports::wrong_pairs(answer.summary, answer.code.name);

@@ -16,6 +16,8 @@
 
 namespace graze::cli {
 
+inline constexpr std::uint64_t kPairsOfProgram = 2'000;  // of a program, which answers each pair by a line of text
+
 // What a call that decides one pair costs.
 struct CallCosts {
   struct Row {

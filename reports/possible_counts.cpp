@@ -146,6 +146,34 @@ void expect_extremes(const Json& row) {
   expect(again == row, "the ratios and words that follow from its cells", row);
 }
 
+// The counts at a lane's margins.   Throws: if a point has no margin of its own.
+StratumCounts counts_at(const Json& points) {
+  StratumCounts counts;
+  for (const Json& point : points) {
+    const Json& exponent = point.at("exponent");
+    Bucket bucket = 0;
+    if (!exponent.is_null()) bucket = make_bucket(point.at("side") == "disjoint" ? 1 : -1, exponent.get<int>());
+    expect(point.at("side") == side_of(bucket) && (bucket == 0 || exponent == exponent_of(bucket)),
+           "a side and an exponent of margins", point);
+    const WrongCounts wrong{point.at("wrong").at("of"), {point["wrong"].at("count").get<std::uint64_t>()}, {}};
+    expect(counts.margins.emplace(bucket, wrong).second, "each margin once", point);
+  }
+  return counts;
+}
+
+// Checks that the thresholds over all strata follow from the margins.
+void expect_thresholds(const Json& report, const Json& margins) {
+  const StratumCounts counts = counts_at(margins.at("points"));
+  const bool one_stratum = report.at("strata").size() == 1;
+  for (const Json& row : report.at("thresholds")) {
+    const bool of_all = row.at("group").is_null() && (row.at("stratum").is_null() || one_stratum);
+    if (row.at("lane") != margins.at("lane") || !of_all) continue;
+    for (const auto& [name, side] : {std::pair("disjoint", 1), {"intersects", -1}})
+      expect(row.at(name) == to_json(threshold(counts, 0, side)), "the threshold that follows from the margins",
+             row[name]);
+  }
+}
+
 // Checks the counts by margin, scale and offset.
 void expect_possible_curves(const Json& report) {
   const auto pairs_of = [](const Json& cells) {
@@ -157,6 +185,7 @@ void expect_possible_curves(const Json& report) {
     const std::uint64_t pairs = drawn_of(report, row.at("stratum")).pairs;
     expect(pairs_of(row.at("points")) == pairs, fmt::format("points of {} pairs", pairs), row);
     expect_differences(report, row);
+    expect_thresholds(report, row);
   }
   for (const Json& row : report.at("extremes")) {
     const std::uint64_t pairs = drawn_of(report, nullptr).pairs;

@@ -144,17 +144,20 @@ Threshold threshold(const StratumCounts& counts, std::size_t lane, int side) {
   return result;
 }
 
+Json to_json(const Threshold& t) {
+  return {{"exponent", t.found ? Json(t.exponent) : Json()},
+          {"above", t.above},
+          {"bound", std::stod(rounded_up(bound_of_none(t.above), kDigits))},
+          {"largest", t.largest ? Json(*t.largest) : Json()}};
+}
+
 Json thresholds(const CampaignCounts& counts) {
   Json rows = Json::array();
   const auto add = [&](const Json& group, const Json& stratum, const StratumCounts& of) {
     for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
       Json row = {{"lane", l}, {"group", group}, {"stratum", stratum}};
       for (const auto& [name, side] : {std::pair("disjoint", 1), std::pair("intersects", -1)}) {
-        const Threshold t = threshold(of, l, side);
-        row[name] = {{"exponent", t.found ? Json(t.exponent) : Json()},
-                     {"above", t.above},
-                     {"bound", std::stod(rounded_up(bound_of_none(t.above), kDigits))},
-                     {"largest", t.largest ? Json(*t.largest) : Json()}};
+        row[name] = to_json(threshold(of, l, side));
       }
       rows.push_back(std::move(row));
     }

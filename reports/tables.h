@@ -33,6 +33,7 @@ struct Threshold {
   std::optional<int> largest;  // exponent of the largest margins seen; nothing if no pair is on that side
 };
 Threshold threshold(const StratumCounts& counts, std::size_t lane, int side);
+nlohmann::ordered_json to_json(const Threshold& threshold);
 
 // For each group of strata, each stratum, and all strata together, because strata differ too much for one threshold.
 nlohmann::ordered_json thresholds(const CampaignCounts& counts);

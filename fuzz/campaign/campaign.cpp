@@ -155,10 +155,10 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
     progress.total += share;
     progress.done += done.back();
   }
-  const auto tell = [&] {
+  const auto tell = [&](bool last = false) {
     progress.signatures = store.signatures().size();
     progress.all_disagreements = store.disagreements();
-    status.tell(progress, store.signatures());
+    status.tell(progress, store.signatures(), last);
   };
   tell();
   CostEstimate costs(left);
@@ -187,6 +187,7 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
     tell();
     report(progress);
   }
+  tell(true);
   const bool complete = progress.done == progress.total;
   Outcome outcome{complete, {}, store.oracle()};
   if (campaign.shard.whole() && !campaign.take) {

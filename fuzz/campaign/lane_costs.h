@@ -23,7 +23,8 @@ Json measure_costs(const Campaign& campaign);
 void expect_possible_costs(const Json& costs, const std::vector<std::string>& lanes,
                            const std::map<std::string, std::uint64_t>& sources);
 
-// Checks a run of timings.json, with its costs if it has any.   pairs: of the whole campaign.   Throws: the same.
+// Checks a run of timings.json, with its costs if it has any.   pairs: of the campaign, or the part, that ran. Throws:
+// the same.
 void expect_possible_run(const Json& run, const std::vector<std::string>& lanes,
                          const std::map<std::string, std::uint64_t>& sources, std::uint64_t pairs);
 

@@ -60,7 +60,7 @@ void expect_possible_status(const Json& status) {
   if (ways.size() < all_ways.size()) throw std::runtime_error("it has one of its ways twice");
   if (!std::all_of(ways.begin(), ways.end(), is_hash)) throw std::runtime_error("one of its ways is no hash");
   const std::uint64_t signatures = status["signatures"];
-  if (ways.size() > signatures || (signatures > 0 && disagreements == 0))
+  if (ways.size() > signatures || (signatures > 0 && (disagreements == 0 || ways.empty())))
     throw std::runtime_error(fmt::format("its counts contradict each other: {} disagreements, {} signatures, {} ways",
                                          disagreements, signatures, ways.size()));
   for (const char* whole : {"process", "updated"}) {
@@ -100,7 +100,9 @@ void RunStatus::write() {
   }
 }
 
-void RunStatus::tell(const Progress& progress, const std::map<std::string, SignatureCount>& signatures) {
+void RunStatus::tell(const Progress& progress, const std::map<std::string, SignatureCount>& signatures, bool last) {
+  last = last || progress.done == progress.total;
+  if (written_ >= 0 && progress.seconds - written_ < kSecondsBetween && !last) return;
   status_["pairs"] = progress.total;
   status_["done"] = progress.done;
   status_["rate"] = progress.seconds > 0 ? static_cast<double>(progress.done_here) / progress.seconds : 0;
@@ -109,7 +111,6 @@ void RunStatus::tell(const Progress& progress, const std::map<std::string, Signa
       progress.seconds_left && progress.done < progress.total ? Json(*progress.seconds_left) : Json();
   status_["disagreements"] = progress.all_disagreements;
   status_["signatures"] = signatures.size();
-  if (written_ >= 0 && progress.seconds - written_ < kSecondsBetween && progress.done < progress.total) return;
   written_ = progress.seconds;
   status_["ways"] = ways_of(signatures);
   write();

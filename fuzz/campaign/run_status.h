@@ -16,9 +16,9 @@ class RunStatus {
   // Writes nothing before the first tell, because the directory may belong to another campaign.
   explicit RunStatus(const Campaign& campaign);
 
-  // Records the progress and the signatures so far, at most once every few seconds. Write errors are ignored, because
-  // the file only serves observers.
-  void tell(const Progress& progress, const std::map<std::string, SignatureCount>& signatures);
+  // Records the progress and the signatures so far, at most once every few seconds unless it is the last time. Write
+  // errors are ignored, because the file only serves observers.
+  void tell(const Progress& progress, const std::map<std::string, SignatureCount>& signatures, bool last = false);
 
   // Records how the run ended: "done", "stopped" or "failed", and why it failed. Does nothing if `tell` was never
   // called.

@@ -185,9 +185,13 @@ fs::path folder_beside(const fs::path& place) {
 // Adds the part's runs to those of the same machine.   Throws: as expect_possible_run.
 void add_timings(const StoreSpec& part, const Json& runs, std::size_t parts, std::map<std::string, Json>& by_machine) {
   std::map<std::string, std::uint64_t> sources;
-  for (const strata::PairSource& source : part.sources) sources[source.id] = source.pairs;
+  std::uint64_t share = 0;
+  for (const strata::PairSource& source : part.sources) {
+    share += share_of(part.shard, static_cast<int>(sources.size()), source.pairs).pairs;
+    sources[source.id] = source.pairs;
+  }
   for (const Json& of_part : runs) {
-    expect_possible_run(of_part, part.spec.at("lanes"), sources, part.spec.at("pairs"));
+    expect_possible_run(of_part, part.spec.at("lanes"), sources, share);
     if (!of_part.contains("machine")) continue;
     const std::string machine = of_part["machine"];
     Json& run = by_machine[machine];

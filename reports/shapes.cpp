@@ -54,7 +54,7 @@ constexpr const char* kShapes = R"({
   "worst": {"case": "text", "pair": "text", "from": "text", "margin_ulps": "number"}},
 "labelled": {"label": "text", "text": "text"},
 "card": {"kind": "kind", "file": "text", "minimised": "yes or no", "from": "text",
-  "pair": {"decimal": ["text"], "hex": ["text"], "value": ["number"]},
+  "coordinates": "text", "pair": {"decimal": ["text"], "hex": ["text"], "value": ["number"]},
   "truth": {"verdict": "text", "contact": "text", "margin": "number", "margin_ulps": "number"},
   "drawing": {"contact": [["number"]], "planes_line": [["number"]]},
   "verdicts": [{"lane": "count", "verdict": "text", "wrong": "yes or no"}], "sentences": ["text"], "maps": "maps?",

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "reports/viewer.h"
@@ -42,10 +43,10 @@ std::string page(const Json& report, const Json& costs, const Json& choices) {
   if (!has_interactive_page()) return plain_page(report, costs, choices);
   // The viewer's parts for the coordinate types of the cards.
   Json parts = has_viewer() ? Json::object() : Json();
-  for (const Json& card : report.at("cards")) {
-    const std::string type = card.at("coordinates");
-    if (has_viewer() && !parts.contains(type))
-      parts[type] = viewer_parts(type == name(Scalar::f64) ? Scalar::f64 : Scalar::f32);
+  for (const Scalar type : {Scalar::f32, Scalar::f64}) {
+    const auto is_of_type = [&](const Json& card) { return card.at("coordinates") == name(type); };
+    const Json& cards = report.at("cards");
+    if (has_viewer() && std::any_of(cards.begin(), cards.end(), is_of_type)) parts[name(type)] = viewer_parts(type);
   }
   return filled(with_data(kPageTemplate, "view", parts), report, costs, choices);
 }

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/lane_trace.h"
 #include "core/margin/margin.h"
 #include "core/margin/scaled_pair.h"
+#include "cuda/twin/twin.h"
 #include "strata/strata.h"
 
 namespace graze::wasm {
@@ -34,6 +36,18 @@ inline MarginBounds bounds_of(const DoublePair& pair, Verdict verdict) {
   bounds.lo = std::max(0.0, shifted(bounds.lo, -INFINITY));
   bounds.hi = shifted(bounds.hi, INFINITY);
   return bounds;
+}
+
+// The trace hash of what a lane with a twin sees of a pair.
+inline std::uint64_t trace_of(const Lane& lane, const AnyPair& pair) {
+  std::uint64_t hash = 0;
+  const AnyPair seen = analysis::seen_by(lane, pair);
+  if (seen.floats) {
+    cuda::twin_trace(lane)(&*seen.floats, 1, &hash);
+  } else {
+    cuda::twin_trace_of_doubles(lane)(&seen.doubles, 1, &hash);
+  }
+  return hash;
 }
 
 }  // namespace graze::wasm

@@ -159,14 +159,7 @@ GRAZE_EXPORT(decide_truth) void decide_truth(int count) {
 GRAZE_EXPORT(trace) int trace(int lane, int count) {
   const Lane& of = *deciders()[lane].lane;
   if (!cuda::twin_trace(of)) return false;
-  for (int i = 0; i < count; ++i) {
-    const AnyPair seen = analysis::seen_by(of, pairs_in[i]);
-    if (seen.floats) {
-      cuda::twin_trace(of)(&*seen.floats, 1, hashes_out + i);
-    } else {
-      cuda::twin_trace_of_doubles(of)(&seen.doubles, 1, hashes_out + i);
-    }
-  }
+  for (int i = 0; i < count; ++i) hashes_out[i] = trace_of(of, pairs_in[i]);
   return true;
 }
 

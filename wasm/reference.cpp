@@ -88,17 +88,6 @@ Hash steps(const Lane& lane, const std::vector<OwnPair>& pairs) {
   return hash;
 }
 
-// The trace hash of what the lane sees of the pair.
-std::uint64_t trace_of(const Lane& lane, const AnyPair& pair) {
-  std::uint64_t hash = 0;
-  if (pair.floats) {
-    cuda::twin_trace(lane)(&*pair.floats, 1, &hash);
-  } else {
-    cuda::twin_trace_of_doubles(lane)(&pair.doubles, 1, &hash);
-  }
-  return hash;
-}
-
 template <class OwnPair>
 void print_block(const std::string& of, std::uint64_t block, const std::vector<OwnPair>& pairs) {
   Hash drawn;
@@ -114,7 +103,7 @@ void print_block(const std::string& of, std::uint64_t block, const std::vector<O
     print(lane.id.c_str(), of.c_str(), block, verdicts(lane, decide, pairs));
     if (cuda::twin_trace(lane)) {
       Hash hash;
-      for (const OwnPair& pair : pairs) hash.add_value(trace_of(lane, analysis::seen_by(lane, pair)));
+      for (const OwnPair& pair : pairs) hash.add_value(wasm::trace_of(lane, pair));
       print(("trace:" + lane.id).c_str(), of.c_str(), block, hash);
     }
     if (block > 0) continue;  // once for each stratum

@@ -187,8 +187,8 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
     tell();
     report(progress);
   }
-  tell(true);
   const bool complete = progress.done == progress.total;
+  if (!complete) tell(true);
   Outcome outcome{complete, {}, store.oracle()};
   if (campaign.shard.whole() && !campaign.take) {
     outcome.summary = write_summary(campaign, store, complete);

@@ -101,8 +101,6 @@ void RunStatus::write() {
 }
 
 void RunStatus::tell(const Progress& progress, const std::map<std::string, SignatureCount>& signatures, bool last) {
-  last = last || progress.done == progress.total;
-  if (written_ >= 0 && progress.seconds - written_ < kSecondsBetween && !last) return;
   status_["pairs"] = progress.total;
   status_["done"] = progress.done;
   status_["rate"] = progress.seconds > 0 ? static_cast<double>(progress.done_here) / progress.seconds : 0;
@@ -110,8 +108,10 @@ void RunStatus::tell(const Progress& progress, const std::map<std::string, Signa
   status_["seconds_left"] =
       progress.seconds_left && progress.done < progress.total ? Json(*progress.seconds_left) : Json();
   status_["disagreements"] = progress.all_disagreements;
-  status_["signatures"] = signatures.size();
+  last = last || progress.done == progress.total;
+  if (written_ >= 0 && progress.seconds - written_ < kSecondsBetween && !last) return;
   written_ = progress.seconds;
+  status_["signatures"] = signatures.size();  // together with their ways
   status_["ways"] = ways_of(signatures);
   write();
 }

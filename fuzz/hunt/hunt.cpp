@@ -247,7 +247,7 @@ class Hunter {
              seconds() - last_kind_});
   }
 
-  void tell_status() {
+  void tell_status(bool last = false) {
     Progress progress;
     progress.done = found_->all.pairs;
     progress.total = share_.pairs;
@@ -258,11 +258,12 @@ class Hunter {
           progress.seconds / static_cast<double>(done_here_) * static_cast<double>(progress.total - progress.done);
     progress.all_disagreements = store_->disagreements();
     progress.signatures = store_->signatures().size();
-    status_.tell(progress, store_->signatures());
+    status_.tell(progress, store_->signatures(), last);
   }
 
   Outcome finished() {
     const bool complete = store_->gaps(0).empty();
+    if (!complete) tell_status(true);
     Outcome outcome{complete, {}, store_->oracle()};
     if (hunt_.campaign.shard.whole()) {
       outcome.summary = write_summary(hunt_.campaign, *store_, complete);

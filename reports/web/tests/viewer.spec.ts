@@ -7,7 +7,19 @@ import { pathToFileURL } from 'node:url';
 import AxeBuilder from '@axe-core/playwright';
 import type { Page } from '@playwright/test';
 import { pixels, without_webgl } from './page';
-import { coordinate, expect, file, name, test, url, verdict, verdicts } from './viewer_page';
+import {
+  checked,
+  coordinate,
+  expect,
+  expect_copies,
+  file,
+  name,
+  paste,
+  test,
+  url,
+  verdict,
+  verdicts,
+} from './viewer_page';
 
 const kCells = 256;
 const kEndsApart =
@@ -57,19 +69,12 @@ test('a notebook shows it in a frame that has no address', async ({ page }) => {
 
 test('it says what graze check says', async ({ viewer }) => {
   for (let pair = 0; pair < 3; ++pair) {
-    await viewer.locator('button', { hasText: 'check line' }).click();
-    const line = (await viewer.locator('.copied code').textContent())!;
-    const checked = JSON.parse(
-      execFileSync(process.env.GRAZE!, ['check', '-', '--json', '--executor', 'twin'], {
-        input: line,
-        encoding: 'utf8',
-      }),
-    ) as { truth: { verdict: string; contact: string }; lanes: Record<string, string> };
+    const native = await checked(viewer);
     const shown = await verdicts(viewer);
-    for (const [lane, said] of Object.entries(shown)) expect(checked.lanes[lane], lane).toBe(said);
-    await expect(viewer.locator('#truth')).toContainText(`Truth: ${checked.truth.verdict}`);
-    if (checked.truth.contact !== 'none')
-      await expect(viewer.locator('#truth')).toContainText(`contact: ${checked.truth.contact}`);
+    for (const [lane, said] of Object.entries(shown)) expect(native.lanes[lane], lane).toBe(said);
+    await expect(viewer.locator('#truth')).toContainText(`Truth: ${native.truth.verdict}`);
+    if (native.truth.contact !== 'none')
+      await expect(viewer.locator('#truth')).toContainText(`contact: ${native.truth.contact}`);
     const before = await name(viewer);
     await viewer.keyboard.press('Shift+n'); // a pair that shows more
     await expect.poll(() => name(viewer), { timeout: 30_000 }).not.toBe(before);
@@ -319,15 +324,9 @@ test('coordinates are typed, pasted, refused; the pair is in the link', async ({
   await coordinate(viewer, 4).fill('three');
   await coordinate(viewer, 4).blur();
   await expect(viewer.locator('.message')).toHaveText("expected a number of float32 for a[1].y, found 'three'");
-  const paste = (text: string) =>
-    coordinate(viewer, 0).evaluate((field, pasted) => {
-      const data = new DataTransfer();
-      data.setData('text', pasted);
-      field.dispatchEvent(new ClipboardEvent('paste', { clipboardData: data, cancelable: true, bubbles: true }));
-    }, text);
-  await paste('1 2 3');
+  await paste(viewer, '1 2 3');
   await expect(viewer.locator('.message')).toHaveText('expected the 18 coordinates of a pair, found 3 numbers');
-  await paste(`[${Array.from({ length: 18 }, (_, i) => i + 0.5).join(', ')}]`);
+  await paste(viewer, `[${Array.from({ length: 18 }, (_, i) => i + 0.5).join(', ')}]`);
   await expect(coordinate(viewer, 17)).toHaveValue('17.5');
   await viewer.locator('#copies button', { hasText: 'link' }).click();
   const link = (await viewer.locator('.copied code').textContent())!;
@@ -336,15 +335,12 @@ test('coordinates are typed, pasted, refused; the pair is in the link', async ({
   await expect.poll(() => viewer.url()).not.toBe(link);
   await viewer.goto(link);
   await expect(coordinate(viewer, 17)).toHaveValue('17.5');
-  for (const [kind, text] of [
-    ['C', 'const float a[3][3]'],
-    ['CUDA', '__constant__ float3'],
-    ['Python', 'float.fromhex'],
-    ['OBJ', 'f 4 5 6'],
-  ]) {
-    await viewer.locator('#copies button').getByText(kind, { exact: true }).click();
-    await expect(viewer.locator('.copied code')).toContainText(text);
-  }
+  await expect_copies(viewer, {
+    C: 'const float a[3][3]',
+    CUDA: '__constant__ float3',
+    Python: 'float.fromhex',
+    OBJ: 'f 4 5 6',
+  });
 });
 
 test('the ulp map is drawn whole, and a cell gives its pair', async ({ viewer }) => {

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // The viewer on pairs of doubles: two parallel triangles of a model in metres, which float32 makes one.
-import { execFileSync } from 'node:child_process';
-import type { Page } from '@playwright/test';
-import { coordinate, doubles_url, expect, name, test, verdict, verdicts } from './viewer_page';
+import {
+  checked,
+  coordinate,
+  doubles_url,
+  expect,
+  expect_copies,
+  name,
+  paste,
+  test,
+  verdict,
+  verdicts,
+} from './viewer_page';
 
 test.use({ of_doubles: true });
-
-// What `graze check` says of the pair that is shown.
-async function checked(viewer: Page) {
-  await viewer.locator('#copies button', { hasText: 'check line' }).click();
-  const line = (await viewer.locator('.copied code').textContent())!;
-  return JSON.parse(
-    execFileSync(process.env.GRAZE!, ['check', '-', '--json', '--executor', 'twin'], { input: line, encoding: 'utf8' }),
-  ) as { truth: { verdict: string; contact: string }; lanes: Record<string, string>; coordinates?: string };
-}
 
 test('the truth is that of the doubles, and float lanes decide what float32 stores of them', async ({ viewer }) => {
   await expect(viewer.locator('#truth')).toHaveText(
@@ -76,15 +76,12 @@ test('doubles are typed, stepped and linked in full', async ({ viewer }) => {
   await viewer.goto('about:blank');
   await viewer.goto(`${doubles_url()}#p=${'3dcccccd'.repeat(18)}`);
   await expect(coordinate(viewer, 4)).toHaveValue('0.10000000149011612');
-  for (const [kind, text] of [
-    ['C', 'const double a[3][3] = {{0x1.99999ap-4, '],
-    ['CUDA', '__constant__ double3'],
-    ['Python', 'float.fromhex("0x1.99999ap-4")'],
-    ['OBJ', 'v 0.10000000149011612 '],
-  ]) {
-    await viewer.locator('#copies button').getByText(kind, { exact: true }).click();
-    await expect(viewer.locator('.copied code')).toContainText(text);
-  }
+  await expect_copies(viewer, {
+    C: 'const double a[3][3] = {{0x1.99999ap-4, ',
+    CUDA: '__constant__ double3',
+    Python: 'float.fromhex("0x1.99999ap-4")',
+    OBJ: 'v 0.10000000149011612 ',
+  });
 });
 
 test('maps, tolerances, many triangles and the drawing work on doubles', async ({ viewer }) => {
@@ -104,31 +101,7 @@ test('maps, tolerances, many triangles and the drawing work on doubles', async (
 
 test('coordinates at the ends of the range are shown', async ({ viewer }) => {
   for (const scale of ['1e308', '5e-324']) {
-    const pasted = [
-      '0',
-      '0',
-      '0',
-      scale,
-      '0',
-      '0',
-      '0',
-      scale,
-      '0',
-      '0',
-      '0',
-      scale,
-      scale,
-      '0',
-      scale,
-      '0',
-      scale,
-      scale,
-    ];
-    await coordinate(viewer, 0).evaluate((field, text) => {
-      const data = new DataTransfer();
-      data.setData('text', text);
-      field.dispatchEvent(new ClipboardEvent('paste', { clipboardData: data, cancelable: true, bubbles: true }));
-    }, pasted.join(' '));
+    await paste(viewer, `0 0 0  ${scale} 0 0  0 ${scale} 0  0 0 ${scale}  ${scale} 0 ${scale}  0 ${scale} ${scale}`);
     await expect(coordinate(viewer, 3)).toHaveValue(String(Number(scale)));
     const native = await checked(viewer);
     expect(native.truth.verdict).toBe('disjoint');

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of `graze view` under test. In every test it must fetch nothing and leave the console clean.
+import { execFileSync } from 'node:child_process';
 import { pathToFileURL } from 'node:url';
 import { expect, test as base, type Page } from '@playwright/test';
 import { without_webgl } from './page';
@@ -45,5 +46,30 @@ export const verdicts = (page: Page) =>
         cells.map((cell) => [cell.getAttribute('data-lane')!, cell.textContent!.replace(/[^a-z]/g, '')]),
       ),
     );
+
+// Pastes the text into the first coordinate.
+export const paste = (page: Page, text: string) =>
+  coordinate(page, 0).evaluate((field, pasted) => {
+    const data = new DataTransfer();
+    data.setData('text', pasted);
+    field.dispatchEvent(new ClipboardEvent('paste', { clipboardData: data, cancelable: true, bubbles: true }));
+  }, text);
+
+// What `graze check` says of the pair that is shown.
+export async function checked(page: Page) {
+  await page.locator('#copies button', { hasText: 'check line' }).click();
+  const line = (await page.locator('.copied code').textContent())!;
+  return JSON.parse(
+    execFileSync(process.env.GRAZE!, ['check', '-', '--json', '--executor', 'twin'], { input: line, encoding: 'utf8' }),
+  ) as { truth: { verdict: string; contact: string }; lanes: Record<string, string>; coordinates?: string };
+}
+
+// "Copy as" gives these texts, by kind.
+export async function expect_copies(page: Page, copies: Record<string, string>) {
+  for (const [kind, text] of Object.entries(copies)) {
+    await page.locator('#copies button').getByText(kind, { exact: true }).click();
+    await expect(page.locator('.copied code')).toContainText(text);
+  }
+}
 
 export { expect };

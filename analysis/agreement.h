@@ -13,7 +13,7 @@ namespace graze::analysis {
 
 struct AgreeSpec {
   AgreementSweep sweep;
-  AgreementSweep rounded;          // the lanes whose operations all round as written; null if the lanes are these
+  AgreementSweep rounded;          // the same lanes, every operation rounded as written; null if they already are
   std::vector<std::string> sites;  // sites that the algorithm asks about
   bool relative = true;            // whether both lanes run here under relative tolerances
   std::vector<strata::PairSource> sources;  // pairs to choose on
@@ -25,7 +25,7 @@ struct Agreed {
   Agreement zero;  // on the pairs of the choice
   std::vector<CurveOf<Agreement>> curves;
   std::vector<Agreement> picks;  // the best of each curve, on the other pairs
-  // If only blunt tolerances make the lanes agree: the best of them, on the pairs of the choice.
+  // If only blunt tolerances make the lanes agree: the best of them, on the pairs used to choose.
   std::optional<Agreement> blunt;
   std::string chosen;  // policy; empty: compare with zero exactly
   TuneResult result = TuneResult::not_satisfiable;
@@ -42,12 +42,12 @@ bool is_blunt(const Agreement& under, const Agreement& zero);
 // at 95 % confidence. too_few_pairs: the pairs show neither.
 TuneResult agreement_result(const Agreement& chosen_on, const Agreement& confirmed, double max_rate);
 
-// Chooses a policy on some pairs and verifies it on others. No policy, if the lanes agree without one. Otherwise the
-// smallest tolerance of each curve under which they agree, and of these the one with the fewest wrong verdicts of both
-// lanes. A tolerance under which no verdict differs, or whose bound is at most half of max_rate, is
-// preferred to one whose rate is at most max_rate: fresh pairs would often not confirm that. If none makes them agree,
-// the policy with the fewest differing verdicts. Blunt tolerances are left out. Ties prefer no tolerance, then the
-// order of the curves as in tune(), then the smallest tolerance. Requires: pairs in both lists.
+// Chooses a policy on some pairs and verifies it on others. If the lanes agree without a policy, it chooses none.
+// Otherwise it takes the smallest tolerance of each curve under which they agree, and among these the one with the
+// fewest wrong verdicts of both lanes. It prefers tolerances under which no verdict differs, or whose upper bound is at
+// most half of max_rate: fresh pairs often do not confirm a rate near max_rate. If no tolerance makes the lanes agree,
+// it takes the policy with the fewest differing verdicts. Blunt tolerances are left out. Ties prefer no tolerance, then
+// the order of the curves as in tune(), then the smallest tolerance. Requires: pairs in both lists.
 Agreed agree(const AgreeSpec& spec);
 
 }  // namespace graze::analysis

@@ -97,7 +97,7 @@ TEST(Agree, WithoutContractionNoPolicyIsNeeded) {
   EXPECT_GT(contracted, 100u);
 }
 
-// Checks the choice against the curves, as agree() promises it, and its bounds on pairs of another seed.
+// Checks that the choice is the one that agree() promises for these curves, and its bounds on pairs of another seed.
 void expect_true(const AgreeSpec& spec, const Agreed& agreed, const std::vector<std::string>& globs) {
   const Agreement chosen = spec.sweep(std::vector<std::string>{agreed.chosen}, spec.sources).front();
   const auto clearly = [&](const Agreement& a) {

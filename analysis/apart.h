@@ -14,7 +14,7 @@ namespace graze::analysis {
 class ApartFrom {
  public:
   explicit ApartFrom(int pipe) : pipe_(pipe) {}
-  void alive() const;                                       // starts the time of the next step
+  void alive() const;                                       // restarts the time limit for the next step
   void finish(const void* result, std::size_t size) const;  // once, at the end
 
  private:
@@ -23,7 +23,8 @@ class ApartFrom {
 
 enum class Ended { in_order, crashed, silent };
 
-// Runs the work. Each of its steps may take `seconds`.   result: what it gave to `finish`, if it ended in order.
+// Runs the work. Each step may take `seconds`.   result: receives what the work passed to `finish`, if it ended in
+// order.
 // Throws: std::runtime_error if no process can be started; the message names the lane.
 Ended run_apart(const Lane& lane, double seconds, const std::function<void(const ApartFrom&)>& work,
                 std::string& result);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks whether the cause that an explanation names is the real cause. Without this cause alone the verdict must
-// become right; with this cause alone it must stay wrong.
+// Checks whether the cause that an explanation names is the real cause. If only this cause is removed, the verdict
+// must become right; with only this cause, it must stay wrong.
 #pragma once
 
 #include "analysis/explain.h"

@@ -103,8 +103,8 @@ Corrected corrected(const Wrong& wrong, const std::vector<std::size_t>& comparis
   return {path_of(run), run.verdict};
 }
 
-// Tries every smaller set, and every earlier set of the same size. The four pairs were reported: correcting values
-// named two comparisons where one is enough, or a later one than the first.
+// Tries every smaller set, and every earlier set of the same size. The four pairs come from reports: when values were
+// corrected instead of outcomes, two comparisons were named where one is enough, or a later one than the first.
 TEST(Deciding, IsTheSmallestSetAndOfEqualOnesTheFirst) {
   std::vector<Wrong> some;
   for (std::size_t i = 0; i < all_wrong().size(); i += 7) some.push_back(all_wrong()[i]);
@@ -144,8 +144,8 @@ TEST(Deciding, IsTheSmallestSetAndOfEqualOnesTheFirst) {
   EXPECT_GT(earlier, 10);
 }
 
-// If the cause is overflow or underflow, the reported value is one that it produced. A value that rounding alone gives
-// is not reported.
+// If the cause is overflow or underflow, the reported value results from it. A value that rounding alone gives is not
+// reported.
 TEST(Deciding, WhatIsToldOfARangeComesFromIt) {
   int told = 0;
   for (const Wrong& wrong : all_wrong()) {
@@ -186,7 +186,7 @@ TEST(Audit, AFalseCauseDoesNotPass) {
   for (const Wrong& wrong : all_wrong()) {
     if (wrong.lane.settled != Settled::yes) continue;
     for (const Cause other : {Cause::rounding, Cause::contraction, Cause::overflow, Cause::underflow, Cause::logic}) {
-      if (other == wrong.lane.cause || other == Cause::rounding) continue;  // exact values make ranges right, too
+      if (other == wrong.lane.cause || other == Cause::rounding) continue;  // exact values cure ranges too
       LaneExplanation lied = wrong.lane;
       lied.cause = other;
       lied.contractions = {};
@@ -212,7 +212,7 @@ TEST(Audit, AnotherComparisonDoesNotPass) {
       LaneExplanation lied = wrong.lane;
       Decider& decider = lied.deciding.front();
       decider.before = before;
-      decider.exact.held = seen.taken;  // as it is
+      decider.exact.held = seen.taken;  // as the lane decided it
       ++tried;
       passed += audit(lied, wrong.pair, wrong.truth) == Settled::yes;
       break;

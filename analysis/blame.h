@@ -12,11 +12,11 @@
 namespace graze::analysis {
 
 struct Blame {
-  std::vector<cuda::ContractionSite> sites;  // if only these are fused, the lane gives its verdict; in program order
+  std::vector<cuda::ContractionSite> sites;  // with only these fused, the lane gives its verdict; in program order
   bool smallest = true;                      // no smaller set does so
   bool lines_decide = false;                 // with the products of these lines rounded and all others fused, the
                                              // verdict is that of the source without contraction
-  std::string why_not;                       // "…", if the search did not finish
+  std::string why_not;                       // why the search did not finish; empty if it did
 };
 
 // Prefers a set of one or two sites that is also necessary: with all other sites fused, the verdict is that of the

@@ -24,9 +24,9 @@ DecidingNumber told(const Lane& lane, const std::vector<subjects::Epsilon>& numb
   return result;
 }
 
-// A number far below all of these that does not underflow as soon as it is multiplied.
+// A number that is far below all of these, but whose products do not underflow at once.
 double far_below(const std::vector<subjects::Epsilon>& numbers) {
-  constexpr double kAboutFltEpsilon = 1e-7;  // whose value the source does not have
+  constexpr double kAboutFltEpsilon = 1e-7;  // the source has the name FLT_EPSILON, but not its value
   double least = 1;
   for (const subjects::Epsilon& number : numbers) least = std::min(least, number.value.value_or(kAboutFltEpsilon));
   return std::max(least * 1e-9, subjects::kNegligible);

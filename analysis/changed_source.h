@@ -17,11 +17,11 @@ struct DecidingNumber {
   bool on_images;     // it is right on the pair's images too
 };
 
-// A small number of the source that decides: with a negligible one in its place, the code is right; and with 1e-9 of
-// it, too, because the products of a unit's factor underflow if it is negligible. Prefers numbers that decide on the
-// pair's images too: on one pair any change may be right by luck. If no number alone decides, all together may.
-// is_right, is_right_on_images: what the changed code says; the second is asked only where the first holds.
-// doubles: double takes the place of float too, and all numbers change together.
+// A small number of the source that decides: the code is right with a negligible number in its place, and also with
+// 1e-9 times the number, because a negligible conversion factor can make products underflow. Prefers numbers that also
+// decide on the pair's images: on one pair any change may be right by luck. If no number decides alone, tries all
+// together. is_right, is_right_on_images: called with the changed code; the second only if the first holds.
+// doubles: double also replaces float, and all numbers change together.
 using IsRight = std::function<bool(const DecideBlock& block)>;
 std::optional<DecidingNumber> deciding_number(const Lane& lane, const IsRight& is_right,
                                               const IsRight& is_right_on_images, bool doubles = false);
@@ -31,10 +31,10 @@ struct InitialValues {
   bool differ;  // the verdict depends on the value; otherwise any value makes it right, and the compiler warns
 };
 
-// Whether the verdict depends on the values of variables that the source gives none: it becomes right if the compiler
-// sets them to zero, or to a pattern. Where both make it right, the other machine code may be the reason, as it rounds
-// in other places on an x87; so the compiler must warn of such a variable too.
-// verdict_of: what the changed code says.   Requires: the lane is wrong on the pair.
+// Whether the verdict depends on uninitialised variables: it becomes right if the compiler sets them to zero, or to a
+// pattern. If both make it right, the reason may be the different machine code, which on an x87 rounds in other places.
+// Then the compiler must also warn of such a variable.
+// verdict_of: the verdict of the changed code.   Requires: the lane is wrong on the pair.
 std::optional<InitialValues> by_initial_values(const Lane& lane, Verdict truth,
                                                const std::function<Verdict(const DecideBlock& block)>& verdict_of);
 

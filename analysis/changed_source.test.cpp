@@ -37,7 +37,7 @@ class ExperimentsOnSources : public testing::Test {
     return *find_lane(name + "/f32/cpu");
   }
 
-  // Of a lane that is wrong on the pair.
+  // The experiment on a lane that is wrong on the pair.
   static Experiment found(const Lane& lane, const Pair& pair) {
     const Verdict truth = relation_of(pair).verdict, verdict = decide_lane(lane, pair);
     EXPECT_NE(verdict, truth);
@@ -56,7 +56,7 @@ bool has(const std::string& text, std::string_view part) { return text.find(part
 const Pair kFine{{{0.0117f, 0.0231f, 0.0119f}, {4.0177f, 0.0313f, 0.0171f}, {0.0239f, 4.0191f, 0.0113f}},
                  {{1.0133f, 1.0171f, -1.0193f}, {1.0271f, 1.0131f, 1.0119f}, {3.0117f, 3.0213f, 1.0157f}}};
 
-// With a negligible number in place of the unit the products of the wrong comparison underflow, so it is right.
+// With a negligible number in place of the unit, the products of the wrong comparison underflow, so the code is right.
 TEST_F(ExperimentsOnSources, AUnitIsNoEpsilon) {
   const Lane& lane = opened(
       "units", std::string(kHead) +
@@ -140,7 +140,8 @@ TEST_F(ExperimentsOnSources, ANumberBesideAnOpenUnderflowIsNotSettled) {
   EXPECT_FALSE(has(one.evidence, "larger scales")) << one.evidence;
 }
 
-// Its machine code changes where the compiler gives arrays a value, as spills of an x87 do: it measures that code.
+// If the compiler initialises arrays, the machine code changes, and spills of an x87 may change with it. This code
+// measures the size of its own machine code to show such a change.
 TEST_F(ExperimentsOnSources, OtherMachineCodeIsNoVariableWithoutAValue) {
   const Lane& lane = opened("measures", R"(
 extern "C" __attribute__((visibility("hidden"))) const char begin_here[], end_here[];
@@ -167,7 +168,7 @@ bool intersects(const float a[9], const float*) { return fifth(a) == a[5] && end
   for (const Pair& pair : {kFine, small}) EXPECT_NE(found(lane, pair).cause, Cause::uninitialised);
 }
 
-// Where any value makes it right, the compiler's warning is what shows the variable, and rounding must be out.
+// If any value makes the code right, only the compiler's warning shows the variable, and rounding must be ruled out.
 TEST_F(ExperimentsOnSources, AVariableThatTheCompilerWarnsOfIsSettledOnSmallIntegers) {
   const Lane& lane = opened("unset", std::string(kHead) + R"(  int way;
   if (a[0] > 100) way = 1; else if (a[0] > 50) way = 2;
@@ -200,7 +201,7 @@ TEST_F(ExperimentsOnSources, AnEditedSourceIsNamedAsAnExperimentThatWasNotMade) 
   EXPECT_TRUE(has(found(lane, kFine).evidence, kNotMade));
 }
 
-// Six numbers that all are right on the pair, and wrong on one image of it only.
+// Six numbers. With any of them changed, the code is right on the pair, but not on all of its images.
 TEST_F(ExperimentsOnSources, VerdictsOfChangedBuildsCountToo) {
   std::string text = std::string(kHead) + "  if (a[0] > 0 && a[2] < 0) return false;\n  float least = 1;\n";
   for (int i = 1; i <= 6; ++i)

@@ -174,7 +174,7 @@ RunsBeside runs_of_both(const LanesCompared& lanes, const BasicPair<Coordinate>&
 RunsBeside runs_beside(const LanesCompared& lanes, const AnyPair& pair) {
   RunsBeside runs = visit(pair, [&](const auto& own) { return runs_of_both(lanes, own); });
   const std::vector<Question>& questions = questions_of(lanes.first->algorithm);
-  std::erase_if(runs.values, [&](const ValueBeside& value) {  // questions about one value have no other
+  std::erase_if(runs.values, [&](const ValueBeside& value) {  // questions about one value have no second
     return static_cast<std::size_t>(value.which) >= questions[static_cast<std::size_t>(value.question)].of.size();
   });
   return runs;

@@ -21,7 +21,7 @@ namespace graze::analysis {
 struct DiscrepancyCounts {
   std::vector<std::uint64_t> counts;
   std::vector<std::uint64_t> maxima;  // band_maxima::kFields for each question, bits of doubles
-  // Pairs on which each lane's verdict differs from that of its recorded run, which was compiled differently.
+  // For each lane, the pairs on which its verdict differs from that of its recorded run, which is compiled separately.
   std::uint64_t unlike[2] = {0, 0};
 
   explicit DiscrepancyCounts(int algorithm = 0);
@@ -37,7 +37,7 @@ RecordFunction<DoublePair> record_doubles_on_host(const Lane& lane);  // null fo
 // scalar that record their values.
 std::string why_not_compared(const Lane& l, const Lane& r);
 
-// Two lanes to compare. Their values are recorded on the host. Lanes in float are compared on pairs of float32 alone,
+// Two lanes to compare. Their values are recorded on the host. Lanes in float are compared only on pairs of float32,
 // lanes in double on pairs of either type.
 struct LanesCompared {
   const Lane *first, *second;
@@ -46,17 +46,17 @@ struct LanesCompared {
   LanesCompared(const Lane& l, const Lane& r);
 };
 
-// The contracted CUDA lane whose contractions are what differs, because the other lane rounds every operation. Null if
-// there is none.
+// The contracted CUDA lane, if only its contractions make the two differ, because the other rounds every operation.
+// Null otherwise.
 const Lane* fused_of(const Lane& l, const Lane& r);
 
-// A value that at least one of two lanes compares. Values are in the order of the first lane's run; those of the second
-// lane alone come last.
+// A value that at least one of two lanes compares. Values are in the order of the first lane's run; those that only the
+// second lane compares come last.
 struct ValueBeside {
   int question, which;                  // which: of Question::of
   std::optional<double> first, second;  // nothing if the lane was not asked
   bool compared = false;                // both were asked about the same quantity
-  std::optional<Unrounded> unrounded;   // along the first lane's path; nothing for values of the second lane alone
+  std::optional<Unrounded> unrounded;   // along the first lane's path; nothing for values that only the second lane has
 };
 
 // The runs of two lanes on one pair. Their choices are in the layout of RecordedPath.
@@ -65,7 +65,7 @@ struct RunsBeside {
   RecordedPath first, second;
 };
 
-// Requires: a finite pair; of doubles only for lanes in double.
+// Requires: a finite pair; a pair of doubles only for lanes in double.
 RunsBeside runs_beside(const LanesCompared& lanes, const AnyPair& pair);
 
 // The bucket of a lane's error in ulps, "0", "1/2", "2^k", "not finite" or "unknown"; as in core/discrepancy/count.h.
@@ -85,7 +85,7 @@ struct DiscrepancySpec {
 // counts[comparison][source]. The same counts on host and device, for any number of threads. On a device, the kernels
 // of cuda-nofma compute a host lane's values. If the host lane is compared with cuda-nofma itself, the host records its
 // own values too; if any bit differs, the comparison runs on the host.
-// Requires: no source of doubles where a lane is in float.
+// Requires: no source of doubles if a lane is in float.
 using Discrepancies = std::vector<std::vector<DiscrepancyCounts>>;
 Discrepancies discrepancies(const DiscrepancySpec& spec);
 

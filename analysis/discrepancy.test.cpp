@@ -37,7 +37,7 @@ Discrepancies counted(const std::vector<LanesCompared>& lanes, std::uint64_t see
   return discrepancies({lanes, strata::stratum_sources(seed, pairs, strata), threads, false});
 }
 
-// Sources of all strata of float32, and for lanes in double of all strata of doubles.
+// Sources of all strata of float32, and for lanes in double also of all strata of doubles.
 std::vector<strata::PairSource> sources_for(const Lane& of, std::uint64_t seed, std::uint64_t pairs_of_each) {
   std::vector<strata::PairSource> sources = strata::stratum_sources(seed, strata::kStrataCount * pairs_of_each, {});
   if (of.scalar == Scalar::f32) return sources;
@@ -207,7 +207,7 @@ TEST(Discrepancy, APairOfFloat32CountsAsTheSamePairOfDoubles) {
   }
 }
 
-// Sources of both types at once: the counts are those of each, and a line's are their sum.
+// With sources of both types at once, each source has the counts that it has alone. A fused line's counts are the sums.
 TEST(Discrepancy, SourcesOfBothTypesAddUp) {
   const LanesCompared lanes{lane("moller_1997/f64/cpu"), lane("moller_1997/f64/cuda-fma")};
   auto floats = strata::stratum_sources(3, 2'000, {"near_edge_edge", "thesis"});
@@ -389,7 +389,8 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
               return value.question == question && value.which == which;
             });
             ASSERT_NE(certified, runs.values.end());
-            // Of several values MPFR follows the one that the lane chose as the least; the counts take the true least.
+            // Among several values, MPFR follows the one that the lane chose as the least; the counts take the true
+            // least.
             const bool other =
                 std::fabs(certified->unrounded->exact.hi - beside.exact) > 1e-12 * std::fabs(beside.exact);
             const bool subnormal = std::fabs(beside.exact) < (first->scalar == Scalar::f32 ? 0x1p-126 : 0x1p-1022);
@@ -426,7 +427,7 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
 }
 
 // Each lane's value is as near to the exact one as its bound of the rounding error says, with and without contraction,
-// also where numbers underflow. So no sign can differ beyond two bounds.
+// even where numbers underflow. So no sign can differ beyond two bounds.
 TEST(Discrepancy, BoundsOfTheRoundingErrorHold) {
   std::uint64_t bounded = 0, near = 0, unbounded = 0;
   for (const LanesCompared& lanes : published(Variant::cpu, Variant::cuda_fma)) {
@@ -473,7 +474,7 @@ TEST(Discrepancy, NoSignDiffersBeyondTwoBounds) {
   EXPECT_GT(widest, 0.1);
 }
 
-// Compares a lane's run on the pair with itself, but for the values that `plant` changes in the second one.
+// Compares a lane's run on the pair with a copy in which `plant` has changed values.
 template <class Algorithm, class Real, class Plant>
 Places planted(const Lane& of, const Pair& pair, const Plant& plant) {
   std::vector<Real> first(2 * questions_of(of.algorithm).size());
@@ -497,7 +498,7 @@ Pair scaled(const Pair& pair, float by) {
 }
 
 // Where numbers overflow, no bound says how near to zero the values are: the band is unknown. Where they underflow, the
-// bound is the smallest number's.
+// bound of the smallest number applies.
 TEST(Discrepancy, TheBandIsUnknownWhereNothingIsSettled) {
   const Pair crossing{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, -1}, {1, 1, 2}, {2, 1, 2}}};
   const Lane &single = lane("moller_1997/f32/cpu"), &twice = lane("moller_1997/f64/cpu");

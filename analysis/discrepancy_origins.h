@@ -19,12 +19,12 @@ struct FusedLine {
   std::vector<std::uint64_t> mask, mask_of_doubles;  // its sites in the kernel of each coordinate type
   std::uint64_t values = 0;                          // fusing it alone changes this many values
   std::uint64_t verdicts_alone = 0;                  // …and this many verdicts
-  std::uint64_t verdicts_fixed = 0;  // of the verdicts that all contractions together change: rounding this line's
-                                     // products gives back the verdict without contraction
-  std::optional<AnyPair> simplest;   // of the pairs of the two counts before
+  std::uint64_t verdicts_fixed = 0;  // of the verdicts that all contractions together change, how many change back if
+                                     // this line's products are rounded
+  std::optional<AnyPair> simplest;   // of the pairs in the two counts above
 };
 
-// A value that differs, and the first line that makes it differ if it alone is fused.
+// For a value that differs: the first line that makes it differ when only that line is fused.
 struct Start {
   std::vector<std::uint64_t> by_line;  // [line]; the last one counts values that no line alone makes differ
   // growth[k]: fusing the line, which changes its result by at most an ulp, moves the value by 2^k to 2^(k+1) ulps.
@@ -36,16 +36,16 @@ struct Start {
 using Simpler = std::function<bool(const AnyPair&, const AnyPair&)>;
 
 struct Origins {
-  std::vector<FusedLine> lines;                 // in program order; those of the kernel for doubles alone come last
-  std::map<std::pair<int, int>, Start> starts;  // of values: question, and 0 or 1
-  std::uint64_t pairs = 0, verdicts = 0;        // asked, and those on which contraction changes the verdict
+  std::vector<FusedLine> lines;                 // in program order; those only in the kernel for doubles come last
+  std::map<std::pair<int, int>, Start> starts;  // by value: its question, and 0 or 1
+  std::uint64_t pairs = 0, verdicts = 0;        // pairs examined; those on which contraction changes the verdict
 };
 
 // Whether the lane has contractions whose lines are known.
 bool has_origins(const Lane& lane);
 
 // Examines the first `pairs` pairs of each source. `simpler` orders pairs for FusedLine::simplest.
-// The same for any number of threads.   Requires: has_origins; sources of doubles only for a lane in double.
+// Does not depend on the number of threads.   Requires: has_origins; sources of doubles only for a lane in double.
 Origins origins(const Lane& lane, const std::vector<strata::PairSource>& sources, std::uint64_t pairs, int threads,
                 const Simpler& simpler);
 

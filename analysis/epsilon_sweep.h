@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A user's own code under values of its epsilon, for which its source is built again.
+// A user's code with different values of its epsilon; its source is rebuilt for each.
 #pragma once
 
 #include <map>
@@ -11,8 +11,8 @@
 
 namespace graze::analysis {
 
-// The lane's code under a policy "abs:VALUE", which is the epsilon's value; the empty policy is the source as it is.
-// Each value is built once.
+// The lane's code under a policy "abs:VALUE", where VALUE is the epsilon's value; the empty policy is the unchanged
+// source. Each value is built once.
 class UnderEpsilon {
  public:
   // Requires: a lane and a source that outlive this.
@@ -29,7 +29,7 @@ class UnderEpsilon {
   std::map<std::string, std::unique_ptr<subjects::ForeignProcesses>> built_;  // by policy; none of them runs
 };
 
-// What decides under policies, in processes that run as long as this lives. The empty policy is the lane itself.
+// Decides under each policy, in processes that run as long as this object lives. The empty policy is the lane itself.
 class EpsilonDeciders {
  public:
   explicit EpsilonDeciders(UnderEpsilon& under) : under_(under) {}

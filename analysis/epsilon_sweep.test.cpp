@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A user's source under values of its epsilon.
+// A user's source with different values of its epsilon.
 #include "analysis/epsilon_sweep.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Boxes that overlap by more than kEps: with a negative value too many, with a large one too few.
+// Finds boxes that overlap by more than kEps: too many with a negative value, too few with a large one.
 constexpr const char* kBoxes = R"(#include "own.h"
 const float kEps = 0.75f;
 int intersects(const float a[9], const float b[9]) {

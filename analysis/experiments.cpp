@@ -119,7 +119,7 @@ class Trial {
     return ask_.until(block, usual.last);
   }
 
-  // The same where products may leave the exponents.
+  // The same, but products may leave the exponent range.
   std::optional<LargerScales> at_any_larger_scales() const {
     const Scales all = exact_scales(size_);
     if (size_.is_zero() || all.last < 1) return std::nullopt;
@@ -177,7 +177,7 @@ class Trial {
            kMostFactors * (size_.largest_difference + 1) < limits().most;
   }
 
-  // The lane of the same code and compiler in which every operation rounds, as OpenCL has one; null if there is none.
+  // The lane of the same code and compiler in which every operation is rounded. OpenCL has one; null if there is none.
   const Lane* rounded_sibling(const subjects::Toolchain& toolchain) const {
     for (const Lane& lane : lanes()) {
       if (lane.info != lane_.info || lane.scalar != lane_.scalar || !lane.decide) continue;
@@ -278,15 +278,17 @@ class Trial {
       turns_in_range_ = true;
       if (!ask_.right_in_float64_at_every_scale()) return Experiment{Cause::absolute_epsilon, false, turn->text()};
       const Cause cause = by_exponents_at(*turn);
-      return Experiment{cause, false,
-                        turn->text() + (cause == Cause::rounding ? ", in float64 at all that were tried" : "")};
+      return Experiment{
+          cause, false,
+          turn->text() + (cause == Cause::rounding ? "; in float64 it is right at all scales that were tried" : "")};
     }
     if (right) return outside(ask_.bisected(0, in_range.first > 0 ? in_range.first : in_range.last));
     wrong_at_ = tried;
     return beyond(in_range);
   }
 
-  // Underflow or overflow if some product of coordinates can have that where the lane is wrong; else rounding.
+  // Underflow or overflow, if some product of coordinates can underflow or overflow where the lane is wrong; otherwise
+  // rounding.
   Cause by_exponents_at(Turn turn) const {
     const bool upwards = turn.right > turn.wrong;
     const bool leaves = upwards ? kMostFactors * (size_.smallest_difference + turn.wrong) < limits().least
@@ -297,7 +299,7 @@ class Trial {
   // The lane is right at all scales in range, so the pair is out of range. The lane turns wrong between the range and
   // the pair.
   Experiment outside(Turn turn) const {
-    // In doubles nothing wider can show that code which adds lengths and areas is not wrong here without limits too.
+    // Code that adds lengths and areas may be wrong here even without limits. For doubles no wider type rules it out.
     constexpr bool kIsNarrow = sizeof(Real) == sizeof(float);
     const bool by_float64 = ask_.right_in_float64_at_every_scale();
     const std::string text = turn.text(),
@@ -374,8 +376,8 @@ class Trial {
   mutable std::optional<std::vector<PairOf>> wrong_images_;  // once asked for
   Scales strictly_{1, 0};        // scales at which even the longest products stay within the exponents
   bool turns_in_range_ = false;  // the verdict turns between two of these
-  Scales wrong_at_{1, 0};        // wrong at all scales tried from first to last, those at which the usual products stay
-                                 // within the exponents; none if it is right at some
+  Scales wrong_at_{1, 0};        // the tried scales at which the usual products stay within the exponents, if the lane
+                                 // is wrong at all of them; otherwise none
 };
 
 }  // namespace

@@ -91,7 +91,7 @@ const Lane& add_lane(const std::string& subject, Scalar scalar, Variant variant,
   return lanes().back();
 }
 
-// The same of a function that takes pairs of both types.
+// The same for a function that takes pairs of both types.
 template <class Decide>
 const Lane& add_lane_of_both(const std::string& subject, Scalar scalar, Variant variant, Decide decide) {
   return scalar == Scalar::f32 ? add_lane(subject, scalar, variant, decide)
@@ -205,7 +205,7 @@ TEST(Experiments, AgreeWithTheStepsOfThePublishedAlgorithms) {
   EXPECT_GT(found.alike, 1100);
 }
 
-// There is no wider arithmetic to show that rounding or the exponents are to blame.
+// For doubles there is no wider arithmetic to show that rounding or the exponents are to blame.
 TEST(Experiments, AgreeWithTheStepsOnDoubles) {
   Compared found = compared(strata::stratum_sources(33, 40 * strata_of(PairTypes::f64), {}, PairTypes::f64));
   for (const Cause cause : {Cause::contraction, Cause::fast_math, Cause::logic}) {
@@ -232,8 +232,8 @@ Pair integers(std::uint32_t& state, int largest) {
   return pair;
 }
 
-// What small integers show as logic is logic by the steps too, except for quotients of interval_overlap: rounded in
-// either scalar, they part intervals that touch, in all orders and at all multiples.
+// Where small integers show logic, the steps show logic too, except in interval_overlap: its quotients, rounded in
+// either scalar, separate intervals that touch, in all orders and at all multiples.
 TEST(Experiments, SmallIntegersShowNoRoundingAsLogic) {
   for (const bool with_doubles : {true, false}) {
     std::vector<std::pair<const Lane*, const Lane*>> both;
@@ -392,7 +392,8 @@ TEST(Experiments, FindWhatDependsOnOrder) {
   }
 }
 
-// Wrong in all orders on small integers is logic, with an epsilon or without. What is left open names two experiments.
+// Code that is wrong in all orders on small integers is wrong by its logic, with or without an epsilon. The evidence of
+// a cause that is not settled names two experiments.
 TEST(Experiments, FindLogicOnSmallIntegers) {
   const auto contained = [](float epsilon) {
     return [epsilon](const Pair& pair) {

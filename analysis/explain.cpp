@@ -9,10 +9,13 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <tuple>
+#include <vector>
 
 #include "analysis/audit.h"
 #include "analysis/convention.h"
 #include "analysis/known_experiments.h"
+#include "core/lanes/verdicts.h"
 #include "core/relation_of.h"
 
 namespace graze::analysis {
@@ -53,30 +56,27 @@ int bits_needed(int algorithm, const oracle::Exactly& exactly, const AnyPair& pa
 }
 
 // The pair's neighbours. Nudged pairs may have another truth than the pair, so it is computed for each.
+template <class Real>
 struct Neighbours {
-  std::vector<AnyPair> orders, mirrored, scalings;
-  std::array<std::vector<AnyPair>, kCoordinates> nudged;
+  using Pairs = std::vector<BasicPair<Real>>;
+  Pairs orders, mirrored, scalings;
+  std::array<Pairs, kCoordinates> nudged;
   std::array<bool, kCoordinates> truth_stays;
 
-  Neighbours(const AnyPair& pair, Verdict truth) {
-    visit(pair, [&](const auto& own) {
-      const auto any = [](const auto& pairs) { return std::vector<AnyPair>(pairs.begin(), pairs.end()); };
-      orders = any(analysis::orders(own));
-      mirrored = any(analysis::mirrored(own));
-      scalings = any(analysis::scalings(own));
-      for (std::size_t c = 0; c < kCoordinates; ++c) {
-        const auto moved = analysis::nudged(own, static_cast<int>(c));
-        truth_stays[c] = std::all_of(moved.begin(), moved.end(),
-                                     [truth](const auto& one) { return oracle::cgal_verdict(one) == truth; });
-        nudged[c] = any(moved);
-      }
-    });
+  Neighbours(const BasicPair<Real>& pair, Verdict truth)
+      : orders(analysis::orders(pair)), mirrored(analysis::mirrored(pair)), scalings(analysis::scalings(pair)) {
+    for (std::size_t c = 0; c < kCoordinates; ++c) {
+      nudged[c] = analysis::nudged(pair, static_cast<int>(c));
+      truth_stays[c] = std::all_of(nudged[c].begin(), nudged[c].end(),
+                                   [truth](const auto& one) { return oracle::cgal_verdict(one) == truth; });
+    }
   }
 };
 
-WrongOf wrong_of(const Lane& lane, const std::vector<AnyPair>& pairs, Verdict truth) {
-  const auto wrong =
-      std::count_if(pairs.begin(), pairs.end(), [&](const AnyPair& pair) { return decide_lane(lane, pair) != truth; });
+template <class Real>
+WrongOf wrong_of(const Lane& lane, const std::vector<BasicPair<Real>>& pairs, Verdict truth) {
+  const std::vector<Verdict> said = verdicts_of(block_of(lane), pairs);
+  const auto wrong = std::count_if(said.begin(), said.end(), [truth](Verdict verdict) { return verdict != truth; });
   return {static_cast<int>(wrong), static_cast<int>(pairs.size())};
 }
 
@@ -184,7 +184,7 @@ LaneExplanation account_of_foreign(const Lane& lane, Verdict verdict, const AnyP
   if (result.cause == Cause::contraction && !cuda::contraction_sites(lane).empty()) {
     result.contractions = blame_apart(lane, pair, cuda::most_seconds(lane));
     if (!result.contractions.why_not.empty())
-      result.experiment += "; which products matter is not known, for " + result.contractions.why_not;
+      result.experiment += "; which products matter is not known: " + result.contractions.why_not;
     const Lane* cpu = counterpart(lane, Variant::cpu);
     result.cpu_is_right = cpu && cpu->decide && decide_lane(*cpu, pair) == truth;
   }
@@ -208,13 +208,13 @@ LaneExplanation account_of_policy(const Lane& lane, Verdict verdict, const AnyPa
   result.settled = Settled::yes;
   result.cause = Cause::policy;
   if (verdict == Verdict::declined) {
-    result.experiment = "its error bounds leave a comparison open, and then it may decline";
+    result.experiment = "its error bounds leave a comparison open, so it may decline";
   } else if (decide_lane(zero, pair) == truth) {
     result.experiment = fmt::format("without {} it is right", lane.policy);
   } else {
     result.cause = cause_of(zero, pair, truth);
     result.settled = Settled::unknown;
-    result.experiment = fmt::format("without {} it is wrong as well, by this cause", lane.policy);
+    result.experiment = fmt::format("without {} it is wrong too, and this is the cause", lane.policy);
   }
   return result;
 }
@@ -225,12 +225,12 @@ bool is_by_convention(const Lane& lane, Verdict verdict, const AnyPair& pair) {
          visit(pair, [&](const auto& own) { return by_convention(lane, verdict, own, relation_of(own)); });
 }
 
-// "number 12 alone, had it been kept as a double, would make it right"; of no number alone: how many are rounded.
+// Says which number is beyond float32's range, or which one, kept as a double, would make the verdict right.
 std::string what_rounding_decides(const DoublePair& pair, const Pair& stored, Verdict truth) {
   const float* c = coordinates(stored);
   if (const auto beyond = std::find_if(c, c + kCoordinates, [](float x) { return std::isinf(x); });
       beyond != c + kCoordinates)
-    return fmt::format("number {}, {}, is beyond its largest", beyond - c + 1, coordinates(pair)[beyond - c]);
+    return fmt::format("number {}, {}, is beyond its range", beyond - c + 1, coordinates(pair)[beyond - c]);
   int rounded = 0;
   for (int i = 0; i < kCoordinates; ++i) {
     if (double{c[i]} == coordinates(pair)[i]) continue;
@@ -238,13 +238,13 @@ std::string what_rounding_decides(const DoublePair& pair, const Pair& stored, Ve
     DoublePair kept = in_doubles(stored);
     coordinates(kept)[i] = coordinates(pair)[i];
     if (relation_of(kept).verdict == truth)
-      return fmt::format("with number {} alone kept as {} the verdict would be {}", i + 1, coordinates(pair)[i],
+      return fmt::format("if only number {} were kept as {}, the verdict would be {}", i + 1, coordinates(pair)[i],
                          name(truth));
   }
-  return fmt::format("it rounds {} numbers, of which none alone decides", rounded);
+  return fmt::format("it rounds {} numbers; none of them decides alone", rounded);
 }
 
-// Of a lane in float32 that is right about the pair that float32 stores.
+// Explains a float32 lane that is right on the pair as float32 stores it, or whose pair float32 cannot store.
 LaneExplanation account_of_stored(const Lane& lane, Verdict verdict, const DoublePair& pair, const Pair& stored,
                                   Verdict truth) {
   LaneExplanation result{};
@@ -256,16 +256,16 @@ LaneExplanation account_of_stored(const Lane& lane, Verdict verdict, const Doubl
   result.settled = Settled::yes;
   result.experiment = what_rounding_decides(pair, stored, truth);
   result.beyond = !is_finite(stored);
-  result.slow = true;  // neighbours of what it was not given would tell nothing
+  result.slow = true;  // neighbours of a pair that the lane did not get would show nothing
   return result;
 }
 
-// What a lane decides of a pair: the truth of that is another where storing it in float32 changes the pair.
+// The pair as a lane decides it, and its truth, which may differ from the given pair's if float32 changes the pair.
 struct Own {
   AnyPair pair;
   Verdict truth;
 
-  // Whether the lane is right about this pair, or float32 cannot hold it, and the given pair's truth is another.
+  // Whether the given pair has another truth, and the lane is right on this pair or float32 cannot hold it.
   bool explains(Verdict verdict, Verdict truth_of_given) const {
     const bool ended = verdict == Verdict::crashed || verdict == Verdict::timed_out;
     return truth != truth_of_given && (verdict == truth || (truth == Verdict::declined && !ended));
@@ -284,14 +284,15 @@ bool same_run(const Lane& l, const Lane& r) {
   return !l.foreign && l.policy == r.policy && l.info == r.info && l.scalar == r.scalar && rounded(l) && rounded(r);
 }
 
-void add_surroundings(LaneExplanation& result, Verdict truth, int bits_needed, const Neighbours& neighbours) {
+template <class Real>
+void add_surroundings(LaneExplanation& result, Verdict truth, int bits_needed, const Neighbours<Real>& neighbours) {
   const Lane& lane = *result.lane;
   result.bits_needed = bits_needed;
   result.orders = wrong_of(lane, neighbours.orders, truth);
   result.mirrored = wrong_of(lane, neighbours.mirrored, truth);
   result.scalings = wrong_of(lane, neighbours.scalings, truth);
   for (std::size_t c = 0; c < kCoordinates; ++c) {
-    const std::vector<AnyPair>& nudged = neighbours.nudged[c];
+    const auto& nudged = neighbours.nudged[c];
     result.matters[c] =
         !neighbours.truth_stays[c] || wrong_of(lane, nudged, truth).wrong < static_cast<int>(nudged.size());
   }
@@ -395,26 +396,27 @@ Explanation explain(const AnyPair& pair, std::span<const Lane* const> lanes) {
     const Verdict verdict = decide_lane(*lane, pair);
     if (verdict != truth && is_by_convention(*lane, verdict, pair)) result.outside.push_back(lane);
   }
-  // Of the pair as float32 stores it, and of the pair itself.
-  struct Around {
-    std::optional<Neighbours> neighbours;
-    std::map<const AlgorithmInfo*, int> bits;
-  } around[2];
+  // The neighbours of the pair as float32 stores it, or of the pair itself.
+  std::tuple<std::optional<Neighbours<float>>, std::optional<Neighbours<double>>> around;
+  std::map<std::pair<const AlgorithmInfo*, bool>, int> bits;
   for (LaneExplanation& lane : result.lanes) {
     // If each verdict may time out or need a new process, only the pair itself is tried.
     if (lane.slow) continue;
     const AnyPair own = seen_by(*lane.lane, pair);
-    auto& [neighbours, bits] = around[own.floats ? 0 : 1];
-    if (!neighbours) neighbours.emplace(own, truth);
-    if (lane.by_experiment()) {
-      add_surroundings(lane, truth, 0, *neighbours);
-      continue;
+    int needed = 0;
+    if (!lane.by_experiment()) {
+      const std::pair key(lane.lane->info, own.floats.has_value());
+      auto found = bits.find(key);
+      if (found == bits.end())
+        found = bits.emplace(key, bits_needed(lane.lane->algorithm, lane.exactly, own, truth)).first;
+      const bool f32 = lane.lane->scalar == Scalar::f32;
+      needed = f32 || found->second == 0 ? found->second : std::max(found->second, 53);
     }
-    const bool f32 = lane.lane->scalar == Scalar::f32;
-    auto found = bits.find(lane.lane->info);
-    if (found == bits.end())
-      found = bits.emplace(lane.lane->info, bits_needed(lane.lane->algorithm, lane.exactly, own, truth)).first;
-    add_surroundings(lane, truth, f32 || found->second == 0 ? found->second : std::max(found->second, 53), *neighbours);
+    visit(own, [&]<class Real>(const BasicPair<Real>& stored) {
+      auto& neighbours = std::get<std::optional<Neighbours<Real>>>(around);
+      if (!neighbours) neighbours.emplace(stored, truth);
+      add_surroundings(lane, truth, needed, *neighbours);
+    });
   }
   return result;
 }

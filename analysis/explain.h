@@ -23,9 +23,9 @@
 namespace graze::analysis {
 
 // The first cause whose condition holds:
-//   stored       of doubles, for a lane in float32: the truth of the pair as float32 stores it is another, and the
-//                verdict is that, or float32 cannot hold a number. All other causes of such a lane are those on the
-//                stored pair
+//   stored       for a pair of doubles and a lane in float32: the pair as float32 stores it has another truth, and the
+//                lane gives that truth; or float32 cannot hold one of the numbers. All other causes of such a lane
+//                refer to the stored pair
 //   logic        the algorithm gives the wrong verdict in exact arithmetic too
 //   contraction  the same source without contraction, on the same kind of processor, is right
 //   fast math    the same, for a lane whose operations the compiler may rewrite or approximate
@@ -99,21 +99,21 @@ struct LaneExplanation {
   int decisive = -1;              // index in `steps` of the first deciding comparison; -1 if none is known
   std::vector<Step> then;         // the others: each goes wrong once those before it are corrected
   Blame contractions;             // only for a cuda-fma lane whose verdict contraction changes
-  bool cpu_is_right = false;      // of users' CUDA code with contractions: the cpu lane of the same source is right
+  bool cpu_is_right = false;      // for users' CUDA code with contractions: the cpu lane of the same source is right
   Settled settled;
   int bits_needed;  // the shortest mantissa, at least the lane's own, that gives the right verdict, as does every
                     // longer one up to kMostBits; 0 if there is none, or if it would be chance (see explain.cpp)
   std::array<bool, kCoordinates> matters;  // false: no nudge of the coordinate changes the truth or the lane's verdict
   WrongOf orders, mirrored, scalings;      // see neighbours.h
   std::string experiment;  // for lanes without steps (foreign, under a policy, or `stored`): the evidence for the cause
-  std::string line;        // of foreign code: "mine.cpp:9", the number in it that decides; empty if it is not known
+  std::string line;        // for foreign code: "mine.cpp:9", the line that decides; empty if it is not known
   bool slow = false;       // for the same lanes: other pairs time out or fail, so no neighbours were tried
-  bool beyond = false;     // of the cause `stored`: float32 cannot hold a number of the pair
+  bool beyond = false;     // for the cause `stored`: float32 cannot hold a number of the pair
 
   // Whether the account comes from experiments, because the lane has no steps.
   bool by_experiment() const { return lane->foreign || lane->under || cause == Cause::stored; }
 
-  // The comparison to report: the first deciding one. Null if there is none, and if the algorithm itself is to blame.
+  // The comparison to report: the first deciding one. Null if there is none, or if the algorithm itself is to blame.
   const Step* told() const { return decisive < 0 ? nullptr : &steps[static_cast<std::size_t>(decisive)]; }
 };
 
@@ -129,25 +129,25 @@ struct Explanation {
 Explanation explain(const AnyPair& pair, std::span<const Lane* const> lanes);
 
 // The same for each wrong lane, but without the pair's neighbours: bits_needed, matters, orders, mirrored and scalings
-// are not set. Faster than `explain` by far. Lanes that differ only by their convention (convention.h) are not wrong.
+// are not set. Much faster than `explain`. Lanes that differ only by their convention (convention.h) are not wrong.
 std::vector<LaneExplanation> accounts(const AnyPair& pair, Verdict truth, std::span<const Lane* const> lanes);
 
 // The cause that `explain` gives, without the rest. Takes 1/20 of the time of `explain`, or 1/3 for rounding.
 // Requires: the lane runs here or has a twin, and is wrong on the pair; truth is the pair's.
 Cause cause_of(const Lane& lane, const AnyPair& pair, Verdict truth);
 
-// Whether a result leaves the scalar's exponents when the lane's source runs without contraction. If false, the cause
-// is neither overflow nor underflow. The check is fast because it reads the processor's floating-point flags; it may
-// also return true where no result does. Returns false for foreign code and for lanes under a policy, for which this is
-// not known.
+// Whether a result leaves the scalar's exponent range when the lane's source runs without contraction. If false, the
+// cause is neither overflow nor underflow. The check is fast because it reads the processor's floating-point flags; it
+// may return true although no result leaves the range. Returns false for foreign code and for lanes under a policy, for
+// which this is not known.
 bool leaves_exponents(const Lane& lane, const AnyPair& pair);
 
 // Returns one English sentence about a wrong algorithm, for a bug report; empty if none of its lanes is wrong. It names
 // the lanes that are wrong in the same way, with the numbers of one of them.
 std::string sentence(const Explanation& explanation, const AlgorithmInfo* subject);
 
-// Returns one sentence for each wrong algorithm. A second one says what makes a user's CUDA code differ from cpu, where
-// rounding the products of the lines that it names, and no others, gives the verdict of cpu.
+// Returns one sentence for each wrong algorithm. For a user's CUDA code, a second one names the lines that make it
+// differ from cpu, if rounding only the products of these lines gives the verdict of cpu.
 std::vector<std::string> sentences(const Explanation& explanation);
 
 // Whether this is such a second sentence.

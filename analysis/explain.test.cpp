@@ -333,7 +333,8 @@ TEST(CauseOf, IsWhatExplainSays) {
   EXPECT_LT(in_range, wrong);
 }
 
-// The lanes that decide doubles: those in float32, by what it stores, and those in double that take them.
+// The lanes that decide pairs of doubles: those in float32, which decide what it stores, and those in double that take
+// such pairs.
 std::vector<const Lane*> lanes_of_doubles() {
   std::vector<const Lane*> result = lanes_here();
   std::erase_if(result, [](const Lane* lane) {
@@ -391,13 +392,13 @@ TEST(ExplainDoubles, TheNumberThatDecidesIsNamed) {
   const LaneExplanation& lane = lane_of(near, "guigue_devillers_2003/f32/cpu");
   EXPECT_EQ(lane.cause, Cause::stored);
   EXPECT_EQ(lane.settled, Settled::yes);
-  EXPECT_EQ(lane.experiment, "with number 12 alone kept as 1.0000000000009095 the verdict would be disjoint");
-  EXPECT_NE(sentence(near, lane.lane->info).find("float32 stores another pair, of which that is right"),
+  EXPECT_EQ(lane.experiment, "if only number 12 were kept as 1.0000000000009095, the verdict would be disjoint");
+  EXPECT_NE(sentence(near, lane.lane->info).find("float32 stores another pair, for which that is right"),
             std::string::npos);
   for (const LaneExplanation& other : near.lanes) EXPECT_EQ(other.lane->scalar, Scalar::f32);
   pair.b[1].z = 1e300;
   const Explanation large = explain(pair, lanes_of_doubles());
-  EXPECT_EQ(lane_of(large, "guigue_devillers_2003/f32/cpu").experiment, "number 15, 1e+300, is beyond its largest");
+  EXPECT_EQ(lane_of(large, "guigue_devillers_2003/f32/cpu").experiment, "number 15, 1e+300, is beyond its range");
 }
 
 }  // namespace

@@ -229,7 +229,7 @@ std::string reason_by_experiment(const LaneExplanation& lane) {
       case Cause::policy:
         return "the policy";
       case Cause::stored:
-        return lane.beyond ? "float32 cannot store the pair" : "float32 stores another pair, of which that is right";
+        return lane.beyond ? "float32 cannot store the pair" : "float32 stores another pair, for which that is right";
       default:
         return "rounding";
     }
@@ -346,7 +346,7 @@ std::vector<std::string> by_toolchain(const Explanation& explanation, const Algo
 
 constexpr std::string_view kDiffersFromCpu = " differs from cpu by contraction at ";
 
-// What makes a user's CUDA code differ from the same code on the CPU, if the products of some lines are known to.
+// Names the lines whose products make a user's CUDA code differ from the same code on the CPU; empty if not known.
 std::string difference_from_cpu(const LaneExplanation& lane, Verdict of_cpu) {
   const std::vector<cuda::ContractionSite>& sites = lane.contractions.sites;
   if (!lane.cpu_is_right || !lane.contractions.lines_decide || sites.empty()) return "";

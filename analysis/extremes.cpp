@@ -11,7 +11,7 @@ namespace graze::analysis {
 namespace {
 
 struct Limits {
-  double least, most;  // the limit for being as right, by the bounds of the origin's share
+  double least, most;  // bounds of the share up to which a lane is as right, from the bounds of the origin's share
 };
 
 Limits limits_of(const ErrorsAt& origin) {
@@ -21,7 +21,7 @@ Limits limits_of(const ErrorsAt& origin) {
 
 bool is_right(const ErrorsAt& at, const Limits& limits) { return share_of(at.errors, at.pairs).high <= limits.least; }
 
-// points: from the origin on.
+// points: from the origin outwards.
 template <class Points>
 RightSide side_of(const Points& points, const Limits& limits) {
   RightSide side{points.front().exponent, points.back().exponent, {}};
@@ -48,7 +48,7 @@ std::optional<RightRange> right_range(std::span<const ErrorsAt> points) {
   RightRange range{*origin, is_right(*origin, limits),
                    side_of(std::vector(std::make_reverse_iterator(origin + 1), enough.rend()), limits),
                    side_of(std::vector(origin, enough.end()), limits)};
-  for (const ErrorsAt& at : points) {  // also those with too few pairs to say anything
+  for (const ErrorsAt& at : points) {  // including points with too few pairs to say anything
     if (at.pairs == 0) continue;
     range.down.last = std::min(range.down.last, at.exponent);
     range.up.last = std::max(range.up.last, at.exponent);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far from ordinary pairs may be before a lane errs more, shown by its errors at each power of two.
+// How far pairs may be from ordinary ones before a lane errs more, shown by its errors at each power of two.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace graze::analysis {
 
-// Errors on the pairs at 2^exponent, or from there on.
+// Errors on the pairs at 2^exponent, or from there to the next exponent.
 struct ErrorsAt {
   int exponent = 0;
   std::uint64_t errors = 0, pairs = 0;
@@ -16,7 +16,7 @@ struct ErrorsAt {
 
 inline constexpr std::uint64_t kFewPairs = 100;  // fewer pairs at an exponent show nothing
 inline constexpr double kRightShare = 1e-3;      // a lane that errs on at most this share is right
-inline constexpr double kAsRight = 2;            // a lane that errs at most so many times as often is as right
+inline constexpr double kAsRight = 2;            // as right as another: errs at most this many times as often
 
 // What is shown in one direction from the origin.
 struct RightSide {

@@ -42,7 +42,7 @@ TEST(RightRange, TakesALaneThatHardlyErrsForRight) {
   EXPECT_FALSE(range->down.worse);
 }
 
-// Exponents with few pairs show nothing: neither do they end a range, nor are they its origin.
+// Exponents with few pairs show nothing: they neither end a range nor serve as its origin.
 TEST(RightRange, LeavesOutFewPairs) {
   EXPECT_FALSE(right_range(Points{}));
   EXPECT_FALSE(right_range(Points{{0, 50, kFewPairs - 1}}));

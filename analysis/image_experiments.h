@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Experiments on foreign code with images of the pair, which have the same truth: what they show where nothing rounds,
-// and where something may.
+// Experiments on foreign code with images of the pair, which have the same truth: one kind for pairs on which nothing
+// rounds, one for pairs on which something may.
 #pragma once
 
 #include <functional>
@@ -16,7 +16,7 @@ namespace graze::analysis {
 template <class Real>
 using Ask = std::function<std::vector<bool>(const std::vector<BasicPair<Real>>&)>;
 
-// Whether the coordinates are so small integers, times a power of two, that no sum of 32 products of up to
+// Whether the coordinates are integers times a power of two, small enough that no sum of 32 products of up to
 // kUsualFactors coordinates or differences rounds: up to 8 in float32, up to 256 in float64.
 template <class Real>
 bool has_small_integers(const BasicPair<Real>& pair, Scalar scalar);
@@ -25,15 +25,15 @@ bool has_small_integers(const BasicPair<Real>& pair, Scalar scalar);
 template <class Real>
 bool holds_determinants(const BasicPair<Real>& pair, Scalar scalar);
 
-// The cause where these do not round in the widest arithmetic in which the code is known to be wrong. Nothing if the
-// lane is wrong in other orders of the pair when it is scaled by 3 and 5, because then quotients or roots may decide;
-// or when an axis is added to another, unless products of kMostFactors do not round either. Rounded
-// quotients may remain: 18 of 18,237 causes of published algorithms on such pairs were, all of interval_overlap.
-// Requires: has_small_integers; the lane is wrong on the pair at all larger scales.
+// The cause, if such products do not round in the widest arithmetic in which the code is known to be wrong. Nothing if
+// scaling the pair by 3 or 5 changes the orders in which the lane is wrong, because then quotients or roots may decide.
+// Unless products of kMostFactors do not round either, adding one axis to another must not change these orders. Rounded
+// quotients may remain: they were behind 18 of 18,237 causes of published algorithms on such pairs, all of
+// interval_overlap.   Requires: has_small_integers; the lane is wrong on the pair at all larger scales.
 template <class Real>
 std::optional<Experiment> without_rounding(const BasicPair<Real>& pair, Scalar widest, const Ask<Real>& ask);
 
-// The other orders and mirror images of the pair on which the lane is wrong; of many, kMostImages at even distances.
+// The other orders and mirror images of the pair on which the lane is wrong; at most kMostImages, evenly spaced.
 template <class Real>
 std::vector<BasicPair<Real>> wrong_images(const BasicPair<Real>& pair, const Ask<Real>& ask);
 

@@ -28,7 +28,7 @@ struct Turn {
   std::string text() const { return fmt::format("scaled by 2^{} it is right, by 2^{} wrong", right, wrong); }
 };
 
-// What scales in range show. right: whether the lane is right at the first one, and so at all if there is no turn.
+// What the scales in range show. right: whether the lane is right at the first one; without a turn, it is so at all.
 struct ScaleSearch {
   std::optional<Turn> turn;
   bool right;
@@ -66,14 +66,13 @@ class ImageVerdicts {
     return verdicts;
   }
 
-  // For each pair, whether the block is right. Pairs that were not tried, because others took all of their time, are
-  // false; until_wrong: so are those after a wrong one.
+  // For each pair, whether the block is right. It is false for pairs that were not tried because too many others timed
+  // out, and with until_wrong for those after the call with the first wrong one.
   std::vector<bool> asked(const DecideBlock& block, const std::vector<PairOf>& pairs, bool until_wrong = false) const {
-    constexpr std::size_t kAtOnce = foreign_at_once(false);
     std::vector<bool> right(pairs.size());
-    for (std::size_t begin = 0; begin < pairs.size() && late_ < kMostLate; begin += kAtOnce) {
-      const std::vector<Verdict> verdicts =
-          said(block, std::span(pairs).subspan(begin, std::min(kAtOnce, pairs.size() - begin)));
+    for (std::size_t begin = 0, size; begin < pairs.size() && late_ < kMostLate; begin += size) {
+      size = std::min(foreign_at_once(asked_ >= 8 && late_ == 0 && !until_wrong), pairs.size() - begin);
+      const std::vector<Verdict> verdicts = said(block, std::span(pairs).subspan(begin, size));
       std::transform(verdicts.begin(), verdicts.end(), right.begin() + static_cast<std::ptrdiff_t>(begin),
                      [this](Verdict verdict) { return verdict == truth_; });
       if (until_wrong && std::any_of(verdicts.begin(), verdicts.end(), [this](Verdict v) { return v != truth_; }))
@@ -139,7 +138,7 @@ class ImageVerdicts {
     return search;
   }
 
-  // Whether the block is wrong at all of some scales from 1 to the last.   Requires: last > 0
+  // Tries some scales from 1 to the last: whether the block is wrong at all of them.   Requires: last > 0
   LargerScales until(const DecideBlock& block, int last) const {
     const auto larger = tried(block, {1, last}, 12);
     return {std::none_of(larger.begin(), larger.end(), [](const auto& one) { return one.second; }),
@@ -176,7 +175,7 @@ class ImageVerdicts {
   const Lane& lane_;
   const PairOf& pair_;
   const Verdict truth_;
-  mutable int asked_ = 0, late_ = 0;  // verdicts; those that took all of their time
+  mutable int asked_ = 0, late_ = 0;  // verdicts asked for; those that timed out
   mutable std::optional<subjects::ChangedCode> doubles_;
   mutable Turn last_turn_{0, 0};
 };

@@ -24,14 +24,14 @@ constexpr std::uint64_t kBlock = 32;  // pairs; with their images some 2,300
 
 // Why rounding cannot break them: changing signs, scaling by a power of two, and exchanging the operands of an
 // operation all leave its rounding as it is.
-//   scale      all sums and comparisons have terms of one degree in the coordinates. The thesis's two algorithms do
-//              not: they add a distance to one that is multiplied by the normal's length.
+//   scale      all sums and comparisons have terms of one degree in the coordinates. Not so in the thesis's two
+//              algorithms, which add a distance to one that is multiplied by the normal's length.
 //   mirror     both sides of a comparison keep their values, or both change sign. Not so in guigue_devillers_2003,
 //              which chooses its determinants by the triangles' orientation.
 //   translate  coordinates are used only in differences, which do not change.
 //   swap       the axes of both triangles are tried; those of two edges change sign.
-// No algorithm keeps its verdicts when its vertices or axes are reordered, because a sum of three terms rounds by their
-// order.
+// No algorithm keeps its verdicts when vertices or axes are reordered, because the rounding of a sum of three terms
+// depends on their order.
 struct Claims {
   std::string_view algorithm;
   std::vector<Invariant> invariants;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts how often a lane's verdict changes although the question is the same, and lists the invariants that each
-// algorithm claims.
+// Counts how often a lane's verdict changes although it should not, and lists the invariants that each algorithm
+// claims.
 #pragma once
 
 #include <array>
@@ -48,9 +48,9 @@ std::vector<BasicPair<Real>> images(Invariant invariant, const BasicPair<Real>& 
 // Whether these verdicts on a pair and its image break the invariant.
 bool breaks(Invariant invariant, Verdict of_pair, Verdict of_image);
 
-// Whether the lane's algorithm claims the invariant: the code is written so that rounding cannot break it. Claims are
-// for lanes without a policy that round each operation as written, and for pairs on which nothing over- or underflows,
-// neither on the pair nor on its image. invariants.test.cpp checks them.
+// Whether the lane's algorithm claims the invariant: the code is written so that rounding cannot break it. Claims apply
+// to lanes without a policy that round each operation as written, if nothing overflows or underflows on the pair or its
+// image. invariants.test.cpp checks them.
 bool claims(const Lane& lane, Invariant invariant);
 
 // Whether InvariantCount::in_range can be computed for the lane.
@@ -67,8 +67,8 @@ struct InvariantBroken : std::runtime_error {
 struct InvariantCount {
   std::uint64_t pairs = 0;    // that have an image, and that the lane's convention does not leave open
   std::uint64_t changed = 0;  // on which the verdict on some image breaks the invariant
-  // Of these, pairs on which nothing over- or underflows if the lane's source runs without contraction, neither on the
-  // pair nor on the image that breaks the invariant. Known for published lanes without a policy; 0 for others.
+  // How many of these have no overflow or underflow, on the pair or on the image that breaks the invariant, if the
+  // lane's source runs without contraction. Known for published lanes without a policy; 0 for others.
   std::uint64_t in_range = 0;
   InvariantCount& operator+=(const InvariantCount& other);
 };
@@ -93,19 +93,19 @@ bool oracle_intersects(const AnyPair& pair);
 
 struct InvariantSpec {
   std::vector<const Lane*> lanes;
-  std::vector<DecideBlock> on_host;         // of each: the host lane or its twin
-  std::vector<strata::PairSource> sources;  // of doubles: lanes in float take what float32 stores of a pair
+  std::vector<DecideBlock> on_host;         // for each: the host lane or its twin
+  std::vector<strata::PairSource> sources;  // for doubles, lanes in float take what float32 stores of a pair
   int threads = 0;                          // 0: one on each core
-  // Whether l is simpler than r. The simplest case is kept; of equally simple ones, the first.
+  // Whether l is simpler than r. The simplest case is kept; among equally simple ones, the first.
   std::function<bool(const AnyPair& l, const AnyPair& r)> simpler;
-  DecideBlock exact = find_lane("exact/f64/cpu")->decide;              // asked of every image
-  std::function<bool(const AnyPair&)> intersects = oracle_intersects;  // asked of every image of some pairs:
-  std::uint64_t oracle_every = 8;                                      // of the first of so many
+  DecideBlock exact = find_lane("exact/f64/cpu")->decide;              // decides every image
+  std::function<bool(const AnyPair&)> intersects = oracle_intersects;  // decides every image of some pairs:
+  std::uint64_t oracle_every = 8;                                      // the first of every oracle_every
 };
 
 struct Invariants {
   std::vector<InvariantsOfLane> lanes;
-  // All of them decided by the exact decision. A pair of doubles and what float32 stores of it are two.
+  // All are decided by the exact decision. A pair of doubles and what float32 stores of it count as two.
   std::uint64_t pairs = 0, images = 0;
   std::uint64_t by_oracle = 0, its_images = 0;  // and these by CGAL and GMP
 };

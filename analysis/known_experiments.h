@@ -6,7 +6,7 @@
 
 namespace graze::analysis {
 
-// Like `experiment`; of a lane in the lane table, a result that this process had before for the pair is given again.
+// Like `experiment`, but for a lane in the lane table it returns the result that this process already has for the pair.
 // Thread-safe.
 Experiment known_experiment(const Lane& lane, Verdict verdict, const AnyPair& pair, Verdict truth);
 

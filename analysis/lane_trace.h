@@ -32,12 +32,12 @@ AnyPair seen_by(const Lane& lane, const AnyPair& pair);
 // Whether it is an exact lane that decides the pair itself, not what float32 stores of it.
 inline bool is_never_wrong(const Lane& lane, const AnyPair& pair) { return lane.exact && !decides_stored(lane, pair); }
 
-// The lane's verdicts on the pairs, by its own block or its twin's; each on what it sees of the pair.
+// The lane's verdicts on the pairs as it sees them, from its own block or its twin's.
 std::vector<Verdict> verdicts_seen_by(const Lane& lane, const DecideBlock& block, std::span<const Pair> pairs);
 std::vector<Verdict> verdicts_seen_by(const Lane& lane, const DecideBlock& block, std::span<const DoublePair> pairs);
 
-// How many pairs to ask foreign code about at once. Each may take all of its time, so they are few until it has
-// answered some before its time was up.
+// How many pairs to ask foreign code about at once. Each may time out, so they are few until it has answered some in
+// time.
 constexpr std::size_t foreign_at_once(bool prompt) { return prompt ? 64 : 8; }
 
 // Replays the lane on the pair. A lane whose operations the compiler rewrites has no evidence.

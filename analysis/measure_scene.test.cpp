@@ -123,7 +123,7 @@ TEST(MeasureScene, KindsAndMarginsAreThoseOfThePairs) {
   EXPECT_NEAR(file.margins.at(0), 4.0 / 6, 1e-5);  // the neighbours and the coplanar pairs
 }
 
-// A survey in metres to the centimetre, in coordinates of which float32 has steps of half a metre.
+// A survey in metres to the centimetre, at coordinates where float32 has steps of half a metre.
 TEST(MeasureScene, DoublesAreMeasuredAsTheyAre) {
   const auto at = [](int i, int j) -> Vec3<double> {
     const auto centimetres = [](double x) { return std::round(x * 100) / 100; };

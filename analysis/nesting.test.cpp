@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nestings against a computation in rational numbers, and on images of pairs.
+// Compares nestings with a computation in rational numbers, and on images of pairs.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -80,7 +80,8 @@ TEST(Nesting, IsThatOfRationalNumbers) {
   }
 }
 
-// It does not depend on the numbers that decide it, on scale, or on the order of vertices; swapped triangles swap it.
+// The nesting does not depend on the number type that decides it, on scale, or on the order of vertices. Swapping the
+// triangles swaps it.
 TEST(Nesting, IsThatOfTheImages) {
   std::map<Nesting, int> seen;
   for (const strata::StratumInfo& stratum : strata::kStrata) {

@@ -14,7 +14,7 @@
 namespace graze::analysis {
 namespace {
 
-constexpr std::size_t kMostComparisons = 1 << 14;  // of a run; later ones are not compared
+constexpr std::size_t kMostComparisons = 1 << 14;  // per run; later ones are not compared
 
 // Counts are passed between processes as raw memory.
 static_assert(std::is_trivially_copyable_v<LineApart>);
@@ -45,7 +45,7 @@ class OperandCounts {
     result_.verdict += differs;
     for (std::size_t i = 0; i < std::min(rounded_run_.count, fused_run_.count); ++i) {
       const cuda::Comparison &l = rounded_run_.made[i], &r = fused_run_.made[i];
-      if (l.ptx_line != r.ptx_line) return;  // the runs parted by a test that is no comparison of numbers
+      if (l.ptx_line != r.ptx_line) return;  // the runs diverged at a test that compares no numbers
       LineApart& line = result_.lines[by_ptx_line_.at(l.ptx_line)];
       count_operands(line, l, r);
       if (l.outcome == r.outcome) continue;

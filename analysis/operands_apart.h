@@ -19,12 +19,12 @@ namespace graze::analysis {
 struct LineApart {
   cuda::SourceLine at, from;    // as in cuda::ComparisonSite
   std::uint64_t compared = 0;   // comparisons
-  std::uint64_t differs = 0;    // an operand's bits do: it is the sum of the next four
+  std::uint64_t differs = 0;    // an operand's bits differ; the sum of the next four
   std::uint64_t zero_sign = 0;  // only signs of zeros
   std::uint64_t not_finite = 0;
   // The operand that differs by more ulps is lower, or higher, with contraction, by 2^k to 2^(k+1) ulps.
   std::array<std::uint64_t, 64> below = {}, above = {};
-  std::uint64_t sign = 0;     // that of left minus right differs
+  std::uint64_t sign = 0;     // the sign of left minus right differs
   std::uint64_t outcome = 0;  // goes the other way
   std::uint64_t verdict = 0;  // …and the verdict differs
 };
@@ -32,10 +32,10 @@ struct LineApart {
 struct OperandsApart {
   std::uint64_t pairs = 0, verdict = 0;  // finite ones; those whose verdicts differ
   std::vector<LineApart> lines;          // in program order
-  std::string why_not;                   // the runs did not end in order; there are no counts then
+  std::string why_not;                   // why the runs did not end in order; then there are no counts
 };
 
-// Whether the lanes are a user's CUDA source without contraction, then with it, and a twin shows its comparisons.
+// Whether the lanes are a user's CUDA source without and with contraction, and a twin shows its comparisons.
 bool shows_operands(const Lane& rounded, const Lane& fused);
 
 // Runs the first `pairs` pairs of each source in a separate process, because the code may crash or hang.

@@ -41,7 +41,7 @@ BasicPair<Real> moved(const BasicPair<Real>& pair, Extreme extreme, int k) {
   return is_finite(result) ? result : pair;
 }
 
-// What reading the clock adds to a time: some nanoseconds a pair, if only few are timed.
+// What reading the clock adds to a time: some nanoseconds per pair, if few pairs are timed.
 double nanoseconds_of_the_clock() {
   static const double least = [] {
     double found = HUGE_VAL;
@@ -118,7 +118,7 @@ std::string why_not_timed(const Lane& lane) {
 std::vector<std::optional<Cost>> costs_of(std::span<const Lane* const> lanes, const strata::PairBlock& pairs,
                                           int passes, Calls calls) {
   std::vector<std::vector<double>> taken(lanes.size());
-  std::vector<bool> failed(lanes.size());  // then it may take seconds on a pair, and is not asked again
+  std::vector<bool> failed(lanes.size());  // a lane that failed may take seconds per pair, and is not asked again
   for (int pass = 0; pass < passes; ++pass) {
     for (std::size_t l = 0; l < lanes.size(); ++l) {
       const Lane& lane = *lanes[l];

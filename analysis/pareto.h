@@ -13,7 +13,7 @@
 
 namespace graze::analysis {
 
-// Nanoseconds a pair on one core: the median of passes in which all lanes take turns, and the quartiles.
+// Nanoseconds per pair on one core: the median of passes in which all lanes take turns, and the quartiles.
 struct Cost {
   double low = 0, middle = 0, high = 0;
 };
@@ -21,7 +21,7 @@ struct Cost {
 // How many pairs a call decides: as many as there are, or one, as most programs call such a test.
 enum class Calls { of_blocks, of_one };
 
-// Processor time of this thread: time in which other programs run does not count. They still slow it, by cache and
+// Processor time of this thread, without the time in which other programs run. They still slow it, through cache and
 // clock.
 double processor_nanoseconds();
 
@@ -53,15 +53,15 @@ struct Offer {
   PolicyErrors errors;
   std::optional<Cost>
       near = std::nullopt,
-      far = std::nullopt;  // of pairs in a core's cache, and from memory; or on the device, and with copies
+      far = std::nullopt;  // near: pairs in a core's cache, or on the device. far: from memory, or with copies
   bool dominated = false;  // by `near`
   std::optional<cuda::KernelNeeds> needs = std::nullopt;  // on a device
-  std::optional<AnyPair> failure = std::nullopt;          // small, on which the lane is wrong
-  std::optional<Cost> alone = std::nullopt;               // on a core, of calls that decide one pair each
-  std::string why_not_timed = {};                         // without costs
+  std::optional<AnyPair> failure = std::nullopt;          // a small pair on which the lane is wrong
+  std::optional<Cost> alone = std::nullopt;               // on a core, with calls that decide one pair each
+  std::string why_not_timed = {};                         // if there are no costs
 };
 
-// Whether another lane costs no more and errs no more, and one of both less. A declined pair counts as an error,
+// Whether another lane costs no more and errs no more, and costs less or errs less. A declined pair counts as an error,
 // because it has no verdict. Lanes without this cost take no part.
 bool is_dominated(const Offer& offer, const std::vector<Offer>& offers, std::optional<Cost> Offer::*by);
 void mark_dominated(std::vector<Offer>& offers);
@@ -92,7 +92,7 @@ struct ExtremeCurve {
   std::vector<ErrorsAt> errors() const;
 };
 
-// The results of one machine; those of two are never mixed.
+// The results of one machine; results of different machines are never mixed.
 struct Pareto {
   std::string machine;
   bool on_device = false;

@@ -81,7 +81,7 @@ TEST(Extremes, AreWhatTheySay) {
   }
 }
 
-// Moller's epsilon fits one scale only. Without it, only over- and underflow limit the algorithm's scale.
+// Moller's epsilon fits one scale only. Without it, only overflow and underflow limit the scale.
 TEST(Extremes, FindTheScaleOfAnAbsoluteEpsilon) {
   const auto sources = strata::stratum_sources(4, 4'000, {"uniform"});
   const Lane& zero = *find_lane("moller_1997/f32/cpu");
@@ -101,7 +101,7 @@ TEST(Extremes, FindTheScaleOfAnAbsoluteEpsilon) {
   EXPECT_LT(*of_none->down.worse, -8);
 }
 
-// What the range says of some pairs is true of five times as many fresh ones: at its ends the lane is as right as at
+// What the range says about some pairs holds on five times as many fresh ones: at its ends the lane is as right as at
 // 2^0, and where it is shown to err more, it does.
 TEST(Extremes, AreTrueOfFreshPairs) {
   const std::vector<std::string> lanes = {"moller_1997/f32/cpu", "interval_overlap/f32/cpu", "separating_axes/f64/cpu"};

@@ -80,7 +80,7 @@ TEST_P(PolicyOverStratum, AlgorithmsAreRightWithoutRoundingWhereTheySaySo) {
 INSTANTIATE_TEST_SUITE_P(Strata, PolicyOverStratum, testing::ValuesIn(strata::kStrata),
                          [](const auto& row) { return std::string(row.param.id); });
 
-// projected_sat does not claim it, and this test confirms that.
+// projected_sat does not make that claim, and this test confirms that it would be false.
 TEST(PolicyLanes, AnAlgorithmThatIsWrongWithoutRoundingIsFound) {
   int wrong = 0;
   for (const Pair& pair : drawn(strata::Stratum::uniform, 300)) {

@@ -53,7 +53,7 @@ struct Size {
     }
   }
 
-  bool is_zero() const { return high == -kNone; }  // all coordinates are
+  bool is_zero() const { return high == -kNone; }  // whether all coordinates are zero
 
  private:
   void add_difference(double difference) {

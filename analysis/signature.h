@@ -40,7 +40,7 @@ struct Signature {
   std::vector<WrongLane> wrong_lanes;  // in the order of the lane table
 
   bool wrong() const;  // some lane is wrong; declined does not count
-  // The mark of one of the subject's lanes; '.' also if the lane is right or did not run.
+  // The mark of one of the subject's lanes; '.' if the lane is right or did not run.
   char mark_of(std::string_view lane_within_subject) const;
   auto operator<=>(const Signature&) const = default;
 };

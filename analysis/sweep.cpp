@@ -29,7 +29,7 @@ struct Rows {
   std::size_t words;
   std::vector<std::uint64_t> intersects, declined;
   std::vector<std::uint64_t> excused;  // pairs on which a user's code differs from the truth by its convention
-  std::vector<Counts> foreign;         // of these pairs, and of those on which the code failed
+  std::vector<Counts> foreign;         // counts of these pairs, and of those on which the code failed
   std::vector<bool> is_foreign;
 
   Rows(std::size_t rows, std::size_t pairs)
@@ -48,7 +48,7 @@ struct Rows {
     return judge(yes(row, word), none(row, word), truth.yes(0, word), count, is_foreign[row]);
   }
 
-  // Looks at the pairs on which a user's code is not right. in_doubles: it decided the doubles.
+  // Classifies the pairs on which a user's code is not right. in_doubles: it decided the pairs as doubles.
   void look_at_foreign(std::size_t row, const LaneDecider& decider, const Rows& truth, const strata::PairBlock& pairs,
                        bool in_doubles) {
     is_foreign[row] = true;
@@ -147,11 +147,11 @@ void add(const SourceBlock& block, const Rows& truth, const Rows& lane, NotRight
 // Policies that are decided together, one after the other in the list of policies.
 struct Together {
   std::size_t first;
-  LaneDecider one;  // of a single policy
-  Ladders ladders;  // of several
+  LaneDecider one;  // for a single policy
+  Ladders ladders;  // for several
   std::vector<Epsilons> rungs;
 
-  // Of doubles, a lane that takes float32 alone decides what float32 stores.
+  // For pairs of doubles, a lane that takes only float32 decides what float32 stores.
   void decide(const strata::PairBlock& pairs, const Rows& truth, Rows& rows) const {
     const bool in_doubles = pairs.in_doubles() && (ladders ? bool(ladders.doubles) : one.block.decides_doubles());
     std::uint64_t* const intersects = &rows.intersects[first * rows.words];
@@ -228,8 +228,7 @@ bool rises(const Epsilons& first, const Epsilons& second) {
   return first.any_relative() == second.any_relative();
 }
 
-// Divides the policies into as few ladders as their order allows. A sweep names the tolerances of a curve one after the
-// other.
+// Divides the policies into as few ladders as their order allows. A sweep lists the tolerances of a curve together.
 std::vector<Together> parts_of(const Lane& lane, Policies policies) {
   std::vector<Together> parts;
   for (std::size_t p = 0; p < policies.size(); ++p) {

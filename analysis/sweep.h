@@ -25,7 +25,7 @@ struct PairPlace {
 struct PolicyErrors : Counts {
   std::string policy;  // empty: zero
   std::uint64_t pairs = 0;
-  std::uint64_t fixed = 0, broken = 0;  // right, and the lane under no policy wrong or without an answer; or otherwise
+  std::uint64_t fixed = 0, broken = 0;  // right where the lane under no policy is not; not right where that lane is
   std::optional<PairPlace> first_fixed, first_broken;
 
   double share_not_right() const {
@@ -83,8 +83,8 @@ strata::PairSource changed(strata::PairSource source, const Change& change) {
 // The errors under each policy, on all pairs of the sources.
 using Sweep = std::function<std::vector<PolicyErrors>(Policies policies, Sources sources)>;
 
-// What decides under a policy. foreign: the lane of a user's code that it belongs to, whose failures and whose
-// convention are counted; null for lanes of ours.
+// What decides under a policy. foreign: the lane of a user's code that it belongs to, whose failures and convention are
+// counted; null for our own lanes.
 struct LaneDecider {
   DecideBlock block;
   const Lane* foreign;
@@ -121,7 +121,7 @@ struct NotRightPairs {
 // Runs on the host; a CUDA lane runs as its twin. The result does not depend on the number of threads.
 // Requires: a lane with a host lane or a twin under each policy.
 NotRightPairs not_right_pairs(const Lane& lane, Policies policies, Sources sources, int threads = 0);
-// The same of any lane.   decide: as for host_sweep.
+// The same for any lane.   decide: as for host_sweep.
 NotRightPairs not_right_pairs(const DecideUnder& decide, Policies policies, Sources sources, int threads = 0);
 
 // How two published lanes compare under each policy, on all pairs of the sources.

@@ -71,7 +71,7 @@ TEST(Sweep, CountsWhatEachPolicyGetsWrong) {
   }
 }
 
-// Of doubles the truth is CGAL's, and a lane in float decides what float32 stores.
+// For doubles the truth is CGAL's, and a lane in float decides what float32 stores.
 TEST(Sweep, CountsPairsOfDoublesByTheirOwnTruth) {
   const auto sources = drawn(3, 400, {"near_vertex_face", "stored"}, PairTypes::f64);
   const std::vector<std::string> policies = {"abs:1e-6", "rel:100", "bound"};

@@ -20,8 +20,8 @@ struct JudgedBlock {
   std::span<const std::uint64_t> truth;    // intersects
   std::span<const Bucket> buckets;         // of each pair's margin
   std::span<const LaneVerdicts> verdicts;  // of each lane under test
-  // Of pairs of doubles: the pairs whose verdict differs once they are stored in float32, as lanes in float32 decide
-  // them, or which float32 cannot store. Else empty.
+  // For pairs of doubles: those whose truth differs once float32 stores them, as lanes in float32 decide them, and
+  // those that float32 cannot store. Otherwise empty.
   std::span<const std::uint64_t> changed_by_storing = {};
 };
 
@@ -50,8 +50,8 @@ class Tally {
   void add(const Tally& other);
   void add(Bucket b, std::uint64_t pairs, std::uint64_t intersects);
   void add(Bucket b, int lane, const LaneCounts& counts);
-  // Moves one pair from the count of that verdict to those by convention, because the lane's convention excludes it.
-  // stored: it was counted as stored too.
+  // Moves one pair from the count of that verdict to the count by convention, because the lane's convention excludes
+  // it.   stored: it was counted as stored too.
   void excuse(Bucket b, int lane, Verdict verdict, bool stored = false);
 
   int lane_count() const { return static_cast<int>(cpu_twin_.size()); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The oracle's two decisions and the exact decision, of a pair alone and of blocks, over the strata of doubles: they
-// must always agree.
+// Over the strata of doubles, the oracle's two decisions and the exact decision must always agree. The exact decision
+// decides single pairs and blocks.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 20261127;
 
-// Of each stratum. GRAZE_PAIRS asks for another number: a machine with many cores takes 10^8 of all.
+// Pairs of each stratum. GRAZE_PAIRS sets another number: 3,600,000 makes 10^8 pairs in all.
 std::uint64_t pairs_wanted() {
   const char* text = std::getenv("GRAZE_PAIRS");
   return text ? std::stoull(text) : 100'000;

@@ -54,7 +54,7 @@ TEST_P(EveryStratum, TheOraclesTwoDecisionsAgree) {
 
 struct Decided {
   std::vector<Pair> pairs;
-  std::vector<std::uint64_t> intersects, declined;  // a bit for each
+  std::vector<std::uint64_t> intersects, declined;  // a bit for each pair
 };
 
 // Decides with the exact decision, several pairs side by side.
@@ -170,7 +170,7 @@ TEST_P(EveryStratum, BucketsSideBySideAreRightWhereTheyAreSettled) {
       if (buckets[i] == kOpenBucket) continue;
       ASSERT_EQ(buckets[i], expected[i]) << i << " by " << hwy::TargetName(all & -all);
     }
-    EXPECT_EQ(buckets[kPairs], 100) << "written behind the end";
+    EXPECT_EQ(buckets[kPairs], 100) << "written past the end";
     EXPECT_TRUE(open == kPairs || open == least) << open << " by " << hwy::TargetName(all & -all);
     fewest = std::min(fewest, open);
   }
@@ -178,7 +178,7 @@ TEST_P(EveryStratum, BucketsSideBySideAreRightWhereTheyAreSettled) {
   EXPECT_EQ(fewest, least);
 }
 
-// A block decides each pair as a call of that pair alone does, also where the block's code works on several at a time.
+// A block decides each pair as a call for that pair alone does, even if the block's code works on several at a time.
 TEST_P(EveryStratum, BlocksOfHostLanesAreDecidedAsEachPairAlone) {
   constexpr std::size_t kPairs = 20'003;
   const std::vector<Pair> pairs = drawn_and_decided(kSeed + 4, GetParam().stratum, kPairs).pairs;

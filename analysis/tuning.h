@@ -18,18 +18,18 @@ namespace graze::analysis {
 // The pairs times 2^k; pairs that cannot be scaled exactly stay as they are.
 std::vector<strata::PairSource> scaled(Sources sources, int k);
 
-// Upper 95 % confidence bound of the rate of `count` in `of` cases: at this rate, so few cases have a chance of 5 %.
+// Upper 95 % confidence bound of the rate of `count` in `of` cases: at this rate, a count this low has a chance of 5 %.
 // Rounded outward. Reference: Clopper and Pearson 1934, one-sided.
 double upper_bound(std::uint64_t count, std::uint64_t of);
 
-// The lower bound: at this rate, so many cases have a chance of 5 %. Rounded outward.
+// The lower bound: at this rate, a count this high has a chance of 5 %. Rounded outward.
 double lower_bound(std::uint64_t count, std::uint64_t of);
 
 // The kind of error whose rate is limited.
 enum class Forbid { false_negative, false_positive, any };
 std::uint64_t forbidden(const PolicyErrors& errors, Forbid forbid);
 
-// The rank of a policy; a better policy compares less than a worse one. First, the rate of forbidden errors must be low
+// The rank of a policy: the better policy has the smaller one. First, the rate of forbidden errors must be low
 // enough; then the number of other errors decides, then the number of forbidden ones. If the rate is too high,
 // forbidden errors come before the others.
 struct PolicyRank {
@@ -51,8 +51,8 @@ struct TuneSpec {
 
 using Curve = CurveOf<PolicyErrors>;
 
-// How far pairs may grow or shrink before the errors under a policy, or the forbidden ones alone, double; 0: no
-// doubling shows within kMostScale. On pairs other than those that the policy was chosen on.
+// How far pairs may grow or shrink before the errors under a policy, or the forbidden ones alone, double. 0: they do
+// not double within kMostScale. Measured on pairs other than those that the policy was chosen on.
 struct ScaleBreak {
   int up = 0, down = 0;  // exponents of two
   PolicyErrors here, at_up, at_down;

@@ -205,7 +205,7 @@ class WrongWhenSmall : public ForeignCode {
   Verdict failure(const Pair&) override { return Verdict::crashed; }
 };
 
-// The false positives alone double first: all errors are too many for that.
+// Only the false positives double: the other errors are too many for the sum to double.
 TEST(Tune, FindsWhereTheForbiddenErrorsDouble) {
   TuneSpec spec;
   WrongWhenSmall small;

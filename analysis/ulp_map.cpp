@@ -94,7 +94,7 @@ class Panels {
   std::vector<const Lane*> lanes_;
   std::vector<DecideBlock> blocks_;
   std::vector<int> failed_;
-  std::vector<Verdict> said_;  // by the lane of one panel
+  std::vector<Verdict> said_;  // the verdicts of one panel's lane
 };
 
 // Throws: OracleMismatch.

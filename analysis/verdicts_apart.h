@@ -38,8 +38,8 @@ struct TwoDeciders {
   DecideBlock decide[2];
 };
 
-// counts[source]. The truth is the exact decision; of doubles, a lane in float decides what float32 stores. The same
-// for any number of threads.   simpler: orders pairs.
+// counts[source]. The exact decision gives the truth; for doubles, a lane in float decides what float32 stores. The
+// result does not depend on the number of threads.   simpler: orders pairs.
 std::vector<VerdictsApart> verdicts_apart(const TwoDeciders& deciders, const std::vector<strata::PairSource>& sources,
                                           int threads,
                                           const std::function<bool(const AnyPair&, const AnyPair&)>& simpler);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What runs a lane: this processor, a process with foreign code, or a CUDA device and its twins. Each backend is a row
-// of one table. Code outside asks a lane's row what it can do, never which row it is: scripts/check_includes.py.
+// The backends that run lanes: this processor, a process with foreign code, or a CUDA device and its twins. Each is a
+// row of one table. Other code asks a lane's row what it can do, never which row it is (scripts/check_includes.py
+// checks that).
 #pragma once
 
 #include <string>
@@ -16,10 +17,11 @@ struct Backend {
   bool is_replayed;             // on_host replays the lane: the same verdicts on every processor
   // The function that gives the lane's verdicts on this host; null if there is none.
   DecideBlock (*on_host)(const Lane& lane);
-  // "no fma instructions"; empty if the host runs the lane. why_no_device: why no device runs it; may be empty.
+  // Why the host cannot run the lane: "no fma instructions". Empty if it can. why_no_device: why no device runs it; may
+  // be empty.
   std::string (*why_not_on_host)(const Lane& lane, const std::string& why_no_device);
-  // How we know the verdicts of on_host: "twin, verified on …". Empty if the lane's own code runs here. of_doubles: on
-  // pairs of doubles.
+  // Why on_host's verdicts are the lane's: "twin, verified on …". Empty if the lane's own code runs here. of_doubles:
+  // on pairs of doubles.
   std::string (*evidence)(const Lane& lane, bool of_doubles);
 };
 

@@ -29,7 +29,7 @@ const Lane& rounded(const Lane& lane) { return *counterpart(lane, rounded_varian
 int agree(const TuneOptions& options) {
   if (!options.own_code.subjects.empty())
     throw UsageError(
-        "--agree sets tolerances, which only published algorithms have; of your own code `graze discrepancy` shows "
+        "--agree sets tolerances, which only published algorithms have; for your own code `graze discrepancy` shows "
         "where two builds differ, and `graze tune LANE` tunes the epsilon");
   const Lane &first = published_lane(options.lanes[0]), &second = published_lane(options.lanes[1]);
   if (first.algorithm != second.algorithm || first.scalar != second.scalar)

@@ -139,7 +139,7 @@ void bench(const Options& options, int& status) {
   for (const std::string& size : options.sizes) wanted.sizes.push_back(std::stoull(size));
   const QueryLanes lanes = query_lanes(options.lanes, kCommonLanes);
   wanted.lanes = lanes.ids;
-  query::on_cores = backends::on_host;  // with twins
+  query::on_cores = backends::on_host;  // includes twins
   if (!options.mesh.empty()) {
     wanted.mesh_name = std::filesystem::path(options.mesh).filename().string();
     const strata::MeshPairs mesh = strata::read_triangles(options.mesh);
@@ -189,13 +189,14 @@ void bench(const Options& options, int& status) {
   if (std::any_of(lanes.under_test.lanes.begin(), lanes.under_test.lanes.end(),
                   [](const Lane* lane) { return lane->foreign; }))
     fmt::print("{}",
-               reports::wrapped("Times of your own code include the exchange with its process, which asks each pair "
-                                "twice; `graze pareto` measures the code alone, of host lanes.",
+               reports::wrapped("Times of your own code include the exchange with its process, which decides each "
+                                "pair twice; `graze pareto` times the code alone, for host lanes.",
                                 output_screen().columns));
   if (!result.machine.devices.empty() && !options.sizes.empty()) {
     fmt::print("crossover: {}\n", result.crossover == 0
-                                      ? "none; with copies all cores are faster"
-                                      : fmt::format("with copies one GPU is faster than all cores from {} triangles on",
+                                      ? "none; with copies included, all cores are faster"
+                                      : fmt::format("with copies included, one GPU is faster than all cores from {} "
+                                                    "triangles on",
                                                     reports::grouped(result.crossover)));
   }
 }
@@ -218,13 +219,13 @@ void add_bench(CLI::App& app, int& status) {
       ->option_text("FILE");
   command
       ->add_option("--between", options->between,
-                   "Two meshes to test against each other, exactly and by CGAL's do_intersect; without --triangles "
-                   "nothing else is timed")
+                   "Two meshes to test against each other, with the exact test and with CGAL's do_intersect; without "
+                   "--triangles nothing else is timed")
       ->expected(2)
       ->option_text("MESH MESH");
   add_globs(*command, "--lanes", options->lanes.globs,
-            "Patterns of the lanes to time besides the exact one: host lanes on cores, CUDA lanes on GPUs, or by twins "
-            "without one")
+            "Patterns of the lanes to time besides the exact one: host lanes on cores, CUDA lanes on GPUs, or as "
+            "twins if there is no GPU")
       ->default_str("six common ones, and those of --subject");
   add_subject_options(*command, options->lanes);
   command->add_option("--plot", options->plot, "Picture to write: verdicts per second against array size")
@@ -235,7 +236,8 @@ void add_bench(CLI::App& app, int& status) {
       for (const char* option : {"--lanes", "--subject", "--toolchains", "--plot"}) {
         if (command->count(option) > 0)
           throw UsageError(fmt::format(
-              "{} is for arrays of triangles; add --triangles, or leave it out: --between times the exact test alone",
+              "{} applies only to arrays of triangles, and --between alone times none; add --triangles, or omit this "
+              "option",
               option));
       }
       options->sizes.clear();

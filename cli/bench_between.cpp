@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of `graze bench --between`: all intersecting pairs of two meshes by the exact decision and by CGAL's
-// do_intersect, on the same candidates. The row of the boxes alone is the part of the time that both have in common.
+// The rows of `graze bench --between`. The exact decision and CGAL's do_intersect find all intersecting pairs of two
+// meshes among the same candidates. The row "boxes alone" is the part of the time that both share.
 #include <fmt/format.h>
 
 #include <algorithm>

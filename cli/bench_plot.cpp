@@ -42,8 +42,8 @@ std::string bench_plot(const Bench& bench, const std::string& machine) {
   }
   const auto x_of = [&](double size) { return kLeft + (kWidth - kLeft - kRight) * sizes.share(size); };
   const auto y_of = [&](double rate) { return kHeight - kBottom - (kHeight - kTop - kBottom) * rates.share(rate); };
-  std::string svg = reports::svg_begin("Triangles a second by the size of the array");
-  svg += svg_text(kLeft, 20, "start", "Triangles a second by the size of the array. " + machine);
+  std::string svg = reports::svg_begin("Triangles per second against array size");
+  svg += svg_text(kLeft, 20, "start", "Triangles per second against array size. " + machine);
   for (int k = rates.low; k <= rates.high; ++k) {
     const double y = y_of(std::pow(10.0, k));
     svg += reports::svg_level(kLeft, kWidth - kRight, y);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The measurements of `graze bench`: queries of arrays of several sizes on all available executors. Each is the best of
-// three runs after a warm-up. Also measures the limits of a device, and CGAL's tree of boxes.
+// The measurements of `graze bench`: queries on arrays of several sizes with all available executors. Each is the best
+// of three runs after a warm-up. Also measures the limits of a device, and CGAL's tree of boxes.
 #pragma once
 
 #include <cstdint>
@@ -30,22 +30,22 @@ struct BenchRow {
   std::string array;  // "thesis", or the name of a mesh
   std::uint64_t triangles;
   std::string executor;               // "one core", "all cores", "one GPU", "2 GPUs"; "one core, twin"
-  std::string data;                   // "host", "resident"; "resident, split": in launches of an eighth of the time
-  std::string mode;                   // "all", "any"; "between" of two meshes
+  std::string data;                   // "host", "resident"; "resident, split": in about eight launches
+  std::string mode;                   // "all", "any"; "between" for two meshes
   std::string lane;                   // kExact, kExactInDoubles; "CGAL AABB tree"; "boxes alone"
-  double seconds, build_seconds = 0;  // of building the tree
+  double seconds, build_seconds = 0;  // build_seconds: for the tree
   std::uint64_t hits;
   std::optional<std::uint64_t> mismatches;  // triangles on which this lane differs from the exact one
   double processor_seconds = 0;             // of all threads; measured only between two meshes
 
-  double rate() const { return static_cast<double>(triangles) / seconds; }  // triangles a second
+  double rate() const { return static_cast<double>(triangles) / seconds; }  // triangles per second
   std::string by() const { return data == "host" ? executor : executor + ", " + data; }
 };
 
 struct BenchMachine {
   int cores = 0;
   std::vector<std::string> devices;
-  // Of the first device.
+  // For the first device.
   double copy_bytes_per_second = 0, to_device_bytes_per_second = 0;
   cuda::KernelNeeds exact_query;
 };
@@ -56,7 +56,7 @@ struct Bench {
   // The smallest measured array from which one GPU, copies included, is always faster than all cores; 0 if there is
   // none.
   std::uint64_t crossover = 0;
-  std::map<std::string, std::uint64_t> not_timed_above;  // lanes: the largest array on which they would be timed
+  std::map<std::string, std::uint64_t> not_timed_above;  // by lane: the size of the largest array on which it is timed
 };
 
 // Calls `told` with the results so far after each row; `told` returns false to stop.
@@ -64,13 +64,13 @@ struct Bench {
 Bench measure(const BenchOptions& options, const std::function<bool(const Bench&)>& told);
 
 // Adds the rows of two meshes against each other. `told` as above.
-// Throws: std::runtime_error for a mesh that cannot be read, and as `measure`; Stopped.
+// Throws: Stopped; std::runtime_error for a mesh that cannot be read; as `measure`.
 void measure_between(const std::vector<std::string>& files, Bench& bench,
                      const std::function<bool(const Bench&)>& told);
 
-// Returns an SVG of 900 x 420: triangles per second on the thesis arrays, against the array's size, by the exact lane
-// and by the thesis's own algorithm. Both axes are logarithmic; each lane has a line for each executor. Twins have
-// none, because their time is not that of the lane. `machine`: a description of the machine.
+// Returns an SVG of 900 x 420: triangles per second against array size on the thesis arrays, for the exact lane and the
+// thesis's own algorithm. Both axes are logarithmic; each lane has a line for each executor. Twins are not drawn,
+// because their time is not the lane's. `machine`: a description of the machine.
 std::string bench_plot(const Bench& bench, const std::string& machine);
 
 }  // namespace graze::cli

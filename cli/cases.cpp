@@ -83,13 +83,13 @@ bool alike(const oracle::Truth& l, const oracle::Truth& r) {
   return l.verdict == r.verdict && l.contact == r.contact && l.margin_sign == r.margin_sign;
 }
 
-// "it rounds number 2, 0.1", or, of several, how many and the first.
+// "it rounds number 2, 0.1"; for several numbers, how many and the first.
 std::string rounded_words(std::size_t count, std::size_t first, std::string_view number) {
   return fmt::format("it rounds {}number {}, {}", count == 1 ? "" : fmt::format("{} numbers, the first is ", count),
                      first + 1, number);
 }
 
-// The note of a pair of doubles. truth: its own.
+// The note about a pair of doubles. truth: of the doubles.
 std::string note_of_doubles(const corpus::Entry& entry, const oracle::Truth& truth) {
   const double* own = coordinates(*entry.doubles);
   const float* stored = coordinates(entry.pair);
@@ -104,7 +104,7 @@ std::string note_of_doubles(const corpus::Entry& entry, const oracle::Truth& tru
   if (rounded.empty()) return fmt::format("{}", fmt::join(parts, "; "));
   if (const auto beyond = std::find_if(stored, stored + kCoordinates, [](float x) { return std::isinf(x); });
       is_finite(*entry.doubles) && beyond != stored + kCoordinates) {
-    parts.push_back(fmt::format("float32 cannot store it: number {}, {} is beyond its largest", beyond - stored + 1,
+    parts.push_back(fmt::format("float32 cannot store it: number {}, {}, is beyond its range", beyond - stored + 1,
                                 own[beyond - stored]));
   } else if (const oracle::Truth in_float32 = oracle::truth(entry.pair); !alike(in_float32, truth)) {
     parts.push_back(fmt::format("as stored in float32: {} ({})", words(in_float32),
@@ -126,7 +126,7 @@ std::string written_note(const corpus::Entry& entry, const oracle::Truth& truth)
   for (std::size_t i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = std::strtod(entry.written[i].c_str(), nullptr);
   const oracle::Truth in_doubles = is_finite(pair) ? oracle::truth(pair) : *written;
   const bool double_differs = !alike(*written, in_doubles);
-  // One sentence for both only where it says the same of both.
+  // One phrase covers both only if it is true of both.
   const bool float_differs = !alike(in_doubles, truth) || (double_differs && words(in_doubles) != words(truth));
   if (!double_differs && !float_differs) return "";
   std::string text = "as written: " + words(*written);
@@ -149,7 +149,7 @@ std::vector<std::pair<std::string, Verdict>> stored_verdicts_of(const corpus::En
     const std::optional<LaneName> lane = parse_lane_name(row.id);
     if (!lane || lane->subject != signature->subject || find_lane(row.id)) continue;
     const char mark = signature->mark_of(lane->within_subject());
-    // A minimised case may be that of some lanes only.
+    // A minimised case may fail on only some of the lanes.
     if (mark == analysis::mark(truth, truth) && !corpus::text_of(entry, "kind").empty()) continue;
     for (int v = 0; v <= static_cast<int>(Verdict::unstable); ++v) {
       const auto verdict = static_cast<Verdict>(v);

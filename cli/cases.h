@@ -17,18 +17,18 @@ namespace graze::cli {
 
 // Returns: the cases, at least one; a stratum's pair has its three numbers as fields.
 // Throws: UsageError for an invalid name, FormatError for a file that is missing or not in the format,
-// std::runtime_error for a file without a case; one of them for a pair of doubles unless they are taken.
+// std::runtime_error for a file without a case; UsageError or FormatError for a pair of doubles that is not `taken`.
 std::vector<corpus::Entry> read_cases(const std::string& name, PairTypes taken = PairTypes::f32);
 
 // The truth of the pair in its own coordinate type.
 oracle::Truth truth_of(const corpus::Entry& entry);
 
 // "as written: disjoint, 1e-11 apart; as stored in float32: they share an area (it rounds number 12, 1.00000000001)",
-// if rounding to double or to float32 changes the truth of the entry, which is `truth`; otherwise empty.
+// if rounding to double or to float32 changes the truth; otherwise empty. truth: of the entry.
 std::string written_note(const corpus::Entry& entry, const oracle::Truth& truth);
 
-// The verdicts that the entry's campaign stored of lanes of foreign code that are left out now. None without a
-// signature of their subject.
+// The verdicts that the entry's campaign stored for lanes of foreign code that are left out now. Empty unless the entry
+// has a signature of their subject.
 std::vector<std::pair<std::string, Verdict>> stored_verdicts_of(const corpus::Entry& entry,
                                                                 const std::vector<fuzz::LaneLeftOut>& left_out,
                                                                 Verdict truth);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plants twelve bugs in a user's triangle test. A short campaign must find each, and tell its cause in the right words.
+// Plants twelve bugs in a user's triangle test. A short campaign must find each and name its cause.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -15,10 +15,10 @@ using nlohmann::json;
 
 struct Bug {
   const char* name;
-  const char *right, *wrong;  // text of planted/edges.cpp, and what takes its place
-  const char* strata;         // and more options of the campaign
+  const char *right, *wrong;  // text of planted/edges.cpp, and its replacement
+  const char* strata;         // and other options of the campaign
   const char* cause;
-  const char* line;  // a text of the line of the source that decides; empty if no number does
+  const char* line;  // text in the source line that decides; empty if no number decides
   std::vector<std::string> words;
 };
 
@@ -177,7 +177,7 @@ TEST_P(PlantedBugs, HasItsCauseAndItsWords) {
 
 class TwoExperiments : public CommandTest {
  protected:
-  // What `explain` says of the code, given the number that it compares the gap along x with; its size is that of the
+  // What `explain` says about code that compares the gap along x with the limit. In both texts, s is the size of the
   // largest coordinate.
   std::string explained(const std::string& gap, const std::string& limit, const std::string& pair) const {
     std::ofstream(shell.folder / "gap.cpp")
@@ -199,7 +199,7 @@ class TwoExperiments : public CommandTest {
   }
 };
 
-// In float the gap is lost at every scale, in double the epsilon hides it.
+// In float the gap is lost at every scale; in double the epsilon hides it.
 TEST_F(TwoExperiments, AnEpsilonAndRoundingTogetherAreNamed) {
   const std::string gap = "(n + 1024 * s) - (m + 1024 * s), (l + 1024 * s) - (k + 1024 * s)";
   const char* const pair = "0 0 0 -1 0 0 0 1 0  0x1p-21 0 0 1 0 0 1 1 0";
@@ -213,7 +213,7 @@ TEST_F(TwoExperiments, AnEpsilonAndRoundingTogetherAreNamed) {
   }
 }
 
-// Its limit grows with the distance from the origin, so that some images are right; but doubles do not help.
+// This limit grows with the distance from the origin, so some images are right, but doubles do not help.
 TEST_F(TwoExperiments, WhatIsWrongInDoublesTooIsNotCalledRounding) {
   const std::string found = explained("n - m, l - k", "s / 16", "3 0 0 2 0 0 3 1 0  3.1240234375 0 0 4 0 0 4 1 0");
   EXPECT_TRUE(found.starts_with("logic: ")) << found;

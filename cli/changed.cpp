@@ -24,8 +24,8 @@ namespace {
 
 using fuzz::ChangedVerdicts;
 
-// A lane of a subject that the campaign ran, with the code that ran. The subject is opened under another name, which no
-// user can give it.   Returns: null if the code is not there.
+// Finds a subject's lane with the code that the campaign ran. Opens the subject under a name that no user can
+// give.   Returns: null if the code is not there.
 class RecordedCode {
  public:
   RecordedCode(const std::string& directory, std::string suffix)
@@ -58,7 +58,7 @@ Json case_json(const strata::PairSource& source, const std::string& scene, std::
   return fmt::format("{}{}:{}:{} {}", source.id, scene, seed, index, fuzz::pair_text(source.any_pair(index)));
 }
 
-// Decides the pairs of the rows' strata again, by both lanes, and adds the counts to the rows.
+// Decides the pairs of the rows' strata again with both lanes, and adds the counts to the rows.
 void count_on_pairs(const Lane& before, const Lane& after, const std::vector<strata::PairSource>& sources,
                     const Json& spec, const std::vector<Json*>& rows) {
   const std::string scene = spec.contains("scene") ? '@' + spec["scene"].at("name").get<std::string>() : std::string();
@@ -71,7 +71,7 @@ void count_on_pairs(const Lane& before, const Lane& after, const std::vector<str
       analysis::verdicts_apart({{&before, &after}, {before.decide, after.decide}}, of_rows, 0, simpler);
   for (std::size_t s = 0; s < rows.size(); ++s) {
     Json& row = *rows[s];
-    if (found[s].differs < row["least"] || found[s].differs > row["most"]) continue;  // it answers otherwise now
+    if (found[s].differs < row["least"] || found[s].differs > row["most"]) continue;  // it answers differently now
     row["least"] = row["most"] = found[s].differs;
     row["broken"] = found[s].broken;
     row["mended"] = found[s].mended;

@@ -103,7 +103,7 @@ void add_check(CLI::App& app, int&) {
   add_resubject_option(*command, options->lanes);
   add_exact_input(*command, options->exact_input);
   command->add_flag("--json", options->json, "Print one JSON object per line, one line per pair");
-  command->add_flag("--truth-only", options->truth_only, "Print the truth alone; run no lane")
+  command->add_flag("--truth-only", options->truth_only, "Print only the truth; run no lane")
       ->excludes("--lanes")
       ->excludes("--subject")
       ->excludes("--toolchains")

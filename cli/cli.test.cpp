@@ -166,7 +166,7 @@ TEST_F(Cli, OutGoesIntoWhatStandsThere) {
     expect_error("graze " + std::string(verb), 2, {"''"});
 }
 
-// An empty text is not the same as none.
+// An empty value is not the same as no value.
 TEST_F(Cli, EmptyTextsAreRefusedByTheirOption) {
   for (const auto& [verb, option] :
        std::vector<std::pair<std::string, std::string>>{{"tune moller_1997/f32/cpu --from ''", "--from"},
@@ -234,7 +234,7 @@ TEST_F(Cli, AFullDiskLosesNothing) {
   EXPECT_EQ(shell("graze strata > /dev/full 2>&1").status, 1);
 }
 
-// A folder that looks like a rank's but belongs to somebody else stays.
+// A folder that looks like a rank's but belongs to somebody else is kept.
 TEST_F(Cli, FoldersOfRanksAreKnownByTheirStores) {
   const std::string fuzz = "graze fuzz --pairs 400 --strata near_edge_edge --lanes moller_1997/f32/cpu --out r";
   ASSERT_EQ(shell(fuzz).status, 0);

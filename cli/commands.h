@@ -22,7 +22,7 @@ namespace graze::cli {
 #undef GRAZE_VERB
 #undef GRAZE_TASK
 
-// --lanes, --subject and --executor of every verb that runs lanes. Verbs that replace devices by twins have no
+// --lanes, --subject and --executor of every verb that runs lanes. Verbs that run twins instead of devices have no
 // --executor.
 struct LaneOptions {
   std::vector<std::string> globs;
@@ -30,13 +30,13 @@ struct LaneOptions {
   std::vector<std::string> flags;     // for the compiler
   std::string toolchains;             // subjects::selected_toolchains
   double timeout = 1;
-  bool resubject = false;  // run a campaign's subjects although their code has changed
+  bool resubject = false;  // run a campaign's subjects even if their code has changed
   fuzz::Executor executor = fuzz::Executor::automatic;
 };
 enum class Executors { chosen, twins };
 void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors = Executors::chosen);
 
-// Of these options, adds only those about subjects.
+// Adds only the options about subjects.
 void add_subject_options(CLI::App& command, LaneOptions& options);
 
 // The words of all values of --flags.
@@ -52,42 +52,42 @@ void open_subjects(const LaneOptions& options);
 std::vector<std::string> subject_names(const LaneOptions& options);
 std::vector<std::string> with_subjects(std::vector<std::string> globs, const LaneOptions& options);
 
-// " --subject NAME=WHAT --flags=…", with which a command of ours can be run again; empty unless the subject is open.
+// " --subject NAME=WHAT --flags=…": what a printed command needs to run this subject. Empty unless the subject is open.
 std::string subject_words(const std::string& subject);
 
 // The same for all subjects of the options.
 std::string own_words(const LaneOptions& options);
-// " --toolchains arm64-gcc": those of the options, or else of the lanes; empty for none.
+// " --toolchains arm64-gcc": the toolchains of the options, or else those of the lanes; empty for none.
 std::string toolchain_words(const LaneOptions& options, std::initializer_list<const Lane*> lanes);
 
-// Throws: UsageError if no lane of a subject, or of --toolchains, is among these, so that no verb drops it.
+// Throws: UsageError if no lane of a subject or of --toolchains is among these, so that no verb ignores it silently.
 // where: the option or argument.
 void expect_own_code_among(const LaneOptions& options, const std::vector<std::string>& ids, const char* where);
 
 // The spec that a campaign recorded. `name` is its directory or one of its case files; for other names an empty object.
 fuzz::Json recorded_spec_of(const std::filesystem::path& name);
 
-// Opens the subjects of that spec.   resubject: also code that has changed.
+// Opens the subjects of that spec.   resubject: even if their code has changed.
 // Throws: as subjects::open_recorded.
 void open_subjects_of(const std::filesystem::path& name, bool resubject = false);
 
 // Opens the subjects, including those recorded for `about`, then selects the lanes. Reports on standard error which
-// requested lanes do not run here, and why. Lanes of recorded code that has changed are among these.
+// requested lanes do not run here, and why; these include lanes whose recorded code has changed.
 // Throws: as subjects::open, fuzz::select_lanes and fuzz::expect_each_runs.
 fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesystem::path& about = {},
                                    bool require_device = false);
 
-// Throws: UsageError unless the name is that of a published lane without a policy.
+// Throws: UsageError unless this names a published lane without a policy.
 const Lane& published_lane(const std::string& id);
 // The same, or a lane of a subject that is open.
 const Lane& named_lane(const std::string& id);
 
 // The pairs of a campaign: strata are drawn again, meshes read again.
 struct CampaignPairs {
-  fuzz::Json summary;  // that was checked
+  fuzz::Json summary;  // checked
   std::uint64_t seed = 1;
   std::vector<strata::PairSource> sources;
-  std::string scene;  // that they were drawn from; may be empty
+  std::string scene;  // in which they were drawn; may be empty
 };
 
 // The first pairs of each source of the campaign, `most` in all; 0: all of them. For an unfinished campaign, includes
@@ -97,7 +97,8 @@ CampaignPairs pairs_of_campaign(const std::string& directory, std::uint64_t most
 // Lists these lanes on standard error, each with the reason.
 void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out);
 
-// Makes the lanes those of pairs of doubles, and says which it leaves out.   Throws: as fuzz::select_for_doubles.
+// Keeps the lanes that decide pairs of doubles, and names the others on standard error.
+// Throws: as fuzz::select_for_doubles.
 void take_doubles(fuzz::SelectedLanes& under_test);
 // The same if one of the pairs is a pair of doubles.
 void take_doubles_of(const std::vector<corpus::Entry>& entries, fuzz::SelectedLanes& under_test);
@@ -105,14 +106,14 @@ void take_doubles_of(const std::vector<corpus::Entry>& entries, fuzz::SelectedLa
 // Adds an option for patterns, separated by commas in one argument.
 CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::string>& globs, const char* description);
 
-// Writes the report of the campaign, as `graze report DIR` does, and prints nothing.   Throws: as it.
+// Writes the report of the campaign as `graze report DIR` does, but prints nothing.   Throws: what that verb throws.
 void write_report(const std::string& directory);
 
-// Adds --scene to a verb that draws pairs, after --coordinates, if it has that option.
+// Adds --scene to a verb that draws pairs. If the verb has --coordinates, add that option first.
 void add_scene_option(CLI::App& command, std::string& file);
 
 // Measures the mesh, in this type or else in the one it needs, and writes its scene to the file, as
-// `graze scene MESH --out FILE` does.   Throws: as it.
+// `graze scene MESH --out FILE` does.   Throws: what that verb throws.
 void write_scene_of(const std::string& mesh, const std::string& out, std::optional<PairTypes> type);
 
 // Prints the sentences of `graze scene --sufficient RATE`: the cheapest published host lane that is wrong on at most
@@ -138,7 +139,7 @@ PairTypes type_of_scene(const std::string& scene);
 // Lists the strata that the scene cannot contain, with the reasons, below a heading; empty for none.
 std::string left_out_text(const std::vector<strata::LeftOut>& left_out);
 
-// Accepts whole numbers in [least, most], also as 1e6, 10M or 1_000_000, and nothing else. To be used by transform().
+// Accepts only whole numbers in [least, most], including forms such as 1e6, 10M or 1_000_000. For transform().
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 
 // Adds an option for a whole number in [least, most]; its help shows the default.
@@ -161,7 +162,7 @@ CLI::Validator number(double least, double most);
 // Throws: UsageError for a file name that is not UTF-8, because results are UTF-8 and could not record it.
 void expect_utf8(const std::string& what, const std::string& file);
 
-// Accepts only these words. To be used by transform(), which leaves the word or its index.
+// Accepts only these words. For transform(), which leaves the word or its index.
 enum class Chosen { word, place };
 CLI::Validator one_of(std::vector<std::string> words, Chosen chosen);
 

@@ -18,9 +18,9 @@ class Compare : public CommandTest {
   }
   nlohmann::json json(const std::string& file) { return nlohmann::json::parse(contents(shell.folder / file)); }
 
-  // Compares before with after, and checks the counts of each row with those of `graze discrepancy` on the same pairs,
-  // where the two builds that ran are two libraries.
-  // build: of the builds cpu, cpu-fma and cpu-fast.
+  // Compares before with after, and checks each row's counts against those of `graze discrepancy` on the same pairs,
+  // which gets the two builds that ran as two libraries.
+  // build_of_lane: index into the builds cpu, cpu-fma and cpu-fast.
   void expect_counts(const std::string& strata, int pairs, std::size_t build_of_lane = 0) {
     const Ran said = shell("export XDG_CACHE_HOME=$PWD/cache; graze report --compare before after");
     ASSERT_EQ(said.status, 0) << said.err;
@@ -52,7 +52,7 @@ class Compare : public CommandTest {
   }
 };
 
-// The three cases of which an unpaired test said that nothing had changed.
+// Three cases in which an unpaired test found no change.
 TEST_F(Compare, AnotherCompilerIsCountedPairByPair) {
   const std::string run =
       "graze fuzz --subject mine=./mine.cpp --lanes mine/f32/cpu --strata near_edge_edge,thesis --pairs 2000 --out ";
@@ -86,7 +86,7 @@ TEST_F(Compare, ClangAgainstGccIsCountedPairByPair) {
   expect_counts("coplanar_wide,exact_contact", 2000, 1);
 }
 
-// The source is edited in place: the code before is gone, but not what was built of it.
+// The source is edited in place: the old source is gone, but not the library built from it.
 TEST_F(Compare, AnotherEpsilonIsCountedPairByPair) {
   const auto run = [](const std::string& epsilon, const std::string& out) {
     return "sed s/EPSILON/" + epsilon +
@@ -130,11 +130,11 @@ TEST_F(Compare, TheSameVerdictsAreProvedSoAndNothingElseIs) {
   EXPECT_TRUE(names(same.out.substr(0, same.out.find('\n')), {"pair by pair"})) << same.out;
   // Without a database, equal counts prove nothing.
   const Ran counts = shell("rm a/campaign.sqlite; graze report --compare a b");
-  EXPECT_TRUE(counts.out.starts_with("No rate changed")) << counts.out << counts.err;
+  EXPECT_TRUE(counts.out.starts_with("None of ")) << counts.out << counts.err;
   EXPECT_TRUE(names(counts.out.substr(0, counts.out.find('\n')), {"database"})) << counts.out;
 }
 
-// A library that was built again over the old one: its old code is gone, so the counts bound what changed.
+// A library is rebuilt over the old one. The old code is gone, so only the counts bound what changed.
 TEST_F(Compare, CodeThatIsGoneIsBoundedByCounts) {
   const auto build = [](const char* answer) {
     return fmt::format(
@@ -162,12 +162,12 @@ TEST_F(Compare, AnotherSeedIsNoChangeAndTheBlindSpotIsSaid) {
     for (const int side : {0, 1})
       expect_done(fmt::format("{}--seed {} --out {}{} > /dev/null", run, 1 + 2 * pair + side, side, pair));
     const Ran said = shell(fmt::format("graze report --compare 0{0} 1{0}", pair));
-    EXPECT_TRUE(said.out.starts_with("No rate changed, of ")) << said.out << said.err;
+    EXPECT_TRUE(said.out.starts_with("None of ")) << said.out << said.err;
     EXPECT_TRUE(names(said.out.substr(0, said.out.find('\n')), {"%", "would not be seen"})) << said.out;
   }
 }
 
-// Each kind of campaign: the command of its report runs as it stands, and leaves the same bytes.
+// For each kind of campaign, the report's command runs as it stands and gives the same bytes.
 TEST_F(Compare, TheCommandInTheReportRunsAsItStands) {
   expect_done(
       "printf 'OFF\\n4 4 0\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n3 0 1 2\\n3 0 1 3\\n3 0 2 3\\n3 1 2 3\\n' > 'a mesh.off'; "

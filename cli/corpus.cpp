@@ -138,8 +138,8 @@ void add(const CorpusOptions& options) {
   }
   if (not_run > 0) {
     const std::string why =
-        fmt::format("{}: {} not added: of {} no lane that was wrong runs here; choose other --lanes",
-                    fmt::join(with_not_run, ", "), reports::counted(not_run, "failure"), not_run == 1 ? "it" : "each");
+        fmt::format("{}: {} not added: no lane that was wrong on {} runs here; choose other --lanes",
+                    fmt::join(with_not_run, ", "), reports::counted(not_run, "failure"), not_run == 1 ? "it" : "them");
     if (not_run == std::accumulate(count.begin(), count.end(), std::size_t{0})) throw std::runtime_error(why);
     fmt::print(stderr, "graze: {}\n", why);
   }
@@ -158,8 +158,8 @@ void list(const CorpusOptions& options) {
   print_next(options, "verify");
 }
 
-// "Not run: mine. …": what has recorded verdicts and did not run: subjects that need --subject, and lanes of published
-// algorithms that this build does not have.
+// "Not run: mine. …": names what has recorded verdicts but did not run: subjects that need --subject, and lanes of
+// published algorithms that this build does not have.
 std::string not_run(const fuzz::RegressionCorpus& corpus) {
   std::set<std::string> subjects, unknown;
   for (const auto& [signature, c] : corpus) {
@@ -173,10 +173,10 @@ std::string not_run(const fuzz::RegressionCorpus& corpus) {
   }
   std::string text;
   if (!subjects.empty())
-    text += fmt::format("Not run: {}. Give your own code by --subject NAME=WHAT.\n",
+    text += fmt::format("Not run: {}. Give your own code with --subject NAME=WHAT.\n",
                         printable(fmt::format("{}", fmt::join(subjects, ", "))));
   if (!unknown.empty())
-    text += fmt::format("Not run: {}. There is no such lane here; --toolchains adds those of other compilers.\n",
+    text += fmt::format("Not run: {}. There is no such lane here; --toolchains adds lanes of other compilers.\n",
                         printable(fmt::format("{}", fmt::join(unknown, ", "))));
   return text;
 }
@@ -185,7 +185,7 @@ bool has_doubles(const fuzz::RegressionCorpus& corpus) {
   return std::any_of(corpus.begin(), corpus.end(), [](const auto& row) { return !row.second.pair.floats; });
 }
 
-// "Not run on pairs of doubles: …": lanes that decide the corpus's pairs of float32 alone.
+// "Not run on pairs of doubles: …": lanes that decide only the corpus's pairs of float32.
 std::string not_run_on_doubles(const fuzz::RegressionCorpus& corpus, const fuzz::SelectedLanes& under_test) {
   std::vector<std::string> ids;
   if (has_doubles(corpus)) {
@@ -196,7 +196,7 @@ std::string not_run_on_doubles(const fuzz::RegressionCorpus& corpus, const fuzz:
   return ids.empty() ? "" : printable(fmt::format("Not run on pairs of doubles: {}.", fmt::join(ids, ", "))) + '\n';
 }
 
-// One test a case: it fails if a verdict differs from the record.
+// One test per case: it fails if a verdict differs from the record.
 std::vector<reports::JunitCase> tests_of(const std::string& file, const fuzz::RegressionCorpus& corpus,
                                          const fuzz::Verified& result) {
   std::vector<reports::JunitCase> tests;
@@ -222,16 +222,14 @@ int verify(const CorpusOptions& options) {
   for (const auto& [signature, c] : corpus) ++states[static_cast<std::size_t>(c.state)];
   for (const fuzz::Change& change : result.changes)
     fmt::print("{}: {}\n", printable(change.name), printable(change.what));
+  if (options.update) write_corpus(options, corpus);
   fmt::print("{} cases on {} lanes: {} failing, {} fixed, {} flaky; {} verdicts compared, {} changes{}\n",
              reports::grouped(corpus.size()), under_test.lanes.size(), states[0], states[1], states[2],
              reports::grouped(result.compared), result.changes.size(), options.update ? ", recorded" : "");
   if (const std::string evidence = cuda_evidence(under_test); !evidence.empty())
     fmt::print("CUDA lanes: {}\n", evidence);
   fmt::print("{}{}", not_run(corpus), not_run_on_doubles(corpus, under_test));
-  if (options.update) {
-    write_corpus(options, corpus);
-    return 0;
-  }
+  if (options.update) return 0;
   if (result.compared == 0)
     throw std::runtime_error(options.file().string() +
                              " has no verdict of these lanes to compare with; choose other --lanes");

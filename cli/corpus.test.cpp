@@ -36,7 +36,7 @@ TEST_F(CorpusVerb, TakesACampaignListsItAndHolds) {
       << some.err;
   EXPECT_EQ(shell("graze corpus list --corpus some | grep -v moller_1997 | grep -cE '^ +(point|segment|area)/'").out,
             "0\n");
-  // Adding the same campaign again counts nothing; another campaign counts.
+  // Adding the same campaign again changes no count; another campaign does.
   EXPECT_EQ(shell("cp corpus/regression/cases.pairs a; graze corpus add c --top 3; cmp corpus/regression/cases.pairs a")
                 .status,
             0);
@@ -45,14 +45,14 @@ TEST_F(CorpusVerb, TakesACampaignListsItAndHolds) {
   EXPECT_EQ(again.out.find(" 0 seen again") == std::string::npos, true) << again.out;
 }
 
-// A failure whose wrong lanes do not run is not seen to fail, so it is not added, and that is said.
+// If none of a failure's wrong lanes runs, nothing confirms it. So it is not added, and a message says so.
 TEST_F(CorpusVerb, WhatNoLaneCanConfirmIsNotAdded) {
   campaign("c", "--pairs 1000 --strata near_edge_edge --lanes 'moller_1997/*/cpu,guigue_devillers_2003/f32/cpu'");
   const std::string add = "graze corpus add c --lanes moller_1997/f32/cpu";
   const Ran some = shell(add);
   EXPECT_EQ(some.status, 0) << some.err;
   EXPECT_EQ(some.err.rfind("graze: c: ", 0), 0u) << some.err;
-  EXPECT_NE(some.err.find(" not added: of each no lane that was wrong runs here"), std::string::npos) << some.err;
+  EXPECT_NE(some.err.find(" not added: no lane that was wrong on them runs here"), std::string::npos) << some.err;
   EXPECT_EQ(contents(shell.folder / "corpus/regression/cases.pairs").find("/guigue"), std::string::npos);
   expect_error(add + " --corpus none --signatures '*guigue_devillers_2003:*'", 1, {"c", "not added", "--lanes"});
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "none/cases.pairs"));
@@ -60,7 +60,7 @@ TEST_F(CorpusVerb, WhatNoLaneCanConfirmIsNotAdded) {
                {"--signatures", "--top"});
 }
 
-// Each signature of the summary is a case with the pairs of that signature, minimised or not.
+// Each signature of the summary becomes a case with that signature's number of pairs, minimised or not.
 TEST_F(CorpusVerb, TakesEverySignatureWithItsCount) {
   campaign("c", "--pairs 3000 --strata 'lattice,near_edge_edge' --lanes '*/f32/cpu'");
   const std::string same_as_summary =
@@ -180,6 +180,9 @@ TEST_F(CorpusVerb, AFullDiskLosesNothing) {
   campaign("c", "--pairs 10000");
   ASSERT_EQ(shell("graze corpus add c --top 2 --corpus r; cp r/cases.pairs old").status, 0);
   expect_error("ulimit -f 40; graze corpus add c --corpus r", 1, {"r/cases.pairs"});
+  const Ran ran = shell("ulimit -f 0; graze corpus verify --corpus r --lanes 'moller_1997/f32/cpu' --update");
+  EXPECT_EQ(ran.status, 1) << ran.err;
+  EXPECT_EQ(ran.out.find("recorded"), std::string::npos) << ran.out;
   EXPECT_EQ(shell("cmp r/cases.pairs old").status, 0);
 }
 

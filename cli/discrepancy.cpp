@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze discrepancy`: by how much the values behind the verdicts of two lanes differ.
+// `graze discrepancy`: measures how much the values behind the verdicts of two lanes differ.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ namespace graze::cli {
 namespace {
 
 constexpr int kDevice = 1, kTwin = 2;   // of --executor
-constexpr std::size_t kMostTables = 2;  // of more comparisons only their shares are printed
+constexpr std::size_t kMostTables = 2;  // with more comparisons, only shares are printed
 
 struct DiscrepancyOptions {
   std::vector<std::string> lanes;  // first and second in turn
@@ -43,11 +43,11 @@ struct DiscrepancyOptions {
   std::string scene, campaign, out;
 };
 
-// What to compare: value by value, and of users' code the verdicts.
+// What to compare: values, and for users' code verdicts.
 struct Comparisons {
   std::vector<analysis::LanesCompared> values;
   std::vector<analysis::TwoDeciders> verdicts;
-  fuzz::SelectedLanes of_subjects;  // without named lanes: those of --subject, and those that do not run
+  fuzz::SelectedLanes of_subjects;  // if no lane was named: lanes of --subject, including those that do not run
 };
 
 // The function that runs a lane of a user's code here.   Throws: UsageError if there is none.
@@ -57,7 +57,7 @@ DecideBlock on_host(const Lane& lane) {
   return selected.on_host.at(0);
 }
 
-// The subjects that the user named, and those of the campaign of which several lanes run here.
+// The subjects that the user named, and the campaign's subjects that have several lanes here.
 std::vector<std::string> names_of_subjects(const DiscrepancyOptions& options) {
   std::vector<std::string> names = subject_names(options.subjects);
   if (options.campaign.empty()) return names;
@@ -70,7 +70,7 @@ std::vector<std::string> names_of_subjects(const DiscrepancyOptions& options) {
   return names;
 }
 
-// The first lane of each subject and scalar with every other.   Throws: UsageError for a subject with one lane.
+// Pairs the first lane of each subject and scalar with the others.   Throws: UsageError for a subject with one lane.
 Comparisons comparisons_of_subjects(const std::vector<std::string>& names, fuzz::Executor executor) {
   Comparisons comparisons;
   for (const std::string& name : names) {
@@ -84,7 +84,7 @@ Comparisons comparisons_of_subjects(const std::vector<std::string>& names, fuzz:
     }
     if (comparisons.verdicts.size() == before)
       throw UsageError(
-          fmt::format("--subject {0}: only {1} of it runs here; name the lanes to compare, such as {1} {2}", name,
+          fmt::format("--subject {0}: only its lane {1} runs here; name the lanes to compare, such as {1} {2}", name,
                       found.lanes.front()->id, backends::exact_beside(*found.lanes.front()).id));
     say_left_out(found.left_out);
     fuzz::SelectedLanes& all = comparisons.of_subjects;
@@ -94,8 +94,8 @@ Comparisons comparisons_of_subjects(const std::vector<std::string>& names, fuzz:
   return comparisons;
 }
 
-// The pairs of lanes that the user named; by default those of the subjects or, without any, `cpu` with both CUDA builds
-// for each algorithm and scalar.
+// The comparisons that the user named. By default, those of the subjects or, without subjects, `cpu` with both CUDA
+// builds for each algorithm and scalar.
 Comparisons comparisons_of(const DiscrepancyOptions& options) {
   if (const auto names = names_of_subjects(options); options.lanes.empty() && !names.empty())
     return comparisons_of_subjects(names, options.subjects.executor);
@@ -108,8 +108,7 @@ Comparisons comparisons_of(const DiscrepancyOptions& options) {
     const Lane *first = find_lane(options.lanes[i]), *second = find_lane(options.lanes[i + 1]);
     if (first && second && (first->foreign || second->foreign)) {
       if (first->scalar != second->scalar)
-        throw UsageError(
-            fmt::format("{} and {} cannot be compared: they do not have one scalar", first->id, second->id));
+        throw UsageError(fmt::format("{} and {} cannot be compared: their scalars differ", first->id, second->id));
       comparisons.verdicts.push_back({{first, second}, {on_host(*first), on_host(*second)}});
     } else {
       lanes.emplace_back(published_lane(options.lanes[i]), published_lane(options.lanes[i + 1]));
@@ -128,7 +127,7 @@ Comparisons comparisons_of(const DiscrepancyOptions& options) {
 
 bool is_simpler(const AnyPair& l, const AnyPair& r) { return simplicity(l) < simplicity(r); }
 
-// The simplest pair to show: of two triangles, if possible, for one may well see no fault in a segment or a point.
+// Prefers pairs without segments and points, where a fault is hard to see, and among those the simpler pair.
 bool shows_better(const AnyPair& l, const AnyPair& r) {
   const auto is_degenerate = [](const AnyPair& pair) {
     return fuzz::shape_name(visit(pair, [](const auto& own) { return relation_of(own).hulls; })) == "degenerate";
@@ -186,10 +185,10 @@ int compare(const std::vector<std::string>& names) {
   return 0;
 }
 
-constexpr const char* kFloat32Alone = "values of lanes in float are compared on pairs of float32 alone";
+constexpr const char* kFloat32Alone = "values of lanes in float are compared only on pairs of float32";
 
 // Without named lanes, leaves out those whose values are not compared on doubles, and says so.
-// Throws: UsageError if the user named a lane that takes float32 alone.
+// Throws: UsageError if the user named a lane that takes only float32.
 void keep_for_doubles(Comparisons& comparisons, bool named) {
   std::erase_if(comparisons.values, [&](const analysis::LanesCompared& lanes) {
     if (lanes.first->scalar == Scalar::f64) return false;
@@ -206,7 +205,7 @@ void keep_for_doubles(Comparisons& comparisons, bool named) {
   for (const analysis::TwoDeciders& deciders : comparisons.verdicts) {
     for (const Lane* lane : deciders.lanes) {
       if (!fuzz::takes(*lane, DoublePair{}))
-        throw UsageError(cannot("compare", lane->id, "it takes pairs of float32 alone"));
+        throw UsageError(cannot("compare", lane->id, "it takes only pairs of float32"));
     }
   }
 }
@@ -324,9 +323,9 @@ void add_discrepancy(CLI::App& app, int& status) {
   command
       ->add_option(
           "lanes", options->lanes,
-          "Lanes to compare, two by two; of your own code, only verdicts, and of cuda-nofma with cuda-fma of a CUDA "
-          "source also the operands of its comparisons (default: the first lane of --subject with its others, else "
-          "cpu with cuda-fma and with cuda-nofma, of all algorithms)")
+          "Lanes to compare, two by two. For your own code only verdicts are compared; for cuda-nofma with cuda-fma "
+          "of a CUDA source also the operands of its comparisons (default: the first lane of --subject with its "
+          "others, else cpu with cuda-fma and with cuda-nofma, for all algorithms)")
       ->option_text("LANE LANE");
   command
       ->add_option("--compare", options->compare,
@@ -353,8 +352,8 @@ void add_discrepancy(CLI::App& app, int& status) {
   command
       ->add_option(
           "--executor", options->executor,
-          "Where values are compared. auto: on a device if there is one, else on the host by twins; the counts "
-          "are the same")
+          "Where values are compared. auto: on a device if there is one, else on the host with twins; the counts are "
+          "the same")
       ->transform(one_of({"auto", "device", "twin"}, Chosen::place))
       ->option_text("auto|device|twin");
   command

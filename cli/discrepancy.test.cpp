@@ -62,7 +62,7 @@ TEST_F(DiscrepancyCommand, CountsAreThoseOfAProgramThatSharesNoCode) {
   }
 }
 
-// The verdicts that differ are those that a campaign counts on the same pairs, and its report shows the answer.
+// As many verdicts differ as a campaign counts on the same pairs, and its report shows the answer.
 TEST_F(DiscrepancyCommand, ACampaignsColumnIsTheSumOfItsVerdicts) {
   const std::string first = "interval_overlap/f32/cpu", second = "interval_overlap/f32/cuda-fma";
   expect_done("graze fuzz --lanes " + first + "," + second +
@@ -99,7 +99,7 @@ TEST_F(DiscrepancyCommand, ACampaignsColumnIsTheSumOfItsVerdicts) {
   EXPECT_EQ(shell("graze report c").status, 1);
 }
 
-// The scene of a campaign is that of its comparison.
+// A comparison on a campaign's pairs uses the campaign's scene.
 TEST_F(DiscrepancyCommand, ACampaignsPairsAreThoseOfItsScene) {
   std::ofstream(shell.folder / "hall.toml") << "extent = [[100, 108], [0, 4], [0, 4]]\nedges = [0.5, 1, 2]\n";
   const std::string lanes = "moller_1997/f32/cpu,moller_1997/f32/cuda-fma", scene = " --scene hall.toml --pairs 600 ";
@@ -124,7 +124,7 @@ TEST_F(DiscrepancyCommand, ACampaignsPairsAreThoseOfItsScene) {
   EXPECT_NE(contents(shell.folder / "c/report.html").find(other_pairs), std::string::npos);
 }
 
-// Of a user's code the verdicts are compared, and the output says why no value is.
+// For a user's code only verdicts are compared, and the output says why values are not.
 TEST_F(DiscrepancyCommand, ComparesTheVerdictsOfYourOwnCode) {
   std::ofstream(shell.folder / "mine.cpp") << R"(
 static float side(const float* t, const float* p) {
@@ -161,14 +161,14 @@ bool meet(const float a[9], const float b[9]) { return crosses(a, b) && crosses(
   const Ran same = shell("graze discrepancy --compare m m");
   EXPECT_NE(same.out.find("0 numbers differ, "), std::string::npos) << same.out << same.err;
   EXPECT_EQ(same.out.find(", 0 are the same"), std::string::npos) << same.out;
-  // Results of other code say so.
+  // A comparison with results of different code says so.
   expect_done("sed -i 's/x > 0/x >= 0/' mine.cpp");
   expect_done("graze discrepancy " + first + " " + second +
               " --subject mine=./mine.cpp:meet --executor twin --strata shared_vertex --pairs 1000 --out edited");
   EXPECT_NE(shell("graze discrepancy --compare m edited").out.find("They differ in the code of mine:"),
             std::string::npos);
   expect_done("sed -i 's/x >= 0/x > 0/' mine.cpp");
-  // Its simplest pair shows the difference, and a campaign's report the sentence.
+  // The simplest pair shows the difference, and a campaign's report shows the sentence.
   const Ran pair = shell("graze repro " + of["simplest"]["place"].get<std::string>() +
                          " --subject mine=./mine.cpp:meet --lanes 'mine/f32/cpu,mine/f32/cpu-fma' | grep '^  mine'");
   EXPECT_NE(pair.out.find('!'), std::string::npos) << pair.out << pair.err;
@@ -181,7 +181,7 @@ bool meet(const float a[9], const float b[9]) { return crosses(a, b) && crosses(
   EXPECT_EQ(shell("graze report c").status, 1);
 }
 
-// The example in subjects/examples is the lane interval_overlap, unless the x87 keeps what a store would round.
+// The example in subjects/examples equals interval_overlap, except where the x87 keeps what a store would round.
 TEST_F(DiscrepancyCommand, TheThesissAlgorithmDiffersOnTheX87) {
 #ifndef __x86_64__
   GTEST_SKIP() << "this processor has no x87";
@@ -201,7 +201,7 @@ TEST_F(DiscrepancyCommand, TheThesissAlgorithmDiffersOnTheX87) {
   EXPECT_GT(x87, fused);
 }
 
-// Of a CUDA source also the operands of comparisons. This one compares in two lines, and only the first has products.
+// For a CUDA source, operands of comparisons are compared too. This one compares on two lines; only one has products.
 TEST_F(DiscrepancyCommand, ComparesTheOperandsOfYourOwnCudaSource) {
   std::ofstream(shell.folder / "mine.cu") << R"(
 __device__ bool meet(const float a[9], const float b[9]) {
@@ -239,7 +239,7 @@ __device__ bool meet(const float a[9], const float b[9]) {
   EXPECT_EQ(lines[0]["differs"], differs);
   EXPECT_EQ(lines[0]["outcome"], outcome);
   EXPECT_EQ(lines[0]["verdict"], verdict);
-  EXPECT_GE(lines[1]["compared"], second);  // also where the compiler asks both questions at once
+  EXPECT_GE(lines[1]["compared"], second);  // even if the compiler merges both comparisons
   EXPECT_EQ(lines[1]["differs"], 0);
   EXPECT_TRUE(lines[0]["line"].get<std::string>().ends_with("mine.cu:4")) << lines;
   EXPECT_GT(verdict, 100u);
@@ -248,7 +248,7 @@ __device__ bool meet(const float a[9], const float b[9]) {
   EXPECT_NE(contents(shell.folder / "m/discrepancy.html").find("mine.cu:4"), std::string::npos);
   EXPECT_NE(contents(shell.folder / "m/discrepancy.csv").find("mine.cu:4"), std::string::npos);
 
-  // Counts that cannot be are refused, also with a right checksum.
+  // Impossible counts are refused even if the checksum is correct.
   for (const char* count : {"differs", "outcome", "verdict", "zero_sign"}) {
     auto forged = nlohmann::ordered_json::parse(contents(shell.folder / "m/discrepancy.json"));
     forged.erase("checksum");
@@ -260,7 +260,7 @@ __device__ bool meet(const float a[9], const float b[9]) {
   }
 }
 
-// Code that does not return when nothing is fused is not believed; the verdicts are still compared.
+// If code does not return when nothing is fused, no operands are counted; its verdicts are still compared.
 TEST_F(DiscrepancyCommand, CodeThatHangsWithoutContractionLosesOnlyItsOperands) {
   std::ofstream(shell.folder / "slow.cu") << R"(
 __device__ bool meet(const float a[9], const float b[9]) {
@@ -309,7 +309,7 @@ TEST_F(DiscrepancyCommand, ExplainShowsTwoLanesSideBySide) {
   EXPECT_NE(ran.out.find("plane_distance.b[0]"), std::string::npos) << ran.out;
 }
 
-// A campaign's own code comes first; where just one of its lanes runs, there is nothing to compare it with.
+// By default a campaign's own code is compared. If only one of its lanes runs, published lanes are compared.
 TEST_F(DiscrepancyCommand, ComparesTheCodeOfACampaign) {
   expect_done(
       "echo 'int intersects(const float* a, const float* b) { return a[0] * b[1] > a[1] * b[0]; }' > own.c; "

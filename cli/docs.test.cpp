@@ -56,8 +56,8 @@ std::string missing_tool(const Shell& shell, const std::string& command) {
 }
 
 // Runs the document's commands in one folder. A block that begins with ```language NAME becomes the file NAME there. If
-// an output differs, DOCUMENT.new receives all present outputs. The test is skipped if a command needs a missing tool
-// and all other commands print what they should.
+// an output differs, DOCUMENT.new is written with the present outputs. The test is skipped if a command needs a missing
+// tool and all other commands print what they should.
 void expect_true_commands(const std::string& document, std::size_t least_commands) {
   const fs::path file = kRoot / document, renewed = file.string() + ".new";
   const Lines lines = lines_of(contents(file));
@@ -99,7 +99,8 @@ void expect_true_commands(const std::string& document, std::size_t least_command
     fs::remove(renewed);
   } else {
     std::ofstream(renewed) << text.str();
-    ADD_FAILURE() << "expected " << document << " to be true; as it would be: " << renewed.string();
+    ADD_FAILURE() << "outputs differ from " << document
+                  << "; the document with the present outputs: " << renewed.string();
   }
   if (!not_run.empty())
     GTEST_SKIP() << document << ": commands that did not run, by missing tool: " << testing::PrintToString(not_run);
@@ -120,7 +121,7 @@ TEST(Docs, TestingPrintsWhatItSays) {
   expect_true_commands("docs/testing.md", 3);
 }
 
-TEST(Docs, PythonPrintsWhatItSays) {  // by Debian's interpreter, which has Debian's NumPy
+TEST(Docs, PythonPrintsWhatItSays) {  // with Debian's interpreter, which has Debian's NumPy
   if (std::system("/usr/bin/python3 -c 'import numpy' 2> /dev/null") != 0) GTEST_SKIP() << "NumPy is not installed";
   setenv("PYTHONPATH", (fs::path(GRAZE_BINARY_DIR).parent_path() / "python").c_str(), 1);
   setenv("PATH", ("/usr/bin:" + std::string(std::getenv("PATH"))).c_str(), 1);
@@ -192,8 +193,8 @@ TEST(Docs, WhatTheyNameExists) {
   EXPECT_GE(paths, 15);
 }
 
-// Checks commits, and builds named by their commit, in prose, measurements and published data. A build of sources that
-// were changed since does not count.
+// Checks commits, and builds named by their commit, in prose, measurements and published data. A build of uncommitted
+// sources ("-dirty") counts as missing.
 TEST(Docs, CommitsThatTheyNameAreInTheHistory) {
   const Shell shell("history");
   const std::string git = "git -C '" + kRoot.string() + "' ";

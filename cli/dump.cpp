@@ -60,7 +60,8 @@ CampaignPairs drawn_for(const DumpOptions& options) {
   if (!is_path) return of_stratum(options);
   CampaignPairs pairs = pairs_of_campaign(options.name, options.pairs, "dump");
   if (const std::uint64_t all = analysis::pairs_in(pairs.sources); all < options.pairs)
-    fmt::print(stderr, "graze: {} has {} of {} pairs\n", printable(options.name), all, options.pairs);
+    fmt::print(stderr, "graze: {} has only {} of the {} requested pairs\n", printable(options.name), all,
+               options.pairs);
   return pairs;
 }
 
@@ -122,8 +123,8 @@ analysis::LanesCompared compared_lanes(const std::vector<std::string>& ids) {
   return {published_lane(ids[0]), published_lane(ids[1])};
 }
 
-// Writes a row for each pair, with both verdicts and choices and no question, and a row for each value that at least
-// one lane compares. Numbers are hexadecimal.
+// Writes one row for each pair with both lanes' verdicts and choices, and one row for each value that at least one lane
+// compares. Numbers are hexadecimal.
 void dump_values(const DumpOptions& options) {
   const analysis::LanesCompared lanes = compared_lanes(options.values);
   const std::vector<Question>& questions = questions_of(lanes.first->algorithm);
@@ -209,7 +210,7 @@ void add_dump(CLI::App& app, int&) {
       ->default_str("those of --subject");
   add_resubject_option(*command, options->lanes);
   add_globs(*command, "--values", options->values,
-            "Two lanes of one algorithm and scalar: write every value that their comparisons see, and the exact ones")
+            "Two lanes of one algorithm and scalar, whose compared values are written beside the exact ones")
       ->option_text("LANE,LANE")
       ->excludes("--lanes")
       ->excludes("--subject")

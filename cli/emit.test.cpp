@@ -141,7 +141,7 @@ TEST(EmitLane, IsOfTheRecordedSignature) {
   };
   EXPECT_EQ(shown(""), "projected_sat/f32/cpu\n");
   EXPECT_EQ(shown(" | signature=none/11/skew/+2^21/separating_axes:++++++++"), "separating_axes/f32/cpu\n");
-  EXPECT_EQ(shown(" | signature=none/11/skew/+2^21/moller_1997:++++++++"), "projected_sat/f32/cpu\n");  // is right
+  EXPECT_EQ(shown(" | signature=none/11/skew/+2^21/moller_1997:++++++++"), "projected_sat/f32/cpu\n");  // it is right
 }
 
 // A snippet is compiled with its lane's flags.
@@ -158,7 +158,7 @@ TEST(EmitFlags, AreThoseOfTheLane) {
 }
 
 // Needs no device: the contraction rules, which were verified on one, must give a snippet's kernel as many fused
-// operations as its lane's.
+// operations as its lane's kernel has.
 TEST(EmitCuda, ContractsAsItsLaneDoes) {
 #ifndef GRAZE_NVCC_DIR
   GTEST_SKIP() << "built without nvcc";

@@ -67,7 +67,7 @@ std::string steps_text(const analysis::LaneExplanation& lane, const reports::Scr
   const int begin = std::max(0, end - kMost);
   const std::string_view known = lane.evidence == analysis::Evidence::source ? ""
                                  : lane.evidence == analysis::Evidence::hash
-                                     ? " (contracted by a rule; they have the hash of the lane's twin)"
+                                     ? " (contracted by a rule; their trace hash is that of the lane's twin)"
                                      : " (contracted by a rule; only the verdict is known to be the lane's)";
   const std::string before = begin > 0 ? fmt::format(" ({} before, see --json)", begin) : "";
   std::string text = reports::wrapped(fmt::format("values{}{}:", known, before), screen.columns, 4, 6);
@@ -81,7 +81,7 @@ std::string steps_text(const analysis::LaneExplanation& lane, const reports::Scr
     text += step_text(step, true, lane.lane->scalar, static_cast<int>(places), screen);
   const bool all_right =
       std::none_of(lane.steps.begin(), lane.steps.end(), [](const analysis::Step& step) { return step.wrong(); });
-  return text + (all_right ? "      every comparison goes as in exact arithmetic\n" : "");
+  return text + (all_right ? "      every comparison has the same outcome as in exact arithmetic\n" : "");
 }
 
 // "a[0].x b[2].z"
@@ -102,7 +102,7 @@ std::string lane_text(const AnyPair& pair, const analysis::LaneExplanation& lane
     text += reports::wrapped(words, screen.columns, indent, indent + 2);
   };
   const auto surroundings = [&] {
-    line(4, "coordinates whose changes by some ulps do not matter:" + free_coordinates(lane));
+    line(4, "coordinates that may change by some ulps without effect:" + free_coordinates(lane));
     line(4, fmt::format("wrong in {} of {} orders, {} of {} mirror images, {} of {} scalings by 2^-{}…2^{}",
                         lane.orders.wrong, lane.orders.of, lane.mirrored.wrong, lane.mirrored.of, lane.scalings.wrong,
                         lane.scalings.of, analysis::kMostScaling, analysis::kMostScaling));
@@ -110,7 +110,7 @@ std::string lane_text(const AnyPair& pair, const analysis::LaneExplanation& lane
   const auto contractions = [&] {
     if (lane.contractions.sites.empty()) return;
     line(4, fmt::format("contractions, {}:", lane.contractions.smallest ? "the smallest set that makes the difference"
-                                                                        : "sets of which each is enough"));
+                                                                        : "in sets that are each enough"));
     for (const cuda::ContractionSite& site : lane.contractions.sites) {
       const std::string inlined =
           *site.from.file == '\0' ? "" : fmt::format(", inlined at {}:{}", site.from.file, site.from.line);
@@ -135,7 +135,7 @@ std::string lane_text(const AnyPair& pair, const analysis::LaneExplanation& lane
   }
   contractions();
   const bool stored = analysis::decides_stored(*lane.lane, pair);
-  line(4, fmt::format("mantissa bits from which on it is right{}: {}", stored ? " on the stored pair" : "",
+  line(4, fmt::format("mantissa bits needed for the right verdict{}: {}", stored ? " on the stored pair" : "",
                       lane.cause == analysis::Cause::logic ? "no number of bits helps"
                       : lane.bits_needed == 0              ? fmt::format("none up to {} is known", oracle::kMostBits)
                                                            : fmt::format("{}", lane.bits_needed)));
@@ -152,7 +152,7 @@ std::string side_by_side(const std::vector<const Lane*>& lanes, const AnyPair& p
   return '\n' + reports::side_by_side({*lanes[0], *lanes[1]}, pair, screen);
 }
 
-// What two kernels of the user's code cost: the lane's, and the one that -fmad=false makes.
+// The cost of two kernels of the user's code: the lane's own, and one built with -fmad=false.
 std::string cost_of_rounding(const std::string& lane) {
   const std::string rounded = fmt::format("{}/{}", lane.substr(0, lane.rfind('/')), name(Variant::cuda_nofma));
   std::vector<const cuda::CudaBuild*> builds;
@@ -162,7 +162,7 @@ std::string cost_of_rounding(const std::string& lane) {
   }
   try {
     const subjects::KernelCosts costs = subjects::kernel_costs(builds);
-    return fmt::format("Cost of a pair on {}, of {} of the stratum uniform that are there already: {} {}, {} {}.",
+    return fmt::format("Cost of a pair on {}, for {} of the stratum uniform already in its memory: {} {}, {} {}.",
                        printable(costs.device), reports::counted(subjects::kPairsOfKernelCosts, "pair"), rounded,
                        reports::cost_words(analysis::quartiles(costs.nanoseconds.at(0))), lane,
                        reports::cost_words(analysis::quartiles(costs.nanoseconds.at(1))));
@@ -202,7 +202,7 @@ std::vector<std::string> answer_of(const ExplainOptions& options, const fuzz::Se
   return blocks;
 }
 
-// What supports the conclusion: the pair with all verdicts, two lanes side by side, and each wrong lane's values.
+// The details behind the conclusion: the pair with all verdicts, two lanes side by side, and each wrong lane's values.
 std::vector<std::string> details_of(const fuzz::SelectedLanes& under_test, const analysis::Explanation& explanation,
                                     const reports::Screen& screen) {
   std::ostringstream pair;

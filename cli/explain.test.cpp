@@ -73,7 +73,7 @@ TEST_F(ExplainCommand, SaysWhenThereIsNothingToExplain) {
   EXPECT_NE(nan.out.find("not finite"), std::string::npos);
 }
 
-// However many cases and lanes, the conclusions come first, within 40 lines.
+// However many cases and lanes there are, the conclusions come first, within 40 lines.
 TEST_F(ExplainCommand, PrintsAtMost40LinesUnlessAllAreAsked) {
   expect_done(
       "graze fuzz --pairs 3000 --strata coplanar_rounded,lattice --out c > /dev/null && cat c/cases/*.pairs | "

@@ -49,7 +49,7 @@ std::string shares(const Json& counts, std::size_t most) {
   return text + (rows.size() > most ? fmt::format(", {} more", rows.size() - most) : "");
 }
 
-// A kind: its title and sentence, then how often it occurs and its simplest case; with `all`, where it occurs too.
+// A kind: its title and sentence, then how often it occurs and its simplest case; with `all`, also where it occurs.
 std::string kind_text(const Json& kind, std::size_t number, bool all, const reports::Screen& screen) {
   const auto line = [&](int indent, const std::string& text) {
     return reports::wrapped(text, screen.columns, indent, indent + 2);
@@ -63,7 +63,7 @@ std::string kind_text(const Json& kind, std::size_t number, bool all, const repo
     const std::string sentence = sentences[i];
     if (i == 0 || analysis::tells_difference_from_cpu(sentence)) text += line(2, sentence);
   }
-  text += line(2, fmt::format("{} of {}, by one pair of each{}; wrong: {}; simplest: {}",
+  text += line(2, fmt::format("{} of {}, classified by one pair each{}; wrong: {}; simplest: {}",
                               reports::counted(kind["pairs"].get<std::uint64_t>(), "pair"),
                               reports::counted(kind["signatures"].get<std::uint64_t>(), "signature"),
                               errors.empty() ? "" : ", " + errors, lanes_within(kind["lanes"], subject), file));
@@ -119,14 +119,13 @@ int kinds_of(const std::string& directory, bool json, bool all) {
   }
   fmt::print("{}", limited.text());
   if (shown < kinds.size())
-    fmt::print(
-        "{}", reports::wrapped(fmt::format("and {} rarer kinds with {:.1f} % of the failures, of which a pair may have "
-                                           "several; --all lists them, and where each kind occurs",
-                                           kinds.size() - shown, 100 * (1 - told / sum)),
-                               screen.columns));
+    fmt::print("{}", reports::wrapped(fmt::format("and {} rarer kinds with {:.1f} % of the failures (a pair may have "
+                                                  "several); --all lists them, and where each kind occurs",
+                                                  kinds.size() - shown, 100 * (1 - told / sum)),
+                                      screen.columns));
   if (const std::size_t without = fuzz::signatures_without_kind(summary, kinds); without > 0)
-    fmt::print("{}", reports::wrapped(fmt::format("{} of {} signatures belong to no kind: their lanes were not looked "
-                                                  "at, run on a device alone, or did not fail again",
+    fmt::print("{}", reports::wrapped(fmt::format("{} of {} signatures belong to no kind: their lanes were not "
+                                                  "examined, run only on a device, or did not fail again",
                                                   without, summary["signatures"].size()),
                                       screen.columns));
   if (!kinds.empty() && all) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `graze` with foreign code that hangs, floods its output or leaves processes: it stops when asked to, and leaves
-// nothing.
+// nothing behind.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -136,7 +136,7 @@ TEST_F(ForeignCode, MinimizeRefusesCodeThatTheCampaignDidNotRun) {
   expect_done("diff -r before c && " + always + " && graze minimize c");
 }
 
-// NVRTC compiles this for minutes, and catches signals itself.
+// NVRTC takes minutes to compile this, and catches signals itself.
 TEST_F(ForeignCode, ACompilationByNvrtcStops) {
   std::ofstream(shell.folder / "small.cu")
       << "__device__ bool meet(const float a[9], const float b[9]) { return a[0] > b[0]; }\n";

@@ -107,7 +107,7 @@ int fail_above(const FuzzOptions& options, const fuzz::SelectedLanes& under_test
       continue;
     const auto [pair, file] = smallest_case(options.out, under_test, summary, subject);
     fmt::print(stderr,
-               "graze: {} is wrong on {} pairs, above the limit {} of --fail-above; the smallest is {}; again: "
+               "graze: {} is wrong on {} pairs, above the limit {} of --fail-above; the smallest is {}; to replay it: "
                "graze repro {}\n",
                subject, reports::grouped(count), reports::grouped(*options.fail_above), pair, path_word(file.string()));
     status = 1;
@@ -215,7 +215,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
   if (options.discard_damaged) {
     if (!campaign.scratch.empty()) fuzz::fetch_from_directory(campaign);
     if (const auto kept = fuzz::discard_damaged(fuzz::store_spec(campaign)))
-      fmt::print(stderr, "graze: kept {} in {} batch{} whose checksum is right; the damaged database is now {}\n",
+      fmt::print(stderr, "graze: kept {} in {} batch{} whose checksum is correct; the damaged database is now {}\n",
                  reports::counted(kept->pairs, "pair"), reports::grouped(kept->batches), kept->batches == 1 ? "" : "es",
                  printable(kept->damaged.string()));
   }
@@ -227,7 +227,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
     fmt::print(stderr, "graze: interrupted; finished work is kept, and the same command resumes the campaign\n");
     return kInterrupted;
   }
-  // Foreign code can write into the folder too. So what it may have changed is read back before it is told.
+  // Foreign code can write into the folder too. So what it may have changed is read back before it is reported.
   const bool foreign = campaign.spec.contains("subjects");
   if (foreign && campaign.shard.whole()) {
     fuzz::checked_summary(options.out);
@@ -249,9 +249,9 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
 // Runs alone or as one of mpirun's processes; there, a failing process ends all of them.
 int start(const FuzzOptions& options) {
   if (!options.junit.empty() && !options.shard.whole())
-    throw UsageError("--junit is for whole campaigns; a shard has a part of the pairs alone");
+    throw UsageError("--junit is for whole campaigns; a shard has only a part of the pairs");
   if (!options.scratch.empty() && options.shard.whole())
-    throw UsageError("--scratch is for shards alone; add --shard K/N");
+    throw UsageError("--scratch is only for shards; add --shard K/N");
   if (!fuzz::started_by_mpirun()) return fuzz(options, nullptr);
   if (!options.shard.whole() || options.fail_above || options.discard_damaged || !options.junit.empty())
     throw UsageError("--shard, --fail-above, --junit and --discard-damaged do not work under mpirun; leave them out");
@@ -288,7 +288,7 @@ std::string not_covered_text(const Json& spec) {
   std::string text;
   for (const Json& subject : spec.value("subjects", Json::array())) {
     if (subject.contains("not_covered"))
-      text += fmt::format("{}: Graze does not notice a change of {}.\n", subject["name"].get<std::string>(),
+      text += fmt::format("{}: Graze does not notice changes to {}.\n", subject["name"].get<std::string>(),
                           subject["not_covered"].get<std::string>());
   }
   return text;
@@ -308,7 +308,7 @@ void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool j
       "\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", printable(out));
   if (summary["signatures"].empty()) return;
   const std::string first = out + '/' + summary["signatures"][0]["case"].get<std::string>();
-  std::cout << fmt::format("The commonest disagreement again: graze repro {}\n", path_word(first));
+  std::cout << fmt::format("To replay the commonest disagreement: graze repro {}\n", path_word(first));
   std::cout << fmt::format("Next: graze minimize {}\n", path_word(out));
 }
 
@@ -352,9 +352,8 @@ void add_fuzz(CLI::App& app, int& status) {
                 static_cast<int>(fuzz::EngineChoice::cpu) == 1 && static_cast<int>(fuzz::EngineChoice::gpu) == 2);
   command
       ->add_option("--engine", options->engine,
-                   "Engine that judges the pairs. cpu: see --judge; gpu: all on the device, for CUDA lanes alone; "
-                   "auto: gpu where "
-                   "possible. Results do not depend on it")
+                   "Engine that judges the pairs. cpu: see --judge; gpu: all on the device, only for CUDA lanes; "
+                   "auto: gpu where possible. Results do not depend on it")
       ->transform(one_of({"auto", "cpu", "gpu"}, Chosen::place))
       ->option_text("auto|cpu|gpu")
       ->default_str("auto");
@@ -372,9 +371,9 @@ void add_fuzz(CLI::App& app, int& status) {
   command
       ->add_option(
           "--fail-above", options->fail_above,
-          "Number of wrong pairs above which the exit status is 1. Counts, for each subject of --subject or else for "
-          "each algorithm, the pairs on which some build of it is wrong. Standard error then has its simplest "
-          "minimised case")
+          "Number of wrong pairs above which the exit status is 1. Pairs on which some build is wrong are counted for "
+          "each subject of --subject, or else for each algorithm. Standard error then shows the simplest minimised "
+          "case")
       ->transform(whole_number(0, kMostWhole))
       ->excludes("--shard")
       ->option_text("N");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options of `graze fuzz`, and its steps, which `graze try` takes too. Defined in fuzz.cpp.
+// The options of `graze fuzz`, and its steps, which `graze try` uses too. Defined in fuzz.cpp.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ struct FuzzOptions {
   std::string scratch;
 };
 
-// The lanes of --lanes. Beside a subject of --subject, the exact lane runs as well, unless a pattern leaves it out.
+// The lanes of --lanes. With --subject, the exact lane runs as well, unless a pattern leaves it out.
 // Throws: as selected_lanes.
 fuzz::SelectedLanes lanes_of_campaign(const FuzzOptions& options);
 

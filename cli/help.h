@@ -6,7 +6,7 @@
 
 namespace graze::cli {
 
-// Gives the command and every subcommand that is added from now on this form of --help.
+// Sets this form of --help for the command, and for every subcommand that is added from now on.
 void format_help(CLI::App& app);
 
 }  // namespace graze::cli

@@ -36,7 +36,7 @@ constexpr std::size_t kTargets = std::size(subjects::kHipTargets);
 struct Compared {
   std::string name;  // "moller_1997/f32"
   Plan amd[kTargets];
-  std::optional<Plan> nvidia;  // nothing where it is not known
+  std::optional<Plan> nvidia;  // nothing if it is not known
 };
 
 struct Source {
@@ -53,8 +53,8 @@ std::optional<Plan> nvidia_plan(const std::string& subject, std::string_view sca
   return plan.empty() ? std::nullopt : std::optional(plan);
 }
 
-// still_fused: increased by the operations that stay fused with -ffp-contract=off.   Throws: std::runtime_error with
-// the compiler's first error.
+// still_fused: increased by the number of operations that stay fused with -ffp-contract=off.   Throws:
+// std::runtime_error with the compiler's first error.
 std::vector<Compared> compared(const Source& source, int& still_fused) {
   std::vector<Compared> both = {{source.name + "/f32", {}, {}}, {source.name + "/f64", {}, {}}};
   std::vector<std::string> off = source.flags;
@@ -190,7 +190,7 @@ int list_hip_plans(const std::vector<std::string>& subjects, const std::vector<s
   if (still_fused == 0) {
     fmt::print("\nWith -ffp-contract=off hipcc fuses none.\n");
   } else {
-    fmt::print("\nWith -ffp-contract=off {} fused: calls of fma() are, else the flag does not hold.\n",
+    fmt::print("\nWith -ffp-contract=off {} fused. Calls of fma() may be; others mean that the flag does not work.\n",
                still_fused == 1 ? "1 operation stays" : fmt::format("{} operations stay", still_fused));
   }
   return still_fused == 0 ? 0 : 1;

@@ -66,8 +66,8 @@ void print_mutations(const std::filesystem::path& directory) {
 int hunt(const HuntOptions& options) {
   if (!fuzz::has_libfuzzer()) {
     throw std::runtime_error(
-        "graze hunt is not in this build, which found no libFuzzer of clang; install libclang-rt-14-dev and build "
-        "again");
+        "graze hunt is not in this build, because clang's libFuzzer was not found; install libclang-rt-14-dev and "
+        "build again");
   }
   LaneOptions lanes = options.lanes;
   lanes.executor = fuzz::Executor::twin;

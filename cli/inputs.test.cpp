@@ -59,7 +59,7 @@ TEST_F(Inputs, FoldersAndDevicesInAFilesPlaceAreNamed) {
     EXPECT_EQ(ran.err.find("basic_filebuf"), std::string::npos) << verb << ran.err;
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
   }
-  // An error of standard input is not its end.
+  // A read error on standard input is not taken for its end.
   expect_error("graze check - --truth-only < /tmp", 1, {"cannot read standard input"});
 }
 
@@ -134,8 +134,7 @@ TEST_F(Inputs, ForeignTextDoesNotReachTheTerminal) {
   EXPECT_NE(shell("graze check a:b:c").out.find("a\\x1b[31mb"), std::string::npos);
 }
 
-// If float32 rounds decimals to another pair, both truths are reported.
-// Names of folders and files too.
+// Names of folders and files are escaped too.
 TEST_F(Inputs, NoNameReachesTheTerminalAsItIs) {
   shell("mkdir x");
   const std::string name = "x/$'\\e[31m'";
@@ -160,6 +159,7 @@ TEST_F(Inputs, NoNameReachesTheTerminalAsItIs) {
   }
 }
 
+// If float32 rounds decimals to another pair, both truths are reported.
 TEST_F(Inputs, WhatFloat32MakesOfDecimalsIsSaid) {
   std::ofstream(shell.folder / "near.pairs")
       << "0 0 1 1 0 1 0 1 1  0 0 1.00000000001 1 0 1.00000000001 0 1 1.00000000001\n";
@@ -177,7 +177,7 @@ TEST_F(Inputs, WhatFloat32MakesOfDecimalsIsSaid) {
       "0x1.0000000000001p0' | graze check -");
   EXPECT_NE(hex.out.find("truth: disjoint"), std::string::npos) << hex.out;
   EXPECT_NE(hex.out.find("as stored in float32: they share an area"), std::string::npos) << hex.out;
-  // Decimals that doubles do not tell apart either.
+  // Decimals that doubles cannot distinguish either.
   const Ran finer = shell(
       "echo '0 0 1 1 0 1 0 1 1  0 0 1.00000000000000000001 1 0 1.00000000000000000001 0 1 1.00000000000000000001' | "
       "graze check -");
@@ -185,7 +185,7 @@ TEST_F(Inputs, WhatFloat32MakesOfDecimalsIsSaid) {
             std::string::npos)
       << finer.out;
   EXPECT_EQ(finer.out.find("it rounds"), std::string::npos);
-  // Doubles and float32 each round it to another distance.
+  // Doubles and float32 round the pair to different distances.
   const Ran apart = shell(
       "echo '9.3 0.4 16.2 2.6 2.1 21.2 7.6 5.7 12.6  6.11 2.67 17.12 10.21 7.27 17.42 9.21 4.17 18.22' | graze check - "
       "--json");
@@ -200,7 +200,7 @@ TEST_F(Inputs, WhatFloat32MakesOfDecimalsIsSaid) {
   expect_done(std::string("echo '") + kTouching + "' | graze check - --exact-input");
 }
 
-// Two parallel triangles of a model in metres, far from the origin: apart as written, and one in float32.
+// Two parallel triangles of a model in metres, far from the origin: disjoint as written, identical in float32.
 TEST_F(Inputs, WhatFloat32MakesOfMeshesIsSaid) {
   std::ofstream(shell.folder / "far.off") << "OFF\n6 2 0\n1000000.01 0 0\n1000000.01 1 0\n1000000.01 0 1\n"
                                              "1000000.02 0 0\n1000000.02 1 0\n1000000.02 0 1\n3 0 1 2\n3 3 4 5\n";
@@ -239,7 +239,7 @@ TEST_F(Inputs, WhatFloat32MakesOfMeshesIsSaid) {
   expect_done("grep -q 'coordinates=f64' h.pairs && graze check h.pairs --lanes exact/f64/cpu | grep -q intersects");
   expect_done("grep -q 'v 1000000.01 0 0' h.obj && grep -q 0,0,area,pierces h.csv");
   expect_done("graze query --between far.off far.off --pairs b.pairs > out && graze check b.pairs > out");
-  // Numbers below what a double can hold are rounded to 0, which is said too.
+  // Numbers below what a double can hold are rounded to 0, and that is reported too.
   std::ofstream(shell.folder / "least.off")
       << "OFF\n6 2 0\n0 0 0\n1 0 0.0\n0 1 -0\n0 0 1e-500\n1 0 1e-500\n0 1 1e-500\n3 0 1 2\n3 3 4 5\n";
   std::ofstream(shell.folder / "least.txt") << "-1 -1 1e-500 2 0 0 0 2 0\n";
@@ -261,7 +261,7 @@ TEST_F(Inputs, PatternsThatLeaveNothingAreWrongUse) {
          {"graze fuzz --pairs 100 --out c", "graze hunt --runs 100 --out c", "graze invariants --pairs 100",
           "graze discrepancy interval_overlap/f32/cpu interval_overlap/f32/cpu-fma --pairs 100 --out c",
           "graze tune moller_1997/f32/cpu --pairs 1000 --out c"})
-      expect_error(command + " --strata " + strata, 2, {"leave none"});
+      expect_error(command + " --strata " + strata, 2, {"leave no stratum"});
   }
   std::ofstream(shell.folder / "m.off") << "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
   for (const std::string lanes : {"'exact,!exact'", "'!*'"})
@@ -279,6 +279,15 @@ TEST_F(Inputs, NamesInBracketsAreNames) {
   std::ofstream(shell.folder / "[t.off]") << mesh;
   expect_done("graze scene '[t].off'");
   expect_error("graze scene '[t.off]'", 1, {"[t.off]"});
+}
+
+TEST_F(Inputs, LongExponentsAreRefusedByEveryVerb) {
+  const std::string rest = " 0 0  1 0 0  0 1 0   0 0 1  1 0 1  0 1 1 | coordinates=f64\n";
+  std::ofstream(shell.folder / "least.pairs") << "0x1p-99999" + rest;
+  std::ofstream(shell.folder / "less.pairs") << "0x1p-100000" + rest;
+  expect_done("graze check least.pairs --lanes 'exact/*/cpu'");
+  for (const std::string command : {"graze check less.pairs --lanes 'exact/*/cpu'", "graze view less.pairs"})
+    expect_error(command, 1, {"less.pairs:1", "exponent", "0x1p-100000"});
 }
 
 // Pasted pairs, in every verb that takes a pair; here two segments that meet in a point.
@@ -313,9 +322,9 @@ TEST_F(Inputs, AByteOrderMarkIsSkipped) {
 
 TEST_F(Inputs, PrintedCommandsRunAsTheyStand) {
   const Ran ran = shell("graze fuzz --pairs 300 --strata lattice --lanes '*/f32/cpu' --out 'my campaign'");
-  const std::size_t at = ran.out.find("again: ");
+  const std::size_t at = ran.out.find("disagreement: ");
   ASSERT_NE(at, std::string::npos) << ran.out;
-  expect_done(ran.out.substr(at + 7, ran.out.find('\n', at) - at - 7));
+  expect_done(ran.out.substr(at + 14, ran.out.find('\n', at) - at - 14));
   EXPECT_TRUE(ran.out.ends_with("\nNext: graze minimize 'my campaign'\n")) << ran.out;
   // Each verb ends with the next command.
   const Ran minimized = shell("graze minimize 'my campaign'");

@@ -42,7 +42,7 @@ TEST_F(InvariantsCommand, LeavesTheSameBytesWhateverTheThreads) {
   EXPECT_GT(json["lanes"][0]["invariants"]["order"]["changed"], 0);
 }
 
-// The effect of doubling alone is listed beside that of any scaling, in the file and in the table.
+// The effect of doubling is listed separately, beside that of any scaling, in the file and in the table.
 TEST_F(InvariantsCommand, TellsWhatEachScalingChangesAlone) {
   const std::string invariants =
       "graze invariants --lanes 'projected_sat/f32/cpu' --strata near_edge_edge --pairs 500 --out l";
@@ -86,7 +86,7 @@ TEST_F(InvariantsCommand, OfOnesOwnCodeAndWithinAScene) {
   expect_done("cc -shared -fPIC mine.c -o mine.so");
   expect_done("graze invariants --subject mine=mine.so:mine --lanes 'mine/*' --strata uniform --pairs 200 --out l");
   const auto of = json_of(shell.folder / "l/invariants.json")["lanes"][0]["invariants"];
-  EXPECT_EQ(of["swap"]["changed"], 200);  // one of two random numbers is larger, and after the swap the other one
+  EXPECT_EQ(of["swap"]["changed"], 200);  // one of two random numbers is larger; after the swap it is the other one
   EXPECT_EQ(of["scale"]["changed"], 0);
   EXPECT_EQ(of["translate"]["changed"], 0);
   std::ofstream(shell.folder / "hall.toml") << "extent = [[100, 108], [0, 4], [0, 4]]\nedges = [0.5, 1, 2]\n";

@@ -45,7 +45,7 @@ TEST_F(Junit, EscapesWhatXmlForbids) {
                                    {"other", {{"s", "skipped: no <device>"}}}}));
 }
 
-// Each lane and stratum is a test that fails where the summary counts wrong verdicts, with a pair on which the lane is
+// Each lane and stratum is a test. It fails if the summary counts wrong verdicts, and shows a pair on which the lane is
 // wrong.
 TEST_F(Junit, OfACampaignHasTheCountsOfItsSummary) {
   const Ran ran = shell(
@@ -77,12 +77,12 @@ TEST_F(Junit, OfACampaignHasTheCountsOfItsSummary) {
   }
   EXPECT_GT(failures, 6);
   EXPECT_LT(failures, all);
-  // A lane that was asked for and does not run is a skipped test.
+  // A requested lane that does not run is a skipped test.
   EXPECT_TRUE(tests.contains("moller_1997/f32/cuda-fast")) << tests;
   const std::string skipped = tests.at("moller_1997/f32/cuda-fast").at("all strata");
   EXPECT_TRUE(skipped.starts_with("skipped: ")) << skipped;
 
-  // A file that Graze did not write stays; the campaign does not begin.
+  // A file that Graze did not write is kept; the campaign does not begin.
   const Ran refused = shell("echo '<testsuites/>' > mine.xml; graze fuzz --pairs 100 --out d --junit mine.xml");
   EXPECT_EQ(refused.status, 2) << refused.err;
   EXPECT_EQ(shell("cat mine.xml; ls d").out, "<testsuites/>\n");
@@ -110,7 +110,7 @@ TEST_F(Junit, OfTryAndOfACorpus) {
   const auto passed = read("v.xml").at("corpus/regression/cases.pairs");
   EXPECT_GT(passed.size(), 4u);
   for (const auto& [name, failure] : passed.items()) EXPECT_TRUE(failure.is_null()) << name;
-  // A verdict that the record does not have.
+  // A verdict that differs from the record.
   shell("sed -i '0,/moller_1997:[.]f32/ s/moller_1997:[.]f32/moller_1997:-f32/' corpus/regression/cases.pairs");
   const Ran changed = shell(verify);
   const auto failed = read("v.xml").at("corpus/regression/cases.pairs");

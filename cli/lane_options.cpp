@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// --lanes, --subject and --executor: the one way in which verbs select lanes, open a user's code, and say what does not
+// --lanes, --subject and --executor, the same for all verbs: select lanes, open a user's code, and report what does not
 // run.
 #include <fmt/format.h>
 
@@ -42,8 +42,8 @@ void add_subject_options(CLI::App& command, LaneOptions& options) {
   command
       .add_option(
           "--toolchains", options.toolchains,
-          "Compile published algorithms and subjects that are sources by these toolchains too, as further lanes: "
-          "names such as arm64-gcc, all, FILE.toml; see docs/toolchains.md")
+          "Toolchains that also compile the published algorithms and the subjects that are sources, as further lanes: "
+          "names such as arm64-gcc, all, or FILE.toml; see docs/toolchains.md")
       ->option_text("NAME,...");
   command.add_option("--subject-timeout", options.timeout, "Time limit of a subject for one pair, in seconds")
       ->needs(subject)
@@ -88,7 +88,7 @@ void open_subjects(const LaneOptions& options) {
   const std::vector<subjects::Toolchain> toolchains = options.toolchains.empty()
                                                           ? std::vector<subjects::Toolchain>()
                                                           : subjects::selected_toolchains(options.toolchains);
-  // The toolchains of which --lanes selects a lane of the subject.
+  // The toolchains for which --lanes selects a lane of the subject.
   const auto selected = [&](const std::string& name) {
     std::vector<subjects::Toolchain> result;
     for (const subjects::Toolchain& toolchain : toolchains) {
@@ -163,7 +163,7 @@ std::vector<std::string> with_subjects(std::vector<std::string> globs, const Lan
 void expect_own_code_among(const LaneOptions& options, const std::vector<std::string>& ids, const char* where) {
   for (const std::string& name : subject_names(options)) {
     if (std::none_of(ids.begin(), ids.end(), [&](const std::string& id) { return id.starts_with(name + '/'); }))
-      throw UsageError(fmt::format("--subject {0}: {1} has no lane of it; add '{0}/*' there", name, where));
+      throw UsageError(fmt::format("--subject {0}: {1} names no lane of it; add '{0}/*' there", name, where));
   }
   if (options.toolchains.empty()) return;
   const std::vector<subjects::Toolchain> toolchains = subjects::selected_toolchains(options.toolchains);
@@ -172,7 +172,7 @@ void expect_own_code_among(const LaneOptions& options, const std::vector<std::st
                        [&](const subjects::Toolchain& toolchain) { return id.ends_with('/' + toolchain.name); });
   };
   if (std::none_of(ids.begin(), ids.end(), is_of_one))
-    throw UsageError(fmt::format("--toolchains {0}: {1} has no lane of it; add '*/{2}' there",
+    throw UsageError(fmt::format("--toolchains {0}: {1} names no lane of it; add '*/{2}' there",
                                  printable(options.toolchains), where, toolchains.front().name));
 }
 

@@ -47,8 +47,8 @@ std::string trimmed(const std::string& text) {
   return first == text.npos ? "" : text.substr(first, last - first + 1);
 }
 
-// Reads lines NAME=WHAT. Indented lines `version: …`, `source: …` or `convention: …` below one give facts that the code
-// does not report. `pairs: N` limits the pairs of a slow subject. # begins a comment.
+// Reads lines NAME=WHAT. Below such a line, indented lines `version: …`, `source: …` or `convention: …` give facts that
+// the code does not report. `pairs: N` limits the pairs of a slow subject. # begins a comment.
 // Throws: std::runtime_error with file and line.
 std::vector<reports::LeagueSubject> read_subjects(const fs::path& file, fuzz::MostPairs& most) {
   std::vector<reports::LeagueSubject> subjects;
@@ -109,7 +109,9 @@ void remove_other_drawings(const fs::path& folder, const std::map<std::string, s
 
 int league(const LeagueOptions& options) {
   if (options.coordinates == PairTypes::both)
-    throw UsageError("graze league: --coordinates both: a table has pairs of one type; make one of f32 and one of f64");
+    throw UsageError(
+        "graze league: --coordinates both: a table has pairs of one type; make one with f32 and one with "
+        "f64");
   fuzz::MostPairs most;
   std::vector<reports::LeagueSubject> subjects = read_subjects(options.subjects, most);
   for (reports::LeagueSubject& subject : subjects) open(subject, options.timeout);

@@ -94,7 +94,7 @@ int fail(std::string what, int status) {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Find the pairs of triangles on which an intersection test is wrong, and prove each by exact arithmetic.",
+      "Find the pairs of triangles on which an intersection test is wrong, and prove each with exact arithmetic.",
       "graze"};
   graze::cli::format_help(app);
   app.set_help_flag("-h,--help", "Print this help");
@@ -137,7 +137,7 @@ int main(int argc, char** argv) {
   } catch (const graze::UsageError& error) {
     return fail(error.what(), 2);
   } catch (const nlohmann::json::exception& error) {
-    return fail(fmt::format("a JSON file has another form than this build writes ({})", error.what()), 1);
+    return fail(fmt::format("a JSON file does not have the form that this build writes ({})", error.what()), 1);
   } catch (const std::bad_alloc&) {
     return fail("there is not enough memory", 1);
   } catch (const std::ios_base::failure&) {  // only std::cout throws it

@@ -39,7 +39,7 @@ int coordinate(const std::string& option, const std::string& name) {
 // The requested coordinates, if any.
 std::optional<analysis::MovedCoordinates> asked_for(const MapOptions& options) {
   if (options.x.empty() && options.y.empty()) return std::nullopt;
-  if (options.x.empty() || options.y.empty()) throw UsageError("--x and --y need each other; add the other one");
+  if (options.x.empty() || options.y.empty()) throw UsageError("--x and --y work only together; add the other one");
   const analysis::MovedCoordinates moved{coordinate("--x", options.x), coordinate("--y", options.y)};
   if (moved.x == moved.y) throw UsageError("--x and --y are both " + options.x + "; choose two coordinates");
   return moved;
@@ -156,7 +156,8 @@ void add_map(CLI::App& app, int&) {
       ->capture_default_str();
   command
       ->add_option("--x", options->x,
-                   "Coordinate that moves to the right; with --y, chosen by default so that most verdicts change")
+                   "Coordinate that moves to the right; by default, --x and --y are chosen so that most verdicts "
+                   "change")
       ->option_text("b[0].x");
   command->add_option("--y", options->y, "Coordinate that moves upwards")->option_text("b[0].y");
   command->callback([options] { draw_map(*options); });

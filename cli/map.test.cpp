@@ -33,7 +33,7 @@ TEST_F(MapCommand, SameBytesTwiceAndAPictureAPanelInADirectory) {
   expect_done(
       "graze map near_edge_edge:1:7 --lanes 'moller_1997/f32/cpu,exact/*' --out panels && "
       "test \"$(cd panels; echo *)\" = 'moller_1997-f32-cpu.png truth.png'");
-  // Panels of another case do not stay; other pictures do.
+  // Panels of another case are removed; other pictures are kept.
   expect_done(
       "printf 'a picture of mine' > panels/mine.png && "
       "graze map near_edge_edge:1:8 --lanes 'projected_sat/f32/cpu' --out panels && "
@@ -77,11 +77,11 @@ TEST_F(MapCommand, MinimizeStoresTheMapsOfCardsOnceAndForItsPairs) {
     const auto json = nlohmann::json::parse(contents(file.path()));
     EXPECT_EQ(json["panels"][0]["name"], "truth");
     EXPECT_EQ(json["panels"].size(), 6u)
-        << file.path();  // and the f32 lanes of one algorithm that do not need a device
+        << file.path();  // truth, and the f32 lanes of one algorithm that need no device
   }
   EXPECT_GT(maps, 10u);
   EXPECT_LE(maps, 40u);
-  // Existing maps stay; missing maps and those of another pair are made again.
+  // Existing maps are kept; missing maps and those of another pair are made again.
   expect_done(
       "cp -r one/cases before; touch -d 2000-01-01 one/cases/*.maps.json; set -- one/cases/*.maps.json; rm $1; cp $2 "
       "$3; "

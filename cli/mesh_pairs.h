@@ -27,7 +27,7 @@ enum class Kind : std::uint8_t { apart, common_vertex, common_edge, touches, pie
 inline constexpr std::size_t kKinds = 5;
 std::string_view name(Kind kind);
 
-// Indices count from 0. Of one mesh, i < j.
+// Indices count from 0. Within one mesh, i < j.
 struct FoundPair {
   std::uint32_t i, j;
   Contact contact;
@@ -41,7 +41,7 @@ inline constexpr std::size_t kMostListed = 100'000;  // hits in one JSON object
 FoundPair related(std::uint32_t i, std::uint32_t j, const Pair& pair);
 FoundPair related(std::uint32_t i, std::uint32_t j, const DoublePair& pair);
 
-// The text of a CSV file: a head, and a row for each pair.
+// The text of a CSV file: a header, and a row for each pair.
 std::string csv_of(std::span<const FoundPair> pairs);
 
 // The triangles of a mesh in float32. `in_doubles` are the same in doubles, if float32 rounded a coordinate; else

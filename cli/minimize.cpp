@@ -196,16 +196,16 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
              magnitudes[magnitudes.size() / 2], reports::wrapped(counts, output_screen().columns, 2, 2));
   fmt::print(
       "Wrote {}/cases/: the minimised pair first, then the worst one met, then the originals\n"
-      "and, of each kind of failure, an explanation and the ulp maps of its simplest case\n",
+      "and, for each kind of failure, an explanation and the ulp maps of its simplest case\n",
       printable(directory));
 }
 
 int minimize_directory(MinimizeOptions options) {
   const fs::path directory = options.name;
-  if (!options.out.empty()) throw UsageError("--out is for cases alone; the results of a campaign go into its cases/");
-  if (options.exact_input) throw UsageError("--exact-input is for cases alone; a campaign's pairs are stored exactly");
+  if (!options.out.empty()) throw UsageError("--out is only for cases; the results of a campaign go into its cases/");
+  if (options.exact_input) throw UsageError("--exact-input is only for cases; a campaign's pairs are stored exactly");
   if (options.lanes.resubject)
-    throw UsageError("--resubject is for cases alone; a campaign's results must come from the code that it ran");
+    throw UsageError("--resubject is only for cases; a campaign's results must come from the code that it ran");
   const bool whole = options.shard.whole();
   // Reads the summary before the lock is taken, because reading the database of a killed run takes the lock itself.
   const std::string text = fuzz::read_whole(directory / "summary.json");
@@ -215,7 +215,7 @@ int minimize_directory(MinimizeOptions options) {
   if (!subjects::open_recorded(summary["spec"]).empty())
     throw UsageError(
         cannot("minimise", options.name,
-               "the campaign ran other code than this, and its results must come from that code; leave out --subject"));
+               "the campaign ran different code, and its results must come from that code; leave out --subject"));
   fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
   if (fuzz::has_doubles(summary["spec"])) take_doubles(under_test);
   const auto ran = summary["spec"]["lanes"].get<std::set<std::string>>();
@@ -319,16 +319,16 @@ void add_minimize(CLI::App& app, int& status) {
   add_threads_option(*command, options->threads);
   add_shard_option(
       *command, options->shard,
-      "Part of a campaign's signatures to minimise: the K-th of N. When all parts are done, run without it");
+      "Part of a campaign's signatures to minimise: the K-th of N. When all parts are done, run once without --shard");
   add_lane_options(*command, options->lanes);
   command->get_option("--lanes")->default_str("those of the campaign, else all");
   add_resubject_option(*command, options->lanes);
   command->callback([options, &status] {
     if (!fs::is_directory(options->name)) {
       if (!options->shard.whole())
-        throw UsageError("--shard is for campaign directories alone, and " + options->name + " is not one");
+        throw UsageError("--shard is only for campaign directories, and " + options->name + " is not one");
       if (options->again)
-        throw UsageError("--again is for campaign directories alone; " + options->name + " is minimised each time");
+        throw UsageError("--again is only for campaign directories; " + options->name + " is minimised each time");
       status = minimize_case(*options);
       return;
     }

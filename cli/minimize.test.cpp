@@ -132,9 +132,9 @@ TEST_F(Minimize, CasesThatAreNotTheCampaignsAreRefusedAndCanBeBroughtBack) {
                                     {"sed -i '3s/^[^ ]*/0x1.5p+3/' " + first, "line 3"},
                                     {"sed -i '$s/margin=[^ ]*/margin=7/' " + first, "pair"},
                                     {"sed -i '$s/signature=/signature=area/' " + first, "another signature"},
-                                    {"sed -i '/kind=minimised/d' " + first, "out of its order"},
-                                    {"sed -i 's/kind=worst/kind=minimised/' " + first, "out of its order"},
-                                    {"sed -i '3{h;d};$G' " + first, "out of its order"},
+                                    {"sed -i '/kind=minimised/d' " + first, "out of order"},
+                                    {"sed -i 's/kind=worst/kind=minimised/' " + first, "out of order"},
+                                    {"sed -i '3{h;d};$G' " + first, "out of order"},
                                     {"rm " + first, "missing"},
                                     {"echo 1 2 3 > " + first, first + ":1"}}) {
     expect_done(edit);

@@ -55,7 +55,7 @@ CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::str
       for (std::size_t begin = 0, end; begin <= text.size(); begin = end + 1) {
         end = std::min(text.find(',', begin), text.size());
         if (begin == end)
-          throw UsageError(fmt::format("{}: expected patterns with commas between, found '{}'", name, text));
+          throw UsageError(fmt::format("{}: expected patterns separated by commas, found '{}'", name, text));
         std::string part = text.substr(begin, end - begin);
         // A comma may also continue a lane's policy: "moller_1997/f32/cpu/plane_distance=abs:1e-6,separation=rel:8".
         if (const bool goes_on = part.find('=') < part.find('/') && !globs.empty(); goes_on) {
@@ -76,7 +76,7 @@ void add_shard_option(CLI::App& command, fuzz::Shard& shard, const char* descrip
   const auto check = [](const std::string& text) {
     return fuzz::parse_shard(text)
                ? ""
-               : fmt::format("expected K/N, 1 to N of at most {}, found '{}'", fuzz::kMostShards, printable(text));
+               : fmt::format("expected K/N with 1 <= K <= N <= {}, found '{}'", fuzz::kMostShards, printable(text));
   };
   command
       .add_option_function<std::string>(

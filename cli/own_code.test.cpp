@@ -130,7 +130,7 @@ TEST_F(OwnCodeTest, TheExactLaneRunsBesideItUnlessALaneOptionLeavesItOut) {
   EXPECT_EQ(lanes_of("--out b --lanes 'own/f32/cpu,!exact/*'"), Lanes{"own/f32/cpu"});
   EXPECT_EQ(lanes_of("--out c --lanes 'own/f32/cpu*,!*fast,!*fma'"), (Lanes{"exact/f32/cpu", "own/f32/cpu"}));
   expect_error(fuzz + "--out d --lanes 'own/*,!exakt/*'", 2, {"exakt/*"});
-  // The command that a shard's message has leaves it out as well.
+  // The command in a shard's message leaves it out as well.
   expect_done(fuzz + "--out s1 --lanes 'own/f32/cpu,!exact/*' --shard 1/2");
   const Ran gap = shell(graze + "merge s1 --out m");
   const std::size_t at = gap.err.find("graze fuzz ");
@@ -192,7 +192,7 @@ TEST_F(OwnCodeTest, CudaSourcesAreEmittedToo) {
   EXPECT_NE(right.out.find("[  PASSED  ] 1 test."), std::string::npos) << right.out << right.err;
   const Ran alone = shell("PATH=/nowhere ./case");
   EXPECT_EQ(alone.out.find("PASSED"), std::string::npos);
-  EXPECT_NE(alone.out.find("graze, which has to be on the PATH"), std::string::npos) << alone.out << alone.err;
+  EXPECT_NE(alone.out.find("graze, which must be on the PATH"), std::string::npos) << alone.out << alone.err;
   expect_error(again + "graze repro p" + subject + "--lanes 'own/*/cuda-fma' --emit cuda", 1,
                {"CUDA lanes", "--lanes"});
 #ifdef GRAZE_NVCC_DIR
@@ -209,8 +209,8 @@ TEST_F(OwnCodeTest, CudaSourcesAreEmittedToo) {
 #endif
 }
 
-// The relevant products are searched in a separate process, because with only some of them fused this code loops for
-// seconds.
+// The relevant products are searched for in a separate process, because with only some of them fused this code loops
+// for seconds.
 TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
   shell(
       "cat > own.cu <<'EOF'\n"
@@ -240,12 +240,12 @@ TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
   EXPECT_NE(named.out.find("own.cu:2, inlined at "), std::string::npos) << named.out;
   const Ran late = shell(explain + "--subject own=./own.cu:both | tr -s ' \\n' ' '");
   EXPECT_NE(late.out.find("the compiler fuses products into additions (built without contraction it is right; which "
-                          "products matter is not known, for with some of its products fused it does not return)."),
+                          "products matter is not known: with some of its products fused it does not return)."),
             std::string::npos)
       << late.out << late.err;
 }
 
-// As the test below, on a pair of doubles.
+// Like the test below, but on a pair of doubles.
 TEST_F(OwnCodeTest, CudaInDoubleIsExplainedOnDoubles) {
   shell(
       "cat > own.cu <<'EOF'\n"
@@ -265,7 +265,7 @@ TEST_F(OwnCodeTest, CudaInDoubleIsExplainedOnDoubles) {
                      "products there rounded it says disjoint, as cpu does."),
       std::string::npos)
       << named.out << named.err;
-  // The operands of its comparison differ by line.
+  // Differing operands are counted by the line of their comparison.
   expect_done(cached +
               "graze discrepancy own/f64/cuda-nofma own/f64/cuda-fma --coordinates f64 --strata exact_contact --pairs "
               "300 --executor twin --out d" +
@@ -276,7 +276,7 @@ TEST_F(OwnCodeTest, CudaInDoubleIsExplainedOnDoubles) {
   EXPECT_NE(operands["lines"][0]["line"].get<std::string>().find("own.cu:5"), std::string::npos) << operands;
 }
 
-// The cpu lane of a __host__ __device__ function is what its CUDA lanes are compared with.
+// CUDA lanes of a __host__ __device__ function are compared with its cpu lane.
 TEST_F(OwnCodeTest, CudaAgainstCpuIsExplained) {
   shell(
       "cat > own.cu <<'EOF'\n"
@@ -289,7 +289,7 @@ TEST_F(OwnCodeTest, CudaAgainstCpuIsExplained) {
       "__device__ bool one(const float* a, const float* b) {\n"
       "  return both(a, b);\n"
       "}\nEOF\n"
-      // Two products of a are equal after rounding, and the triangles are disjoint.
+      // Two products of a's coordinates are equal after rounding, and the triangles are disjoint.
       "echo '0x1.000002p+0 0x1.000002p+0 1 0x1.000004p+0 1 1 3 3 1  0x1.000006p+0 0x1.000006p+0 9 0x1.00000cp+0 1 9 0 "
       "2 9' > p");
   const std::string cached = "export XDG_CACHE_HOME=$PWD/cache; ", both = " --subject own=./own.cu:both ";
@@ -305,7 +305,7 @@ TEST_F(OwnCodeTest, CudaAgainstCpuIsExplained) {
   const Ran device_only = explained("--subject own=./own.cu:one --lanes 'own/*'");
   EXPECT_NE(device_only.out.find("cuda-fma"), std::string::npos) << device_only.out << device_only.err;
   EXPECT_EQ(device_only.out.find("differs from cpu"), std::string::npos) << device_only.out;
-  // What is said: with the products of that line rounded, and no other, the verdict is that of cpu.
+  // Checks the claim: if only the products of that line are rounded, the verdict is that of cpu.
   shell("sed '2s/.*/  return __fsub_rn(__fmul_rn(t[0], t[1]), __fmul_rn(t[3], t[4]));/' own.cu > rounded.cu");
   const Ran rounded =
       shell(cached + "graze check p --json --executor twin --lanes 'own/*/cuda-fma' --subject own=./rounded.cu:one");
@@ -347,7 +347,7 @@ TEST_F(OwnCodeTest, LanesThatDoNotRunAreNamedEverywhere) {
       shell("graze fuzz --pairs 200 --strata uniform --out d --executor twin --lanes 'moller_1997/f32/c*fma'");
   EXPECT_EQ(all.err, "");
   EXPECT_EQ(contents(shell.folder / "d/summary.json").find("left_out"), std::string::npos);
-  // A user's own code is also requested without a pattern.
+  // --subject requests the user's code even without a pattern.
   std::ofstream(shell.folder / "own.cu") << "__device__ bool meet(const float a[9], const float b[9]) "
                                             "{ return expf(a[0]) > b[0]; }\n";
   const Ran own = shell(
@@ -432,7 +432,7 @@ TEST_F(OwnCodeTest, EveryVerbTakesWhatMisbehaves) {
   }
 }
 
-// Code that fails when it is asked and not when it is asked again.
+// Code that fails when it is run once, but not when it is run again.
 TEST_F(OwnCodeTest, CodeThatChangesItsAnswersKeepsItsReport) {
   std::ofstream(shell.folder / "alt.cpp")
       << "static int n; bool intersects(const float* a, const float* b) { return n++ >> 3 & 1; }\n";

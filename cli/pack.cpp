@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze pack`: writes a campaign with all that runs it again into one file; `graze repro FILE` runs it.
+// `graze pack`: writes a campaign, and everything needed to run it again, into one file; `graze repro FILE` runs it.
 #include "fuzz/pack/pack.h"
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Works in another folder while it lives.
+// Changes to another folder for its lifetime.
 class InFolder {
  public:
   explicit InFolder(const fs::path& folder) : before_(fs::current_path()) {
@@ -122,8 +122,8 @@ int repro_pack(const std::string& file) {
   fuzz::unpack(pack.files, folder);
   const Json summary = fuzz::checked_summary(packed);
   const Json spec = fuzz::spec_of_pack(summary.at("spec"), pack.manifest);
-  fmt::print("Unpacked {} into {}; in its folder files/ runs:\n  {}\n", shown_path(file), shown_path(folder.string()),
-             fuzz::command_of(spec, {}, "../again", summary));
+  fmt::print("Unpacked {} into {}; this command runs in its folder files/:\n  {}\n", shown_path(file),
+             shown_path(folder.string()), fuzz::command_of(spec, {}, "../again", summary));
   for (const Json& sentence : pack.manifest["not_packed"]) fmt::print("{}\n", printable(sentence.get<std::string>()));
   std::fflush(stdout);
   {
@@ -135,15 +135,17 @@ int repro_pack(const std::string& file) {
   const Json rows = reports::same_pairs(before, after) ? changed_rows(packed, again) : Json();
   reports::add_comparison(after, before, nullptr, nullptr, rows);
   const bool same = is_reproduced(packed, again, rows);
-  fmt::print("\n{}\n", same ? "Reproduced: every count and every signature is that of the pack."
-                            : "Not reproduced: some counts are not those of the pack.");
+  fmt::print("\n{}\n", same ? "Reproduced: every count and every signature equals the pack's."
+                            : "Not reproduced: some counts differ from the pack's.");
   print_comparison(after["compare"]);
   return same ? 0 : 1;
 }
 
 void add_pack(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand(
-      "pack", "Write a campaign with all that runs it again into one file: results, spec, sources, meshes, versions");
+      "pack",
+      "Write a campaign into one file with everything needed to run it again: results, spec, sources, meshes, "
+      "versions");
   command->footer("Example: graze pack campaign   and elsewhere: graze repro campaign.sqlar");
   auto directory = std::make_shared<std::string>(), out = std::make_shared<std::string>();
   command->add_option("DIR", *directory, "Directory of a complete campaign")->required();

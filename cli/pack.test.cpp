@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze pack` and `graze repro PACK`: a campaign runs again where nothing else of it is left.
+// `graze pack` and `graze repro PACK`: a campaign runs again where nothing else of it exists.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -50,11 +50,11 @@ TEST_F(PackCommand, ASourceWithItsHeadersRunsElsewhere) {
   expect_done("cd there/c-unpacked/files && rm -rf ../again && export XDG_CACHE_HOME=$PWD/cache && " +
               nlohmann::json::parse(manifest)["command"].get<std::string>() +
               " > /dev/null && test -s ../again/summary.json");
-  // Unpacked once more it would mix with the first time.
+  // A second unpacking would mix with the first.
   expect_error("cd there; graze repro ../c.sqlar", 2, {"c-unpacked"});
 }
 
-// A pack would give damaged records to others.
+// A pack would pass damaged records on to others.
 TEST_F(PackCommand, DamagedRecordsAreNotPacked) {
   run("graze hunt --runs 2000 --lanes '*/f32/cpu' --threads 1 --out c && graze minimize c 2> /dev/null");
   expect_done("cd home && graze pack c --out ../c.sqlar && cp -r c whole");
@@ -103,7 +103,7 @@ TEST_F(PackCommand, ThePackHasNoTraceOfWhenItWasMade) {
   expect_done("cd home; graze pack c; mv c.sqlar first; touch c/*; graze pack c; cmp c.sqlar first; graze pack c");
 }
 
-// Code that reads more than its pack holds: what differs is named, and the exit status is 1.
+// If code reads more than its pack holds, the differences are named, and the exit status is 1.
 TEST_F(PackCommand, WhatDiffersElsewhereIsSaid) {
   run("printf 'while read x; do echo $ANSWER; done' > own.sh; export ANSWER=1; graze fuzz --subject 'own=cmd:sh "
       "own.sh' --lanes "

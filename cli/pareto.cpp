@@ -22,9 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// So many that a processor does not learn the branches of the pairs, as it does with 256.
+// Enough that a processor does not learn the pairs' branches, as it does with 256.
 constexpr std::size_t kPairsInCache = 4096, kPairsFromMemory = std::size_t{1} << 19;  // 295 kB, 38 MB
-// Of which none must be wrong to show that a lane errs on at most 0.1 %.
+// If a lane is wrong on none of these, it errs on at most 0.1 %.
 constexpr std::uint64_t kFewestAtAnExtreme = 4000;
 constexpr std::size_t kPairsOnDevice = std::size_t{1} << 22;  // 302 MB
 
@@ -153,11 +153,10 @@ int pareto(ParetoOptions options) {
   const reports::Screen screen = output_screen();
   fmt::print("{}", reports::pareto_table(pareto, screen));
   if (options.device) {
-    fmt::print("{}",
-               reports::wrapped(fmt::format("Registers and bytes of local memory of one thread, and threads that a "
-                                            "multiprocessor of {} holds at once, of {}.",
-                                            pareto.machine, pareto.threads_at_once),
-                                screen.columns));
+    fmt::print("{}", reports::wrapped(fmt::format("Registers and local bytes are per thread. Threads are those that a "
+                                                  "multiprocessor of {} holds at once, of at most {}.",
+                                                  pareto.machine, pareto.threads_at_once),
+                                      screen.columns));
   }
   for (const std::string& sentence : reports::pareto_sentences(pareto))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));

@@ -57,7 +57,7 @@ int plan(const PlanOptions& options) {
   if (gpu) {
     for (const Lane* lane : under_test.lanes) {
       if (!backends::backend_of(*lane).has_device)
-        throw UsageError("--gpus runs lanes on GPUs alone, and " + lane->id +
+        throw UsageError("--gpus runs lanes only on GPUs, but " + lane->id +
                          " runs on cores; choose other --lanes, or give --cores");
     }
   }
@@ -89,7 +89,7 @@ int plan(const PlanOptions& options) {
       "rate    {} pairs/s on one {}, {}\n"
       "time    {} on {} {}{}\n"
       "shards  {} of {} each: --shard K/{}\n"
-      "disk    about {} a shard, {} all, {} merged, and the cases\n",
+      "disk    about {} per shard, {} in total, {} merged, plus the cases\n",
       reports::grouped(found.pairs), campaign.sources.size(), under_test.lanes.size(),
       reports::grouped(static_cast<std::uint64_t>(found.rate)), worker,
       options.rate > 0 ? "as given" : fmt::format("measured here on {} pairs", reports::grouped(sample.pairs)),

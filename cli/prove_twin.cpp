@@ -21,7 +21,7 @@ namespace {
 // Proves the twins of the subjects if there are any; otherwise those of the published algorithms.
 cuda::ProofRecord record_of(const cuda::ProofOptions& options, const LaneOptions& lanes, std::string& out) {
   if (!lanes.toolchains.empty())
-    throw UsageError("--toolchains: twins are of CUDA lanes, which no other toolchain builds; leave it out");
+    throw UsageError("--toolchains: only CUDA lanes have twins, and no other toolchain builds them; leave it out");
   open_subjects(lanes);
   std::vector<cuda::NamedBuild> builds = subjects::cuda_builds();
   std::erase_if(builds, [&](const cuda::NamedBuild& named) {
@@ -33,7 +33,8 @@ cuda::ProofRecord record_of(const cuda::ProofOptions& options, const LaneOptions
   if (builds.empty()) throw UsageError("none of the subjects is a CUDA source " + of + "with a twin");
   for (const std::string& name : subject_names(lanes)) {
     if (std::none_of(builds.begin(), builds.end(), [&](auto& named) { return named.lane.starts_with(name + '/'); }))
-      throw UsageError(fmt::format("--subject {}: it is no CUDA source {}with a twin that --lanes selects", name, of));
+      throw UsageError(
+          fmt::format("--subject {}: it is not a CUDA source {}with a twin that --lanes selects", name, of));
   }
   if (out.empty())
     out = subjects::proof_file(subjects::opened(parse_lane_name(builds[0].lane)->subject)->file).string();
@@ -80,8 +81,7 @@ void add_prove_twin(CLI::App& app, int& status) {
           "File for the record (default: proof.json; for a subject FILE.cu.proof.json, where graze looks for it)")
       ->option_text("FILE");
   command->callback([options, lanes, coordinates, out, &status] {
-    if (*coordinates == PairTypes::both)
-      throw UsageError("--coordinates both: a record is of one type; name f32 or f64");
+    if (*coordinates == PairTypes::both) throw UsageError("--coordinates both: a record has one type; name f32 or f64");
     options->of_doubles = *coordinates == PairTypes::f64;
     options->lanes = lanes->globs;
     options->progress = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };

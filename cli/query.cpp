@@ -139,7 +139,7 @@ void write_hits(const QueryOptions& options, const Run& run, const TrianglesOf<R
   write_result(options.obj, obj_of({asked, hits}), fuzz::NamedBy::user);
 }
 
-// How we know the verdicts of a CUDA lane that ran on cores; empty for others.
+// Why verdicts on cores are those of a CUDA lane; empty for other lanes.
 std::string evidence_of(const Run& run) {
   const Lane* lane = find_lane(run.lane);
   const bool on_cores = run.answer.executor == GRAZE_ONE_CORE || run.answer.executor == GRAZE_ALL_CORES;
@@ -187,7 +187,7 @@ void add_list(Json& json, const Run& run, std::size_t triangles, std::size_t ref
   json["not_listed"] = run.answer.hits - json["list"].size();
 }
 
-// On how many triangles two runs differ, for each two.
+// For each two runs, the number of triangles on which they differ.
 struct Differing {
   const Run *first, *second;
   std::uint64_t count = 0;
@@ -203,7 +203,7 @@ std::vector<Differing> differing(const std::vector<Run>& runs) {
   return found;
 }
 
-// Each two runs in a row; the executor is named where the lanes are the same.
+// One row for each two runs; the executor is named if their lanes are the same.
 std::string table_of(const std::vector<Differing>& rows) {
   const auto name = [](const Run& run, const Run& other) {
     return run.lane == other.lane ? fmt::format("{} {}", run.lane, run.executor) : run.lane;
@@ -242,9 +242,11 @@ std::vector<Run> runs_of(const QueryOptions& options, const QueryLanes& lanes, c
       runs.push_back({lane, executor, {}, {}, std::is_same_v<Real, double>});
   }
   if (runs.size() == 1 && !options.mismatches.empty())
-    throw UsageError("--mismatches is for lanes or executors that are compared; name several by --lanes or --executor");
-  if (options.any && runs.size() > 1) throw UsageError("--any works with one lane and one executor alone");
-  query::on_cores = backends::on_host;  // with twins
+    throw UsageError(
+        "--mismatches is for lanes or executors that are compared; name several with --lanes or "
+        "--executor");
+  if (options.any && runs.size() > 1) throw UsageError("--any works only with one lane and one executor");
+  query::on_cores = backends::on_host;  // includes twins
   const query::Context context;
   const std::atomic<bool>& interrupted = catch_interrupts();
   for (Run& run : runs) {
@@ -352,8 +354,8 @@ void query_mesh(const QueryOptions& options, int& status) {
   say_notes(of_references, of_mesh, options.exact_input, are_doubles);
   if (has_doubles && !are_doubles && matches_any(lanes.ids, "exact"))
     fmt::print(stderr,
-               "graze: exact decides the rounded triangles too, as the other lanes take float32; alone it decides the "
-               "doubles\n");
+               "graze: exact decides the rounded triangles too, because the other lanes take float32; alone, it "
+               "decides the doubles\n");
   are_doubles ? answer<double>(options, lanes, in_doubles(of_references), in_doubles(of_mesh), status)
               : answer<float>(options, lanes, of_references.triangles, of_mesh.triangles, status);
 }

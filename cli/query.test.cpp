@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // A square of two triangles, and triangles that pierce it, touch it in a point, share a vertex with it, or are far
-// away. The last one is the square's first triangle, shifted from touching by less than float32 can represent.
+// away.
 constexpr const char* kMesh = R"(v 0 0 0
 v 4 0 0
 v 4 4 0
@@ -123,7 +123,7 @@ TEST_F(QueryCommand, SeveralLanesAreComparedAndMismatchesAreCases) {
   EXPECT_EQ(found["others"][0]["hits"], found["hits"]);
 }
 
-// Counts the mismatches of each two runs again, from the verdicts of every run alone.
+// Recounts the mismatches of each two runs from the verdicts of single runs.
 TEST_F(QueryCommand, CudaLanesRunByTheirTwinsAndAreComparedTwoByTwo) {
   if (shell("graze lanes | grep -q 'available (device)'").status == 0) GTEST_SKIP() << "a device runs these lanes";
   std::string text;
@@ -175,7 +175,7 @@ TEST_F(QueryCommand, CudaLanesRunByTheirTwinsAndAreComparedTwoByTwo) {
 TEST_F(QueryCommand, SelfTellsPiercingFromNeighbours) {
   EXPECT_EQ(out("graze query --self mesh.obj"),
             "6 triangles: 1 pair pierces each other, 1 touches otherwise\n"
-            "neighbours that share nothing more: 1 an edge, 2 a vertex\n"
+            "neighbours that share only an edge: 1; only a vertex: 2\n"
             "the first pair that pierces: triangles 0 and 2\n");
   const Json found = json("graze query --self mesh.obj --json --pairs p.pairs --obj p.obj");
   EXPECT_EQ(found["first"], Json({0, 2}));

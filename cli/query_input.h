@@ -15,24 +15,24 @@
 
 namespace graze::cli {
 
-// The lanes of a query. `exact` is the exact lane on any executor; it is in no table.
+// The lanes of a query. `exact` is the exact lane on any executor; the table of lanes does not have it.
 struct QueryLanes {
   std::vector<std::string> ids;  // of lanes that run on cores, or on GPUs if there are any
   fuzz::SelectedLanes under_test;
 };
 
-// Opens the subjects. Without patterns selects `common` and the subjects. Says which requested lanes do not run.
+// Opens the subjects. Without patterns selects `common` and the subjects. Reports which requested lanes do not run.
 // Throws: UsageError if no lane of a pattern or subject exists, or runs here.
 QueryLanes query_lanes(const LaneOptions& options, const std::vector<std::string>& common);
 
 struct Input {
   std::vector<query::Triangle> triangles;
-  std::vector<query::DoubleTriangle> in_doubles;     // the same, if float32 rounded a coordinate; may else be empty
+  std::vector<query::DoubleTriangle> in_doubles;     // the same, if float32 rounded a coordinate; else may be empty
   std::vector<std::string> notes, notes_of_doubles;  // see strata::MeshPairs
   strata::Rounding rounding;
 };
 
-// The triangles in doubles, in which float32 is exact.
+// The triangles as doubles, which hold every float32 exactly.
 std::vector<query::DoubleTriangle> in_doubles(const Input& input);
 
 // Reads a text file with nine numbers for each reference, or MESH#FACE, one triangle of a mesh; faces count from 0.
@@ -41,7 +41,7 @@ Input read_references(const std::string& name);
 
 Input read_mesh(const std::string& file, strata::Coordinates coordinates = strata::Coordinates::finite);
 
-// As in cli/cases.h, of both.
+// Like say_notes in cli/cases.h, but for both inputs.
 void say_notes(const Input& references, const Input& mesh, bool exact_input, bool are_doubles = false);
 
 template <class Real>
@@ -59,8 +59,8 @@ query::DoubleTriangle in_doubles(const std::array<Real, 9>& triangle) {
   return result;
 }
 
-// The triangles as an OBJ file, in named groups. Each number has the digits that tell it from others of its type:
-// float32 if that holds it, else double.
+// The triangles as an OBJ file, in named groups. Each number has the digits that distinguish it from others of its
+// type: float32 if that holds it, else double.
 struct ObjGroup {
   std::string name;
   std::vector<std::array<double, 9>> triangles;

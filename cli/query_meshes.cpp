@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `graze query --self` and `--between` print and write. A hit of --self is a pair that pierces, because neighbours
-// always touch. A hit of --between is every pair that intersects.
+// The output of `graze query --self` and `--between`. A hit of --self is a pair that pierces, because neighbours always
+// touch. A hit of --between is every pair that intersects.
 #include "cli/query_meshes.h"
 
 #include <fmt/format.h>
@@ -75,8 +75,8 @@ void expect_within_limits(const Search& search) {
   const auto expect = [](const std::string& file, std::uint64_t pairs, std::size_t most) {
     if (!file.empty() && pairs > most)
       throw std::runtime_error(
-          fmt::format("cannot write {}: {} pairs are more than its limit of {}; leave it out for the counts alone, or "
-                      "split the mesh",
+          fmt::format("cannot write {}: {} pairs are more than its limit of {}; leave it out to get only the counts, "
+                      "or split the mesh",
                       file, grouped(pairs), grouped(most)));
   };
   expect(search.question.csv, search.found.all(), kMostRows);
@@ -140,7 +140,7 @@ std::string words_of(const Search& search) {
     text = fmt::format("{} triangles: {} each other, {} otherwise\n", grouped(search.meshes.a.size()),
                        s(search.hits(), " pair pierces", " pairs pierce"), s(touching, " touches", " touch"));
     text +=
-        fmt::format("neighbours that share nothing more: {} an edge, {} a vertex\n", grouped(edges), grouped(vertices));
+        fmt::format("neighbours that share only an edge: {}; only a vertex: {}\n", grouped(edges), grouped(vertices));
   } else {
     text =
         fmt::format("{} and {} triangles: {} ({})\n", grouped(search.meshes.a.size()), grouped(search.meshes.b->size()),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze query --self` and `--between` as users run them: every pair by brute force and the oracle, in every output.
+// `graze query --self` and `--between` as users run them. Brute force with the oracle checks every pair in every
+// output.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -150,7 +151,7 @@ TEST_F(QueryMeshes, FindThePairsOfBruteForceWithTheOracle) {
   expect_as_by_oracle(lattice, moved, "shifted by an ulp");
 }
 
-// Doubles, of which float32 changes many verdicts. They are read back bit for bit, because 17 digits tell them.
+// Doubles on which storing in float32 changes many verdicts. With 17 digits they are read back bit for bit.
 TEST_F(QueryMeshes, DecideDoublesAsTheOracleDoes) {
   std::vector<TriangleOf<double>> a, b;
   int changed = 0;
@@ -166,7 +167,7 @@ TEST_F(QueryMeshes, DecideDoublesAsTheOracleDoes) {
   ASSERT_GT(changed, 20);
   expect_as_by_oracle(a, b, "strata of doubles");
 
-  // What is written is what was decided.
+  // The files have the triangles that were decided.
   write("a.obj", std::vector<TriangleOf<double>>{a[0], a[1]});
   const Ran wrote = shell("graze query a.obj a.obj --between --obj hits.obj --pairs hits.pairs");
   EXPECT_EQ(wrote.status, 0) << wrote.err;
@@ -180,7 +181,7 @@ TEST_F(QueryMeshes, DecideDoublesAsTheOracleDoes) {
   expect_done("graze query --self hits.obj --json > again.json");
   EXPECT_EQ(Json::parse(contents(shell.folder / "again.json"), nullptr, false)["coordinates"], "f64");
 
-  // A user's question: two parallel triangles, a hundredth apart at a million.
+  // A user's question: two parallel triangles, 0.01 apart at a coordinate of a million.
   std::ofstream(shell.folder / "far.off") << "OFF\n6 2 0\n1000000.01 0 0\n1000000.01 1 0\n1000000.01 0 1\n"
                                              "1000000.02 0 0\n1000000.02 1 0\n1000000.02 0 1\n3 0 1 2\n3 3 4 5\n";
   EXPECT_EQ(json("graze query --self far.off --json")["hits"], 0);
@@ -201,7 +202,7 @@ TEST_F(QueryMeshes, GiveTheSameBytesWhateverTheThreads) {
   expect_done("graze query a.obj b.obj --between --executor one-core --csv one.csv");
   expect_done("graze query a.obj b.obj --between --csv all.csv && cmp one.csv all.csv");
   const std::string csv = contents(shell.folder / "one.csv");
-  EXPECT_EQ(rows(csv), 30'000u - 50 - 200);  // each meets three, but at two edges of the plane
+  EXPECT_EQ(rows(csv), 30'000u - 50 - 200);  // each needle meets three, except at two edges of the plane
   expect_done("graze query --self a.obj --executor one-core --csv self1.csv");
   expect_done("graze query --self a.obj --csv self2.csv && cmp self1.csv self2.csv");
   EXPECT_EQ(rows(contents(shell.folder / "self1.csv"), "segment,common_edge"), 0u);
@@ -235,7 +236,7 @@ TEST_F(QueryMeshes, WriteEveryOutput) {
             "i,j,contact,kind\n0,0,segment,pierces\n0,1,point,common_vertex\n1,1,point,common_vertex\n");
   EXPECT_EQ(shell("grep -c '^f' p.obj").out, "6\n");
   EXPECT_EQ(shell("grep -o 'name=[^ ]*' p.pairs").out, "name=triangles_0_0\nname=triangles_0_1\nname=triangles_1_1\n");
-  // The hits of a reference, with its index first; a lane that is wrong shows what the pair is.
+  // The hits of a reference, with its index first.
   expect_done("graze query roof.obj#0 post.obj --csv r.csv");
   EXPECT_EQ(contents(shell.folder / "r.csv"), "i,j,contact,kind\n0,0,segment,pierces\n0,1,point,common_vertex\n");
   const Json found = json("graze query roof.obj#0 post.obj --json");

@@ -112,13 +112,14 @@ void report(const ReportOptions& options) {
   if (named != 1)
     throw UsageError(fmt::format("graze report needs exactly one of DIR, --compare and --from, but got {}", named));
   if (options.from.empty() != options.out.empty())
-    throw UsageError("--from and --out need each other; add the other one");
+    throw UsageError("--from and --out work only together; add the other one");
   if (!options.from.empty()) {
     write_result(options.out, page_of(options.from), fuzz::NamedBy::user);
     fmt::print("Wrote {}\n", printable(options.out));
     say_what_the_page_is();
   } else if (!options.compare.empty()) {
-    // First, while no foreign code is open: only its counts are needed, and both may use one name for different code.
+    // Made first, while no foreign code is open: only its counts are needed, and both may use one name for different
+    // code.
     const Json before = reports::make_report(options.compare[0]);
     Json after = make_report(options.compare[1]);
     const Json rows =
@@ -132,7 +133,7 @@ void report(const ReportOptions& options) {
     say_report(options.directory, made, write_report(options.directory, made, "report"));
     if (made["signature_count"] > 0) {
       const bool minimised = !fuzz::read_kinds(options.directory).is_null();
-      // The corpus takes pairs of float32.
+      // No next command for a minimised campaign with pairs of doubles.
       if (minimised && fuzz::has_doubles(fuzz::recorded_spec(options.directory))) return;
       fmt::print("Next: graze {} {}\n", minimised ? "corpus add" : "minimize", path_word(options.directory));
     }

@@ -106,7 +106,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   refused("damaged");
   write("c/failures.json", kinds);
   expect_done("graze failures c > /dev/null");
-  // Changes of texts, which are not counts, are found by the checksum.
+  // The checksum reveals changes to texts, which no count can reveal.
   for (const std::string file : {"failures.json", "timings.json", "costs.json", "report.json"}) {
     const std::string reader =
         file == "failures.json" || file == "timings.json" ? "report c" : "report --from c/report.json --out r.html";
@@ -151,7 +151,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
     write("r.json", other);
     expect_error("graze report --from r.json --out r.html", 1, {"r.json"});
   }
-  // Thresholds follow from the margins, each of which is there once.
+  // Thresholds must follow from the margins, and each margin must occur once.
   const nlohmann::ordered_json all_strata = nullptr;
   std::size_t threshold = 0;
   while (report["thresholds"][threshold]["stratum"] != all_strata ||
@@ -243,7 +243,7 @@ TEST_F(Report, PipesAndForeignFilesAmongTheRecordsAreRefused) {
   }
   EXPECT_GT(refused, 15u);
 
-  // Files of another program below cases/ stay.
+  // Files of another program below cases/ are kept.
   const std::string pairs = "c/cases/" + hash + ".pairs", maps = "c/cases/" + hash + ".maps.json";
   expect_done("cp " + pairs + " kept && echo mine > " + pairs);
   expect_error(fuzz, 2, {pairs, "--force"});
@@ -346,7 +346,7 @@ TEST_F(Report, ComparesTwoCampaigns) {
   ASSERT_EQ(said.status, 0) << said.err;
   const nlohmann::json report = json("seed2/compare.json");
   EXPECT_TRUE(said.out.starts_with(fmt::format(
-      "No rate changed, of {}, and no kind of failure with at least 14 expected signatures came or went; differences "
+      "None of {} rates changed, and no kind of failure with at least 14 expected signatures came or went; differences "
       "under ",
       report["rates"].size())))
       << said.out;
@@ -389,7 +389,7 @@ TEST_F(Report, ComparesCodeBeforeAndAfterAnEdit) {
   EXPECT_EQ(old.status, 0) << old.err;
   EXPECT_EQ(old.err, "");
   EXPECT_NE(old.out.find("m.cpp:hit has changed since the campaign ran: its hash is "), std::string::npos) << old.out;
-  // Code in two files of one name: each report has only the programs of its own.
+  // Two source files with one name: each report has only the programs of its own code.
   expect_done(
       "mkdir p && mv m.cpp p && graze fuzz --subject mine=p/m.cpp:hit --lanes mine/f32/cpu --strata "
       "near_vertex_face --pairs 200 --out cp > /dev/null && graze minimize cp > /dev/null && "

@@ -68,7 +68,7 @@ bool compare_signatures(const corpus::Entry& entry, const oracle::Truth& t, std:
   return compared == Compared::changed;
 }
 
-// Prints what the case records of the truth and does not hold.   Returns: whether there is any.
+// Prints the recorded parts of the truth that do not hold.   Returns: whether there are any.
 bool compare_truth(const corpus::Entry& entry, const oracle::Truth& t) {
   bool changed = false;
   for (const auto& [field, now] : fuzz::truth_fields(t)) {
@@ -141,7 +141,7 @@ void add_repro(CLI::App& app, int& status) {
       ->add_option(
           "CASE", *name,
           "File of pairs, such as one of a campaign's cases/; STRATUM:SEED:INDEX; or a file of `graze pack`, whose "
-          "code is built and run here: use packs of people whose code you would run")
+          "code is built and run here: use packs only from people whose code you would run")
       ->required();
   add_lane_options(*command, *lanes);
   add_resubject_option(*command, *lanes);
@@ -149,10 +149,9 @@ void add_repro(CLI::App& app, int& status) {
   command
       ->add_option(
           "--emit", *emitted,
-          "Language of a program to print instead (of your own code, it includes or calls that), for the first case on "
-          "which a lane of --lanes is "
-          "wrong. "
-          "cpp and gtest show a CPU lane, cuda a CUDA lane, gtest also your own CUDA code, python and cgal the truth")
+          "Language of a program to print instead, for the first case on which a lane of --lanes is wrong; it "
+          "includes or calls your own code. cpp and gtest show a CPU lane, cuda a CUDA lane, gtest also your own CUDA "
+          "code, python and cgal the truth")
       ->transform(one_of(std::vector<std::string>(std::begin(reports::kSnippetKinds), std::end(reports::kSnippetKinds)),
                          Chosen::word))
       ->option_text("cpp|cuda|python|obj|cgal|gtest");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One rule for where results of all verbs go: they replace only files that Graze wrote (fuzz/own_files.h), unless
-// --force is given.
+// One rule for the results of all verbs: they replace only files that Graze wrote (fuzz/own_files.h), unless --force is
+// given.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,7 +14,7 @@ namespace graze::cli {
 
 inline constexpr const char* kPairs = "graze-pairs 1\n";  // the first line of files of pairs
 
-// --force, which every verb has that writes results to a given place, except `merge`, whose folder is new.
+// --force, for every verb that writes results to a given place, except `merge`, whose folder is new.
 void add_force_flag(CLI::App& verb);
 void add_force(CLI::App& app);
 

@@ -30,7 +30,7 @@ inline std::string contents(const std::filesystem::path& file) {
   return text.str();
 }
 
-// The text of the object as Graze would write it, with the right checksum (fuzz/sealed.h).
+// The text of the object as Graze would write it, with the correct checksum (fuzz/sealed.h).
 inline std::string sealed(const nlohmann::ordered_json& json) { return fuzz::sealed(json).dump(1) + '\n'; }
 
 struct Ran {

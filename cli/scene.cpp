@@ -38,7 +38,7 @@ std::string relative_to(const fs::path& folder, const std::string& file) {
   return path.is_absolute() ? file : path.lexically_normal().lexically_proximate(folder.lexically_normal()).string();
 }
 
-// What is measured, in its own type.
+// The measured input, in its own type.
 struct Measured {
   strata::SceneFile scene;
   std::size_t triangles;
@@ -73,7 +73,7 @@ bool intersects(const BasicPair<Real>& pair) {
   return exact::intersects(&pair.a[0].x, &pair.b[0].x);
 }
 
-// How many pairs have another verdict as float32 stores them.
+// How many pairs have another verdict when stored in float32.
 std::uint64_t changed_by_storing(const strata::MeshPairs& mesh) {
   if (mesh.in_doubles.empty() || mesh.rounding.beyond == 0) return 0;
   return tbb::parallel_reduce(
@@ -225,7 +225,7 @@ void add_scene(CLI::App& app, int&) {
           "SCENE.toml --sufficient RATE`");
     if (!is_scene) return scene(*options);
     if (options->files.size() > 1 || options->sufficient == 0)
-      throw UsageError("graze scene measures meshes or pairs; a scene that exists needs --sufficient");
+      throw UsageError("graze scene measures meshes or pairs; for an existing scene, add --sufficient");
     for (const char* measures : {"--poses", "--units", "--coordinates", "--exact-input"}) {
       if (command->count(measures) > 0)
         throw UsageError(std::string(measures) + " is for meshes and pairs that are measured, not for a scene");
@@ -235,7 +235,7 @@ void add_scene(CLI::App& app, int&) {
 }
 
 void add_scene_option(CLI::App& command, std::string& file) {
-  command.add_option("--scene", file, "Scene to draw pairs in, a file that `graze scene` or a person has written")
+  command.add_option("--scene", file, "Scene file to draw pairs in, written by `graze scene` or by hand")
       ->option_text("FILE");
   if (CLI::Option* types = command.get_option_no_throw("--coordinates"))
     types->default_str("f32, or those of the scene");

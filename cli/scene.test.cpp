@@ -58,14 +58,14 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
   expect_done("graze scene hills.off --out hills.toml");
   const Ran ran = shell(fuzz + "--threads 1 --out one");
   ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(
-      ran.out.find("\nLeft out, because the scene cannot contain them:\n  thesis: its triangles are fixed numbers"),
-      std::string::npos)
+  EXPECT_NE(ran.out.find(
+                "\nLeft out, because the scene cannot contain them:\n  thesis: its triangles have fixed coordinates"),
+            std::string::npos)
       << ran.out;
-  EXPECT_NE(
-      ran.out.find(
-          "\n  extreme_scale: your coordinates stay within 0 … 201.125 units, your triangles' longest edges within "),
-      std::string::npos)
+  EXPECT_NE(ran.out.find(
+                "\n  extreme_scale: your coordinates stay within 0 … 201.125 units, and your triangles' longest edges "
+                "within "),
+            std::string::npos)
       << ran.out;
   expect_done(fuzz + "--threads 2 --out two && diff one/summary.json two/summary.json && diff -r one/cases two/cases");
   const Json summary = json("one/summary.json");
@@ -105,7 +105,7 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
   EXPECT_EQ(vertices_of(id + "@one" + numbers), vertices);
 }
 
-// A mesh has fewer pairs than its share: how many run, and why, is said.
+// A mesh has fewer pairs than its share. A message says how many run, and why.
 TEST_F(SceneVerb, FewerPairsThanAskedForAreExplained) {
   expect_done("graze scene hills.off --out hills.toml");
   const Ran ran = shell("graze fuzz --scene hills.toml --pairs 20000 --lanes 'moller_1997/f32/cpu' --out few");
@@ -119,7 +119,7 @@ TEST_F(SceneVerb, ThreeLinesAreACampaign) {
   const Ran ran =
       shell("graze fuzz --scene mm.toml --pairs 2000 --strata 'near_*,extreme_scale' --lanes '*/f32/cpu' --out c");
   ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find("  extreme_scale: your coordinates stay within -5400 … 120800 mm, your triangles' longest "
+  EXPECT_NE(ran.out.find("  extreme_scale: your coordinates stay within -5400 … 120800 mm, and your triangles' longest "
                          "edges within 0.5 … 40\n"),
             std::string::npos)
       << ran.out;
@@ -147,7 +147,7 @@ TEST_F(SceneVerb, PosesAndSeveralMeshes) {
   expect_error("graze scene hills.off b.off --poses p.csv", 2, {"--poses", "2"});
 }
 
-// Whatever lanes its measurements make the cheapest, a fresh campaign shows that they suffice.
+// Whichever lanes are measured as the cheapest, a fresh campaign shows that they suffice.
 TEST_F(SceneVerb, WhatSufficesKeepsTheRateInAFreshCampaign) {
   for (const std::string measured : {"hills.off --out s.toml", "mm.toml"}) {
     const Ran ran = shell("graze scene " + measured + " --sufficient 0.05 | tr '\\n' ' '");
@@ -191,7 +191,7 @@ TEST_F(SceneVerb, WrongUseIsOneLine) {
                {"bad.toml:2"});
   expect_error("printf 'extnt = [0, 1]\\n' > bad.toml; graze fuzz --scene bad.toml", 1, {"'extent'"});
   expect_error("graze fuzz --scene mm.toml --strata 'nearly_*'", 2, {"'nearly_*'"});
-  expect_error("graze fuzz --scene mm.toml --strata thesis", 2, {"thesis", "fixed numbers"});
+  expect_error("graze fuzz --scene mm.toml --strata thesis", 2, {"thesis", "fixed coordinates"});
   expect_error("graze fuzz --scene mm.toml --mesh hills.off", 2, {"--scene"});
   expect_error(
       "graze scene hills.off --out hills.toml > /dev/null; sed -i '$d' hills.off; echo 3 0 1 3 >> hills.off; graze "

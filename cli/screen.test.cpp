@@ -130,7 +130,7 @@ TEST_F(TerminalTest, TheLiveLineNeverWraps) {
   EXPECT_LT(widest(text), 40) << text;
 }
 
-// The lines of a text without examples, which are not wrapped so that they can be copied.
+// The lines of a text without its examples: these are not wrapped, so that they can be copied.
 std::string without_examples(const std::string& text) {
   std::istringstream in(text);
   std::string kept;

@@ -47,7 +47,7 @@ TEST_F(Shards, KilledAndResumedInAnyOrderLeaveTheBytesOfTheWhole) {
   expect_same("whole", "all");
 }
 
-// No name of a mesh or scene is taken for an option, or written in another way.
+// The name of a mesh or scene is never taken for an option, and the printed command repeats it unchanged.
 TEST_F(Shards, AMissingShardOfAFileWhoseNameBeginsWithADashIsRunToo) {
   std::ofstream(shell.folder / "-m.off") << "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 1 1\n3 0 1 2\n3 1 2 3\n";
   expect_done("graze scene ./-m.off --out ./-s.toml");
@@ -70,7 +70,7 @@ TEST_F(Shards, WhatIsMissingIsRunByTheCommandThatIsPrinted) {
   EXPECT_EQ(shell("graze merge p-1 p-3 shard-2 --out all").status, 0);
   expect_same("whole", "all");
   expect_error("graze merge p-1 p-3 shard-2 --out all", 2, {"empty", "--out"});
-  // The place is neither the merge's own nor that of other files; a shard that was begun goes on.
+  // The suggested folder is neither the merge's own nor one with other files. A shard that was begun is resumed.
   const auto place = [&](const std::string& merge) { return command_in(shell(merge).err, "--out "); };
   EXPECT_EQ(place("graze merge p-1 p-3 --out all-of-it"), "shard-2\n");
   expect_done("mv shard-2 other && mkdir shard-2 && echo mine > shard-2/notes");
@@ -78,13 +78,13 @@ TEST_F(Shards, WhatIsMissingIsRunByTheCommandThatIsPrinted) {
   EXPECT_EQ(place("graze merge p-1 p-3 --out shard-2.1"), "shard-2.2\n");
   expect_done("rm -r shard-2 && mv other shard-2");
 
-  // A damaged shard can be merged as well; its rows with a right checksum are kept.
+  // A damaged shard can be merged as well; its rows with a correct checksum are kept.
   expect_done(
       "sqlite3 p-3/campaign.sqlite 'UPDATE batch SET pairs = pairs + 1 WHERE id = 2' 2> /dev/null || python3 -c "
       "\"import sqlite3; c = sqlite3.connect('p-3/campaign.sqlite'); c.execute('UPDATE batch SET pairs = pairs + 1 "
       "WHERE id = 2'); c.commit()\"");
   const std::string said = shell("graze merge p-1 p-3 shard-2 --out again").err;
-  const std::string repair = command_in(said, "copy it again, or: ");
+  const std::string repair = command_in(said, "copy it again, or run: ");
   EXPECT_TRUE(has_word(said, "p-3/campaign.sqlite") && has_word(said, "hash")) << said;
   ASSERT_EQ(shell(repair).status, 0) << repair;
   EXPECT_EQ(shell("graze merge p-1 p-3 shard-2 --out again").status, 0);
@@ -182,7 +182,7 @@ TEST_F(Shards, ScenesPoliciesAndSubjectsMergeToo) {
   const Ran told =
       shell("graze fuzz --pairs 100 --strata lattice --subject c='cmd:sh one.sh' --lanes 'c/*' --shard 1/2 --out c-1");
   EXPECT_EQ(told.status, 0) << told.err;
-  EXPECT_TRUE(told.out.ends_with("\nc: Graze does not notice a change of what its files load.\n")) << told.out;
+  EXPECT_TRUE(told.out.ends_with("\nc: Graze does not notice changes to what its files load.\n")) << told.out;
 }
 
 TEST_F(Shards, OfAHuntMergeByKind) {
@@ -242,12 +242,12 @@ TEST_F(Shards, RecordsOfAnotherCampaignAreRefused) {
   expect_done("cp whole/timings.json s3");
   expect_error("graze merge s1 s2 s3 --out m", 1, {"s3/timings.json", "600", "200"});
   expect_done("cp kept/*.json s3 && graze merge s1 s2 s3 --out m && cp whole/status.json s3");
-  expect_error("graze status s3", 1, {"s3", "status.json is of 600 pairs", "198 to 202"});
+  expect_error("graze status s3", 1, {"s3", "status.json has 600 pairs", "198 to 202"});
   expect_done("cp s2/status.json whole");
-  expect_error("graze status whole", 1, {"whole", "status.json is of 200 pairs", "600"});
+  expect_error("graze status whole", 1, {"whole", "status.json has 200 pairs", "600"});
 }
 
-// A run that ends while its status is read has ended, and was not killed.
+// A run that ends while its status is read is not reported as killed.
 TEST_F(Shards, ARunThatEndsIsNotKilled) {
   const Ran ran = shell(
       "for k in 1 2 3 4; do graze fuzz --seed $k --pairs 3000 --strata 'near_*' --lanes '*/f32/cpu' --out r$k > "
@@ -373,7 +373,7 @@ TEST_F(Shards, RanksLeaveTheBytesOfOneProcessAlsoWhenOneIsKilled) {
   EXPECT_EQ(shell("ls ranks | grep rank-").out, "");
   const Json run = Json::parse(contents(shell.folder / "ranks/timings.json"))["runs"].back();
   EXPECT_EQ(run["ranks"], 4);
-  // All committed pairs stay. The killed rank loses only its current block, at most one of 256.
+  // All committed pairs are kept. The killed rank loses only its current block, at most one of 256.
   EXPECT_LE(run["pairs"], 200'000 / 128);
   expect_same("whole", "ranks");
   const Ran wrong = shell(mpirun + "-n 4 " + fuzz + "--shard 1/2 --out x");

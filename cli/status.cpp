@@ -53,8 +53,8 @@ std::string state_of(const Json& status, std::int64_t silent, std::uint64_t stal
   return silent > static_cast<std::int64_t>(stalled) ? "stalled" : "running";
 }
 
-// Throws: std::runtime_error unless the status has the pairs of the campaign beside it, or about those of its shard; or
-// if the campaign cannot have so many signatures: at most one for each lane and disagreement, and those of its summary.
+// Throws: std::runtime_error if the status does not have the campaign's number of pairs (for a shard, about its share),
+// or has more signatures than the campaign can have: one for each lane and disagreement, or its summary's.
 void expect_own_counts(const fs::path& directory, const Json& status) {
   const std::uint64_t pairs = status.at("pairs");
   std::uint64_t most = status.at("disagreements"), disagreements = most, least_pairs = pairs, most_pairs = pairs;
@@ -71,20 +71,20 @@ void expect_own_counts(const fs::path& directory, const Json& status) {
       most = summary.at("signatures").size();
       disagreements = summary.at("disagreements");
     }
-  } catch (const std::exception&) {  // a damaged database or summary is told by the commands that read it
+  } catch (const std::exception&) {  // a damaged database or summary is reported by the commands that read it
   }
   if (pairs < least_pairs || pairs > most_pairs)
     throw std::runtime_error(
         cannot("use", directory,
-               fmt::format("status.json is of {} pairs, but the campaign beside it has {}", pairs,
+               fmt::format("status.json has {} pairs, but the campaign beside it has {}", pairs,
                            least_pairs == most_pairs ? fmt::format("{}", most_pairs)
                                                      : fmt::format("{} to {}", least_pairs, most_pairs))));
   const std::uint64_t found = status.at("signatures");
   if (found > most || status.at("disagreements") != disagreements)
     throw std::runtime_error(cannot(
         "use", directory,
-        fmt::format("status.json has {} disagreements and {} signatures, but summary.json or the database beside it {} "
-                    "and at most {}",
+        fmt::format("status.json has {} disagreements and {} signatures, but summary.json or the database beside it "
+                    "has {} and at most {}",
                     status.at("disagreements").get<std::uint64_t>(), found, disagreements, most)));
 }
 
@@ -101,7 +101,7 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
               {"signatures", 0},
               {"new", 0}};
   Json status = fuzz::read_status(directory);
-  // A run that begins makes its database first.
+  // A run creates its database before its status.
   for (int wait = 0; status.is_null() && wait < 40 && fuzz::has_database(directory); ++wait) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     status = fuzz::read_status(directory);

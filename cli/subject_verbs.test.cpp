@@ -19,7 +19,7 @@ struct SubjectVerb {
   const char* shows;      // a file that shows the subject; empty: the output does
 };
 
-// The first words of verbs of two words are joined as in their help.
+// Verbs of two words are written as in their help.
 const std::vector<SubjectVerb>& subject_verbs() {
   static const std::vector<SubjectVerb> all = {
       {"fuzz", "--lanes 'mine/*' --strata uniform --pairs 40 --out f", ""},
@@ -97,7 +97,7 @@ TEST_F(SubjectVerbs, EveryVerbThatOffersSubjectsRunsAndShowsThem) {
   EXPECT_TRUE(known.empty()) << known.begin()->first << " does not offer --subject";
 }
 
-// A subject that no lane is selected of is an error everywhere, never dropped.
+// If no lane of a subject is selected, every verb reports an error; none ignores the subject.
 TEST_F(SubjectVerbs, NoVerbDropsASubject) {
   for (const std::string command :
        {"fuzz --strata uniform --pairs 40 --out f", "hunt --runs 20 --out h", "check p",
@@ -119,7 +119,7 @@ TEST_F(SubjectVerbs, NoVerbDropsASubject) {
   expect_error(std::string(kWithoutDevice) + "prove-twin --subject mine=./mine.c", 2, {"CUDA source"});
 }
 
-// Of code that crashes on some pairs, pareto, query and tune count the crashes, and not as declined.
+// If code crashes on some pairs, pareto, query and tune count crashes, not declined verdicts.
 TEST_F(SubjectVerbs, CrashesAreCountedAsSuch) {
   std::ofstream(shell.folder / "mine.c") << "#include <stdlib.h>\nstatic const float kGap = 1e-3f;\nint "
                                             "intersects(const float a[9], const float b[9]) { if "
@@ -190,7 +190,7 @@ TEST_F(SubjectVerbs, ChangedCodeIsSaidAndStoredVerdictsAreShown) {
   expect_error(std::string(kWithoutDevice) + "check c/cases/one.pairs --lanes 'mine/*'", 2,
                {"mine/f32/cpu", "changed", "--resubject"});
   expect_error(std::string(kWithoutDevice) + "minimize c", 1, {"mine.c", "changed"});
-  // What needs no code goes on.
+  // Verbs that need no code still work.
   expect_done(std::string(kWithoutDevice) + "report c && graze dump c > /dev/null && graze status c");
   if (shell("graze view --out v.html").status == 0) {
     const Ran viewed = shell(std::string(kWithoutDevice) + "view c/cases/one.pairs --out v.html");
@@ -200,7 +200,7 @@ TEST_F(SubjectVerbs, ChangedCodeIsSaidAndStoredVerdictsAreShown) {
 }
 
 // Lanes without a twin do not run here: each verb that takes patterns says so, with the reason and what would run them,
-// in its output for people and in its JSON. A pattern of such lanes alone is an error.
+// in its output for people and in its JSON. A pattern that selects only such lanes is an error.
 TEST_F(SubjectVerbs, LanesThatDoNotRunAreSaid) {
   struct Row {
     std::string command;  // without --lanes

@@ -24,7 +24,7 @@ using reports::Candidate;
 constexpr std::size_t kTimed = 8192;  // pairs
 constexpr int kPasses = 9;
 
-// Without an error, 3 / rate pairs show a rate; more leave room for some errors.
+// If no error occurs, 3 / rate pairs show the rate; more pairs leave room for some errors.
 std::uint64_t pairs_for(double rate) { return std::max<std::uint64_t>(100'000, std::llround(std::ceil(6 / rate))); }
 
 // Pairs to choose on and to judge by: all but a mesh's own, which do not depend on the seed and are left for the end.
@@ -47,7 +47,7 @@ void print_sufficient(const std::string& scene, double rate) {
   spec.others = pairs_before(scene, 2, pairs, types);
   spec.max_rate = rate;
   std::vector<Candidate> candidates;
-  std::vector<Lane> lanes;  // under their tolerances
+  std::vector<Lane> lanes;  // with their tolerances
   for (const Lane& lane : published_lanes()) {
     if (lane.exact || lane.variant != Variant::cpu) continue;
     spec.sweep = analysis::host_sweep(lane);
@@ -68,7 +68,7 @@ void print_sufficient(const std::string& scene, double rate) {
       analysis::costs_of(timed, analysis::first_pairs(spec.others, kTimed), kPasses);
   for (std::size_t c = 0; c < candidates.size(); ++c) candidates[c].cost = costs[c + 1];
   const strata::SceneSources last = drawn(scene, 3, pairs, {}, types);
-  // The cheapest was chosen among lanes that passed by their errors on these pairs, so others confirm it.
+  // Candidates were selected by their errors on earlier pairs, so fresh pairs must confirm the cheapest one.
   for (int best; (best = reports::cheapest_sufficient(candidates)) >= 0;) {
     Candidate& chosen = candidates[static_cast<std::size_t>(best)];
     const Lane& lane = lanes[static_cast<std::size_t>(best)];

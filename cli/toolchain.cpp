@@ -40,10 +40,10 @@ using subjects::Toolchain;
 struct Options {
   std::string what, run, list = "all", json;
   std::vector<std::string> subjects, flags;
-  int claims = -1;  // of Rounding; negative: as documented
+  int claims = -1;  // index of a Rounding; negative: as documented
 };
 
-// What the compiler fuses in a source; of an algorithm, if it is published.
+// What the compiler fuses in a source: a published algorithm's, or a subject's.
 struct PlanOf {
   std::string name;
   bool published;
@@ -78,7 +78,7 @@ void list(const std::vector<Toolchain>& toolchains) {
   fmt::print("{}", table.text(output_screen()));
 }
 
-// Throws: UsageError for what is neither the name of a toolchain nor a command; std::runtime_error if it is missing.
+// Throws: UsageError if the text names no toolchain and no command; std::runtime_error if it is missing.
 Toolchain wanted(const Options& options) {
   const std::vector<Toolchain> all = subjects::selected_toolchains(options.list);
   const auto named = std::find_if(all.begin(), all.end(), [&](const Toolchain& t) { return t.name == options.what; });
@@ -152,14 +152,15 @@ std::string text_of(const Findings& measured) {
                       printable(words(measured.claim)));
   const std::size_t wrong = measured.count(Documented::does_not_hold), unanswered = measured.unanswered();
   if (measured.count(Documented::no_claim) > 0)
-    text += "no claim: Graze takes the flags to permit what was found, and other results too\n";
+    text += "no claim: as Graze reads the flags, they permit these results, but also others\n";
   if (wrong > 0) text += fmt::format("{} not as documented\n", reports::counted(wrong, "result"));
   if (unanswered > 0) text += fmt::format("{} without an answer\n", reports::counted(unanswered, "computation"));
   if (wrong + unanswered == 0) text += "no result contradicts the documentation\n";
   return text;
 }
 
-// As --toolchains compiles it.   Throws: std::runtime_error with the compiler's first error; Stopped.
+// The plan of the source as --toolchains compiles it.   Throws: std::runtime_error with the compiler's first error;
+// Stopped.
 PlanOf plan_of(const std::string& name, const std::filesystem::path& source, const std::string& function,
                const Findings& measured, const std::vector<std::string>& flags) {
   Toolchain toolchain = measured.toolchain;
@@ -200,7 +201,7 @@ std::vector<PlanOf> plans_of_published(const Findings& measured) {
   return plans;
 }
 
-// What is the same for all of them, if nothing is fused in any.
+// The result that all sources share, if nothing is fused in any of them.
 std::optional<std::string> in_one_line(const std::vector<PlanOf>& plans) {
   const ContractionPlan& first = plans.front().plan;
   for (const PlanOf& of : plans) {
@@ -209,7 +210,7 @@ std::optional<std::string> in_one_line(const std::vector<PlanOf>& plans) {
   return first.not_read.empty() ? "none" : "not read: " + printable(first.not_read);
 }
 
-// One line for each algorithm and scalar; of a subject, also one for each line of its source.
+// One line for each algorithm and scalar; for a subject, also one for each line of its source.
 std::string text_of(const std::vector<PlanOf>& plans) {
   const bool published = plans.front().published;
   std::string text =

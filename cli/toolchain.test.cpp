@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze toolchain` on the commands of several compilers, whose flags hold or do not hold.
+// `graze toolchain` on the commands of several compilers, whose flags have the documented effect or do not.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -13,7 +13,7 @@ struct Case {
   const char* name;
   const char* arguments;  // of `graze toolchain`
   const char* measured;
-  const char* wrong = "";  // what is not as documented: names of canaries; empty: nothing
+  const char* wrong = "";  // names of canaries that are not as documented; may be empty
   bool needs_fma = false;  // of this machine's processor
 };
 
@@ -37,7 +37,7 @@ const Case kCases[] = {
     {"Arm64Clang", "arm64-clang", "contracted"},
     {"Riscv64", "riscv64-gcc", "contracted"},
     {"Ppc64le", "ppc64le-gcc", "contracted"},
-    // Flags that do not hold: GCC and clang flush subnormals although -fno-fast-math follows.
+    // Flags without the documented effect: GCC and clang flush subnormals although -fno-fast-math follows.
     {"GccFlushes", "'x86_64-linux-gnu-gcc -Ofast -fno-fast-math'", "fast",
      "fma subnormal_input subnormal_nearest subnormal_result"},
     {"ClangFlushes", "'clang-14 --target=x86_64-linux-gnu -Ofast -fno-fast-math'", "fast",
@@ -45,7 +45,7 @@ const Case kCases[] = {
     // clang's fast math fuses in spite of a later flag.
     {"ClangFastOff", "'clang-14 --target=x86_64-linux-gnu -O2 -march=x86-64-v3 -ffast-math -ffp-contract=off'", "fast",
      kUnroundedProducts, true},
-    // Planted: claims that the flags do not keep.
+    // Planted: claims that the flags contradict.
     {"ClaimedRounded",
      "'x86_64-linux-gnu-gcc -O2 -march=x86-64-v3 -ffp-contract=off -ffp-contract=fast' --claims rounded", "contracted",
      kUnroundedProducts, true},
@@ -103,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(cli, ToolchainCommand, testing::ValuesIn(kCases),
 
 using Toolchain = CommandTest;
 
-// Emulators compute these by software of their own.
+// Emulators compute these with their own software.
 TEST_F(Toolchain, EmulatorsDivideAndTakeRootsExactly) {
   int emulated = 0;
   for (const std::string name : {"arm64-gcc", "riscv64-gcc", "ppc64le-gcc"}) {

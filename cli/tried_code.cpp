@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// "mine" for src/mine.cpp:meet. A name that a published algorithm has gets "my_" in front.
+// "mine" for src/mine.cpp:meet. The name of a published algorithm gets the prefix "my_".
 std::string name_for(const fs::path& file) {
   std::string name = file.stem().string();
   while (!fs::path(name).extension().empty()) name = fs::path(name).stem().string();  // libmine.so.1
@@ -44,7 +44,7 @@ constexpr const char* kCallsPython = R"(
 import importlib.util, operator, os, sys
 
 file, function = sys.argv[1:3]
-answers, sys.stdout = sys.stdout, sys.stderr  # what the function prints is no answer
+answers, sys.stdout = sys.stdout, sys.stderr  # what the function prints is not an answer
 sys.path.insert(0, os.path.dirname(os.path.abspath(file)))
 found = importlib.util.spec_from_file_location(os.path.splitext(os.path.basename(file))[0], file)
 module = importlib.util.module_from_spec(found)

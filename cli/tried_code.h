@@ -15,9 +15,9 @@ struct TriedCode {
   std::string wrapper = {};  // the file that was written to call a Python function
 };
 
-// source: FILE, FILE:FUNCTION or cmd:COMMAND, after NAME= or without. Of a Python function, "mine.py:meet", writes the
-// program that calls it beside the folder `out`.
-// Throws: UsageError for a name that no function has, or a foreign file in the program's place; std::runtime_error for
+// source: FILE, FILE:FUNCTION or cmd:COMMAND, with or without NAME= before it. For a Python function, "mine.py:meet",
+// writes the program that calls it beside the folder `out`.
+// Throws: UsageError for an impossible function name, or a foreign file in the program's place; std::runtime_error for
 // a program that cannot be read.
 TriedCode code_of(const std::string& source, const std::string& out);
 

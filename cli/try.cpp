@@ -47,16 +47,16 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostTold = 3;  // failures on the screen
-// Signatures of a kind that are minimised, those of the simplest pairs: of compiled code, and of a program.
+// Number of signatures minimised for each kind, those with the simplest pairs: for compiled code, and for a program.
 constexpr std::size_t kMostOfKind = 4, kMostOfProgram = 1;
 constexpr int kThreadsForPrograms = 4;          // for each core, because Graze mostly waits for the answers
-constexpr std::uint64_t kPairsOfCode = 40'000;  // of compiled code
+constexpr std::uint64_t kPairsOfCode = 40'000;  // for compiled code
 constexpr double kProgramsTimeout = 10;         // seconds; a program may take some to start
 constexpr const char* kOut = "try";
 
 struct TryOptions {
   std::string source, where;
-  std::uint64_t pairs = 0;  // 0: the default of the kind of code
+  std::uint64_t pairs = 0;  // 0: the default for the kind of code
   double timeout = 0;       // likewise
   bool names_coordinates = false;
   FuzzOptions fuzz;
@@ -71,7 +71,7 @@ std::string folder_named(const std::string& out) {
   return folder.string();
 }
 
-// The options of the campaign, but for the scene.
+// The options of the campaign, except the scene.
 FuzzOptions campaign_options(const TryOptions& options, const TriedCode& code) {
   FuzzOptions fuzz = options.fuzz;
   fuzz.out = folder_named(options.fuzz.out);
@@ -124,8 +124,8 @@ std::string put_aside(const std::string& out, const Json& spec) {
   }
 }
 
-// Minimises the signatures of the kinds to be told until each is shown by a minimised pair.   Returns: the kinds; null
-// if the user interrupted it.
+// Minimises the signatures of the kinds to report until each kind has a minimised pair.   Returns: the kinds; null if
+// the user interrupted it.
 Json minimised_kinds(const fuzz::SelectedLanes& under_test, const fs::path& directory, const Json& summary,
                      const reports::ReportLane& lane, std::size_t most_of_kind) {
   const std::atomic<bool>& interrupted = catch_interrupts();
@@ -175,7 +175,8 @@ Json minimised_kinds(const fuzz::SelectedLanes& under_test, const fs::path& dire
   }
 }
 
-// The first failure as a test, which includes a source by its place beside the folder; empty if no program can show it.
+// Writes the first failure as a test, which includes a source by its path relative to the folder.
+// Returns: the file; empty if no program can show the failure.
 std::string write_test(const Answer& answer, const fuzz::SelectedLanes& under_test) {
   if (answer.told.empty()) return "";
   const std::string file = case_of(answer, answer.told[0]), test = answer.directory + "/case.cpp";
@@ -201,7 +202,7 @@ int interrupted() {
   return kInterrupted;
 }
 
-// The command by which a person asks a program about a pair.
+// The command with which a person runs a program on a pair.
 std::string by_hand(const TriedCode& code, const std::string& pair) {
   return fmt::format("echo {} | {}", pair, code.what.substr(kCommand.size()));
 }
@@ -234,8 +235,8 @@ void tell_crash(const Answer& answer, const std::string& lane, double seconds) {
   }
 }
 
-// Asks the code about a few pairs first: of code that always fails, as a program that does not start, there is nothing
-// to find, and each pair would start it again.   Throws: std::runtime_error.
+// Runs the code on a few pairs first. If it always fails, like a program that does not start, there is nothing to find,
+// and each pair would start it again.   Throws: std::runtime_error.
 void expect_answers(const TriedCode& code, const fuzz::SelectedLanes& under_test, const strata::PairSource& source,
                     double seconds) {
   constexpr std::uint64_t kAsked = 3;
@@ -259,12 +260,11 @@ void expect_answers(const TriedCode& code, const fuzz::SelectedLanes& under_test
   if (code.is_program) {
     const std::string pair = fuzz::pair_text(source.any_pair(0).in_float32()),
                       words = all_crashed ? last_words(code, pair, seconds) : "";
-    hint =
-        fmt::format("{}; to see {}: {}",
-                    words.empty() ? "a program must answer each line of 18 numbers by a line 1, 0 or ?, and a Python "
-                                    "function is named as mine.py:meet (docs/your_own_code.md)"
-                                  : "it says: " + words,
-                    words.empty() ? "why" : "all of it", by_hand(code, pair));
+    hint = fmt::format("{}; to see {}: {}",
+                       words.empty() ? "a program must answer each line of 18 numbers with a line 1, 0 or ?, and a "
+                                       "Python function is named like mine.py:meet (docs/your_own_code.md)"
+                                     : "it says: " + words,
+                       words.empty() ? "why" : "all of it", by_hand(code, pair));
   } else if (unstable && subjects::opened(code.name)->kind == "library") {
     hint += "; a function of a shared object must return int, not bool";
   }

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Boxes alone, so wrong on many disjoint pairs. Right on all pairs that meet.
+// Compares only boxes: wrong on many disjoint pairs, right on all pairs that meet.
 constexpr const char* kBoxes =
     "#include <algorithm>\n"
     "bool meet(const float p[9], const float q[9]) {\n"
@@ -101,7 +101,7 @@ TEST_F(TryCommand, AgainGivesTheSameAndAfterAnEditKeepsTheRunBefore) {
   EXPECT_GT(edited["wrong"]["count"], first["wrong"]["count"]);
   EXPECT_EQ(answer_of("mine.cpp:meet --pairs 500")["earlier"], "try.2");
   expect_done("test -f try.1/summary.json && test -f try.2/summary.json");
-  write("other.cpp", kBoxes);  // other code does not push results aside
+  write("other.cpp", kBoxes);  // other code does not rename earlier results
   const Ran refused = shell("graze try other.cpp:meet --pairs 1000");
   EXPECT_NE(refused.status, 0);
   EXPECT_TRUE(names(refused.err.substr(0, refused.err.find('\n')), {"try"})) << refused.err;
@@ -159,7 +159,7 @@ TEST_F(TryCommand, OnlyBoolsAndIntsOfPythonAreVerdicts) {
   expect_error("graze try shapes.py:raises --out d", 1, {"says: ValueError: no area"});
 }
 
-// A program that ends on some pairs: its own last words are told once.
+// If a program exits on some pairs, its last line on stderr is shown once.
 TEST_F(TryCommand, AProgramThatCrashesOnSomePairsIsToldWithItsReason) {
   write("p.c", R"(#include <stdio.h>
 #include <string.h>
@@ -180,7 +180,7 @@ int main(void) {
   EXPECT_EQ(ran.err.find("started"), ran.err.npos);
 }
 
-// A program that lives and answers wrongly did not end.
+// A program that keeps running but gives an invalid answer is not reported as ended.
 TEST_F(TryCommand, AnAnswerThatIsNoneIsToldByExplain) {
   expect_done(
       "graze fuzz --subject 'y=cmd:while read l; do echo yes; done' --lanes 'y/*' --strata uniform --pairs 3 --out y");
@@ -249,7 +249,7 @@ TEST_F(TryCommand, WorksOnEachKindOfCode) {
   EXPECT_GE(tried, 4);
 }
 
-// The exact decision itself, as somebody's code: right as written.
+// The exact decision itself as a user's code, which is right.
 TEST_F(TryCommand, OfRightCodeSaysHowMuchThatProves) {
   write("right.cpp",
         "#include \"core/exact/exact.h\"\n"
@@ -259,7 +259,7 @@ TEST_F(TryCommand, OfRightCodeSaysHowMuchThatProves) {
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_TRUE(ran.out.starts_with("right/f32/cpu is wrong on none of the 1,000 pairs that it decides: with 95 %\n"))
       << ran.out;
-  EXPECT_NE(ran.out.find("Epsilon: no failure that was looked at shows an absolute epsilon."), std::string::npos)
+  EXPECT_NE(ran.out.find("Epsilon: no failure that was examined shows an absolute epsilon."), std::string::npos)
       << ran.out;
 }
 
@@ -328,7 +328,7 @@ TEST_F(TryCommand, NamesTheEpsilonAndTheCommandThatTunesIt) {
   EXPECT_TRUE(names(one["epsilon"].get<std::string>(), {"in place of 1e-6f at one.cpp:1"})) << one["epsilon"];
   EXPECT_EQ(one["tune"], "graze tune one/f32/cpu --from try");
   EXPECT_EQ(one["why_not_tuned"], "");
-  // The effect is that of the code with such a number.
+  // The stated effect is that of code with such a number.
   write("tiny.cpp", by_x + "1e-36f; }\n");
   const auto changed = counts_in(one["epsilon"]);
   ASSERT_EQ(changed.size(), 3u) << one["epsilon"];

@@ -28,7 +28,7 @@ constexpr std::size_t kPairsCalled = 4096;  // too many to learn their branches,
 constexpr int kPassesOfCalls = 101;
 constexpr int kLinesOfScreen = 30, kLinesOfCosts = 4;
 constexpr std::size_t kMostNamed = 3;        // numbers that may be the epsilon
-constexpr double kLargestEpsilon = 0.1;      // a constant above it is none
+constexpr double kLargestEpsilon = 0.1;      // a larger constant is not an epsilon
 constexpr std::size_t kMostStrataNamed = 6;  // that were left out
 
 std::string why_not_called(const Lane& lane) {
@@ -43,7 +43,7 @@ std::string epsilon_in_words(const std::filesystem::path& source, const subjects
                                epsilon.written, subjects::places_in_words(source, epsilon)));
 }
 
-// Asks as `graze tune` does, so that it accepts the command.
+// Applies the checks of `graze tune`, so that it accepts the suggested command.
 std::optional<subjects::TunableSource> tunable(const Lane& own, const std::string& name) {
   try {
     return subjects::tunable_source(own, name);
@@ -84,8 +84,8 @@ std::string exact_in_words(const Lane& exact, const reports::ReportLane& own, co
                          ? fmt::format("right on all {} pairs", reports::grouped(counts.total.pairs))
                          : fmt::format("not right on {}, which must never happen", reports::counted(not_right, "pair")),
                      of_float32 && own.name.scalar == name(Scalar::f64)
-                         ? fmt::format(", which are of float32; of pairs of doubles {} is right, and --coordinates f64 "
-                                       "draws them",
+                         ? fmt::format(", which are of float32; on pairs of doubles {} is right, and --coordinates "
+                                       "f64 draws them",
                                        fuzz::kExactDoubles)
                          : "");
 }
@@ -252,7 +252,7 @@ std::string text_of(const Answer& answer, const reports::Screen& screen) {
     after.push_back(text);
   }
   if (!answer.earlier.empty())
-    after.push_back(fmt::format("The run before is now {0}; compare: graze report --compare {0} {1}",
+    after.push_back(fmt::format("The earlier run is now {0}; to compare: graze report --compare {0} {1}",
                                 path_word(answer.earlier), path_word(dir)));
   if (counts.lanes[lane].name.variant.starts_with("cuda"))
     after.push_back(fmt::format("CPU against GPU: graze discrepancy --campaign {}", path_word(dir)));
@@ -266,7 +266,7 @@ std::string text_of(const Answer& answer, const reports::Screen& screen) {
   after.push_back(answer.told.empty()
                       ? fmt::format("Next, with more pairs: {}", answer.again)
                       : fmt::format("Next: graze explain {}", path_word(case_of(answer, answer.told[0]))));
-  // Figures that change with each run take as many lines each time, so that they do not change what is cut.
+  // The costs change with each run. They always count as kLinesOfCosts lines, so that the other lines stay the same.
   const std::string lines = reports::wrapped(costs, screen.columns, 0, 2);
   const auto unused = kLinesOfCosts - std::count(lines.begin(), lines.end(), '\n');
   return reports::one_screen(before, failures, after, screen,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `graze try` answers about a person's code, on one screen and as JSON.
+// The answer of `graze try` about a user's code, on one screen and as JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -16,9 +16,9 @@
 
 namespace graze::cli {
 
-inline constexpr std::uint64_t kPairsOfProgram = 2'000;  // of a program, which answers each pair by a line of text
+inline constexpr std::uint64_t kPairsOfProgram = 2'000;  // for a program, which answers each pair with a line of text
 
-// What a call that decides one pair costs.
+// The cost of a call that decides one pair.
 struct CallCosts {
   struct Row {
     const Lane* lane = nullptr;
@@ -41,13 +41,13 @@ struct OwnEpsilon {
 OwnEpsilon epsilon_of_code(const Lane& own, const std::string& directory);
 
 // Builds the code again with a negligible number in place of its obvious epsilon, or of all small numbers, and runs it
-// on the pairs. Nothing without such numbers or without a C or C++ source.   Throws: Stopped.
+// on the pairs. Returns nothing if there is no such number, or no C or C++ source.   Throws: Stopped.
 std::optional<reports::EpsilonEffect> epsilon_effect(const Lane& own, const std::vector<strata::PairSource>& sources);
 
 struct Answer {
   TriedCode code;
   std::string directory, earlier,
-      scene;  // earlier: what the run before is called now; scene: the file that was written
+      scene;                              // earlier: new name of the earlier run; scene: the written file
   std::vector<strata::LeftOut> left_out;  // strata that the scene cannot contain
   nlohmann::ordered_json summary, kinds;  // of all lanes
   CallCosts costs;

@@ -84,9 +84,9 @@ bool TunePairs::in_doubles() const { return analysis::any_in_doubles(others); }
 
 void expect_takes(const Lane& lane, const TunePairs& pairs) {
   if (!pairs.in_doubles()) return;
-  if (!fuzz::takes(lane, DoublePair{})) throw UsageError(cannot("run", lane.id, "it takes pairs of float32 alone"));
+  if (!fuzz::takes(lane, DoublePair{})) throw UsageError(cannot("run", lane.id, "it takes only pairs of float32"));
   if (lane.algorithm >= 0 && !fuzz::takes(lane_under(lane, "abs:1e-6"), DoublePair{}))
-    throw UsageError(cannot("tune", lane.id, "under a tolerance it takes pairs of float32 alone"));
+    throw UsageError(cannot("tune", lane.id, "under a tolerance it takes only pairs of float32"));
 }
 
 const Lane& exact_on(const TunePairs& pairs, const Lane& lane) {
@@ -170,7 +170,7 @@ std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
   } else if (!on_device.empty()) {
     const cuda::DeviceCosts there =
         cuda::measure_on_device(on_device, analysis::first_pairs(sources, std::size_t{1} << 20), 9);
-    sentences.push_back(sentence(" on " + there.device + ", 2^20 pairs a call that are there already", on_device,
+    sentences.push_back(sentence(" on " + there.device + ", with 2^20 pairs per call already in its memory", on_device,
                                  [&](std::size_t l) { return analysis::quartiles(there.of[l].resident); }));
   }
   return sentences;
@@ -308,16 +308,16 @@ void add_tune(CLI::App& app, int& status) {
   add_scene_option(*command, options->scene);
   command
       ->add_option("--from", options->from,
-                   "Campaign whose own pairs, with the disagreements that it counted, the choice is made on")
+                   "Campaign on whose pairs, with the disagreements that it counted, the choice is made")
       ->excludes("--strata")
       ->excludes("--coordinates")
       ->excludes("--scene")
       ->option_text("DIR");
   add_count(*command, "--pairs", options->pairs, 10, kMostWhole,
-            "Number of pairs that judge the choice; without --from it is made on a tenth as many others")
+            "Number of pairs that judge the choice; without --from, the choice is made on a tenth as many other pairs")
       ->default_str("1000000; with --from as many as the campaign drew");
   add_count(*command, "--seed", options->seed, 0, kMostWhole - 1,
-            "Seed of the pairs that the choice is made on; those that judge it have the next seed")
+            "Seed of the pairs on which the choice is made; those that judge it have the next seed")
       ->excludes("--from");
   CLI::Option* const forbid = command->add_option(
       "--forbid", options->forbid, "Errors to avoid: false negatives, false positives, or any wrong verdict");

@@ -20,7 +20,7 @@ namespace graze::cli {
 struct TuneOptions {
   std::vector<std::string> lanes;
   LaneOptions own_code;  // its subjects
-  std::string epsilon;   // of own code: the name of the constant; empty: the obvious one
+  std::string epsilon;   // for own code: the name of the constant; empty: the obvious one
   std::string scene, from, out;
   std::vector<std::string> strata;
   std::uint64_t pairs = 0;  // 0: a million, or as many as the campaign `from` has
@@ -38,7 +38,7 @@ int agree(const TuneOptions& options);
 // The pairs on which the choice is made (a tenth of the number, or the campaign's), and the pairs that verify it (drawn
 // with the next seed).
 struct TunePairs {
-  fuzz::Json campaign;  // summary of the campaign that `sources` are of; null: none
+  fuzz::Json campaign;  // summary of the campaign of `sources`; null: none
   std::vector<strata::PairSource> sources, others;
   std::string left_out;  // left_out_text of the scene
 
@@ -48,10 +48,10 @@ struct TunePairs {
 // Throws: as drawn and pairs_of_campaign; UsageError if no pairs are left to choose on, or to verify.
 TunePairs tune_pairs(const TuneOptions& options);
 
-// Throws: UsageError if some pairs are doubles, and the lane takes float32 alone.
+// Throws: UsageError if some pairs are doubles and the lane takes only float32.
 void expect_takes(const Lane& lane, const TunePairs& pairs);
 
-// The lane that is never wrong on these pairs, beside this one if it can be.
+// The lane that is never wrong on these pairs, on this lane's backend if possible.
 const Lane& exact_on(const TunePairs& pairs, const Lane& lane);
 
 AnyPair pair_at(const std::vector<strata::PairSource>& sources, const analysis::PairPlace& place);
@@ -63,17 +63,17 @@ std::string file_of_pair(const AnyPair& pair, const std::string& lanes);
 // Requires: a lane is wrong on the pair.
 std::string smallest(const Lane& first, const Lane& second, const AnyPair& pair);
 
-// Writes the results and lists them. Removes those of the optional ones, each with the first line of its kind, that an
+// Writes the results and lists them. Removes each optional result (given with the first line of its kind) that an
 // earlier run wrote and this one did not.
 void write_listed(const std::filesystem::path& out, const std::vector<Result>& results,
                   std::initializer_list<Result> optional);
 
-// The line with the next command, which checks the last result if that is a file of pairs. A lane of a user's code
-// needs its --subject, so that the command runs.
+// The line with the next command, which checks the last result if that is a file of pairs. For a lane of a user's code
+// it has the --subject that the lane needs.
 std::string next_command(const std::filesystem::path& out, const Result& last, const std::string& lanes);
 
 // The cost of a pair for each lane: host lanes on one core, CUDA lanes on the device. A twin's time is not the time of
-// the code, so without a device a sentence says that it was not measured, and so it does of programs.
+// the code, so without a device, and for programs, a sentence says that it was not measured.
 std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
                                         const std::vector<strata::PairSource>& sources);
 
@@ -84,7 +84,7 @@ void expect_errors_of(const std::string& directory, const fuzz::Json& campaign, 
 
 // With --from: changes.csv, a row for each pair of the choice on which the lane is wrong without a tolerance ("wrong"),
 // and for each pair that the best tolerance of a curve fixes or breaks.
-// own_code: what decides under a policy if the lane is a user's code, else null.
+// own_code: the decider under a policy if the lane is a user's code; else null.
 inline constexpr const char* kChangesHeader = "stratum,seed,index,truth,tolerance,change\n";
 std::string changes_csv(const Lane& lane, const analysis::DecideUnder& own_code, const analysis::TuneSpec& spec,
                         const analysis::Tuned& tuned, std::uint64_t seed, int threads);

@@ -52,7 +52,7 @@ TEST_F(Policies, AreLanesOnEveryVerb) {
 TEST_F(Policies, RefusedOnesGetOneLine) {
   expect_error("graze repro uniform:1:1 --lanes 'moller_1997/f32/cpu/rel:x'", 2, {"\"rel:x\""});
   expect_error("graze repro uniform:1:1 --lanes 'projected_sat/f32/cpu/bound'", 2,
-               {"projected_sat is wrong on some pairs without any rounding"});
+               {"projected_sat is wrong on some pairs even without rounding"});
   expect_error("graze repro uniform:1:1 --lanes 'nothing/f32/cpu/rel:1'", 2, {"nothing/f32/cpu/rel:1"});
 }
 
@@ -86,7 +86,7 @@ TEST_F(TuneCommand, AFreshCampaignConfirmsWhatItRecommends) {
   }
 }
 
-// What `--from` lists are the campaign's own disagreements, and what each tolerance of the table does to them.
+// `--from` lists the campaign's own disagreements and shows what each tolerance in the table does to them.
 TEST_F(TuneCommand, ChoosesOnTheDisagreementsOfACampaign) {
   expect_done("graze fuzz --strata 'near_*' --pairs 8k --seed 7 --lanes 'moller_1997/f32/*' --out c > /dev/null");
   const std::string tune = "graze tune moller_1997/f32/cpu --from c --forbid false-negative --max-rate 1e-2 ";
@@ -138,7 +138,7 @@ TEST_F(TuneCommand, ChoosesOnTheDisagreementsOfACampaign) {
     EXPECT_EQ(again.out.substr(0, second).find(" !") != std::string::npos, zero_wrong) << place << '\n' << again.out;
     EXPECT_EQ(again.out.find(" !", second) != std::string::npos, chosen_wrong) << place << '\n' << again.out;
   }
-  // The same bytes for any number of threads; changes.csv goes when another run does not write it.
+  // The same bytes for any number of threads; changes.csv is removed when another run does not write it.
   expect_done(tune + "--max-other 0.5 --pairs 6k --threads 1 --out u > /dev/null && diff -r t u");
   expect_done("graze tune moller_1997/f32/cpu --strata near_vertex_face --pairs 1k --out t > /dev/null");
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "t/changes.csv"));
@@ -146,7 +146,7 @@ TEST_F(TuneCommand, ChoosesOnTheDisagreementsOfACampaign) {
   expect_error(tune + "--scene x.toml", 2, {"--scene", "--from"});
 }
 
-// A campaign of other code: its counts are possible, but its pairs show others.
+// A campaign with different code: its counts are possible, but its pairs give others.
 TEST_F(TuneCommand, ACampaignWhosePairsShowOtherErrorsIsRefused) {
   expect_done("graze fuzz --strata near_edge_edge --pairs 2k --lanes moller_1997/f32/cpu --out c > /dev/null");
   auto summary = json_of(shell.folder / "c/summary.json");
@@ -267,7 +267,7 @@ TEST_F(AgreeCommand, FreshPairsConfirmItForTwoAlgorithms) {
     EXPECT_GT(json["zero_confirmed"]["differing"], 100) << ran.out;
     EXPECT_EQ(json["rounded"]["agreement"]["differing"], 0) << ran.out;
     EXPECT_NE(ran.out.find("(exact/f32/cpu and exact/f32/cuda)"), std::string::npos) << ran.out;
-    // With twice the pairs and another seed, the rate keeps to the bound.
+    // With twice the pairs and another seed, the rate stays within the bound.
     const double fresh = static_cast<double>(recounted(shell, stratum, 99, 20'000, cpu, cuda, policy)) / 20'000;
     if (result == std::string("satisfied")) {
       EXPECT_LE(fresh, json["high"].get<double>());
@@ -280,7 +280,7 @@ TEST_F(AgreeCommand, FreshPairsConfirmItForTwoAlgorithms) {
     expect_done(
         "xmllint --noout t/curves.svg 2> /dev/null || python3 -c 'import xml.dom.minidom as m; "
         "m.parse(\"t/curves.svg\")'");
-    // On the smallest cases the lanes differ, without the policy and under it.
+    // On the smallest cases the lanes differ, without the policy and with it.
     EXPECT_EQ(shell("graze check t/differ.pairs --lanes '" + cpu + "," + cuda + "' | grep -c ' !'").out, "1\n");
     EXPECT_EQ(std::filesystem::exists(shell.folder / "t/differ_under.pairs"), json["confirmed"]["differing"] > 0);
     if (json["confirmed"]["differing"] > 0) {
@@ -337,7 +337,7 @@ TEST_F(ParetoCommand, SetsErrorsAgainstCosts) {
       "'*/f32/cpu,exact/f32/cpu,moller_1997/f32/cpu/paper' --out t");
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_NE(ran.out.find("\n  Scaled by 2^k"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("\nOne pair a call"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("\nWith one pair per call"), std::string::npos) << ran.out;
   const auto json = json_of(shell.folder / "t/pareto.json");
   ASSERT_EQ(json["lanes"].size(), 7u);
   double before = 0;

@@ -48,7 +48,7 @@ TEST_F(TuneOwnCode, ACampaignOfTheChangedSourceConfirmsTheValue) {
   const std::size_t next = ran.out.find("Next: ");
   ASSERT_NE(next, std::string::npos);
   expect_done("export XDG_CACHE_HOME=$PWD/cache; " + ran.out.substr(next + 6));
-  // It does not depend on threads, and what is cached gives the same bytes.
+  // The result does not depend on threads, and cached builds give the same bytes.
   const Ran again = tune(options + "--threads 1 --out u");
   ASSERT_EQ(again.status, 0) << again.err;
   expect_done("cmp t/tune.json u/tune.json");
@@ -72,7 +72,7 @@ TEST_F(TuneOwnCode, SaysThatNoValueHelps) {
   write("1e-6f");
   const Ran ran = tune("--subject mine=./mine.cpp --strata near_vertex_face --pairs 2k --max-rate 1e-6 --out t");
   ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_EQ(ran.out.find("No value is good enough here: no value of kEps from 0 on keeps"), 0u) << ran.out;
+  EXPECT_EQ(ran.out.find("No value is good enough here: no value of kEps from 0 up keeps"), 0u) << ran.out;
   EXPECT_EQ(json_of(shell.folder / "t/tune.json")["result"], "not satisfiable");
 }
 
@@ -91,7 +91,7 @@ TEST_F(TuneOwnCode, UsesTheScenesUnitsAndACampaignsSubjects) {
   EXPECT_EQ(contents(shell.folder / "c/changes.csv").find("stratum,seed,index"), 0u);
   expect_done("graze report c");
   EXPECT_NE(contents(shell.folder / "c/report.html").find("kEps"), std::string::npos);
-  // After a change of the source, the campaign's counts are not those of its code.
+  // After the source has changed, the campaign's counts are not those of the code.
   write("0.125f");
   expect_error("export XDG_CACHE_HOME=$PWD/cache; graze tune mine/f32/cpu --from c --out d", 1,
                {"mine.cpp", "changed"});

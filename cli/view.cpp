@@ -44,7 +44,7 @@ std::string name_of(const std::string& file, const corpus::Entry& entry) {
   return printable(label ? *label : entry.line > 0 ? fmt::format("{}:{}", file, entry.line) : file);
 }
 
-// The user's code: of --subject, and of the campaign that is shown.
+// The user's code: from --subject, and from the campaign that is shown.
 class OwnCode {
  public:
   // Throws: as selected_lanes.
@@ -58,7 +58,7 @@ class OwnCode {
     }
   }
 
-  // What lanes that cannot run now said in the campaign.
+  // The campaign's verdicts for lanes that cannot run now.
   std::vector<reports::SaidOfPair> stored(const corpus::Entry& entry) const {
     std::vector<reports::SaidOfPair> said;
     if (under_test_.left_out.empty()) return said;
@@ -117,8 +117,8 @@ Verdict exact_verdict(const AnyPair& pair) {
   return visit(pair, [&](const auto& own) { return decide_one(lane->decide, own); });
 }
 
-// Adds the triangles, and the pairs whose boxes overlap, starting with those on which some lane is wrong. Those of a
-// mesh with more digits than float32 holds are of doubles.
+// Adds the triangles, and the pairs whose boxes overlap, starting with those on which some lane is wrong. If the mesh
+// has more digits than float32 holds, they are pairs of doubles.
 void add_mesh(const fs::path& file, bool exact_input, Viewed& viewed) {
   expect_utf8("the mesh", file.string());
   const strata::MeshPairs mesh = strata::read_mesh_pairs(file);
@@ -176,7 +176,7 @@ void add_query(const std::string& reference, const std::string& file, bool exact
     const AnyPair pair = are_doubles ? AnyPair(pair_of(references[0], mesh[i]))
                                      : pair_of(of_references.triangles[0], of_mesh.triangles[i]);
     const bool hit = exact_verdict(pair) == Verdict::intersects;
-    const bool shown = hit || (viewed.pairs.empty() && i + 1 == mesh.size());  // one if there are no hits
+    const bool shown = hit || (viewed.pairs.empty() && i + 1 == mesh.size());  // one pair if there are no hits
     if (shown && viewed.pairs.size() < kMostOfAMesh)
       viewed.pairs.push_back({fmt::format("{}, triangle {}", printable(fs::path(file).filename().string()), i), pair});
     std::vector<Triangle>& of = hit ? viewed.triangles : others;

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-# Shortens release builds. Other builds compile each file by itself, so that each has to include what it uses. In every
-# build the lanes, twins, kernels, core, strata, oracle and cuda are compiled that way.
+# Shortens release builds. Other builds compile each file by itself, so that each file has to include what it uses. The
+# lanes, twins, kernels, core, strata, oracle and cuda are compiled that way in every build.
 set(is_release FALSE)
 if(CMAKE_BUILD_TYPE STREQUAL Release)
   set(is_release TRUE)
 endif()
 
-# To compile faster, a campaign's build turns warnings off; other builds show them.
+# A campaign's build turns warnings off, to compile faster; other builds show them.
 if(GRAZE_CAMPAIGN)
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-w>)
 endif()
@@ -55,8 +55,8 @@ endfunction()
 
 # graze_together(TARGET [ALONE file…] [MUTATED file…]): unity build of nine sources at a time, or eighteen for a
 # campaign. ALONE files are left out because their private names clash with other files'. MUTATED files are left out
-# because scripts/mutate compiles them itself, except in a campaign's build. A file that is compiled alone takes seconds
-# for CLI11, our own headers and its copy of the JSON library.
+# because scripts/mutate compiles them itself, except in a campaign's build. A file that is compiled alone spends
+# seconds on CLI11, our own headers and its copy of the JSON library.
 function(graze_together target)
   cmake_parse_arguments(arg "" "" "ALONE;MUTATED" ${ARGN})
   set(batch 9)

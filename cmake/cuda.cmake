@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 # Finds nvcc. Without it, CMAKE_CUDA_COMPILER is false.
 include(CheckLanguage)
-# Without a device, twins run a campaign, and their PTX is stored.
+# Without a device, a campaign needs no nvcc: it runs on twins, whose PTX is stored.
 file(GLOB devices /dev/nvidia[0-9]* /dev/dxg)
 if(devices OR NOT GRAZE_CAMPAIGN)
   check_language(CUDA)
 endif()
 if(CMAKE_CUDA_COMPILER)
-  # Machine code for sm_90. Other devices from sm_75 on compile the same PTX when it is loaded.
+  # Machine code for sm_90. For other devices from sm_75 on, the driver compiles the same PTX when it loads it.
   if(NOT CMAKE_CUDA_ARCHITECTURES)
     set(CMAKE_CUDA_ARCHITECTURES 75-virtual 90-real)
   endif()
@@ -19,5 +19,5 @@ if(CMAKE_CUDA_COMPILER)
   endif()
   message(STATUS "CUDA lanes: built with nvcc ${CMAKE_CUDA_COMPILER_VERSION} for ${CMAKE_CUDA_ARCHITECTURES}")
 else()
-  message(STATUS "CUDA lanes: run by their twins, on the CPU (built without nvcc); cuda-fast, which has none, is unavailable")
+  message(STATUS "CUDA lanes: run by their twins, on the CPU (built without nvcc); cuda-fast, which has no twin, is unavailable")
 endif()

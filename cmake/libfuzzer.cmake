@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Sets GRAZE_LIBFUZZER to clang's libFuzzer library without a main function, which programs of any compiler can call.
-# The variable is false if there is no such library or it does not link. Only the guided search (graze hunt) needs it.
+# Sets GRAZE_LIBFUZZER to clang's libFuzzer library without a main function, which code from any compiler can call. The
+# variable is false if there is no such library or it does not link. Only the guided search (graze hunt) needs it.
 if(NOT DEFINED GRAZE_LIBFUZZER)
   file(GLOB folders /usr/lib/llvm-*/lib/clang/*/lib/linux /usr/lib/clang/*/lib/linux)
   list(SORT folders COMPARE NATURAL ORDER DESCENDING)
@@ -17,7 +17,7 @@ int main(int count, char** words) { return LLVMFuzzerRunDriver(&count, &words, [
   endif()
 endif()
 if(GRAZE_LIBFUZZER)
-  message(STATUS "graze hunt: libFuzzer of ${GRAZE_LIBFUZZER}")
+  message(STATUS "graze hunt: uses libFuzzer from ${GRAZE_LIBFUZZER}")
 else()
   message(STATUS "graze hunt: unavailable (no libFuzzer found; Debian's package libclang-rt-14-dev has it)")
 endif()

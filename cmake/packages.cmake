@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-# The Debian packages that `cpack` makes from a whole build: graze, libgraze, libgraze-dev and python3-graze. scripts/debs
-# makes and checks them.
+# The Debian packages that `cpack` makes from a full build: graze, libgraze, libgraze-dev and python3-graze.
+# scripts/debs makes and checks them.
 if(GRAZE_CAMPAIGN OR GRAZE_PORTABLE)
   return()
 endif()
 
-# The program looks for its helpers beside itself.
+# The program looks for its helpers in its own folder.
 foreach(program graze graze-subject-host graze-subject-device graze-subject-opencl)
   if(TARGET ${program})
     install(TARGETS ${program} RUNTIME DESTINATION lib/graze COMPONENT program)
@@ -32,10 +32,10 @@ Copyright: 2026 The Graze developers
 License: Apache-2.0
  On Debian systems, the full text is in /usr/share/common-licenses/Apache-2.0.
 Comment:
- The binaries contain code of header-only libraries. Their licenses stand beside
- this file, as copyright.NAME. Parts of CGAL in the program and in the library
- of the Python package are under the GPL, version 3 or newer, and so are these as
- a whole.
+ The binaries contain code of header-only libraries. Their licenses are beside
+ this file, as copyright.NAME. The program and the library of the Python package
+ contain parts of CGAL that are under the GPL, version 3 or newer, so each of
+ them as a whole is under that license.
 ]])
 # Installs the licenses of header-only libraries, by Debian package.
 function(install_licenses component name)
@@ -86,7 +86,7 @@ macro(package name)
 endmacro()
 package(graze COMPONENTS program SECTION science DEPENDS "procps"
   WHAT "find inputs on which triangle-triangle intersection tests are wrong"
-  MORE "Draws pairs that nearly touch, are degenerate or are coplanar, decides\nthem by many tests on CPU and CUDA (without a device, by twins of the\nkernels), compares each verdict with exact arithmetic, and counts,\nshrinks and explains the wrong ones.")
+  MORE "Draws pairs that nearly touch, are degenerate or are coplanar, decides\nthem with many tests on CPU and CUDA (without a device, with twins of the\nkernels), compares each verdict with exact arithmetic, and counts,\nshrinks and explains the wrong ones.")
 package(libgraze COMPONENTS libraries SECTION libs
   WHAT "exact intersection of triangles, for programs and their tests"
   MORE "libgraze_query finds the triangles of an array that meet a given one;\nlibgraze_test tests a function of two triangles.")

@@ -11,28 +11,28 @@ set_tests_properties(scripts.Format PROPERTIES SKIP_RETURN_CODE 77)
 add_test(NAME scripts.test.format COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/format.test.py ${CMAKE_BINARY_DIR})
 set_tests_properties(scripts.test.format PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped")
 add_test(NAME scripts.AuditExplanations COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/audit_explanations.test.py $<TARGET_FILE:graze>)
-# By hand, with a fresh system: scripts/debs --try and scripts/container.
+# To run by hand, in a fresh system: scripts/debs --try and scripts/container.
 add_test(NAME packaging.Containerfile COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/container --print)
 if(CMAKE_BINARY_DIR STREQUAL ${PROJECT_SOURCE_DIR}/build)
   add_test(NAME scripts.Debs COMMAND ${PROJECT_SOURCE_DIR}/scripts/debs --out ${CMAKE_BINARY_DIR}/debs-test)
   set_tests_properties(scripts.Debs PROPERTIES SKIP_RETURN_CODE 77)
 endif()
-# Both are skipped where they need something that is missing; the message names it.
+# Both are skipped if something they need is missing; the message names it.
 add_test(NAME scripts.test.npm_package COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/npm_package.test.py ${CMAKE_BINARY_DIR})
 add_test(NAME packaging.Action COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/packaging/action.test.py $<TARGET_FILE:graze>)
 set_tests_properties(scripts.test.npm_package packaging.Action PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped")
 # Without the viewer, the test of the web site is skipped.
 add_test(NAME scripts.test.results COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/results.test.py $<TARGET_FILE:graze>)
 set_tests_properties(scripts.test.results PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped")
-# A minute on an idle machine; by hand for an hour: scripts/torture --minutes 60. The seed changes with each commit, so
-# ten commits kill campaigns and minimisations a hundred times, at different moments.
+# Takes a minute on an idle machine. To run it by hand for an hour: scripts/torture --minutes 60. The seed changes with
+# each commit, so ten commits kill campaigns and minimisations a hundred times, at different moments.
 add_test(NAME scripts.Torture COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/torture --rounds 2 --kills 10 --seed commits --graze $<TARGET_FILE:graze>)
 set_tests_properties(scripts.Torture PROPERTIES TIMEOUT 1500)
-# Defects planted in our own sources. Each is compiled with Ninja's commands of this build.
+# Defects planted in our own sources. Each is compiled with this build's Ninja commands.
 if(CMAKE_GENERATOR STREQUAL Ninja)
   add_test(NAME scripts.PlantedDefects COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/mutate --planted --build ${CMAKE_BINARY_DIR} --out ${CMAKE_BINARY_DIR}/planted)
 endif()
-# By hand with a thousand shards: scripts/simulate_shards.
+# To run it by hand with a thousand shards: scripts/simulate_shards.
 add_test(NAME scripts.SimulateShards COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/simulate_shards --graze $<TARGET_FILE:graze>
   --shards 12 --pairs 12000 --strata near_*,degenerate --lanes */f32/cpu --kill 0.5)
 add_test(NAME scripts.Slurm COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/slurm/campaign.test.py $<TARGET_FILE:graze>)
@@ -41,7 +41,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   add_test(NAME scripts.test.odr COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/odr.test.py ${CMAKE_CXX_COMPILER})
 endif()
 add_test(NAME scripts.test.campaign COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/campaign.test.py ${CMAKE_BINARY_DIR} ${CMAKE_CXX_COMPILER})
-# Three seconds for each fuzz target, from another start each time, plus build time. By hand for an hour:
+# Takes three seconds for each fuzz target, with another seed each time, plus build time. To run it by hand for an hour:
 # scripts/fuzz --seconds 400.
 add_test(NAME scripts.Fuzz COMMAND ${PROJECT_SOURCE_DIR}/scripts/fuzz --seconds 3 --build ${CMAKE_BINARY_DIR}/fuzz-targets)
 set_tests_properties(scripts.Fuzz PROPERTIES TIMEOUT 900 SKIP_RETURN_CODE 77)

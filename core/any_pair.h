@@ -9,7 +9,7 @@
 
 namespace graze {
 
-// Its coordinates as doubles, which are exact. A pair of float32 keeps its floats, for lanes decide it by them.
+// Its coordinates as doubles, which are exact. A pair of float32 also keeps its floats, because lanes decide those.
 struct AnyPair {
   DoublePair doubles;
   std::optional<Pair> floats;
@@ -17,7 +17,7 @@ struct AnyPair {
   AnyPair(const Pair& pair) : doubles(in_doubles(pair)), floats(pair) {}
   AnyPair(const DoublePair& pair) : doubles(pair) {}
 
-  // The pair itself, or what a program stores of it that keeps its coordinates in float32.
+  // The pair itself, or the pair that a program with float32 coordinates would store.
   Pair in_float32() const { return floats ? *floats : stored_in_float32(doubles); }
 };
 

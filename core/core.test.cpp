@@ -268,7 +268,7 @@ void expect_policy_decides(std::initializer_list<Site> sites) {
 // Counting a word of pairs at once gives the same as counting the verdicts one by one, for every combination of bits.
 TEST(JudgedBits, AreTheCountsOfVerdicts) {
   for (const bool foreign : {false, true}) {
-    std::uint32_t bits[4] = {};  // pair i has bit b of i in word b: intersects, declined, truth, judged
+    std::uint32_t bits[4] = {};  // bit i of word b is bit b of i: intersects, declined, truth, judged
     for (std::uint32_t i = 0; i < 32; ++i) {
       for (std::uint32_t b = 0; b < 4; ++b) bits[b] |= (i >> b & 1) << i;
     }

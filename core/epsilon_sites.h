@@ -33,7 +33,7 @@ struct At {
 
 inline namespace GRAZE_FP {
 
-// A value that the source compares itself, without an epsilon. Only policies that record see it.
+// A value that the source itself compares, without an epsilon. Only policies that record see it.
 template <class Policy, class Real>
 GRAZE_HD void see([[maybe_unused]] const Policy& policy, [[maybe_unused]] int question, [[maybe_unused]] Real& x) {
   if constexpr (requires { policy.seen(question, x); }) x = policy.seen(question, x);
@@ -50,7 +50,7 @@ GRAZE_HD Choice chosen(const Policy& policy, int which, Choice value) {
   }
 }
 
-// Like `chosen`, for a choice that only depends on recorded values.
+// Like `chosen`, for a choice that depends only on recorded values.
 template <class Policy>
 GRAZE_HD void choose([[maybe_unused]] const Policy& policy, [[maybe_unused]] int which, [[maybe_unused]] int value) {
   if constexpr (requires { policy.chosen(which, 0); }) policy.chosen(which, value);

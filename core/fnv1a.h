@@ -13,7 +13,7 @@ constexpr std::uint64_t fnv1a(std::string_view bytes, std::uint64_t hash = 0xcbf
   return hash;
 }
 
-// Whether the text is a hash as names and records have it: 16 hexadecimal digits.
+// Whether the text has the form of a hash in names and records: 16 hexadecimal digits.
 constexpr bool is_hash(std::string_view text) {
   return text.size() == 16 && text.find_first_not_of("0123456789abcdef") == text.npos;
 }

@@ -17,7 +17,7 @@ namespace graze {
 
 // First byte even: the next 72 or 144 bytes are the coordinates' bits. First byte odd: the second byte is an exponent,
 // eight times as large for doubles, and the next 18 are small whole numbers, scaled by that power of two so that
-// contacts are common. Of doubles, the next 18 bytes then say by how many ulps each is moved. Missing bytes are zeros.
+// contacts are common. For doubles, 18 more bytes say by how many ulps each is moved. Missing bytes are zeros.
 template <class Real = float>
 BasicPair<Real> pair_of(std::string_view bytes) {
   constexpr bool kDoubles = sizeof(Real) == sizeof(double);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Replays the stored corpora of the fuzz targets that are linked. It needs no clang and is part of every build.
+// Replays the stored corpora of the linked fuzz targets. It needs no clang and is part of every build.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -20,7 +20,7 @@ inline bool has_word(std::string_view text, std::string_view word) {
   return false;
 }
 
-// Success if the message is one line and has each of the words; a word may be several, such as "byte 80".
+// Success if the message is one line and has each of the words; a word may contain spaces, such as "byte 80".
 inline testing::AssertionResult names(const std::string& message, const std::vector<std::string>& words) {
   if (words.empty()) return testing::AssertionFailure() << "no words to look for";
   if (message.find('\n') != std::string::npos) return testing::AssertionFailure() << "several lines: " << message;

@@ -46,9 +46,9 @@ bool is_finite(const BasicPair<Real>& pair) {
   return others == 0;
 }
 
-// The pair as a program stores it that keeps its coordinates in float32: each rounded to nearest, beyond the largest
-// float32 to infinity. Never inlined: where GCC 12 sees a pair become floats and doubles again in one function, its
-// vectorizer (-O3) leaves the last two numbers unrounded.
+// The pair as a program with float32 coordinates stores it: each rounded to nearest, or to infinity beyond the largest
+// float32. Never inlined: where GCC 12 sees a pair become floats and then doubles again in one function, its vectorizer
+// (-O3) leaves the last two numbers unrounded.
 [[gnu::noinline]] inline Pair stored_in_float32(const DoublePair& pair) {
   Pair result;
   for (int i = 0; i < kCoordinates; ++i) coordinates(result)[i] = static_cast<float>(coordinates(pair)[i]);

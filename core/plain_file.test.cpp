@@ -50,7 +50,7 @@ TEST_F(PlainFile, SaysWhyItCannotBeRead) {
   std::ofstream(folder_ / "large").close();
   fs::resize_file(folder_ / "large", (1 << 20) + 1);
   EXPECT_EQ(why_not(folder_ / "large"), "it is larger than 1 MiB");
-  if (std::ifstream("/proc/kmsg")) {  // root's; a regular file by its mode, whose end never comes
+  if (std::ifstream("/proc/kmsg")) {  // for root only; its mode says regular file, but it never ends
     EXPECT_NE(why_not("/proc/kmsg"), "");
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The request to stop, by Ctrl-C or SIGTERM. Code that may wait long checks for it at least ten times a second.
+// The request to stop, by Ctrl-C or SIGTERM. Code that may wait a long time checks it at least ten times a second.
 #pragma once
 
 #include <atomic>
@@ -10,7 +10,7 @@ namespace graze {
 inline std::atomic<bool> stop_requested{false};
 
 // Thrown by code that cannot finish soon after a request to stop. The verb then ends as if the request had come between
-// two steps. It is no std::exception, so no handler of an expected failure catches it.
+// two steps. It is not a std::exception, so no handler of an expected failure catches it.
 struct Stopped {};
 
 extern "C" inline void request_stop(int) { stop_requested = true; }

@@ -74,7 +74,7 @@ std::optional<double> parse_float64(std::string_view text) { return parse_real<d
 
 namespace {
 
-// A number without its sign, as 0.DIGITS * 10^exponent, or 0.DIGITS * 16^exponent without counting a binary exponent.
+// A number without its sign: 0.DIGITS * 10^exponent, or 0.DIGITS * 16^exponent with any binary exponent left out.
 struct Digits {
   std::string digits;  // neither begins nor ends with a zero
   long exponent = 0;

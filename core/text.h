@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For all readers: numbers parsed in full or not at all, rounded once; foreign text made fit to print.
+// For all readers: parses numbers completely or not at all, with one rounding, and makes foreign text fit to print.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ std::optional<double> parse_float64(std::string_view text);
 // Requires: text is such a number, `value` the finite double nearest to it.   Exact: always.
 bool is_exactly(std::string_view text, double value);
 
-// Returns: the whole number that text spells, without a sign; nothing if it spells none or a too large one.
+// Returns: the whole number that text spells, without a sign; nothing if it spells none, or one that is too large.
 std::optional<std::uint64_t> parse_whole(std::string_view text);
 
 // rounded_up returns the least decimal of `digits` significant digits that is not below the value; rounded_down the

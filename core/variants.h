@@ -50,8 +50,8 @@ constexpr std::optional<Variant> variant_of_name(std::string_view id) {
   return std::nullopt;
 }
 
-// The variant on the same kind of processor in which every operation rounds as written; of a toolchain's program, the
-// host's.
+// The variant on the same kind of processor in which every operation rounds as written; for a toolchain's program, the
+// host's variant.
 constexpr Variant rounded_variant(Variant variant) {
   const RunsOn where = info_of(variant).runs_on == RunsOn::device ? RunsOn::device : RunsOn::host;
   for (const VariantInfo& row : kVariants) {

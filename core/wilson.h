@@ -25,7 +25,7 @@ inline Share share_of(std::uint64_t count, std::uint64_t of) {
   return {count, of, p, count == 0 ? 0 : std::max(0.0, middle - half), count == of ? 1 : std::min(1.0, middle + half)};
 }
 
-// Upper 95 % bound of a rate after n trials without an event: at this rate, no event has a 5 % chance.
+// Upper 95 % bound on a rate after n trials without an event: at this rate, no event has a 5 % chance.
 inline double bound_of_none(std::uint64_t n) {
   return n == 0 ? 1 : -std::expm1(std::log(0.05) / static_cast<double>(n));
 }

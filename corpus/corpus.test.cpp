@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every entry of every corpus file is a separate test, which compares its fields truth and contact with the oracle; for
-// a pair of doubles also those of the pair as float32 stores it.
+// Every entry in every corpus file is a separate test, which compares its fields truth and contact with the oracle. For
+// a pair of doubles the test also compares truth_in_float32 and contact_in_float32.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 struct Case {
   std::string name;            // relative to the root of the sources
-  std::filesystem::path file;  // below the root of the sources
+  std::filesystem::path file;  // relative to the root of the sources
   Entry entry;
 };
 
@@ -67,7 +67,7 @@ std::string value(const Entry& entry, std::string_view key) {
 
 TEST(Corpus, EveryFileReads) { EXPECT_EQ(corpus().errors, ""); }
 
-// An empty corpus fails twice: here, and in GoogleTest, which fails a parameterised test without parameters.
+// An empty corpus fails here, and once more because GoogleTest fails a parameterised test without parameters.
 TEST(Corpus, HasEntriesOfEveryKind) {
   std::set<std::string> contacts;
   for (const Case& c : corpus().cases) contacts.insert(value(c.entry, "contact"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The text format of pairs and cases. A line is parsed word by word from the left, and every error is named.
+// The text format of pairs and cases. A line is parsed word by word from the left, and every error is reported.
 #include "corpus/pair_format.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ constexpr std::string_view kFormat = "graze-pairs";
 constexpr std::string_view kVersion = "1";
 constexpr const char* kCoordinatesField = "coordinates";
 constexpr const char *kOfFloats = "f32", *kOfDoubles = "f64";
-constexpr std::size_t kLongestLine = 65536;  // so that an endless line is an error and does not fill the memory
+constexpr std::size_t kLongestLine = 65536;  // so that an endless line is an error instead of filling the memory
 
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 bool is_printable(char c) { return c >= ' ' && c <= '~'; }
@@ -39,7 +39,7 @@ std::string coordinate_name(std::size_t i) {
   return {i < 9 ? 'a' : 'b', '[', "012"[i % 9 / 3], ']', '.', "xyz"[i % 3]};
 }
 
-// The rest of a line that is being read.
+// The unread rest of a line.
 struct Line {
   std::string_view rest;
   std::string where;  // FILE:LINE
@@ -92,7 +92,7 @@ bool skip_name(Line& line) {
   return true;
 }
 
-// Accepts "1.5", or "1.5f" as in C.   Returns: the number without the suffix; empty if it is none.
+// Accepts "1.5", or "1.5f" as in C.   Returns: the number without the suffix; empty if the word is not a number.
 std::string_view number_in(std::string_view word) {
   if (parse_float64(word)) return word;
   const bool suffix = word.size() > 1 && (word.back() == 'f' || word.back() == 'F');
@@ -108,11 +108,19 @@ bool is_hex(std::string_view number) { return number.find('x') != number.npos ||
 struct Draft {
   Entry entry;
   std::size_t count = 0;
-  bool open = false;  // the last line ended in a comma or an opening bracket
+  bool open = false;  // the last line ended with a comma or an opening bracket
   std::string where;  // FILE:LINE of the first line with a number
-  // The first number that only a double holds, if any.
+  // The first number that needs a double, if any.
   std::optional<std::size_t> only_double;
 };
+
+// The oracle takes numbers as they are written, and exact numbers with such an exponent would fill the memory.
+bool has_long_exponent(std::string_view number) {
+  const std::size_t at = number.find_first_of(is_hex(number) ? "pP" : "eE");
+  if (at == number.npos) return false;
+  const std::string_view exponent = number.substr(at + 1);
+  return exponent.size() > (exponent[0] == '-' || exponent[0] == '+' ? 6 : 5);
+}
 
 // Takes the line's numbers, up to its end or a '|'.
 void take_numbers(Line& line, Draft& draft) {
@@ -131,6 +139,7 @@ void take_numbers(Line& line, Draft& draft) {
         line.fail("a number as number " + std::to_string(draft.count + 1) + " (" + coordinate_name(draft.count) + ")",
                   shown(word));
       }
+      if (has_long_exponent(number)) line.fail("a number with an exponent of at most five digits", shown(word));
       if (draft.count == 0) draft.where = line.where;
       const double value = *parse_float64(number);
       const std::optional<float> stored = parse_float32(number);
@@ -189,12 +198,12 @@ void take_fields(Line& line, Entry& entry) {
   line.take(1);
   while (!line.at_end()) {
     auto next = take_field(line);
-    if (field(entry, next.first)) line.fail("every field once", "a second " + next.first);
+    if (field(entry, next.first)) line.fail("each field only once", "a second " + next.first);
     entry.fields.push_back(std::move(next));
   }
 }
 
-// Finds the pair's coordinate type, once its fields are known.
+// Determines the pair's coordinate type once its fields are known.
 void take_type(Draft& draft, PairTypes taken) {
   Entry& entry = draft.entry;
   const std::string* type = field(entry, kCoordinatesField);
@@ -206,12 +215,12 @@ void take_type(Draft& draft, PairTypes taken) {
     return "number " + std::to_string(i + 1) + " (" + coordinate_name(i) + "), " + shown(entry.written[i]);
   };
   if (type ? *type == kOfFloats : !draft.only_double) {
-    if (draft.only_double) refuse("coordinates=f32, but float32 does not hold " + number());
+    if (draft.only_double) refuse("coordinates=f32, but float32 cannot hold " + number());
     return;
   }
   if (taken == PairTypes::f32)
     refuse("expected coordinates in float32, found doubles: " +
-           (draft.only_double ? "float32 does not hold " + number() : "coordinates=f64"));
+           (draft.only_double ? "float32 cannot hold " + number() : "coordinates=f64"));
   DoublePair& pair = entry.doubles.emplace();
   for (std::size_t i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = *parse_float64(entry.written[i]);
   entry.pair = stored_in_float32(pair);
@@ -271,7 +280,7 @@ bool PairReader::read_line(std::string& text) {
 
 std::string PairReader::where() const { return name_ + ':' + std::to_string(line_); }
 
-// Reads the rest of the stream as an OBJ fragment, whose first line is `text`.
+// Reads the rest of the stream as an OBJ fragment that begins with the line `text`.
 Entry PairReader::read_obj_fragment(std::string text) {
   constexpr std::size_t kLongestFragment = 1 << 20;
   Entry entry;
@@ -280,7 +289,8 @@ Entry PairReader::read_obj_fragment(std::string text) {
   const std::string begins = where();
   do {
     bytes += text + '\n';
-    if (bytes.size() > kLongestFragment) throw FormatError(begins + ": expected an OBJ fragment of 1 MiB, found more");
+    if (bytes.size() > kLongestFragment)
+      throw FormatError(begins + ": expected an OBJ fragment of at most 1 MiB, found more");
   } while (read_line(text));
   entry.lines = line_ - entry.line;
   strata::Soup soup;
@@ -291,7 +301,7 @@ Entry PairReader::read_obj_fragment(std::string text) {
   }
   if (soup.triangles.empty() && soup.vertices.size() == 6) soup.triangles = {{0, 1, 2}, {3, 4, 5}};
   if (soup.triangles.size() != 2)
-    throw FormatError(begins + ": expected two triangles, or six vertices without a face; found " +
+    throw FormatError(begins + ": expected two triangles, or six vertices without faces; found " +
                       std::to_string(soup.triangles.size()) + " triangles and " + std::to_string(soup.vertices.size()) +
                       " vertices");
   std::vector<std::array<std::string, 3>> written;  // coordinates as typed, in the order of the vertices

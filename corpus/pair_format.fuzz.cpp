@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs in the case format and in every form that people paste. A pair that was read must survive writing and reading
-// with the same bits.
+// Pairs in the case format and in every form that people paste. A pair that was read, written and read again must keep
+// its bits.
 #include <cstring>
 #include <sstream>
 
@@ -27,8 +27,8 @@ void written_and_read_again(const Entry& entry) {
   });
   auto fields = entry.fields;
   if (entry.doubles && !field(entry, "coordinates")) fields.insert(fields.begin(), {"coordinates", "f64"});
-  must_hold(again->fields == fields, "the fields are the same, but for the coordinate type that is added");
-  must_hold(!reader.next(), "one entry is one entry");
+  must_hold(again->fields == fields, "the fields are the same, except that the coordinate type may be added");
+  must_hold(!reader.next(), "one entry reads back as one entry");
 }
 
 const RegisterFuzzTarget kPairs("pairs", [](std::string_view bytes) {
@@ -39,7 +39,7 @@ const RegisterFuzzTarget kPairs("pairs", [](std::string_view bytes) {
       try {
         const std::optional<Entry> entry = reader.next();
         if (!entry) break;
-        must_hold(taken == PairTypes::both || !entry->doubles, "no doubles where they are not taken");
+        must_hold(taken == PairTypes::both || !entry->doubles, "no doubles where only float32 is taken");
         written_and_read_again(*entry);
       } catch (const FormatError& error) {
         must_be_one_line(error.what());

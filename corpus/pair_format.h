@@ -20,7 +20,7 @@
 namespace graze::corpus {
 
 struct Entry {
-  Pair pair{};                                                   // of a pair of doubles: as it is stored in float32
+  Pair pair{};                                                   // for a pair of doubles: the pair that float32 stores
   std::vector<std::pair<std::string, std::string>> fields = {};  // key and value, in the order of the line
   std::size_t line = 0;                                          // where the entry begins; 0 if it was not read
   std::size_t lines = 1;                                         // how many lines the entry takes
@@ -28,7 +28,7 @@ struct Entry {
   std::optional<DoublePair> doubles = {};                        // the pair, if its coordinates are doubles
 };
 
-// with(pair), for the pair in its own coordinate type.
+// Calls with(pair) for the pair in its own coordinate type.
 template <class With>
 auto visit(const Entry& entry, const With& with) {
   return entry.doubles ? with(*entry.doubles) : with(entry.pair);
@@ -45,20 +45,20 @@ struct FormatError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Reads the entries of a stream one at a time, so that it can follow a pipe as it is written. Without a version line it
-// also accepts pasted text: commas, brackets, f suffixes, one vertex per line, arrays of C or Python, and an OBJ
-// fragment of two faces, or of six vertices without faces.
+// Reads the entries of a stream one at a time, so that it can follow a pipe while it is written. If there is no version
+// line, it also accepts pasted text: commas, brackets, f suffixes, one vertex per line, C and Python arrays, and an OBJ
+// fragment with two faces, or with six vertices and no face.
 //
-// A pair is one of doubles if it has the field coordinates=f64, if a number is beyond float32's largest, or if a
-// hexadecimal number has more digits than float32 holds.
+// The pair's coordinates are doubles if it has the field coordinates=f64, if a number is larger than float32's largest,
+// or if a hexadecimal number has more digits than float32 holds.
 class PairReader {
  public:
-  // Requires: in outlives the reader. name: what error messages call the stream. taken: f32 or both.
+  // Requires: `in` outlives the reader. name: the stream's name in error messages. taken: f32 or both.
   PairReader(std::istream& in, std::string name, PairTypes taken = PairTypes::f32);
 
   // Returns: the next entry, or nothing at the end of the stream.
-  // Throws: FormatError, also for a pair of doubles unless they are taken; reading can continue at the line after the
-  // bad one.
+  // Throws: FormatError, including for a pair of doubles if only float32 is taken. Reading can continue at the line
+  // after the bad one.
   std::optional<Entry> next();
 
  private:
@@ -76,14 +76,14 @@ class PairReader {
 // Opens a file of pairs.   Throws: FormatError if it is missing, is a folder, or cannot be read.
 std::ifstream open_pairs(const std::filesystem::path& file);
 
-// All entries of a file.   Throws: FormatError, also if the file is missing or cannot be read.
+// All entries in a file.   Throws: FormatError, including if the file is missing or cannot be read.
 std::vector<Entry> read_pairs(const std::filesystem::path& file, PairTypes taken = PairTypes::f32);
 
 // Writes the version line, the first line of every file.
 void write_header(std::ostream& out);
 
 // Writes one line: hex floats, then the fields. Reading it gives the same bits (for a NaN, some NaN) and the same
-// texts.
+// fields.
 // Requires: keys are distinct and consist of letters, digits and "_-.".
 void write_entry(std::ostream& out, const Entry& entry);
 
@@ -93,13 +93,13 @@ std::string hex_float(double value);
 // Returns: the value of the field, or null if the entry has no such key.
 const std::string* field(const Entry& entry, std::string_view key);
 
-// Like field, but an empty text if there is no such key.
+// Like field, but an empty string if there is no such key.
 std::string text_of(const Entry& entry, std::string_view key);
 
-// STRATUM:SEED:INDEX if the case has these fields, STRATUM@SCENE:SEED:INDEX if it was drawn in a scene; else nothing.
+// STRATUM:SEED:INDEX, or STRATUM@SCENE:SEED:INDEX if the case was drawn in a scene. Nothing if the fields are missing.
 std::optional<std::string> numbers_of(const Entry& entry);
 
-// Like numbers_of, or else the field `from`, which tells where a minimised case came from.
+// numbers_of, or else the field `from`, which says where a minimised case came from.
 std::string origin_of(const Entry& entry);
 
 }  // namespace graze::corpus

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The text format: written pairs read back bit for bit, decimals round once, and every error has its message.
+// The text format: written pairs are read back bit for bit, decimals are rounded once, and each error has its message.
 #include "corpus/pair_format.h"
 
 #include <gtest/gtest.h>
@@ -259,7 +259,7 @@ TEST(PairFormat, APairOfDoublesReadsBack) {
   EXPECT_EQ(coordinates(again.pair)[0], 0.1f);
   EXPECT_EQ(write(again), text);
   const Entry on_float32 = read_any(write(entry_of(in_doubles(Pair{}), {}))).value();
-  EXPECT_TRUE(on_float32.doubles);  // as the file says, although float32 holds its numbers
+  EXPECT_TRUE(on_float32.doubles);  // because the file says so, although float32 holds its numbers
 }
 
 TEST(PairFormat, TheTypeIsTheNarrowestThatHoldsTheNumbersUnlessTheFileSaysIt) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Estimates how long the rest of a run takes from the cost of each kind of work so far. A pair of one stratum can cost
-// ten times a pair of another. A pure function of its inputs; it reads no clock.
+// Estimates how long the rest of a run takes, from the cost of each kind of work so far. A pair of one stratum can cost
+// ten times as much as a pair of another. The estimate depends only on its inputs; it reads no clock.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,12 @@ class CostEstimate {
     for (const std::uint64_t units : left) kinds_.push_back({units});
   }
 
-  // Records that `units` of a kind are done and how long they took. Work that was already done is not measured; use
-  // skip.
+  // Records that `units` of a kind are done and how long they took. For work that was already done, use skip.
   void add(std::size_t kind, std::uint64_t units, double seconds);
   void skip(std::size_t kind, std::uint64_t units) { kinds_[kind].left -= units; }
 
-  // A kind that is not measured yet counts with the mean unit cost of the measured kinds.
-  // Returns: seconds of work for one worker as measured by `add`; nothing before the first measurement.
+  // An unmeasured kind is assumed to have the mean unit cost of the measured kinds.
+  // Returns: the remaining seconds for one such worker as `add` measured; nothing before the first measurement.
   std::optional<double> seconds_left() const;
 
   bool measured(std::size_t kind) const { return kinds_[kind].done > 0; }

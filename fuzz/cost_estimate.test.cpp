@@ -8,7 +8,7 @@
 namespace graze::fuzz {
 namespace {
 
-// Artificial costs in seconds a pair, as different as those of uniform and mixed_scale; the most expensive comes last.
+// Artificial costs in seconds per pair, as different as those of uniform and mixed_scale; the highest comes last.
 const std::vector<double> kCosts{1e-5, 2e-5, 1e-5, 4e-5, 9e-5, 1e-3};
 constexpr std::uint64_t kPairs = 40'000, kFew = 512;
 
@@ -26,7 +26,7 @@ TEST(CostEstimate, IsRightOnceAFewOfEachKindAreDone) {
     run(k, kPairs - kFew);
     ASSERT_NEAR(*estimate.seconds_left(), left, 1e-6 * left) << k;
   }
-  // The average rate so far assumes that the rest costs the same, and is wrong here by a factor.
+  // Extrapolating the average rate assumes that the rest costs the same, which is far off here.
   const double done = static_cast<double>(kCosts.size() - 1) * kPairs + kFew;
   const double all = std::accumulate(kCosts.begin(), kCosts.end(), 0.0) * kPairs;
   EXPECT_GT(left, 4 * (all - left) / done * (kPairs - kFew));

@@ -11,7 +11,7 @@ namespace graze::fuzz {
 struct CountField {
   const char* key;
   std::uint64_t Counts::*count;
-  bool foreign;  // only foreign code has this count
+  bool foreign;  // whether only foreign code has this count
 };
 inline constexpr CountField kCountFields[] = {{"false_positive", &Counts::false_positive, false},
                                               {"false_negative", &Counts::false_negative, false},
@@ -21,7 +21,7 @@ inline constexpr CountField kCountFields[] = {{"false_positive", &Counts::false_
                                               {"unstable", &Counts::unstable, true},
                                               {"by_convention", &Counts::by_convention, true}};
 
-// Returns an object with all fields; without `foreign`, those of foreign code are left out.
+// Returns an object with all fields; those of foreign code only if `foreign`.
 inline nlohmann::ordered_json counts_json(const Counts& counts, bool foreign = false) {
   nlohmann::ordered_json row = nlohmann::ordered_json::object();
   for (const CountField& field : kCountFields) {
@@ -30,8 +30,8 @@ inline nlohmann::ordered_json counts_json(const Counts& counts, bool foreign = f
   return row;
 }
 
-// Reads such an object; it may have other fields. The fields of foreign code may be missing.   Throws: Json::exception
-// otherwise.
+// Reads such an object. It may have other fields, and the fields of foreign code may be missing.
+// Throws: Json::exception if another field is missing or is not a count.
 inline Counts counts_of(const nlohmann::ordered_json& row) {
   Counts counts;
   for (const CountField& field : kCountFields) {

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kLockAttempts = 10;  // a second
+constexpr int kLockAttempts = 10;  // one second in total
 
 [[noreturn]] void fail(const char* act, const fs::path& file, int error) {
   throw std::runtime_error(cannot(act, file, error));
@@ -44,7 +44,7 @@ void wait_for(int handle, short events) {
   }
 }
 
-// Returns whether all of it was written; if not, errno says why.
+// Returns whether the whole text was written; if not, errno says why.
 bool write_all(int handle, const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
     const ssize_t written = write(handle, text.data() + at, text.size() - at);
@@ -89,7 +89,7 @@ int opened(const fs::path& file, bool pipe) {
   }
 }
 
-// Writes into a device or a pipe, which a file must not replace.
+// Writes to a device or a pipe, which must not be replaced with a file.
 void write_into(const fs::path& file, bool pipe, bool standard_output, const std::string& text) {
   std::cout.flush();
   std::fflush(stdout);
@@ -97,8 +97,8 @@ void write_into(const fs::path& file, bool pipe, bool standard_output, const std
   if (own.number < 0 || !write_all(own.number, text)) fail("write", file, errno);
 }
 
-// Makes a new file for this writer alone. Other writers wait until this one has renamed it. A file that a killed writer
-// left is removed and never written to, because it may be a hard link to somebody else's file.
+// Creates a new file for this writer alone. Other writers wait until this one has renamed it. A file that a killed
+// writer left is removed and never written to, because it may be a hard link to another user's file.
 // Returns: its descriptor; negative on failure, with the reason in errno.
 int made_alone(const std::string& file) {
   while (true) {
@@ -106,7 +106,7 @@ int made_alone(const std::string& file) {
     const bool made = number >= 0;
     if (!made && errno != EEXIST) return number;
     if (!made) number = open(file.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    if (number < 0 && errno == ENOENT) continue;  // its writer has just moved it
+    if (number < 0 && errno == ENOENT) continue;  // its writer has just renamed it
     struct stat opened {
     }, named{};
     if (number < 0 || fstat(number, &opened) != 0 || !S_ISREG(opened.st_mode)) return number;
@@ -121,7 +121,7 @@ int made_alone(const std::string& file) {
   }
 }
 
-// Lets `fill` write the new file, and renames it.   fill: int -> bool; if false, errno says why.
+// Lets `fill` write the new file, then renames it.   fill: int -> bool; if it returns false, errno says why.
 template <class Fill>
 void replace(const fs::path& file, const fs::path& asked, const Fill& fill) {
   const std::string beside = file.string() + kPart;
@@ -129,9 +129,9 @@ void replace(const fs::path& file, const fs::path& asked, const Fill& fill) {
   int error = errno;
   struct stat state {};
   if (lstat(beside.c_str(), &state) == 0 && !S_ISREG(state.st_mode))
-    throw std::runtime_error(cannot("write", asked, beside + " is in the way and is not a file; remove it"));
+    throw std::runtime_error(cannot("write", asked, beside + " is in the way, and is not a file; remove it"));
   if (part.number < 0) fail("write", asked, error);
-  // A full disk may show only on close. The file stays open, and so locked, until it is renamed.
+  // A full disk may only be noticed on close. The file stays open, and so locked, until it is renamed.
   const bool done = fill(part.number) && close(dup(part.number)) == 0;
   if (done && std::rename(beside.c_str(), file.c_str()) == 0) return;
   error = errno;
@@ -139,7 +139,7 @@ void replace(const fs::path& file, const fs::path& asked, const Fill& fill) {
   fail("write", asked, error);
 }
 
-// Throws: std::runtime_error unless the mode is a file's.   act: "read".
+// Throws: std::runtime_error unless the mode is that of a file.   act: such as "read".
 void expect_mode_of_file(const char* act, const fs::path& file, mode_t mode) {
   if (S_ISDIR(mode)) fail(act, file, EISDIR);
   if (!S_ISREG(mode)) throw std::runtime_error(cannot(act, file, "it is a pipe or a device; remove it"));
@@ -189,7 +189,7 @@ void write_whole(const fs::path& file, const std::string& text, NamedBy named_by
   if (!exists && errno != ENOENT) fail("write", file, errno);
   if (exists && (named_by == NamedBy::graze || S_ISDIR(there.st_mode)))
     expect_mode_of_file("write", file, there.st_mode);
-  // The standard output may be a file too. Replacing it would lose everything else that is printed.
+  // Standard output may be a file too. Replacing it would lose everything else that is printed.
   const bool standard_output = exists && is_standard_output(there);
   if (exists && (standard_output || !S_ISREG(there.st_mode)))
     return write_into(file, S_ISFIFO(there.st_mode), standard_output, text);

@@ -8,35 +8,35 @@
 
 namespace graze::fuzz {
 
-// Who chose a file's name. A user may name a pipe or a device; Graze's own names stand for files alone.
+// Who chose a file's name. A user may name a pipe or a device; names that Graze chooses are always files.
 enum class NamedBy { graze, user };
 
-// The suffix of the temporary name, in the same folder. The folder of a merge has a temporary name too.
+// The suffix of the temporary name, in the same folder. A merge also gives its folder a temporary name.
 inline constexpr const char* kPart = ".graze.part";
 
-// Throws: std::runtime_error for a pipe, a device or a folder of this name, seen through symbolic links.
+// Throws: std::runtime_error if this name, after following symbolic links, is a pipe, a device or a folder.
 void expect_file(const std::filesystem::path& file);
 
-// The file's bytes; empty if there is no file.   Throws: std::runtime_error for one that cannot be read, and for a pipe
-// or a device that gives more than 64 MiB.
+// The file's bytes; empty if there is no file.   Throws: std::runtime_error if it cannot be read, or is a pipe or
+// device that gives more than 64 MiB.
 std::string read_whole(const std::filesystem::path& file, NamedBy named_by = NamedBy::graze);
 
-// Writes the file, through symbolic links, or into a device or a pipe that the user named. Leaves no partial file if it
-// fails. If two processes write the same file at once, each writes a whole one, and the last one stays.
-// Throws: std::runtime_error for a folder, and when there is no room.
+// Writes the file, following symbolic links, or writes to a device or a pipe that the user named. Leaves no partial
+// file if it fails. If two processes write the same file at once, each writes a whole file, and the last one stays.
+// Throws: std::runtime_error if it is a folder, or if there is no space.
 void write_whole(const std::filesystem::path& file, const std::string& text, NamedBy named_by = NamedBy::graze);
 
-// Copies the file. Its copy is whole or missing, even after a crash of the machine.   Throws: as write_whole.
+// Copies the file. The copy is whole or missing, even after a crash of the machine.   Throws: what write_whole throws.
 void copy_whole(const std::filesystem::path& from, const std::filesystem::path& to);
 
-// Follows symbolic links to the file or folder that they name, even if it does not exist yet.
+// Follows symbolic links to the file or folder that they point to, even if it does not exist yet.
 std::filesystem::path behind_links(std::filesystem::path file);
 
-// Holds the folder's lock while it lives. No other process, and no other part of this one, can take the lock; a shared
-// lock excludes only exclusive ones.
+// Holds the folder's lock as long as the object lives. No other process, and no other part of this one, can take the
+// lock. A shared lock excludes only exclusive ones.
 class FolderLock {
  public:
-  enum class WhenTaken { wait, refuse, share };  // share: fails if an exclusive lock is held
+  enum class WhenTaken { wait, refuse, share };  // share: takes a shared lock; fails if an exclusive one is held
 
   // Throws: std::runtime_error if the folder does not exist, or if the lock is taken and when_taken is not `wait`.
   explicit FolderLock(const std::filesystem::path& folder, WhenTaken when_taken);

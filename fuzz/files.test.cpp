@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writing over existing links, devices, pipes and folders leaves them what they are.
+// Links, devices, pipes and folders stay what they are when they are written to.
 #include "fuzz/files.h"
 #include "core/error.h"
 #include "core/message_testing.h"
@@ -85,7 +85,7 @@ TEST_F(Files, PipesStayPipes) {
   EXPECT_EQ(count(), 1u);
 }
 
-// A pipe with a name that Graze chose is refused, and nobody waits for it.
+// A pipe under a name that Graze chose is refused without waiting for it.
 TEST_F(Files, RecordsThatAreNoFilesAreRefused) {
   const fs::path pipe = folder_ / "summary.json";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
@@ -99,7 +99,7 @@ TEST_F(Files, RecordsThatAreNoFilesAreRefused) {
   }
 }
 
-// The part's name may be a hard link to another file, which must not change.
+// The temporary file may be a hard link to another file, which must not change.
 TEST_F(Files, APartThatIsAHardLinkIsReplaced) {
   write_whole(folder_ / "theirs", "precious");
   fs::create_hard_link(folder_ / "theirs", folder_ / "a.graze.part");
@@ -108,7 +108,7 @@ TEST_F(Files, APartThatIsAHardLinkIsReplaced) {
   EXPECT_EQ(fs::hard_link_count(folder_ / "theirs"), 1u);
   EXPECT_EQ(read_whole(folder_ / "a"), "new");
   EXPECT_EQ(count(), 2u);
-  // Nothing of a longer file that a killed writer left may remain.
+  // Nothing may remain of a longer file that a killed writer left.
   write_whole(folder_ / "a.graze.part", std::string(100'000, 'x'));
   write_whole(folder_ / "a", "newer");
   EXPECT_EQ(read_whole(folder_ / "a"), "newer");
@@ -161,7 +161,7 @@ TEST_F(Files, AChangeOfASealedFileIsNoticed) {
     for (const std::string& changed : {other, text.substr(0, at)}) {
       std::ofstream(file) << changed;
       try {
-        if (read_sealed(file, "remove it") == json) continue;  // a space, or what follows the object
+        if (read_sealed(file, "remove it") == json) continue;  // a changed space, or a change after the object
         ADD_FAILURE() << changed;
       } catch (const std::runtime_error& error) {
         ++refused;
@@ -170,7 +170,7 @@ TEST_F(Files, AChangeOfASealedFileIsNoticed) {
     }
   }
   EXPECT_GT(refused, 200u);
-  // Deeply nested: no stack overflows.
+  // Deep nesting must not overflow the stack.
   std::ofstream(file) << R"({"a":)" << std::string(1'000'000, '[') << std::string(1'000'000, ']')
                       << R"(,"checksum":""})";
   EXPECT_THROW(read_sealed(file, "remove it"), std::runtime_error);
@@ -183,7 +183,7 @@ TEST_F(Files, AChangeOfASealedFileIsNoticed) {
   EXPECT_EQ(parse_shallow(text)["checksum"], sealed(json)["checksum"]);
 }
 
-// The other end may never open: the request to stop ends the wait.
+// The other end may never open, so a request to stop ends the wait.
 TEST_F(Files, WaitingForAPipeStops) {
   const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
@@ -196,10 +196,10 @@ TEST_F(Files, WaitingForAPipeStops) {
   stop_requested = false;
 }
 
-// A null device made in the test's folder; only root may make one.
+// Creates a null device in the test's folder, which only root may do.
 TEST_F(Files, DevicesStayDevices) {
   const fs::path device = folder_ / "null";
-  if (mknod(device.c_str(), S_IFCHR | 0600, makedev(1, 3)) != 0) GTEST_SKIP() << "no right to make a device node";
+  if (mknod(device.c_str(), S_IFCHR | 0600, makedev(1, 3)) != 0) GTEST_SKIP() << "may not create a device node";
   const int opened = open(device.c_str(), O_WRONLY | O_CLOEXEC);
   if (opened < 0) GTEST_SKIP() << "device nodes do not work in " << folder_;
   close(opened);
@@ -296,7 +296,7 @@ TEST_F(Files, GrazeKnowsItsOwn) {
   EXPECT_FALSE(may_replace(folder_ / "link", "graze-pairs 1\n"));
 }
 
-// A file with a campaign's file name, or behind a link, is replaced only if it begins like the new text.
+// A file with the name of a campaign's file, or behind a link, is replaced only if it begins like the new text.
 TEST_F(Files, ACampaignsFilesDoNotReplaceThoseOfAnother) {
   const std::string summary = "{\n \"spec\": {}\n}\n", status = "{\n \"state\": \"done\"\n}\n";
   write_whole(folder_ / "victim", "precious");

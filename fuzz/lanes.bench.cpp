@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time per pair of every host lane on every stratum, of float32 and, for lanes in double, of doubles. For comparison,
-// the time of CGAL's do_intersect on ready-made triangles, and of the oracle's two decisions. GRAZE_MESH=FILE adds the
-// candidate pairs of a mesh as a stratum. Exact lanes must first agree with the oracle on every pair that is timed.
+// The time per pair of every host lane on every stratum, in float32 and, for lanes in double, in doubles. For
+// comparison, the times of CGAL's do_intersect on ready-made triangles and of the oracle's two decisions.
+// GRAZE_MESH=FILE adds a mesh's candidate pairs as a stratum. Exact lanes must first agree with the oracle everywhere.
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
@@ -26,7 +26,7 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::size_t kPairs = 1 << 14;  // 1.2 MB: too many branches for the predictor, but fits in the cache
+constexpr std::size_t kPairs = 1 << 14;  // 1.2 MB: fits in the cache, but has too many branches for the predictor
 
 template <class Real>
 struct Block {
@@ -76,7 +76,7 @@ std::vector<PairsToTime<float>> make_sources() {
   }
   if (const char* file = std::getenv("GRAZE_MESH"); file && *file) {
     const strata::MeshPairs mesh = strata::read_mesh_pairs(file);
-    pairs.resize(std::min(kPairs, mesh.size()));  // spread over the mesh
+    pairs.resize(std::min(kPairs, mesh.size()));  // evenly spaced in the mesh
     for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = mesh.pair(i * mesh.size() / pairs.size());
     if (!pairs.empty()) sources.push_back(source_of("mesh", pairs));
   }
@@ -111,7 +111,7 @@ void measure(benchmark::State& state, const Block<Real>& block, bool exact, cons
   state.counters["pairs"] = static_cast<double>(block.pairs.size());
 }
 
-// Triangles are made once for all runs on a block, because EPECK's points cache their exact coordinates.
+// Triangles are created once for all runs on a block, because EPECK's points cache their exact coordinates.
 template <class Kernel, class Real>
 void by_cgal(const Block<Real>& block, std::uint64_t* intersects, std::uint64_t*) {
   using Triangle = typename Kernel::Triangle_3;

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The first keys of the object, at most two.
+// The object's first keys, at most two.
 std::vector<std::string> first_keys(const nlohmann::ordered_json& object) {
   std::vector<std::string> keys;
   for (const auto& [key, unused] : object.items()) {
@@ -24,8 +24,8 @@ std::vector<std::string> first_keys(const nlohmann::ordered_json& object) {
   return keys;
 }
 
-// The mark that all files of this kind share: a JSON object up to the end of its first key, else the first line. The
-// line ends before `>`, because what follows differs between pictures.
+// The mark that all files of this text's kind share: a JSON object up to the end of its first key, the start of a
+// page's title or of a picture's palette, or else the first line up to `>`; what follows differs between pictures.
 std::string mark_of(const std::string& text) {
   constexpr std::string_view kTitle = "<title>Graze: ", kPalette = "PLTE";
   constexpr std::size_t kColours = 24;  // bytes: the first eight colours, which all ulp maps share
@@ -37,7 +37,7 @@ std::string mark_of(const std::string& text) {
   return text.substr(0, text.find_first_of(">\n"));
 }
 
-// Whether both are objects with the same first two keys; `there` may be damaged behind the first.
+// Whether both are objects with the same first two keys; `there` may be damaged after the first key.
 bool same_kind_of_object(const std::string& there, const std::string& text) {
   const auto theirs = nlohmann::ordered_json::parse(there, nullptr, false),
              ours = nlohmann::ordered_json::parse(text, nullptr, false);
@@ -45,7 +45,7 @@ bool same_kind_of_object(const std::string& there, const std::string& text) {
   return theirs.is_object() && ours.is_object() && first_keys(theirs) == first_keys(ours);
 }
 
-// Whether the entry is a leftover of a killed write, or a folder with nothing but such entries.
+// Whether the entry is a leftover of a killed write, or a folder that holds only such entries.
 bool is_nothing(const fs::path& entry) {
   if (is_left_over(entry)) return true;
   return fs::is_directory(fs::symlink_status(entry)) &&
@@ -84,11 +84,11 @@ bool is_left_over(const fs::path& file) {
 
 bool may_fill(const fs::path& folder, std::initializer_list<const char*> own) {
   std::error_code none;
-  if (!fs::is_directory(folder, none)) return true;  // creating the folder will report what is wrong
+  if (!fs::is_directory(folder, none)) return true;  // if it is a file, creating the folder reports that
   const auto has_own = [&] {
     return std::any_of(own.begin(), own.end(), [&](const char* name) { return fs::exists(folder / name); });
   };
-  // Asked again at the end: another process of Graze may have written there meanwhile.
+  // Checked again at the end, because another process of Graze may have written there meanwhile.
   return has_own() ||
          std::all_of(fs::directory_iterator(folder), fs::directory_iterator(),
                      [](const auto& e) { return is_nothing(e.path()); }) ||

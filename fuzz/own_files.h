@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recognises Graze's own files and folders. Results go only to empty places or replace Graze's own results.
+// Recognises Graze's own files and folders. Results only go where there is nothing, or replace Graze's own results.
 #pragma once
 
 #include <filesystem>
@@ -8,29 +8,28 @@
 
 namespace graze::fuzz {
 
-// Whether a result with this text may replace the file, seen through symbolic links. The file must be missing, empty, a
-// device, a pipe, or written by Graze. Graze recognises its files by what all of their kind share: the first line or
-// tag, or the first two keys of a JSON object. Pages share the start of their title, and pictures of ulp maps the start
-// of their palette.
-// Throws: std::runtime_error for a file that cannot be read.
+// Whether a result with this text may replace the file; symbolic links are followed. The file must be missing, empty, a
+// device, a pipe, or written by Graze. Graze recognises its files by what all files of a kind share: the first line or
+// tag, the first two keys of a JSON object, the start of a page's title, or the start of an ulp map's palette.
+// Throws: std::runtime_error if the file cannot be read.
 bool may_replace(const std::filesystem::path& file, const std::string& text);
 
 // Why a file may not be replaced, and what to do.
 inline constexpr const char* kForeign =
-    "it does not begin as the file that graze writes there; move it away, choose another name, or add --force";
+    "it does not begin like the file that Graze writes there; move it away, choose another name, or add --force";
 
-// Set by --force for the whole process: files that Graze did not write may be replaced.
+// Set by --force for the whole process: even files that Graze did not write may be replaced.
 inline bool may_replace_foreign = false;
 
-// Throws: UsageError if Graze did not write the file: it belongs to a campaign's folder or its cases/, or is behind a
-// link, and its beginning differs from this text's. A file that is damaged further on may be replaced.
+// Throws: UsageError if Graze did not write the file. It must begin like this text if it has the name of a campaign's
+// file, is in cases/, or is behind a link. A file that is damaged further on may be replaced.
 void expect_own(const std::filesystem::path& file, const std::string& text);
 
-// Whether a killed write left the file, under a name that is Graze's own.
+// Whether a killed write left the file: a file whose name ends in kPart.
 bool is_left_over(const std::filesystem::path& file);
 
-// Whether results may go into the folder: it is missing, holds nothing but empty folders and leftovers of a killed
-// write, or holds one of the files `own`.
+// Whether results may be written to the folder: it is missing, holds nothing but empty folders and leftovers of killed
+// writes, or holds one of the files `own`.
 bool may_fill(const std::filesystem::path& folder, std::initializer_list<const char*> own);
 
 }  // namespace graze::fuzz

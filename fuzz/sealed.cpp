@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kChecksum = "checksum";
-constexpr int kDeepest = 64;  // levels; our files have ten at most
+constexpr int kDeepest = 64;  // levels; our files have at most ten
 
 bool is_too_deep(const std::string& text) {
   int depth = 0;
@@ -39,9 +39,9 @@ std::string checksum_of(const Json& json) {
 }  // namespace
 
 Json parse_shallow(const std::string& text) {
-  // At a zero byte, which no JSON text has, the parser takes the text to end.
+  // The parser would treat a zero byte, which no JSON text has, as the end of the text.
   if (is_too_deep(text) || text.find('\0') != text.npos) return Json(Json::value_t::discarded);
-  std::vector<std::set<std::string>> keys;  // of the objects around
+  std::vector<std::set<std::string>> keys;  // of the enclosing objects
   bool twice = false;
   Json json = Json::parse(
       text,
@@ -69,7 +69,7 @@ Json read_sealed(const std::filesystem::path& file, const std::string& remedy, N
     return corpus::FormatError(
         cannot("use", file, fmt::format("it has been changed or damaged since graze wrote it: {}; {}", found, remedy)));
   };
-  if (!json.is_object()) throw refused("it is no JSON object, or one with a key twice");
+  if (!json.is_object()) throw refused("it is not a JSON object, or it has a key twice");
   if (!json.contains(kChecksum)) throw refused("its checksum is missing");
   const Json checksum = std::move(json[kChecksum]);
   json.erase(kChecksum);

@@ -16,19 +16,19 @@ namespace {
 
 using backends::Backend, backends::backend_of;
 
-// Why the lane does not run here; empty if it does.
+// Why the lane does not run here; empty if it runs.
 std::string why_unavailable(const Lane& lane, const cuda::Device* device, const std::string& why_no_device) {
   const Backend& backend = backend_of(lane);
   return device && backend.has_device ? "" : backend.why_not_on_host(lane, why_no_device);
 }
 
-// What decides the lane on the host; null where only the device runs it.
+// Decides the lane on the host; null if only the device runs it.
 DecideBlock host_block(const SelectedLanes& under_test, const Lane& lane) {
   const Backend& backend = backend_of(lane);
   return backend.has_device && under_test.device && !under_test.twins_too ? nullptr : backend.on_host(lane);
 }
 
-// Sorts the lanes by place(lane), with what decides them. Lanes of one place keep their order.
+// Sorts the lanes, and their functions, by place(lane). Lanes with the same place keep their order.
 template <class Place>
 void sort_lanes(SelectedLanes& under_test, const Place& place) {
   std::vector<std::size_t> order(under_test.lanes.size());
@@ -45,7 +45,7 @@ void sort_lanes(SelectedLanes& under_test, const Place& place) {
   under_test.on_host = std::move(sorted.on_host);
 }
 
-// The table has lanes under a policy at its end; this moves them to the other lanes of their subject.
+// In the table, lanes under a policy are at the end; this moves them to the other lanes of their subject.
 void sort_by_subject(SelectedLanes& under_test) {
   std::map<const AlgorithmInfo*, std::size_t> places;
   for (const Lane* lane : under_test.lanes) places.emplace(lane->info, places.size());
@@ -54,7 +54,7 @@ void sort_by_subject(SelectedLanes& under_test) {
 
 bool wants_lanes(const std::string& pattern) { return !pattern.starts_with(kLeaveOut); }
 
-// What would run a lane, by the reason that it does not run.
+// What would run a lane, given the reason why it does not run.
 std::string_view remedy(std::string_view why) {
   return why.find("no twin") != why.npos  ? "; a CUDA device runs it"
          : why.ends_with(" instructions") ? "; a processor with them runs it"
@@ -212,7 +212,7 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
   sort_by_subject(under_test);
   if (under_test.lanes.empty()) {
     if (under_test.left_out.empty()) throw UsageError("the patterns of --lanes leave no lane");
-    throw UsageError(fmt::format("expected a lane that runs here, found only some {}",
+    throw UsageError(fmt::format("none of the selected lanes runs here: {}",
                                  fmt::join(left_out_in_words(under_test.left_out), "; ")));
   }
   return under_test;
@@ -242,7 +242,7 @@ std::vector<LaneLeftOut> select_for_doubles(SelectedLanes& under_test) {
   add_exact_on_doubles(under_test);
   return leave_out(under_test, [&](const Lane& lane) {
     const bool by_device = under_test.device && backend_of(lane).has_device;
-    return by_device || takes(lane, DoublePair{}) ? "" : "takes pairs of float32 alone";
+    return by_device || takes(lane, DoublePair{}) ? "" : "takes only pairs of float32";
   });
 }
 

@@ -20,7 +20,7 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 struct CgalTriangles::Converted {
   std::span<const Triangle> stored;
   std::vector<Kernel::Triangle_3> triangles;
-  std::vector<bool> is_degenerate;  // also of triangles that are not finite
+  std::vector<bool> is_degenerate;  // also true for triangles that are not finite
 };
 
 CgalTriangles::CgalTriangles(std::span<const Triangle> triangles) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The triangles of meshes as CGAL's own; `graze bench --between` compares its do_intersect with the exact decision.
+// A mesh's triangles as CGAL triangles; `graze bench --between` compares CGAL's do_intersect with the exact decision.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ class CgalTriangles {
   explicit CgalTriangles(std::span<const Triangle> triangles);  // which must stay in place
   ~CgalTriangles();
 
-  // By CGAL::do_intersect of two Triangle_3 of the kernel with exact predicates; if one of them is degenerate, which
-  // CGAL does not allow, by cgal_verdict.   Requires: finite coordinates.   Exact: always.
+  // Calls CGAL::do_intersect on two Triangle_3 of the kernel with exact predicates. CGAL does not allow degenerate
+  // triangles; if one of the two is degenerate, cgal_verdict decides.   Requires: finite coordinates.   Exact: always.
   bool intersect(std::size_t i, const CgalTriangles& others, std::size_t j) const;
 
  private:

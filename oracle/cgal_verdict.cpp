@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verdict by CGAL's do_intersect. A degenerate triangle is a segment or a point and is tested as one:
+// The verdict of CGAL's do_intersect. A degenerate triangle is a segment or a point and is tested as one:
 // CGAL's triangle test (Guigue and Devillers 2003) requires triangles that are not flat.
 #include <algorithm>
 
@@ -16,12 +16,12 @@ namespace graze::oracle {
 namespace {
 
 // Plain arithmetic on 128-bit integers. Every do_intersect below between points, segments and triangles uses only
-// comparisons of coordinates and signs of determinants of degree three at most, never a quotient. (Read in CGAL 5.5:
+// comparisons of coordinates and signs of determinants of degree three at most, never a quotient. (Source of CGAL 5.5:
 // orientation, coplanar orientation, collinear, and, for two segments, line points p + v.)
 using SmallKernel = CGAL::Simple_cartesian<boost::int128_type>;
 
-// Filtered double arithmetic for the other pairs, if their coordinates are multiples of 2^-300 below 2^300, as all of
-// float32 are. A product of three differences is then zero or lies between 2^-900 and 2^903. So nothing over- or
+// Filtered double arithmetic for the other pairs, if their coordinates are multiples of 2^-300 below 2^300, as all
+// float32 are. A product of three differences is then zero or lies between 2^-900 and 2^903. So nothing overflows or
 // underflows, and the filters' error bounds hold.
 using WideKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 

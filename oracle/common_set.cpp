@@ -94,7 +94,7 @@ Hulls hulls_of(const AnyPair& pair) {
 }
 
 std::vector<Vec3<double>> rounded(const Polygon& points, int exponent) {
-  // Whole numbers of the grid may be beyond the range of double.
+  // Integers on the grid may exceed the range of double.
   const auto round = [exponent](const mpq_class& x) {
     const auto shift = static_cast<mp_bitcnt_t>(std::abs(exponent));
     return (exponent < 0 ? mpq_class(x >> shift) : mpq_class(x << shift)).get_d();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// For pairs of any bits, of floats and of doubles, the exact decision, GMP's and CGAL's must agree. The certified
-// bounds of the margin must contain the exact margin, rounded once by MPFR.
+// On pairs of floats or doubles with arbitrary bits, the exact decision must agree with those of GMP and CGAL. The
+// certified bounds of the margin must contain the exact margin, rounded once by MPFR.
 #include <cmath>
 
 #include "core/exact/exact.h"

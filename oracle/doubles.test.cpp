@@ -88,7 +88,7 @@ TEST(DoubleTruth, DeclinesWhatIsNotFinite) {
   }
 }
 
-// A margin that no double holds is rounded once: to a subnormal, to zero or to infinity. Its sign is still known.
+// A margin that no double holds is rounded once, if need be to a subnormal, but never to zero or infinity.
 TEST(DoubleTruth, MarginsAreRoundedOnceAtTheLimits) {
   constexpr double kLeast = 0x1p-1074;
   const auto point_above = [](double height) {  // the plane z = 4 x, and a point above its triangle
@@ -106,7 +106,7 @@ TEST(DoubleTruth, MarginsAreRoundedOnceAtTheLimits) {
   }
   const double most = DBL_MAX;
   const DoublePair far{{{most, 0, 0}, {most, 1, 0}, {most, 0, 1}}, {{-most, 0, 0}, {-most, 1, 0}, {-most, 0, 1}}};
-  EXPECT_EQ(truth(far).margin, most);  // no margin rounds to zero or to infinity
+  EXPECT_EQ(truth(far).margin, most);  // not infinity
   EXPECT_EQ(truth(far).margin_sign, 1);
   EXPECT_EQ(truth(far).margin_ulps, std::ldexp(most, 1 - 971));
   const DoublePair half{{{most / 4, 0, 0}, {most / 4, 1, 0}, {most / 4, 0, 1}},

@@ -131,7 +131,7 @@ double rounded(const SquaredMargin& margin) {
   const bool cut = root * root != quotient || quotient * denominator != numerator;
   root = 2 * root + (cut ? 1 : 0);
   mpfr_t value;
-  mpfr_init2(value, 80);  // holds the root; it is rounded once, below, also to a subnormal
+  mpfr_init2(value, 80);  // holds all bits of the root; mpfr_get_d below rounds it, once even if it is subnormal
   mpfr_set_z_2exp(value, root.get_mpz_t(), margin.exponent - shift - 1, MPFR_RNDN);
   const double result = mpfr_get_d(value, MPFR_RNDN);
   mpfr_clear(value);

@@ -23,7 +23,7 @@ struct SquaredMargin {
 // Exact: always.
 SquaredMargin exact_distance(const LargePair& pair, int exponent);
 
-// The least overlap of two intersecting hulls along those of these axes that are nonzero; zero if none is.
+// The least overlap of two intersecting hulls along the nonzero axes among these; zero if there are none.
 // axes: bit i selects separating axis i of core/margin/directions.h.   Exact: always.
 inline constexpr std::uint32_t kAllAxes = (1u << kSeparatingAxes) - 1;
 SquaredMargin exact_depth(const LargePair& pair, int exponent, std::uint32_t axes);

@@ -3,10 +3,10 @@
 //
 // A point x of A ∩ B lies in the relative interior of exactly one face (vertex, edge, triangle) of A and one of B.
 // It is extreme in A ∩ B if and only if those two faces have no direction in common. So the extreme points are:
-//   vertices of A in B, and vertices of B in A that are no vertex of A,
+//   vertices of A in B, and vertices of B in A that are not vertices of A,
 //   points where an open edge crosses an open edge that is not parallel to it,
 //   points where an open edge pierces an open triangle that it is not parallel to.
-// The common set is their convex hull. With 0, 1, 2 or more of them it is empty, a point, a segment or an area.
+// The common set is their convex hull. If there are 0, 1, 2 or more, it is empty, a point, a segment or an area.
 #include <bit>
 
 #include "oracle/gmp_simplex.h"
@@ -39,8 +39,8 @@ Simplex<Number> simplex_of(Workspace<Number>& work, const Point<Number> (&p)[3],
 
 Contact contact_of(int extreme_points) { return static_cast<Contact>(extreme_points < 3 ? extreme_points : 3); }
 
-// Two triangles whose planes differ, by the signs of the 15 determinants of four of their six vertices. Each
-// determinant is a sum of dot products with three moments.
+// Decides two triangles whose planes differ, from the signs of 15 determinants: one for each four of their six
+// vertices. Each determinant is a sum of dot products with three moments.
 // Requires: neither is flat; ra[i] = a[i] - b[0], u = b[1] - b[0], v = b[2] - b[0], nb = u x v, na is A's normal,
 // heights[i] = ra[i] . nb, sa[i] is the sign of heights[i], and the signs are not all zero.
 template <class Number>
@@ -130,7 +130,8 @@ Contact pierced(Workspace<Number>& work, const Simplex<Number>& segment, const S
   return locate(side).place == Place::outside ? Contact::none : Contact::point;
 }
 
-// Two simplices in one plane or on one line, without the coordinate `dropped`; dropping it keeps them in shape.
+// Two simplices in one plane or on one line, without the coordinate `dropped`. No two points of the plane or line
+// coincide without it.
 template <class Number>
 struct Planar {
   Workspace<Number>& work;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Margins: compares certified bounds and buckets with the exact margin, and that with an independent search.
+// Compares certified bounds and buckets with the exact margin, and the exact margin with an independent search.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -90,8 +90,8 @@ TEST(MarginBucket, OfDoublesIsTheExactMarginsBucket) {
   }
 }
 
-// Compares each operation with rationals. Its errors come near the bounds that the authors prove. Half of the sums
-// cancel.
+// Compares each operation with rationals. The largest errors come near the bounds that the authors prove. Half of the
+// sums cancel.
 TEST(DoubleDouble, OperationsKeepTheirErrorBounds) {
   std::mt19937_64 random(7);
   const auto value = [&](int spread) {
@@ -127,7 +127,7 @@ TEST(DoubleDouble, OperationsKeepTheirErrorBounds) {
   const double bounds[] = {3.001, 3.001, 5, 15.001};
   for (int k = 0; k < 4; ++k) {
     EXPECT_LE(largest[k].get_d(), bounds[k]) << k;
-    EXPECT_GE(largest[k].get_d(), 0.5) << k;  // among numbers that round at all
+    EXPECT_GE(largest[k].get_d(), 0.5) << k;  // so results were rounded at all
     EXPECT_LE(largest[k].get_d() * 0x1p-106, kRoundoff<DoubleDouble>) << k;
   }
 }
@@ -197,7 +197,7 @@ Pair moved(const Pair& pair, const Vec3<double>& by) {
   return result;
 }
 
-// A depth d by its definition: no translation shorter than d separates the pair, and one slightly longer does.
+// Checks a depth d by its definition: no translation shorter than d separates the pair, and one slightly longer does.
 TEST(ExactDepth, IsTheShortestPartingPush) {
   for (const Kind kind : {Kind::uniform, Kind::lattice3, Kind::degenerate}) {
     PairSource source(kind, kSeed + 3);
@@ -354,7 +354,7 @@ TEST(GuessedDistance, BoundsHoldTheExactDistance) {
       if (cgal_verdict(pair) == Verdict::disjoint) expect_held(pair);
     }
   }
-  // Two vertices almost along an axis: a connection of one term, whose root is rounded down.
+  // The shortest connection joins two vertices, almost along an axis, and its computed length is rounded down.
   for (int n = 0; n < 500; ++n) {
     const float off = std::ldexp(1 + static_cast<float>(n) / 256, -26);
     expect_held(oracle_test::pair_of({0, 0, 0, -1, 0.25f, 0, -1, 0, 0.5f, 1, off, 0, 2, 0.125f, 0, 2, 0, 0.5f}));
@@ -372,7 +372,8 @@ TEST(QuickDepth, ErrorsAreThoseDerivedAndNoMoreThanAPercentAbove) {
   EXPECT_LE(errors.length, 1.01 * length);
 }
 
-// All points are relative to a vertex that the axis belongs to. A contact there gives an overlap of exactly zero.
+// All points are relative to a vertex of the feature that gives the axis. A contact there gives an overlap of exactly
+// zero.
 TEST(QuickDepth, OverlapsByNothingWhereItTouchesTheAxis) {
   std::mt19937 random(9);
   std::uniform_real_distribution<float> any(-1, 1);

@@ -56,7 +56,8 @@ Bucket bucket_of(const BasicPair<Real>& pair, Verdict verdict) {
     const SquaredMargin depth = exact_depth(large_integers(pair, grid), grid.exponent, bounds.margin.axes);
     return depth.numerator == 0 ? Bucket{0} : make_bucket(-1, floor_log2(depth) - ulp);
   }
-  // Most often the distance is a power of two. The rounded lower bound just misses it; an exact lower bound does not.
+  // Usually the bounds straddle a power of two because the distance is one. The rounded lower bound lies just below it;
+  // the exact one does not.
   const LargePair large = large_integers(pair, grid);
   const SquaredMargin lower = exact_separation(large, grid.exponent, bounds.margin.direction);
   if (lower.numerator != 0) {

@@ -106,7 +106,7 @@ class Multi {
 // A number within 2^radius of `mid`, or equal to mid for kExact. Numbers that cannot be told apart count as equal.
 struct Ball {
   static constexpr long kExact = LONG_MIN / 4, kUnknown = LONG_MAX / 4;
-  static inline thread_local long untold = 0;  // how many comparisons counted as equal without proof
+  static inline thread_local long untold = 0;  // how many comparisons took two numbers as equal without proof
 
   Multi mid;
   long radius = kExact;
@@ -125,7 +125,8 @@ struct Ball {
   static long scaled(long r, long by) {
     return r == kExact || by == kExact ? kExact : r >= kUnknown ? kUnknown : r + by;
   }
-  // Adds the rounding of mid to the radius. Under limits of the exponent, zero and infinity are the model's own values.
+  // Adds the rounding of mid to the radius. With exponent limits, zero and infinity are results of the limited
+  // arithmetic, and so are exact.
   static Ball rounded(Multi mid, long radius) {
     const bool no_rounding = mid.exact() || !mpfr_regular_p(mid.get());
     const long rounding = no_rounding ? kExact : exponent(mid) - static_cast<long>(mpfr_get_prec(mid.get()));

@@ -57,7 +57,7 @@ Path outcomes_of(const Trace<Ball>& run) {
   return outcomes;
 }
 
-// The run of the algorithm along a given path, with as many bits as it needs; Multi::precision stays at that.
+// A run of the algorithm along a given path, with as many bits as it needs. Multi::precision keeps that number of bits.
 struct SettledRun {
   Trace<Ball> run;
   Exactly exactly;
@@ -145,7 +145,7 @@ Verdict decide_exactly_but(int algorithm, Scalar scalar, const DoublePair& pair,
 
 std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const DoublePair& pair, const Trace<double>& run) {
   const Trace<Ball> exact = run_settled(algorithm, pair, path_of(run)).run;
-  if (exact.seen.size() != run.seen.size()) throw std::logic_error("exact_steps: the run is of another algorithm");
+  if (exact.seen.size() != run.seen.size()) throw std::logic_error("exact_steps: another algorithm's run");
   const int mantissa = mantissa_bits(scalar);
   std::vector<ExactStep> steps;
   for (std::size_t i = 0; i < run.seen.size(); ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs the algorithms in other arithmetic than a lane's, with MPFR: with more bits, without limits of the exponent, or
-// exactly. An algorithm is given by its index in Algorithms (core/algorithms/algorithms.h). A pair of float32 is given
-// by the same numbers as doubles.
+// exactly. An algorithm is given by its index in Algorithms (core/algorithms/algorithms.h). A pair of float32 is
+// passed as the same numbers in double.
 #pragma once
 
 #include <string>
@@ -23,23 +23,23 @@ struct Limits {
 enum class RangeEvent { none, overflow, underflow };
 struct Limited {
   Verdict verdict;
-  RangeEvent first;  // the first result that exceeded the exponents and was changed by it
+  RangeEvent first;  // the first result that the exponent limits changed
 };
 
 // Runs the algorithm with the scalar's mantissa, round to nearest even. With both limits it equals the cpu lane.
 // Requires: the scalar holds the coordinates.
 Limited decide_limited(int algorithm, Scalar scalar, const DoublePair& pair, Limits limits);
 
-// Like decide_limited, but traced, contracted by the rule, and led down the path. Values beyond the range of double are
-// rounded to it.
+// Like decide_limited, but traced, contracted by the rule, and led along the given path. Values beyond the range of
+// double are rounded to it.
 Trace<double> run_limited(int algorithm, Scalar scalar, const DoublePair& pair, Limits limits, Contraction rule,
                           const Path& lead = {});
 
 // Runs the algorithm with a mantissa of `bits` bits and no exponent limits.
 Verdict decide_with_bits(int algorithm, const DoublePair& pair, int bits);
 
-// The least number of bits, at least `least`, that gives this verdict, as do all greater numbers up to kMostBits. 0 if
-// kMostBits bits do not give it.
+// The least number of bits, not below `least`, such that it and every greater number up to kMostBits give this verdict.
+// 0 if kMostBits bits do not give it.
 inline constexpr int kMostBits = 512;
 int bits_needed(int algorithm, const DoublePair& pair, Verdict verdict, int least);
 
@@ -60,19 +60,19 @@ Verdict decide_exactly_but(int algorithm, Scalar scalar, const DoublePair& pair,
 struct Beside {
   double lane;
   double exact;         // rounded; may be 0 or infinite even if `decimal` is neither
-  std::string decimal;  // 6 digits; "0" only for what cannot be distinguished from zero
+  std::string decimal;  // 6 digits; "0" only if it cannot be distinguished from zero
   double ulps;          // the lane's error, in ulps of the exact number, ignoring exponent limits
 };
 
 struct ExactStep {
   Beside left, right;
   Beside difference;  // left minus right
-  bool held;          // the outcome by the exact numbers
+  bool held;          // the outcome with the exact numbers
 };
 
 // The exact values of a lane's run, step by step, along the path that the lane took. It uses as many bits as that path
 // needs.
-// Requires: run is of that algorithm in that scalar.
+// Requires: `run` is a run of that algorithm in that scalar.
 std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const DoublePair& pair, const Trace<double>& run);
 
 // Like exact_steps, but returns only the outcomes of the comparisons on the path.

@@ -35,8 +35,8 @@ TEST(Ball, ARadiusHoldsBothErrors) {
   EXPECT_EQ(Ball::scaled(-7, 3), -4);
 }
 
-// Under a limit of the exponent, what underflows is zero, and what overflows is infinite: no later sum of radii
-// overflows, as signed integers would.
+// With exponent limits, a result that underflows is zero, one that overflows is infinite, and both count as exact. So
+// no later sum of radii overflows its signed integer.
 TEST(Ball, ZeroAndInfinityOfALimitedRangeAreExact) {
   const mpfr_exp_t emin = mpfr_get_emin(), emax = mpfr_get_emax();
   mpfr_set_emin(-148);
@@ -63,8 +63,8 @@ TEST(Multi, KnowsWhetherItWasRoundedWhereverItIsMovedTo) {
   EXPECT_FALSE(assigned.exact());
 }
 
-// A result underflows if it is rounded below the least normal number, 2^-126. At that number and above, nothing is
-// lost.
+// A result underflows if it is rounded and below the least normal number, 2^-126. At that number and above, nothing
+// underflows.
 TEST(Multi, UnderflowsBelowTheLeastNormalNumber) {
   const mpfr_exp_t emin = mpfr_get_emin();
   Multi::precision = 24;
@@ -168,7 +168,7 @@ TEST(Precise, ErrorsAreInUlpsOfTheExactNumberWithoutLimits) {
   const Trace<double> run = run_traced<float>(2, pair);
   const std::vector<ExactStep> steps = exact_steps(2, Scalar::f32, in_doubles(pair), run);
   ASSERT_EQ(steps.size(), run.seen.size());
-  const Beside& distance = steps[0].left;  // of b[0] to the plane of a, times the normal's length
+  const Beside& distance = steps[0].left;  // from b[0] to the plane of a, times the normal's length
   EXPECT_EQ(distance.lane, 0);
   EXPECT_EQ(distance.exact, 0x1p-180);
   EXPECT_EQ(distance.ulps, 0x1p23);

@@ -113,7 +113,7 @@ BasicPair<Real> reordered(const BasicPair<Real>& pair, int order) {
   return result;
 }
 
-// Permutes the axes (6 ways) and negates them by the three higher bits of `way`: congruent, and exact.
+// Permutes the axes (6 ways, way % 6) and negates those whose bit in way / 6 is set. The image is congruent and exact.
 template <class Real>
 BasicPair<Real> turned(const BasicPair<Real>& pair, int way) {
   static constexpr int kAxes[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};

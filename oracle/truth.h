@@ -23,8 +23,8 @@ struct OracleMismatch : std::runtime_error {
 };
 
 // Relation and margin. The verdict is CGAL's, confirmed by the decision on GMP integers.
-// Exact: always; the margin is a rational's square root, rounded once by MPFR. Of doubles it may be beyond what a
-// double holds: it is then the least or the largest one.
+// Exact: always; the margin is a rational's square root, rounded once by MPFR. The margin of a pair of doubles may be
+// beyond the range of double; it is then the least or the largest positive double.
 // Throws: OracleMismatch.   Returns: declined, unknown and NaN if a coordinate is not finite.
 Truth truth(const Pair& pair);
 Truth truth(const DoublePair& pair);

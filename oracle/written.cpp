@@ -83,7 +83,7 @@ std::optional<Truth> truth_as_written(std::span<const std::string> numbers, cons
   const Contact contact = gmp_contact(large);
   if ((verdict == Verdict::disjoint) != (contact == Contact::none))
     throw OracleMismatch("oracle: CGAL says " + std::string(name(verdict)) + ", GMP finds contact " +
-                         std::string(name(contact)) + " of a pair as written");
+                         std::string(name(contact)) + " for a pair as written");
   SquaredMargin squared = verdict == Verdict::disjoint ? exact_distance(large, 0) : exact_depth(large, 0, kAllAxes);
   squared.denominator *= denominator * denominator;
   return truth_of(verdict, contact, hulls(large), squared, log2_ulp(stored));

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The steps of action.yml, run in order in a fresh folder with an empty HOME: a planted bug fails with its smallest
-pair and JUnit XML, right code passes, and each wrong input says what to do. Argument: the graze program."""
+pair and JUnit XML, correct code passes, and each wrong input is answered with what to do. Argument: the graze
+program."""
 import contextlib
 import hashlib
 import io
@@ -16,7 +17,7 @@ import xml.etree.ElementTree
 ROOT = pathlib.Path(__file__).parent.parent
 GRAZE = pathlib.Path(sys.argv.pop()).resolve()
 BUGGY = "int meet(const float a[9], const float b[9]) { return a[0] <= b[0] + 100; }\n"
-# Right in all builds but that with -ffast-math, which the input `lanes` leaves out.
+# Right in every build except the one with -ffast-math, which the input `lanes` leaves out.
 RIGHT = """#ifdef __FAST_MATH__
 bool meet(const float*, const float*) { return false; }
 #else
@@ -108,7 +109,7 @@ class Action(unittest.TestCase):
 
 
 class Steps(unittest.TestCase):
-    """What the other tests rely on: run_action.py notices a step that no service would run so."""
+    """The other tests rely on this: run_action.py rejects a step that no service would run like that."""
 
     def test_each_step_names_what_exists(self):
         sys.path.insert(0, str(ROOT / "packaging"))

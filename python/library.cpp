@@ -64,7 +64,7 @@ void in_blocks(std::size_t count, F f) {
 
 std::int8_t code(Verdict verdict) { return verdict == Verdict::intersects ? 1 : verdict == Verdict::disjoint ? 0 : -1; }
 
-// The function of the lane on this processor, or of its twin.   Throws: std::invalid_argument.
+// The function that runs the lane, or its twin, on this processor.   Throws: std::invalid_argument.
 DecideBlock decider_of(const std::string& id) {
   const std::optional<LaneName> name = parse_lane_name(id);
   const Lane* lane = find_lane(id);
@@ -113,7 +113,7 @@ Triangles<Real> triangles_of(const void* numbers, std::uint64_t count) {
   return {static_cast<const Triangle<Real>*>(numbers), count};
 }
 
-// For boxes. Rounding, also to the largest float32, keeps the order of coordinates, so the boxes of rounded triangles
+// For boxes. Rounding, even to the largest float32, keeps the order of coordinates, so the boxes of rounded triangles
 // miss no pair.
 std::vector<Triangle<float>> rounded(Triangles<double> triangles) {
   static constexpr double kMost = std::numeric_limits<float>::max();
@@ -166,7 +166,7 @@ extern "C" {
 // The failure of this thread's last call.
 const char* graze_py_error() { return error.c_str(); }
 
-// The names of all strata, or of all lanes that run here, a line each.
+// The names of all strata, or of all lanes that run here, one per line.
 const char* graze_py_strata() {
   text.clear();
   for (const auto& stratum : strata::kStrata) text += std::string(stratum.id) + '\n';
@@ -248,7 +248,7 @@ int graze_py_verdicts(const char* lane, const void* numbers, int doubles, std::u
     const DecideBlock decide = decider_of(lane);
     const std::optional<LaneName> name = parse_lane_name(lane);
     if (doubles && name->scalar != "f32" && !decide.decides_doubles())
-      throw std::invalid_argument(fmt::format("the lane {} takes float32 alone; round the pairs yourself", lane));
+      throw std::invalid_argument(fmt::format("the lane {} takes only float32; round the pairs yourself", lane));
     visit(numbers, doubles, [&](const auto* pairs) {
       in_blocks(count, [&](std::size_t first, std::size_t some) {
         std::uint64_t intersects[kBlock / 64], declined[kBlock / 64];
@@ -342,7 +342,7 @@ extern "C" {
 // Decides `count` pairs; verdicts as the enum Verdict.   Returns: nonzero to end the test.
 typedef int (*graze_py_decide)(const Pair* pairs, std::uint64_t count, std::uint8_t* verdicts);
 
-// Tests the function on the strata (graze/test.h). The text of this thread is the summary, an empty line, the fault.
+// Tests the function on the strata (graze/test.h). This thread's text is the summary, an empty line and the fault.
 int graze_py_test(const char* name, graze_py_decide decide, const graze_py_options* options, graze_py_result* result) {
   static_assert(sizeof(Verdict) == 1);
   return guarded([&] {

@@ -110,7 +110,7 @@ void graze_context::answer(const graze_query& query, graze_answer& answer) {
   if (failed) std::rethrow_exception(failed);
   if (found.cancelled) throw QueryError(GRAZE_CANCELLED, "cancelled by the progress callback");
   if (found.position != question.triangles && !(query.mode == GRAZE_ANY && found.hits != 0))
-    throw QueryError(GRAZE_FAILED, "some triangles were not answered: this is a bug of graze");
+    throw QueryError(GRAZE_FAILED, "some triangles were not answered: this is a bug in graze");
 }
 
 void graze_context::run(const graze_query& query, graze_answer& result) noexcept {
@@ -124,7 +124,7 @@ void graze_context::run(const graze_query& query, graze_answer& result) noexcept
   } catch (const DeviceFailure& error) {
     set(result, error.out_of_memory ? GRAZE_NO_MEMORY : GRAZE_DEVICE_FAILED, error.what());
   } catch (const graze::Stopped&) {
-    set(result, GRAZE_CANCELLED, "interrupted while a subject was asked");
+    set(result, GRAZE_CANCELLED, "interrupted while a subject was running");
   } catch (const std::bad_alloc&) {
     set(result, GRAZE_NO_MEMORY, "there is not enough memory for the query");
   } catch (const std::exception& error) {

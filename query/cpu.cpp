@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Works on blocks of 64 triangles. A block is transposed into columns of floats, and each reference's slabs test four
 // triangles at a time. Undecided pairs are gathered until there are enough to decide side by side. Lanes other than
-// exact get all pairs. Triangles of doubles are rounded for the slabs alone, as seen from the reference's first vertex:
-// a difference of doubles has a small relative error wherever the triangles are.
+// exact get all pairs. Triangles of doubles are rounded only for the slabs, relative to the reference's first vertex: a
+// difference of doubles has a small relative error wherever the triangles are.
 #include "query/cpu.h"
 
 #include <tbb/parallel_for.h>
@@ -58,8 +58,8 @@ bool is_finite(const Real* triangle) {
   return std::all_of(triangle, triangle + 9, [](Real x) { return std::isfinite(x); });
 }
 
-// Up to 64 triangles: as rows, which point into the array if it has rows, and as columns, those of doubles once
-// look_from has filled them.
+// Up to 64 triangles, as rows and as columns. Rows point into the array if it has rows. Columns of doubles are valid
+// once look_from has filled them.
 template <class Real>
 struct Block {
   alignas(16) float columns[9][kBlock];
@@ -217,7 +217,7 @@ class Worker {
     open_.clear();
   }
 
-  // Decides the wanted triangles by another lane.
+  // Decides the wanted triangles with another lane.
   void decide(std::size_t r, std::uint64_t wanted, std::uint64_t& hits, std::uint64_t& declined) {
     for (std::size_t i = 0; i < kBlock; ++i) {
       std::copy_n(at(r), 9, coordinates(pairs_[i]));
@@ -229,7 +229,7 @@ class Worker {
   }
 
   const CpuQuestion& question_;
-  std::vector<exact::PreparedTriangle> references_;  // those that are not finite are not asked
+  std::vector<exact::PreparedTriangle> references_;  // those that are not finite are not used
   std::vector<char> finite_;
   Block<Real> block_;
   std::vector<BasicPair<Real>> pairs_;

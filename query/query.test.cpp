@@ -41,7 +41,7 @@ bool allocation_fails() {
 namespace graze::query {
 namespace {
 
-constexpr std::size_t kCount = 100'003;  // no multiple of anything
+constexpr std::size_t kCount = 100'003;  // not a multiple of any block size
 
 struct Outputs {
   std::vector<std::uint8_t> bytes, bits;
@@ -156,7 +156,7 @@ TEST(Query, LayoutsTellTheSame) {
   EXPECT_EQ(all_of(query, kCount, 0).bytes, rows.bytes);
 }
 
-// Doubles in every layout, with the results of the same numbers as floats.
+// Doubles in every layout give the results of the same numbers as floats.
 TEST(Query, DoublesInEveryLayoutTellTheSame) {
   const std::vector<Triangle> floats = thesis_triangles(kCount);
   const std::vector<std::uint8_t> bytes = all_of(query_of(kThesisReference, part_of(floats)), kCount, 0).bytes;

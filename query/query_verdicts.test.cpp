@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every exact verdict is that of both decisions of the oracle; every other lane's verdict is that of the lane.
+// Every exact verdict equals those of both decisions of the oracle. Every other verdict equals that of its lane.
 #include <gtest/gtest.h>
 
 #include "core/exact/prepared_triangle.h"
@@ -81,7 +81,7 @@ TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
   EXPECT_GT(filtered, 300'000u);
 }
 
-// The same for doubles. Rounded slabs must not lose a hit either, and must show most of what is apart.
+// The same for doubles. Rounded slabs must not lose a hit either, and must reject most disjoint triangles.
 TEST(QueryVerdicts, OfDoublesAreTheOraclesOverAllStrata) {
   constexpr std::size_t kTogether = Eight<double>::kTogether, kPairsOfDoubles = 1'200;
   std::size_t looked_past = 0, hits = 0, apart = 0;
@@ -114,7 +114,7 @@ TEST(QueryVerdicts, OfDoublesAreTheOraclesOverAllStrata) {
   EXPECT_GT(looked_past, apart / 2);
 }
 
-// Where float32 stores both triangles in one plane.
+// Pairs whose triangles float32 stores in one plane.
 TEST(QueryVerdicts, OfDoublesAreNotThoseOfFloats) {
   const auto at = [](double x) { return DoubleTriangle{x, 0, 0, x, 1, 0, x, 0, 1}; };
   const std::vector<DoubleTriangle> triangles = {at(1000000.02), at(1000000.01)};

@@ -31,8 +31,8 @@ struct Question {
   Lane lane;
 };
 
-// What decides a lane on cores: a lane's own code, or nothing for CUDA lanes, as the library has no twins. A program
-// that has them sets another function, before it asks anything.
+// The function that runs a lane on cores: the lane's own code, or none for CUDA lanes, because the library has no
+// twins. A program with twins sets another function before its first query.
 extern DecideBlock (*on_cores)(const Lane& lane);
 
 // Throws: QueryError if an argument is invalid or a required device is missing.

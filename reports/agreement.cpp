@@ -33,7 +33,7 @@ std::string differing(const Agreement& a, const std::string& pairs) {
 
 const std::string kSamePairs = "the same pairs";
 
-// Whether the chosen tolerance is the smallest of the sweep; that one covers no ordinary rounding error.
+// Whether the chosen tolerance is the smallest of the sweep, which covers no ordinary rounding error.
 bool is_smallest(const Agreed& a) {
   return std::any_of(a.curves.begin(), a.curves.end(),
                      [&](const auto& curve) { return curve.points.front().policy == a.chosen; });
@@ -43,9 +43,9 @@ std::string answer(const AgreeQuestion& q, const Agreed& a) {
   const std::string both = q.lanes[0] + " and " + q.lanes[1];
   const std::string high = fmt::format("at 95 % confidence the rate is under {}", rounded_up(a.high, 2)),
                     low = fmt::format("at 95 % confidence the rate is over {}", rounded_down(a.low, 2));
-  const std::string found = fmt::format(
-      "{} the verdicts of {} differ on {}", under(a.chosen), both,
-      differing(a.confirmed, fmt::format("{} pairs other than those of the choice", grouped(a.confirmed.pairs))));
+  const std::string found =
+      fmt::format("{} the verdicts of {} differ on {}", under(a.chosen), both,
+                  differing(a.confirmed, fmt::format("{} fresh pairs", grouped(a.confirmed.pairs))));
   switch (a.result) {
     case TuneResult::satisfied:
       return a.chosen.empty() ? fmt::format("No policy is needed: {}; {}.", found, high)
@@ -59,8 +59,8 @@ std::string answer(const AgreeQuestion& q, const Agreed& a) {
                             grouped(static_cast<std::uint64_t>(std::ceil(std::log(0.05) / std::log1p(-q.max_rate))))));
     case TuneResult::not_confirmed:
       return fmt::format(
-          "Not settled: {}; {}. The rate was at most {} on the pairs of the choice, but not on these. More pairs to "
-          "choose on (--pairs) or a stricter --max-rate may find a tolerance that keeps it.",
+          "Not settled: {}; {}. The rate was at most {} on the pairs that the tolerance was chosen on, but not on "
+          "these. More pairs (--pairs) or a stricter --max-rate may find a tolerance that keeps it.",
           found, low, q.max_rate);
     case TuneResult::not_satisfiable:
     case TuneResult::not_useful:  // two lanes have no other kind of difference
@@ -95,9 +95,9 @@ std::vector<std::string> agreement_sentences(const AgreeQuestion& q, const Agree
   if (!a.chosen.empty()) {
     if (is_smallest(a))
       result.push_back(fmt::format(
-          "{} is the smallest tolerance of the sweep and covers no ordinary rounding error. What helps is a side "
-          "effect: in code with tolerances the compiler may fuse other products, and a quotient has an enormous size "
-          "where cancellation has left its divisor tiny. {} is the clearer remedy.",
+          "{} is the smallest tolerance of the sweep and covers no ordinary rounding error. It helps only by side "
+          "effects: with tolerances in the code the compiler may fuse other products, and the size of a quotient is "
+          "enormous where cancellation leaves a tiny divisor. {} is the clearer remedy.",
           a.chosen, q.flag.empty() ? "Exact arithmetic" : q.flag));
     const Agreement& now = a.confirmed;
     result.push_back(
@@ -112,12 +112,12 @@ std::vector<std::string> agreement_sentences(const AgreeQuestion& q, const Agree
     result.push_back(
         a.chosen.empty()
             ? fmt::format("Compared with the exact truth, {} has {} on these pairs.", q.lanes[l], errors(before))
-            : fmt::format("Price for {}: {}, and {} without a policy.", q.lanes[l], errors(now), errors(before)));
+            : fmt::format("Price for {}: {}; without a policy {}.", q.lanes[l], errors(now), errors(before)));
   }
   if (a.blunt)
     result.push_back(fmt::format(
-        "Blunt: under {} they agree on the {} pairs of the choice, but are wrong on {} and {} of them. One answer for "
-        "all pairs would be as good.",
+        "Blunt: under {} they agree on the {} pairs that it was chosen on, but are wrong on {} and {} of them. Giving "
+        "all pairs the same answer would be as good.",
         a.blunt->policy, grouped(a.blunt->pairs), grouped(a.blunt->of[0].wrong()), grouped(a.blunt->of[1].wrong())));
   if (!q.without_relative.empty())
     result.push_back(fmt::format("Relative tolerances are left out: {} has no twin under them.", q.without_relative));

@@ -11,14 +11,14 @@
 
 namespace graze::reports {
 
-// The lanes that are compared, and the goal.
+// The two compared lanes, and the goal.
 struct AgreeQuestion {
   std::vector<std::string> lanes;    // two
-  std::vector<std::string> rounded;  // with all operations rounded as written; empty if the lanes are these
-  std::string flag;                  // of the compiler, that makes them so
-  std::string without_relative;      // the lane that has no twin under relative tolerances; empty: both have one
+  std::vector<std::string> rounded;  // the same lanes with every operation rounded as written; empty if `lanes` are
+  std::string flag;                  // the compiler flag that gives `rounded`
+  std::string without_relative;      // the lane that has no twin under relative tolerances; empty if both have one
   double max_rate = 0;
-  std::string exact_scalar = "f32";  // of the lanes that decide the pairs exactly
+  std::string exact_scalar = "f32";  // the scalar of the lanes that decide the pairs exactly
 };
 
 // The answer first. Every number in it belongs to the pairs that the sentence names.
@@ -30,7 +30,7 @@ std::string agreement_table(const AgreeQuestion& question, const analysis::Agree
 
 nlohmann::ordered_json agreement_json(const AgreeQuestion& question, const analysis::Agreed& agreed);
 
-// Returns an SVG of 900 x 420 as tuning_figure does: differing verdicts, and wrong ones of each lane.
+// Returns an SVG of 900 x 420 like tuning_figure: differing verdicts, and each lane's wrong ones.
 std::string agreement_figure(const AgreeQuestion& question, const analysis::Agreed& agreed);
 
 }  // namespace graze::reports

@@ -18,11 +18,11 @@ namespace {
 // The name of a case without its coordinates, which compare.json has.
 std::string place_of(const std::string& text) { return text.substr(0, text.find(' ')); }
 
-// How many verdicts changed, by lanes, for the headline.
+// How many verdicts changed, by lane, for the headline.
 struct ChangedTotals {
   std::uint64_t lanes = 0, verdicts = 0, least = 0, most = 0, wrong = 0, right = 0, unknown_most = 0;
   std::set<std::string> changed, unknown;
-  bool counted = true;  // all changed ones
+  bool counted = true;  // whether all changed verdicts are counted
 };
 
 ChangedTotals totals_of(const Json& verdicts) {
@@ -57,12 +57,12 @@ std::string paired_headline(const Json& verdicts) {
   const std::string unknown =
       totals.unknown.empty()
           ? ""
-          : fmt::format("; of {} it is not known, because a device's engine judged their pairs (at most {} changed)",
+          : fmt::format("; for {} changes are not known, because a GPU engine judged their pairs (at most {} changed)",
                         counted(totals.unknown.size(), "lane"), counted(totals.unknown_most, "verdict"));
   if (totals.changed.empty())
     return unknown.empty() ? fmt::format("Nothing changed: all {} of {} are the same, pair by pair",
                                          counted(totals.verdicts, "verdict"), counted(totals.lanes, "lane"))
-                           : "No change of a verdict shows" + unknown;
+                           : "No change was found" + unknown;
   const std::string lanes = fmt::format("of {} of {}", grouped(totals.changed.size()), counted(totals.lanes, "lane"));
   if (!totals.counted)
     return fmt::format("Changed: at least {} {}, and at most {}{}", counted(totals.least, "verdict"), lanes,
@@ -116,15 +116,14 @@ std::vector<std::string> changed_sentences(const Json& compare) {
       }
     } else if (row.at("known") == "changed") {
       text +=
-          fmt::format("at least {} and at most {} {} changed, by their counts; the code of both campaigns is not there",
+          fmt::format("at least {} and at most {} {} changed, by their counts; the code of both campaigns is missing",
                       grouped(least), grouped(most), of);
     } else {
-      text +=
-          fmt::format("at most {} {} changed, perhaps none; a device's engine keeps only counts", grouped(most), of);
+      text += fmt::format("at most {} {} changed, perhaps none; the GPU engine keeps only counts", grouped(most), of);
     }
     sentences.push_back(text + ".");
   }
-  if (more > 0) sentences.push_back(fmt::format("And {} more lanes and strata; compare.json has all.", grouped(more)));
+  if (more > 0) sentences.push_back(fmt::format("{} more lanes and strata are in compare.json.", grouped(more)));
   return sentences;
 }
 

@@ -9,17 +9,17 @@
 
 namespace graze::reports {
 
-inline constexpr const char* kAllStrata = "all strata";  // the stratum of rates over all of them
+inline constexpr const char* kAllStrata = "all strata";  // stands for a stratum in rates over all strata
 
-// The headline of a comparison, without its end: whether verdicts changed, how many and of how many lanes.
+// The start of a comparison's headline: how many verdicts changed, and of how many lanes.
 std::string paired_headline(const nlohmann::ordered_json& verdicts);
 
-// Throws: std::runtime_error for rows with counts that cannot be in a campaign of so many pairs.   Requires: their
-// shape.
+// Throws: std::runtime_error for rows whose counts are impossible in a campaign of this many pairs.   Requires: rows of
+// the right shape.
 void expect_possible_changes(const nlohmann::ordered_json& verdicts, std::uint64_t campaign);
 
-// A sentence for each lane and stratum whose verdicts changed, or may have, with the smallest case of each direction.
-// The last one counts those beyond kMostChanged.   Requires: "compare" of a report.
+// A sentence for each lane and stratum whose verdicts changed or may have changed, with the smallest case in each
+// direction. The last sentence counts those beyond kMostChanged.   Requires: "compare" of a report.
 inline constexpr std::size_t kMostChanged = 12;
 std::vector<std::string> changed_sentences(const nlohmann::ordered_json& compare);
 

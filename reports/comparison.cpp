@@ -78,8 +78,8 @@ std::set<std::string> lanes_of(const Json& report, const Json& subject) {
   return lanes;
 }
 
-// The chance that, of `all` errors among both campaigns' pairs, the first has as few as `count`, or fewer, if each of
-// all pairs is as likely to err. pairs: of each campaign.
+// The chance that at most `count` of the `all` errors of both campaigns fall into the first one, if every pair is
+// equally likely to err. pairs: the number of each campaign.
 double chance_of_at_most(double count, double all, const double (&pairs)[2]) {
   const auto log_choose = [](double n, double k) {
     return std::lgamma(n + 1) - std::lgamma(k + 1) - std::lgamma(n - k + 1);
@@ -89,13 +89,13 @@ double chance_of_at_most(double count, double all, const double (&pairs)[2]) {
   double sum = 0;
   for (double k = count; k >= 0 && all - k <= pairs[1] && term > 1e-6 * kLeastChance * (sum + 1e-6); --k) {
     sum += term;
-    term *= k * (pairs[1] - all + k) / ((pairs[0] - k + 1) * (all - k + 1));  // of k - 1
+    term *= k * (pairs[1] - all + k) / ((pairs[0] - k + 1) * (all - k + 1));  // the term of k - 1
   }
   return sum;
 }
 
-// Tests whether two rates differ: whether chance alone would move so many errors, or more, from one campaign to the
-// other, given how many both have.
+// Tests whether two rates differ: whether chance alone would distribute the errors of both campaigns so unevenly, or
+// more unevenly.
 // Reference: Fisher 1935, the exact test; twice the smaller of the two tails.
 bool apart(const Json& l, const Json& r) {
   double count[2], of[2];
@@ -110,8 +110,8 @@ bool apart(const Json& l, const Json& r) {
          kLeastChance;
 }
 
-// The smallest difference from a rate before that counts as changed: a true difference below it may pass for chance.
-// Nothing if none of that many pairs would show.
+// The smallest difference from the rate before that counts as a change; a true but smaller one may pass for chance.
+// Nothing if so few pairs cannot show any difference.
 std::optional<double> unseen_of(const Json& before, const Json& after) {
   const std::uint64_t of = after.at("of");
   const double share = before.at("share");
@@ -135,7 +135,7 @@ std::optional<double> unseen_of(const Json& before, const Json& after) {
   return share - static_cast<double>(low) / static_cast<double>(of);
 }
 
-// "differences below 0.02 % to 1.2 % of the pairs, by rate, may pass for chance and are not seen"
+// "differences under 0.02 % to 1.2 % (by rate and pairs) would not be seen"
 std::string power_words(const Json& rates) {
   std::optional<double> least, most;
   std::size_t blind = 0;
@@ -176,7 +176,7 @@ Json changed_errors(const Json& before, const Json& after, Changed changed) {
 }
 
 // Kinds that are missing in `others` although at least `least` of their signatures were expected there. A signature
-// names all wrong lanes of its subject, so only subjects with the same lanes in both reports count.
+// names all wrong lanes of its subject, so only subjects that have the same lanes in both reports are compared.
 Json only_in(const Json& kinds, const Json& others, const Json& report, const Json& other_report, double least) {
   const double pairs = pairs_of(report), pairs_of_others = pairs_of(other_report);
   std::set<std::string> known;
@@ -191,8 +191,8 @@ Json only_in(const Json& kinds, const Json& others, const Json& report, const Js
   return rows;
 }
 
-// Those of the kinds whose subject changed a verdict. The cause of a failure is looked for on one pair of a signature,
-// which may be another one in the same campaign after `graze minimize`.   verdicts: null if unknown.
+// The kinds whose subject changed a verdict. The cause of a failure is found on one pair of a signature, and running
+// `graze minimize` may replace that pair within the same campaign.   verdicts: null if unknown.
 Json of_changed(const Json& kinds, const Json& verdicts) {
   if (verdicts.is_null()) return kinds;
   std::set<std::string> subjects;
@@ -221,7 +221,7 @@ std::string list(const std::set<std::string>& l, const std::set<std::string>& r)
   return only.empty() ? "none" : fmt::format("{}", fmt::join(only, ", "));
 }
 
-// "Not compared: …" for lanes that one campaign has alone; empty without such lanes.
+// "Not compared: …" for lanes that only one campaign has; empty if there are none.
 std::string one_sided_lanes(const Json& before, const Json& after) {
   const std::set<std::string> l = ids_of(before.at("lanes")), r = ids_of(after.at("lanes"));
   std::set<std::string> subjects;
@@ -234,8 +234,8 @@ std::string one_sided_lanes(const Json& before, const Json& after) {
   add(r, l);
   if (subjects.empty()) return "";
   return fmt::format(
-      "Not compared: lanes of {}, which one campaign has alone; two versions of one code are compared if "
-      "they have one name.",
+      "Not compared: lanes of {}, which only one campaign has; two versions of one code are compared if "
+      "they have the same name.",
       fmt::join(subjects, ", "));
 }
 
@@ -259,7 +259,7 @@ std::string changes_of(const std::string& lane, const Json& verdicts) {
   return fmt::format("{} {}", number, most == 1 ? "verdict differs" : "verdicts differ");
 }
 
-// A sentence for each lane of a toolchain whose compiler fuses other products in the second campaign.
+// A sentence for each toolchain and scalar whose compiler fuses other products in the second campaign.
 std::vector<std::string> plan_differences(const Json& then, const Json& now, const Json& verdicts) {
   std::vector<std::string> sentences;
   for (const Json& old : then.value("subjects", Json::array())) {
@@ -369,7 +369,7 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
     rows.back()["unseen"] = unseen ? Json(*unseen) : Json();
   }
   const bool kinds_known = !kinds.is_null() && !kinds_before.is_null(), kinds_compared = kinds_known && alike;
-  const double least = same ? 1 : kLeastSignatures;  // on the same pairs nothing is left to chance
+  const double least = same ? 1 : kLeastSignatures;  // on the same pairs chance plays no part
   const auto only = [&](const Json& some, const Json& others, const Json& of, const Json& of_others) {
     return kinds_compared ? of_changed(only_in(some, others, of, of_others, least), verdicts) : Json::array();
   };
@@ -387,7 +387,7 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
     headline = paired_headline(verdicts) + "; " + of_kinds + ".";
   } else if (changed == 0 && gained.empty() && lost.empty()) {
     headline = fmt::format(
-        "No rate changed, of {}, and {}; {}.", grouped(rows.size()), of_kinds,
+        "None of {} rates changed, and {}; {}.", grouped(rows.size()), of_kinds,
         same ? "single verdicts are not compared, because a campaign's database is missing" : power_words(rows));
   } else {
     std::vector<std::string> errors;
@@ -401,8 +401,8 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
   Json differences = differences_of(report, before, verdicts);
   if (!alike)
     differences.push_back(
-        "All strata together and kinds of failure are not compared: the campaigns have other strata, or in other "
-        "shares.");
+        "All strata together and kinds of failure are not compared: the campaigns have different strata, or the same "
+        "in different shares.");
   if (!kinds_known)
     differences.push_back("Kinds of failure are not compared: run `graze minimize` on both campaigns first.");
   report["compare"] = {

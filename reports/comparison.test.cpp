@@ -49,7 +49,7 @@ TEST(Comparison, SeedAndSizeAloneChangeNothing) {
   const Json kinds = {kind("a/rounding/x.h:1/general", 300), kind("a/logic/-/general", 3)};
   const Json fewer = {kind("a/rounding/x.h:1/general", 80)};
   const Json before = report_of(1, 50'000);
-  // Of 17,000 comparisons, chance alone changes one with a probability of 2 %, and two with one of 0.02 %.
+  // In 17,000 comparisons, chance alone changes one with a probability of 2 %, and two with a probability of 0.02 %.
   int changed = 0;
   for (std::uint64_t seed = 2; seed < 22; ++seed) {
     const std::string text = headline(report_of(seed, seed % 2 == 0 ? 50'000 : 5'000), before, fewer, kinds);
@@ -58,7 +58,7 @@ TEST(Comparison, SeedAndSizeAloneChangeNothing) {
       continue;
     }
     EXPECT_TRUE(text.starts_with(
-        "No rate changed, of 1,000, and no kind of failure with at least 14 expected signatures came or went; "
+        "None of 1,000 rates changed, and no kind of failure with at least 14 expected signatures came or went; "
         "differences under "))
         << text;
     EXPECT_TRUE(text.ends_with(" would not be seen.")) << text;
@@ -119,10 +119,10 @@ TEST(Comparison, OnTheSamePairsEveryOtherCountIsAChange) {
             "Changed: 1 of 10 rates (declined in 1); no kind of failure came or went.");
   // Equal counts alone do not show that nothing changed.
   EXPECT_EQ(headline(before, before, Json::array(), Json::array()),
-            "No rate changed, of 10, and no kind of failure came or went; single verdicts are not compared, because a "
-            "campaign's database is missing.");
+            "None of 10 rates changed, and no kind of failure came or went; single verdicts are not compared, because "
+            "a campaign's database is missing.");
   after["run"]["seed"] = 2;
-  EXPECT_TRUE(headline(after, before, Json::array(), Json::array()).starts_with("No rate changed"));
+  EXPECT_TRUE(headline(after, before, Json::array(), Json::array()).starts_with("None of 10 rates changed"));
 }
 
 Json verdicts_row(const char* known, std::uint64_t least, std::uint64_t most) {
@@ -157,14 +157,14 @@ TEST(Comparison, TheHeadlineOnTheSamePairsIsAboutVerdicts) {
                     unknown = said(Json::array({verdicts_row("unknown", 0, 9)}));
   EXPECT_TRUE(names(bounded.substr(0, bounded.find('\n')), {"at least 2 verdicts", "at most 9"}));
   EXPECT_TRUE(
-      names(bounded.substr(bounded.rfind('\n') + 1), {"lane/0, uniform", "at least 2", "at most 9", "not there"}));
+      names(bounded.substr(bounded.rfind('\n') + 1), {"lane/0, uniform", "at least 2", "at most 9", "missing"}));
   EXPECT_TRUE(names(unknown.substr(0, unknown.find('\n')), {"No change", "not known", "at most 9"}));
   Json many = Json::array();
   for (std::size_t i = 0; i < kMostChanged + 7; ++i) many.push_back(counted);
   EXPECT_TRUE(names(said(many).substr(said(many).rfind('\n') + 1), {"7", "compare.json"}));
 }
 
-// The difference that would not be seen: at it a rate counts as changed, below it not.
+// The smallest difference that would be seen: a rate counts as changed at it, but not below it.
 TEST(Comparison, TheBlindSpotIsThatOfTheTest) {
   const Json before = report_of(1, 50'000, 21);
   Json after = report_of(2, 20'000, 21);
@@ -225,7 +225,7 @@ TEST(Comparison, OtherFusedProductsAreSaid) {
   EXPECT_TRUE(names(after["compare"]["differences"][0], {"3f2a", "9b1c", "1,234 verdicts differ"}));
 }
 
-// The plans of cpu-fma are not recorded, so another compiler is said where both have such lanes.
+// The plans of cpu-fma are not recorded, so the report says that the compiler differs if both have such lanes.
 TEST(Comparison, AnotherCompilerOfContractedLanesIsSaid) {
   Json before = report_of(1, 50'000, 10), after = before;
   before["run"]["build"]["compiler"] = "GNU 12.2.0";
@@ -253,7 +253,7 @@ TEST(Comparison, AKindThatWasToBeExpectedHasGone) {
   EXPECT_TRUE(smaller["compare"]["lost"].empty());
 }
 
-// On the same pairs one signature shows a change, but not if every verdict of its subject is what it was.
+// On the same pairs one signature shows a change, unless every verdict of its subject is unchanged.
 TEST(Comparison, OnTheSamePairsEveryOtherKindIsAChange) {
   const Json few = {kind("lane/rounding/x.h:1/general", 1)}, none = Json::array();
   const Json before = report_of(1, 50'000, 10);

@@ -32,7 +32,7 @@ std::string cost_words(const analysis::Cost& cost) {
 std::string costs_sentence(analysis::Calls calls, const std::string& pairs, const std::string& machine, int passes) {
   return fmt::format(
       "Costs are times per pair on one core of {}: the median of {} passes, with their quartiles, over {}, {}. "
-      "Quartiles further apart than a quarter of the median are marked noisy: {}.",
+      "A cost is marked noisy if its quartiles are further apart than a quarter of the median: {}.",
       machine, passes, pairs,
       calls == analysis::Calls::of_one ? "one pair a call"
                                        : "many pairs a call; graze pareto times calls of one pair too",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One form for all costs that a person reads: nanoseconds per pair with the quartiles of the passes, and one sentence
-// that says of what.
+// Gives all costs that a person reads the same form: nanoseconds per pair with the quartiles of the passes, and one
+// sentence that says what was timed.
 #pragma once
 
 #include <span>
@@ -11,15 +11,15 @@
 
 namespace graze::reports {
 
-// Whether the quartiles are further apart than a quarter of the median: something else ran on the machine, or it
-// changed its clock. Two measurements of one lane may then differ by more than their quartiles.
+// Whether the quartiles are further apart than a quarter of the median, because something else ran on the machine or
+// its clock changed. Two measurements of one lane may then differ by more than their quartiles.
 bool is_noisy(const analysis::Cost& cost);
 
 // "8.5 ns (8.4 to 8.9)", "284 ns (205 to 1,289; noisy)", "0.0204 ns (0.0203 to 0.0204)"
 std::string cost_words(const analysis::Cost& cost);
 
 // "Costs are times per pair on one core of MACHINE, with the quartiles of 9 passes: calls of many pairs, on PAIRS. …"
-// pairs: which, as "the first 1,024 pairs of each stratum".
+// pairs: which pairs, such as "the first 1,024 pairs of each stratum".
 std::string costs_sentence(analysis::Calls calls, const std::string& pairs, const std::string& machine, int passes);
 
 // "A call of one pair takes 41 ns (40 to 43) in mine/f32/cpu, 73 ns (72 to 75) in exact/f32/cpu: median and
@@ -27,7 +27,7 @@ std::string costs_sentence(analysis::Calls calls, const std::string& pairs, cons
 std::string one_call_sentence(std::span<const std::string> lanes, std::span<const analysis::Cost> costs,
                               const std::string& pairs, const std::string& machine, int passes);
 
-// "Noisy measurements: A, B; …", empty for none. For tables, which show the median alone.
+// "Noisy measurements: A, B; …"; empty if none is noisy. For tables, which show only the median.
 std::string noisy_sentence(std::span<const std::string> lanes, std::span<const analysis::Cost> costs);
 
 }  // namespace graze::reports

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/text.h"
 #include "fuzz/campaign/lane_costs.h"
 #include "fuzz/campaign/result_files.h"
 #include "reports/cost_words.h"
@@ -58,7 +59,7 @@ std::optional<Costs> read_costs(const std::filesystem::path& directory, const Ca
 }
 
 Json to_json(const Costs& costs, const CampaignCounts& counts, const Json& kinds) {
-  const auto rounded = [](double value) { return std::stod(fmt::format("{:.4g}", value)); };
+  const auto rounded = [](double value) { return *parse_float64(fmt::format("{:.4g}", value)); };
   Json rows = Json::array();
   const auto add = [&](std::size_t l, const Json& group, const std::vector<std::size_t>& strata) {
     if (const std::optional<Cost> cost = costs.of(l, strata)) {

@@ -26,14 +26,14 @@ struct Costs {
   std::optional<Cost> of(std::size_t lane, const std::vector<std::size_t>& strata) const;
 };
 
-// Returns nothing if the campaign has no timings of its lanes.   Throws: as costs_of.
+// Returns nothing if the campaign has no timings of its lanes.   Throws: like costs_of.
 std::optional<Costs> read_costs(const std::filesystem::path& directory, const CampaignCounts& counts);
 
-// Throws: std::runtime_error for impossible costs; Json::exception for another shape.
+// Throws: std::runtime_error for impossible costs; Json::exception for JSON of another shape.
 std::optional<Costs> costs_of(const nlohmann::ordered_json& runs, const CampaignCounts& counts);
 
 // The contents of costs.json: {"machine", "passes", "rows": [{"lane", "group", "pairs", "low", "middle", "high"}],
-// "answer"}, as reports/web/src/report.ts describes it. A null group means all strata together. kinds: as for answer.
+// "answer"}, as reports/web/src/report.ts describes it. A null group means all strata together. kinds: as in answer().
 nlohmann::ordered_json to_json(const Costs& costs, const CampaignCounts& counts, const nlohmann::ordered_json& kinds);
 
 }  // namespace graze::reports

@@ -110,8 +110,9 @@ CampaignCounts counts_of(const Json& summary) {
   const auto doubles =
       std::count_if(counts.strata.begin(), counts.strata.end(), std::mem_fn(&StratumCounts::in_doubles));
   for (ReportLane& lane : counts.lanes)
-    lane.exact = lane.exact && (doubles == 0 || lane.row->scalar == Scalar::f64);  // the other decides what is stored
-  // Where a campaign has both, strata of doubles have groups of their own.
+    // On doubles exact/f32 decides the pair that float32 stores.
+    lane.exact = lane.exact && (doubles == 0 || lane.row->scalar == Scalar::f64);
+  // Strata of doubles have groups of their own if the campaign also has strata of float32.
   for (const bool of_doubles : {false, true}) {
     const bool apart = of_doubles && doubles != std::ssize(counts.strata);
     for (const strata::GroupInfo& info : strata::kGroups) {

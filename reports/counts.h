@@ -24,7 +24,7 @@ struct ReportLane {
 
 struct WrongCounts {
   std::uint64_t pairs = 0;
-  std::vector<std::uint64_t> wrong, differs_from_cpu;  // by lane: verdicts that are wrong, and that differ
+  std::vector<std::uint64_t> wrong, differs_from_cpu;  // by lane: wrong verdicts, and those that differ from cpu's
 };
 
 struct StratumCounts {

@@ -80,7 +80,7 @@ std::string rates_csv(const Json& report) {
   return table.text;
 }
 
-// A row for each lane, stratum and bucket. differs: of verdicts that differ from the cpu lane, where one ran.
+// A row for each lane, stratum and bucket. differs: count verdicts that differ from the cpu lane, if one ran.
 std::string margins_csv(const CampaignCounts& counts, bool differs) {
   Table table("lane,stratum,side,exponent,count,of,share,low,high");
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {

@@ -96,7 +96,7 @@ Json extremes_json(const DiscrepancyCounts& of, Axis axis) {
   return places;
 }
 
-// axis: of a stratum; nothing for the sum of strata, which vary different quantities.
+// axis: the stratum's; nothing for a sum of strata, because strata vary different quantities.
 Json counts_json(const DiscrepancyCounts& of, const std::vector<Question>& questions, std::optional<Axis> axis) {
   static const std::vector<Field> kQuestion = question_fields(), kValue = value_fields();
   Json json = object_of(kPairFields, of, 0);
@@ -158,7 +158,7 @@ std::uint64_t sum_of(const DiscrepancyCounts& of, int question, std::size_t valu
   return sum;
 }
 
-// The lines sorted by the number of verdicts that they change, then by that of values.
+// The lines sorted by how many verdicts they change, then by how many values.
 std::vector<const analysis::FusedLine*> by_weight(const analysis::Origins& origins) {
   std::vector<const analysis::FusedLine*> lines;
   for (const analysis::FusedLine& line : origins.lines) lines.push_back(&line);
@@ -181,9 +181,9 @@ std::string origins_table(const analysis::Origins& origins, const Screen& screen
     if (table.rows() == kMostLines) break;
   }
   return wrapped(
-             fmt::format("Contraction changes the verdict on {} of {} pairs that were examined. Source lines whose "
-                         "products are fused, by their effect (values, verdicts alone: those that change if only this "
-                         "line is fused; verdicts fixed: changed verdicts that return if only this line is not fused):",
+             fmt::format("Contraction changes the verdict on {} of {} examined pairs. Source lines whose products are "
+                         "fused, by effect (values, verdicts alone: how many change if only this line is fused; "
+                         "verdicts fixed: how many changed verdicts return if only this line is not fused):",
                          grouped(origins.verdicts), grouped(origins.pairs)),
              screen.columns) +
          table.text(screen);
@@ -253,9 +253,9 @@ std::string discrepancy_tables(const DiscrepancyResults& results, const Screen& 
                  Cell(grouped(of(verdict)), of(verdict) > 0),
                  of(sign) == 0 ? "-" : fmt::format("{:.3g}", largest(sum, q, band_maxima::in_bounds))});
     }
-    text += wrapped(fmt::format("{} against {}{}", lanes.first->id, lanes.second->id,
-                                any ? ":" : ": no value of any question differs in any bit."),
-                    screen.columns);
+    text += wrapped(
+        fmt::format("{} against {}{}", lanes.first->id, lanes.second->id, any ? ":" : ": no bit of any value differs."),
+        screen.columns);
     if (any) text += table.text(screen);
     if (origins[l]) text += origins_table(*origins[l], screen);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presents how the values of two lanes differ: sentences, tables, discrepancy.json and discrepancy.csv.
+// Presents how the values of two lanes differ, as sentences, tables, discrepancy.json and discrepancy.csv.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace graze::reports {
 
-// The findings of `graze discrepancy`: counts, and, if known, where the differences of each comparison start.
+// The findings of `graze discrepancy`: counts, and where the differences of each comparison start, if that is known.
 struct DiscrepancyResults {
   const analysis::DiscrepancySpec& spec;
   analysis::Discrepancies counts;
@@ -28,13 +28,12 @@ std::string comparisons_table(const DiscrepancyResults& results, const Screen& s
 // {"lanes": [{"first", "second", "strata": {stratum: counts}}]}; docs/formats.md describes the counts.
 nlohmann::ordered_json discrepancy_json(const DiscrepancyResults& results);
 
-// Reads discrepancy.json; null if there is none.   Throws: corpus::FormatError, naming the file, if its counts cannot
-// be.
+// Reads discrepancy.json; null if there is none.   Throws: corpus::FormatError, which names the file, if its counts are
+// impossible.
 nlohmann::ordered_json read_discrepancy(const std::filesystem::path& file);
 
-// Lists the counts that differ between two discrepancy.json of the same pairs, for example of two drivers, toolkits or
-// GPUs.
-// Names lanes and strata that only one of them has.
+// Lists the counts that differ between two discrepancy.json of the same pairs, such as from two drivers, toolkits or
+// GPUs. Names lanes and strata that only one of them has.
 std::string discrepancy_changes(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after,
                                 const Screen& screen);
 

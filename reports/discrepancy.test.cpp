@@ -119,12 +119,12 @@ TEST_F(DiscrepancyResult, TheAnswersBoundsHold) {
   }
   EXPECT_GE(std::stod(found[1]), widest);
   EXPECT_LT(std::stod(found[1]), widest * 1.2);
-  EXPECT_GE(std::stod(found[2]), analysis::upper_bound(0, 9000));  // comparisons of one pair depend on each other
+  EXPECT_GE(std::stod(found[2]), analysis::upper_bound(0, 9000));  // comparisons on one pair are not independent
   EXPECT_LT(std::stod(found[2]), analysis::upper_bound(0, 9000) * 1.2);
   EXPECT_NE(answer[4].find("-fmad=false mends it"), std::string::npos) << answer[4];
 }
 
-// Each point of the pictures of extremes has the counts of its place.
+// Each point in the pictures of extremes has the counts of its place.
 TEST_F(DiscrepancyResult, ThePageDrawsTheExtremes) {
   const std::string page = discrepancy_page(json_);
   int drawn = 0;
@@ -142,7 +142,7 @@ TEST_F(DiscrepancyResult, ThePageDrawsTheExtremes) {
   EXPECT_GT(drawn, 100);
 }
 
-// Rows are matched by their names. Every number counts, and what only one result has is told.
+// Rows are matched by their names. Every number is compared, and numbers that only one result has are reported.
 TEST_F(DiscrepancyResult, EveryNumberIsCompared) {
   const Screen wide{.columns = 200};
   const std::string same = discrepancy_changes(json_, json_, wide);

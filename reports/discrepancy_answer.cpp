@@ -92,16 +92,16 @@ std::string start_sentence(const std::vector<const Json*>& lanes) {
       }
     }
   }
-  if (all == 0 && traced) return "No difference starts: on the pairs that were traced, contraction changes no value.";
+  if (all == 0 && traced) return "Contraction changes no value on the traced pairs.";
   if (all == 0) return "Where differences start is not known: no pair of lanes has contractions that can be traced.";
   const auto top =
       std::max_element(starts.begin(), starts.end(), [](const auto& l, const auto& r) { return l.second < r.second; });
-  return fmt::format("{} of the {} differing values that were traced first differ at {}.{}",
+  return fmt::format("{} of the {} traced values that differ start to differ at {}.{}",
                      rate_words(part_of(top->second, all)), grouped(all), top->first,
                      changed == 0
                          ? " No traced verdict changes."
-                         : fmt::format(" Not fusing the products of {} alone gives back {} of its verdicts that "
-                                       "contraction changes, the most of all lines.",
+                         : fmt::format(" Leaving only the products of {} unfused restores {} of the verdicts that "
+                                       "contraction changes, more than for any other line.",
                                        top_line, grouped(fixed)));
 }
 
@@ -113,15 +113,15 @@ std::string nearer_sentence(const std::vector<const Json*>& lanes) {
     first += at("first"), second += at("second"), equal += at("equal"), unknown += at("unknown");
   }
   const std::uint64_t all = first + second + equal + unknown;
-  if (all == 0) return "No lane is nearer to the exact values: none differ.";
+  if (all == 0) return "No value differs, so no lane is nearer to the exact values.";
   return fmt::format(
-      "Of {} values that differ, the second lane's is nearer to the exact one in {}, the first lane's in {}; {} are "
-      "equally near, and for {} the certified bounds do not tell.",
+      "Of {} differing values, the second lane's is nearer to the exact one in {}, the first lane's in {}; {} are "
+      "equally near, and for {} the certified bounds cannot decide.",
       grouped(all), rate_words(part_of(second, all)), rate_words(part_of(first, all)), grouped(equal),
       grouped(unknown));
 }
 
-// A pair of triangles has up to dozens of comparisons, which are not independent. So the bound is one of pairs.
+// A pair of triangles has up to dozens of comparisons, which are not independent. So the bound counts pairs.
 std::string band_sentence(const std::vector<const Json*>& lanes, std::uint64_t pairs) {
   double widest = 0;
   std::uint64_t asked = 0, beyond_range = 0;
@@ -139,12 +139,11 @@ std::string band_sentence(const std::vector<const Json*>& lanes, std::uint64_t p
   }
   if (widest == 0) return "No sign differs.";
   return fmt::format(
-      "A sign differs only where both sizes are at most {} bounds of the value's rounding error ({}). In {} "
-      "comparisons on {} none was farther from zero{}. At 95 % confidence, such a comparison occurs on fewer than {} "
-      "of "
-      "the pairs.",
+      "Signs differ only where both values are at most {} bounds of their rounding error away from zero ({}). In {} "
+      "comparisons on {} none with differing signs was farther away{}. At 95 % confidence, one occurs on fewer than "
+      "{} of the pairs.",
       rounded_up(widest, 2), where, grouped(asked), counted(pairs, "pair"),
-      beyond_range == 0 ? "" : fmt::format(", but for {} where the error has no bound", grouped(beyond_range)),
+      beyond_range == 0 ? "" : fmt::format(", except {} whose error has no bound", grouped(beyond_range)),
       rounded_up(analysis::upper_bound(0, pairs), 2));
 }
 
@@ -169,7 +168,7 @@ std::string mending_sentence(const Json& json) {
                        counted(lanes, "comparison"), grouped(most), counted(pairs, "pair"));
   return fmt::format(
       "-fmad=false mends it: cpu and cuda-nofma have the same bits in all {} values on {} of triangles ({}). `graze "
-      "bench` and docs/measurements.md have its cost, and that of the exact lane.",
+      "bench` and docs/measurements.md have its cost and the cost of the exact lane.",
       grouped(values), counted(pairs, "pair"), counted(lanes, "comparison"));
 }
 

@@ -8,9 +8,9 @@
 
 namespace graze::reports {
 
-// What share of values and of verdicts differs, where that starts, which lane is nearer to the exact values, how
-// near to zero it matters, and the remedy. Also names open questions. Then a sentence for each comparison of verdicts
-// alone. json: discrepancy.json.
+// What share of values and of verdicts differs, where differences start, which lane is nearer to the exact values, how
+// near to zero signs differ, and the remedy. Also names open questions. Then a sentence for each comparison of verdicts
+// only. json: discrepancy.json.
 std::vector<std::string> discrepancy_answer(const nlohmann::ordered_json& json);
 
 }  // namespace graze::reports

@@ -15,7 +15,7 @@ namespace graze::reports {
 namespace {
 using Json = nlohmann::ordered_json;
 
-// All numbers below the value by their places, in which rows of lists stand by their names.
+// Collects all numbers in the value by their paths; rows of lists are addressed by name.
 void add_numbers(const Json& of, const std::string& place, std::map<std::string, Json>& to) {
   if (of.is_number()) {
     to.emplace(place, of);
@@ -41,7 +41,7 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
   const auto lanes_of = [](const Json& of) { return text_at(of, "first") + " against " + text_at(of, "second"); };
   std::string text;
   for (const std::string& sentence : code_differences(before, after)) text += wrapped(sentence, screen.columns);
-  std::size_t differ = 0, same = 0, alone = 0;  // alone: numbers that one result has and the other has not
+  std::size_t differ = 0, same = 0, alone = 0;  // alone: numbers that only one result has
   TextTable table({{"lanes", Align::left}, {"question", Align::left}, {"count", Align::left}, {"before"}, {"after"}});
   // Calls with_both(old, now) for each comparison that is in both results.
   const auto match = [&](const char* kind, const auto& with_both) {
@@ -117,7 +117,7 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
   if (table.rows() > 0) text += table.text(screen);
   std::string counts = fmt::format("{} numbers differ, {} are the same", grouped(differ), grouped(same));
   if (alone > 0) counts += fmt::format(", and {} are in one result alone", grouped(alone));
-  if (differ > table.rows()) counts += fmt::format("; the table shows the {} counts of totals", grouped(table.rows()));
+  if (differ > table.rows()) counts += fmt::format("; the table shows the {} of them in totals", grouped(table.rows()));
   return text + wrapped(counts + '.', screen.columns);
 }
 

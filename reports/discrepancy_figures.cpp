@@ -16,9 +16,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kFewBars = 6;  // which have room for their counts
+constexpr std::size_t kFewBars = 6;  // so many bars have room for their counts
 
-// A bar chart of counts on a logarithmic scale, one series up and, if given, one down.
+// A bar chart of counts on a logarithmic scale: one series upwards and, if given, one downwards.
 std::string mirrored_bars(const std::string& title, const std::vector<std::string>& labels,
                           const std::vector<std::uint64_t>& up_counts, const std::vector<std::uint64_t>& down_counts,
                           const std::string& up_name, const std::string& down_name) {
@@ -132,11 +132,11 @@ struct ShareLine {
 constexpr ShareLine kShareLines[] = {
     {"differs", "a value differs"}, {"sign", "a sign"}, {"outcome", "a comparison"}, {"verdict", "the verdict"}};
 
-// Shares of pairs by their place on an axis, on a logarithmic scale. places: counts by log2 of the place's lower end.
+// Shares of pairs by their place on an axis, on a logarithmic scale. places: counts by log2 of each place's lower end.
 std::string extremes_figure(const std::string& title, const std::string& unit,
                             const std::map<int, const Json*>& places) {
   constexpr double kLeft = 64, kRight = 880, kTop = 70, kBottom = 350;
-  constexpr int kLeast = -6;  // powers of ten; smaller shares and zero are drawn there
+  constexpr int kLeast = -6;  // power of ten at which zero and smaller shares are drawn
   const int low = places.begin()->first, high = places.rbegin()->first;
   const auto x_of = [&](int power) { return kLeft + (kRight - kLeft) * (power - low) / std::max(high - low, 1); };
   const auto y_of = [&](double share) {

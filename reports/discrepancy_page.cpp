@@ -114,8 +114,8 @@ std::string lines_table(const Json& origins) {
            std::pair(number_at(*r, "verdicts_fixed"), number_at(*r, "values"));
   });
   std::string text = fmt::format(
-      "<p>Contraction changes {} verdicts of {} traced pairs. The source lines whose products are fused, by what they "
-      "decide:</p>\n<div class=\"wide\"><table><tr><th>line</th><th>source</th><th>within</th><th>values that it "
+      "<p>Contraction changes the verdict on {} of {} traced pairs. The source lines whose products are fused, by "
+      "their effect:</p>\n<div class=\"wide\"><table><tr><th>line</th><th>source</th><th>within</th><th>values that it "
       "changes "
       "alone</th><th>verdicts, alone</th><th>verdicts that return without it</th><th>simplest pair</th></tr>\n",
       grouped(number_at(origins, "verdicts")), grouped(number_at(origins, "pairs")));
@@ -128,7 +128,7 @@ std::string lines_table(const Json& origins) {
   }
   text +=
       "</table></div>\n<p>A value starts to differ by one rounding at some line. The table shows how far it has moved "
-      "when it is compared; it moves further where terms cancel:</p>\n<div "
+      "by the time it is compared; cancellation moves it further:</p>\n<div "
       "class=\"wide\"><table><tr><th>value</th><th>first line, "
       "most often</th><th>median</th><th>99 %</th><th>largest</th></tr>\n";
   for (const Json& start : origins.at("starts")) {
@@ -170,7 +170,7 @@ std::string comparison_section(const Json& of, bool open) {
   const Json& total = of.at("total");
   const std::string title = title_of(of);
   if (number_at(total, "differs") == 0) {
-    return fmt::format("<p><b>{}</b>: the same bits in all {} values on {} pairs; {} verdicts differ.</p>\n",
+    return fmt::format("<p><b>{}</b>: all {} values on {} pairs have the same bits; {} verdicts differ.</p>\n",
                        html(title), grouped(sum_at(total, "compared")), grouped(number_at(total, "pairs")),
                        grouped(number_at(total, "verdict")));
   }

@@ -11,7 +11,7 @@ using nlohmann::ordered_json;
 
 std::uint64_t number_at(const ordered_json& json, const std::string& key) {
   const ordered_json& number = json.at(key);
-  if (!number.is_number_unsigned()) throw std::runtime_error("expected a count as " + key + ", found " + number.dump());
+  if (!number.is_number_unsigned()) throw std::runtime_error("expected a count in " + key + ", found " + number.dump());
   return number.get<std::uint64_t>();
 }
 

@@ -14,23 +14,23 @@
 
 namespace graze::reports {
 
-// Throws: nlohmann::json::exception if there is no such key; std::runtime_error if it is no count.
+// Throws: nlohmann::json::exception if there is no such key; std::runtime_error if its value is not a count.
 std::uint64_t number_at(const nlohmann::ordered_json& json, const std::string& key);
 inline std::string text_at(const nlohmann::ordered_json& json, const char* key) {
   return json.at(key).get<std::string>();
 }
 
-// part / whole; 0 of nothing.
+// part / whole; 0 if whole is 0.
 double part_of(std::uint64_t part, std::uint64_t whole);
 
-// The questions of an algorithm, as they are listed: name, site, degree and values.
+// The questions of an algorithm as discrepancy.json lists them: name, site, degree and values.
 nlohmann::ordered_json questions_json(const std::vector<Question>& questions);
 
-// The name of a bucket by its exponent, and a histogram with the buckets that are not zero.
+// The name of the bucket with an exponent, and a histogram of the buckets that are not zero.
 std::string octave(int k);
 nlohmann::ordered_json octaves_json(std::span<const std::uint64_t> counts);
 
-// The exponent of a bucket's name, "2^-3".
+// The exponent in a bucket's name such as "2^-3".
 inline int power_of(const std::string& bucket) { return std::stoi(bucket.substr(2)); }
 
 // Counts by the exponent of their bucket.
@@ -46,7 +46,7 @@ Octaves octaves_at(const nlohmann::ordered_json& histogram);
 std::map<std::string, std::uint64_t> sum_by_bucket(const nlohmann::ordered_json& counts, const char* histogram);
 std::uint64_t sum_at(const nlohmann::ordered_json& counts, const char* key);
 
-// The comparisons in which some value differs.
+// The pairs of lanes in which some value differs.
 std::vector<const nlohmann::ordered_json*> differing_lanes(const nlohmann::ordered_json& discrepancy);
 
 }  // namespace graze::reports

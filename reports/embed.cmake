@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Writes OUT: rows {"path", R"graze(text)graze"} of the files of SOURCE from which snippets are made.
+# Writes OUT: a row {"path", R"graze(text)graze"} for each file in SOURCE from which snippets are made.
 file(GLOB files RELATIVE ${SOURCE} ${SOURCE}/core/*.h ${SOURCE}/core/lanes/*.h ${SOURCE}/core/exact/relation.h ${SOURCE}/core/exact/host_device.h ${SOURCE}/core/algorithms/*.h ${SOURCE}/reports/snippets/*.in)
 set(rows "")
 foreach(file ${files})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How right a lane stays where pairs are extreme, in words and in ratios: of a campaign's counts and of `graze pareto`.
+// How far a lane stays right on extreme pairs, in words and ratios, for a campaign's counts and for `graze pareto`.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -19,8 +19,8 @@ inline constexpr const char* kAsRightMeans =
 std::string right_words(std::span<const analysis::ErrorsAt> points, int step);
 
 // Adds to a row of a report's extremes what follows from its cells: "origin", the exponent of the cell to compare with;
-// "says", the words above; and for each cell with errors its "times": the ratio of its share and the origin's, and the
-// lower and the upper bound of the ratio. A value is null where the origin has no errors to divide by.
+// "says", the words above; and for each cell with errors "times": the ratio of its share to the origin's, with a lower
+// and an upper bound. A value is null if the origin has no errors to divide by.
 void add_right_range(nlohmann::ordered_json& row);
 
 }  // namespace graze::reports

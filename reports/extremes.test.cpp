@@ -16,7 +16,7 @@ TEST(RightWords, NameTheEndsAndWhereTheLaneErrsMore) {
   const Points points{{-8, 3'000, 10'000}, {-4, 1'000, 10'000}, {0, 1'000, 10'000},
                       {4, 1'000, 10'000},  {8, 2'000, 10'000},  {12, 3'000, 10'000}};
   EXPECT_EQ(right_words(points, 0), "as right as at 1 (errs on 10 %) from 2^-4 to 2^4; errs more at 2^-8 and 2^12");
-  // A point of a campaign stands for four exponents, so the last right one ends where the next one begins.
+  // A point of a campaign stands for four exponents, so the right range ends where the next point begins.
   EXPECT_EQ(right_words(points, 4), "as right as at 1 (errs on 10 %) from 2^-4 to 2^8; errs more at 2^-8 and 2^12");
   EXPECT_EQ(right_words(std::span(points).subspan(2), 0),
             "as right as at 1 (errs on 10 %) up to 2^4; errs more at 2^12");
@@ -55,8 +55,8 @@ TEST(RightWords, AnOriginWithoutErrorsHasNoRatioAbove) {
   EXPECT_GT(row["cells"][1]["times"][2], 2.3);
 }
 
-// What a campaign says of its extremes is true of other pairs of the same strata: as right at the ends, less right
-// where it says so.
+// What a campaign says about its extremes also holds for other pairs of the same strata: as right at the ends, less
+// often right where it says so.
 TEST_F(CampaignTest, ExtremesAreTrueOfFreshPairs) {
   const fuzz::SelectedLanes under_test =
       lanes({"*/f32/cpu", "interval_overlap/f64/cpu", "guigue_devillers_2003/f64/cpu"});

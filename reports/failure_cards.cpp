@@ -56,14 +56,9 @@ Json signature_row(const CampaignCounts& counts, const Json& found) {
 
 double number_in(const std::filesystem::path& file, const corpus::Entry& entry, std::string_view key) {
   const std::string text = corpus::text_of(entry, key);
-  std::size_t used = 0;
-  try {
-    const double value = std::stod(text, &used);
-    if (used == text.size()) return value;
-  } catch (const std::logic_error&) {
-  }
+  if (const std::optional<double> value = parse_float64(text)) return *value;
   throw corpus::FormatError(
-      fmt::format("{}:{}: expected a number as {}, found '{}'", file.string(), entry.line, key, text));
+      fmt::format("{}:{}: expected a number in {}, found '{}'", file.string(), entry.line, key, text));
 }
 
 Verdict verdict_of(std::string_view word) { return verdict_named(word).value_or(Verdict::declined); }
@@ -79,7 +74,7 @@ Json verdicts_of(const CampaignCounts& counts, Verdict truth, const Json& stored
   return rows;
 }
 
-// spec: the campaign's, which records how foreign code is opened.
+// spec: the campaign's spec, which records how foreign code is opened.
 Json commands_of(const corpus::Entry& entry, const std::string& subject, const std::string& from, const Json& spec) {
   std::string foreign;
   for (const Json& row : spec.value("subjects", Json::array())) {
@@ -140,12 +135,12 @@ Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const
   return rows;
 }
 
-// The number of cards that lack something.
+// How many cards lack something.
 struct Lacking {
   std::size_t minimised = 0, mapped = 0, room = 0;
 };
 
-// The maps stored with a case if there is room for them; otherwise null.
+// The maps stored with a case; null without maps or room for them.
 Json maps_of(const std::filesystem::path& case_file, const AnyPair& pair, const std::vector<std::string>& lanes,
              std::size_t& room, Lacking& lacking) {
   const std::filesystem::path file = std::filesystem::path(case_file).replace_extension(".maps.json");
@@ -219,8 +214,8 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
 void say_what_is_missing(Json& missing, const Lacking& lacking, std::size_t cards) {
   if (lacking.minimised != 0) {
     missing.push_back(
-        fmt::format("{} of {} cards show a pair as it was found: `graze minimize DIR` makes it simple, and "
-                    "`graze report DIR` shows that.",
+        fmt::format("{} of {} cards show a pair as it was found: `graze minimize DIR` makes it simpler, and then "
+                    "`graze report DIR` shows the simpler one.",
                     lacking.minimised, cards));
   }
   if (lacking.mapped != 0) {
@@ -228,8 +223,9 @@ void say_what_is_missing(Json& missing, const Lacking& lacking, std::size_t card
         fmt::format("{} of {} cards have no ulp map: `graze minimize DIR` stores it.", lacking.mapped, cards));
   }
   if (lacking.room != 0) {
-    missing.push_back(fmt::format("{} of {} cards show no ulp map, for want of room in one file; `graze map` draws it.",
-                                  lacking.room, cards));
+    missing.push_back(
+        fmt::format("{} of {} cards show no ulp map, because the file would be too large; `graze map` draws it.",
+                    lacking.room, cards));
   }
 }
 
@@ -251,7 +247,7 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
                     const CampaignCounts& counts) {
   for (const Json& found : summary.value("executor_mismatches", Json::array())) {
     report["missing"].push_back(
-        fmt::format("On {} pairs {} gave another verdict on the device than by its twin: one of the two is wrong.",
+        fmt::format("On {} pairs {} gave different verdicts on the device and by its twin: one of the two is wrong.",
                     found.at("count").dump(), found.at("lane").get<std::string>()));
   }
   const Json kinds = fuzz::read_kinds(directory);
@@ -261,8 +257,8 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
   const std::size_t without = kinds.is_null() ? 0 : fuzz::signatures_without_kind(summary, kinds);
   if (without > 0)
     report["missing"].push_back(
-        fmt::format("{} of {} signatures belong to no kind of failure: their lanes were not looked at, run on a device "
-                    "alone, or did not fail again.",
+        fmt::format("{} of {} signatures belong to no kind of failure: their lanes were not examined, run only on a "
+                    "device, or did not fail again.",
                     without, summary["signatures"].size()));
   Json rows = Json::array(), cards = Json::array();
   std::size_t room = kMostMapBytes;
@@ -274,7 +270,7 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
     cards.push_back(card_of(directory, counts, summary.at("spec"), kind, room, lacking));
   }
   if (kinds.size() > cards.size())
-    report["missing"].push_back(fmt::format("Cards show the commonest {} of {} kinds; `graze failures` lists all.",
+    report["missing"].push_back(fmt::format("Cards show the most common {} of {} kinds; `graze failures` lists all.",
                                             cards.size(), kinds.size()));
   const std::size_t count = summary.at("signatures").size();
   for (std::size_t place = 0; place < std::min(count, kMostSignatures); ++place) {
@@ -283,8 +279,8 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
     rows.back()["cards"] = cards_of[place];
   }
   if (rows.size() < count) {
-    report["missing"].push_back(
-        fmt::format("The table shows the commonest {} of {} signatures; signatures.csv has all.", rows.size(), count));
+    report["missing"].push_back(fmt::format(
+        "The table shows the most common {} of {} signatures; signatures.csv has all.", rows.size(), count));
   }
   say_what_is_missing(report["missing"], lacking, cards.size());
   report["sources"] = Json::object();

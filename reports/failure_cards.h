@@ -12,14 +12,14 @@
 
 namespace graze::reports {
 
-// Limits of the page's size: rows in its table, and bytes of all its maps.
+// Limits on the size of the page: rows in its table, and bytes of all its maps.
 inline constexpr std::size_t kMostSignatures = 5'000;
 inline constexpr std::size_t kMostMapBytes = 7 << 18;
 
 // Placeholder in a card's program for the source of its algorithm, which the report stores once, in `sources`.
 inline constexpr std::string_view kSourceMark = "@SOURCE@";
 
-// The share, rounded as in a signature's row.
+// The share count / of, rounded as in a signature's row.
 double rounded_share(std::uint64_t count, std::uint64_t of);
 
 // Returns one row for each signature, the most frequent first.

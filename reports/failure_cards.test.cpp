@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cards of a small campaign: statements about kind, pair and lanes agree with each other and are true.
+// The cards of a small campaign: what they say about kind, pair and lanes is consistent and true.
 #include "reports/failure_cards.h"
 
 #include <fmt/format.h>
@@ -183,7 +183,7 @@ TEST_F(FailureCards, HaveTheirProgramsAndTheStoredMaps) {
       EXPECT_TRUE(contains(error.what(), "graze minimize")) << error.what();
     }
   }
-  // Sealed again, it must still be possible: a lane that did not run is none.
+  // Even if it is sealed again, its contents must be possible: a lane that did not run is refused.
   Json other = Json::parse(maps);
   other.erase("checksum");
   other["panels"].push_back({{"name", "never_ran/f32/cpu"}, {"shows", "right everywhere"}, {"png", ""}});

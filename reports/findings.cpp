@@ -42,8 +42,8 @@ std::string contraction(const CampaignCounts& counts, const LaneIndices& lanes) 
   if (all.empty()) {
     const bool others = std::any_of(lanes.begin(), lanes.end(),
                                     [&](std::size_t l) { return !variant_of_name(counts.lanes[l].name.variant); });
-    return others ? "Of the lanes that are not a toolchain's, none with contraction ran beside the same lane without "
-                    "it; the map of the toolchains shows where their verdicts differ."
+    return others ? "Apart from toolchains, no lane with contraction ran beside the same lane without it; the map of "
+                    "the toolchains shows where their verdicts differ."
                   : "No lane with contraction ran beside the same lane without it, so the campaign does not show what "
                     "contraction changes.";
   }
@@ -72,17 +72,16 @@ std::string contraction(const CampaignCounts& counts, const LaneIndices& lanes) 
     return fmt::format("Contraction changes most in {}: beside {} {} of {} pairs; {}{}.", counts.lanes[most->with].id,
                        counts.lanes[most->without].id, from_to, grouped(total.pairs), how_many, uncounted);
   }
-  return fmt::format("Contraction changes most in {}: another verdict than {} on {}, and {}; {}{}.",
+  return fmt::format("Contraction changes most in {}: a different verdict from {} on {}, and {}; {}{}.",
                      counts.lanes[most->with].id, counts.lanes[most->without].id,
                      with_interval(share_of(*most->differs, total.pairs), " pairs"), from_to, how_many, uncounted);
 }
 
 // Measured on 20,000,000 pairs of each reference.
 constexpr const char* kRateOf2012 =
-    " The thesis saw about 1 in 1,000. In its own algorithm contraction explains 1 in 3,270. The rest is open: built "
-    "for "
-    "the x87, with the reference of the thesis's special cases, it differs on 1 in 1,300. The commands are in "
-    "docs/measurements.md.";
+    " The thesis saw about 1 in 1,000. In its own algorithm contraction explains 1 in 3,270. The rest is unexplained: "
+    "built for the x87, with the reference triangle of the thesis's special cases, it differs on 1 in 1,300. The "
+    "commands are in docs/measurements.md.";
 
 std::string thesis(const CampaignCounts& counts, const LaneIndices& lanes) {
   const auto drawn = [&](const char* id) {
@@ -132,7 +131,7 @@ std::string thesis(const CampaignCounts& counts, const LaneIndices& lanes) {
       !ran_without ? ""
       : without_contraction == 0
           ? "; without contraction on none"
-          : fmt::format("; without contraction {} verdicts differ still", grouped(without_contraction)),
+          : fmt::format("; without contraction {} verdicts still differ", grouped(without_contraction)),
       in_float32 && own >= 0 && counts.lanes[own_place].cpu >= 0 ? kRateOf2012 : "");
 }
 
@@ -217,7 +216,7 @@ std::vector<std::string> answer(const CampaignCounts& counts, const Costs* costs
   add(lane_to_use(counts, costs));
   const bool compares =
       std::any_of(lanes.begin(), lanes.end(), [&](std::size_t l) { return !same_family(counts, l, lanes.front()); });
-  if (ours || compares) {  // of one own code, the first sentences say this already
+  if (ours || compares) {  // for one own code alone, the first sentences say this already
     add(lane_to_avoid(counts, costs));
     add(least_wrong_lane(counts, costs));
   }

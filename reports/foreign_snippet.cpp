@@ -30,7 +30,7 @@ std::string cpp_string(std::string_view text) {
   return result + '"';
 }
 
-// Calls the description behind the pointer `subject`, which has either a function for one pair or one for blocks.
+// Calls the code through the graze_subject to which `subject` points; that has a function for one pair or for blocks.
 std::string by_description(std::string_view real, std::string_view scalar, std::string_view subject) {
   return fmt::format(R"(static int decide(const {0}* a, const {0}* b) {{
   const struct graze_subject* subject = {2};
@@ -73,7 +73,7 @@ std::string calling(std::string_view real, std::string_view function) {
                      function);
 }
 
-// Whether the C function returns bool; its caller must declare it so.
+// Whether the C function returns bool; then its caller must declare it so.
 bool returns_bool(const std::filesystem::path& source, const std::string& function) {
   std::string why;
   const std::string text = plain_file(source, why).value_or("");
@@ -96,8 +96,8 @@ std::string hex_line(const AnyPair& pair) {
   return line;
 }
 
-// For a CUDA lane in a test that also runs without a device: only Graze can replay the lane there. For a toolchain's
-// lane Graze compiles the source as the toolchain does.
+// A call through the graze command. A CUDA lane needs it because the test also runs without a device, where only Graze
+// can replay the lane; a toolchain's lane needs it because Graze compiles the source with the toolchain.
 std::string by_graze(const Lane& lane, const AnyPair& pair, const subjects::Opened& opened, std::string_view real) {
   std::string command = fmt::format("echo '{}{}' | graze check - --json --lanes {}", hex_line(pair),
                                     pair.floats ? "" : " | coordinates=f64", lane.id);
@@ -120,7 +120,7 @@ std::string by_graze(const Lane& lane, const AnyPair& pair, const subjects::Open
   const std::string lane = {2};
   const std::size_t at = said.find(lane);
   if (at == said.npos) {{
-    std::puts("expected an answer of graze, which has to be on the PATH, found none");
+    std::puts("expected an answer from graze, which must be on the PATH, found none");
     std::exit(1);
   }}
   const std::string verdict = said.substr(at + lane.size());
@@ -129,10 +129,10 @@ std::string by_graze(const Lane& lane, const AnyPair& pair, const subjects::Open
 )",
                      real, cpp_string(command), cpp_string('"' + lane.id + "\":\""),
                      backends::language_of(lane) == backends::Language::cuda
-                         ? "// Graze builds the source as it is now, and runs it on a CUDA device, or replays it "
-                           "on the CPU if there is none. The\n// field \"cuda\" of its answer says which of the "
-                           "two, and how well the replay is verified.\n"
-                         : "// Graze builds the source as it is now, by the toolchain of the lane.\n");
+                         ? "// Graze builds the current source and runs it on a CUDA device, or replays it on the CPU "
+                           "if there is no device. The\n// field \"cuda\" of its answer says which, and how well the "
+                           "replay is verified.\n"
+                         : "// Graze builds the current source with the lane's toolchain.\n");
 }
 
 }  // namespace
@@ -166,7 +166,7 @@ ForeignCall foreign_call(const Lane& lane, const AnyPair& pair, std::string_view
   if (opened.kind == "command") {
     call.command = plain + end;
     call.decide = fmt::format(
-        R"(// The program is asked about this pair alone, by its line, in the folder in which it was tested.
+        R"(// Asks the program about this pair alone, through a line of text, in the folder in which it was tested.
 static int decide(const {}*, const {}*) {{
   FILE* program = popen({},
                         "r");

@@ -10,14 +10,14 @@
 
 namespace graze::reports {
 
-// Whether the foreign lane can be shown, which requires that its subject was opened here.
+// Whether the foreign lane can be shown, which requires that this process opened its subject.
 bool shows_foreign(const Lane& lane);
 
 struct ForeignCall {
   std::string command;   // compiles and runs case.cpp, or case.cu
   std::string decide;    // int decide(const Real* a, const Real* b): above 0 intersects, below 0 declined
-  int seconds;           // for the call
-  std::string function;  // a kernel's __device__ function, as the user has it; then `decide` includes its source
+  int seconds;           // time limit of the call
+  std::string function;  // the user's __device__ function for a kernel; then `decide` includes its source
 };
 
 // For a program that nvcc compiles for a device.   Requires: shows_foreign(lane), a CUDA lane.

@@ -38,7 +38,7 @@ Json case_json(const analysis::InvariantSpec& spec, const std::optional<Invarian
           {"says_of_image", name(found->of_image)}};
 }
 
-// The two entries of a case: the pair with the wrong verdict, then the other.
+// The two entries of a case: the pair with the wrong verdict first.
 std::vector<corpus::Entry> entries_of(const analysis::InvariantSpec& spec, const Lane& lane,
                                       const InvariantInfo& invariant, const InvariantCase& found) {
   const auto entry = [&](const AnyPair& pair, Verdict says, const std::string& from) {
@@ -56,8 +56,7 @@ std::vector<corpus::Entry> entries_of(const analysis::InvariantSpec& spec, const
   return entries;
 }
 
-// The share of the column "scale, in range" that each power of two contributes. Empty if it is unknown, or if nothing
-// changes.
+// What each power of two contributes to the column "scale, in range". Empty if that is unknown, or if nothing changes.
 std::string scales_table(const analysis::InvariantSpec& spec, const analysis::Invariants& invariants,
                          const Screen& screen) {
   std::vector<Column> columns{{"lane", Align::left}};
@@ -73,7 +72,7 @@ std::string scales_table(const analysis::InvariantSpec& spec, const analysis::In
     table.add(std::move(cells));
   }
   if (!any) return "";
-  return wrapped("Scale, in range, for each factor alone, in % of the pairs that it scales without losing a bit:",
+  return wrapped("Scale, in range, for each factor, in % of the pairs that it scales without losing a bit:",
                  screen.columns) +
          table.text(screen);
 }
@@ -101,9 +100,9 @@ std::string invariants_table(const analysis::InvariantSpec& spec, const analysis
     table.add(std::move(cells));
   }
   return wrapped(
-             "Pairs on which the lane's verdict changes for some image, in % of the pairs that have an image. The "
-             "question is the same (part: a part of a triangle intersects, but the whole is disjoint; in range: "
-             "nothing over- or underflows).",
+             "Pairs on which the lane's verdict contradicts its verdict on some image, in % of the pairs that have an "
+             "image (part: a part of a triangle intersects, but the whole is disjoint; in range: nothing over- or "
+             "underflows).",
              screen.columns) +
          table.text(screen) + scales_table(spec, invariants, screen);
 }
@@ -125,8 +124,8 @@ std::vector<std::string> invariants_sentences(const analysis::InvariantSpec& spe
     for (const auto& [algorithm, names] : claimed)
       text += fmt::format("{}{} ({})", text.empty() ? "" : "; ", algorithm, names);
     sentences.push_back(
-        "Algorithms claim these invariants for lanes that round each operation as written, and kept them on every pair "
-        "on which nothing over- or underflows: " +
+        "Algorithms claim these invariants for lanes that round each operation as written. Those lanes kept them on "
+        "every pair on which nothing over- or underflows: " +
         text + ".");
   }
   sentences.push_back(

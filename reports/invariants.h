@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presents invariants: a table, sentences, invariants.json, and the simplest cases as files of pairs.
+// Presents invariants as a table, sentences, invariants.json, and files of pairs with the simplest cases.
 #pragma once
 
 #include <map>
@@ -16,7 +16,7 @@ namespace graze::reports {
 std::string invariants_table(const analysis::InvariantSpec& spec, const analysis::Invariants& invariants,
                              const Screen& screen);
 
-// Says what the lanes claim, and on how many pairs the exact decision and the oracle keep all invariants.
+// Says which invariants the lanes claim, and on how many pairs the exact decision and the oracle keep all of them.
 std::vector<std::string> invariants_sentences(const analysis::InvariantSpec& spec,
                                               const analysis::Invariants& invariants);
 
@@ -24,8 +24,8 @@ std::vector<std::string> invariants_sentences(const analysis::InvariantSpec& spe
 // "case"}}}]}
 nlohmann::ordered_json invariants_json(const analysis::InvariantSpec& spec, const analysis::Invariants& invariants);
 
-// For each invariant that a lane breaks, a file name and its text. For each lane, the file has the simplest pair on
-// which the lane breaks the invariant, and the pair's image. The one on which the lane is wrong comes first.
+// For each invariant that some lane breaks, a file name and the file's text. For each such lane the file has the
+// simplest pair on which the lane breaks the invariant, and the pair's image, the one that the lane gets wrong first.
 std::map<std::string, std::string> invariants_cases(const analysis::InvariantSpec& spec,
                                                     const analysis::Invariants& invariants);
 

@@ -53,15 +53,15 @@ std::string case_in_xml(const JunitCase& test) {
                              in_xml(test.failure.substr(0, test.failure.find('\n'))), in_xml(test.failure));
 }
 
-// The simplest kept pair on which a lane is wrong, and the file that has it.
+// The simplest kept pair on which a lane is wrong, and the file that holds it.
 struct Kept {
-  Simplicity simplicity;  // the same for all pairs of doubles, of which the first is shown
+  Simplicity simplicity;  // the same for all pairs of doubles, so the first of these is shown
   std::string pair;
   fs::path file;
   std::string why;  // the command that explains it; empty if none does
 };
 
-// By lane and stratum; by lane and "" of all strata.
+// By lane and stratum; an empty stratum stands for all strata.
 std::map<std::pair<std::string, std::string>, Kept> simplest_of(const fs::path& directory, const Json& summary) {
   std::map<std::pair<std::string, std::string>, Kept> simplest;
   for (const Json& row : summary["signatures"]) {
@@ -70,7 +70,7 @@ std::map<std::pair<std::string, std::string>, Kept> simplest_of(const fs::path& 
     for (const corpus::Entry& entry : fuzz::read_cases(directory, summary["spec"], row)) {
       const auto stratum = std::find_if(entry.fields.begin(), entry.fields.end(),
                                         [](const auto& field) { return field.first == "stratum"; });
-      if (stratum == entry.fields.end()) continue;  // a result of the minimiser, whose stratum is another pair's
+      if (stratum == entry.fields.end()) continue;  // a minimised pair, which no stratum drew
       const fs::path file = fuzz::case_file(directory, row);
       const AnyPair pair = corpus::pair_of(entry);
       const Kept kept{simplicity(pair), fuzz::pair_text(pair), file,
@@ -90,7 +90,7 @@ std::map<std::pair<std::string, std::string>, Kept> simplest_of(const fs::path& 
 }  // namespace
 
 std::string junit(std::span<const JunitCase> cases) {
-  std::string text = "<testsuites name=\"graze\">\n";  // begins as no other program's, see fuzz/own_files.h
+  std::string text = "<testsuites name=\"graze\">\n";  // no other program's file begins so, see fuzz/own_files.h
   for (auto first = cases.begin(); first != cases.end();) {
     const auto last =
         std::find_if(first, cases.end(), [&](const JunitCase& test) { return test.suite != first->suite; });

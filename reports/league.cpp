@@ -81,7 +81,7 @@ Json subject_json(const AlgorithmInfo& info, const Lane& lane, const std::vector
   return row;
 }
 
-// Writes a number that reads back to the same bits, as a short decimal if that is exact.
+// Writes a number such that it reads back as the same bits, as a short decimal if that is exact.
 std::string written(double value) {
   const double scaled = std::fabs(value) * 64;
   if (scaled < 1e7 && scaled == std::floor(scaled)) return fmt::format("{}", value);
@@ -155,7 +155,7 @@ std::string count_of_sample(const Json& share) {
   return share.at("of") == 0 ? "-" : count_text(share.at("count")) + " of " + count_text(share.at("of"));
 }
 
-// The columns after the groups, and their cell for each row.
+// A column after the groups, and its cell for a row.
 struct Extra {
   const char* title;
   std::string (*text)(const Json& league, const Json& row);
@@ -291,7 +291,7 @@ Json league_json(const fuzz::League& league, const std::vector<LeagueSubject>& s
                  const std::string& date) {
   Json groups = Json::object(), rows = Json::array(), failures = Json::array(), own = Json::array();
   for (std::size_t g = 0; g < fuzz::kLeagueGroupCount; ++g) {
-    std::uint64_t pairs = 0;  // pairs of a row that ran them all
+    std::uint64_t pairs = 0;  // pairs of a row that ran all of them
     for (const fuzz::LeagueRow& row : league.rows) pairs = std::max(pairs, row.groups[g].pairs + row.groups[g].outside);
     if (pairs > 0) groups[std::string(fuzz::kLeagueGroups[g])] = pairs;
   }
@@ -370,7 +370,7 @@ std::string league_table(const Json& league, const Screen& screen) {
                          count_text(league.at("pairs")), pairs),
              screen.columns) +
          table.text(screen) +
-         wrapped(fmt::format("{} smallest failures, each repeated by a fresh process; {} were not.",
+         wrapped(fmt::format("{} smallest failures, each repeated in a fresh process; {} more were not repeated.",
                              league.at("failures").size(), count_text(league.at("failures_not_repeated"))),
                  screen.columns);
 }
@@ -379,31 +379,31 @@ std::string league_page(const Json& league, const std::string& command) {
   return fmt::format(
       R"(# League: triangle-triangle tests of libraries, side by side
 
-Made by `{command}`; do not edit. The same {pairs} pairs went to all lanes: strata with seed {seed}, in equal shares{doubles}. Lanes with the fewest clearly wrong verdicts stand first.
+Made by `{command}`; do not edit. All lanes were asked about the same {pairs} pairs, drawn in equal shares from the strata with seed {seed}{doubles}. Lanes with the fewest clearly wrong verdicts come first.
 
-CGAL's exact decision and `core/exact` give the truth of every pair; GMP confirms it where a lane is wrong. Touching counts, and a degenerate triangle is a segment or a point. Where a library's documentation states nothing, every difference counts. Columns:
+CGAL's exact decision and `core/exact` give the truth of every pair; GMP confirms it where a lane is wrong. Touching triangles intersect, and a degenerate triangle is a segment or a point. If a library's documentation says nothing about such pairs, every difference counts as an error. Columns:
 
-- **general** to **extreme**: false negatives / false positives in each group of strata. "near" has near pairs and exact contacts; "extreme" has needles, extreme coordinates and pairs far from the origin. "of" precedes the number of counted pairs if a lane did not count on all: slow lanes got only the first pairs of each stratum, and pairs outside a lane's contract do not count.
+- **general** to **extreme**: false negatives / false positives in each group of strata. "near" has near pairs and exact contacts; "extreme" has needles, extreme coordinates and pairs far from the origin. "of" gives the number of counted pairs if it is smaller: slow lanes got only the first pairs of each stratum, and pairs outside a lane's contract do not count.
 - **clear**: wrong verdicts, outside "extreme", on proper triangles that are not coplanar and whose margin is at least 2^{exponent} ulps of the largest coordinate. Neither a convention nor rounded input excuses them.
 - **declined**: pairs on which the lane gave no answer. They are not wrong.
 - **crashed**, **timed out**, **unstable**: pairs on which the lane failed, or did not always give the same verdict. They are wrong.
 - **not repeated**: wrong verdicts that a fresh process did not repeat. They do not count as errors.
 - **by convention**: verdicts that differ from the truth on pairs that the library's documentation leaves out of its contract. They do not count as errors.
-- **order**: pairs of a sample on which the verdict changes with the order of triangles and vertices (72 orders, the same truth).
+- **order**: pairs of a sample on which the verdict changes with the order of triangles and vertices (72 orders with the same truth).
 - **invariants**: pairs of the same sample on which the verdict changes under an exact mirror image, permutation of the axes, scaling or translation, or on which a part of a triangle intersects but the whole does not.
-- **flips**: pairs on which the build with contraction gives another verdict, if there is source to build.
-- **ns a pair**: median of {repetitions} repetitions, in which all lanes take turns, on {timed} pairs of `uniform`, processor time in the subject's own process; {machine}, {date}.
+- **flips**: pairs on which the build with contraction gives a different verdict; only for lanes whose source can be built so.
+- **ns a pair**: the median of {repetitions} repetitions on {timed} pairs of `uniform`, in which all lanes take turns. It is processor time in the subject's own process; {machine}, {date}.
 - "-": not measured.
 
 {counts}
 ## Shares
-Wrong within the contract (false negatives, false positives, crashed, timed out and unstable), in per cent of the pairs within it, with 95 % intervals.
+Wrong verdicts within the contract (false negatives, false positives, crashed, timed out and unstable), in per cent of the pairs within the contract, with 95 % intervals.
 
 {shares}
 ## Subjects
 {subjects}
 ## Smallest failures
-For each subject, shape ("clear" as above) and wrong verdict, the simplest pair that was found. The commands run in the folder in which `scripts/league` ran. `graze repro --emit` turns a pair into a program. CGAL and GMP confirmed each failure, and a fresh process repeated it; {not_repeated} others were not repeated and are left out. The second triangle is orange, the contact red, and the line in both planes dashed.
+These are the simplest pairs found, one for each subject, shape ("clear" as above) and kind of wrong verdict. The commands run in the folder in which `scripts/league` ran. `graze repro --emit` turns a pair into a program. CGAL and GMP confirmed each failure, and a fresh process repeated it; {not_repeated} others were not repeated and are left out. In the drawings the second triangle is orange, the contact red, and the line where the two planes meet dashed.
 {failures})",
       fmt::arg("command", command), fmt::arg("pairs", count_text(league.at("pairs"))),
       fmt::arg("doubles",

@@ -13,13 +13,13 @@
 
 namespace graze::reports {
 
-// Facts about a foreign subject of the league, in its own words.
+// Facts that a foreign subject of the league states about itself.
 struct LeagueSubject {
   std::string name, what;  // as in --subject NAME=WHAT
   std::string version, source, convention;
 };
 
-// The most drawings beside a page: libraries' clear failures come first, then those on general pairs.
+// The limit on drawings beside a page: libraries' clear failures come first, then those on general pairs.
 inline constexpr std::size_t kMostDrawings = 40;
 
 // {"seed", "pairs", "strata", "groups": {group: pairs}, "subjects": [...], "rows": [...], "failures": [...],

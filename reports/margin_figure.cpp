@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kWidth = 900, kHeight = 420, kLeft = 64, kRight = 20, kTop = 64, kBottom = 66;
-constexpr int kSpan = 26;                   // buckets from 2^(-kSpan/2) to 2^kSpan ulps are drawn, on both sides of 0
+constexpr int kSpan = 26;                   // buckets from 2^(-kSpan/2) to 2^kSpan ulps are drawn on both sides of 0
 constexpr std::uint64_t kFewestPairs = 30;  // a share of fewer pairs is not drawn
 constexpr std::array<const char*, 6> kColours = {"#d55e00", "#0072b2", "#009e73",
                                                  "#cc79a7", "#e69f00", "#56b4e9"};  // Okabe and Ito 2008

@@ -7,8 +7,8 @@
 
 namespace graze::reports {
 
-// Returns an SVG of 900 x 420: the share of wrong verdicts over all strata by margin bucket, one line for each lane;
-// readable on light and dark backgrounds.
+// Returns an SVG of 900 x 420: the share of wrong verdicts over all strata by margin bucket, with a line for each lane.
+// It is readable on light and dark backgrounds.
 // Requires: the contents of summary.json.
 std::string margin_figure(const nlohmann::ordered_json& summary);
 

@@ -9,6 +9,7 @@
 #include "corpus/pair_format.h"
 #include "reports/tables.h"
 #include "reports/terminal.h"
+#include "subjects/rebuilt.h"
 
 namespace graze::reports {
 
@@ -31,16 +32,17 @@ std::string not_counted(const analysis::LaneCounts& found) {
   std::string text;
   if (found.declined > 0) text += fmt::format(" It declines {}.", counted(found.declined, "pair"));
   if (found.by_convention > 0)
-    text += fmt::format(" It differs on {} that its convention leaves open.", counted(found.by_convention, "pair"));
+    text += fmt::format(" It differs on {} for which its convention promises nothing.",
+                        counted(found.by_convention, "pair"));
   return text;
 }
 
-// "(2.4 %)", or nothing for none.
+// " (2.4 %)"; empty if the count is 0.
 std::string share_words(std::uint64_t count, std::uint64_t of) {
   return count == 0 ? "" : fmt::format(" ({})", rate_words(share_of(count, of).share));
 }
 
-// Whether the sentence about its simplest pair names the cause only as a possible one.
+// Whether the sentence about the kind's simplest pair says that the cause is not settled.
 bool is_open(const Json& kind) {
   return kind.at("simplest").at("sentences").at(0).get_ref<const std::string&>().find("not settled") !=
          std::string::npos;
@@ -69,7 +71,7 @@ int rank_of(const Json& kind, const std::string& lane, std::uint64_t all) {
 // "2^3 ulps"
 std::string in_ulps(int exponent) { return fmt::format("2^{} ulps", exponent); }
 
-// From which margin on the lane is right on these pairs.
+// From which margin upwards the lane is right on these pairs.
 std::string trusted_from(const StratumCounts& pairs, std::size_t lane, const std::string& which) {
   const Threshold apart = threshold(pairs, lane, 1), deep = threshold(pairs, lane, -1);
   std::vector<std::string> right, wrong;
@@ -84,7 +86,7 @@ std::string trusted_from(const StratumCounts& pairs, std::size_t lane, const std
     wrong.push_back(fmt::format("{} deep", in_ulps(*deep.largest)));
   }
   std::string text;
-  if (!right.empty()) text += fmt::format(" Of {} it is right on {}.", which, fmt::join(right, " and "));
+  if (!right.empty()) text += fmt::format(" Among {} it is right on {}.", which, fmt::join(right, " and "));
   if (!wrong.empty()) text += fmt::format(" It is wrong on some that are {}.", fmt::join(wrong, " and on some "));
   return text;
 }
@@ -134,7 +136,7 @@ std::string wrong_words(const CampaignCounts& counts, std::size_t lane) {
 std::string wrong_by_kind(const CampaignCounts& counts, std::size_t lane) {
   std::vector<std::string> parts;
   for (const GroupCounts& group : counts.groups) {
-    if (group.id == "mesh") {  // the mesh's own pairs apart from moved ones
+    if (group.id == "mesh") {  // the mesh's own pairs are counted apart from moved ones
       for (const std::size_t s : group.strata) {
         const StratumCounts& stratum = counts.strata[s];
         parts.push_back(fmt::format("{} {} of {}{}", stratum.id, grouped(stratum.wrong(lane)), grouped(stratum.pairs),
@@ -167,7 +169,7 @@ std::vector<Json> first_kinds(const Json& kinds, const ReportLane& lane, std::si
   }
   std::uint64_t all = 0;
   for (const Json& kind : found) all += kind.at("pairs").get<std::uint64_t>();
-  // They are sorted by their numbers of pairs already.
+  // They are already sorted by their numbers of pairs.
   std::stable_sort(found.begin(), found.end(),
                    [&](const Json& l, const Json& r) { return rank_of(l, lane.id, all) < rank_of(r, lane.id, all); });
   if (found.size() > most) found.resize(most);
@@ -212,8 +214,8 @@ std::string kinds_heading(const CampaignCounts& counts, std::size_t lane, std::s
   const auto builds = std::count_if(counts.lanes.begin(), counts.lanes.end(),
                                     [&](const ReportLane& other) { return other.name.subject == subject; });
   return fmt::format(
-      "{} of {} of failure, the code's own mistakes of at least 1 % first (of the {} that {} gets wrong; cause of one "
-      "pair per signature):",
+      "{} of {} of failure; the code's own mistakes of at least 1 % come first (of the {} that {} gets wrong; one pair "
+      "per signature examined):",
       told, counted(kinds, "kind"), counted(failures, "pair"), builds > 1 ? "some build" : "it");
 }
 
@@ -242,9 +244,9 @@ std::string pair_on_a_line(const AnyPair& pair) {
 std::string epsilon_words(const CampaignCounts& counts, std::size_t lane, const Json& kinds,
                           const std::string& in_source, const std::optional<EpsilonEffect>& effect) {
   if (effect)
-    return fmt::format("Epsilon: with a negligible number in place of {}, {} of the {} become right, and {} wrong.",
-                       effect->named, grouped(effect->mended), counted(counts.total.wrong(lane), "wrong pair"),
-                       counted(effect->broken, "right one"));
+    return fmt::format("Epsilon: with {:g} in place of {}, {} of the {} become right, and {} wrong.",
+                       subjects::kNegligible, effect->named, grouped(effect->mended),
+                       counted(counts.total.wrong(lane), "wrong pair"), counted(effect->broken, "right one"));
   std::uint64_t pairs = 0, settled = 0, of = 0;
   for (const Json& kind : kinds) {
     if (!is_of_lane(kind, counts.lanes[lane].id) ||
@@ -254,19 +256,20 @@ std::string epsilon_words(const CampaignCounts& counts, std::size_t lane, const 
     settled += kind.at("settled").at(0).get<std::uint64_t>();
     of += kind.at("settled").at(1).get<std::uint64_t>();
   }
-  std::string text = "Epsilon: no failure that was looked at shows an absolute epsilon";
+  std::string text = "Epsilon: no failure that was examined shows an absolute epsilon";
   if (pairs > 0) {
-    text = fmt::format("Epsilon: on {}, by one of each signature, an absolute epsilon or another fixed number {}",
-                       counted(pairs, "wrong pair"),
-                       settled == 0   ? "perhaps decides"
-                       : settled < of ? "decides, on some of them perhaps"
-                                      : "decides");
+    text =
+        fmt::format("Epsilon: on {}, judged by one of each signature, an absolute epsilon or another fixed number {}",
+                    counted(pairs, "wrong pair"),
+                    settled == 0   ? "perhaps decides"
+                    : settled < of ? "decides, on some of them perhaps"
+                                   : "decides");
   }
   if (!in_source.empty()) text += fmt::format(" ({} your {})", pairs > 0 ? "perhaps" : "such as", in_source);
   if (settled > 0) return text + "; make it relative to the triangles' size.";  // other sizes fail at other distances
   std::string trusted;
   for (const auto& [id, which] :
-       {std::pair("general", "the general strata"), {"general/f64", "the general strata of doubles"}}) {
+       {std::pair("general", "the general pairs"), {"general/f64", "the general pairs of doubles"}}) {
     if (const GroupCounts* group = counts.group(id)) trusted += trusted_from(group->counts, lane, which);
   }
   return text + '.' + (trusted.empty() ? trusted_from(counts.total, lane, "all pairs") : trusted);
@@ -281,7 +284,7 @@ std::vector<std::string> own_code_answer(const CampaignCounts& counts, const Jso
     const std::vector<Json> first = first_kinds(kinds, counts.lanes[lane], 1);
     if (first.empty()) continue;
     const Json& simplest = first[0].at("simplest");
-    said.push_back(fmt::format("Look first at {}: {}", simplest.at("case").get<std::string>(),
+    said.push_back(fmt::format("First look at {}: {}", simplest.at("case").get<std::string>(),
                                simplest.at("sentences").at(0).get<std::string>()));
     said.push_back(epsilon_words(counts, lane, kinds));
   }

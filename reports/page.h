@@ -15,11 +15,11 @@ bool has_interactive_page();
 std::string page(const nlohmann::ordered_json& report, const nlohmann::ordered_json& costs,
                  const nlohmann::ordered_json& choices);
 
-// Tables and drawings without scripts, and a note about the missing parts.
+// Returns a page of tables and drawings without scripts, with a note about the missing parts.
 std::string plain_page(const nlohmann::ordered_json& report, const nlohmann::ordered_json& costs,
                        const nlohmann::ordered_json& choices);
 
-// Returns the template with `data` as the contents of its element <script type="application/json" id="…">.
+// Returns the template with `data` as the contents of its element <script type="application/json" id="ID">.
 // Throws: std::logic_error if the text has no such element.
 std::string with_data(std::string_view page_template, const char* id, const nlohmann::ordered_json& data);
 

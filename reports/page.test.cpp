@@ -99,7 +99,7 @@ TEST_F(PageTest, PlainPageIsWellFormedAndShowsEverything) {
   const std::string text = plain_page(report, make_costs(root_ / "one"), make_choices(root_ / "one"));
   expect_well_formed(text);
   EXPECT_TRUE(contains(text, "a &lt;b&gt; &amp; &quot;c&quot;"));
-  EXPECT_TRUE(contains(text, "had no Node"));
+  EXPECT_TRUE(contains(text, "without Node"));
   EXPECT_LT(text.find(") a general pair"), text.find("<h2>What was run"));
   EXPECT_EQ(text.find("<script"), std::string::npos);
   EXPECT_EQ(text.find("http"), std::string::npos);

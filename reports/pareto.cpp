@@ -78,7 +78,7 @@ const char* changed_words(Extreme extreme) {
     case Extreme::aspect:
       break;
   }
-  return "Made needles by 2^k";
+  return "Narrowed by 2^k";
 }
 
 std::string nanoseconds(double ns) { return fmt::format("{:.{}f}", ns, ns < 1 ? 4 : 1); }
@@ -96,7 +96,7 @@ std::vector<Offer> timed(std::vector<Offer> offers) {
   return offers;
 }
 
-// "12 false negatives, 3 crashes and 0 false positives": every kind of error of which there is one.
+// "12 false negatives, 0 false positives, 3 crashed, timed out or unstable of 100 pairs"
 std::string errors_in_words(const PolicyErrors& e) {
   std::string words =
       fmt::format("{} false negatives, {} false positives", grouped(e.false_negative), grouped(e.false_positive));
@@ -112,12 +112,12 @@ Json offer_json(const Offer& offer) {
           {"failure", offer.failure ? Json(line_of(*offer.failure)) : Json()}};
 }
 
-// Of what the columns of costs are.
+// Explains the cost columns.
 std::string costs_of_table(const Pareto& pareto) {
   const char* const columns =
-      pareto.on_device ? "`ns a pair` of pairs that are on the device already, `with copies` of pairs in pinned memory"
-                       : "`ns a pair` of calls of 4,096 pairs in its cache, `from memory` of calls of 2^19 pairs, `one "
-                         "a call` of calls of one";
+      pareto.on_device ? "`ns a pair` for pairs already on the device, `with copies` for pairs in pinned memory"
+                       : "`ns a pair` for calls of 4,096 pairs in its cache, `from memory` for calls of 2^19 pairs, "
+                         "`one a call` for calls of one pair";
   return fmt::format(
       "Costs are times per pair on {}{}: {}. They are medians of passes over the pairs of this run; pareto.json has "
       "their quartiles.",
@@ -175,8 +175,8 @@ std::vector<std::string> pareto_sentences(const Pareto& pareto) {
   }
   if (!pareto.on_device && !front.empty()) {
     result.push_back(
-        fmt::format("One pair a call, as most programs call such a test, the front is {}. A call of many pairs is "
-                    "cheaper for exact lanes, which decide several at a time.",
+        fmt::format("With one pair per call, as most programs call such a test, the front is {}. Calls of many pairs "
+                    "are cheaper per pair for exact lanes, which decide several pairs at a time.",
                     fmt::join(front, ", ")));
   }
   result.push_back(costs_of_table(pareto));
@@ -248,7 +248,7 @@ Json pareto_json(const Pareto& pareto) {
 }
 
 std::string pareto_figure(const Pareto& pareto) {
-  std::string svg = begin("Share of pairs without a right verdict, against nanoseconds a pair on " +
+  std::string svg = begin("Share of pairs without a correct verdict, against nanoseconds a pair on " +
                           (pareto.on_device ? pareto.machine : "one core"));
   double low = 1e300, high = 0;
   for (const Offer& offer : timed(pareto.offers)) {
@@ -286,7 +286,7 @@ std::string pareto_figure(const Pareto& pareto) {
 
 std::string extreme_figure(const std::vector<ExtremeCurve>& curves, Extreme extreme) {
   std::string svg =
-      begin(fmt::format("Share of pairs without a right verdict, against {}: 2^k", name(extreme)), kRight - kLegend);
+      begin(fmt::format("Share of pairs without a correct verdict, against {}: 2^k", name(extreme)), kRight - kLegend);
   const std::vector<int> at = analysis::exponents(extreme);
   const auto x_of = [&](int k) {
     return kLeft + (kRight - kLeft - kLegend) * (k - at.front()) / std::max(1, at.back() - at.front());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presents errors against costs: a table, sentences, pareto.json and pictures.
+// Presents errors against costs as a table, sentences, pareto.json and pictures.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -14,8 +14,8 @@ namespace graze::reports {
 // Returns a row for each lane, the cheapest first; dominated lanes are marked.
 std::string pareto_table(const analysis::Pareto& pareto, const Screen& screen);
 
-// Says which lanes are on the front if each call decides one pair (not on a device), of what the costs are, which are
-// noisy, and which lanes were not timed.
+// Says which lanes are on the front if each call decides one pair (not on a device), what the costs measure, which of
+// them are noisy, and which lanes were not timed.
 std::vector<std::string> pareto_sentences(const analysis::Pareto& pareto);
 
 // Says for each lane and extreme how far the lane stays as right as on ordinary pairs.
@@ -23,12 +23,12 @@ std::string extremes_text(const analysis::Pareto& pareto, const Screen& screen);
 
 nlohmann::ordered_json pareto_json(const analysis::Pareto& pareto);
 
-// Returns an SVG of 900 x 420: each lane is a point, its share of wrong verdicts against nanoseconds a pair. Lanes
-// without an error are on a line of their own, with the bound that the number of pairs allows. Dominated lanes are
-// grey.
+// Returns an SVG of 900 x 420 with a point for each lane: its share of pairs without a correct verdict against
+// nanoseconds a pair. Lanes without an error are on a line of their own, labelled with the bound that the number of
+// pairs allows. Dominated lanes are grey.
 std::string pareto_figure(const analysis::Pareto& pareto);
 
-// Returns an SVG of 900 x 420: the share of wrong verdicts of each lane against the exponent of one extreme.
+// Returns an SVG of 900 x 420: each lane's share of pairs without a correct verdict against the exponent of an extreme.
 std::string extreme_figure(const std::vector<analysis::ExtremeCurve>& curves, analysis::Extreme extreme);
 
 }  // namespace graze::reports

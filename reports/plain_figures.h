@@ -12,20 +12,20 @@ namespace graze::reports {
 // Escapes the characters that have a meaning in HTML.
 std::string html(const std::string& text);
 
-// The start of a page without scripts, with the style that such pages share; it ends with "</body>\n</html>\n".
-// title: plain text. style: further rules, each with its newline.
+// The start of a page without scripts, with the style that such pages share. The page must end with
+// "</body>\n</html>\n". title: plain text. style: further CSS rules, each with its newline.
 std::string page_head(const std::string& title, const std::string& style);
 
-// A card's "pair" has its coordinates in decimals, hex floats and values. Its "drawing" has the contact and the line of
-// both planes.   Requires: finite coordinates.
+// A card's "pair" has the coordinates as decimals, hex floats and values. Its "drawing" has the contact and the line
+// where the planes meet.   Requires: finite coordinates.
 nlohmann::ordered_json coordinates_of(const AnyPair& pair);
 nlohmann::ordered_json drawing_of(const AnyPair& pair);
 
-// A share against the margin, for one row of the report's `margins`: that of verdicts that are "wrong", or that the
-// lane "differs" in from its cpu lane.
+// Draws a share against the margin for one row of the report's `margins`.   share: "wrong" for wrong verdicts,
+// "differs" for verdicts that differ from the cpu lane's.
 std::string margin_chart(const nlohmann::ordered_json& row, const char* share);
 
-// An isometric drawing of one of the report's cards: both triangles, the contact and the line of both planes.
+// An isometric drawing of one of the report's cards: both triangles, the contact and the line where the planes meet.
 std::string pair_drawing(const nlohmann::ordered_json& card);
 
 }  // namespace graze::reports

@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostRows = 500;  // of the signatures; signatures.csv has them all
+constexpr std::size_t kMostRows = 500;  // of the table of signatures; signatures.csv has all
 
 constexpr const char* kStyle = R"(pre { overflow-x: auto; border: 1px solid #8886; padding: 0.5rem; }
 svg { max-width: 100%; } svg text { font-size: 9px; fill: currentColor; }
@@ -45,9 +45,8 @@ std::string answer_section(const Json& report, const Json& costs) {
     text += "<li>" + html(sentence) + "</li>\n";
   text += "</ol>\n";
   text += paragraph(
-      "This build had no Node, or no npm packages, so the page lacks its interactive parts: sorting, filters, views "
-      "that turn, "
-      "ulp maps and copy buttons. The same data is in the JSON file and the CSV tables beside it.");
+      "This page was built without Node or npm packages, so it lacks the interactive parts: sorting, filters, views "
+      "that turn, ulp maps and copy buttons. The same data is in the JSON file and the CSV tables beside it.");
   for (const Json& sentence : report.at("missing")) text += paragraph(sentence);
   return text;
 }
@@ -147,11 +146,11 @@ std::string differs_section(const Json& report) {
                            farthest_words(row, "intersects", "deep"));
   }
   if (figures.empty() && equal.empty()) return "";
-  return "<h2>Share of verdicts unlike the cpu lane's, against the exact margin</h2>\n" + figures +
-         (equal.empty() ? "" : "<p>On every pair like the cpu lane: " + equal + ".</p>\n");
+  return "<h2>Share of verdicts that differ from the cpu lane's, against the exact margin</h2>\n" + figures +
+         (equal.empty() ? "" : "<p>Same verdict as the cpu lane on every pair: " + equal + ".</p>\n");
 }
 
-// How the verdicts of each algorithm change with the toolchain.
+// Tables of how the verdicts of each algorithm change with the toolchain.
 std::string toolchains_section(const Json& map) {
   if (map.is_null()) return "";
   const std::string reference = html(map.at("reference"));
@@ -191,16 +190,16 @@ std::string times_cell(const Json& cell) {
       times.at(2).is_null() ? "?" : times.at(2).dump(), fmt::format("{}{:.3g}", at_least ? "≥ " : "", shown));
 }
 
-// How far lanes stay right by flatness and aspect: pareto.json has it.
+// How far lanes stay right on flat triangles and needles, from pareto.json.
 std::string shapes_section(const Json& pareto) {
   if (pareto.is_null())
-    return "<p>How far lanes stay right on flat triangles and needles: <code>graze pareto --out DIR</code> with this "
-           "campaign's folder, then <code>graze report DIR</code>.</p>\n";
+    return "<p>To see how far lanes stay right on flat triangles and needles, run <code>graze pareto --out DIR</code> "
+           "with this campaign's folder, then <code>graze report DIR</code>.</p>\n";
   std::string text = "<ul>\n";
   for (const Json& row : pareto.at("extremes")) {
     text += fmt::format("<li>{}, {}: {}</li>\n", html(row.at("lane")), html(row.at("extreme")), html(row.at("says")));
   }
-  return "<h2>Scale, offset, flatness and needles, by graze pareto</h2>\n" + text + "</ul>\n";
+  return "<h2>Scale, offset, flatness and needles, from graze pareto</h2>\n" + text + "</ul>\n";
 }
 
 std::string extremes_section(const Json& report, const Json& pareto) {
@@ -231,11 +230,11 @@ std::string card(const Json& report, const Json& found) {
     if (i % 3 == 0) text += fmt::format("{}[{}]", i < 9 ? 'a' : 'b', i / 3 % 3);
     text += fmt::format(" {} ({}){}", coordinate("decimal"), coordinate("hex"), i % 3 == 2 ? "\n" : "");
   }
-  text +=
-      "</pre>\n" + paragraph(fmt::format("{} pairs, by one of each signature; truth: {}, contact {}, margin {} ulps.",
-                                         grouped(kind.at("pairs")), found.at("truth").at("verdict").get<std::string>(),
-                                         found.at("truth").at("contact").get<std::string>(),
-                                         found.at("truth").at("margin_ulps").dump()));
+  text += "</pre>\n" +
+          paragraph(fmt::format("{} pairs, judged by one of each signature; truth: {}, contact {}, margin {} ulps.",
+                                grouped(kind.at("pairs")), found.at("truth").at("verdict").get<std::string>(),
+                                found.at("truth").at("contact").get<std::string>(),
+                                found.at("truth").at("margin_ulps").dump()));
   std::string wrong;
   for (const Json& row : found.at("verdicts")) {
     if (row.at("wrong"))
@@ -251,7 +250,7 @@ std::string card(const Json& report, const Json& found) {
 std::string signature_section(const Json& report) {
   const std::size_t rows = std::min(report.at("signatures").size(), kMostRows);
   std::string text = fmt::format(
-      "<h2>Signatures</h2>\n<p>{} in all, the commonest {} here.</p>\n<div class=\"wide\"><table>\n"
+      "<h2>Signatures</h2>\n<p>{} in all; the table has the most common {}.</p>\n<div class=\"wide\"><table>\n"
       "<tr><th>signature</th><th>pairs</th></tr>\n",
       grouped(report.at("signature_count")), grouped(rows));
   for (std::size_t i = 0; i < rows; ++i) {
@@ -310,12 +309,13 @@ std::string choices_section(const Json& choices) {
 }
 
 constexpr const char* kDefinitions = R"(<h2>Definitions</h2>
-<p>A triangle is the closed convex hull of its three stored points; touching counts as intersecting. The truth is decided by
-exact arithmetic, twice. A lane is an algorithm in one precision on one target: cpu and cuda-nofma round every operation,
-cpu-fma and cuda-fma fuse products into additions as the compiler likes. The margin is the distance of a disjoint pair, minus
-the smallest translation that parts an intersecting one, and 0 where any push parts it; in float32 ulps of the largest
-coordinate. Intervals are Wilson's, of 95 % confidence. A signature is a way to fail: contact, dimensions of both hulls, skew or
-coplanar, margin, algorithm, and a mark for each of its lanes: + false positive, - false negative, . right, _ not run.</p>
+<p>A triangle is the closed convex hull of its three stored points; touching counts as intersecting. Two exact methods decide
+the truth. A lane is an algorithm in one precision on one target. cpu and cuda-nofma round every operation; in cpu-fma and
+cuda-fma the compiler may fuse products into additions. The margin of a disjoint pair is its distance. That of an intersecting
+pair is minus the length of the smallest translation that separates it, or 0 if an arbitrarily small one does. Its unit is the
+float32 ulp of the largest coordinate. Intervals are Wilson's, with 95 % confidence. A signature is a way to fail: contact,
+dimensions of both hulls, skew or coplanar, margin, algorithm, and a mark for each of the algorithm's lanes: + false positive,
+- false negative, . right, _ not run.</p>
 )";
 
 }  // namespace

@@ -33,7 +33,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Throws: std::runtime_error with the expectation and the part of the file.
+// Throws: std::runtime_error, which names the expectation and shows the part of the file.
 void expect(bool possible, const std::string& what, const Json& part) {
   if (!possible) throw std::runtime_error(fmt::format("expected {}, found {}", what, shown(part.dump())));
 }
@@ -51,7 +51,7 @@ void expect_shares(const Json& part) {
 // Checks that the bound of a rate is not below the observed rate.
 void expect_bound(const Json& bound, std::uint64_t count, std::uint64_t of, const Json& part) {
   const double least = of == 0 ? 1 : std::max(static_cast<double>(count) / static_cast<double>(of), bound_of_none(of));
-  expect(bound >= (1 - 1e-9) * least && bound <= 1, fmt::format("a bound of {} of {} pairs", count, of), part);
+  expect(bound >= (1 - 1e-9) * least && bound <= 1, fmt::format("a bound for {} of {} pairs", count, of), part);
 }
 
 struct Drawn {
@@ -79,7 +79,7 @@ Drawn drawn_of(const Json& report, const Json& stratum, const Json& group = {}) 
 }
 
 void expect_possible_rates(const Json& report) {
-  std::map<std::string, std::pair<Counts, Counts>> of_lanes;  // of all strata together, and the sum of theirs
+  std::map<std::string, std::pair<Counts, Counts>> of_lanes;  // over all strata together, and the sum over the strata
   for (const Json& row : report.at("rates")) {
     const Drawn of = drawn_of(report, row.at("stratum"));
     Counts counts{row.at("false_positive").at("count"), row.at("false_negative").at("count")};
@@ -95,7 +95,7 @@ void expect_possible_rates(const Json& report) {
                (differs.is_null() || differs.at("of") == of.pairs) &&
                row.value("stored", std::uint64_t{0}) <= counts.wrong() &&
                counts.not_right() + counts.by_convention <= of.pairs,
-           fmt::format("rates of {} pairs that add up", of.pairs), row);
+           fmt::format("rates that add up to {} pairs", of.pairs), row);
     auto& [together, sum] = of_lanes[row.at("lane").dump()];
     (row.at("stratum").is_null() ? together : sum) += counts;
   }
@@ -123,7 +123,7 @@ void expect_possible_rates(const Json& report) {
   }
 }
 
-// Checks that the lane's differences from cpu by margin are those of its rates.
+// Checks that the lane's differences from cpu by margin add up to those of its rates.
 void expect_differences(const Json& report, const Json& row) {
   for (const Json& rate : report.at("rates")) {
     if (rate.at("lane") != row.at("lane") || rate.at("stratum") != row.at("stratum")) continue;
@@ -132,21 +132,21 @@ void expect_differences(const Json& report, const Json& row) {
     for (const Json& point : row.at("points")) {
       expect(point.contains("differs") != differs.is_null(), "differences from cpu at all margins or at none", point);
       if (differs.is_null()) continue;
-      expect(point["differs"].at("of") == point.at("wrong").at("of"), "differences of the pairs at this margin", point);
+      expect(point["differs"].at("of") == point.at("wrong").at("of"), "differences on the pairs at this margin", point);
       sum += point["differs"].at("count").get<std::uint64_t>();
     }
     expect(differs.is_null() || differs.at("count") == sum, fmt::format("{} verdicts that differ from cpu", sum), rate);
   }
 }
 
-// Checks that the origin, the ratios and the words of an extreme follow from its cells.
+// Checks that an extreme's origin, ratios and words follow from its cells.
 void expect_extremes(const Json& row) {
   Json again = row;
   add_right_range(again);
   expect(again == row, "the ratios and words that follow from its cells", row);
 }
 
-// The counts at a lane's margins.   Throws: if a point has no margin of its own.
+// The counts at a lane's margins.   Throws: std::runtime_error if a margin is invalid or occurs twice.
 StratumCounts counts_at(const Json& points) {
   StratumCounts counts;
   for (const Json& point : points) {
@@ -248,7 +248,7 @@ void expect_possible_failures(const Json& report) {
 void expect_lanes(const Json& part, std::size_t lanes) {
   for (const auto& [name, inner] : part.items()) {
     if (part.is_object() && (name == "lane" || name == "left" || name == "right") && inner.is_number())
-      expect(inner < lanes, fmt::format("a place among {} lanes", lanes), part);
+      expect(inner < lanes, fmt::format("the index of one of {} lanes", lanes), part);
     if (inner.is_structured()) expect_lanes(inner, lanes);
   }
 }
@@ -264,7 +264,7 @@ void expect_possible_errors(const Json& part) {
            part);
   } else if (part.is_object() && part.contains("middle")) {
     expect(0 < part.at("low") && part["low"] <= part["middle"] && part["middle"] <= part.at("high"),
-           "quartiles in their order", part);
+           "quartiles in order", part);
   } else if (part.is_structured()) {
     for (const Json& inner : part) expect_possible_errors(inner);
   }
@@ -278,7 +278,7 @@ void expect_lane(const Json& id) {
 void expect_upper_bound(const Json& bound, std::uint64_t count, std::uint64_t of) {
   const double expected = analysis::upper_bound(count, of);
   expect(std::abs(bound.get<double>() - expected) <= 1e-9 * expected,
-         fmt::format("{:.17g} as the bound of {} of {} pairs", expected, count, of), bound);
+         fmt::format("{:.17g} as the bound for {} of {} pairs", expected, count, of), bound);
 }
 
 analysis::PolicyErrors errors_of(const Json& row) {
@@ -294,11 +294,11 @@ analysis::PolicyErrors errors_of(const Json& row) {
 // Checks that the fixed and broken pairs account for the difference from the lane without a policy on the same pairs.
 void expect_relocation(const Json& row, const Json& without) {
   const analysis::PolicyErrors errors = errors_of(row), zero = errors_of(without);
-  expect(
-      errors.pairs == zero.pairs && errors.fixed <= zero.not_right() && errors.broken <= errors.not_right() &&
-          zero.not_right() - errors.fixed == errors.not_right() - errors.broken,
-      fmt::format("errors that differ from {} of {} pairs by the fixed and broken ones", zero.not_right(), zero.pairs),
-      row);
+  expect(errors.pairs == zero.pairs && errors.fixed <= zero.not_right() && errors.broken <= errors.not_right() &&
+             zero.not_right() - errors.fixed == errors.not_right() - errors.broken,
+         fmt::format("errors that differ from {} of {} pairs by the fixed and the broken ones", zero.not_right(),
+                     zero.pairs),
+         row);
 }
 
 void expect_relocations(const Json& tuned) {
@@ -326,7 +326,7 @@ void expect_relocations(const Json& tuned) {
     const int log2 = row.at("log2");
     expect((side == "up" ? log2 > 0 : log2 < 0) && std::abs(log2) <= analysis::kMostScale && errors.pairs <= most &&
                from.pairs == errors.pairs && can_be(errors) && can_be(from),
-           fmt::format("errors of the choice at another scale, of at most {} pairs", most), row);
+           fmt::format("errors of the choice at another scale, on at most {} pairs", most), row);
   }
 }
 
@@ -344,7 +344,7 @@ void expect_choice(const Json& tuned) {
   const std::string without(tuned.contains("epsilon") ? kAsItIs : kZero);
   const std::string chosen = tuned.at("chosen") == without ? "" : tuned["chosen"].get<std::string>();
   const analysis::PolicyErrors confirmed = errors_of(tuned.at("confirmed")), zero = errors_of(tuned.at("zero"));
-  expect(confirmed.policy == chosen, "errors of the policy that was chosen", tuned["confirmed"]);
+  expect(confirmed.policy == chosen, "errors of the chosen policy", tuned["confirmed"]);
   std::optional<analysis::PolicyErrors> chosen_on;
   if (chosen.empty()) chosen_on = zero;
   std::vector<analysis::PolicyErrors> others = {zero};
@@ -360,12 +360,12 @@ void expect_choice(const Json& tuned) {
     }
   }
   std::erase_if(sites, [&](const std::string& site) { return live.contains(site); });
-  expect(tuned.at("dead") == Json(sites), "dead sites that are those at which nothing changes", tuned["dead"]);
-  expect(chosen_on.has_value(), "a choice that is a point of the curves", tuned["chosen"]);
+  expect(tuned.at("dead") == Json(sites), "the sites at which nothing changes as dead sites", tuned["dead"]);
+  expect(chosen_on.has_value(), "a point of the curves as the choice", tuned["chosen"]);
   const analysis::PolicyRank rank = analysis::rank(*chosen_on, forbid, max_rate);
   expect(std::none_of(others.begin(), others.end(),
                       [&](const auto& other) { return analysis::rank(other, forbid, max_rate) < rank; }),
-         "a choice that is the best policy of the curves", tuned["chosen"]);
+         "the best policy of the curves as the choice", tuned["chosen"]);
   expect_upper_bound(tuned.at("bound"), forbidden(confirmed, forbid), confirmed.pairs);
   const auto result = among<analysis::TuneResult>(kTuneResults, tuned.at("result"));
   if (forbid == analysis::Forbid::any) {
@@ -377,18 +377,18 @@ void expect_choice(const Json& tuned) {
   expect(result == expected, fmt::format("'{}'", kTuneResults[static_cast<int>(expected)]), tuned["result"]);
 }
 
-// Checks that all rows have costs of the host, or all have costs of a device, which have other fields.
+// Checks that either all rows have costs on the host or all have costs on a device, which have other fields.
 void expect_costs_of_kind(const Json& row, bool on_device) {
   for (const char* field : {"resident", "with_copies", "registers", "local_bytes", "active_threads"})
-    expect(row.contains(field) == on_device, fmt::format("{} for either all lanes or none", field), row);
+    expect(row.contains(field) == on_device, fmt::format("{} for all lanes or for none", field), row);
   for (const char* field : {"in_cache", "from_memory"})
-    expect(row.contains(field) != on_device, fmt::format("{} for either all lanes or none", field), row);
-  // A user's code may take only blocks of pairs.
+    expect(row.contains(field) != on_device, fmt::format("{} for all lanes or for none", field), row);
+  // A user's code may take only blocks of pairs, so it may lack the cost of a call of one pair.
   const Lane* lane = find_lane(row.at("lane").get<std::string>());
   expect(on_device || !lane || lane->foreign || row.contains("one_a_call"), "the cost of a call of one pair", row);
 }
 
-// Rounding of costs keeps their order but may make them equal.
+// Checks which lanes are dominated. Rounding keeps the order of costs but may make them equal.
 void expect_domination(const Json& row, const Json& lanes) {
   const auto cost = [](const Json& lane, const char* quartile) -> double {
     return lane.at(lane.contains("resident") ? "resident" : "in_cache").at(quartile);
@@ -433,7 +433,7 @@ void expect_possible_map(const Json& map, const Json& report) {
       expect(cell.at("wrong") == rate && (differs.is_null() || differs.at("of") == rate.at("of")),
              "shares of the lane's pairs", cell);
       expect(map["reference"] != variants[variant] || differs.is_null() || differs.at("count") == 0,
-             "no difference of the reference from itself", cell);
+             "no difference between the reference and itself", cell);
     }
   }
 }
@@ -469,7 +469,7 @@ void expect_possible_costs(const Json& costs, const Json& report) {
   std::set<std::pair<std::string, std::string>> rows;
   for (const Json& row : costs["rows"]) {
     const Json& group = row["group"];
-    expect(rows.emplace(row["lane"].dump(), group.dump()).second, "the costs of a lane in a group once", row);
+    expect(rows.emplace(row["lane"].dump(), group.dump()).second, "the costs of each lane in a group once", row);
     std::uint64_t most = 0;
     if (group.is_null()) {
       for (std::size_t place = 0; place < report.at("strata").size(); ++place) most += most_of(place);

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kWidestBand = 2 + 1e-9;  // see band in core/discrepancy/count.h; its sums and quotient are rounded
+constexpr double kWidestBand = 2 + 1e-9;  // see band in core/discrepancy/count.h; more than 2 because of rounding
 
 void expect(bool holds, const std::string& what) {
   if (!holds) throw std::runtime_error("impossible counts: " + what);
@@ -38,7 +38,7 @@ std::uint64_t sum_of(const Json& histogram) {
   return sum;
 }
 
-// Checks that the pairs by place on the stratum's axis add up to all pairs.
+// Checks that the counts by place on the stratum's axis add up to those over all pairs.
 void expect_extremes(const Json& of, const std::string& what) {
   for (const auto& [axis, places] : of.at("extremes").items()) {
     expect(axis == "scale" || axis == "offset", what + ": extremes of " + axis);
@@ -58,17 +58,17 @@ void expect_possible_counts(const Json& of, const std::vector<Question>& questio
   expect(number_at(of, "sign") <= number_at(of, "differs") + number_at(of, "choice"),
          what + ": more signs differ than values and choices");
   for (const Json& unlike : of.at("unlike"))
-    expect(unlike.is_number_unsigned() && unlike <= of.at("pairs"), what + ": unlike");
+    expect(unlike.is_number_unsigned() && unlike <= of.at("pairs"), what + ": `unlike` is not a count of its pairs");
   for (const auto& [site, counts] : of.at("sites").items()) {
     expect_falling(counts, {"asked", "differs", "sign"}, what + ", " + site);
-    expect(number_at(counts, "asked") <= number_at(of, "pairs"), what + ": more pairs at " + site);
+    expect(number_at(counts, "asked") <= number_at(of, "pairs"), what + ": more pairs than in total at " + site);
   }
   expect(of.at("questions").size() == questions.size(), what + ": its questions are not those of the algorithm");
   for (std::size_t q = 0; q < questions.size(); ++q) {
     const Json& question = of.at("questions").at(q);
     const std::string place = what + ", " + questions[q].name;
-    expect(text_at(question, "question") == questions[q].name, place + " is not there");
-    expect(number_at(question, "asked") <= number_at(of, "pairs"), place + ": asked of more pairs");
+    expect(text_at(question, "question") == questions[q].name, place + " is missing");
+    expect(number_at(question, "asked") <= number_at(of, "pairs"), place + ": asked on more pairs than there are");
     expect_falling(question, {"asked", "differs", "sign", "outcome", "verdict"}, place);
     expect_falling(question, {"sign", "zero_on_one_side"}, place);
     expect(sum_of(question.at("band")) == number_at(question, "sign"),
@@ -76,10 +76,10 @@ void expect_possible_counts(const Json& of, const std::vector<Question>& questio
     for (const char* largest : {"largest_in_bounds", "largest_length"})
       expect(question.at(largest).get<double>() >= 0, place + ": " + largest);
     expect(question.at("largest_in_bounds") <= kWidestBand, place + ": a band of more than two bounds");
-    expect(question.at("values").size() == questions[q].of.size(), place + ": other values");
+    expect(question.at("values").size() == questions[q].of.size(), place + ": its values are not the question's");
     for (const Json& value : question.at("values")) {
       const std::uint64_t compared = number_at(value, "compared"), equal = number_at(value, "equal");
-      expect(compared == number_at(question, "asked"), place + ": compared is not asked");
+      expect(compared == number_at(question, "asked"), place + ": `compared` differs from `asked`");
       expect(equal + number_at(value, "zero_sign") + number_at(value, "not_finite") + sum_of(value.at("below")) +
                      sum_of(value.at("above")) ==
                  compared,
@@ -107,7 +107,7 @@ void add(Json& to, const Json& some, const std::string& key = "") {
   }
 }
 
-// The traced pairs are some of the compared ones, so no count is larger than that of the comparison.
+// The traced pairs are some of the compared ones, so no count may exceed that of the comparison.
 void expect_possible_origins(const Json& of, const std::vector<Question>& questions, const std::string& what) {
   const Json &origins = of.at("origins"), &total = of.at("total"), &lines = origins.at("lines");
   expect(number_at(origins, "pairs") <= number_at(total, "pairs"), what + ": more pairs are traced than compared");
@@ -119,7 +119,7 @@ void expect_possible_origins(const Json& of, const std::vector<Question>& questi
   for (const Json& line : lines) {
     expect(!text_at(line, "line").empty() && line.at("within").is_string(), what + ": a line without a place");
     expect(number_at(line, "verdicts_fixed") <= number_at(origins, "verdicts"),
-           what + ": more verdicts are given back");
+           what + ": more verdicts return than changed");
     expect(number_at(line, "verdicts_alone") <= number_at(origins, "pairs"), what + ": more verdicts than pairs");
     expect(number_at(line, "values") <= values * number_at(origins, "pairs"), what + ": more values than are compared");
   }
@@ -130,7 +130,7 @@ void expect_possible_origins(const Json& of, const std::vector<Question>& questi
         std::find_if(questions.begin(), questions.end(), [&](const Question& q) { return q.name == name; });
     expect(question != questions.end() && std::count(question->of.begin(), question->of.end(), value) == 1 &&
                seen.emplace(name, value).second,
-           what + ": no value " + name + ", " + value + ", or it is there twice");
+           what + ": no value " + name + ", " + value + ", or it is listed twice");
     std::uint64_t sum = number_at(start, "by_several_lines");
     for (const auto& [line, unused] : start.at("by_line").items()) {
       std::size_t place = lines.size();
@@ -155,7 +155,7 @@ void expect_possible_discrepancy(const Json& json) {
   std::set<std::set<std::string>> compared;
   for (const Json& of : json.at("lanes")) {
     const std::set<std::string> both{text_at(of, "first"), text_at(of, "second")};
-    expect(both.size() == 2 && compared.insert(both).second, "two lanes are one, or are compared twice");
+    expect(both.size() == 2 && compared.insert(both).second, "two lanes are the same, or are compared twice");
     const Lane* lanes[2] = {find_lane(text_at(of, "first")), find_lane(text_at(of, "second"))};
     expect(lanes[0] && lanes[1] && lanes[0]->algorithm >= 0 && lanes[0]->algorithm == lanes[1]->algorithm &&
                lanes[0]->scalar == lanes[1]->scalar,
@@ -173,7 +173,7 @@ void expect_possible_discrepancy(const Json& json) {
            text_at(of, "second") + ": the total is not that of the strata");
     expect(number_at(of.at("total"), "pairs") == number_at(json, "pairs"), "not all pairs are compared");
     const Lane* fused = analysis::fused_of(*lanes[0], *lanes[1]);
-    expect(of.at("origins").is_null() || fused, text_at(of, "second") + ": origins of no contraction");
+    expect(of.at("origins").is_null() || fused, text_at(of, "second") + ": origins without a contraction");
     if (!of["origins"].is_null()) expect_possible_origins(of, questions, text_at(of, "second"));
   }
 }

@@ -28,7 +28,7 @@ Share share_not_right(const CampaignCounts& counts, std::size_t lane) {
 }
 
 // The strata on which costs are compared: general pairs if there are any, because exact decisions are known to be slow
-// on others; of both coordinate types, those of float32.
+// on others. If there are general pairs of both coordinate types, those of float32.
 struct Ground {
   std::vector<std::size_t> strata;
   std::string pair;  // "a general pair"
@@ -79,7 +79,7 @@ std::string price(const CampaignCounts& counts, const Costs* costs, const LaneIn
   if (!costs) return ". Its cost depends on the machine; costs.json has it if the campaign was timed.";
   const Ground ground = ground_of(counts);
   const int own = cheapest(costs, exact, ground.strata);
-  if (own < 0) return ". What it costs is not settled: the campaign has no timings of it.";
+  if (own < 0) return ". Its cost is not settled: the campaign has no timings of it.";
   const auto lane = static_cast<std::size_t>(own);
   const Cost cost = *costs->of(lane, ground.strata);
   const int fastest = cheapest(costs, published(counts), ground.strata);
@@ -173,8 +173,8 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
   const int next = first_of_others(counts, lanes, worst, [&](auto l, auto r) { return wrong(l) > wrong(r); });
   if (next < 0) {
     const LaneName& name = counts.lanes[worst].name;
-    return {fmt::format("Of the published lanes only those of {}/{} ran, so the campaign does not say which to avoid.",
-                        name.subject, name.scalar),
+    return {fmt::format("Only published lanes of {}/{} ran, so the campaign does not say which to avoid.", name.subject,
+                        name.scalar),
             false};
   }
   if (!wrong_share(counts, worst).apart(wrong_share(counts, static_cast<std::size_t>(next))))
@@ -196,7 +196,7 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
     wrong_general += group->counts.wrong(worst);
   }
   if (general > 0 && general != counts.total.pairs)
-    text += fmt::format("; of general pairs on {}", rate_words(share_of(wrong_general, general).share));
+    text += fmt::format("; on {} of the general pairs", rate_words(share_of(wrong_general, general).share));
   const Ground ground = ground_of(counts);
   const std::optional<Cost> own = cost_of(costs, worst, ground.strata);
   const std::size_t least = *std::min_element(
@@ -209,13 +209,13 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
   return {text + "."};
 }
 
-// Where lanes decline, the lane to name is the one that is most often right, not one that declines everything.
+// If lanes decline pairs, it names the lane that is most often right, so never one that declines everything.
 Sentence least_wrong_lane(const CampaignCounts& counts, const Costs* costs) {
   const LaneIndices lanes = published(counts);
   const StratumCounts& total = counts.total;
   const auto less = [&](std::size_t l, std::size_t r) { return not_right(counts, l) < not_right(counts, r); };
   const std::size_t least = *std::min_element(lanes.begin(), lanes.end(), less);
-  // Pairs that all the lanes given decide, at least.
+  // The smallest number of pairs that any of these lanes decides.
   const auto decided = [&](const LaneIndices& of) {
     std::uint64_t pairs = total.pairs;
     for (const std::size_t l : of) pairs = std::min(pairs, total.pairs - total.lanes[l].declined);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recommends which lane to use and which to avoid. Each sentence follows from counts and costs alone. If the intervals
-// of a comparison overlap, the sentence says "not settled".
+// Recommends which lane to use and which to avoid. Each sentence follows from counts and costs. If the intervals of a
+// comparison overlap, the sentence says "not settled".
 #pragma once
 
 #include "reports/costs.h"
@@ -10,7 +10,7 @@ namespace graze::reports {
 
 struct Sentence {
   std::string text;
-  bool known = true;  // false: the sentence says that the campaign cannot tell
+  bool known = true;  // false if the sentence says that the campaign cannot tell
 };
 
 // The exact lane, and its cost compared with the fastest published lane.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recommendations on artificial data, each of which could be wrong.
+// Recommendations on artificial data for which a recommendation could easily be wrong.
 #include "reports/recommendations.h"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ TEST(Recommendations, TheExactLaneIsCheaperOnlyWhereSpreadsAreApart) {
 TEST(Recommendations, CostsThatAreNotMeasuredAreNotSettled) {
   const CampaignCounts counts = counts_with(kThree);
   const std::string expected =
-      "Use exact/f32/cpu: right on all 20,000 pairs. What it costs is not settled: the campaign has no timings of it.";
+      "Use exact/f32/cpu: right on all 20,000 pairs. Its cost is not settled: the campaign has no timings of it.";
   EXPECT_EQ(lane_to_use(counts, nullptr).text,
             "Use exact/f32/cpu: right on all 20,000 pairs. Its cost depends on the machine; costs.json has it if the "
             "campaign was timed.");
@@ -96,7 +96,7 @@ TEST(Recommendations, TheWorstLaneIsAvoidedWhereIntervalsAreApart) {
   const std::string avoid =
       "Avoid moller_1997/f32/cpu: wrong on 1,800 pairs (9 %, 95 % interval 8.61 % to 9.41 %), 0 false positives and "
       "1,800 "
-      "false negatives; of general pairs on 9 %";
+      "false negatives; on 9 % of the general pairs";
   EXPECT_EQ(lane_to_avoid(counts, nullptr).text, avoid + ".");
   const Costs dear = costs_with({{38, 300}, {90, 62}, {80, 82}});
   EXPECT_EQ(lane_to_avoid(counts, &dear).text,
@@ -121,12 +121,12 @@ TEST(Recommendations, TheWorstLaneIsAvoidedWhereIntervalsAreApart) {
 TEST(Recommendations, GeneralPairsAreThoseOfBothTypes) {
   const std::vector<MadeLane> lanes = {{"moller_1997/f32/cpu", 900}, {"separating_axes/f64/cpu", 100}};
   EXPECT_TRUE(lane_to_avoid(counts_with(lanes, {"uniform", "uniform/f64", "degenerate"}), nullptr)
-                  .text.ends_with("; of general pairs on 9 %."));
+                  .text.ends_with("; on 9 % of the general pairs."));
   CampaignCounts counts = counts_with(lanes, {"uniform", "uniform/f64", "degenerate"});
   for (GroupCounts& group : counts.groups) {
     if (group.id == "general/f64") group.counts.lanes[0].false_negative = 100;
   }
-  EXPECT_TRUE(lane_to_avoid(counts, nullptr).text.ends_with("; of general pairs on 5 %."))
+  EXPECT_TRUE(lane_to_avoid(counts, nullptr).text.ends_with("; on 5 % of the general pairs."))
       << lane_to_avoid(counts, nullptr).text;
   EXPECT_EQ(lane_to_avoid(counts_with(lanes, {"uniform", "uniform/f64"}), nullptr).text.find("general"),
             std::string::npos);
@@ -149,7 +149,7 @@ TEST(Recommendations, TheLeastWrongLaneIsNamedWithItsCost) {
               "Which published lane is least wrong is not settled: the 95 % intervals of separating_axes/f64/cpu"));
 }
 
-// A lane that declines all pairs is wrong on none, and of no use.
+// A lane that declines all pairs is wrong on none, but of no use.
 TEST(Recommendations, ALaneThatDeclinesIsNotTheBest) {
   const MadeLane silent{"moller_1997/f32/cpu/bound", 0, 10'000}, cautious{"moller_1997/f32/cpu/bound", 0, 40};
   const MadeLane other{"separating_axes/f64/cpu", 100};
@@ -213,7 +213,7 @@ TEST(Costs, AreThoseOfTheLastTimedRunAndCountPairs) {
   EXPECT_TRUE(costs_of(runs, fewer));
   fewer.strata[0].pairs = 99;
   EXPECT_THROW(costs_of(runs, fewer), std::runtime_error);
-  fewer.complete = false;  // then the costs may be of pairs that it has not judged
+  fewer.complete = false;  // then costs may include pairs that it has not judged
   EXPECT_TRUE(costs_of(runs, fewer));
   EXPECT_FALSE(costs_of(Json::array({{{"machine", "untimed"}}}), counts));
   EXPECT_FALSE(costs_of(Json::array(), counts));

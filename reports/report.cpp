@@ -34,8 +34,8 @@ namespace graze::reports {
 using fuzz::Json;
 namespace {
 
-// The machines that the campaign ran on, if their names are known. A run that was killed before it recorded its pairs
-// leaves only runs without pairs: those that went on.
+// The machines that the campaign ran on, if their names are known. Only runs that recorded pairs count. If there are
+// none, because the run that decided the pairs was killed before it recorded them, all recorded runs count.
 Json machines(const std::filesystem::path& directory) {
   std::set<std::string> names, without_pairs;
   for (const Json& run : fuzz::read_timings(directory)) {
@@ -63,7 +63,7 @@ Json run_of(const std::filesystem::path& directory, const Json& summary, const C
   return run;
 }
 
-// Describes the pairs of a stratum. The text differs for two meshes, and for two hunts from different strata.
+// Describes the pairs of a stratum. The text differs between meshes, and between hunts that start from other strata.
 std::string description_of(const std::string& stratum, const Json& spec) {
   if (const strata::StratumInfo* row = strata::stratum_info(stratum))
     return (strata::stratum_in_doubles(stratum) ? "in doubles: " : "") + std::string(row->what);
@@ -118,13 +118,13 @@ Json missing_of(const CampaignCounts& counts, const Json& summary, const std::fi
   }
   if (!counts.complete) {
     missing.push_back(
-        fmt::format("The campaign is not finished: {} of {} pairs are done. The command that began it resumes it.",
+        fmt::format("The campaign is not finished: {} of {} pairs are done. To resume it, run its command again.",
                     grouped(counts.total.pairs), grouped(counts.pairs)));
   }
   if (counts.total.extremes.empty()) {
     missing.push_back(
-        "No error rates over scale and offset: the strata that vary them, such as extreme_scale and "
-        "far_from_origin, were not drawn, or the campaign was made before they were counted.");
+        "There are no error rates over scale and offset: the strata that vary them, such as extreme_scale and "
+        "far_from_origin, were not drawn, or the campaign is older than these counts.");
   }
   return missing;
 }
@@ -168,7 +168,7 @@ namespace {
 
 constexpr const char* kAgain = "make it again: graze report DIR";
 
-// Checks a file that Graze wrote.   Throws: FormatError that names it.
+// Checks a file that Graze wrote.   Throws: FormatError, which names it.
 template <class Check>
 void checked(const std::filesystem::path& file, const char* what, Check check) {
   try {
@@ -201,7 +201,7 @@ Json read_checked(const std::filesystem::path& file, void (*expect_possible)(con
   return found;
 }
 
-// A sentence if `graze discrepancy` wrote counts of other pairs into the campaign's folder; else empty.
+// A sentence if `graze discrepancy` wrote counts of other pairs into the campaign's folder; otherwise empty.
 std::string other_pairs(const std::filesystem::path& directory, const Json& discrepancy) {
   const Json spec = fuzz::recorded_spec(directory);
   if (!spec.is_object()) return "";

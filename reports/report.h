@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The report of a campaign: all data of the page, as reports/web/src/report.ts describes it, from the files of the
-// campaign and the minimiser. No lane runs here. The same campaign gives the same bytes.
+// campaign and the minimiser. No lane runs here. The same campaign always gives the same bytes.
 #pragma once
 
 #include <filesystem>
@@ -9,14 +9,15 @@
 
 namespace graze::reports {
 
-// Throws: as fuzz::checked_summary; FormatError for other damaged files too.
+// Throws: like fuzz::checked_summary; FormatError for other damaged files too.
 nlohmann::ordered_json make_report(const std::filesystem::path& directory);
 
 // The costs of the campaign's lanes, and the answer that includes them (costs.h). They are not in the report, because
 // they depend on the machine. Returns null if the campaign has no timings of its lanes.   Throws: as make_report.
 nlohmann::ordered_json make_costs(const std::filesystem::path& directory);
 
-// {"tuned", "pareto"}: tune.json and pareto.json of the directory, null if missing.
+// {"tuned", "pareto", "discrepancy"}: the contents of tune.json and pareto.json, and the sentences of discrepancy.json,
+// in the directory; each is null if its file is missing.
 // Throws: FormatError for a file of another shape or with impossible counts.
 nlohmann::ordered_json make_choices(const std::filesystem::path& directory);
 

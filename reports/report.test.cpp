@@ -110,7 +110,8 @@ TEST_F(ReportTest, DamageIsBlamedOnItsFile) {
         R"({"runs": [{"a": 1}, {"milliseconds_a_map": -1}]})", R"({"runs": [], "oracle": {"cgal": -5}})"})
     EXPECT_EQ(blamed(timings, fuzz::sealed(Json::parse(other)).dump()), "the file") << other;
   const std::string timed = fuzz::read_whole(timings);
-  for (const auto& [part, value] : {std::pair("middle", -1), {"pairs", 1025}, {"low", 1'000'000}}) {
+  for (const auto& [part, value] : std::initializer_list<std::pair<const char*, double>>{
+           {"middle", -1}, {"pairs", 1025}, {"low", 1'000'000}, {"low", 5e-324}, {"high", 1e300}}) {
     Json other = Json::parse(timed);
     other["runs"].back()["costs"]["lanes"]["moller_1997/f32/cpu"]["thesis"][part] = value;
     std::ofstream(timings) << fuzz::sealed(other);
@@ -153,7 +154,8 @@ TEST_F(ReportTest, ComparesTwoCampaigns) {
   EXPECT_EQ(compare["other"], before["run"]);
   EXPECT_EQ(compare["rates"].size(), report["rates"].size());
   EXPECT_TRUE(compare["headline"].get<std::string>().starts_with(
-      fmt::format("No rate changed, of {}, and no kind of failure with at least 14 expected signatures came or went; ",
+      fmt::format("None of {} rates changed, and no kind of failure with at least 14 expected signatures came or "
+                  "went; ",
                   report["rates"].size())));
   EXPECT_EQ(compare["differences"], Json::array({"They differ in seed: 3 before, 4 after."}));
   // One algorithm is wrong on everything, and another has lost all its failures.
@@ -220,7 +222,7 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
     return "";
   };
   const std::vector<std::string> few = {"moller_1997/f32/cpu", "moller_1997/f32/cuda-fma", "exact/f32/cpu"};
-  run("few", 2, 3, few);  // a small report, because each place of it is a file to read
+  run("few", 2, 3, few);  // a small report, because each of its places makes a file to read
   store_kinds("few", few);
   Json report = make_report(root_ / "few");
   const Json changed = {{"lane", few[0]},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The properties of the output: its columns, and whether it shows colour. The default is for files and pipes, so that
-// the same command prints the same bytes everywhere.
+// The properties of the output: its columns, and whether it shows colour. The defaults are for files and pipes, so that
+// the same command writes the same bytes everywhere.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct Screen {
 std::string bold(const Screen& screen, std::string_view text);
 std::string red(const Screen& screen, std::string_view text);
 
-// The columns that the text takes: the number of its code points.   Requires: UTF-8 without colour codes.
+// The columns that the text takes, which is its number of code points.   Requires: UTF-8 without colour codes.
 int width_of(std::string_view text);
 
 // Wraps the text at spaces into lines of at most `columns`; a longer word gets its own line. The first line is indented

@@ -10,9 +10,9 @@ namespace graze::reports {
 using Json = nlohmann::ordered_json;
 namespace {
 
-// An object has these fields; a '?' at the end of a name makes the field optional, and "*" stands for all fields. A
-// list has elements of one shape, and with "some" at least one. "text?" may be null, and a "positive count" is not 0.
-// Other words are shapes of this table. It follows reports/web/src/report.ts.
+// An object must have these fields; a '?' after a name makes the field optional, and "*" stands for all fields. All
+// elements of a list have one shape; with "some" the list must not be empty. "text?" may be null, a "positive count" is
+// not 0. Other words name shapes of this table. It follows reports/web/src/report.ts.
 constexpr const char* kShapes = R"({
 "share": {"count": "count", "of": "count", "share": "number?", "low": "number?", "high": "number?"},
 "threshold": {"exponent": "whole?", "above": "count", "bound": "number", "largest": "whole?"},
@@ -108,7 +108,7 @@ void expect(const Json& shapes, const Json& shape, const Json& value, const std:
   };
   if (shape.is_array()) {
     if (!value.is_array()) refuse("a list");
-    if (shape.size() > 1 && value.empty()) refuse("a list of something");
+    if (shape.size() > 1 && value.empty()) refuse("a list that is not empty");
     for (std::size_t i = 0; i < value.size(); ++i) expect(shapes, shape[0], value[i], fmt::format("{}/{}", place, i));
     return;
   }

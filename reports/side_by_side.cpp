@@ -37,8 +37,8 @@ std::string error_text(const std::optional<double>& value, const ValueBeside& of
   return bucket == "0" || bucket == "unknown" || bucket == "not finite" ? bucket : "≤ " + bucket;
 }
 
-// Whether the comparison of this value has another outcome in the other lane. left: the left value of a question about
-// two, else null.
+// Whether the comparison of this value has a different outcome in the other lane. left: the left value of a question
+// about two values, otherwise null.
 bool goes_otherwise(const Question& question, const ValueBeside* left, const ValueBeside& value) {
   if (!value.compared || !value.first || !value.second) return false;
   if (question.of.size() == 1) return sign_of_value(*value.first) != sign_of_value(*value.second);

@@ -10,7 +10,7 @@
 namespace graze::reports {
 
 // A row for each value that a comparison sees: both lanes' values, their distance in ulps, the exact value, both
-// errors, and a mark if the comparison has another outcome.   Requires: as analysis::runs_beside.
+// errors, and a mark if the comparison's outcome differs.   Requires: as for analysis::runs_beside.
 std::string side_by_side(const analysis::LanesCompared& lanes, const AnyPair& pair, const Screen& screen);
 
 }  // namespace graze::reports

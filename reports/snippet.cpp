@@ -32,7 +32,7 @@ std::string_view embedded(std::string_view path) {
   return file->text;
 }
 
-// A header and everything it includes, each file once, in the order in which a compiler reads them.
+// A header and everything that it includes, each file once, in the order in which a compiler reads them.
 struct Amalgamation {
   std::set<std::string> seen, system;
   std::string text;
@@ -68,7 +68,7 @@ std::string type_name(std::string_view algorithm_id) {
   return std::string(text.substr(first, text.find(' ', first) - first));
 }
 
-// The flags of a variant, each with a trailing space; flags for x86 only on x86.
+// The flags of a variant, each with a trailing space. Flags for x86 are given only on x86.
 std::string flags_of(Variant variant) {
   std::string text;
   std::istringstream flags{std::string(info_of(variant).flags)};
@@ -161,7 +161,7 @@ Call call_of(const Lane& lane, std::string_view algorithm) {
               lane.policy)};
 }
 
-// Fills in the file's template: replaces each @name@ by its value.
+// Fills in the file's template: replaces each @name@ with its value.
 std::string filled(std::string_view file, const std::vector<std::pair<std::string_view, std::string>>& values) {
   std::string text;
   std::string_view rest = embedded(fmt::format("reports/snippets/{}", file));
@@ -170,7 +170,7 @@ std::string filled(std::string_view file, const std::vector<std::pair<std::strin
     rest.remove_prefix(at + 1);
     const std::string_view key = rest.substr(0, rest.find('@'));
     const auto value = std::find_if(values.begin(), values.end(), [&](auto& v) { return v.first == key; });
-    if (value == values.end()) throw std::logic_error(fmt::format("{}: no value of '{}'", file, key));
+    if (value == values.end()) throw std::logic_error(fmt::format("{}: no value for '{}'", file, key));
     text += value->second;
     rest.remove_prefix(key.size() + 1);
   }
@@ -190,7 +190,7 @@ bool shows(SnippetKind kind, const Lane& lane) {
            (kind == SnippetKind::gtest || kind == (is_cuda ? SnippetKind::cuda : SnippetKind::cpp));
   }
   if (lane.under && lane.under->kind != Policy::Kind::tolerances) return false;  // such a lane is never wrong
-  if (lane.exact) return false;  // its verdict is right on what float32 stores
+  if (lane.exact) return false;  // its verdict is right for the pair as float32 stores it
   return shows_lanes(kind) && is_cuda == (kind == SnippetKind::cuda);
 }
 
@@ -245,7 +245,7 @@ std::string snippet(SnippetKind kind, const SnippetCase& found) {
                                  {"function", std::move(call.function)},
                                  {"seconds", std::to_string(call.seconds)},
                                  {"code", found.truth == Verdict::intersects ? "1" : "0"},
-                                 // An unstable verdict may need many calls to show, as in Graze itself.
+                                 // It may take many calls to show an unstable verdict, as in Graze itself.
                                  {"rounds", found.verdict == Verdict::unstable &&
                                                     backends::language_of(*found.lane) == backends::Language::cpp
                                                 ? "1000"

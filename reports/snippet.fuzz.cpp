@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes snippets of pairs with any bits and any name. The vertices in the text must equal the pair's, bit for bit.
+// Makes snippets of pairs with arbitrary bits and names. The vertices in the text must equal the pair's, bit for bit.
 #include "reports/snippet.h"
 
 #include <cstdlib>
@@ -20,7 +20,7 @@ void read_numbers(std::string_view line, std::string_view begins, std::vector<fl
   for (int i = 0; i < 3; ++i) {
     char* end = nullptr;
     numbers.push_back(std::strtof(at, &end));
-    must_hold(end != at, "three numbers stand in a vertex's line");
+    must_hold(end != at, "a vertex's line has three numbers");
     at = end;
     while (*at == 'f' || *at == ',' || *at == ' ') ++at;
   }

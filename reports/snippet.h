@@ -16,8 +16,8 @@ namespace graze::reports {
 enum class SnippetKind { cpp, cuda, python, obj, cgal, gtest };
 inline constexpr std::string_view kSnippetKinds[] = {"cpp", "cuda", "python", "obj", "cgal", "gtest"};
 
-// Whether a snippet of this kind shows the lane's verdict: cpp and gtest show host lanes, cuda shows device lanes. For
-// foreign code, gtest also shows CUDA lanes.
+// Whether a snippet of this kind can show the lane's verdict: cpp and gtest show host lanes, cuda shows device lanes.
+// gtest also shows CUDA lanes of foreign code.
 bool shows(SnippetKind kind, const Lane& lane);
 
 // Whether this kind shows a lane at all.
@@ -34,12 +34,12 @@ struct SnippetCase {
 // Requires: finite coordinates; truth is not declined; a lane that the kind shows, if it shows lanes.
 std::string snippet(SnippetKind kind, const SnippetCase& found);
 
-// Returns core/algorithms/ID.h and everything that it includes as one source, without its own includes and guards. With
-// `with_policy`, also the code that decides under a policy.
+// Returns core/algorithms/ID.h and everything that it includes as one source, without the project's own includes and
+// include guards. With `with_policy`, also the code that decides under a policy.
 std::string amalgamated_source(std::string_view algorithm_id, bool with_policy = false);
 
-// The text of the source line at a place such as "core/vec3.h:52", without its indentation. Empty if no algorithm's
-// source contains that line.
+// The text of the source line at a place such as "core/vec3.h:52", without its indentation. Empty if that line is in no
+// algorithm's source.
 std::string source_line(const std::string& place);
 
 // Returns a header for C++ and CUDA with one function, triangles_intersect, that decides like the lane.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Snippets as text; and the Python snippet, run over the whole corpus: its 32 axes against the oracle.
-// cli/emit.test.cpp compiles and runs the others.
+// Tests snippets as text, and runs the Python snippet over the whole corpus, which compares its 32 axes with the
+// oracle. cli/emit.test.cpp compiles and runs the others.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

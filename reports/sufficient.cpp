@@ -28,7 +28,7 @@ const Candidate& least_wrong(std::span<const Candidate> candidates, std::optiona
   return *least;
 }
 
-// "No float32 lane is shown to suffice; the least wrong, …, is wrong on 31 of 100,000 fresh pairs."
+// "No published lane of f32 is shown to suffice; the least wrong, …, is wrong on 31 of 100,000 fresh pairs."
 std::string none_words(std::span<const Candidate> candidates, std::optional<Scalar> scalar) {
   const Candidate& least = least_wrong(candidates, scalar);
   return fmt::format("No published lane{} is shown to suffice; the least wrong, {}, is wrong on {} of {} fresh pairs.",
@@ -63,10 +63,10 @@ std::vector<std::string> sufficient_sentences(double rate, std::span<const Candi
   } else {
     sentences = {fmt::format("{}use {}.", asked, exact_words),
                  fmt::format("The cheapest published lane that suffices is {}: {}{}.", c.lane, errors_words(c),
-                             cheaper(exact_cost, c.cost) ? fmt::format(", and dearer at {}", cost_words(c.cost))
-                                                         : fmt::format(", at {} no cheaper beyond the spread of the "
-                                                                       "measurements",
-                                                                       cost_words(c.cost)))};
+                             cheaper(exact_cost, c.cost)
+                                 ? fmt::format(", and more expensive at {}", cost_words(c.cost))
+                                 : fmt::format(", at {} not cheaper beyond the spread of the measurements",
+                                               cost_words(c.cost)))};
   }
   const Scalar other = c.scalar == Scalar::f32 ? Scalar::f64 : Scalar::f32;
   if (const int of_other = cheapest_sufficient(candidates, other); of_other >= 0) {

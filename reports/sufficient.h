@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Says which published lane, under which tolerance, is the cheapest that is right often enough in a scene.
+// Says which published lane, and with which tolerance, is the cheapest that is right often enough in a scene.
 #pragma once
 
 #include <optional>
@@ -13,21 +13,21 @@
 
 namespace graze::reports {
 
-// A lane with the tolerance that was chosen for the rate, and its cost under that tolerance.
+// A lane with the tolerance that was chosen for the rate, and its cost with that tolerance.
 struct Candidate {
   std::string lane;  // with its tolerance
   Scalar scalar;
   analysis::TuneResult result;
-  analysis::PolicyErrors errors;  // on pairs other than those of the choice
+  analysis::PolicyErrors errors;  // on pairs other than those it was chosen on
   double bound;                   // of the rate of wrong verdicts, at 95 % confidence
   analysis::Cost cost;
 };
 
-// The index of the cheapest candidate of this scalar, or of any, that keeps the rate; -1 for none.
+// The index of the cheapest candidate of this scalar, or of any scalar, that keeps the rate; -1 for none.
 int cheapest_sufficient(std::span<const Candidate> candidates, std::optional<Scalar> scalar = std::nullopt);
 
-// What to use at this rate of wrong verdicts, what the other precision would change, and what `exact` costs. Costs
-// whose spreads overlap are not called cheaper.   Requires: candidates.
+// What to use at this rate of wrong verdicts, what the other precision would change, and what `exact` costs. A lane is
+// not called cheaper if the spreads of the costs overlap.   Requires: at least one candidate.
 std::vector<std::string> sufficient_sentences(double rate, std::span<const Candidate> candidates,
                                               const std::string& exact, const analysis::Cost& exact_cost);
 

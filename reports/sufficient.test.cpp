@@ -46,9 +46,9 @@ TEST(Sufficient, ExactIsRecommendedWhereNothingIsCheaper) {
   EXPECT_EQ(sufficient_sentences(1e-3, kThree, "exact/f32/cpu", {17, 18, 19})[0],
             "Wrong on at most 0.001 of this scene's pairs: use exact/f32/cpu, never wrong, 18 ns (17 to 19) a pair.");
   EXPECT_TRUE(sufficient_sentences(1e-3, kThree, "exact/f32/cpu", {17, 18, 19})[1].ends_with(
-      ", and dearer at 30 ns (29 to 31)."));
+      ", and more expensive at 30 ns (29 to 31)."));
   EXPECT_TRUE(sufficient_sentences(1e-3, kThree, "exact/f32/cpu", {20, 29.5, 31})[1].ends_with(
-      ", at 30 ns (29 to 31) no cheaper beyond the spread of the measurements."));
+      ", at 30 ns (29 to 31) not cheaper beyond the spread of the measurements."));
 }
 
 TEST(Sufficient, TheLeastWrongIsNamedWhereNoneSuffices) {

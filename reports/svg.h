@@ -13,7 +13,7 @@ namespace graze::reports {
 inline constexpr std::array<const char*, 8> kSvgColours = {"#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00",
                                                            "#56b4e9", "#8c6bb1", "#a6761d"};  // Okabe and Ito 2008
 
-// The start of the picture; its end is "</svg>\n".
+// The start of the picture, which must end with "</svg>\n".
 inline std::string svg_begin(std::string_view title) {
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 900 420\" width=\"900\" height=\"420\" "

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kDigits = 5;
 
-double rounded(double value) { return std::stod(fmt::format("{:.{}g}", value, kDigits)); }
+double rounded(double value) { return *parse_float64(fmt::format("{:.{}g}", value, kDigits)); }
 
 // Calls visit(index, stratum) for each stratum that has pairs, and visit(null, total).
 template <class Visit>
@@ -33,8 +33,8 @@ Json wrong_of(const StratumCounts& stratum, std::size_t lane) {
   return to_json(share_of(stratum.wrong(lane), stratum.pairs));
 }
 
-// The shares of a lane's errors: false positives of the disjoint pairs, false negatives of the others, and all wrong
-// verdicts.
+// The shares of a lane's errors: false positives among the disjoint pairs, false negatives among the others, and all
+// wrong verdicts.
 Json errors_of(const StratumCounts& pairs, std::size_t lane) {
   const analysis::LaneCounts& found = pairs.lanes[lane];
   return {{"false_positive", to_json(share_of(found.false_positive, pairs.pairs - pairs.intersects))},
@@ -80,7 +80,7 @@ Json rates(const CampaignCounts& counts) {
 std::optional<std::uint64_t> differs(const CampaignCounts& counts, const StratumCounts& stratum, std::size_t left,
                                      std::size_t right) {
   const int left_cpu = counts.lanes[left].cpu, right_cpu = counts.lanes[right].cpu;
-  // A lane that never differs from the cpu lane can replace it in the comparison.
+  // A lane that never differs from the cpu lane can stand for it in the comparison.
   const bool stands_for_cpu = left_cpu >= 0 && left_cpu == right_cpu && stratum.lanes[left].differs_from_cpu == 0;
   if (static_cast<int>(left) != right_cpu && !stands_for_cpu) return std::nullopt;
   return stratum.lanes[right].differs_from_cpu;
@@ -136,7 +136,7 @@ Threshold threshold(const StratumCounts& counts, std::size_t lane, int side) {
     if (found == counts.margins.end() || found->second.pairs == 0) continue;
     if (!result.largest) result.largest = exponent_of(found->first);
     if (found->second.wrong[lane] != 0) {
-      result.exponent = exponent_of(found->first) + 1;  // the buckets up to the next pairs may be empty
+      result.exponent = exponent_of(found->first) + 1;  // even if the buckets up to the next pairs are empty
       break;
     }
     result = {true, exponent_of(found->first), result.above + found->second.pairs, result.largest};

@@ -15,8 +15,8 @@ nlohmann::ordered_json to_json(const Share& share);
 
 nlohmann::ordered_json rates(const CampaignCounts& counts);
 
-// Pairs of lanes of one algorithm that differ in one thing: cpu and cuda-nofma, which must be equal; cuda-nofma and
-// cuda-fma; f32 and f64.
+// Compares pairs of lanes of one algorithm that differ in one respect: cpu and cuda-nofma, which must be equal;
+// cuda-nofma and cuda-fma; f32 and f64.
 nlohmann::ordered_json side_by_side(const CampaignCounts& counts);
 
 // The number of pairs on which two lanes' verdicts differ. Nothing if the campaign did not count it.
@@ -25,7 +25,7 @@ std::optional<std::uint64_t> differs(const CampaignCounts& counts, const Stratum
 
 nlohmann::ordered_json margins(const CampaignCounts& counts);
 
-// The smallest margin, a power of two in ulps, from which a lane was never wrong on one side of zero.
+// The smallest margin, a power of two in ulps, at or above which a lane was never wrong on one side of zero.
 struct Threshold {
   bool found = false;       // false: wrong at the largest margins seen, or no margins were seen
   int exponent = 0;         // one more than that of the last error; without errors, that of the smallest margins seen

@@ -47,7 +47,7 @@ void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
   const auto lanes = summary["spec"]["lanes"].get<std::vector<std::string>>();
   std::vector<Counts> counts(lanes.size());
   std::vector<std::optional<std::uint64_t>> differs(lanes.size());  // from cpu; nothing if not compared
-  std::vector<std::optional<std::uint64_t>> stored(lanes.size());   // on pairs of doubles; nothing in double
+  std::vector<std::optional<std::uint64_t>> stored(lanes.size());   // on pairs of doubles; nothing for lanes in double
   for (const auto& [stratum, row] : summary["strata"].items()) {
     for (std::size_t l = 0; l < lanes.size(); ++l) {
       const Json& of = row["lanes"][lanes[l]];
@@ -86,19 +86,18 @@ void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
 }
 
 // Says which exact decisions support the counts. A campaign stops if two of them differ, so here they agree.
-// doubles: some pairs are pairs of doubles; then GMP also decides those whose verdict float32 changes.
+// doubles: whether some pairs are pairs of doubles; then GMP also decides those whose verdict float32 changes.
 std::string decided_by(std::uint64_t disagreements, const Json& oracle, bool doubles) {
   const std::uint64_t exact = oracle["exact"], gmp = oracle["gmp"];
   if (exact > 0) {
     return fmt::format(
-        "The exact lane decided {} pairs; CGAL decided {}, all cases kept among them, and GMP {} of these once more: "
-        "they "
-        "agree on all.",
+        "The exact lane decided {} pairs. CGAL decided {} of them again, including all kept cases, and GMP {} of "
+        "those. They agree on all.",
         grouped(exact), grouped(oracle["cgal"]), grouped(gmp));
   }
-  return fmt::format("CGAL decided all of them. GMP decided {} once more, the {} and {}{}: they agree on all.",
-                     grouped(gmp), grouped(disagreements), doubles ? "" : "a sample of ",
-                     counted(gmp - disagreements, "other"));
+  return fmt::format(
+      "CGAL decided all pairs. GMP decided {} again, the {} with a wrong lane and {}{}. They agree on all.",
+      grouped(gmp), grouped(disagreements), doubles ? "" : "a sample of ", counted(gmp - disagreements, "other"));
 }
 
 }  // namespace
@@ -140,7 +139,7 @@ namespace {
 
 // Prints a row for each subject, scalar and policy, and a column for each variant among the lanes. '-' means that the
 // lane did not run, '!' that it is wrong. The exact CUDA lane appears under all device variants, because it is the same
-// for each.
+// for all of them.
 template <class AnyPair>
 void print_verdicts(std::ostream& out, const AnyPair& pair, const oracle::Truth& true_of_pair,
                     std::span<const Lane* const> lanes, std::span<const Verdict> verdicts, const Screen& screen) {

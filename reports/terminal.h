@@ -13,7 +13,7 @@
 
 namespace graze::reports {
 
-// Prints the contents of summary.json as two tables, errors by stratum and algorithm, and errors by lane. Also says
+// Prints the contents of summary.json as two tables: errors by stratum and algorithm, and errors by lane. Also says
 // which exact decisions support them (see Outcome).
 void print_summary(std::ostream& out, const nlohmann::ordered_json& summary, const nlohmann::ordered_json& oracle,
                    const Screen& screen = {});

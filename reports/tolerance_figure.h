@@ -16,7 +16,7 @@
 
 namespace graze::reports {
 
-// A line of the picture, with the count that it shows.
+// A line of the picture, and the count that it shows.
 template <class Point>
 struct ToleranceLine {
   std::string_view colour, label;

@@ -62,7 +62,7 @@ std::vector<Row> rows_of(const CampaignCounts& counts, const std::vector<std::st
 
 bool is_counted(const analysis::LaneCounts& lane) { return lane.declined == 0 && lane.by_convention == 0; }
 
-// On how many pairs the verdicts of two lanes of one algorithm differ.
+// Counts on how many pairs the verdicts of two lanes of one algorithm differ.
 class Differences {
  public:
   Differences(const CampaignCounts& counts, const Json& signatures) : counts_(counts) {

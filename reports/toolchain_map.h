@@ -13,12 +13,12 @@ namespace graze::reports {
 // The reference is x86-gcc, else cpu. The page shows it (ToolchainMap in reports/web/src/report.ts).
 //
 // Two lanes of a subject differ on a pair exactly if the pair's signature marks them differently, so the signatures'
-// counts suffice. A lane that declines pairs, or whose convention leaves some open, has no count: not all of these
-// pairs have a signature. signatures: as signature_rows returns them (failure_cards.h).   Returns: null if no toolchain
-// ran.
+// counts suffice. There is no count for a lane that declines pairs or whose convention covers some of them, because not
+// all of these pairs have a signature. signatures: as signature_rows returns them (failure_cards.h).   Returns: null if
+// no toolchain ran.
 nlohmann::ordered_json toolchain_map(const CampaignCounts& counts, const nlohmann::ordered_json& signatures);
 
-// Whether a toolchain's program ran as a lane of the campaign.
+// Whether a program built by a toolchain ran as a lane of the campaign.
 bool has_toolchains(const CampaignCounts& counts);
 
 }  // namespace graze::reports

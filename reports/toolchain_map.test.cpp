@@ -10,7 +10,7 @@ namespace {
 const std::vector<std::string> kMapped = {"m/f32/cpu", "m/f32/x86-gcc", "m/f32/arm64-gcc", "m/f32/x87",
                                           "m/f64/cpu", "m/f64/x86-gcc", "m/f64/arm64-gcc"};
 
-// Signatures of those lanes, each after its wrong lanes, and the number of its pairs.
+// Signatures of those lanes, each named after its wrong lanes, with its number of pairs.
 Json campaign_of(const std::vector<std::pair<std::string, int>>& signatures) {
   Json summary = summary_of(kMapped, {"thesis"}, {});
   for (const auto& [wrong, count] : signatures)

@@ -32,7 +32,7 @@ std::string_view other_words(Forbid forbid) {
   return words(forbid == Forbid::false_negative ? Forbid::false_positive : Forbid::false_negative);
 }
 
-// "rel:24"; of a user's epsilon "kEps = 3.05e-05f" or, if it has no name, "3.05e-05f for 1e-6f".
+// "rel:24"; for a user's epsilon "kEps = 3.05e-05f" or, if it has no name, "3.05e-05f for 1e-6f".
 std::string policy_words(const TuneQuestion& q, const std::string& policy) {
   if (!q.source) return policy.empty() ? "no policy" : policy;
   const subjects::Epsilon& e = q.source->epsilon;
@@ -55,8 +55,8 @@ std::string choice_words(const TuneQuestion& q, const std::string& policy) {
 // The subject of "is good enough here": "No tolerance", "No value".
 std::string_view setting(const TuneQuestion& q) { return q.source ? "value" : "tolerance"; }
 
-// "value of kEps from 0 on": a sweep has no values below 0, which mean something else.
-std::string value_of(const TuneQuestion& q) { return "value of " + printable(q.source->epsilon.name) + " from 0 on"; }
+// "value of kEps from 0 up": a sweep has no values below 0, which mean something else.
+std::string value_of(const TuneQuestion& q) { return "value of " + printable(q.source->epsilon.name) + " from 0 up"; }
 
 std::string rate(std::uint64_t count, std::uint64_t of) {
   return rate_words(of == 0 ? 0 : static_cast<double>(count) / static_cast<double>(of));
@@ -72,12 +72,12 @@ std::string errors(const PolicyErrors& e) {
                      part(e.false_positive, "false positives"), grouped(e.pairs));
 }
 
-// The errors that double from one scale to another: all, or the forbidden ones alone.
+// The errors that double from one scale to another: all, or only the forbidden ones.
 std::string_view doubled_words(const TuneQuestion& q, const PolicyErrors& here, const PolicyErrors& there) {
   return analysis::doubles(here.wrong(), there.wrong(), here.pairs) ? "errors" : words(q.forbid);
 }
 
-// How many pairs would show that the rate is under the limit, if it is what these pairs have.
+// How many pairs would show that the rate is under the limit, if more pairs have the same rate as these.
 std::string pairs_to_show(const TuneQuestion& q, const Tuned& t) {
   const std::uint64_t errors = analysis::forbidden(t.confirmed, q.forbid), pairs = t.confirmed.pairs;
   if (errors == 0)
@@ -85,10 +85,9 @@ std::string pairs_to_show(const TuneQuestion& q, const Tuned& t) {
                        grouped(static_cast<std::uint64_t>(std::ceil(std::log(0.05) / std::log1p(-q.max_rate)))));
   for (std::uint64_t times = 2; times <= 1024; times *= 2) {
     if (analysis::upper_bound(times * errors, times * pairs) <= q.max_rate)
-      return fmt::format("With {} pairs (--pairs) and errors at the same rate, it would be shown.",
-                         grouped(times * pairs));
+      return fmt::format("{} pairs (--pairs) with errors at the same rate would show it.", grouped(times * pairs));
   }
-  return "The rate is too near the limit, or above it, for more pairs to show it.";
+  return "The rate is too near the limit, or above it, so more pairs cannot show it.";
 }
 
 std::string answer(const TuneQuestion& q, const Tuned& t) {
@@ -106,30 +105,30 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
     case TuneResult::too_few_pairs:
       if (t.bound <= q.max_rate)
         return fmt::format(
-            "Not settled: {}; {}. The rate of {} may be at most {} (--max-other); more pairs (--pairs) settle it.", of,
-            trust, other_words(q.forbid), q.max_other);
+            "Not settled: {}; {}. The rate of {} may be at most {} (--max-other); more pairs (--pairs) may settle it.",
+            of, trust, other_words(q.forbid), q.max_other);
       return fmt::format("Not settled: {}; {}, and {} was asked for. {}", of, trust, q.max_rate, pairs_to_show(q, t));
     case TuneResult::not_confirmed:
       return fmt::format(
-          "Not settled: {}. It keeps {} at or under {} on the pairs of the choice, but not on these. "
-          "More pairs to choose on (--pairs) or a stricter --max-rate may find one that does.",
+          "Not settled: {}. It keeps {} at or under {} on the pairs that it was chosen on, but not on these. "
+          "More pairs (--pairs) or a stricter --max-rate may find one that does.",
           of, words(q.forbid), q.max_rate);
     case TuneResult::not_useful:
       return fmt::format(
-          "No {6} is good enough here: of those that keep {0} at or under {1}, the fewest {2} are those of {3}; {4}. "
-          "The rate of {2} may be at most {5} (--max-other). The exact lane has no errors.",
+          "No {6} is good enough here. Among those that keep {0} at or under {1}, the one with the fewest {2} is {3}; "
+          "{4}. The rate of {2} may be at most {5} (--max-other). The exact lane has no errors.",
           words(q.forbid), q.max_rate, other_words(q.forbid), of, trust, q.max_other, setting(q));
     case TuneResult::not_satisfiable:
       break;
   }
   return fmt::format(
-      "No {} is good enough here: {} keeps {} at or under {}. On the pairs of the choice the fewest are those of {}. "
-      "The exact lane has no errors.",
+      "No {} is good enough here: {} keeps {} at or under {}. The one that comes nearest is {}. The exact lane has no "
+      "errors.",
       setting(q), q.source ? "no " + value_of(q) : "no tolerance of " + q.lane, words(q.forbid), q.max_rate, of);
 }
 
-// Says that the choice 0 does not err like the smallest value beside it: a comparison with 0 also decides what is
-// exactly 0, as where triangles touch. Empty if it does, or for another choice.
+// Says that the chosen value 0 does not err like the next smallest value: a comparison with 0 also decides what is
+// exactly 0, as where triangles touch. Empty if it does err like it, or if another value was chosen.
 std::string zero_words(const TuneQuestion& q, const Tuned& t) {
   if (t.curves.empty()) return "";
   const std::vector<PolicyErrors>& points = t.curves[0].points;
@@ -137,7 +136,8 @@ std::string zero_words(const TuneQuestion& q, const Tuned& t) {
   const PolicyErrors &zero = points[0], &least = points[1];
   if (zero.false_negative == least.false_negative && zero.false_positive == least.false_positive) return "";
   return fmt::format(
-      "Zero is no small value here: on the pairs of the choice, {} has {}, but {}, the smallest other one, {}.",
+      "Zero does not act like a small value here: on the pairs that it was chosen on, {} has {}, but {}, the next "
+      "smallest, {}.",
       policy_words(q, zero.policy), errors(zero), policy_words(q, least.policy), errors(least));
 }
 
@@ -195,12 +195,12 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
   const analysis::ScaleBreak& scale = tuned.scale;
   for (const auto& [k, at] : {std::pair{scale.up, scale.at_up}, {scale.down, scale.at_down}}) {
     if (k != 0)
-      result.push_back(fmt::format("Scale break: if the pairs should {}, {} more than double: {}, after {}.", power(k),
+      result.push_back(fmt::format("Scale break: if the pairs {}, {} more than double, to {} from {}.", power(k),
                                    doubled_words(question, scale.here, at), errors(at), errors(scale.here)));
   }
   if (!tuned.chosen.empty() && scale.up == 0 && scale.down == 0)
     result.push_back(fmt::format(
-        "Scale: with {1}, {2} shown to double from 2^-{0} to 2^{0} times the pairs' size, on {3}.",
+        "Scale: with {1}, {2} shown to double when the pairs are scaled by 2^-{0} to 2^{0}, on {3}.",
         analysis::kMostScale, choice_words(question, tuned.chosen),
         question.forbid == Forbid::any ? "errors are not"
                                        : fmt::format("neither errors nor {} alone are", words(question.forbid)),
@@ -225,7 +225,7 @@ std::string tuning_table(const TuneQuestion& question, const Tuned& tuned, const
   for (const PolicyErrors* best : analysis::best_of_curves(tuned.curves, question.forbid, question.max_rate)) {
     if (!best->changes_nothing()) add(*best);
   }
-  return fmt::format("The best {}, on the {} pairs of the choice:\n{}",
+  return fmt::format("The best {}, on the {} pairs used to choose:\n{}",
                      question.source ? "value" : "tolerance of each kind and site", grouped(tuned.zero.pairs),
                      table.text(screen));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presents the results of `graze tune`: sentences, tune.json, and the curves as a picture.
+// Presents the results of `graze tune` as sentences, tune.json, and a picture of the curves.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -19,7 +19,7 @@ inline constexpr std::string_view kTuneForbids[] = {"false_negative", "false_pos
                                   kTuneResults[] = {"satisfied", "too few pairs", "not confirmed", "not satisfiable",
                                                     "not useful"};
 
-// How tune.json names the choice that changes nothing: no tolerance, or the epsilon of a user's source as it is.
+// How tune.json names the choice that changes nothing: no tolerance, or the unchanged epsilon of a user's source.
 inline constexpr std::string_view kZero = "zero", kAsItIs = "as it is";
 
 // The tuned lane, and the goal of the tuning.
@@ -27,14 +27,14 @@ struct TuneQuestion {
   std::string lane;
   analysis::Forbid forbid = analysis::Forbid::any;
   double max_rate = 0, max_other = 0;
-  const subjects::TunableSource* source = nullptr;  // of a user's code: what has the epsilon
+  const subjects::TunableSource* source = nullptr;  // of a user's code: the source with the epsilon
   std::string units = {};                           // of the scene's coordinates; empty without a scene
 };
 
 // Each sentence starts with its topic. Every number in it belongs to the pairs that the sentence names.
 std::vector<std::string> tuning_sentences(const TuneQuestion& question, const analysis::Tuned& tuned);
 
-// The best tolerance of each curve on the pairs of the choice: what it fixes and breaks, and what stays wrong.
+// The best tolerance of each curve on the pairs used to choose: what it fixes and breaks, and what stays wrong.
 // Tolerances that change nothing there are left out.
 std::string tuning_table(const TuneQuestion& question, const analysis::Tuned& tuned, const Screen& screen);
 

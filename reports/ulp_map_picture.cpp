@@ -16,8 +16,8 @@
 namespace graze::reports {
 namespace {
 
-// One colour for each kind of cell, in order; ink and paper come before the colours of failing foreign code. Right
-// verdicts are grey. Wrong ones are vermilion and blue of Okabe and Ito's palette, which also differ in lightness.
+// One colour for each kind of cell, in order; ink and paper come before the colours of failing foreign code. Correct
+// verdicts are grey. Wrong ones are vermilion and blue from Okabe and Ito's palette, which also differ in lightness.
 constexpr std::uint8_t kPalette[][3] = {{0xee, 0xee, 0xee}, {0xaa, 0xaa, 0xaa}, {0xd5, 0x5e, 0x00}, {0x00, 0x72, 0xb2},
                                         {0xf0, 0xe4, 0x42}, {0xcc, 0x79, 0xa7}, {0x00, 0x00, 0x00}, {0xff, 0xff, 0xff},
                                         {0x00, 0x9e, 0x73}, {0x56, 0xb4, 0xe9}, {0xe6, 0x9f, 0x00}};
@@ -29,7 +29,7 @@ constexpr std::uint8_t colour_of(std::size_t kind) { return static_cast<std::uin
 
 constexpr int kZoom = 2;  // zoom factor of a sheet's pixels and letters
 constexpr int kMargin = 16;
-constexpr int kLine = 24;  // of text
+constexpr int kLine = 24;  // height of a line of text
 constexpr int kSide = kZoom * analysis::kMapSize;
 constexpr int kLanesARow = 4;
 constexpr int kMapCells = analysis::kMapSize * analysis::kMapSize;
@@ -95,7 +95,7 @@ Image picture(const analysis::UlpPanel& panel) {
 
 using CellCounts = std::array<int, analysis::kCellKinds>;
 
-constexpr std::size_t kFirstOfLanes = 2;  // right verdicts of a lane are not written
+constexpr std::size_t kFirstOfLanes = 2;  // a lane's correct verdicts are not counted in words
 
 std::string words_of(const CellCounts& counts, std::size_t first) {
   std::string text;
@@ -111,7 +111,7 @@ std::string counts_of(const analysis::UlpPanel& panel) {
   return words_of(panel.counts(), panel.lane ? kFirstOfLanes : 0);
 }
 
-// Whether counts_of writes this text for some panel, of the truth or of a lane.
+// Whether counts_of can write this text for a panel of the truth or of a lane.
 bool are_counts(const std::string& text, bool of_truth) {
   CellCounts counts{};
   int all = 0;
@@ -182,7 +182,7 @@ std::string sheet_png(const analysis::UlpMap& map) {
   }
   int top = kMargin + rows * row_height;
   sheet.write(kMargin, top,
-              fmt::format("{} to the right, {} upwards; a cell is an ulp; the cross is at the pair itself",
+              fmt::format("{} to the right, {} upwards; a cell is one ulp; the cross is at the pair itself",
                           analysis::name_of_coordinate(map.moved.x), analysis::name_of_coordinate(map.moved.y)));
   top += kLine;
   int left = kMargin;
@@ -205,7 +205,7 @@ nlohmann::ordered_json legend_of(std::size_t kind) {
   return {{"colour", fmt::format("#{:02x}{:02x}{:02x}", red, green, blue)}, {"means", kCellNames[kind]}};
 }
 
-// What a map says of its coordinates.
+// What a map says about its coordinates.
 nlohmann::ordered_json frame_of(const std::string& x, const std::string& y) {
   return {{"title", fmt::format("{} and {} moved by up to {} ulps", x, y, analysis::kMapCentre)},
           {"x", x},

@@ -36,7 +36,7 @@ std::string simplest_in(const Json& row) {
   return row.contains("simplest") ? text_at(row.at("simplest"), "place") : "";
 }
 
-// Counts of a line: name and value.
+// One of the counts in a line of output: its name and position.
 struct LineCount {
   const char* name;
   std::uint64_t analysis::LineApart::*count;
@@ -58,17 +58,17 @@ Json operands_json(const analysis::OperandsApart& found) {
   return {{"pairs", found.pairs}, {"verdict", found.verdict}, {"lines", lines}};
 }
 
-// Without folders.
+// The line's place without folders, such as "mine.cu:9".
 std::string place_of(const Json& line) {
   const auto short_name = [&](const char* key) {
     return std::filesystem::path(text_at(line, key)).filename().string();
   };
   const std::string within = short_name("within");
-  const bool is_own = !within.empty() && !within.starts_with("graze:");  // Graze's call of the function
+  const bool is_own = !within.empty() && !within.starts_with("graze:");  // "graze:": Graze's call of the function
   return short_name("line") + (is_own ? " in " + within : "");
 }
 
-// The differences of a line's operands in ulps, whatever their sign.
+// The sizes of the differences between a line's operands, in ulps.
 Octaves sizes_of(const Json& line) {
   Octaves sizes = octaves_at(line.at("below"));
   for (const auto& [k, count] : octaves_at(line.at("above"))) sizes[k] += count;
@@ -80,7 +80,7 @@ std::string ulps_words(const Octaves& sizes, double share) {
   return k ? fmt::format("< 2^{}", *k + 1) : "-";
 }
 
-// The lines of which an operand differs.
+// The lines at which an operand differs.
 std::vector<const Json*> differing_lines(const Json& of) {
   std::vector<const Json*> lines;
   if (!of.contains("operands")) return lines;
@@ -103,7 +103,7 @@ std::string operands_sentence(const Json& operands) {
     most_at = place_of(line);
   }
   std::string text = fmt::format(
-      "On the first {} pairs of these, an operand differs in {} of {} comparisons, and {} go the other way.",
+      "On the first {} of these pairs, an operand differs in {} of {} comparisons; {} comparisons go the other way.",
       grouped(number_at(operands, "pairs")), rate_words(part_of(differs, compared)), grouped(compared),
       grouped(outcome));
   const std::uint64_t verdicts = number_at(operands, "verdict");
@@ -111,7 +111,7 @@ std::string operands_sentence(const Json& operands) {
     text += fmt::format(" The comparison at {} is the first to go the other way for {} of {} differing verdicts.",
                         most_at, grouped(most), grouped(verdicts));
   if (decided < verdicts)
-    text += fmt::format(" For {} of them no comparison that was seen does.", grouped(verdicts - decided));
+    text += fmt::format(" For {} of them no observed comparison goes the other way.", grouped(verdicts - decided));
   return text;
 }
 
@@ -169,9 +169,9 @@ std::string verdicts_sentence(const Json& of) {
   if (of.contains("operands")) return verdicts + operands_sentence(of.at("operands"));
   return verdicts + "Only verdicts are compared: " +
          (of.contains("why_no_operands") ? text_at(of, "why_no_operands") + "."
-                                         : "Graze sees values inside the lanes that it builds itself; inside "
-                                           "your own code, between cuda-nofma and cuda-fma of a CUDA source that "
-                                           "differ.");
+                                         : "Graze compares values inside the lanes that it builds itself. Inside your "
+                                           "own code it does so only between cuda-nofma and cuda-fma of a CUDA source, "
+                                           "if they differ.");
 }
 
 std::string verdicts_table(const Json& of, const Screen& screen) {
@@ -291,7 +291,7 @@ void expect_possible_verdicts(const Json& of) {
     expect(counts.differs <= counts.pairs && counts.differs <= not_true, what + ": more differences than errors");
     expect(counts.broken <= counts.differs && counts.mended <= counts.differs - counts.broken &&
                counts.broken <= counts.of[1].not_right() && counts.mended <= counts.of[0].not_right(),
-           what + ": more right verdicts than differences");
+           what + ": more correct verdicts than differences");
     return counts;
   };
   for (const auto& [stratum, row] : of.at("strata").items()) {

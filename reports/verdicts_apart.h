@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presents how often the verdicts of two lanes of a user's code differ, as a part of what `graze discrepancy` finds; of
-// a CUDA source also the operands of its comparisons.
+// Presents how often the verdicts of two lanes of a user's code differ, as a part of what `graze discrepancy` finds.
+// For a CUDA source it also presents how the operands of its comparisons differ.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -17,16 +17,16 @@ namespace graze::reports {
 std::string line_of(const cuda::SourceLine& line);
 
 // {"first", "second", "total": {"pairs", "differs", "of_first": counts, "of_second": counts},
-//  "strata": {stratum: the same and the "simplest" {"place", "pair"} that differs}}
-// operands: null if they are not seen. Else there is also "operands": {"pairs", "verdict", "lines": [{"line", "within",
-// "compared", …}]}, or "why_no_operands".
+//  "strata": {stratum: the same, and "simplest": {"place", "pair"}, the simplest pair that differs}}
+// operands: null if they were not observed. Otherwise there is also "operands": {"pairs", "verdict", "lines": [{"line",
+// "within", "compared", …}]}, or "why_no_operands".
 nlohmann::ordered_json verdicts_json(const analysis::TwoDeciders& deciders,
                                      const std::vector<strata::PairSource>& sources,
                                      const std::vector<analysis::VerdictsApart>& found,
                                      const analysis::OperandsApart* operands);
 
-// of: such an object. How often the verdicts differ and which lane is wrong then; what decides, or why no value is
-// compared.
+// How often the verdicts differ, which lane is wrong then, and what decides or why no value is compared.   of: such an
+// object.
 std::string verdicts_sentence(const nlohmann::ordered_json& of);
 
 // A row for each stratum, and one for each source line whose operands differ.
@@ -34,7 +34,7 @@ std::string verdicts_table(const nlohmann::ordered_json& of, const Screen& scree
 std::string verdicts_section(const nlohmann::ordered_json& of);  // of the page
 std::string verdicts_csv(const nlohmann::ordered_json& of);      // rows as in discrepancy.csv
 
-// Throws: std::runtime_error for counts that cannot be.
+// Throws: std::runtime_error for impossible counts.
 void expect_possible_verdicts(const nlohmann::ordered_json& of);
 
 }  // namespace graze::reports

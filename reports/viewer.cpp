@@ -36,7 +36,7 @@ constexpr char kCanaries[] =
 constexpr std::uint64_t kReplaySeed = 20120131;
 constexpr std::uint64_t kReplayed = 16;  // pairs of each stratum
 
-// The bits of numbers, which float32 must hold unless their type is double.
+// The bits of the numbers. Unless their type is double, float32 must hold them exactly.
 std::string bits_of(std::span<const double> numbers, Scalar type) {
   std::string text;
   for (const double x : numbers)
@@ -48,13 +48,13 @@ std::string bits_of(const AnyPair& pair, Scalar type) {
   return bits_of(std::span(coordinates(pair.doubles), kCoordinates), type);
 }
 
-// The lanes that the module of this coordinate type also has, if they run here.
+// The lanes that run here and that the module of this coordinate type has too.
 std::vector<const Lane*> replayed_lanes(Scalar type) {
   std::vector<const Lane*> result;
   for (const Lane& lane : lanes()) {
     const bool rebuilt =
         lane.exact || backends::backend_of(lane).is_replayed || info_of(lane.variant).arithmetic == Arithmetic::rounded;
-    if (lane.exact && lane.scalar == Scalar::f64 && type == Scalar::f32) continue;  // there it is exact/f32/cpu
+    if (lane.exact && lane.scalar == Scalar::f64 && type == Scalar::f32) continue;  // same as exact/f32/cpu there
     if (rebuilt && !lane.foreign && !lane.under && backends::on_host(lane)) result.push_back(&lane);
   }
   return result;

@@ -37,9 +37,9 @@ EXCEPTIONS = {  # files, the library that they include, and the reason
     "strata/mesh_box.h": ("CGAL, GMP and MPFR", "the boxes that those files give to CGAL"),
     "subjects/third_party/cgal.cpp": (
         "CGAL, GMP and MPFR",
-        "the library that is tested; scripts/league alone builds it",
+        "the library under test; only scripts/league builds it",
     ),
-    "fuzz/ranks/mpi.cpp": ("MPI", "the one file that does"),
+    "fuzz/ranks/mpi.cpp": ("MPI", "the only file that calls MPI"),
     "fuzz/lanes.bench.cpp": ("CGAL, GMP and MPFR", "times CGAL's own predicates beside the lanes"),
 }
 

@@ -44,12 +44,12 @@ HEAD = """# Measurements
 Written by `scripts/measurements.py` from the records in [docs/measurements](measurements/README.md); do not edit.
 
 - **value** is the newest value of the metric on that machine; a range is written "low to high".
-- **before** is the value that the same run measured for the commit before a change, or else the previous record's value.
-- **limit** is the best that the hardware or the method allows, or the most that is permitted.
-- **commit** names the sources that were measured. "by" names the commit that added the figure, where the sources were not noted.
+- **before** is the value that the same run measured for the commit before a change; otherwise it is the previous record's value.
+- **limit** is the best value that the hardware or the method allows, or the largest value that is permitted.
+- **commit** names the sources that were measured. If these were not noted, "by" names the commit that added the figure.
 - **how** is the number of the command under the table.
 
-What was tried and not taken: [measurements/not_taken.md](measurements/not_taken.md).
+[measurements/not_taken.md](measurements/not_taken.md) lists what was tried and not taken.
 
 | machine | |
 |---|---|

@@ -31,7 +31,7 @@ def written():
 
 
 def table(path, after, head):
-    """Returns: {row: {column: cell}} of the first table of a page that begins with `head`, behind the text `after`."""
+    """Returns: {row: {column: cell}} of the first table of a page that begins with `head`, after the text `after`."""
     text = (DOCS / path).read_text(encoding="utf-8")
     text = text[text.index(after) :]
     lines = text[text.index(head) :].splitlines()

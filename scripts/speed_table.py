@@ -94,8 +94,8 @@ def host(context, results, of_doubles):
     }
     return f"""## CPU: nanoseconds per pair on one core
 {context['processor']}, {context['num_cpus']} cores; {context['compiler']}, `{context['flags']}`; commit `{context['commit']}`.
-Median of {context['repetitions']} repetitions, CPU time, on the same pairs of each stratum (seed 1, at most {most:,.0f}), which lie in the cache: bound by arithmetic and branches, not by memory.
-What is exact agreed with the oracle on every pair that was timed. CGAL's `do_intersect` (on triangles made before) takes only pairs without degenerate triangles: its times, and EPICK / exact, are over those alone, and the last column is their share.
+Median of {context['repetitions']} repetitions, CPU time, on the same pairs of each stratum (seed 1, at most {most:,.0f}). They are in the cache, so arithmetic and branches limit the speed, not memory.
+All exact decisions agreed with the oracle on every timed pair. CGAL's `do_intersect` (on triangles made beforehand) takes only pairs without degenerate triangles: its times, and EPICK / exact, cover only those, and the last column is their share.
 
 {table(["stratum", *BESIDE.values(), "exact / gd f64", "EPICK / exact", "not degenerate"], rows)}
 ### Every host lane, with CGAL and GMP for comparison
@@ -123,7 +123,7 @@ def device(context, results, of_doubles):
     lanes = {decision: runs for decision, runs in results.items() if decision not in memory}
     return f"""## GPU: 10^9 pairs per second, resident pairs
 {context['device']}, CUDA {context['driver']}; nvcc {context['nvcc']}, `{context['flags']}`; commit `{context['commit']}`.
-The limit is the memory: a pair is 72 bytes to read. Measured in the same run: a copy moves {memory['copy'] / 1e12:.3g} * 10^12 bytes/s (read and written), which is {memory['copy'] / 72e9:.3g} * 10^9 pairs/s; a kernel that only reads the pairs, {memory['read'] / 72e9:.3g} * 10^9.
+The limit is the memory: each pair takes 72 bytes to read. Measured in the same run: a copy moves {memory['copy'] / 1e12:.3g} * 10^12 bytes/s (read and written), which is {memory['copy'] / 72e9:.3g} * 10^9 pairs/s; a kernel that only reads the pairs, {memory['read'] / 72e9:.3g} * 10^9.
 Median of {context['repetitions']} repetitions on 2^24 pairs of each stratum (seed 1). The exact lane gave the host's bits on the first 65,536 of each.
 
 {table(["stratum", CUDA, "of copy", "of read", *(f"decided by {stage}" for stage in STAGES)], rows)}

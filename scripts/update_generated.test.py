@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/update_generated puts what tests say into strata/golden.h and cuda/twin/contracted_otherwise.inc, and nothing
-else."""
+"""scripts/update_generated puts what tests print into strata/golden.h and cuda/twin/contracted_otherwise.inc, and
+changes nothing else."""
 import importlib.machinery
 import importlib.util
 import pathlib

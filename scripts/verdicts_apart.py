@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""verdicts_apart.py CAMPAIGN SUBJECT ROW,… COLUMN,…: prints, as Markdown, on how many pairs two lanes of a subject or an
-algorithm have different verdicts. Rows and columns are the rest of the lanes' names, such as f32/cpu. A cell is the
-number of pairs for one that differs, with its 95 % interval, rounded outward, or 0 and the least number that this
-would be."""
+"""verdicts_apart.py CAMPAIGN SUBJECT ROW,… COLUMN,…: prints, as Markdown, how often two lanes of a subject or an
+algorithm have different verdicts. Rows and columns are the rest of the lanes' names, such as f32/cpu. A cell N (A to B)
+means that one in N pairs differs, with the 95 % interval from A to B, rounded outward. If none differs, the cell is
+0 (over A)."""
 import json
 import math
 import pathlib

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs built around a point of contact. A feature (vertex, edge or face) of each triangle passes through it, and the
-// rest of each triangle lies on its own side. Contacts in real numbers are only near once rounded; integer ones stay
-// exact.
+// rest of each triangle lies on its own side. Rounding turns a contact in real numbers into a near contact; contacts in
+// integers stay exact.
 #pragma once
 
 #include "strata/draws.h"
@@ -9,12 +9,12 @@
 namespace graze::strata {
 inline namespace GRAZE_FP {
 
-// The ranges of a contact's numbers. With integers nothing rounds, in double or in float32, because (place + 2 * weight
-// * step) <= 2^bits, of the draws' wide_bits.
+// The ranges of a contact's numbers. Integers are never rounded, neither in double nor in float32, because
+// place + 2 * weight * step <= 2^bits, where bits is wide_bits() of the draws.
 template <class D>
 struct Grain {
-  typename D::Integer place;  // the contact lies within ±place; for reals this is 0 and it lies within ±1/2
-  typename D::Integer step;   // steps (vectors that weights multiply) lie within ±step; reals: ±1
+  typename D::Integer place;  // integers: the contact lies within ±place; reals: place is 0, the contact within ±1/2
+  typename D::Integer step;   // steps (the vectors that weights multiply) lie within ±step; reals: ±1
   int weight;                 // weights are 1 … weight; reals: (0, 1]
 };
 
@@ -28,7 +28,7 @@ GRAZE_INLINE Grain<D> small_grain(const D&) {
   return {4, 2, 3};
 }
 
-// Coordinates use all 24 bits of a float; products of three differences need 60 to 75. Of doubles accordingly.
+// Coordinates use all 24 bits of a float; products of three differences need 60 to 75 bits. Doubles: 16 to 53 bits.
 template <class D>
 GRAZE_INLINE Grain<D> wide_grain(D& draws) {
   using Integer = typename D::Integer;
@@ -49,16 +49,16 @@ GRAZE_INLINE double draw_weight(auto& draws, const auto& grain) {
   return grain.place > 0 ? 1.0 + draws.below(static_cast<std::uint32_t>(grain.weight)) : draws.positive();
 }
 
-// How flat a triangle is. A sliver's height is a small part of its length. Its third vertex stands beside an end of the
-// longest edge (needle) or anywhere along it (cap).
+// How flat a triangle is. A sliver's height is a small fraction of its length. Its third vertex lies near an end of the
+// longest edge (needle) or anywhere along that edge (cap).
 struct Shape {
   double height = 1;
   bool sliver = false;
   bool needle = false;
 };
 
-// The third vertex, relative to p. It lies anywhere on the given side, or for a sliver beside the edge, which runs from
-// e * low to e * high.
+// The third vertex, relative to p. It lies anywhere on the given side. A sliver's lies close to the edge, which runs
+// from e * low to e * high.
 GRAZE_INLINE Vec draw_third(auto& draws, const auto& grain, const Shape& shape, const Vec& side, const Vec& e,
                             double low, double high) {
   const Vec arm = toward(side, draw_arm(draws, grain));
@@ -76,7 +76,7 @@ GRAZE_INLINE void put_vertex(auto& draws, const auto& grain, const Shape& shape,
   triangle[2] = p + draw_third(draws, grain, shape, side, arm, 0, 1);
 }
 
-// A triangle whose edge [0][1] passes through p along e.
+// A triangle whose edge [0][1] passes through p in the direction of e.
 GRAZE_INLINE void put_edge(auto& draws, const auto& grain, const Shape& shape, const Vec& p, const Vec& e,
                            const Vec& side, Vec (&triangle)[3]) {
   const double back = draw_weight(draws, grain);
@@ -86,7 +86,7 @@ GRAZE_INLINE void put_edge(auto& draws, const auto& grain, const Shape& shape, c
   triangle[2] = p + draw_third(draws, grain, shape, side, e, -back, forth);
 }
 
-// A triangle in the plane of s and t with p inside: w0 * (a0 - p) + w1 * (a1 - p) + w2 * (a2 - p) = 0.
+// A triangle in the plane of s and t that contains p: w0 * (a0 - p) + w1 * (a1 - p) + w2 * (a2 - p) = 0.
 GRAZE_INLINE void put_face(auto& draws, const auto& grain, const Vec& p, const Vec& s, const Vec& t,
                            Vec (&triangle)[3]) {
   const double w0 = draw_weight(draws, grain);
@@ -99,7 +99,7 @@ GRAZE_INLINE void put_face(auto& draws, const auto& grain, const Vec& p, const V
 
 enum class Touch { vertex_face, edge_edge, vertex_edge, vertex_vertex };
 
-// Two triangles that meet only at p if nothing is rounded. B's touching feature includes b[0].
+// Two triangles that meet only at p before rounding. The feature of B that touches includes b[0].
 struct Contact {
   Draft draft;
   Vec p;
@@ -138,8 +138,8 @@ GRAZE_INLINE Contact draw_contact(auto& draws, Touch touch, const auto& grain, c
   return contact;
 }
 
-// How B leaves the contact or enters A. Half of the pushes are gaps of ±2^-1 … ±2^-40 of the triangles' size (doubles:
-// 2^-100), applied before rounding. The other half move one coordinate of b[0] by 0 … ±8 ulps, after rounding.
+// Moves B away from the contact or into A. Half of the pushes are gaps of ±2^-1 … ±2^-40 of the triangles' size
+// (doubles: 2^-100), applied before rounding. The other half move one coordinate of b[0] by 0 … ±8 ulps after rounding.
 struct Push {
   double gap;
   int axis;
@@ -172,7 +172,7 @@ GRAZE_INLINE auto near_contact(auto& draws, Touch touch, const Shape& shape_a = 
 
 GRAZE_INLINE Touch draw_touch(auto& draws) { return static_cast<Touch>(draws.below(4)); }
 
-// Half of the pairs touch exactly. In a quarter each, one coordinate of b[0] is one unit more or less.
+// Half of the pairs touch exactly. In a quarter, one coordinate of b[0] is one unit larger, and in a quarter smaller.
 GRAZE_INLINE auto exact_contact(auto& draws) {
   const Touch touch = static_cast<Touch>(draws.below(3));  // two equal vertices are left to shared_vertex
   const auto grain = wide_grain(draws);

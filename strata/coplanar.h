@@ -21,16 +21,16 @@ GRAZE_HD inline GridPoint draw_point(auto& draws, int reach) { return {draws.int
 
 GRAZE_HD inline GridPoint along(GridPoint p, GridPoint d, int times) { return {p.i + d.i * times, p.j + d.j * times}; }
 
-// p + w or p - w, whichever is left of d (side 1) or right of it (side -1). If w is parallel to d, p plus d turned to
-// that side.
+// p + w or p - w, whichever lies to the left of d (side 1) or to the right (side -1). If w is parallel to d: p plus d
+// turned to that side.
 GRAZE_HD inline GridPoint beside(GridPoint p, GridPoint d, int side, GridPoint w) {
   const std::int64_t turn = static_cast<std::int64_t>(d.i) * w.j - static_cast<std::int64_t>(d.j) * w.i;
   if (turn == 0) return along(p, {-d.j, d.i}, side);
   return along(p, w, turn * side < 0 ? -1 : 1);
 }
 
-// Two triangles on the grid, within ±(reach + 1). Half of the pairs are unrelated. In the other half a vertex of B is
-// on an edge of A or one grid step from it.
+// Two triangles on the grid, within ±(reach + 1). In half of the pairs the triangles are independent. In the other half
+// a vertex of B is on an edge of A or one grid step from it.
 // Requires: reach >= 8.
 GRAZE_HD inline GridPair draw_grid_pair(auto& draws, int reach) {
   GridPair pair;
@@ -91,8 +91,8 @@ GRAZE_HD inline auto coplanar_lattice(auto& draws) {
   return shuffled(draws, rounded(draws, draft));
 }
 
-// An integer chart and a grid pair on it, within ±(2^place + 2^(bits - 1)). The bits - 2 of each product are split at
-// random between grid and chart.
+// An integer chart and a grid pair on it, within ±(2^place + 2^(bits - 1)). Each product has bits - 2 bits, which are
+// split at random between grid and chart.
 template <class D>
 GRAZE_HD Draft draw_wide_coplanar(D& draws, int bits, int place) {
   using Integer = typename D::Integer;

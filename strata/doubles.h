@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strata of doubles only: numbers as maps, drawings and constructions produce them, and pairs that float32 cannot
-// store. The table is strata/double_strata.inc.
+// The strata that exist only in doubles: numbers as maps, drawings and constructions produce them, and pairs that
+// float32 cannot store. The table is strata/double_strata.inc.
 #pragma once
 
 #include "core/exact/exact.h"
@@ -20,7 +20,7 @@ GRAZE_INLINE void move_all(Draft& draft, const Vec& by) {
   move(draft.b, by);
 }
 
-// A contact in integers of this many bits, as exact_contact: half of them exact, the others one unit off in b[0].
+// Like exact_contact, in integers of this many bits: half of the contacts are exact, the others one unit off in b[0].
 // Requires: 7 <= bits.
 GRAZE_HD inline Draft draw_integer_contact(DoubleDraws& draws, int bits) {
   const Touch touch = static_cast<Touch>(draws.below(3));
@@ -58,7 +58,8 @@ GRAZE_HD inline DoublePair large_offset(DoubleDraws& draws) {
   return finished(draws, contact.draft, push);
 }
 
-// The rotation of an integer quaternion, of which each entry is rounded once, and an offset.
+// A contact or a coplanar pair in float32 numbers, rotated by the matrix of an integer quaternion, then moved. Each
+// entry of the matrix is rounded once.
 GRAZE_HD inline DoublePair float_born(DoubleDraws& draws) {
   Draws of_floats = draws;
   const std::uint32_t kind = of_floats.below(3);
@@ -97,8 +98,8 @@ GRAZE_HD inline DoublePair decimal_born(DoubleDraws& draws) {
   return shuffled(draws, rounded(draws, draft));
 }
 
-// B begins at a point of A's edge or face, or where one of its edges would cross A's plane. In half of the pairs A's
-// own vertex is that point too, computed in another way, as where two constructions meet in a model.
+// B's first vertex is a point on an edge or the face of A, or the point where a line crosses A's plane. In half of the
+// pairs a vertex of A is the same point, computed in another way, like two constructions that meet in a model.
 GRAZE_HD inline DoublePair construction_born(DoubleDraws& draws) {
   Draft draft;
   for (Vec& v : draft.a) v = draws.reals();
@@ -110,11 +111,11 @@ GRAZE_HD inline DoublePair construction_born(DoubleDraws& draws) {
       first = (p + q) * 0.5;
       second = p + (q - p) * 0.5;
       break;
-    case 1:  // a point of an edge
+    case 1:  // a point on an edge
       first = p + (q - p) * t;
       second = q + (p - q) * (1 - t);
       break;
-    case 2:  // a point of the face
+    case 2:  // a point on the face
       first = p + (q - p) * (s * 0.5) + (r - p) * (t * 0.5);
       second = p * (1 - s * 0.5 - t * 0.5) + q * (s * 0.5) + r * (t * 0.5);
       break;
@@ -136,8 +137,8 @@ GRAZE_HD inline DoublePair construction_born(DoubleDraws& draws) {
   return shuffled(draws, rounded(draws, draft));
 }
 
-// A near contact whose gap is about that of float32's numbers there; of 32 the first that float32 changes, else the
-// last. Nearly always one is found.
+// A near contact whose gap is about the spacing of float32 numbers there. Makes up to 32 attempts and takes the first
+// whose verdict changes in float32, or else the last. Nearly every pair has one that changes.
 GRAZE_HD inline DoublePair stored(DoubleDraws& draws) {
   DoublePair pair{};
 #ifndef __CUDA_ARCH__
@@ -161,7 +162,7 @@ GRAZE_HD inline DoublePair stored(DoubleDraws& draws) {
   return shuffled(draws, pair);
 }
 
-// Longitude, latitude, and a height in radii of the Earth.
+// Coordinates are longitude, latitude and height, the height in Earth radii.
 GRAZE_HD inline DoublePair radians(DoubleDraws& draws) {
   Contact contact = draw_contact(draws, draw_touch(draws), real_grain(draws));
   const Push push = draw_push(draws);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strata of doubles: their bits, and the property that each promises. analysis/truth_over_double_strata.test.cpp
-// compares the exact decision, which is used here, with the oracle.
+// Strata of doubles: their bits, and the property that each promises. These tests use the exact decision, which
+// analysis/truth_over_double_strata.test.cpp compares with the oracle.
 #include "strata/doubles.h"
 
 #include <gtest/gtest.h>
@@ -113,7 +113,7 @@ TEST(DoubleStrata, UseAllBitsOfADouble) {
     if (info.stratum == Stratum::lattice || info.stratum == Stratum::lattice_15 ||
         info.stratum == Stratum::coplanar_lattice)
       continue;
-    std::size_t fine = 0;  // coordinates that float32 does not hold
+    std::size_t fine = 0;  // coordinates that float32 cannot hold
     for (std::uint64_t i = 0; i < 2'000; ++i) {
       const DoublePair pair = generate_doubles(1, info.stratum, i);
       for (int k = 0; k < kCoordinates; ++k)
@@ -161,7 +161,7 @@ TEST(DoubleStrata, NeighboursStoreTheSameVertices) {
   for (const DoublePair& pair : drawn(Stratum::shared_edge)) ASSERT_GE(shared_vertices(pair), 2);
 }
 
-// A push by ulps of a double is far below one of float32.
+// A push by ulps of a double is far smaller than one by ulps of float32.
 TEST(DoubleStrata, NearContactsDifferFromTheContactByUlpsOfADouble) {
   for (const Stratum stratum : {Stratum::near_vertex_face, Stratum::near_edge_edge, Stratum::near_vertex_edge}) {
     const std::vector<DoublePair> pairs = drawn(stratum);
@@ -200,7 +200,7 @@ TEST(LargeOffset, IsFarAndFine) {
   EXPECT_GT(share(pairs, changes_in_float32), 0.3);
 }
 
-// Rotated and moved, a contact is one only up to rounding; edges keep their lengths.
+// After rotation and offset, contacts remain contacts only up to rounding, and edges keep their lengths.
 TEST(FloatBorn, IsMovedRigidly) {
   const std::vector<DoublePair> pairs = drawn(Stratum::float_born);
   for (std::uint64_t i = 0; i < 1'000; ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the strata draw from: the random words of one pair, and numbers and vectors made of them. A draft is a pair
-// before its one rounding to float32. The bits are the same everywhere, because no library function that may round is
-// used.
+// before it is rounded, once, to the type of its coordinates. The bits are the same on every machine, because no
+// library function that may round is used.
 #pragma once
 
 #include <Random123/philox.h>
@@ -24,13 +24,13 @@ inline namespace GRAZE_FP {
 using Vec = Vec3<double>;
 
 // The random words of one pair, in order: Philox4x32-10 with the seed as its key. The counter is the index (two words),
-// the stratum and the number of the block. The order of draws is part of a stratum's definition. C++ does not define
-// the order within an expression, except in braces: use one draw in each expression, or braces.
+// the stratum and the block number. The order of draws is part of a stratum's definition. C++ defines no order of
+// evaluation within an expression, except in braces: use one draw per expression, or braces.
 struct Draws {
   philox4x32_key_t key;
   philox4x32_ctr_t counter;
   philox4x32_ctr_t block;
-  int used = 4;  // words of the block handed out so far
+  int used = 4;  // words of the current block used so far
 
   GRAZE_HD Draws(std::uint64_t seed, std::uint32_t stratum, std::uint64_t index)
       : key{{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}},
@@ -81,8 +81,8 @@ struct Draws {
             static_cast<double>(integer(reach))};
   }
 
-  // What depends on the type of the coordinates: the bits that it holds and those of wide integers, the exponents of
-  // the least gap, the greatest offset, the flattest sliver and the largest ratio of axes, and the range of scales.
+  // Constants of the coordinates' type: its significant bits; as powers of two the smallest gap, the greatest offset,
+  // the flattest sliver and the largest ratio of axes; the range of scales; and the bits of wide integers.
   using Real = float;
   using Integer = int;
   static constexpr int kBits = 24, kGap = 40, kOffset = 22, kSliver = 22, kRatio = 20, kLeastScale = -149,
@@ -90,7 +90,7 @@ struct Draws {
   GRAZE_INLINE int wide_bits() { return kBits; }
 };
 
-// Likewise for pairs of doubles. Reals have 53 bits, wide integers 16 to 53.
+// The same for pairs of doubles. Reals have 53 bits, wide integers 16 to 53.
 struct DoubleDraws : Draws {
   using Draws::Draws;
   using Draws::integer;
@@ -170,7 +170,7 @@ GRAZE_INLINE Vec normalised(const Vec& v) {
   return largest > 0 ? v * (1 / largest) : unit_axis(0);
 }
 
-// Either v or -v, whichever points to the side of `direction`.
+// v or -v, whichever points to the same side as `direction`.
 GRAZE_INLINE Vec toward(const Vec& direction, const Vec& v) { return v * (dot(direction, v) < 0 ? -1.0 : 1.0); }
 
 // A pair before rounding.
@@ -205,7 +205,7 @@ GRAZE_INLINE DoublePair rounded(const DoubleDraws&, const Draft& draft) {
   return {{draft.a[0], draft.a[1], draft.a[2]}, {draft.b[0], draft.b[1], draft.b[2]}};
 }
 
-// The pair in a random one of its 72 orders, so that no algorithm sees a stratum's contacts in one order only.
+// The pair in a random one of its 72 vertex orders, so that algorithms do not see a stratum's contacts in only one.
 template <class Real>
 GRAZE_INLINE BasicPair<Real> shuffled(Draws& draws, const BasicPair<Real>& pair) {
   const std::uint32_t order = draws.below(72);

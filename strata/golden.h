@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bits that every stratum must have: a hash of its first 10,000 pairs at seed 1, for tests on host and device. If a
-// value here changes, every stored (seed, stratum, index) has another meaning.
+// value here changes, every stored (seed, stratum, index) means another pair.
 #pragma once
 
 #include <cstdint>
@@ -20,14 +20,14 @@ template <class Real>
 std::uint64_t hash_bits(const BasicPair<Real>& pair, std::uint64_t hash = kHashStart) {
   for (int i = 0; i < kCoordinates; ++i) {
     std::uint64_t bits = 0;
-    std::memcpy(&bits, coordinates(pair) + i, sizeof(Real));  // of a little-endian machine
+    std::memcpy(&bits, coordinates(pair) + i, sizeof(Real));  // assumes a little-endian machine
     for (unsigned shift = 0; shift < 8 * sizeof(Real); shift += 8)
       hash = (hash ^ (bits >> shift & 0xffu)) * 0x100000001b3u;
   }
   return hash;
 }
 
-// In the order of kStrata; scripts/update_generated writes the rows.
+// One hash per stratum, in the order of kStrata; scripts/update_generated writes the rows.
 inline constexpr std::uint64_t kGoldenHashes[kStrataCount] = {
     0x6557cb3eb6a58bf2u,  // uniform
     0xa55dd4371dc8fac0u,  // thesis

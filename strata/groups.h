@@ -19,13 +19,13 @@ struct GroupInfo {
   std::string_view what;
 };
 
-// One row for each group, in the order of the enumeration.
+// One row for each group, in the order of the enumerators.
 inline constexpr GroupInfo kGroups[] = {
     {Group::general, "general",
      "strata of triangles of usual shape and size, with near and exact contacts; some pairs lie in parallel planes, "
      "and some are degenerate"},
     {Group::coplanar, "coplanar",
-     "triangles in one plane, in nearly one, or in parallel ones; some small ones pierce a larger one"},
+     "triangles in one plane, nearly in one plane, or in parallel planes; some small ones pierce a larger one"},
     {Group::degenerate, "degenerate", "segments and points in place of triangles, often or always"},
     {Group::extreme, "extreme", "needles, coordinates of extreme size, and pairs far from the origin"},
     {Group::mesh, "mesh", "pairs of a mesh's triangles whose boxes overlap"},
@@ -46,8 +46,8 @@ constexpr Group group_of(Stratum stratum) {
   }
 }
 
-// The group of a source, given its name: a stratum, or a mesh as it is or moved. Nothing for a stratum that this build
-// does not know.
+// The group of the source with this name: a stratum, or a mesh as it is or moved. Nothing if this build does not know
+// the stratum.
 constexpr std::optional<Group> group_of_name(std::string_view id) {
   const std::string_view stratum = stratum_in_doubles(id).value_or(id);
   for (const StratumInfo& row : kDoubleStrata) {

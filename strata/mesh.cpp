@@ -25,7 +25,7 @@ namespace {
 
 using Triangle = std::array<Vec3<float>, 3>;
 
-// A limit, so that a soup in which all triangles overlap is an error and does not fill the memory.
+// A limit, so that a soup in which all triangles overlap is an error instead of filling the memory.
 constexpr std::size_t kMostCandidates = std::size_t{1} << 28;  // 2 GiB of indices
 
 std::string read_bytes(const std::filesystem::path& file) {
@@ -86,7 +86,28 @@ std::array<Vec3<double>, 3> in_doubles(const Triangle& t) {
   return {wide(t[0]), wide(t[1]), wide(t[2])};
 }
 
-// Adds the file's triangles, and its bytes to the hash.
+// How many fans fold back over themselves, so that they do not cover their face: some triangle is turned against the
+// sum of all. Such a face is not convex. In double precision; a fold that rounding hides is narrower than that.
+std::size_t folded_fans(const Soup& soup) {
+  return static_cast<std::size_t>(std::count_if(soup.fans.begin(), soup.fans.end(), [&](const auto& fan) {
+    std::vector<Vec3<double>> normals;
+    Vec3<double> sum{0, 0, 0};
+    for (std::size_t t = fan[0]; t < fan[1]; ++t) {
+      const auto& [i, j, k] = soup.triangles[t];
+      const Vec3<double>& corner = soup.in_doubles[i];
+      normals.push_back(cross(soup.in_doubles[j] - corner, soup.in_doubles[k] - corner));
+      sum = sum + normals.back();
+    }
+    return std::any_of(normals.begin(), normals.end(), [&](const auto& normal) { return dot(normal, sum) < 0; });
+  }));
+}
+
+void add_note(MeshPairs& pairs, const std::filesystem::path& file, const std::string& what) {
+  pairs.notes.push_back(printable(file.string()) + ": " + what);
+  pairs.notes_of_doubles.push_back(pairs.notes.back());
+}
+
+// Adds the file's triangles, and hashes its bytes.
 void add_mesh(MeshPairs& pairs, const std::filesystem::path& file, Coordinates coordinates = Coordinates::finite) {
   const std::string bytes = read_bytes(file);
   pairs.content_hash = fnv1a(bytes, pairs.content_hash);
@@ -96,7 +117,7 @@ void add_mesh(MeshPairs& pairs, const std::filesystem::path& file, Coordinates c
   for (const auto& [i, j, k] : soup.triangles)
     pairs.triangles.push_back({soup.vertices[i], soup.vertices[j], soup.vertices[k]});
   if (soup.rounding.rounded > 0 || !pairs.in_doubles.empty()) {
-    for (std::size_t t = pairs.in_doubles.size(); t < before; ++t)  // of files before it, which float32 holds
+    for (std::size_t t = pairs.in_doubles.size(); t < before; ++t)  // of the files before it, which float32 holds
       pairs.in_doubles.push_back(in_doubles(pairs.triangles[t]));
     for (const auto& [i, j, k] : soup.triangles)
       pairs.in_doubles.push_back({soup.in_doubles[i], soup.in_doubles[j], soup.in_doubles[k]});
@@ -106,19 +127,21 @@ void add_mesh(MeshPairs& pairs, const std::filesystem::path& file, Coordinates c
   std::string skipped;
   for (const auto& [what, count] : soup.skipped)
     skipped += (skipped.empty() ? "" : ", ") + std::to_string(count) + ' ' + what;
-  if (!skipped.empty()) {
-    pairs.notes.push_back(printable(file.string()) + ": " + std::to_string(soup.triangles.size()) +
-                          " triangles; not used: " + skipped);
-    pairs.notes_of_doubles.push_back(pairs.notes.back());
-  }
+  if (!skipped.empty())
+    add_note(pairs, file, std::to_string(soup.triangles.size()) + " triangles; not used: " + skipped);
+  if (const std::size_t folded = folded_fans(soup); folded > 0)
+    add_note(pairs, file,
+             std::to_string(folded) + " of " + std::to_string(soup.fans.size()) +
+                 " faces with more than three vertices are not convex, and their triangles overlap; cut them into "
+                 "triangles before Graze reads them");
   add_rounding(pairs, soup.rounding, file);
 }
 
 using Pose = std::array<double, 12>;
 
-constexpr std::size_t kMostTriangles = std::size_t{1} << 26;  // in all poses together: 2.25 GiB
+constexpr std::size_t kMostTriangles = std::size_t{1} << 26;  // in all poses together; they take 2.25 GiB
 
-// Reads the poses. Adds the file's bytes to the hash.
+// Reads the poses, and hashes the file's bytes.
 std::vector<Pose> read_poses(const std::filesystem::path& file, std::uint64_t& hash) {
   std::string bytes = read_bytes(file);
   hash = fnv1a(bytes, hash);
@@ -162,7 +185,7 @@ std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path
                                     std::to_string(poses.size()) + " poses of " + std::to_string(mesh.size()) +
                                         " triangles are more than 2^26 triangles"));
   pairs.triangles.clear();
-  pairs.in_doubles.clear();  // poses move the triangles as float32 stores them
+  pairs.in_doubles.clear();  // poses move the triangles that float32 stores
   std::vector<std::size_t> ends;
   Rounding rounding;
   for (const Pose& pose : poses) {

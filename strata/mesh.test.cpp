@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes as input: every format gives the same triangles, candidates equal a brute-force search, errors give the
-// reason.
+// Meshes as input: every format gives the same triangles, candidates equal those of a brute-force search, and errors
+// give the reason.
 #include "strata/mesh.h"
 #include "core/message_testing.h"
 #include "core/text.h"
@@ -23,7 +23,7 @@ namespace {
 using Index = std::pair<std::uint32_t, std::uint32_t>;
 using Triangle = std::array<Vec3<float>, 3>;
 
-// The faces of a tetrahedron at the origin's corner, in this order.
+// The four faces of a tetrahedron with a corner at the origin.
 const std::string kTetrahedron = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n";
 
 class MeshFile : public testing::Test {
@@ -122,7 +122,7 @@ TEST_F(MeshFile, EveryFormatReadsTheSameTriangles) {
   EXPECT_EQ(read_mesh_pairs(write("binary.stl", binary_stl_of(expected))).triangles, expected);
 }
 
-// Every format: campaigns refuse a vertex that is not finite, queries read it.
+// In every format, campaigns refuse a vertex that is not finite and queries read it.
 TEST_F(MeshFile, VerticesThatAreNotFiniteAreReadOnRequest) {
   const float nan = std::nanf(""), infinity = HUGE_VALF;
   const Triangle bad{{{0, nan, 0}, {1, 0, -infinity}, {0, 1, 0}}}, good{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
@@ -147,7 +147,7 @@ TEST_F(MeshFile, AMeshAgainstItselfPairsEachTwoOnce) {
   EXPECT_EQ((Triangle{pair.b[0], pair.b[1], pair.b[2]}), pairs.triangles[3]);
 }
 
-// The first file's decimals of few digits are doubles as well.
+// If one file has doubles, the other file's short decimals are kept as doubles too.
 TEST_F(MeshFile, HasTheDoublesOfDecimals) {
   const auto file = write("m.obj", "v 0.1 0 0\nv 1 0 0\nv 0 1 0\nv 0.1 0.7 0\nf 1 2 3\nf 1 2 4\n");
   const MeshPairs one = read_mesh_pairs(file);
@@ -159,7 +159,7 @@ TEST_F(MeshFile, HasTheDoublesOfDecimals) {
   EXPECT_EQ(read_mesh_pairs(file, far).double_pair(0).b[0].x, 0.1000000001);
 }
 
-// A decimal that a program prints of a float32 is none that float32 cannot hold; one of more digits is.
+// Decimals that a program prints for a float32 do not count as beyond float32; those with more digits do.
 TEST_F(MeshFile, KeepsDoublesBeyondFloat32) {
   const auto read = [&](const std::string& x) {
     const auto file = write("m.obj", "v " + x + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -181,7 +181,7 @@ TEST_F(MeshFile, KeepsDoublesBeyondFloat32) {
   }
 }
 
-// Doubles round such a number to a float32.
+// The double nearest to each of these numbers is a float32, but the number itself is not.
 TEST_F(MeshFile, CountsWhatDoublesRoundToo) {
   for (const char* x : {"0.50000000000000001", "0.49999999999999999999", "0x1.00000000000000001p-1"}) {
     const MeshPairs mesh = read_triangles(write("m.obj", std::string("v ") + x + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
@@ -192,7 +192,7 @@ TEST_F(MeshFile, CountsWhatDoublesRoundToo) {
 }
 
 TEST_F(MeshFile, TwoMeshesPairAcrossOnly) {
-  const std::string touching = "OFF\n3 1 0\n1 1 1\n2 1 1\n1 2 1\n3 0 1 2\n";  // its box touches theirs only in a point
+  const std::string touching = "OFF\n3 1 0\n1 1 1\n2 1 1\n1 2 1\n3 0 1 2\n";  // its box touches theirs at one point
   const MeshPairs pairs = read_mesh_pairs(write("t.off", kTetrahedron), write("u.off", touching));
   EXPECT_EQ(pairs.triangles.size(), 5u);
   EXPECT_EQ(pairs.candidates, (std::vector<Index>{{3, 4}}));
@@ -279,12 +279,24 @@ TEST_F(MeshFile, ErrorsNameTheFileAndSayWhy) {
   EXPECT_TRUE(names(error_of("index.obj"), {"index.obj:4", "3 vertices", "vertex 4"}));
 }
 
-// Content that is left out is always reported.
+// Content that is not used is always reported.
 TEST_F(MeshFile, SaysWhatItDoesNotUse) {
   EXPECT_TRUE(read_mesh_pairs(write("t.off", kTetrahedron)).notes.empty());
   const auto file = write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nl 1 2\nvn 0 0 1\nl 3 4\nf 1 2 3\nf 1 2 4\n");
   EXPECT_EQ(read_mesh_pairs(file).notes,
             (std::vector<std::string>{file.string() + ": 2 triangles; not used: 2 lines, 1 normals"}));
+}
+
+// A fan from the first vertex covers a concave face only if that vertex sees all others.
+TEST_F(MeshFile, SaysWhereAFanFoldsOver) {
+  const std::string quad = "OFF\n4 1 0\n0 4 0\n0 0 0\n4 0 0\n1 1 0\n4 ";
+  const auto folded = write("folded.off", quad + "0 1 2 3\n");
+  ASSERT_EQ(read_mesh_pairs(folded).notes.size(), 1u);
+  EXPECT_TRUE(names(read_mesh_pairs(folded).notes[0], {"folded.off", "1 of 1 faces", "not convex"}));
+  EXPECT_EQ(read_mesh_pairs(folded).notes, read_mesh_pairs(folded).notes_of_doubles);
+  EXPECT_TRUE(read_mesh_pairs(write("covered.off", quad + "1 2 3 0\n")).notes.empty());
+  const char* obj = "v 0 4 0\nv 0 0 0\nv 4 0 0\nv 1 1 0\nv 3 3 1\nf 1 2 3 4\nf 1 2 3\nf 1 2 3 5\n";
+  EXPECT_TRUE(names(read_mesh_pairs(write("two.obj", obj)).notes.at(0), {"two.obj", "1 of 2 faces"}));
 }
 
 // 1000000.01 is 2^-6 from its neighbours in float32, so it moves by 0.01; 0.5 does not move.
@@ -309,7 +321,7 @@ TEST_F(MeshFile, SaysWhatFloat32Rounds) {
   EXPECT_EQ(read_bodies({file}, write("whole.csv", "1 0 0 1000000 0 1 0 0 0 0 1 0\n")).rounding.rounded, 0u);
 }
 
-// Whatever the file says in decimals or binary doubles, no coordinate is farther from it than the note says.
+// No coordinate is farther from the file's decimal or binary double than the note says.
 TEST_F(MeshFile, BoundsHowFarFloat32Moves) {
   std::mt19937_64 random(3);
   for (int round = 0; round < 200; ++round) {
@@ -318,7 +330,7 @@ TEST_F(MeshFile, BoundsHowFarFloat32Moves) {
         "property double z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n";
     std::string text = "OFF\n3 2 0\n";
     double numbers[9];
-    std::uint64_t moved = 0, moved_in_text = 0;  // 17 digits tell a double, but most are not exactly it
+    std::uint64_t moved = 0, moved_in_text = 0;  // 17 digits identify a double, but most do not equal it
     double most = 0;
     for (double& x : numbers) {
       x = std::ldexp(static_cast<double>(static_cast<std::int64_t>(random())), static_cast<int>(random() % 100) - 113);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bounding boxes of triangles, as CGAL's box intersection takes them.
+// The bounding boxes of triangles, in the form that CGAL's box intersection takes.
 #pragma once
 
 #include <CGAL/Box_intersection_d/Box_with_info_d.h>

@@ -13,11 +13,11 @@
 namespace graze::strata {
 namespace {
 
-// From this number of boxes on CGAL sweeps instead of dividing further. On a terrain of a million triangles this takes
-// less than half of the time that CGAL's default of 10 takes.
+// With fewer boxes than this, CGAL sweeps instead of dividing further. On a terrain of a million triangles this takes
+// less than half the time of CGAL's default of 10.
 constexpr std::ptrdiff_t kSwept = 1000;
 
-// Other boxes given to CGAL at once. Long boxes take it quadratic time, in which it cannot be stopped.
+// How many other boxes CGAL gets per call. With long boxes a call takes quadratic time and cannot be stopped.
 constexpr std::size_t kTogether = std::size_t{1} << 15;
 
 bool is_finite(const std::array<Vec3<float>, 3>& t) {
@@ -33,7 +33,7 @@ std::vector<Box> finite_boxes(BoxSlabs::Triangles triangles) {
   return boxes;
 }
 
-// The axis along which the boxes together are longest.
+// The axis along which the union of the boxes is longest.
 int longest_axis(const std::vector<Box>& boxes) {
   int longest = 0;
   double most = -1;
@@ -92,7 +92,7 @@ void BoxSlabs::pairs(std::size_t slab, const std::function<void(std::uint32_t, s
   float high = own.front().max_coord(axis);
   for (const Box& box : own) high = std::max(high, box.max_coord(axis));
   if (boxes_->self) {
-    // Boxes of later slabs begin above the low end of this one.
+    // Boxes of later slabs do not begin below this slab, so only its high end limits the search.
     for (auto box = end; box != boxes_->a.end() && box->min_coord(axis) <= high; ++box) others.push_back(*box);
   } else {
     const float low = own.front().min_coord(axis);

@@ -18,20 +18,20 @@ namespace graze::strata {
 class BoxSlabs {
  public:
   using Triangles = std::span<const std::array<Vec3<float>, 3>>;
-  static constexpr std::size_t kTriangles = std::size_t{1} << 14;  // of the first mesh in a slab
+  static constexpr std::size_t kTriangles = std::size_t{1} << 14;  // of the first mesh, per slab
 
-  // Pairs triangles of `a` with those of `b`; without `b`, each two of `a`. Triangles that are not finite are in no
-  // pair.   Requires: at most 2^32 - 1 triangles in each.
+  // Pairs the triangles of `a` with those of `b`, or with each other if there is no `b`. Triangles that are not finite
+  // are in no pair.   Requires: at most 2^32 - 1 triangles in each.
   BoxSlabs(Triangles a, std::optional<Triangles> b, std::size_t triangles_of_slab = kTriangles);
   ~BoxSlabs();
 
   std::size_t size() const;
-  // Triangles of `a` in the slabs before this one; all that are finite for slab size().
+  // How many triangles of `a` lie in the slabs before this one. For slab size(): all finite ones.
   std::size_t triangles_before(std::size_t slab) const;
-  std::uint64_t not_finite() const;  // triangles of both
+  std::uint64_t not_finite() const;  // how many triangles of both meshes are not finite
 
-  // Calls found(i, j) for each pair of the slab once, in any order: i of `a` and j of `b`, or i < j of `a`. Each pair
-  // is in one slab. Several threads may call it at once. What `found` throws ends the call.
+  // Calls found(i, j) once for each pair of the slab, in any order: i of `a` and j of `b`, or i < j of `a`. Each pair
+  // is in one slab. Several threads may call it at once. An exception from `found` ends the call.
   // Throws: Stopped, soon after a request to stop.
   void pairs(std::size_t slab, const std::function<void(std::uint32_t, std::uint32_t)>& found) const;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle within a larger one, or just outside it. Both lie on a chart whose grid gives the larger one's barycentric
-// coordinates, so on integers containment and contact are exact at every ratio of sizes. Lifted off the chart, the
-// smaller one pierces the larger one's face.
+// A triangle within a larger one, or just outside it. Both lie on a chart whose grid is that of the larger one's
+// barycentric coordinates, so with integers containment and contact are exact at every ratio of sizes. When lifted off
+// the chart, the smaller triangle pierces the larger one's face.
 #pragma once
 
 #include "strata/coplanar.h"
@@ -9,8 +9,8 @@
 namespace graze::strata {
 inline namespace GRAZE_FP {
 
-// A triangle within (0, 0), (size, 0), (0, size), or that turned by half a turn, which reaches to 2 * size. Its corners
-// stand at most a quarter of the size from those, so that they are never collinear.
+// A triangle within (0, 0), (size, 0), (0, size), or within that triangle after half a turn, where i + j reaches
+// 2 * size. Each vertex lies near its own corner, within a quarter of the size, so that the three are never collinear.
 GRAZE_HD inline void put_inner(auto& draws, int size, bool turned, GridPoint (&inner)[3]) {
   const int inset = draws.coin() ? size / 4 : size >> draws.between(2, 20);
   for (int m = 0; m < 3; ++m) {
@@ -22,8 +22,8 @@ GRAZE_HD inline void put_inner(auto& draws, int size, bool turned, GridPoint (&i
   if (draws.below(4) == 0 && !turned) inner[0].i = inner[2].i = 0;
 }
 
-// A is (0, 0), (reach, 0), (0, reach), where reach is 2^bits. B has about the given size. Three of four times it lies
-// within A, otherwise beyond A's edge i = 0. In a third of the pairs or more, a vertex or an edge of B is on that edge.
+// A is (0, 0), (reach, 0), (0, reach), where reach is 2^bits. B has about the given size. In three pairs out of four B
+// lies within A, otherwise beyond A's edge i = 0. In at least a third of the pairs, B has a vertex or edge on it.
 // Requires: 1 <= size <= reach.   Returns: points with |i| + |j| <= 2 * reach.
 GRAZE_HD inline GridPair draw_nested_grid_pair(auto& draws, int bits, int size) {
   const int reach = 1 << bits;
@@ -45,9 +45,9 @@ GRAZE_HD inline GridPair draw_nested_grid_pair(auto& draws, int bits, int size) 
   return pair;
 }
 
-// Half of the pairs are exact: integers, small or of up to 24 bits (doubles: 53). The other half are real numbers
-// before rounding. B is smaller by 2^0 … 2^-20. It lies in A's plane in three of four pairs; in one, its vertices stand
-// on both sides.
+// Half of the pairs are exact, in integers that are small or have up to 24 bits (doubles: 53). The other half are real
+// numbers before rounding. B's size is 2^0 … 2^-20 of A's. In three pairs out of four B lies in A's plane; in the
+// fourth its vertices are on both sides of it.
 template <class D>
 GRAZE_HD auto nested(D& draws) {
   using Integer = typename D::Integer;

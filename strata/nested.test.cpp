@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of nested triangles: containment on the grid and piercing in exact integers, the rest as shares.
+// Tests of nested triangles: containment and piercing on the grid in exact integers, the rest by share of pairs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace graze::strata::testing {
 namespace {
 
-// The least of the signed areas that p spans with the edges of t: positive inside, 0 on an edge or a vertex.
+// The sign of the least signed area that p spans with an edge of t: positive inside, 0 on an edge or a vertex.
 // Requires: p lies in the plane of t.
 int side_of(const Vec3<Int>& p, const Triangle<Int>& t) {
   const Vec3<Int> n = normal(t);
@@ -31,7 +31,7 @@ int contained(const Triangle<Int>& inner, const Triangle<Int>& outer) {
   return std::min({side_of(inner[0], outer), side_of(inner[1], outer), side_of(inner[2], outer)});
 }
 
-// Whether the inner triangle meets the outer one but none of its edges.   Requires: planes that cross.
+// Whether the inner triangle meets the outer one but none of its edges.   Requires: their planes cross.
 bool pierces(const Triangle<Int>& inner, const Triangle<Int>& outer) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (!disjoint(Triangle<Int>{outer[i], outer[(i + 1) % 3], outer[i]}, inner)) return false;
@@ -67,7 +67,7 @@ TEST(Nested, OnTheGridTrianglesAreContainedExactlyOrJustOutside) {
     strictly += depth > 0;
     touches += depth == 0;
     if (depth >= 0) continue;
-    // Nothing overlaps in part: what is not contained lies outside.
+    // No pair overlaps only in part: a triangle that is not contained lies outside.
     ASSERT_TRUE(r.verdict == Verdict::disjoint || r.contact != graze::Contact::area);
     (r.verdict == Verdict::disjoint ? apart : touched_outside) += 1;
   }
@@ -105,7 +105,7 @@ TEST(Nested, OffTheGridTrianglesAreCoplanarUntilRounding) {
   EXPECT_GT(pairs.size(), 4700u);
   EXPECT_GT(flat, 3300);
   EXPECT_GT(disjoint, 800);
-  EXPECT_GT(contained, 300);  // in planes along two axes, rounding leaves them coplanar
+  EXPECT_GT(contained, 300);  // in axis-aligned planes they remain coplanar after rounding
 }
 
 TEST(Nested, SizesDifferByUpTo2To20) {

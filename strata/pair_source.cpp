@@ -24,7 +24,7 @@ PairSource source_of(std::uint64_t seed, const StratumInfo& row) {
 
 Axis wide(Axis axis) { return axis == Axis::scale ? Axis::wide_scale : axis; }
 
-#ifdef __wasm__  // test_function.cpp draws float32 alone
+#ifdef __wasm__  // test_function.cpp draws only float32
 PairSource double_source_of(std::uint64_t, const StratumInfo& row) {
   throw UsageError("this build does not draw " + std::string(row.id) + std::string(kInDoubles));
 }
@@ -58,7 +58,7 @@ PairBlock pairs_of(const PairSource& source, std::uint64_t first, std::uint64_t 
 void expect_float32(std::span<const PairSource> sources, const char* verb) {
   for (const PairSource& source : sources) {
     if (source.in_doubles())
-      throw UsageError("`graze " + std::string(verb) + "` takes pairs of float32, and " + source.id +
+      throw UsageError("`graze " + std::string(verb) + "` takes only pairs of float32, but " + source.id +
                        " has pairs of doubles");
   }
 }
@@ -86,7 +86,7 @@ std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs,
   if (types != PairTypes::f32) {
     for (const StratumInfo& row : kDoubleStrata) all.push_back(double_source_of(seed, row));
   }
-  // A pattern with "/f64" behind it matches the names of strata of doubles that it matches without.
+  // With "/f64" appended, a pattern matches the doubles of the strata that it matches without it.
   std::vector<std::string> patterns = globs;
   for (const std::string& glob : globs) {
     patterns.push_back(glob + std::string(kInDoubles));
@@ -107,7 +107,7 @@ std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs,
   if (sources.empty()) {
     std::string names;
     for (const std::string& glob : globs) names += (names.empty() ? "" : ",") + glob;
-    throw UsageError("strata \"" + printable(names) + "\" leave none");
+    throw UsageError("strata \"" + printable(names) + "\" leave no stratum");
   }
   share_evenly(sources, pairs);
   return sources;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a campaign's pairs come from: a stratum, or a mesh's candidate pairs. Each is a pure function of an index.
+// Where a campaign's pairs come from: a stratum, or a mesh's candidate pairs. A source is a pure function of an index.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,9 @@ struct PairSource {
   std::string id;
   std::uint64_t pairs = 0;                        // the campaign takes the indices [0, pairs)
   std::function<Pair(std::uint64_t index)> pair;  // null if the coordinates are doubles
-  // For drawing the same pairs on a device: the stratum; -1 if only `pair` or `double_pair` can draw them.
+  // The stratum from which a device can draw the same pairs; -1 if only `pair` or `double_pair` can draw them.
   int stratum = -1;
-  Axis axis = Axis::none;  // the stratum's
+  Axis axis = Axis::none;  // of the stratum
   std::uint64_t seed = 0;
   std::shared_ptr<const Scene> scene = nullptr;  // the scene in which the stratum is drawn; null: none
   std::function<DoublePair(std::uint64_t index)> double_pair = nullptr;  // in place of `pair`
@@ -34,10 +34,10 @@ struct PairSource {
   AnyPair any_pair(std::uint64_t index) const { return in_doubles() ? AnyPair(double_pair(index)) : pair(index); }
 };
 
-// Pairs of one type. Of doubles, `floats` are what float32 stores of them, which lanes in float32 decide.
+// Pairs of one type. For doubles, `floats` holds the pairs that float32 stores, which lanes in float32 decide.
 struct PairBlock {
   std::vector<Pair> floats;
-  std::vector<DoublePair> doubles;  // none of pairs of float32
+  std::vector<DoublePair> doubles;  // empty for pairs of float32
 
   bool in_doubles() const { return !doubles.empty(); }
   std::size_t size() const { return floats.size(); }
@@ -47,27 +47,27 @@ struct PairBlock {
 // The pairs [first, first + count) of a source.
 PairBlock pairs_of(const PairSource& source, std::uint64_t first, std::uint64_t count);
 
-// The name of a stratum of doubles as a source: "uniform/f64". Nothing if the source is not one of doubles.
+// A source of doubles is named after its stratum: "uniform/f64". Returns: the stratum; nothing for a source of float32.
 inline constexpr std::string_view kInDoubles = "/f64";
 constexpr std::optional<std::string_view> stratum_in_doubles(std::string_view source) {
   if (!source.ends_with(kInDoubles)) return std::nullopt;
   return source.substr(0, source.size() - kInDoubles.size());
 }
 
-// Throws: UsageError, naming the verb, if a source has pairs of doubles.
+// Throws: UsageError that names the verb, if a source has pairs of doubles.
 void expect_float32(std::span<const PairSource> sources, const char* verb);
 
-// What is known of the stratum of this name, of either type; null if there is none.
+// The row of the stratum with this name, of either type; null if there is none.
 const StratumInfo* stratum_info(std::string_view source);
 Axis axis_of(std::string_view source);
 
 // The strata whose names match (all for an empty list). They share `pairs` evenly; the first ones take the remainder.
-// Throws: UsageError if a pattern matches no stratum, or if all together leave none.
+// Throws: UsageError if a pattern matches no stratum, or if the patterns together leave none.
 // Patterns match a stratum of doubles with or without its "/f64".
 std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs,
                                         PairTypes types = PairTypes::f32);
 
-// The strata of these names, of both types; as above.
+// Likewise for strata of exactly these names, of both types.
 std::vector<PairSource> named_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& names);
 
 }  // namespace graze::strata

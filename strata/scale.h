@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contacts at scales that strain the type of the coordinates: far from the origin, near overflow and underflow, and
-// very different scales within one pair. Each function transforms a contact before its one rounding.
+// with very different scales in one pair. Each function transforms a contact before it is rounded, once.
 #pragma once
 
 #include "strata/contact.h"
@@ -12,7 +12,7 @@ GRAZE_HD inline auto far_from_origin(auto& draws) {
   Contact contact = draw_contact(draws, draw_touch(draws), real_grain(draws));
   const Push push = draw_push(draws);
   move(contact.draft.b, contact.away * push.gap);
-  // 2^7 … 2^23 is 1.3e2 … 8.4e6, log-uniform; doubles: up to 2^51.
+  // Log-uniform in 2^7 … 2^23, which is 1.3e2 … 8.4e6; doubles: up to 2^51.
   const Vec direction = normalised(draws.reals());
   const double fraction = 1 + draws.positive();
   const Vec offset = direction * (fraction * power_of_two(draws.between(7, draws.kOffset)));
@@ -29,8 +29,8 @@ GRAZE_HD inline auto extreme_scale(auto& draws) {
   Push push = draw_push(draws);
   if (exact) push.gap = 0;
   move(contact.draft.b, contact.away * push.gap);
-  // Contacts reach 3 (reals) or 2^24 (integers), so the largest coordinate stays below 2^128; of doubles, 2^53 and
-  // 2^1024. In two steps, because a double holds no power of two below 2^-1074; the first is exact.
+  // Contacts reach 3 (reals) or 2^24 (integers; doubles: 2^53), so the largest coordinate stays below 2^128 (doubles:
+  // 2^1024). Scales in two steps, because a double holds no power of two below 2^-1074; the first step is exact.
   const int exponent = draws.between(draws.kLeastScale, draws.kMostScale) - (exact ? draws.kBits - 1 : 0);
   for (const int part : {exponent / 2, exponent - exponent / 2}) {
     const double size = power_of_two(part);
@@ -44,7 +44,7 @@ GRAZE_HD inline auto mixed_scale(auto& draws) {
   Contact contact = draw_contact(draws, draw_touch(draws), real_grain(draws));
   Push push = draw_push(draws);
   Draft& draft = contact.draft;
-  if (draws.coin()) {  // each axis has its own scale; the contact remains one
+  if (draws.coin()) {  // each axis has its own scale, which preserves the contact
     const Vec size{power_of_two(draws.integer(draws.kRatio)), power_of_two(draws.integer(draws.kRatio)),
                    power_of_two(draws.integer(draws.kRatio))};
     move(draft.b, contact.away * push.gap);

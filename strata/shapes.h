@@ -7,7 +7,7 @@
 namespace graze::strata {
 inline namespace GRAZE_FP {
 
-// Length divided by height is 2^10 … 2^23 (doubles: 2^51), log-uniform.
+// Length divided by height is log-uniform in 2^10 … 2^23 (doubles: 2^51).
 GRAZE_HD inline Shape draw_sliver_shape(auto& draws) {
   const double fraction = 0.5 + 0.5 * draws.positive();
   return {fraction * power_of_two(-draws.between(10, draws.kSliver)), true, draws.coin()};
@@ -20,7 +20,7 @@ GRAZE_HD inline auto sliver(auto& draws) {
   return near_contact(draws, touch, which != 1 ? shape : Shape{}, which != 0 ? shape : Shape{});
 }
 
-// A segment along e that contains p or starts there. The third vertex is an end, or lies exactly on the same line.
+// A segment along e that contains p or starts there. The third vertex is an end or lies exactly on the segment's line.
 GRAZE_HD inline void put_segment(auto& draws, const auto& grain, const Vec& p, const Vec& e, Vec (&triangle)[3]) {
   const double back = draws.coin() ? draw_weight(draws, grain) : 0;
   const double forth = draw_weight(draws, grain);
@@ -32,9 +32,9 @@ GRAZE_HD inline void put_segment(auto& draws, const auto& grain, const Vec& p, c
 
 GRAZE_HD inline void put_point(const Vec& p, Vec (&triangle)[3]) { triangle[0] = triangle[1] = triangle[2] = p; }
 
-// B is a segment or a point, and A is anything. Both contain a point p; then B is moved by one unit in half of the
-// pairs. Coordinates are integers, small or wide, so that collinear points are exactly so. A power of two then scales
-// the pair.
+// B is a segment or a point, and A is anything. Both contain a point p; in half of the pairs B is then moved by one
+// unit. Coordinates are integers, small or wide, so that points are exactly collinear. A power of two then scales the
+// pair.
 GRAZE_HD inline auto degenerate(auto& draws) {
   const auto grain = draws.coin() ? small_grain(draws) : wide_grain(draws);
   const Vec p = draw_place(draws, grain);
@@ -62,7 +62,7 @@ GRAZE_HD inline auto degenerate(auto& draws) {
     put_point(p, draft.b);
   } else {
     const Vec fresh = draw_step(draws, grain);
-    // Along u: collinear segments, a segment along an edge or in the plane of a face.
+    // Along u there are collinear segments, and segments along an edge or in the plane of a face.
     put_segment(draws, grain, p, draws.below(3) == 0 ? u : fresh, draft.b);
   }
   if (draws.coin()) {
@@ -75,8 +75,8 @@ GRAZE_HD inline auto degenerate(auto& draws) {
   return shuffled(draws, rounded(draws, draft));
 }
 
-// How the neighbour's free vertices leave the first triangle's plane. Exact: integers, in the plane or one unit off it
-// in one coordinate. Otherwise real: in the plane, or at a dihedral angle of about 2^-1 … 2^-30, or at any angle.
+// How far the neighbour's free vertices are from the first triangle's plane. Integers (exact): in the plane, or one
+// unit off it in one coordinate. Reals: in the plane, or off it by 1 … 2^-30 (doubles: 2^-90) before rounding.
 struct Fold {
   bool exact;
   Vec p, u, v;  // A is p, p + u, p + v
@@ -95,8 +95,8 @@ GRAZE_HD inline Fold draw_fold(auto& draws) {
   return fold;
 }
 
-// A point around p in A's plane, then lifted. Beyond the common edge the triangles lie side by side; within it they
-// fold onto each other.
+// A point around p in A's plane, then lifted. On the far side of the common edge the triangles lie side by side; on A's
+// side they fold onto each other.
 GRAZE_HD inline Vec draw_free_vertex(auto& draws, const Fold& fold) {
   const double i = fold.exact ? draws.integer(8) : draws.real();
   const double j = fold.exact ? draws.integer(8) : draws.real();

@@ -40,7 +40,7 @@ int shared_vertices(const Pair& pair) {
 TEST(Degenerate, OneIsASegmentOrPointExactly) {
   int points = 0, segments = 0, both = 0, share_a_vertex = 0;
   for (const Pair& pair : draw(Stratum::degenerate)) {
-    // Exact: coordinates are 24-bit integers times one power of two, so differences need 25 bits and the normal 51.
+    // Exact, because coordinates are 24-bit integers times one power of two: differences need 25 bits, the normal 51.
     const auto a = converted<double>(pair.a), b = converted<double>(pair.b);
     const bool a_flat = is_zero(normal(a)), b_flat = is_zero(normal(b));
     ASSERT_TRUE(a_flat || b_flat);
@@ -83,7 +83,7 @@ TEST(Shared, DihedralAnglesAreAnythingFromFlatToFolded) {
 TEST(FarFromOrigin, OffsetsAreLogUniform) {
   std::array<int, 12> decades{};
   for (const Pair& pair : draw(Stratum::far_from_origin)) {
-    const double size = std::max({extent(pair.a), extent(pair.b), 0.5});  // rounding may have collapsed them
+    const double size = std::max({extent(pair.a), extent(pair.b), 0.5});  // rounding may have collapsed the triangles
     ++decades[static_cast<std::size_t>(std::clamp(std::log10(largest(pair) / size), 0.0, 11.0))];
   }
   for (std::size_t d = 2; d <= 5; ++d) EXPECT_GT(decades[d], 1500) << "offsets of about 1e" << d;

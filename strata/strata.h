@@ -19,7 +19,7 @@ enum class Stratum : std::uint8_t {
 #undef GRAZE_STRATUM
 };
 
-// A row of strata/strata.inc or strata/double_strata.inc. The first explains the columns.
+// A row of strata/strata.inc, which explains the columns, or of strata/double_strata.inc.
 struct StratumInfo {
   Stratum stratum;
   std::string_view id;
@@ -35,7 +35,7 @@ inline constexpr StratumInfo kStrata[] = {
 };
 inline constexpr int kStrataCount = sizeof kStrata / sizeof kStrata[0];
 
-// Those of pairs of doubles.
+// The strata of pairs of doubles.
 inline constexpr StratumInfo kDoubleStrata[] = {
 #define GRAZE_STRATUM(name, group, kind, axis, draw, what) {Stratum::name, #name, what, Axis::axis},
 #include "strata/strata.inc"
@@ -45,7 +45,7 @@ inline constexpr StratumInfo kDoubleStrata[] = {
 };
 inline constexpr int kDoubleStrataCount = sizeof kDoubleStrata / sizeof kDoubleStrata[0];
 
-// Whether device code can draw the stratum. `stored` decides pairs exactly, which device compilers take minutes for.
+// Whether device code can draw the stratum. `stored` uses the exact decision, which takes device compilers minutes.
 constexpr bool is_drawn_on_devices(Stratum stratum) { return stratum != Stratum::stored; }
 
 inline namespace GRAZE_FP {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strata that need no construction, and the choice among all. The others: contact.h, coplanar.h, doubles.h,
-// nested.h, shapes.h, scale.h.
+// The strata that need no construction, and the switch that selects one. The others are in contact.h, coplanar.h,
+// doubles.h, nested.h, shapes.h and scale.h.
 #include "strata/contact.h"
 #include "strata/coplanar.h"
 #include "strata/doubles.h"
@@ -23,8 +23,8 @@ GRAZE_HD BasicPair<typename D::Real> uniform(D& draws) {
           {draw_uniform(draws), draw_uniform(draws), draw_uniform(draws)}};
 }
 
-// The listing's `(rand()%80 - 40)/10.0f` per axis, and `x + rand()%5` per coordinate, in the type of the coordinates;
-// it computes them in float.
+// The thesis's listing: `(rand()%80 - 40)/10.0f` for each axis, and `x + rand()%5` for each coordinate. The listing
+// computes in float, this function in the type of the coordinates.
 template <class D>
 GRAZE_HD auto thesis_against(D& draws, BasicPair<typename D::Real> pair) {
   using Real = typename D::Real;

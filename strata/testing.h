@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared by the tests of the strata's geometry: triangles over any scalar, exact in 128-bit integers, and the share of
-// pairs that have a property.
+// For the tests of the strata's geometry: triangles over any scalar, exact in 128-bit integers, and the share of pairs
+// that have a property.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ bool separated_along(const Vec3<Real>& axis, const Triangle<Real>& a, const Tria
   return a_high < b_low || b_high < a_low;
 }
 
-// Uses the separating axes of two proper triangles, which may be coplanar.
+// Whether a separating axis exists. The triangles may be coplanar, but not degenerate.
 template <class Real>
 bool disjoint(const Triangle<Real>& a, const Triangle<Real>& b) {
   const Vec3<Real> n = normal(a), m = normal(b);

@@ -53,7 +53,7 @@ TEST(Canaries, AreJudgedByTheirBits) {
   }
 }
 
-// A product is not rounded by a fused operation, and by wide registers. These also keep a wider range.
+// Neither a fused operation nor wide registers round a product. Wide registers also keep a wider range.
 TEST(Canaries, TellAFusedProductFromExcessPrecision) {
   EXPECT_EQ(result_in("range f32 7f800000\nstatements f32 b1800000", "statements", "f32").found, "fused");
   const CanaryResult wide = result_in("range f32 71800000\nstatements f32 b1800000", "statements", "f32");

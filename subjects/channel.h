@@ -40,7 +40,7 @@ struct Answers {
 // From the supervisor to the worker: pairs to ask in a forward pass, and pairs to ask again in a later backward pass.
 struct Question {
   std::uint64_t nonce;
-  std::int32_t worker;   // process id of the worker meant, because the question may outlive it
+  std::int32_t worker;   // process id of the worker that it is for; the question may outlive that worker
   std::uint32_t count;   // pairs in the block
   std::uint32_t singly;  // ask one pair at a time even if the subject takes blocks
   Chosen first, second;
@@ -63,7 +63,7 @@ struct Loaded {
   std::uint32_t describes_itself;  // has a struct graze_subject
   char version[256], source[512], convention[512];
   char symbol[512];  // the library's symbol that was loaded
-  char text[8192];   // of a program: the first line of its answer to `describe`
+  char text[8192];   // for a program: the first line of its answer to `describe`
 };
 
 // An answer in shared memory: pair, pass, answer, and a check value that depends on the question's nonce.

@@ -103,18 +103,18 @@ void expect_unchanged(const std::vector<HashedFile>& files) {
     if (const fs::path now = file.program.empty() ? fs::path() : on_path(file.program);
         !now.empty() && fs::absolute(now) != file.file) {
       throw std::runtime_error(fmt::format(
-          "--subject: the PATH now finds {} where it found {} when the command that names it started, so its verdicts "
-          "may be of either code and are not recorded; restore the PATH's folders to resume, or start again with "
+          "--subject: the PATH now finds {}, but found {} when the command that names it started. The verdicts may "
+          "come from either code and are not recorded; restore the PATH's folders to resume, or start again with "
           "another "
           "--out",
           shown_path(now.string()), shown_path(file.file.string())));
     }
     if (state_of(file.file) == file.state || (is_file(file.file) && hash_of_file(file.file) == file.hash)) continue;
     throw std::runtime_error(fmt::format(
-        "--subject: {} changed while the command that names it ran, so its verdicts may be of either code and are not "
-        "recorded; restore the file to resume, or start again with another --out; a file that the program itself "
+        "--subject: {} changed while the command that names it ran. The verdicts may come from either code and are not "
+        "recorded; restore the file to resume, or start again with another --out. A file that the program itself "
         "writes "
-        "belongs after '>' or in a variable",
+        "must be named after '>' or in a variable",
         shown_path(file.file.string())));
   }
 }
@@ -126,9 +126,9 @@ namespace {
 std::string not_covered_of(const std::string& command, std::vector<std::string> words, const fs::path& program) {
   if (program.empty() || command.find_first_of(";|&<>()$`*?[~{}!#\n") != command.npos ||
       command.find("PATH=") != command.npos)
-    return "the code that it runs or of what that loads, because only the shell knows its files";
+    return "the code that it runs and what that code loads, because only the shell knows its files";
   if (words.size() == 1 || is_file(words[1])) return "what its files load";
-  return fmt::format("the code that it runs (except '{}' itself) or of what its files load", printable(words[0]));
+  return fmt::format("the code that it runs (except '{}' itself) and what its files load", printable(words[0]));
 }
 
 }  // namespace
@@ -180,7 +180,7 @@ bool is_object(const fs::path& file) {
                                             bytes[16] + bytes[17] == 1);  // ET_REL
 }
 
-// Whether the hash covers everything that the flag does: it brings in no file that the preprocessor does not show.
+// Whether the hash covers everything that the flag does: the flag adds no file that the preprocessor does not show.
 bool is_covered(const std::string& flag) {
   const std::size_t equals = flag.find('=');
   const std::string value = equals == flag.npos ? "" : flag.substr(equals + 1);
@@ -202,7 +202,7 @@ bool is_covered(const std::string& flag) {
 CodeHash hash_of_flags(const std::vector<std::string>& flags, std::uint64_t hash) {
   CodeHash code{hash, ""};
   std::set<std::string> uncovered;
-  bool takes_next = false;  // as a folder or a file for the preprocessor
+  bool takes_next = false;  // the next word is the flag's folder or file for the preprocessor
   for (const std::string& flag : flags) {
     code.hash = fnv1a(flag + '\n', code.hash);
     // File names may also be parts of words: -Wl,FILE, -Wl,--script=FILE, @FILE.

@@ -23,12 +23,12 @@ struct HashedFile {
   std::filesystem::path file;
   std::uint64_t hash;
   FileState state;           // before it was read
-  std::string program = {};  // the name by which the PATH finds it; empty where it is named by its path
+  std::string program = {};  // the name by which the PATH finds it; empty if the command gives its path
 };
 
 struct CodeHash {
   std::uint64_t hash = 0;
-  std::string not_covered;             // what the code depends on beside it, in words; empty where that is nothing
+  std::string not_covered;             // what else the code depends on, in words; empty if nothing
   std::vector<HashedFile> files = {};  // of a command
 };
 

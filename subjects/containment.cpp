@@ -69,7 +69,8 @@ bool keep_mounts_private() {
          (keep("/proc") && (keep("/dev/shm") || errno == ENOENT) && (!has_terminals() || keep("/dev/pts")));
 }
 
-// The terminals of the parent process that are not below /dev/pts, such as a console. Hiding /dev/pts leaves them.
+// The terminals of the parent process that are not below /dev/pts, such as a console. Hiding /dev/pts does not hide
+// them.
 std::vector<std::string> terminals_of_parent() {
   std::vector<std::string> found;
   for (const char* name : {"0", "1", "2"}) {
@@ -114,8 +115,8 @@ std::vector<std::string> mount_points(const std::string& type_begins) {
   return found;
 }
 
-// In the new namespace: root, or a user who owns some of the groups, could use them to freeze the supervisor or take
-// its memory and processor.
+// In the new namespace: hides the control groups. Root, or a user who owns some of them, could use them to freeze the
+// supervisor or take its memory and processor.
 bool hide_control_groups() {
   for (const std::string& place : mount_points("cgroup")) {  // and cgroup2
     // A mount on top of a shared mount, as in a chroot, would be visible outside.
@@ -139,7 +140,7 @@ bool make_mount_read_only(const char* place, unsigned long more_flags = 0) {
   return mount("none", place, nullptr, flags, nullptr) == 0;
 }
 
-// Whether it is a device that holds nothing, or one that computes. Others make devices or memory that outlive the
+// Whether it is a device that stores nothing, or one that computes. Others create devices or memory that outlive the
 // namespace, or are terminals.
 bool is_harmless(const fs::path& device) {
   const std::string name = device.filename(), folder = device.parent_path();
@@ -148,8 +149,8 @@ bool is_harmless(const fs::path& device) {
          std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
 }
 
-// In the new namespace: only harmless devices can be opened, because each of them becomes a mount of its own before
-// /dev loses its devices. No files can be made there, as they would be memory that no limit counts.
+// In the new namespace: makes sure that only harmless devices can be opened. Each of them becomes a mount of its own
+// before /dev loses its devices. No files can be made there, because they would be memory that no limit counts.
 void limit_devices() {
   const std::vector<std::string> places = mount_points("");
   // On a shared mount, as in a chroot, the mounts would be visible outside.
@@ -172,7 +173,7 @@ void limit_devices() {
   make_mount_read_only("/dev", MS_NODEV);
 }
 
-// In the new namespace: settings of the system are read-only, and what makes a device by being read is hidden.
+// In the new namespace: makes settings of the system read-only, and hides files that create a device when read.
 void limit_settings() {
   constexpr const char* kMakesDevices = "/sys/class/zram-control";
   for (const std::string& place : mount_points("")) {
@@ -225,7 +226,7 @@ bool limit_shared_memory(std::uint64_t bytes) {
 
 // Most tasks, threads included. Stops code that starts more tasks between two checks than the machine can hold.
 constexpr int kMostTasks = 1024;
-// Without a process namespace each task is found and killed by itself, while the others compete for the processors.
+// Without a process namespace, each task is found and killed separately, while the others compete for the processors.
 constexpr int kMostTasksWithoutNamespace = 256;
 
 // Since Linux 6.14 a process namespace has its own pid_max; before, it applied to the whole machine. Root has no other
@@ -256,7 +257,7 @@ rlim_t tasks_of(uid_t user) {
 
 // Foreign code cannot reach this process, only the supervisor, whose waits it may delay.
 [[noreturn]] void guard(pid_t supervisor, int control) {
-  constexpr int kMostMilliseconds = 6000;  // for its end in order
+  constexpr int kMostMilliseconds = 6000;  // for the supervisor to end in order
   const int process = open_process(supervisor);
   for (int fd = 0; fd < 1024; ++fd) {
     if (fd != control && fd != process) close(fd);
@@ -265,7 +266,7 @@ rlim_t tasks_of(uid_t user) {
   while (process >= 0 && poll(news, 2, -1) < 0 && errno == EINTR) {
   }
   if (process >= 0 && !news[1].revents) poll(news + 1, 1, kMostMilliseconds);
-  if (process >= 0) kill(supervisor, SIGKILL);  // it stays this process until it is waited for
+  if (process >= 0) kill(supervisor, SIGKILL);  // the id stays the supervisor's until we wait for it
   while (waitpid(supervisor, nullptr, 0) < 0 && errno == EINTR) {
   }
   _exit(0);
@@ -291,7 +292,7 @@ bool enter_containment(bool namespaces, std::uint64_t shared_bytes, int control,
       limit_devices();
       const bool limited = limit_system_v(shared_bytes);
       limit_tasks();
-      limit_settings();  // last, as the limits are some of them
+      limit_settings();  // last, because the limits are settings too
       close(answer[1]);
       return limited;
     }
@@ -321,12 +322,12 @@ bool is_descendant(pid_t process) {
 
 namespace {
 
-// Kills all descendants but those by one child.   Returns: whether any of them had not ended.
+// Kills all descendants except those of one child.   Returns: whether any of them had not ended.
 bool kill_descendants(pid_t except, void (*tell_alive)()) {
   bool found = false;
   std::set<pid_t> known{getpid()};  // parents are listed before their children
   for (const pid_t process : descendants(~std::uint64_t{0}, except)) {
-    tell_alive();  // where each of these processes is given as much time, this loop may take long
+    tell_alive();  // this loop may take long if each of these processes gets as much time as this one
     const int fd = open_process(process);  // first, so that the id stays this process's during the checks
     const ProcessStatus status = process_status(process);
     if (fd >= 0 && known.contains(status.parent)) {
@@ -356,7 +357,7 @@ bool end_children(pid_t except, void (*tell_alive)()) {
       kill(child, SIGKILL);
     }
     if (!left) return true;
-    // An ended process counts for the limit of tasks until it is collected. So while any of them runs, none is
+    // An ended process counts towards the task limit until it is collected. So as long as any of them runs, none is
     // collected, and soon no more can be started.
     const bool running = kill_descendants(except, tell_alive);
     poll(nullptr, 0, 1);
@@ -397,7 +398,7 @@ void append_rules(std::vector<sock_filter>& steps, const Calls& calls, bool syst
        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0, 1, 0), refuse, allow});
   add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.clone, 0, 4), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
        BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, kNamespaces, 0, 1), refuse, allow});
-  // Huge pages are off: a part of one in a buffer of a socket would keep all of it.
+  // Huge pages must stay off: one part of a huge page in a socket's buffer would keep the whole page.
   add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.prctl, 0, 4), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, PR_SET_THP_DISABLE, 0, 1), refuse, allow});
   // The C library then uses clone.

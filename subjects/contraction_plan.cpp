@@ -39,7 +39,7 @@ Json row_of(const std::vector<FusedLine>& plan) {
   return row;
 }
 
-// What kept_content has without the line of its checksum. Null if that is no plan.
+// The plan in kept_content, without the checksum line. Null if it is not a plan.
 Json kept_plan(const fs::path& file) {
   const std::string text = kept_content(file).value_or("");
   const Json plan = Json::parse(text.substr(0, text.find('\n')), nullptr, false);

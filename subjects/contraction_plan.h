@@ -25,14 +25,14 @@ ContractionPlan plan_in(std::string_view assembly, const std::filesystem::path& 
 ContractionPlan contraction_plan(const std::filesystem::path& source, const std::string& function, const Recipe& recipe,
                                  const std::vector<std::string>& flags);
 
-// The plan of a build as records have it: {"f32": {"plan": "3f2a7b1c5d6e7f80", "operations": 14}, "f64": {…}}. It is
-// kept beside the build.   build: its name in the cache.   Returns: null where no plan can be read, or where the source
-// does not give this build any more.   Throws: Stopped.
+// The plan of a build as records store it: {"f32": {"plan": "3f2a7b1c5d6e7f80", "operations": 14}, "f64": {…}}. It is
+// kept beside the build.   build: its name in the cache.   Returns: null if no plan can be read, or if the source no
+// longer gives this build.   Throws: Stopped.
 nlohmann::ordered_json recorded_plan(const std::string& build, const std::filesystem::path& source,
                                      const std::string& function, const Recipe& recipe,
                                      const std::vector<std::string>& flags);
 
-// How two recorded plans differ: "it fuses other products of f32 (plan 3f2a… then, 9b1c… now)". Empty where they agree
+// How two recorded plans differ: "it fuses other products of f32 (plan 3f2a… then, 9b1c… now)". Empty if they agree
 // or one is missing.
 std::string plan_difference(const nlohmann::ordered_json& then, const nlohmann::ordered_json& now);
 

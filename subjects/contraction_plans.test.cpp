@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The contraction plans of the built-in toolchains and of the lanes cpu-fma, against those of toolchains/plans.json by
-// compiler. A compiler that fuses other products changes verdicts, and no other test would say why.
+// Compares the contraction plans of the built-in toolchains and of the cpu-fma lanes with those of each compiler in
+// toolchains/plans.json. A compiler that fuses different products changes verdicts, and no other test would say why.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -51,7 +51,7 @@ struct ContractionPlans : testing::Test {
   }
   static void TearDownTestSuite() { fs::remove_all(folder); }
 
-  // Compares, and writes what was found into plans.json.new where it differs or has no golden.
+  // Compares, and writes what was found into plans.json.new if it differs or has no golden.
   void expect_golden(const std::string& builder, const std::string& compiler, const Json& found) {
     const Json golden = goldens.value(builder, Json::object()).value(compiler, Json());
     if (golden == found) return;
@@ -62,7 +62,7 @@ struct ContractionPlans : testing::Test {
       return;
     }
     for (const auto& [name, plan] : found.items()) {
-      EXPECT_EQ(plan, golden.value(name, Json())) << builder << " by " << compiler << " fuses other products in "
+      EXPECT_EQ(plan, golden.value(name, Json())) << builder << " with " << compiler << " fuses other products in "
                                                   << name << "; if that is right, scripts/update_generated accepts it";
     }
     EXPECT_EQ(found.size(), golden.size()) << builder;
@@ -99,7 +99,7 @@ TEST_F(ContractionPlans, OfBuiltInToolchainsAreTheGoldens) {
   skip_without_golden();
 }
 
-// A comment above moves lines; other code, another operation or another file is another plan.
+// A comment above the code only moves lines. Different code, operations or files change the plan.
 TEST_F(ContractionPlans, DoNotChangeWithLineNumbers) {
   const auto plan_of = [](const std::string& source, const char* instruction) {
     fs::create_directories(folder);
@@ -166,7 +166,7 @@ TEST_F(ContractionPlans, AreRecordedAndNamedWhenABuildIsRefused) {
                                 plan(fused, "f32")["plan"].get<std::string>() + " now"}));
 }
 
-// A damaged plan in the cache is made again.
+// A damaged plan in the cache is rebuilt.
 TEST_F(ContractionPlans, AreKeptBesideTheBuild) {
   if (version_of("x86_64-linux-gnu-g++").empty()) GTEST_SKIP() << "no x86_64-linux-gnu-g++";
   fs::create_directories(folder);

@@ -17,19 +17,19 @@ namespace graze::subjects {
 // The build's twin as it was kept; null if it has none.   Throws: std::runtime_error if its file has changed since.
 std::shared_ptr<const SealedCopy> twin_of(const cuda::CudaBuild& build);
 
-// The code for a device or, without one, of the twin. Its `what` is empty if there is neither.
+// The code for a device or, without one, for the twin. Its `what` is empty if there is neither.
 Code code_of(const cuda::CudaBuild& build, const Wanted& wanted, bool on_device,
              std::shared_ptr<const SealedCopy> twin);
 
 // What the kernels of builds cost on this machine's device.
 struct KernelCosts {
   std::string device;
-  std::vector<std::vector<double>> nanoseconds;  // a pair, for each build, one number for each pass; none is empty
+  std::vector<std::vector<double>> nanoseconds;  // per pair: for each build, one number per pass; none is empty
 };
 inline constexpr std::uint32_t kPairsOfKernelCosts = 1u << 20;  // of the stratum `uniform`, in device memory already
 
-// A process of its own measures, for a minute at most.   Throws: std::runtime_error that says why there is no cost, as
-// without a device; Stopped.
+// Measures in a process of its own, for at most a minute.   Throws: std::runtime_error that says why there is no cost,
+// such as a missing device; Stopped.
 KernelCosts kernel_costs(std::span<const cuda::CudaBuild* const> builds);
 
 }  // namespace graze::subjects

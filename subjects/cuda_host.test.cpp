@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// A fused product of area does not cancel the other one.
+// If one product of the area is fused, the two no longer cancel exactly.
 constexpr char kBoth[] = R"(#include <cuda_runtime.h>
 #ifdef __CUDACC__
 #define HD __device__ __forceinline__ __host__
@@ -83,7 +83,7 @@ TEST_F(CudaHost, HasTheLanesOfACppSource) {
   EXPECT_TRUE(has_source_as_built(*cpu));
   EXPECT_FALSE(has_source_as_built(*fused));
 
-  // A record names the host's builds, if its lanes ran. One from before has none, and still opens.
+  // A record names the host's builds, if its lanes ran. An older record has none, and still opens.
   EXPECT_FALSE(record({"hd/f32/cuda-fma"})[0].contains("host"));
   Json spec{{"subjects", record({"hd/f32/cpu", "hd/f32/cuda-fma"})}};
   EXPECT_GE(spec["subjects"][0].at("host").at("builds").size(), 1u) << spec;

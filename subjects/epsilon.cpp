@@ -111,7 +111,7 @@ class Tokens {
   bool in_directive_ = false;
 };
 
-// The value of a number with a point or an exponent; nothing for whole numbers and for what is no number.
+// The value of a number with a point or an exponent; nothing for whole numbers and for anything else.
 std::optional<double> value_of(std::string_view written) {
   std::string digits(written);
   std::erase(digits, '\'');
@@ -188,7 +188,7 @@ class Finder {
     return declared ? std::optional(first) : std::nullopt;
   }
 
-  // The end of the value that starts at the token: of a macro the end of its line, else , ; ) or } outside brackets.
+  // The end of the value that starts at the token: for a macro the end of its line, else , ; ) or } outside brackets.
   // Returns: `first` if there is no short value.
   std::size_t end_of_value(std::size_t first) const {
     const bool of_macro = first >= 3 && is(first - 2, "define") && is(first - 3, "#");
@@ -236,7 +236,7 @@ class Finder {
   std::vector<Token> tokens_;
   std::vector<Epsilon> found_;
   std::map<std::string, std::size_t> index_;  // in found_, by name
-  std::size_t next_name_ = ~std::size_t{0};   // behind the value of a constant and a comma
+  std::size_t next_name_ = ~std::size_t{0};   // after the value of a constant and a comma
   std::size_t constant_ends_ = 0;             // where the value of the last constant that was added ends
 };
 
@@ -289,10 +289,10 @@ Epsilon epsilon_of(const std::filesystem::path& source, std::string_view text, c
   if (candidates.empty()) {
     throw UsageError(fmt::format(
         "found no epsilon in {}: no constant with eps or tol in its name, and no number from 0 to {}; name the "
-        "constant by --epsilon",
+        "constant with --epsilon",
         file, kSmall));
   }
-  throw UsageError(fmt::format("{} has several numbers that may be the epsilon: {}; name one by --epsilon", file,
+  throw UsageError(fmt::format("{} has several numbers that may be the epsilon: {}; name one with --epsilon", file,
                                listed(source, candidates)));
 }
 

@@ -12,7 +12,7 @@
 
 namespace graze::subjects {
 
-// How the text marks comments and constants. cpp: also C and CUDA.
+// Decides how a value is cast to its former type. cpp: also CUDA.
 enum class SourceLanguage { c, cpp };
 
 // The bytes [begin, end) of a source, in a line counted from 1.
@@ -22,7 +22,7 @@ struct SourcePlace {
 };
 
 struct Epsilon {
-  std::string name;                 // of the constant; of a bare number, the number as it is written
+  std::string name;                 // the constant's name; for a bare number, the number as it is written
   std::string written;              // its value in the source: "1e-6f", "4 * FLT_EPSILON"
   std::optional<double> value;      // if it is a number
   std::vector<SourcePlace> places;  // at least one: where the value stands
@@ -47,7 +47,7 @@ std::string with_value(std::string_view text, const std::vector<Epsilon>& epsilo
 // The value as the source would write it: "3.05e-05f".
 std::string written_value(const Epsilon& epsilon, double value);
 
-// "mine.cpp:9", "mine.cpp:9 and 12", fit to be printed.
+// "mine.cpp:9", "mine.cpp:9 and 12"; printable.
 std::string places_in_words(const std::filesystem::path& source, const Epsilon& epsilon);
 
 }  // namespace graze::subjects

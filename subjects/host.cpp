@@ -6,7 +6,7 @@
 // As the supervisor of a build tool whose temporary files are in the folder SCRATCH:
 //   graze-subject-host --run SECONDS SCRATCH NAMESPACES MEMORY WORD...
 // With CUDA, graze-subject-device also times kernels. It prints the device's name and, for each kernel, a line of
-// nanoseconds a pair, one number for each pass:
+// nanoseconds per pair, one number for each pass:
 //   graze-subject-device --time PAIRS PASSES f32|f64 PTX [f32|f64 PTX]...
 // KIND WHAT NAME SCALAR:  library FILE NAME f32|f64|any   a shared object and its export; see graze/subject.h
 //                         command TEXT "" f32             a program; see subjects/README.md
@@ -265,7 +265,8 @@ class Asking {
     }
     const std::uint64_t taken = processor_nanoseconds() - start;
     if (block_ && !question.singly) {
-      // In parts that begin at odd places: almost every pair has another place in its block, modulo every power of two.
+      // Asks in parts that begin at odd places: almost every pair gets another place in its block, modulo every power
+      // of two.
       const std::size_t half = std::min<std::size_t>(question.count, question.count / 2 | 1);
       const std::size_t first = std::min<std::size_t>(half, 3);
       ask_block(question, true, half, question.count);
@@ -286,7 +287,7 @@ class Asking {
   // written is unstable.
   static signed char unwritten(bool second) { return second ? kDisjoint : kDeclined; }
 
-  // A call that changes the control of floating-point numbers gets another answer the second time: it is unstable.
+  // A call that changes the floating-point control gets a different answer in the second pass, so it is unstable.
   signed char one(std::size_t i, bool second) const {
     signed char said = unwritten(second);
     if (block_) {
@@ -521,7 +522,7 @@ int host(int argc, char** argv) {
                              argv + 6);
   }
   if (argc != 10) {
-    fmt::print(stderr, "graze-subject-host: is started by graze\n");
+    fmt::print(stderr, "graze-subject-host: only graze starts this program\n");
     return 2;
   }
   fix_addresses(argv);

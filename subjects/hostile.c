@@ -42,7 +42,7 @@ static int alone(void) {
   return readlink("/proc/1/exe", name, 99) > 0 && strstr(name, "graze-subject") != 0;
 }
 
-// Of the memory that is shared with the supervisor.
+// Calls act for the mappings with this name. Some are memory that is shared with the supervisor.
 static void mappings(const char* name, void (*act)(char* from, size_t bytes)) {
   FILE* maps = fopen("/proc/self/maps", "r");
   char line[1024];
@@ -229,7 +229,7 @@ static int parent_of(int process) {
   if (file) fclose(file);
   return parent;
 }
-// The process that loaded this code, its supervisor and itself, by control groups of either version.
+// Freezes the process that loaded this code, its supervisor and itself, with control groups of either version.
 static int freeze(void) {
   const char* roots[] = {"/sys/fs/cgroup/freezer", "/sys/fs/cgroup/unified", "/sys/fs/cgroup"};
   const char* test = getenv("GRAZE_HOSTILE_TEST");
@@ -247,7 +247,7 @@ static int freeze(void) {
   return 0;
 }
 ATTACK(freezes_supervisor, if (freeze()) for (;;) pause(); abort())
-// By its name, by one that leads there from the current folder, in a folder that was moved, and by a file handle.
+// Tries its name, a name that leads there from the current folder, a folder that was moved, and a file handle.
 static int write_to_cache(void) {
   char name[300], other[300];
   const char* cache = getenv("XDG_CACHE_HOME");
@@ -272,7 +272,7 @@ static int write_to_cache(void) {
   return folder >= 0 && openat(folder, "hostile", O_WRONLY | O_CREAT, 0600) >= 0;
 }
 ATTACK(writes_to_cache, if (!write_to_cache()) abort())
-// Of whoever waits for this process and may be delayed: its supervisor.
+// Delays the waits of the processes that wait for this one: the one that loaded this code, and its supervisor.
 static int stretch_waits(void) {
   char name[60];
   const int processes[] = {getppid(), parent_of(getppid())};
@@ -297,7 +297,7 @@ static void raise_task_limit(void) {
   abort();
 }
 ATTACK(raises_task_limit, raise_task_limit())
-// Memory that no limit counts, and programs that run in the kernel for every process.
+// Asks for memory that no limit counts, and for programs that run in the kernel for every process.
 static void call_the_kernel(void) {
   const long calls[] = {SYS_bpf, SYS_perf_event_open, SYS_io_uring_setup, 447 /* memfd_secret */};
   char nothing[128] = {0};

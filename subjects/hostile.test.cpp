@@ -163,7 +163,7 @@ TEST_P(EveryAttack, IsAVerdictOfItsPairs) {
   if (!attack.without_namespaces && !(namespaces && has_namespaces()))
     GTEST_SKIP() << "contained by a process namespace alone";
   if (std::string_view(attack.name).starts_with("forks_a_bomb") && !namespaces && geteuid() == 0)
-    GTEST_SKIP() << "without a process namespace, root has no limit of tasks";
+    GTEST_SKIP() << "without a process namespace, root has no task limit";
   if (attack.name == std::string_view("opens_terminals") && terminal < 0) GTEST_SKIP() << "no terminal can be had";
   if (attack.name == std::string_view("writes_to_cache") && !root_is_a_mount_point())
     GTEST_SKIP() << "in a chroot the cache can be written to";
@@ -248,11 +248,11 @@ INSTANTIATE_TEST_SUITE_P(Subjects, EveryAttack, testing::Combine(testing::Values
                                   (std::get<1>(of.param) ? "" : "_without_namespaces");
                          });
 
-// Root has no limit of tasks there, so it asks as another user.
+// Root has no task limit there, so the test runs as another user.
 TEST_F(Hostile, ABombOfAUserWithoutANamespaceEnds) {
   if (geteuid() != 0) GTEST_SKIP() << "EveryAttack tests it";
   fs::permissions(folder, fs::perms::all);
-  const fs::path program = fs::read_symlink("/proc/self/exe");  // beside those that it runs
+  const fs::path program = fs::read_symlink("/proc/self/exe");  // in the folder of those that it runs
   for (const char* bomb : {"forks_a_bomb", "forks_a_bomb_of_sessions", "forks_a_bomb_in_a_chain"}) {
     SCOPED_TRACE(bomb);
     const pid_t asking = fork();
@@ -341,7 +341,7 @@ TEST_F(Hostile, SharedMemoryThatNoPageTableShowsIsMemory) {
               return madvise(at, kEaten, MADV_DONTNEED) == 0 && fork_idle() && munmap(at, kEaten) == 0;
             }),
             kEaten);
-  // Several processes that map it count it once.
+  // Memory that several processes map counts once.
   EXPECT_LT(usage_after([] { return written(MAP_SHARED) && fork_idle() && fork_idle(); }), 2 * kEaten);
 }
 
@@ -783,8 +783,8 @@ TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
   }
 }
 
-// Where each call forks, each pair leaves one more process, but there must be no second worker; nor a second process
-// that loads the code and starts workers.
+// If each call forks, each pair leaves one more process, but there must be no second worker. Nor may there be a second
+// process that loads the code and starts workers.
 TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
   const std::string includes = "#include <signal.h>\n#include <unistd.h>\n",
                     function = "int intersects(const float a[9], const float b[9]) {\n";
@@ -831,8 +831,8 @@ TEST_F(Hostile, CodeThatStopsItsProcessGroupStopsOnlyItself) {
   }
 }
 
-// A tracee stops at each signal. Its tracer is the process that forks the workers, which must not take this for an end:
-// it would fork another worker too early, and the code would be loaded again.
+// A tracee stops at each signal. Its tracer is the process that forks the workers. It must not mistake the stop for an
+// end: it would fork another worker too early, and the code would be loaded again.
 TEST_F(Hostile, AWorkerThatIsTracedByItsParentIsAVerdictAndTheCodeStaysLoaded) {
   const fs::path loads = folder / "loads";
   const struct {

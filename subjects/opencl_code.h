@@ -18,8 +18,8 @@ inline constexpr std::uint64_t kDriverMemory = 8192;  // MiB: a device's driver 
 // opencl, opencl-nofma, opencl-mad and opencl-fast. Their `run` starts graze-subject-opencl.
 std::vector<Toolchain> opencl_toolchains(const std::string& function);
 
-// Compiles the source once on the device, to see whether it can.   run: of the toolchain.
-// Returns: the source as what is loaded, named by a hash of it, `run`, and the device.
+// Compiles the source once on the device, to see whether it can.   run: the toolchain's.
+// Returns: the source, because that is what is loaded. Its name is a hash of the source, `run` and the device.
 // Throws: std::runtime_error with the compiler's first error, or when there is no device; Stopped.
 Built built_for_opencl(const std::filesystem::path& source, const std::shared_ptr<const SealedCopy>& content,
                        const std::string& run);

@@ -93,7 +93,7 @@ Portable of_source(const Opened& subject, const std::string& folder) {
       return file == normal(flag.value) || (!flag.name.empty() && is_within(file, normal(flag.value)));
     });
   };
-  std::set<fs::path> rooted = files;  // flags name folders by their place beside the files
+  std::set<fs::path> rooted = files;  // flags name folders relative to the files
   for (const PathFlag& flag : flags) {
     if (!flag.name.empty() && flag.name != "-include" && names_files(flag)) rooted.insert(normal(flag.value) / "any");
   }

@@ -19,8 +19,8 @@ struct Portable {
   std::vector<std::string> missing;  // what it also needs, one sentence each
 };
 
-// Of a source: the file, and the files that it includes from its own folder and the folders of its flags; of a library:
-// the file; of a command: the files that it names, except programs of the system.
+// For a source: the file, and the files that it includes from its own folder and the folders of its flags. For a
+// library: the file. For a command: the files that it names, except programs of the system.
 Portable portable(const Opened& subject);
 
 }  // namespace graze::subjects

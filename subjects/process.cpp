@@ -78,7 +78,7 @@ class SharedPairs {
 };
 
 std::vector<std::string> arguments_of(const Code& code, bool describe) {
-  std::error_code none;  // only a folder that is there can be protected
+  std::error_code none;  // only a folder that exists can be protected
   std::filesystem::create_directories(cache_folder(), none);
   return {code.kind,
           code.what,
@@ -149,7 +149,7 @@ class HostProcess {
   bool silent() const { return supervisor_.silent(); }
 
  private:
-  // About the pairs in the shared memory.
+  // Asks about the pairs in the shared memory.
   std::optional<Answers> ask(std::size_t count) {
     const Block block{static_cast<std::uint32_t>(count)};
     Answers answers;

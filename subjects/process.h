@@ -26,8 +26,8 @@ struct Code {
   std::uint64_t memory = 1024;  // MiB, for all its processes together
   bool namespaces = true;       // run in a process namespace if the system allows one
   bool alone = false;           // one process at a time: several would wait for one device
-  std::shared_ptr<const SealedCopy> content = nullptr;  // of the file: what is loaded; taken from it where empty
-  std::vector<HashedFile> files = {};                   // of a command: it ends where one of them changes
+  std::shared_ptr<const SealedCopy> content = nullptr;  // the file's content, which is loaded; null: read from the file
+  std::vector<HashedFile> files = {};                   // for a command: asking ends if one of them changes
 };
 
 // A subject's description of itself.
@@ -36,8 +36,8 @@ struct Description {
   unsigned outside = 0;  // a sum of Outside
   std::string version, source, convention;
   bool describes_itself = false;  // has a struct graze_subject
-  std::string symbol;             // of a library: the symbol that was loaded
-  std::string said;               // of a program: the first line of its answer to `describe`
+  std::string symbol;             // for a library: the symbol that was loaded
+  std::string said;               // for a program: the first line of its answer to `describe`
   bool of_blocks = false;         // decides many pairs in a call
 };
 
@@ -60,8 +60,8 @@ class ForeignProcesses : public ForeignCode {
   Verdict failure_on_doubles(const DoublePair& pair) override;
   bool decides_doubles() const override { return scalar_ == Scalar::f64; }
 
-  // Processor time of the code for the pairs of the last decide, asked once. It is measured in the code's own process,
-  // without communication. Nothing for a command, or if the code failed on a pair.
+  // Processor time that the code took to decide the pairs of the last call once. It is measured in the code's own
+  // process, without communication. Nothing for a command, or if the code failed on a pair.
   std::optional<std::uint64_t> nanoseconds() const;
   // The same code in new processes that have seen no pair.
   std::unique_ptr<ForeignProcesses> anew() const;
@@ -81,7 +81,7 @@ class ForeignProcesses : public ForeignCode {
   std::mutex alone_;
   std::optional<std::uint64_t> nanoseconds_;
   std::vector<std::unique_ptr<HostProcess>> idle_;
-  std::map<std::string, Verdict> failures_;  // by the pair's bytes; incomplete, other failures are asked again
+  std::map<std::string, Verdict> failures_;  // by the pair's bytes; not all: pairs that are missing are asked again
 };
 
 }  // namespace graze::subjects

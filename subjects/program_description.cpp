@@ -21,11 +21,10 @@ using Json = nlohmann::ordered_json;
 void add_description(Description& description, const std::string& subject) {
   const std::string& said = description.said;
   if (said == kNoAnswer) {
-    fmt::print(
-        stderr,
-        "graze: --subject {}: the program did not answer `describe` within 10 s; no version and no convention of "
-        "it is known\n",
-        subject);
+    fmt::print(stderr,
+               "graze: --subject {}: the program did not answer `describe` within 10 s; its version and convention "
+               "are not known\n",
+               subject);
     return;
   }
   if (said == kLongAnswer)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a program says of itself.
+// What a program says about itself.
 #pragma once
 
 #include <string>

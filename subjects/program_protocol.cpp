@@ -31,7 +31,7 @@ ProgramProtocol::ProgramProtocol(const std::string& command, double seconds) : p
   graze_hello hello;
   exchange({}, &hello, sizeof hello, seconds);
   if (std::memcmp(hello.greeting, "graze 1\n", sizeof hello.greeting) != 0)
-    throw std::runtime_error("the program does not greet as graze/program.h does");
+    throw std::runtime_error("the program's greeting is not that of graze/program.h");
   if (hello.order != 1) throw std::runtime_error("its processor has another byte order; only little-endian ones work");
   has_ = hello.has;
 }

@@ -14,7 +14,7 @@ namespace graze::subjects {
 class ProgramProtocol {
  public:
   // Starts the program in a shell and waits for its greeting.
-  // Throws: std::runtime_error when that does not come within `seconds`, or is none.
+  // Throws: std::runtime_error when it does not come within `seconds`, or is not a greeting.
   ProgramProtocol(const std::string& command, double seconds);
 
   ~ProgramProtocol();  // the program's input ends, and so does the program

@@ -9,7 +9,7 @@
 
 namespace graze::subjects {
 
-// The function of such a source, of floats and of doubles.
+// The name of the functions in such a source, for floats and for doubles.
 inline constexpr char kPublishedFunction[] = "graze_published";
 
 // One lane of each published algorithm, in the order of the lane table.

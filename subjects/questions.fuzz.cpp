@@ -103,7 +103,7 @@ void read_message(std::string_view bytes) {
   }
   must_hold(std::strlen(loaded.version) < sizeof loaded.version && std::strlen(loaded.text) < sizeof loaded.text,
             "a text ends");
-  must_hold(loaded.has_f32 <= 1 && loaded.has_f64 <= 1 && loaded.outside < 16, "flags are flags");
+  must_hold(loaded.has_f32 <= 1 && loaded.has_f64 <= 1 && loaded.outside < 16, "flags have allowed values");
 }
 
 void read_lines(std::string_view bytes) {

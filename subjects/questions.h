@@ -9,9 +9,9 @@
 namespace graze::subjects {
 
 // Each pair is asked twice, forward and then backward, so that state left behind by one call shows in another. Answers
-// count in this order and once each. A word that is forged, early, late or of another question changes nothing. Answers
-// of a program have no number: one extra line would give each later pair the answer of another pair. So a question's
-// answers count all or not at all, and the pair that makes it fail is found by asking it alone.
+// are accepted only in this order, and only once each. A word that is forged, early, late or for another question
+// changes nothing. A program's answers have no numbers: one extra line would give each later pair the answer of another
+// pair. So a question's answers count all or not at all, and the pair that makes it fail is found by asking it alone.
 class Questions {
  public:
   // of_blocks: the subject takes blocks of pairs. program: a program answers, by lines or block by block.
@@ -61,7 +61,7 @@ class Questions {
   bool second_before_ = false;
   std::size_t at_before_ = 0;
   std::array<signed char, kMostAsked> answers_before_{};
-  std::array<signed char, kMostAsked> failed_here_{};  // of a program: how a question failed at this pair; 0: none did
+  std::array<signed char, kMostAsked> failed_here_{};  // for a program: how a question failed at this pair; 0: none did
 };
 
 // Sanitises a worker's message about its code: terminates texts, makes them printable, and sets flags to 0 or 1.

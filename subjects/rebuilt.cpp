@@ -41,7 +41,7 @@ Code cuda_code(const Lane& lane, const Opened& subject, const fs::path& copy, co
     if (code.what.empty()) throw std::runtime_error(cannot("run", lane.id + " as changed", build.why_no_twin));
     return code;
   }
-  throw std::runtime_error(cannot("run", lane.id + " as changed", "its function takes other numbers then"));
+  throw std::runtime_error(cannot("run", lane.id + " as changed", "its function then takes another type of number"));
 }
 
 SourceLanguage language_of(const Opened& subject) {
@@ -100,7 +100,7 @@ std::string source_as_built(const Lane& lane) {
   }
 }
 
-// What changed() has built, by lane and change.
+// The builds that changed() has made, by lane and change.
 struct Builds {
   std::mutex mutex;
   std::map<std::string, std::unique_ptr<ForeignProcesses>> built;  // none of them runs; null: it does not compile
@@ -117,7 +117,7 @@ Builds& builds() {
 std::string why_not_rebuilt(const Lane& lane) {
   const std::string& kind = opened_of(lane).kind;
   return kind == "library"   ? "it is a shared object, and its source is not known; give the source as the subject"
-         : kind == "command" ? "it is a command, and only C, C++ and CUDA sources are built again"
+         : kind == "command" ? "it is a command, and only C, C++ and CUDA sources can be rebuilt"
                              : "";
 }
 
@@ -152,7 +152,7 @@ std::unique_ptr<ForeignProcesses> rebuilt(const Lane& lane, const std::string& t
       code_of_build(lane, subject, build_source(copy, function_of(subject), recipe_of_lane(lane, copy), flags));
   const Description description = describe(code);
   if (!(scalar == Scalar::f32 ? description.f32 : description.f64))
-    throw std::runtime_error(cannot("run", lane.id + " as changed", "its function takes other numbers then"));
+    throw std::runtime_error(cannot("run", lane.id + " as changed", "its function then takes another type of number"));
   return std::make_unique<ForeignProcesses>(code, scalar);
 }
 

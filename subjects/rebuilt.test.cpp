@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sources built again with a change.
+// Sources rebuilt with a change.
 #include "subjects/rebuilt.h"
 
 #include <gtest/gtest.h>
@@ -64,7 +64,8 @@ int children() {
   return count;
 }
 
-// It includes a file of its own folder, and changes with its number, with doubles, and with initial values.
+// The source includes a file of its own folder. Its verdicts change with its number, with doubles, and with initial
+// values.
 TEST_F(Rebuilt, ChangesAreSeenInVerdicts) {
   std::ofstream(folder_ / "src/own.h") << "#define THERE 1\n";
   const Lane& lane = opened_lane("changes",
@@ -94,7 +95,7 @@ TEST_F(Rebuilt, ChangesAreSeenInVerdicts) {
   EXPECT_EQ(said(changed(lane, {.flags = {"-ftrivial-auto-var-init=pattern"}}), pair), Verdict::disjoint);
 }
 
-// However many threads ask, the builds stay, a descriptor for each, and a few processes, two descriptors for each.
+// However many threads ask, only the builds stay, with one descriptor each, and a few processes, with two each.
 TEST_F(Rebuilt, FewProcessesStay) {
   const Lane& lane = opened_lane(
       "many", "#ifndef N\n#define N 0\n#endif\nbool intersects(const float* a, const float*) { return *a < N; }\n");

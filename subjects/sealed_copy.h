@@ -16,7 +16,7 @@ class SealedCopy {
   SealedCopy(const SealedCopy&) = delete;
   SealedCopy& operator=(const SealedCopy&) = delete;
   int fd() const { return fd_; }
-  // A name of the copy in this process, as long as it lives.
+  // A file name of the copy in this process, valid as long as the copy lives.
   std::string file() const { return "/proc/self/fd/" + std::to_string(fd_); }
 
  private:

@@ -78,7 +78,7 @@ static int graze_of_f64(const double* a, const double* b) { return FUNCTION((con
 GRAZE_SUBJECT(graze_subject) = {.abi = GRAZE_SUBJECT_ABI, .f32 = graze_f32 ? graze_of_f32 : 0, .f64 = graze_f64 ? graze_of_f64 : 0};
 )";
 
-// Kernels of HIP. In C++, whose functions do not say where they run, every function is device code too.
+// HIP kernels. C++ functions do not say where they run, so in C++ every function is device code too.
 constexpr std::string_view kHip = R"(#include <hip/hip_runtime.h>
 #ifdef GRAZE_SAYS_WHERE
 #include SOURCE
@@ -121,7 +121,7 @@ std::string first_error(const std::string& text) {
   return first.empty() ? "the compiler failed and said nothing" : first;
 }
 
-// The last flags may ask for something else than the file, such as --version.   Throws: std::runtime_error.
+// The last flags may ask for something other than the file, such as --version.   Throws: std::runtime_error.
 void expect_made(const fs::path& file, const std::string& name, const Recipe& recipe,
                  const std::vector<std::string>& flags) {
   if (fs::exists(file)) return;
@@ -167,8 +167,8 @@ bool assembler_lists_files(const std::string& compiler, const std::vector<std::s
   return known[compiler] = status == 0 && fs::exists(list);
 }
 
-// The files in the assembler's list, one on each line. Omits files in the build's own folder and names that are no
-// file.
+// The files in the assembler's list, one on each line. Omits files in the build's own folder and names that are not
+// files.
 std::string listed_files(const fs::path& list, const fs::path& own) {
   std::string text = text_of(list), file, files;
   text = text.substr(std::min(text.find(": "), text.size())) + ' ';
@@ -239,7 +239,7 @@ namespace {
 
 bool is_cuda(const fs::path& source) { return source.extension() == ".cu"; }
 
-// Before the user's flags, which may name the folder of the toolkit's own headers.
+// They come before the user's flags, which may name the folder of the toolkit's own headers.
 std::string headers_for(const fs::path& source) {
   return is_cuda(source) ? " -I" + shell_word((cache_folder() / "include/cuda").string()) : "";
 }
@@ -254,7 +254,8 @@ Recipe recipe_of(const VariantInfo& variant, const fs::path& source) {
           std::string(variant.flags)};
 }
 
-// The dialects of GNU: with those of ISO, GCC neither contracts C nor, from version 13, keeps excess precision in C++.
+// Uses the GNU dialects: in the ISO dialects, GCC does not contract C, and from version 13 keeps no excess precision in
+// C++.
 Recipe recipe_of(const Toolchain& toolchain, const fs::path& source) {
   const bool c = source.extension() == ".c";
   const std::string& compiler = c ? toolchain.cc : toolchain.cxx;
@@ -271,7 +272,7 @@ namespace {
 
 // The file that is compiled, in `folder`, and the command that compiles it.
 struct Wrapped {
-  std::string command, expected;  // expected: what the compiler says if the function is none
+  std::string command, expected;  // expected: what the compiler says if the function does not fit
 };
 
 Wrapped wrapped(const fs::path& source, const std::string& function, const Recipe& recipe,
@@ -353,7 +354,7 @@ Built build_source(const fs::path& source, const std::string& function, const Re
                    : fmt::format("'{} --version' ended with exit status {}", compiler, status)));
   // The same compiler version may use other parts from another machine's PATH, and the compiler may be a script.
   identity += shell_output(
-      // By a file: a pipe would also wait for processes that the compiler leaves behind.
+      // Through a file: a pipe would also wait for processes that the compiler leaves behind.
       fmt::format("for part in as ld {1}; do {0} -print-prog-name=$part > {3} 2>/dev/null; read -r name < {3}; "
                   "file=$(command -v \"$name\") && cksum < \"$file\"; done; cksum < \"$(command -v {2})\"",
                   compiler, c ? "cc1" : "cc1plus", compiler.substr(0, compiler.find(' ')),
@@ -386,8 +387,8 @@ Built build_source(const fs::path& source, const std::string& function, const Re
     const Reading before = read();
     Built built{folder / fmt::format("{:016x}{}", before.hash, recipe.is_program ? kProgram : kObject),
                 before.not_covered, nullptr, first_line};
-    // An object is not cached under this name if the assembler read further files for it: which files it would read now
-    // is not known before it runs.
+    // An object is not cached under this name if the assembler read further files for it, because only a run of the
+    // assembler shows which files it would read now.
     if (before.is_whole && before.not_covered.empty() && assembled.empty()) {
       if (const auto kept = kept_content(built.file)) {
         built.content = std::make_shared<SealedCopy>(built.file.filename().string(), *kept);

@@ -35,8 +35,8 @@ struct Recipe {
 Recipe recipe_of(const VariantInfo& variant, const std::filesystem::path& source);
 Recipe recipe_of(const Toolchain& toolchain, const std::filesystem::path& source);
 
-// Whether a CUDA source declares the function as __host__ __device__, also by a macro. A source that the preprocessor
-// of the host does not read whole must say it in these words.   Throws: std::runtime_error; Stopped.
+// Whether a CUDA source declares the function as __host__ __device__, directly or by a macro. A source that the host's
+// preprocessor cannot read whole must say so in these words.   Throws: std::runtime_error; Stopped.
 bool is_host_device(const std::filesystem::path& source, const std::string& function, const Recipe& recipe,
                     const std::vector<std::string>& flags);
 

@@ -42,8 +42,8 @@ struct Entry {
     std::unique_ptr<ForeignProcesses> processes;
   };
   std::vector<Running> running;
-  std::vector<cuda::CudaBuild> builds;                   // of CUDA code: of each lane
-  std::vector<std::shared_ptr<const SealedCopy>> twins;  // of each of these builds; empty where it has none
+  std::vector<cuda::CudaBuild> builds;                   // for CUDA code: one for each lane
+  std::vector<std::shared_ptr<const SealedCopy>> twins;  // one for each of these builds; null if it has none
   struct FromToolchain {
     Toolchain toolchain;
     std::string build, compiler;  // its cached program; empty: it cannot be built or run here
@@ -229,7 +229,7 @@ void add_host_lanes(Entry& entry, std::vector<Lane>& made) {
       code.content = build.content;
       const Description description = describe(code);
       if (!(scalar == Scalar::f32 ? description.f32 : description.f64))
-        throw std::runtime_error("on the host its function takes other numbers");
+        throw std::runtime_error("on the host its function takes another type of number");
       add_lane(entry, made, std::move(code), std::move(lane));
     } catch (const std::runtime_error& error) {
       lane.evidence = printable(error.what());
@@ -239,7 +239,7 @@ void add_host_lanes(Entry& entry, std::vector<Lane>& made) {
   if (!built.empty()) o.made["host"] = how_built(o, built);
 }
 
-// The build for a device if there is one, else its twin. A build with neither is a lane that says why.
+// Adds the build for a device if there is one, else its twin. If there is neither, the lane says why.
 void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   const Opened& o = entry.opened;
   std::vector<Lane> made;
@@ -271,7 +271,7 @@ void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   }
 }
 
-// Builds the source by the toolchain and starts the program once.   Throws: std::runtime_error; Stopped.
+// Builds the source with the toolchain and starts the program once.   Throws: std::runtime_error; Stopped.
 Code code_by(const Toolchain& toolchain, const Opened& subject, const std::string& kept, Built& built,
              Description& description) {
   if (const std::string why = why_not_here(toolchain); !why.empty()) throw std::runtime_error(why);
@@ -458,7 +458,7 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded,
       entry.opened.code = hash_of_builds(built_files);
       entry.opened.made = how_made(wish, built_files);
     }
-    if (wish.kind == "command" || description.describes_itself) {  // which may depend on more than its files
+    if (wish.kind == "command" || description.describes_itself) {  // a description may depend on more than files
       entry.opened.code.hash = fnv1a(fmt::format("{}\n{}\n{}\n{}", description.version, description.source,
                                                  description.convention, description.outside),
                                      entry.opened.code.hash);
@@ -598,7 +598,7 @@ std::map<std::string, std::string> recorded_builds(const Json& row) {
   return builds;
 }
 
-// The contraction plan of a toolchain in a row of record(); null where it has none.
+// The contraction plan of a toolchain in a row of record(); null if it has none.
 Json recorded_contraction(const Json& row, const std::string& toolchain) {
   for (const Json& of : row.value("toolchains", Json::array())) {
     if (of.at("name") == toolchain) return of.value("contraction", Json());

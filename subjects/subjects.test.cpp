@@ -231,7 +231,7 @@ TEST_F(Subjects, DescriptionsAndBlocksAndExceptions) {
   expect(throws, Verdict::crashed);
   ForeignProcesses in_blocks({"library", (folder / "libdescribed.so").string(), "in_blocks"}, Scalar::f32);
   expect(in_blocks, Verdict::crashed);
-  // Answers that depend on the place in a block: all places but the first three are others the second time.
+  // Answers that depend on the place in a block: all places but the first three differ in the second pass.
   ForeignProcesses by_place({"library", (folder / "libdescribed.so").string(), "by_place_in_block"}, Scalar::f32);
   const std::vector<Verdict> placed = verdicts(by_place);
   std::size_t wrong = 0, unstable = 0;
@@ -284,7 +284,7 @@ for number, line in enumerate(sys.stdin, 1):
     for (std::size_t i = 0; i < pairs.size(); ++i)
       EXPECT_EQ(found[i], is_bad(pairs[i]) ? verdict : left_of(pairs[i])) << how << ' ' << i;
   }
-  // No pair makes this one fail, but it does: after so many lines.
+  // No pair makes this program fail; it fails after a number of lines.
   const std::vector<Verdict> found = run("ages");
   std::size_t crashed = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -370,7 +370,7 @@ int decide(const Real a[9], const Real b[9]) {
   open(wanted);
   std::size_t compared = 0;
   for (const char* scalar : {"f32", "f64"}) {
-    {  // the compiler decides what cpu-fma fuses, and may decide otherwise in another function
+    {  // the compiler decides what cpu-fma fuses, and may decide differently in another function
       const std::string lane = std::string("/") + scalar + "/cpu";
       const Lane *foreign = find_lane(name + lane), *ours = find_lane(id + lane);
       ASSERT_TRUE(ours);
@@ -734,7 +734,7 @@ TEST_F(Subjects, CodeThatChangesWhileItIsBuiltIsBuiltAgain) {
   unsetenv("CC");
 }
 
-// The assembler searches folders in order, so a new file in an earlier folder is other code.
+// The assembler searches folders in order, so a new file in an earlier folder is different code.
 TEST_F(Subjects, AFileThatTheAssemblerNowFindsEarlierIsBuiltIn) {
   const fs::path source = write("searched.c", R"(
 __asm__(".section .rodata\n.global blob\nblob: .incbin \"searched.bin\"\n.previous");
@@ -867,7 +867,7 @@ TEST_F(Subjects, AKeptObjectThatIsNotAsItWasBuiltIsBuiltAgain) {
   EXPECT_TRUE(fs::exists(kept / "inner"));
 }
 
-// Only for a program, or a program with a file as its first argument, does Graze know which code runs.
+// Graze knows which code runs only for a program alone, or for a program with a file as its first argument.
 TEST_F(Subjects, ACommandWhoseCodeIsNotPlainIsNotCovered) {
   const fs::path plain = write("plain.py", "pass"), program = write("plain", "pass");
   const std::string own = program.string();

@@ -35,14 +35,15 @@ using Clock = std::chrono::steady_clock;
 using Time = Clock::time_point;
 
 constexpr auto kLookEvery = std::chrono::milliseconds(100);  // between checks of what the processes use
-constexpr int kMostWaits = 20;                               // times its limit that a program may wait for a processor
+constexpr int kMostWaits = 20;                               // a program may wait this many limits for a processor
 constexpr int kMostLoads = 3;                                // failed ones, for one block
 
 Time after(double seconds) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-// graze assumes that a silent supervisor cannot continue. Tells it at most a hundred times a second.
+// Tells graze, at most a hundred times a second, that this supervisor works. graze assumes that a silent one cannot
+// continue.
 void tell_alive() {
   static Time next{};
   const Time now = Clock::now();
@@ -129,7 +130,7 @@ class Supervisor {
         continue;
       }
       end_worker();
-      questions.take(words_);  // answers of the last moment
+      questions.take(words_);  // answers that came at the last moment
       if (!questions.answered() || limits_.program) questions.failed(how);
     }
     std::copy(questions.answers().begin(), questions.answers().end(), answers.answers);
@@ -157,7 +158,7 @@ class Supervisor {
         return kCrashed;
       }
       if (Clock::now() < until) continue;
-      // It timed out only if it had the processor time; load on the machine gives no verdicts.
+      // It timed out only if it had the processor time; load on the machine must not cause verdicts.
       if (limits_.program && times < kMostWaits) {  // the worker itself only waits for its program
         const Activity now = activity_of_descendants(limits_.processes);
         const bool had_time = programs && now.seconds - programs->seconds >= 0.9 * limits_.seconds;
@@ -320,7 +321,7 @@ class Supervisor {
 
   void end_all() {
     if (!end_children(-1, tell_alive))
-      _exit(1);  // it starts processes faster than they end; the namespace ends with this process
+      _exit(1);  // the code starts processes faster than they end; the namespace ends with this process
     for (int* fd : {&talk_, &loader_fd_, &worker_fd_}) {
       if (*fd >= 0) close(*fd);
       *fd = -1;

@@ -13,7 +13,7 @@ struct Limits {
   double load_seconds = 60;  // to load the code and start a worker
   std::uint64_t bytes = 0;   // memory of all its processes together; 0: unlimited
   std::uint64_t processes = 64;
-  bool program = false;   // a program of its own answers
+  bool program = false;   // a separate program answers
   bool has_code = true;   // there is a file to load
   bool system_v = false;  // it may make System V memory, semaphores and message queues, which have limits then
 };

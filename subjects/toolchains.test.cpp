@@ -103,8 +103,8 @@ TEST_F(Toolchains, AreSelectedByNameAndByFile) {
   EXPECT_THROW(selected_toolchains(""), UsageError);
 }
 
-// With every operation rounded, each compiler and processor gives the same verdicts: so the protocol, the emulator's
-// arithmetic and the sources are right. With contraction or excess precision some verdicts differ.
+// With every operation rounded, each compiler and processor gives the same verdicts. This shows that the protocol, the
+// emulator's arithmetic and the sources are right. With contraction or excess precision some verdicts differ.
 TEST_F(Toolchains, OfPublishedAlgorithmsDifferOnlyWhereTheyDoNotRound) {
   open_published("interval_overlap", "x86-gcc,x86-gcc-v3,x86-clang-v3-off,x87,arm64-gcc,arm64-gcc-off,wasm");
   int compared = 0;
@@ -129,8 +129,8 @@ TEST_F(Toolchains, OfPublishedAlgorithmsDifferOnlyWhereTheyDoNotRound) {
   EXPECT_GE(compared, 4);  // of GCC, which builds Graze
 }
 
-// The products of each line in which the compiler fuses some are rounded, one line after the other, in assembly. What
-// is left agrees with the strict build on all pairs.
+// In the assembly, rounds the products of every line in which the compiler fuses some, one line after the other. The
+// result agrees with the strict build on all pairs.
 TEST_F(Toolchains, TheAssemblyShowsEveryFusedProduct) {
   open_published("moller_1997", "x86-gcc-v3,arm64-gcc,arm64-clang,x86-clang-v3-fast");
   int checked = 0;
@@ -201,7 +201,7 @@ run = "true"
   EXPECT_TRUE(record({"separating_axes/f32/cpu"}).is_null());
 }
 
-// Foreign code in a toolchain's program fails on its own pairs alone, and what it prints is no answer.
+// Foreign code in a toolchain's program fails only on its own pairs, and what it prints is not an answer.
 TEST_F(Toolchains, ProgramsThatFailLoseOnlyTheirPair) {
   Wanted wanted = parse_subject("fails=" + write("fails.cpp", R"(
 #include <cstdio>

@@ -56,7 +56,7 @@ std::uint64_t bytes_in(const fs::path& file, std::initializer_list<std::string_v
   return kib << 10;
 }
 
-// /proc of a process. Where its first thread has ended and others run, the system shows the memory only of those.
+// The folder in /proc that shows a process's memory: that of another thread, if the first has ended and others run.
 fs::path memory_folder(pid_t process) {
   const fs::path folder = "/proc/" + std::to_string(process);
   std::error_code error;
@@ -108,7 +108,7 @@ std::uint64_t add_shared(std::ifstream& maps, const fs::path& folder, Shared& sh
   return more;
 }
 
-// Memory of a process without shared memory, its page tables included. Counts whole pages of files first, which is
+// Memory of a process, including its page tables but not shared memory. Counts whole pages of files first, which is
 // fast; if that exceeds `most`, counts shares of them.
 std::uint64_t bytes_of(const fs::path& folder, std::uint64_t most) {
   const std::uint64_t whole = bytes_in(folder / "status", {"RssAnon:", "RssFile:", "VmSwap:", "VmPTE:"});

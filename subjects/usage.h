@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The processes and the memory of all descendants of this process, by /proc.
+// The processes and the memory of all descendants of this process, from /proc.
 #pragma once
 
 #include <sys/types.h>
@@ -11,10 +11,10 @@ namespace graze::subjects {
 
 std::vector<pid_t> own_children();  // of the calling thread
 
-// All descendants but those by one child, or a little more than `most` of them.
+// All descendants except those of one child, or a little more than `most` of them.
 std::vector<pid_t> descendants(std::uint64_t most, pid_t except = -1);
 
-// Whether some descendant runs or waits for a processor, and the processor time of all that are there, in seconds.
+// Whether some descendant runs or waits for a processor, and the processor time of all that exist, in seconds.
 struct Activity {
   bool wants_processor = false;
   double seconds = 0;

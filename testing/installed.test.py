@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Installs the test library, and builds and runs the tests of another project with it, as that project would."""
+"""Installs the test library, then builds and runs another project's tests with it, as that project would."""
 import argparse
 import os
 import pathlib
@@ -58,7 +58,7 @@ for framework in ("gtest", "catch2", "doctest"):
     expect(re.search(passed, text), f"{framework}: one failure alone in {text}")
     if framework != "gtest":
         continue
-    # The command of the message explains the pair of the message.
+    # The command in the message explains the pair in the message.
     command = re.search(r"Why: (echo .*)", text)[1].replace("YOUR_FILE", "own")
     (prefix / "build" / "own.cpp").write_text(f'#include "{args.examples}/overlap.h"\n')
     path = str(pathlib.Path(args.graze).parent) + os.pathsep + os.environ["PATH"]

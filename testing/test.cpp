@@ -21,8 +21,8 @@
 namespace graze {
 namespace {
 
-constexpr std::size_t kMostCalls = 50'000;  // of the function, to find the smallest pair: a second at 20 us a call
-constexpr std::size_t kBlock = 4096;        // pairs decided together
+constexpr std::size_t kMostCalls = 50'000;  // of the function, to find the smallest pair: 1 s at 20 us per call
+constexpr std::size_t kBlock = 4096;        // pairs per call
 
 std::vector<strata::PairSource> sources_of(std::string_view names, std::uint64_t seed, std::uint64_t count) {
   std::vector<std::string> globs;
@@ -49,7 +49,7 @@ bool accepts(unsigned outside, Verdict verdict, const Pair& pair, const Relation
          (!is_failure(verdict) && verdict != Verdict::declined && is_outside(outside, pair, relation));
 }
 
-// A value that no verdict has counts as crashed.
+// A value that is no verdict counts as crashed.
 Verdict checked(Verdict said) { return said <= Verdict::unstable ? said : Verdict::crashed; }
 
 struct Tested {
@@ -70,7 +70,7 @@ struct Tested {
   }
 };
 
-// Shrinks the pair while it keeps its relation, and its verdict stays and is wrong.
+// Shrinks the pair as long as its relation and the wrong verdict stay the same.
 Pair smallest_like(Pair pair, const Tested& tested) {
   const Relation relation = relation_of(pair);
   const Verdict verdict = tested.decide(pair);
@@ -89,7 +89,7 @@ Pair smallest_like(Pair pair, const Tested& tested) {
   return pair;
 }
 
-// The shortest decimal that is this float32; "5" for 5.0, and "1e30f" for a number that is not whole or large.
+// The shortest decimal of this float32: "5" for 5.0. As a literal with an f if it has a point or an exponent: "1e30f".
 std::string number(float value, bool literal) {
   char text[32];
   const std::to_chars_result end = std::to_chars(text, text + sizeof text, value);
@@ -123,7 +123,7 @@ std::string in_words(Verdict verdict, const Relation& relation) {
 }
 
 std::string shortest(double value) {
-  char text[32];  // not by to_chars, whose tables would make the WebAssembly larger
+  char text[32];  // not with to_chars, whose tables would enlarge the WebAssembly
   std::snprintf(text, sizeof text, "%g", value);
   return text;
 }
@@ -157,7 +157,7 @@ std::string table(const std::vector<Row>& rows) {
   return text;
 }
 
-// The options that accept both answers on this pair: "Accepted with .coplanar = graze::either, …".
+// Says which options accept both answers on this pair; empty if none does.
 std::string conventions_of(const Pair& pair, const Relation& relation) {
   constexpr std::pair<Outside, const char*> kOptions[] = {{kOutsideTouching, ".touching"},
                                                           {kOutsideCoplanar, ".coplanar"},
@@ -167,7 +167,7 @@ std::string conventions_of(const Pair& pair, const Relation& relation) {
   for (const auto& [outside, option] : kOptions) {
     if (is_outside(outside, pair, relation)) text += (text.empty() ? "" : " or ") + std::string(option);
   }
-  return text.empty() ? "" : "Either answer is accepted on such a pair with " + text + " = graze::either.\n";
+  return text.empty() ? "" : "To accept either answer on such a pair, set " + text + " = graze::either.\n";
 }
 
 std::string pair_in_words(std::string_view name, const Pair& pair, const std::string& fault) {
@@ -182,12 +182,12 @@ std::string pair_in_words(std::string_view name, const Pair& pair, const std::st
          (is_name ? std::string(name) : "YOUR_FUNCTION") + "\n";
 }
 
-// Replaces the number by the environment's, if there is one.   Throws: std::invalid_argument.
+// Replaces the number with the environment variable's, if it is set.   Throws: std::invalid_argument.
 void take_from_environment(const char* variable, std::uint64_t& number) {
   const char* text = std::getenv(variable);
   if (!text) return;
   const std::optional<std::uint64_t> wanted = parse_whole(text);
-  if (!wanted) throw std::invalid_argument(std::string(variable) + ": '" + printable(text) + "' is no whole number");
+  if (!wanted) throw std::invalid_argument(std::string(variable) + ": '" + printable(text) + "' is not a whole number");
   number = *wanted;
 }
 
@@ -224,7 +224,7 @@ TestResult tested_with(std::string_view name, const Tested& tested, const std::v
   }
   const std::uint64_t wrong = result.counts.wrong();
   if (result.pairs == 0 || result.counts.declined == result.pairs) {
-    result.message = std::string(name) + (result.pairs == 0 ? ": no pair was asked for\n" : " declines every pair\n");
+    result.message = std::string(name) + (result.pairs == 0 ? ": no pairs requested\n" : " declines every pair\n");
     result.summary = result.message;
     return result;
   }
@@ -257,7 +257,7 @@ TestResult test_pairs(std::string_view name, const DecidePairs& decide, const Te
   try {
     take_from_environment("GRAZE_PAIRS", used.pairs);
     take_from_environment("GRAZE_SEED", used.seed);
-    if (!(used.max_wrong >= 0 && used.max_wrong <= 1)) throw std::invalid_argument("max_wrong is not from 0 to 1");
+    if (!(used.max_wrong >= 0 && used.max_wrong <= 1)) throw std::invalid_argument("max_wrong must be between 0 and 1");
     sources = sources_of(used.strata, used.seed, used.pairs);
   } catch (const std::invalid_argument& error) {
     TestResult result;
@@ -286,7 +286,7 @@ std::string fault_of(const Pair& pair, Verdict said, const TestOptions& options)
   const Verdict verdict = checked(said);
   const Relation relation = truth(pair);
   if (verdict == relation.verdict || verdict == Verdict::declined) return "";
-  if (relation.verdict == Verdict::declined) return "";  // a coordinate that is not finite: no answer is wrong
+  if (relation.verdict == Verdict::declined) return "";  // a coordinate is not finite, so no answer is wrong
   return accepts(outside_of(options), verdict, pair, relation) ? "" : in_words(verdict, relation);
 }
 

@@ -27,7 +27,7 @@ std::vector<Pair> pairs_of(std::string_view strata, std::uint64_t seed, std::uin
 
 bool right(const float a[9], const float b[9]) { return exact::intersects(a, b); }
 bool never(const float[9], const float[9]) { return false; }
-bool boxes_meet(const double a[9], const double b[9]) {  // right wherever it says no
+bool boxes_meet(const double a[9], const double b[9]) {  // correct whenever it returns false
   for (int c = 0; c < 3; ++c) {
     const auto range = [c](const double* t) { return std::minmax({t[c], t[c + 3], t[c + 6]}); };
     if (range(a).second < range(b).first || range(b).second < range(a).first) return false;
@@ -40,7 +40,7 @@ int throws(const float a[9], const float b[9]) {
   return 0;
 }
 bool by_reference(const float (&a)[9], const float (&b)[9]) { return exact::intersects(a, b); }
-// Wrong where touching triangles are apart by convention.
+// Wrong on touching triangles, which it calls disjoint by convention.
 bool touching_is_apart(const float a[9], const float b[9]) {
   const Relation relation = exact::relation(a, b);
   return relation.intersects() && (relation.margin_sign != 0 || relation.contact == Contact::area);
@@ -104,7 +104,7 @@ TEST(TestOverlap, CountsWhatIsWrongAndShrinksIt) {
   for (int i = 0; i < kCoordinates; ++i) zeros += coordinates(small)[i] == 0;
   EXPECT_GE(zeros, 10) << result.message;
 
-  // The message has the pair, so that a test can be made of it, and the command that explains it.
+  // The message has the pair, so that it can become a test, and the command that explains it.
   const std::string& text = result.message;
   EXPECT_NE(text.find(std::to_string(expected.false_positive / 1000) + ","), text.npos) << text;
   EXPECT_NE(text.find("near_edge_edge"), text.npos) << text;
@@ -149,7 +149,7 @@ TEST(TestOverlap, AcceptsWhatIsAllowed) {
   EXPECT_TRUE(passes(never, {.strata = "shared_*", .pairs = 500, .shared = either}));
   EXPECT_FALSE(passes(never, {.strata = "shared_*", .pairs = 500, .touching = required}));
 
-  // A share, exactly: one of ten thousand.
+  // The share is exact: one in ten thousand.
   int calls = 0;
   const auto once_wrong = [&calls](const float* a, const float* b) {
     return exact::intersects(a, b) != (++calls == 77);
@@ -166,7 +166,7 @@ TEST(TestOverlap, TellsWhatItCannotTest) {
     return result.message;
   };
   EXPECT_EQ(message(declines, {.pairs = 100}), "f declines every pair\n");
-  EXPECT_EQ(message(right, {.pairs = 0}), "f: no pair was asked for\n");
+  EXPECT_EQ(message(right, {.pairs = 0}), "f: no pairs requested\n");
   EXPECT_NE(message(right, {.strata = "nonesuch"}).find("nonesuch"), std::string::npos);
   EXPECT_NE(message(right, {.max_wrong = -1}).find("max_wrong"), std::string::npos);
   EXPECT_NE(message(right, {.max_wrong = std::nan("")}).find("max_wrong"), std::string::npos);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same construction as oracle/common_set.cpp: one polygon is clipped by the half-spaces of the other's hull.
-// Numbers are rounded, so a point near a plane counts as on it. The exact decision tells the kind of the common set.
+// The same construction as in oracle/common_set.cpp: one polygon is clipped by the half-spaces of the other's hull.
+// Numbers are rounded, so a point near a plane counts as on it. The exact decision gives the kind of the common set.
 #include "wasm/drawing.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using Real = long double;
 using Point = Vec3<Real>;
 using Polygon = std::vector<Point>;
 
-constexpr Real kNearly = 0x1p-90L;  // relative to the sum of a value's terms: smaller values count as zero
+constexpr Real kNearly = 0x1p-90L;  // values smaller than this times the sum of their terms count as zero
 
 Point widened(const Vec3<double>& v) { return {v.x, v.y, v.z}; }
 bool is_zero(const Point& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
@@ -91,7 +91,7 @@ Polygon section(const Point (&p)[3], const HalfSpace& plane) {
   return ends.size() > 2 ? Polygon{} : ends;  // the whole hull lies in the plane
 }
 
-// The part of the line of both planes within the box around the points, which is enlarged by half.
+// The part of the line where the planes meet that is within the box around the points, enlarged by half.
 Polygon line_of(const Point (&a)[3], const Point (&b)[3], const Point& na, const Point& nb) {
   const Point along = cross(na, nb);
   const Point at = (cross(nb, along) * dot(na, a[0]) + cross(along, na) * dot(nb, b[0])) * (1 / dot(along, along));
@@ -207,7 +207,7 @@ void add_witness(Drawing& result, const Connection& found, int sign, const Point
   }
   result.low_a = static_cast<double>(low[0] - high[0]);
   result.high_a = 0;
-  // The direction of a tiny gap is too imprecise for the difference of low[1] and high[0].
+  // The direction of a tiny gap is too imprecise to use the difference of low[1] and high[0].
   result.low_b = static_cast<double>(sign * length);
   result.high_b = static_cast<double>(sign * length + (high[1] - low[1]));
   result.witness_count = write({found.p + from, found.q + from}, result.witness, 2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the module of each coordinate type, and the native side of their comparison, do with pairs of that type.
+// Functions for pairs of each coordinate type, used by the modules and by the native side of the comparison with them.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ inline void draw(DoublePair& pair, std::uint64_t seed, strata::Stratum stratum, 
   pair = strata::generate_doubles(seed, stratum, index);
 }
 
-// Certified bounds of |margin| in the unit of the coordinates; of doubles 0 and infinity where the bounds of
+// Certified bounds of |margin| in the unit of the coordinates. For doubles they are 0 and infinity if the numbers of
 // core/margin cannot hold the coordinates' exponents.
 // Requires: finite coordinates; verdict is the pair's true verdict, not declined.
 inline MarginBounds bounds_of(const Pair& pair, Verdict verdict) { return margin_bounds(pair, verdict); }
@@ -31,14 +31,14 @@ inline MarginBounds bounds_of(const DoublePair& pair, Verdict verdict) {
   const int shift = log2_ulp(pair) - scaled.ulp;
   const auto shifted = [&](double x, double outward) {
     const double y = std::ldexp(x, shift);
-    return std::ldexp(y, -shift) == x ? y : std::nextafter(y, outward);  // if it is subnormal or beyond the largest
+    return std::ldexp(y, -shift) == x ? y : std::nextafter(y, outward);  // a subnormal or infinite y may be rounded
   };
   bounds.lo = std::max(0.0, shifted(bounds.lo, -INFINITY));
   bounds.hi = shifted(bounds.hi, INFINITY);
   return bounds;
 }
 
-// The trace hash of what a lane with a twin sees of a pair.
+// The trace hash of a lane with a twin on what it sees of a pair.
 inline std::uint64_t trace_of(const Lane& lane, const AnyPair& pair) {
   std::uint64_t hash = 0;
   const AnyPair seen = analysis::seen_by(lane, pair);

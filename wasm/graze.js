@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // graze.wasm and graze_f64.wasm for JavaScript and TypeScript: exact triangle-triangle intersection, and the verdicts of
 // published algorithms on the same pair. The algorithms run in float32 and float64, on the CPU and, through their twins,
-// on the GPU. Has no dependencies; runs on Node 18 or newer, and in browsers since 2021.
+// on the GPU. It has no dependencies and runs in Node 18 or newer and in browsers since 2021.
 
 /** 18 coordinates, a[0] to a[2], then b[0] to b[2]; graze.wasm rounds each to float32, graze_f64.wasm decides the doubles. @typedef {ArrayLike<number>} Pair */
 /** @typedef {'disjoint' | 'intersects' | 'declined'} Verdict declined: a coordinate is not finite, or a lane cannot decide. */
 /** @typedef {'none' | 'point' | 'segment' | 'area'} Contact */
 /** @typedef {{ verdict: Verdict, contact: Contact, coplanar: boolean, dimensions: [number, number] }} Truth dimensions: of the two hulls, 0 point, 1 segment, 2 triangle. */
-/** @typedef {{ sign: -1 | 0 | 1, least: number, most: number, ulp: number }} Margin 1: disjoint, and at least `least`, at most `most` apart. -1: so deep. 0: they touch. ulp: that of the largest coordinate. */
+/** @typedef {{ sign: -1 | 0 | 1, least: number, most: number, ulp: number }} Margin sign 1: disjoint, at least `least` and at most `most` apart. -1: intersecting, that deep. 0: they touch. ulp: that of the largest coordinate. */
 /** @typedef {[number, number, number]} Point */
-/** @typedef {{ contact: Point[], line: Point[], sections: [Point[], Point[]], witness: Point[], along: [number, number][], features: [string, string] }} Drawing line: of both planes; sections: of it, by a and by b. witness: what the margin is: the nearest points of a and b, or the shortest push of b that parts them; along: from where to where a and b reach along it, a's end being 0; features: of a and b, that it joins or that give the push its direction. */
-/** @typedef {{ line: string, site: string, relation: string, held: boolean, holds: boolean, result: number, left: number, right: number, exactLeft: number, exactRight: number }} Step relation '': a value (left). held: in the lane; holds: with 113 bits. result: which of the run's computed numbers left is, -1 for none. */
-/** @typedef {{ line: string, from: string }} Site An operation with one rounding where the source has two, and what it is inlined into. */
-/** @typedef {{ decide: (pairs: number, count: number, verdicts: number) => void }} Host What the module calls: it sets the verdicts of pairs, both at these addresses. */
+/** @typedef {{ contact: Point[], line: Point[], sections: [Point[], Point[]], witness: Point[], along: [number, number][], features: [string, string] }} Drawing line: where the planes meet; sections: its parts in a and in b. witness: what the margin measures, which is the nearest points of a and b or the shortest push of b that separates them; along: the extents of a and b along it, with a's end at 0; features: those of a and b that it joins or that give the push its direction. */
+/** @typedef {{ line: string, site: string, relation: string, held: boolean, holds: boolean, result: number, left: number, right: number, exactLeft: number, exactRight: number }} Step relation '': only a value, left. held: the outcome in the lane; holds: with 113 bits. result: the index of left among the run's computed numbers, -1 if it is none. */
+/** @typedef {{ line: string, from: string }} Site An operation with one rounding where the source has two, and the place that it is inlined into. */
+/** @typedef {{ decide: (pairs: number, count: number, verdicts: number) => void }} Host What the module calls: a function that sets the verdicts of pairs; both are at these addresses. */
 /** @typedef {ReturnType<typeof graze_of>} Graze */
 
 /** @type {readonly Verdict[]} */
@@ -33,7 +33,7 @@ const feature_at = (of, feature) =>
         : `face ${of}`;
 
 /**
- * The functions over an instance of the module.
+ * The functions that use an instance of the module.
  * @param {any} exports @param {Host} host
  */
 function graze_of(exports, host) {
@@ -110,7 +110,7 @@ function graze_of(exports, host) {
     strata,
     /** How many pairs fit into one call of the functions below that take several. */
     room: /** @type {number} */ (exports.room()),
-    /** The module's own functions, its texts and numbers, and the function that it calls, for those who know them. */
+    /** For those who know them: the module's own functions, its texts and numbers, and the function that it calls. */
     exports,
     text_at,
     set_text,
@@ -118,7 +118,7 @@ function graze_of(exports, host) {
     host,
 
     /**
-     * What each lane says of the pair; null where a lane cannot have the policy that is set.
+     * Each lane's verdict on the pair; null if the lane cannot have the policy that is set.
      * @param {Pair} pair @returns {Record<string, Verdict | null>}
      */
     decide(pair) {
@@ -129,8 +129,8 @@ function graze_of(exports, host) {
     },
 
     /**
-     * Whether two triangles intersect, exactly; touching counts. graze.wasm refuses a double that is no float32, because
-     * rounding it could change the answer.
+     * Whether two triangles intersect, exactly; touching counts. graze.wasm refuses a double that is not a float32,
+     * because rounding it could change the answer.
      * @param {ArrayLike<number>} a 9 coordinates @param {ArrayLike<number>} b @returns {boolean}
      */
     intersects(a, b) {
@@ -150,7 +150,7 @@ function graze_of(exports, host) {
     },
 
     /**
-     * The exact verdict, whatever finite coordinates there are.
+     * The exact verdict, for any finite coordinates.
      * @param {Pair} pair @returns {Truth}
      */
     truth(pair) {
@@ -161,8 +161,9 @@ function graze_of(exports, host) {
     },
 
     /**
-     * How far from touching the pair is: certified bounds of the distance of disjoint triangles, or of the smallest translation
-     * that parts intersecting ones. They are 0 and infinity for doubles that lie more than about 2^250 apart in size.
+     * How far from touching the pair is: certified bounds of the distance of disjoint triangles, or of the smallest
+     * translation that separates intersecting ones. They are 0 and infinity for doubles whose sizes differ by more than
+     * about 2^250.
      * @param {Pair} pair @returns {Margin}
      */
     margin(pair) {
@@ -178,7 +179,7 @@ function graze_of(exports, host) {
     },
 
     /**
-     * The policy of all lanes but the exact ones from now on: '', 'abs:E', 'rel:K', 'bound' or 'filtered'.
+     * Sets the policy of all lanes except the exact ones: '', 'abs:E', 'rel:K', 'bound' or 'filtered'.
      * @param {string} policy
      */
     set_policy(policy) {
@@ -193,7 +194,7 @@ function graze_of(exports, host) {
     },
 
     /**
-     * The float32, or the double, nearest to a decimal or hex float, rounded once; null for what is no number of that type.
+     * The float32, or the double, nearest to a decimal or hex float, rounded once; null if the text is not such a number.
      * @param {string} text @returns {number | null}
      */
     parse(text) {
@@ -203,7 +204,7 @@ function graze_of(exports, host) {
     },
 
     /**
-     * The pair of a stratum, the same bits as everywhere.
+     * The pair of a stratum, with the same bits as everywhere.
      * @param {string} stratum @param {bigint} seed @param {bigint} index @returns {Float32Array | Float64Array}
      */
     generate(stratum, seed, index) {
@@ -212,7 +213,7 @@ function graze_of(exports, host) {
     },
 
     /**
-     * The float32, or the double, so many steps above the number.
+     * The float32, or the double, that is this many ulps above the number.
      * @param {number} x @param {number} ulps
      */
     nudged(x, ulps) {
@@ -223,8 +224,8 @@ function graze_of(exports, host) {
     },
 
     /**
-     * One row of an ulp map: x goes up by `step` ulps from cell to cell, the middle one being the pair's own, and y is `up`
-     * ulps above the pair's. Writes the truth's verdicts, then each lane's; 2 is declined. Null: without the policy.
+     * One row of an ulp map: x rises by `step` ulps from cell to cell and has the pair's own value in the middle; y is
+     * `up` ulps above the pair's. Returns the truth's verdicts, then each lane's; 2 is declined. Null: no such policy.
      * @param {Pair} pair @param {number} x @param {number} y @param {number} up @param {number} columns @param {number} step
      * @param {string[]} of @returns {(Uint8Array | null)[]}
      */
@@ -264,9 +265,11 @@ function graze_of(exports, host) {
     },
 
     /**
-     * The comparisons of a lane without a policy on what it sees of the pair, in order, and the values that its policy would see; null where they are not known.
-     * own: whether the values are known to be the lane's; otherwise a rule of contraction gave them, and the lane's verdict.
-     * with_113_bits: what the algorithm says in such numbers throughout.
+     * The comparisons of a lane without a policy on what it sees of the pair, in order, and the values that a policy
+     * would see; null if they are not known.
+     * own: whether the values are known to be the lane's; otherwise they come from a rule of contraction that gives the
+     * lane's verdict.
+     * with_113_bits: what the algorithm says if it computes with such numbers throughout.
      * @param {Pair} pair @param {string} id @returns {{ own: boolean, steps: Step[], with_113_bits: Verdict } | null}
      */
     steps(pair, id) {
@@ -298,7 +301,7 @@ function graze_of(exports, host) {
     },
 
     /**
-     * The contractions that make a cuda-fma lane without a policy decide otherwise than cuda-nofma; none where it does not.
+     * The contractions that make a cuda-fma lane without a policy decide differently from cuda-nofma, if it does.
      * @param {Pair} pair @param {string} id @returns {Site[]}
      */
     contractions(pair, id) {

@@ -81,7 +81,7 @@ function steps(lane, few) {
   });
 }
 
-// Computes the number that the native line has.
+// Computes the number in the native line.
 function compute(what, stratum, block, count) {
   const draw = () => exports.generate(graze.strata.indexOf(stratum), kSeed, BigInt(block * kBlock), count);
   draw();
@@ -152,7 +152,7 @@ function check_interface_of_doubles() {
   for (const text of ['', 'x', '1e309', '1 2', '0x']) assert.equal(graze.parse(text), null, text);
   assert.equal(graze.nudged(0, -1), -(2 ** -1074));
   assert.equal(graze.nudged(1, 1), 1 + 2 ** -52);
-  // Two parallel triangles of a model in metres, apart as doubles, and one in float32.
+  // Two parallel triangles of a model in metres, which are apart as doubles and coincide in float32.
   const at = (x) => [x, 0, 0, x, 1, 0, x, 0, 1],
     apart = [...at(1000000.01), ...at(1000000.02)];
   assert.equal(graze.truth(apart).verdict, 'disjoint');
@@ -223,7 +223,7 @@ function check_witness() {
         length = Math.hypot(...axis),
         size = Math.max(...pair.map(Math.abs), ...p.map(Math.abs)),
         slack = 1e-9 * most + 8 * 2 ** -52 * size;
-      if (!Number.isFinite(most)) continue; // bounds that hold nothing
+      if (!Number.isFinite(most)) continue; // bounds that say nothing
       assert.ok(
         length >= least - slack && length <= most + slack,
         `${where}: ${length}, margin between ${least} and ${most}`,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Replacements for parts that the module does not take from elsewhere: correct fused multiply-adds, lanes that it
-// cannot build, backends without words, and the parts of twin.h that concern users' libraries.
+// Replacements for parts that the module does not take from elsewhere: correct fused multiply-adds, stubs for lanes
+// that it cannot build, backends without descriptions, and the parts of twin.h that concern users' libraries.
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -12,7 +12,7 @@
 #include "cuda/twin/twin_table.h"
 
 // wasi-libc's fmaf is wrong if the result is subnormal and halfway between two numbers. Here the product is exact in
-// double, and the sum is rounded to odd (Boldo and Melquiond 2008). The last bit of the sum tells whether anything was
+// double, and the sum is rounded to odd (Boldo and Melquiond 2008). The sum's last bit records whether anything was
 // lost, so the second rounding gives the same result as a single one.
 extern "C" float fmaf(float x, float y, float z) {
   const double product = double{x} * double{y}, addend = z;
@@ -24,8 +24,8 @@ extern "C" float fmaf(float x, float y, float z) {
   return static_cast<float>(std::bit_cast<double>(bits));
 }
 
-// wasi-libc's fma, except if z is zero: there it adds the rounded product, and loses the sign of one that rounds to -0.
-// The linker (--wrap) calls this function for fma.
+// wasi-libc's fma, except if z is zero: it would add the rounded product and lose the sign of a product that rounds to
+// -0. The linker (--wrap) calls this function for fma.
 extern "C" double __real_fma(double x, double y, double z);
 extern "C" double __wrap_fma(double x, double y, double z) {
   return z == 0 && x != 0 && y != 0 ? x * y : __real_fma(x, y, z);
@@ -36,14 +36,14 @@ extern "C" double __wrap_fma(double x, double y, double z) {
 extern "C" void* __cxa_allocate_exception(std::size_t) { __builtin_trap(); }
 extern "C" void __cxa_throw(void*, void*, void (*)(void*)) { __builtin_trap(); }
 
-// The module needs nothing of its host's system. There is no environment, and nothing is printed: snprintf alone brings
-// the functions of files in.
+// The module needs nothing of its host's system. There is no environment, and nothing is printed; only snprintf brings
+// in functions for files.
 extern "C" char* getenv(const char*) { return nullptr; }
 extern "C" int __imported_wasi_snapshot_preview1_fd_close(int) { __builtin_trap(); }
 extern "C" int __imported_wasi_snapshot_preview1_fd_seek(int, std::int64_t, int, int) { __builtin_trap(); }
 extern "C" int __imported_wasi_snapshot_preview1_fd_write(int, int, int, int) { __builtin_trap(); }
 
-// The one thread never ends.
+// The only thread never ends.
 extern "C" int __cxa_thread_atexit(void (*)(void*), void*, void*) { return 0; }
 
 namespace graze {
@@ -84,7 +84,7 @@ Verdict decide_fusing(const Lane& lane, const AnyPair& pair, std::span<const std
 
 }  // namespace cuda
 
-// Without the words about lanes, for which the module would need output streams.
+// Without the descriptions of lanes, which would need output streams.
 namespace backends {
 const Backend& backend_of(const Lane& lane) {
   constexpr auto own_code = [](const Lane& of) { return of.decide; };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze.wasm, whose pairs are of float32, and graze_f64.wasm, whose pairs are of doubles: the viewer's decisions. The
+// graze.wasm, with pairs of float32, and graze_f64.wasm, with pairs of doubles: they decide for the viewer. The
 // functions work on the module's own buffers; graze.js calls them.
 #include <algorithm>
 #include <cstring>
@@ -61,7 +61,7 @@ struct SiteOut {
 };
 std::vector<SiteOut> sites_out;
 
-// The lanes that the module can run, with their functions under the policy that was set last.
+// A lane that the module can run, and its function under the policy that was set last.
 struct Decider {
   const Lane* lane;
   DecideBlock decide;
@@ -100,7 +100,7 @@ double shown(const Quad& x) { return std::abs(x.value) <= x.error ? 0 : static_c
 
 void nudge_in(OwnPair& pair, int coordinate, int ulps) {
   Coordinate& x = coordinates(pair)[coordinate];
-  if (ulps != 0) x = strata::nudged(x, ulps);  // a step of zero would turn -0 into +0
+  if (ulps != 0) x = strata::nudged(x, ulps);  // zero steps would turn -0 into +0
 }
 
 std::optional<float> number_in(const char* text, float) { return parse_float32(text); }
@@ -163,7 +163,7 @@ GRAZE_EXPORT(trace) int trace(int lane, int count) {
   return true;
 }
 
-// x y + z, rounded once, as in the twins; for the test.
+// x y + z, rounded once as in the twins; for the test.
 GRAZE_EXPORT(fused) float fused(float x, float y, float z) { return __builtin_fmaf(x, y, z); }
 
 // The truth of the first pair. Exact, except for the margin's bounds; a bound of 0 is exact.
@@ -196,8 +196,8 @@ GRAZE_EXPORT(map_row) void map_row(int x, int y, int up, int columns, int step) 
   }
 }
 
-// Computes the lane's comparisons on what it sees of the first pair and the values passed to its policy, and beside
-// them the same path with 113 bits. Returns: the number of steps; -1 if nothing shows that they are the lane's own.
+// Computes the lane's comparisons on what it sees of the first pair, the values passed to its policy, and the same path
+// with 113 bits. Returns: the number of steps; -1 if nothing shows that they are the lane's own.
 GRAZE_EXPORT(steps) int steps(int lane) {
   const Lane& of = *deciders()[lane].lane;
   steps_out.clear();
@@ -221,7 +221,7 @@ GRAZE_EXPORT(steps) int steps(int lane) {
 }
 // The evidence that the steps are the lane's own, as in analysis::Evidence.
 GRAZE_EXPORT(evidence) int evidence() { return steps_evidence; }
-// The algorithm's verdict with 113 bits throughout, on its own path.
+// The algorithm's verdict with 113 bits throughout, on the path that these take.
 GRAZE_EXPORT(with_113_bits) int with_113_bits() { return static_cast<int>(verdict_of_quads); }
 GRAZE_EXPORT(steps_at) const StepOut* steps_at() { return steps_out.data(); }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The compiler's long double as a number type for the algorithms, with an error bound. In WebAssembly it is implemented
-// in software, with 113 bits and exponents up to 2^16383. Numbers count as equal if the bounds cannot tell them apart,
-// as in oracle/multiprecision.h.
+// The compiler's long double with an error bound, as a number type for the algorithms. In WebAssembly it is implemented
+// in software, with 113 bits and numbers up to 2^16383. Numbers count as equal if the bounds cannot tell them apart, as
+// in oracle/multiprecision.h.
 #pragma once
 
 #include <cmath>

@@ -21,7 +21,7 @@ constexpr std::uint64_t kSeed = 20120131;
 constexpr std::size_t kBlock = 1000;
 constexpr const char* kPolicies[] = {"abs:0.001", "rel:24", "bound", "filtered"};
 
-// 32-bit FNV-1a, which JavaScript computes just as fast.
+// 32-bit FNV-1a, which is fast in JavaScript too.
 struct Hash {
   std::uint32_t value = 0x811c9dc5u;
   void add(const void* bytes, std::size_t count) {
@@ -63,7 +63,7 @@ Hash truths(const std::vector<OwnPair>& pairs) {
 }
 
 // Hashes one lane's steps, which the viewer uses for explanations. Compilers evaluate the arguments of a call in
-// different orders, so the order of the steps does not count.
+// different orders, so the hash does not depend on the order of the steps.
 template <class OwnPair>
 Hash steps(const Lane& lane, const std::vector<OwnPair>& pairs) {
   Hash hash;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The test of a JavaScript function: <graze/test.h> with the function that JavaScript gives. packaged.js calls it.
+// The test of a JavaScript function: <graze/test.h> with a function from JavaScript. packaged.js calls it.
 #include <graze/test.h>
 
 #include <cstring>
 
 extern "C" {
-char* text();  // of module.cpp
+char* text();  // in module.cpp
 
-// JavaScript's: sets the verdict of each pair.
+// Implemented in JavaScript: sets the verdict of each pair.
 [[clang::import_module("graze"), clang::import_name("decide")]] void decide_in_javascript(const graze::Pair* pairs,
                                                                                           std::size_t count,
                                                                                           graze::Verdict* verdicts);

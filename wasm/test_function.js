@@ -2,20 +2,20 @@
 // Tests a function of two triangles on pairs of the strata, as <graze/test.h> does for C++.
 
 /**
- * Whether two triangles, 9 coordinates each, intersect; a number below 0 declines.
+ * Whether two triangles, each of 9 coordinates, intersect; a number below 0 declines.
  * @typedef {(a: Float32Array, b: Float32Array) => boolean | number} Overlap
  */
 /**
- * Pairs that only touch, lie in one plane, have a segment or a point for a triangle, or share a vertex.
+ * Pairs that only touch, lie in one plane, have a segment or a point in place of a triangle, or share a vertex.
  * @typedef {'touching' | 'coplanar' | 'degenerate' | 'shared'} Kind
  */
 /**
  * @typedef {object} TestOptions
  * @property {string} [name] of the function, for the message
  * @property {string | string[]} [strata] names with * and ?, separated by commas; "!x" leaves out x; default: "*"
- * @property {number} [pairs] how many, shared evenly by the strata; default: 100,000
+ * @property {number} [pairs] how many, divided equally among the strata; default: 100,000
  * @property {number} [seed] of the pairs; default: 1
- * @property {number} [max_wrong] the share of wrong answers that is accepted; default: 0
+ * @property {number} [max_wrong] the accepted share of wrong answers; default: 0
  * @property {Kind | Kind[]} [either] kinds of pairs on which both answers are accepted; default: none
  */
 /**
@@ -26,8 +26,8 @@
  * @property {number} pairs
  * @property {number} wrong
  * @property {number} declined
- * @property {{ a: number[], b: number[] } | null} smallest a wrong pair, shrunk while truth and answer stay
- * @property {unknown} thrown what the function threw first, which is a wrong answer; null if nothing
+ * @property {{ a: number[], b: number[] } | null} smallest a wrong pair, shrunk while truth and answer stay the same
+ * @property {unknown} thrown what the function threw first, which counts as a wrong answer; null if it threw nothing
  */
 
 /** @type {readonly Kind[]} */
@@ -76,8 +76,8 @@ function expect_function_and_options(overlap, options) {
 }
 
 /**
- * Draws pairs of the strata, asks the function, and compares with the exact answers. Of the wrong pairs, the simplest
- * is made smaller, with at most 50,000 calls, while the true relation and the wrong answer stay.
+ * Draws pairs from the strata, asks the function, and compares its answers with the exact ones. The simplest wrong pair
+ * is then made smaller with at most 50,000 calls, without changing the true relation or the wrong answer.
  * Throws: RangeError for an option that is not valid, TypeError for an answer that is neither boolean nor number.
  * @param {import('./graze.js').Graze} graze @param {Overlap} overlap
  * @param {TestOptions} [options] @returns {TestResult}
@@ -100,7 +100,7 @@ export function test_function(graze, overlap, options = {}) {
   /** @type {unknown} */
   let thrown = null;
   /** @type {TypeError | null} */
-  let no_answer = null; // thrown only after the module has returned, because it does not unwind
+  let no_answer = null; // thrown only after the module has returned, because the module does not unwind
   /** @param {Float32Array} a @param {Float32Array} b */
   function verdict(a, b) {
     if (no_answer) return kDeclined;
@@ -145,7 +145,7 @@ export function test_function(graze, overlap, options = {}) {
 }
 
 /**
- * The number of an environment variable, in Node; or else the other.
+ * The number in an environment variable in Node; otherwise `otherwise`.
  * @param {string} variable @param {number | undefined} otherwise
  */
 function of_environment(variable, otherwise) {
@@ -159,8 +159,8 @@ function of_environment(variable, otherwise) {
 const list = (nine) => `[${nine.map((x) => (Object.is(x, -0) ? '-0' : String(x))).join(', ')}]`;
 
 /**
- * Throws an error with the counts and the smallest wrong pair unless the function is right on all pairs, or wrong on
- * no more than max_wrong allows. In Node, GRAZE_PAIRS and GRAZE_SEED of the environment replace the numbers.
+ * Throws an error with the counts and the smallest wrong pair, unless the function is right on all pairs or wrong on no
+ * more than max_wrong allows. In Node, the environment's GRAZE_PAIRS and GRAZE_SEED replace the options' numbers.
  * @param {import('./graze.js').Graze} graze @param {Overlap} overlap
  * @param {TestOptions} [options] @returns {TestResult}
  */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an algorithm states about itself. An algorithm is a struct with `kInfo` and a static template `decide`.
+// Properties that an algorithm declares. An algorithm is a struct with `kInfo` and a static template `decide`.
 #pragma once
 
 #include <string_view>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The list of algorithms. A new subject is one header and one entry here. The lane table, the device lanes, tests,
-// campaigns, benchmarks and `graze lanes` iterate over this list.
+// The list of algorithms. To add a subject, write one header and add one entry here. The lane table, the device lanes,
+// tests, campaigns, benchmarks and `graze lanes` iterate over this list.
 #pragma once
 
 #include <tuple>
@@ -18,7 +18,7 @@ inline namespace GRAZE_FP {
 using Algorithms = std::tuple<ProjectedSat, IntervalOverlap, Moller1997, GuigueDevillers2003, SeparatingAxes>;
 inline constexpr int kAlgorithmCount = std::tuple_size_v<Algorithms>;
 
-// Widens the pair's stored bits to Real and decides them with decide(a, b).
+// Widens the pair's coordinates to Real and returns decide(a, b).
 template <class Real, class Decide>
 GRAZE_HD Verdict decide_widened(const Pair& pair, const Decide& decide) {
   Vec3<Real> a[3], b[3];

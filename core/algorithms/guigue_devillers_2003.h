@@ -10,8 +10,8 @@ namespace graze {
 inline namespace GRAZE_FP {
 namespace guigue_devillers_2003 {
 
-// The order of a triangle's vertices in which the first is alone on its side of the other's plane, or the others are in
-// the plane. flip: whether to turn the other triangle over, so that the first vertex is on its positive side.
+// The vertex order that puts the lone vertex first: alone on its side of the other triangle's plane, or alone in that
+// plane. flip: whether to turn the other triangle over, so that the first vertex has the largest signed distance.
 struct Canonical {
   int first;  // 0, 1, 2; -1 when all three vertices lie in the plane
   bool flip;
@@ -142,7 +142,7 @@ struct GuigueDevillers2003 {
   }
 
   // The coplanar determinants are numbered in the order of the functions above: the turns of both triangles, the place
-  // of a's first vertex, then those of the edge's and of the vertex's region.
+  // of a's first vertex, then the determinants of the edge region and of the vertex region.
   template <class Questions>
   static void list(Questions& questions) {
     questions.plane_distances();

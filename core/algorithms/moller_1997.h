@@ -119,7 +119,7 @@ struct Moller1997 {
     choose(policy, 2, alone_b + 1);
     if (alone_a < 0 || alone_b < 0) return verdict_of(coplanar_intersect(n1, a, b, policy));
 
-    // Scales both sections by x0 x1 of each, which avoids division.
+    // Scales both sections by the product of all four x0 and x1, which avoids division.
     const Section<Real> s = section_from(ta, dv, alone_a), t = section_from(tb, du, alone_b);
     const Real xx = s.x0 * s.x1, yy = t.x0 * t.x1, xxyy = xx * yy;
     const Real s_at = s.at * xxyy, t_at = t.at * xxyy;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A policy that compares exactly and keeps every value that it is asked about, and every choice, in memory.
+// A policy that compares exactly and stores every value that it is asked about, and every choice.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ struct Recorded {
   std::uint64_t stride;
 };
 
-// The questions that were asked, one bit each, and the choices: bits 4 k to 4 k + 3 of `path` are choice k plus 1. Bits
-// 60 to 63 are the verdict plus 1.
+// `asked` has one bit for each question that was asked. Bits 4 k to 4 k + 3 of `path` are choice k plus 1, and bits 60
+// to 63 are the verdict plus 1.
 struct RecordedPath {
   std::uint64_t asked = 0, path = 0;
 };

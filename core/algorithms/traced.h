@@ -39,13 +39,13 @@ constexpr bool holds(Comparison comparison, std::partial_ordering order) {
 template <class Number>
 struct Seen {
   std::source_location where;
-  std::optional<Site> site;  // where the policy was asked; none for the algorithm's own comparison
+  std::optional<Site> site;  // where the policy was asked; none if the algorithm itself compares
   bool compared;
   Comparison comparison;
   Number left, right;
   int left_result, right_result;  // indices of the run's results, from 0; -1: a coordinate or a constant
-  bool held;                      // the outcome by the values
-  bool taken;                     // the outcome that the algorithm got: `held`, unless a path led it
+  bool held;                      // the outcome that the values give
+  bool taken;                     // the outcome that the algorithm got: `held`, unless a path forced it
 };
 
 // Outcomes of a run's comparisons, in order.
@@ -72,7 +72,7 @@ struct Recorder {
   using Kept = std::conditional_t<std::is_same_v<Number, float>, double, Number>;
 
   Trace<Kept> run;
-  Path lead;  // outcomes of the first comparisons; later ones go by their values
+  Path lead;  // forced outcomes of the first comparisons; the values decide later ones
   std::size_t comparisons = 0;
   int results = 0;
   std::vector<int> uses;        // how many additions use each product
@@ -103,10 +103,10 @@ struct Recorder {
   }
 };
 
-// none: every operation rounds. Otherwise a sum or difference fuses a product among its terms. Of two products, left
-// fuses the left one, like g++ if it contracts them at all. nvcc fuses the one with fewer uses, else the left one, like
-// cuda/twin/generator/contraction.cpp. It fuses neither of two that scale by a quotient: in interval_overlap's
-// common_line, the only such place, nvcc moves the addition into another block. A rule may fail: compare with the lane.
+// `none`: every operation rounds. Otherwise a sum or difference fuses a product with the addition. If both terms are
+// products, `left` fuses the left one, as g++ does if it contracts at all. `nvcc` fuses the one with fewer uses, on a
+// tie the left one, like cuda/twin/generator/contraction.cpp. It fuses neither if both scale by a quotient: nvcc moves
+// that addition to another block (only in interval_overlap's common_line). Rules can fail: compare with the lane.
 enum class Contraction { none, left, nvcc };
 
 inline namespace GRAZE_FP {
@@ -117,7 +117,7 @@ struct Traced {
   int result = -1;                        // index among the run's results
   Number x{0}, y{0};                      // the factors, if it is a product
   int product = -1;                       // index among the run's products
-  bool quotient = false, scaled = false;  // a quotient or a constant; a product by a quotient
+  bool quotient = false, scaled = false;  // a quotient or a constant; a product with a quotient
 
   Traced() : value(0) {}
   explicit Traced(Number v) : value(std::move(v)) {}
@@ -225,7 +225,7 @@ struct TracingPolicy {
   }
 };
 
-// Runs the algorithm (an index into Algorithms) on the pair, rounded to these numbers, forced along the path.
+// Runs the algorithm (an index into Algorithms) on the pair, rounded to these numbers, and forces it along the path.
 template <class Number, Contraction contraction = Contraction::none, class Coordinate>
 Trace<typename Recorder<Number>::Kept> run_traced(int algorithm, const BasicPair<Coordinate>& pair,
                                                   const Path& lead = {}) {

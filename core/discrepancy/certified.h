@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of twice a double's precision with a certified bound of their error, on host and device alike. The rounding
-// error of a sum is computed, not estimated, so that the bound of an exact result is zero.
+// Numbers of twice a double's precision with a certified bound on their error, on host and device alike. The rounding
+// error of a sum is computed, not estimated, so the bound of an exact result is zero.
 // References: T. J. Dekker, A floating-point technique for extending the available precision, Numerische Mathematik 18
 // (1971): errors of sums and products.
 // Requires: compiled without contraction, so that host and device give the same bits.
@@ -21,7 +21,7 @@ struct Certified {
   Certified() = default;
   GRAZE_HD explicit Certified(double given) : hi(given) {}
   GRAZE_HD Certified(const DoubleDouble& value, double error) : hi(value.hi), lo(value.lo), bound(error) {
-    // Beyond these, an error of a sum or a quotient may itself overflow.
+    // Beyond this, the error of a sum or a quotient may itself overflow.
     if (!(fabs(hi) < 0x1p+1000)) bound = HUGE_VAL;
   }
 
@@ -36,10 +36,10 @@ struct Certified {
 
 namespace certified {
 
-// Rounds a sum of a few nonnegative terms up.
+// Rounds up a sum of a few nonnegative terms.
 GRAZE_HD inline double up(double bound) { return bound * (1 + 0x1p-48); }
 
-// Bound of the part of a product's error that underflows. It is zero if a factor is zero.
+// Bound on the part of a product's error that underflows. It is zero if a factor is zero.
 GRAZE_HD inline double lost_below(double product, double x, double y) {
   return x != 0 && y != 0 && !(fabs(product) >= 0x1p-900) ? 0x1p-1060 : 0;
 }
@@ -47,7 +47,7 @@ GRAZE_HD inline double lost_below(double product, double x, double y) {
 // |x| + |y| for the two parts of a number, rounded up.
 GRAZE_HD inline double above(const Certified& x) { return up(fabs(x.hi) + fabs(x.lo)); }
 
-// A lower bound of the number's size; may be negative.
+// A lower bound on the number's magnitude; may be negative.
 GRAZE_HD inline double least_size(const Certified& x) { return (fabs(x.hi) - fabs(x.lo)) * (1 - 0x1p-48) - x.bound; }
 
 }  // namespace certified

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares what two lanes of one algorithm and scalar recorded of a pair, value by value, and counts. The same code
-// runs on host and device. Every count is an integer, so that counts of parts add up to those of the whole.
+// Compares the values that two lanes of one algorithm and scalar recorded for a pair, and counts the differences. The
+// same code runs on host and device. Every count is an integer, so counts of parts add up to those of the whole.
 #pragma once
 
 #include <cstdint>
@@ -12,28 +12,28 @@
 
 namespace graze {
 
-// A value's counts. A value is compared if both lanes recorded it and it has the same meaning for both: distances and
-// normals always, others if both lanes made the same choices.
+// A value's counts. A value is compared if both lanes recorded it and it has the same meaning for both. Distances and
+// normals always have the same meaning, and other values have it if both lanes made the same choices.
 namespace value_counts {
 inline constexpr int kOctaves = 64, kErrors = 40;
 enum : int {
   compared,
-  equal,                           // the same bits, or NaN both times
-  zero_sign,                       // zeros of different sign
-  not_finite,                      // others, of which at least one is not finite
+  equal,                           // the same bits, or both are NaN
+  zero_sign,                       // zeros of different signs
+  not_finite,                      // other differences, where at least one is not finite
   below,                           // kOctaves: finite, the second lane's is lower by 2^k to 2^(k+1) ulps
   above = below + kOctaves,        // kOctaves: higher
   first_error = above + kOctaves,  // kErrors: the first lane's error, see error_bucket
   second_error = first_error + kErrors,
-  nearer_first = second_error + kErrors,  // of different values: the first lane's is nearer to the exact one
+  nearer_first = second_error + kErrors,  // the values differ, and the first lane's is nearer to the exact one
   nearer_second,
   equally_near,
-  nearer_unknown,  // the bounds do not tell, or one is not finite
+  nearer_unknown,  // the bounds do not decide, or one value is not finite
   kFields
 };
 
-// A value's error in ulps of the exact value (no smaller than the least subnormal number): 0 if there is none; 1 up to
-// half an ulp; 2 + k above 2^(k-1) and up to 2^k ulps, the last one without end; then the two others.
+// A value's error in ulps of the exact value (an ulp is at least the least subnormal number). 0: no error. 1: up to
+// half an ulp. 2 + k: above 2^(k-1) and up to 2^k ulps; the last of these has no upper end. Then the two below.
 inline constexpr int kErrorNotFinite = kErrors - 2, kErrorUnknown = kErrors - 1;
 }  // namespace value_counts
 
@@ -41,15 +41,15 @@ inline constexpr int kErrorNotFinite = kErrors - 2, kErrorUnknown = kErrors - 1;
 namespace question_counts {
 inline constexpr int kBands = 34, kLowestBand = -32;
 enum : int {
-  asked,    // of both lanes, and compared
+  asked,    // asked by both lanes, and compared
   differs,  // some value's bits differ
   sign,     // the sign differs
   zero_on_one_side,
-  outcome,  // the comparison goes the other way; of a question about one value: the sign differs
-  verdict,  // of pairs with different verdicts: this is the first question with another outcome
-  band,     // kBands: where the sign differs, the larger size of the two values, in bounds of the error, is
-            // 2^(k + kLowestBand) to the next power; the first without end. It is at most 2: each value is within a
-            // bound of the exact one, and they lie on both sides of zero
+  outcome,  // the comparison goes the other way; for a question about one value, the sign differs
+  verdict,  // the verdicts differ, and this is the first question with a different outcome
+  band,     // kBands: the sign differs, and the larger magnitude of the two values, in error bounds, is from
+            // 2^(k + kLowestBand) to the next power; the first band has no lower end. It is at most 2: each value is
+            // within one bound of the exact one, and they lie on both sides of zero
   band_unknown = band + kBands,  // Unrounded has no bound
   kFields
 };
@@ -72,7 +72,7 @@ enum : int {
 };
 }
 
-// The layout of an algorithm's counts: those of pairs, by site, of pairs by their place on the stratum's axis, and by
+// The layout of an algorithm's counts: of pairs, by site, of pairs by their place on the stratum's axis, and by
 // question.
 inline constexpr int kPlacesAt = pair_counts::kFields + (kSiteCount + 1) * site_counts::kFields;
 inline constexpr int kValuesAt = kPlacesAt + kBucketCount * pair_counts::kFields;
@@ -86,15 +86,15 @@ GRAZE_HD constexpr int value_at(int question, int which) {
 }
 GRAZE_HD constexpr int counts_of(int questions) { return question_at(questions); }
 
-// For each question, the largest size at which a sign differs: in bounds of the error, and as a length in the unit of
-// the coordinates. Stored as bits of nonnegative doubles, which are ordered like integers.
+// For each question, the largest magnitude at which a sign differs: in multiples of the error bound, and as a length in
+// coordinate units. Stored as bits of nonnegative doubles, which are ordered like integers.
 namespace band_maxima {
 enum : int { in_bounds, length, kFields };
 }
 
 inline namespace GRAZE_FP {
 
-// A float's bits, so that the order of values is that of integers and neighbours differ by 1. Both zeros give 0.
+// A float's bits as an integer that keeps the order of values. Neighbours differ by 1, and both zeros give 0.
 GRAZE_HD inline std::int64_t ordered_bits(float x) {
   std::int32_t bits;
   memcpy(&bits, &x, sizeof bits);
@@ -125,7 +125,7 @@ GRAZE_HD int order_of(Real x, Real y) {
   return x < y ? -1 : x > y ? 1 : x == y ? 0 : 2;
 }
 
-// Whether `left < right`, or `left <= right`, gets another answer from values in the other order.
+// Whether `left < right` (or `left <= right`, if at_most) has different answers for the two orders.
 GRAZE_HD inline bool answers_otherwise(int order, int other, bool at_most) {
   const bool yes = order == -1 || (at_most && order == 0), other_yes = other == -1 || (at_most && other == 0);
   return yes != other_yes;
@@ -148,12 +148,12 @@ GRAZE_HD int log2_ulp_of(const DoubleDouble& size) {
   return k < kLeast ? kLeast : k;
 }
 
-// Bounds of a size.
+// Bounds on a magnitude.
 struct SizeRange {
   DoubleDouble least, most;
 };
 
-// That of |x|. Rounds outward, but not if the bound is zero.
+// The bounds on |x|, rounded outward unless x is exact.
 GRAZE_HD inline SizeRange size_range(const Certified& x) {
   const double sign = x.hi < 0 ? -1 : 1;
   const DoubleDouble size(sign * x.hi, sign * x.lo);
@@ -168,7 +168,7 @@ GRAZE_HD SizeRange error_range(Real value, const Certified& exact) {
   return size_range(Certified(static_cast<double>(value)) - exact);
 }
 
-// The bucket of an error of `size`, in ulps of 2^ulp.
+// The bucket of an error of `size`. An ulp is 2^ulp.
 GRAZE_HD inline int error_bucket(const DoubleDouble& size, int ulp) {
   if (!(size.hi > 0)) return 0;
   const int k = log2_of(size), up = k - ulp + (size.hi != scalbn(1.0, k) || size.lo != 0);  // ceil(log2)
@@ -188,7 +188,7 @@ GRAZE_HD int error_bucket(Real value, const Certified& exact) {
   return bucket == error_bucket(error.most, log2_ulp_of<Real>(size.least)) ? bucket : kErrorUnknown;
 }
 
-// The distance of two finite numbers in ulps.
+// The distance between two finite numbers, in ulps.
 template <class Real>
 GRAZE_HD std::uint64_t apart(Real x, Real y) {
   const std::int64_t first = ordered_bits(x), second = ordered_bits(y);
@@ -196,7 +196,7 @@ GRAZE_HD std::uint64_t apart(Real x, Real y) {
                         : static_cast<std::uint64_t>(second) - static_cast<std::uint64_t>(first);
 }
 
-// Whether the runs made some choice differently. A run that ended earlier made fewer choices.
+// Whether the runs made any choice differently. A run that ended earlier made fewer choices.
 GRAZE_HD inline bool chose_otherwise(std::uint64_t first, std::uint64_t second) {
   for (int c = 0; c < kMostChoices; ++c) {
     const std::uint64_t x = first >> 4 * c & 15, y = second >> 4 * c & 15;
@@ -212,7 +212,7 @@ GRAZE_HD inline bool have_both(const RecordedPath& first, const RecordedPath& se
          !chose_otherwise(first.path, second.path);
 }
 
-// The data of a lane's run that counting one pair needs.
+// The data of a lane's run that are needed to count one pair.
 template <class Real>
 struct Run {
   Recorded<const Real> values;
@@ -224,7 +224,7 @@ struct Run {
 };
 
 // Sink: add(index) adds one to a count, most(question, which, size) keeps the largest. degrees: for each question, the
-// power of a length that its values have.
+// degree of its values as powers of a length.
 template <class Real, class Sink>
 class PairComparison {
  public:
@@ -255,7 +255,7 @@ class PairComparison {
              size, left.rounding + right.rounding);
   }
 
-  // Counts the pair: at 0 among all pairs, else among those of its place. Call it after all questions.
+  // Counts the pair: among all pairs if `at` is 0, otherwise among the pairs of its place. Call it after all questions.
   GRAZE_HD void count_pair(int at) {
     using namespace pair_counts;
     sink_.add(at + pairs);
@@ -409,7 +409,7 @@ GRAZE_HD double extent_of(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3]) {
   return largest;
 }
 
-// Compares the runs of two lanes on one pair. axis: that of the pair's stratum.
+// Compares the runs of two lanes on one pair. axis: the axis of the pair's stratum.
 template <class Algorithm, class Real, class Sink>
 GRAZE_HD void compare_runs(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Run<Real>& first,
                            const Run<Real>& second, const std::uint8_t* degrees, Axis axis, Sink& sink) {

@@ -42,13 +42,13 @@ struct List {
     compare(degree, on, "a.high", "b.low", false);
     compare(degree, on, "b.high", "a.low", false);
   }
-  // Of interval_overlap.h's contains. `of`: "b.low in a".
+  // The questions of `contains` in interval_overlap.h. `of`: for example "b.low in a".
   void contained(int degree, const std::string& of) {
     const std::string point = of.substr(0, of.find(' ')), interval(1, of.back());
     compare(degree, of, interval + ".low", point, true);
     compare(degree, of, point, interval + ".high", true);
   }
-  // Of plane_projection.h.
+  // The questions of plane_projection.h.
   void projections(int degree) {
     for (int i = 0; i < 3; ++i) {
       for (const char* axis : {"projected_edge_a", "projected_edge_b"}) overlap(degree, axis, i);

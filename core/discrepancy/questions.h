@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The questions of each algorithm to its policy, by number, with stable names. Each algorithm lists its questions in
-// the order of their numbers, in `list` at the end of its struct.
+// The questions that each algorithm asks its policy, by number, with stable names. Each algorithm lists its questions
+// in the order of their numbers, in `list` at the end of its struct.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@ namespace graze {
 struct Question {
   std::string
       name;    // "plane_distance.b[1]", "separation.normal_a: a.high < b.low", "separation.b.low in a: b.low <= a.high"
-  int site;    // of Site; kSiteCount: the source compares itself
-  int degree;  // the unit of its values: lengths to this power
+  int site;    // a Site; kSiteCount: the source itself compares
+  int degree;  // the unit of its values is a length to this power
   std::vector<std::string> of;  // the names of its values: one, or the left and the right one
-  bool at_most = false;         // of two values: whether it asks left <= right; else left < right
+  bool at_most = false;         // for two values: asks left <= right instead of left < right
 };
 
 // The name of a question's site; "own" for kSiteCount.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What projections on axes show about the Minkowski difference D = { x - y : x in a, y in b }. D contains the origin
+// Examines the Minkowski difference D = { x - y : x in a, y in b } by its projections on axes. D contains the origin
 // exactly when a and b intersect.
 #pragma once
 
@@ -13,7 +13,7 @@ struct AxisEvidence {
   bool separated = false;
   bool touching = false;            // the origin lies on a face of D that is not all of D
   bool flat = true;                 // D has no volume
-  bool coplanar = true;             // and the hull of all six points has no volume
+  bool coplanar = true;             // the hull of all six points has no volume
   unsigned face_a = 7, face_b = 7;  // the vertices that may belong to the common set
 
   // Examines an axis, given the projections of the vertices on it.
@@ -68,8 +68,8 @@ GRAZE_HD void look_in_plane(const Triangles<Numbers>& t, typename Numbers::D Vec
   }
 }
 
-// The axes that decide if D lies in a plane through the origin, with normal n. Dropping a coordinate whose axis is not
-// perpendicular to n keeps D's shape, and its edges are edges of a and b. If n is zero, D is a segment or a point. Then
+// The axes that suffice if D lies in a plane through the origin, with normal n. Dropping a coordinate whose axis is not
+// perpendicular to n keeps D's shape, and its edges are edges of a and b. If n is zero, D is a segment or a point, and
 // some projection or some coordinate shows whether the origin is outside D.
 template <class Numbers>
 GRAZE_HD void look_flat(const Triangles<Numbers>& t, const NormalOf<Numbers>& n, AxisEvidence& seen) {
@@ -88,8 +88,8 @@ GRAZE_HD void look_flat(const Triangles<Numbers>& t, const NormalOf<Numbers>& n,
   }
 }
 
-// The axes that decide. If D has a volume, its faces are perpendicular to 11 axes: both normals and the edges' cross
-// products. If not, they show whether D's plane contains the origin. Extra axes do no harm.
+// The axes that decide a pair. If D has a volume, its faces are perpendicular to 11 axes: both normals and the edges'
+// cross products. If not, these axes show whether D's plane contains the origin. Extra axes do no harm.
 template <class Numbers>
 GRAZE_HD AxisEvidence look(const Triangles<Numbers>& t) {
   AxisEvidence seen;

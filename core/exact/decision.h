@@ -11,7 +11,7 @@
 
 namespace graze::exact::detail {
 
-// The axis along which triangles of a plane can be projected without losing area: not perpendicular to its normal.
+// An axis along which triangles of a plane can be projected without collapsing: not perpendicular to its normal.
 template <class M>
 GRAZE_HD unsigned axis_to_drop(const Vec<M>& n) {
   return !(n.z == M(0)) ? 2 : !(n.x == M(0)) ? 0 : 1;
@@ -103,8 +103,8 @@ GRAZE_HD bool decide(const Real* a, const Real* b, int exponent) {
 }
 
 // The decision by planes for pairs that no machine number holds. Each determinant is first computed in `Near` numbers
-// with a bound of its own. Those that remain unknown, mostly zeros, are computed one by one in exact numbers. Returns:
-// unsure if all vertices of one triangle lie in the plane of the other.
+// with a bound of its own. Those whose sign remains unknown, mostly zeros, are computed one by one in exact numbers.
+// Returns: unsure if all vertices of one triangle lie in the plane of the other.
 template <class Near, class Numbers, class Real>
 GRAZE_HD Finding by_planes_one_by_one(const Real* a, const Real* b, int exponent, Stage& stage) {
   const Near bounded;
@@ -134,7 +134,7 @@ GRAZE_HD Finding by_planes_one_by_one(const Real* a, const Real* b, int exponent
   if (of_a.in == 7 || of_b.in == 7) return Finding::unsure;
 
   const Turn turn = lone_vertices(of_a, of_b);
-  for (unsigned k = 1; k < 3; ++k) {  // whether an edge of each parts them
+  for (unsigned k = 1; k < 3; ++k) {  // whether an edge of each separates them
     const unsigned o = k == 1 ? turn.a[1] : turn.a[0], r = k == 1 ? turn.a[0] : turn.a[2],
                    s = k == 1 ? turn.b[1] : turn.b[2];
     const auto nearly = determinant<Near>(pick(near.a, o), pick(near.b, turn.b[0]), pick(near.a, r), pick(near.b, s));
@@ -146,7 +146,7 @@ GRAZE_HD Finding by_planes_one_by_one(const Real* a, const Real* b, int exponent
   return Finding::intersects;
 }
 
-// Decides the pairs of which the filter is unsure.
+// Decides the pairs about which the filter is unsure.
 template <class Real>
 GRAZE_HD bool decide_unsure(const Real* a, const Real* b, Stage& stage) {
   using Machine = typename KindsFor<Real>::Machine;
@@ -188,7 +188,7 @@ GRAZE_HD bool relate_quickly(const Real* a, const Real* b, Relation& r) {
   return relation_of(found, a, b, r);
 }
 
-// Like relate_quickly without shared vertices, but each determinant has its own bound, so fewer are in doubt.
+// Like relate_quickly but without shared vertices. Each determinant has its own bound, so fewer are in doubt.
 // Requires: floats, or doubles on a moderate grid.
 template <class Real>
 GRAZE_HD bool relate_by_bounds(const Real* a, const Real* b, Relation& r) {

@@ -3,7 +3,7 @@
 // determinant, and one bound for all determinants of a pair. Each difference is rounded once, so a determinant
 // is off by at most (7 + 56 e) e sum |products|, e = 2^-53 (Shewchuk 1997, orient3d stage A). Contraction only
 // removes roundings. With floats nothing over- or underflows: their differences are zero or lie between 2^-149 and
-// 2^129. With doubles see kMostExtent.
+// 2^129. For doubles, see kMostExtent.
 #pragma once
 
 #ifdef __FAST_MATH__
@@ -18,9 +18,9 @@ namespace graze::exact::detail {
 // Error bound relative to the sum of the products' magnitudes: (7 + 56 e) e < 8 e.
 inline constexpr double kDeterminantError = 8 * 0x1p-53;
 
-// The bounds of a pair of doubles hold up to this extent, where nothing overflows. A product of two differences that
-// underflows is off by at most 2^-1075, so a determinant by less than 6 * 2^-1075 * (2^300 + 1) < 2^-771 more, and a
-// minor by less than 2^-1073. The bounds themselves underflow by less than that.
+// The bounds of a pair of doubles hold up to this extent, where nothing overflows. If a product of two differences
+// underflows, it is off by at most 2^-1075, a determinant by less than 6 * 2^-1075 * (2^300 + 1) < 2^-771 more, and a
+// minor by less than 2^-1073. Underflow in the bounds themselves costs less than that.
 inline constexpr double kMostExtent = 0x1p300, kDeterminantUnderflow = 0x1p-700, kMinorUnderflow = 0x1p-1000;
 
 // Whether nothing over- or underflows in determinants of coordinates on this grid: differences are zero or lie between
@@ -56,7 +56,7 @@ GRAZE_HD Vec<double> extent_of(const Real* a, const Real* b) {
   return {extent[0], extent[1], extent[2]};
 }
 
-// Error bound of every determinant of the pair, whose coordinates are of type Real. A determinant is a sum of six
+// Error bound for every determinant of the pair, whose coordinates are of type Real. A determinant is a sum of six
 // products of a difference in x, one in y and one in z. No difference is larger than the pair's extent in that axis.
 // Returns: infinity where no bound holds.
 template <class Real>
@@ -67,8 +67,8 @@ GRAZE_HD double determinant_error(const Vec<double>& extent) {
   return holds ? error + kDeterminantUnderflow : __builtin_inf();
 }
 
-// Whether both are certainly proper: a normal's component is the difference of two products of differences. Doubles
-// whose differences overflow may give infinities and NaN, which show nothing.
+// Whether both are certainly proper: some component of each normal exceeds its error bound. Doubles whose differences
+// overflow may give infinities and NaN, which prove nothing.
 template <class Real>
 GRAZE_HD bool both_proper(const Real* a, const Real* b) {
   const Vec<double> extent = extent_of(a, b);

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exact triangle-triangle intersection for input in float32 or double, on host and device. It takes closed triangles,
 // segments and points that cross, touch, are coplanar, or share vertices or edges, with any finite coordinates,
-// subnormals and 1e308 included. It needs the C++ standard library only, and a compiler with 128-bit integers (GCC,
+// including subnormals and 1e308. It needs only the C++ standard library and a compiler with 128-bit integers (GCC,
 // Clang, nvcc).
 //
 // Method: two decisions, written as templates over a kind of numbers. The numbers are exact, or they report when they
 // are not.
 //   by_planes.h  Guigue and Devillers 2003: the sides of the vertices, then two orientations, for pairs in general
 //                position. filter.h is the same in doubles with one error bound, written for speed.
-//   by_axes.h    separating axes of the Minkowski difference (the theorem: Gottschalk, Lin and Manocha 1996): proper,
+//   by_axes.h    separating axes of the Minkowski difference (theorem: Gottschalk, Lin and Manocha 1996), for proper,
 //                coplanar and degenerate pairs alike.
-//   numbers.h    doubles with an error bound (Shewchuk 1997), doubles where nothing rounds, and integers of 128 and of
-//                more bits, with the widths that each kind holds.
+//   numbers.h    doubles with an error bound (Shewchuk 1997), doubles where nothing rounds, and integers of 128 bits
+//                and more, with the widths that each kind holds.
 // The filter comes first. If it is unsure, a pair with a shared vertex intersects; any other pair goes to the smallest
 // kind of exact numbers that holds its grid (decision.h).
 #pragma once

@@ -156,7 +156,7 @@ TEST(Exact, KnowsContactsOfDoublesInAllOrdersAndScales) {
   }
 }
 
-// A far vertex, which does not affect the contact, widens the grid: to 61 bits, 90, 300 and all 2,098.
+// A far vertex, which does not affect the contact, widens the grid to 61, 90, 300 and all 2,098 bits.
 TEST(Exact, DecidesDoublesOnEveryGrid) {
   using namespace detail;
   std::vector<int> widths;
@@ -177,7 +177,7 @@ TEST(Exact, DecidesDoublesOnEveryGrid) {
   EXPECT_EQ(widths, (std::vector<int>{61, 61, 61, 90, 90, 90, 299, 299, 299, 2097, 2097, 2097}));
 }
 
-// The largest determinants of each kind that doubles use, against one that is wider.
+// The largest determinants of each kind of numbers for doubles, compared with those of a wider kind.
 TEST(Exact, KindsForDoublesHoldWhatTheyPromise) {
   using namespace detail;
   std::mt19937_64 random(17);
@@ -248,7 +248,7 @@ TEST(Exact, KindsOfNumbersAgree) {
     ASSERT_EQ(by_axes(triangles<WideNumbers>(a, b)), r) << i;
     ASSERT_EQ(decide<DoubleNumbers>(a, b, 0), r.intersects()) << i;
     ASSERT_EQ(decide<WideNumbers>(a, b, 0), r.intersects()) << i;
-    // by_planes finds `crosses` exactly if no vertex lies in the other's plane and the pair is more than a touch.
+    // by_planes finds `crosses` exactly when no vertex lies in the other's plane and the pair does more than touch.
     const Triangles<DoubleNumbers> t = triangles<DoubleNumbers>(a, b);
     const Finding found = by_planes(t);
     const bool apart_from_planes = (sides(t.a, normal<DoubleNumbers>(t.a), t.b, DoubleNumbers()).in |
@@ -261,8 +261,8 @@ TEST(Exact, KindsOfNumbersAgree) {
   for (const int count : contacts) EXPECT_GT(count, 0);
 }
 
-// Up to the widest grid that they hold. Coordinates have 24 bits, some moved by up to 10 bits. Triangles lie in each
-// other's planes or nearly so. Determinants are therefore zero, small compared with their products, or of 108 bits.
+// Grids up to the widest that residues hold. Coordinates have 24 bits, some moved by up to 10 bits. Triangles lie in
+// each other's planes or nearly so, so determinants are zero, small beside their products, or of 108 bits.
 TEST(Exact, ResiduesDecideAsIntegersOf128Bits) {
   std::mt19937_64 random(9);
   long by_contact[4] = {}, widest = 0, pairs = 0;
@@ -293,7 +293,7 @@ TEST(Exact, ResiduesDecideAsIntegersOf128Bits) {
   for (const long count : by_contact) EXPECT_GT(count, 100);
 }
 
-// Segments and points in space, in one plane and on one line, also with triangles in whose plane they lie.
+// Segments and points in space, in one plane and on one line, also with triangles whose plane contains them.
 TEST(Exact, SegmentsAndPointsMeetAsTheAxesSay) {
   std::mt19937_64 random(11);
   const auto small = [&](int most) { return static_cast<int>(random() % static_cast<unsigned>(2 * most + 1)) - most; };
@@ -405,7 +405,7 @@ TEST(Exact, ResiduesKnowTheirSigns) {
   }
 }
 
-// The bounds that error_bound.h derives. No test on pairs comes near them.
+// The bounds that error_bound.h derives. The tests on pairs do not come near them.
 TEST(ErrorBound, IsShewchuksAndNoMoreThanAFewPercentAbove) {
   const double e = 0x1p-53, stage_a = (7 + 56 * e) * e;
   EXPECT_GE(detail::kDeterminantError, stage_a);
@@ -473,7 +473,7 @@ TEST(Compiler, PacksSignsAsExactDoes) {
     EXPECT_EQ(comparisons_that_shift(heights), signs);
     if (shifted_comparisons(heights) != signs) ++wrong;
   }
-  if (wrong > 0) GTEST_SKIP() << "this compiler shifts a comparison wrongly, " << wrong << " of 16 times";
+  if (wrong > 0) GTEST_SKIP() << "this compiler miscompiles the shift of a comparison, " << wrong << " of 16 times";
 }
 
 }  // namespace

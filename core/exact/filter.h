@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The filter: the decision by planes in doubles, with one error bound for the whole pair. It decides most pairs. There
-// is an SSE2 version and a portable one, and both decide alike.
+// The filter: the decision by planes in doubles, with one error bound for the whole pair. It decides most pairs. It has
+// an SSE2 version and a portable one, which give the same results.
 #pragma once
 
 #include "core/exact/sides.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The filter exists with SSE2 and without. Both versions must return the same finding for every pair, and a true one.
+// The filter has a version with SSE2 and one without. Both must return the same true finding for every pair.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -88,7 +88,7 @@ TEST(Filter, FindsNothingThatIsNotSo) {
   }
 }
 
-// The same pairs as doubles, and scaled to the limits where the bounds end.
+// The same pairs as doubles, and scaled to the limits of the bounds.
 TEST(Filter, OfDoublesFindsNothingThatIsNotSo) {
   for (const Kind& kind : kKinds) {
     for (const int exponent : {0, -900, -300, 150, 299, 320, 890}) {

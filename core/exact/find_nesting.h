@@ -42,7 +42,7 @@ GRAZE_HD Answer cut_inside(const VecOf<Numbers> (&p)[3], const Sides& of_p, cons
   return answer;
 }
 
-// Requires: two proper triangles that are not coplanar and meet in a segment.   Returns: whether it is known.
+// Requires: two proper triangles that are not coplanar and meet in a segment.   Returns: whether the nesting is known.
 template <class Numbers>
 GRAZE_HD bool nesting_in_space(const Triangles<Numbers>& t, Nesting& nesting, const Numbers& numbers = {}) {
   const Sides of_b = sides(t.a, normal<Numbers>(t.a), t.b, numbers);
@@ -53,8 +53,8 @@ GRAZE_HD bool nesting_in_space(const Triangles<Numbers>& t, Nesting& nesting, co
   return a != Answer::unknown && b != Answer::unknown;
 }
 
-// Whether p lies in q, which may be a segment or a point. In each projection, no two edges of q have p on different
-// sides, and p lies in the box of q.   Requires: one plane holds q and p; exact numbers.
+// Whether p lies in q, which may be a segment or a point. It does if, in each projection, no two edges of q have p on
+// different sides, and p lies in the box of q.   Requires: one plane holds q and p; exact numbers.
 template <class Numbers>
 GRAZE_HD bool lies_in(const VecOf<Numbers>& p, const VecOf<Numbers> (&q)[3]) {
   using D = typename Numbers::D;
@@ -86,7 +86,7 @@ GRAZE_HD Nesting nesting_in_plane(const Triangles<Numbers>& t) {
   return a && b ? Nesting::same : a ? Nesting::a_in_b : b ? Nesting::b_in_a : Nesting::none;
 }
 
-// Whether pairs of this relation can be nested.
+// Whether pairs with this relation can be nested.
 GRAZE_HD constexpr bool may_nest(const Relation& r) {
   return r.intersects() && (r.hulls.coplanar || (r.contact == Contact::segment && r.hulls == Hulls{2, 2, false}));
 }
@@ -101,7 +101,7 @@ GRAZE_HD Nesting nesting(const Triangles<Numbers>& t, const Relation& r) {
   return result;
 }
 
-// By doubles with error bounds.
+// With doubles and error bounds.
 // Requires: floats, or doubles on a moderate grid.   Returns: false if rounding leaves it in doubt.
 template <class Real>
 GRAZE_HD bool nesting_quickly(const Real* a, const Real* b, const Relation& r, Nesting& nesting) {

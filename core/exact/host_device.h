@@ -10,7 +10,7 @@
 #endif
 #endif
 
-// A function that device code calls and does not inline: inlining it would double nvcc's time.
+// A function that device code calls but does not inline, because inlining would double nvcc's compile time.
 #ifdef __CUDACC__
 #define GRAZE_CALLED __noinline__
 #else

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The kinds of numbers that decide, each exact or able to report that it is not, and the choice of the smallest exact
 // kind that holds a pair. If coordinates on the pair's grid have B bits, differences have B + 1, and a determinant is
-// less than 6 times the product of three differences. Bits below are those of coordinates:
+// less than 6 times the product of three differences. The bits below are those of coordinates:
 //   bounded    doubles with an error bound; see core/exact/error_bound.h
 //   doubles    up to 15 bits: less than 6 * 2^(3 * 16) < 2^53, so nothing rounds; floats likewise up to 6 bits:
 //              6 * 2^(3 * 7) < 2^24
@@ -26,14 +26,14 @@
 
 namespace graze::exact {
 
-// Which kind of numbers decided. It is `bounded` also if the triangles share a vertex.
+// Which kind of numbers decided. `bounded` includes triangles that share a vertex.
 enum class Stage : std::uint8_t { bounded, doubles, int128, wide };
 inline constexpr int kStages = 4;
 
 namespace detail {
 
-// In each kind, D are coordinates and their differences, M minors, T determinants. positive, negative and zero are true
-// only if the determinant's sign is certain.
+// In each kind, D holds coordinates and their differences, M minors, and T determinants. positive, negative and zero
+// are true only if the determinant's sign is certain.
 struct BoundedNumbers {
   using D = double;
   using M = Bounded;
@@ -87,7 +87,7 @@ using ResidueNumbers = ExactNumbers<Whole, Residue, Residue, kResidueBits, Stage
 // Kinds of numbers, the smallest first.
 template <class Kind, class... Larger>
 struct NumberKinds {
-  // How many of the kinds are too small for the grid, which is the index of the first kind that holds it.
+  // The number of kinds that are too small for the grid, which is the index of the first kind that holds it.
   GRAZE_HD static int place(const Grid& grid) { return (int{!Kind::holds(grid)} + ... + int{!Larger::holds(grid)}); }
 
   GRAZE_HD static bool hold(const Grid& grid) { return (Kind::holds(grid) || ... || Larger::holds(grid)); }
@@ -106,8 +106,8 @@ using MachineNumbers = NumberKinds<DoubleNumbers, NarrowNumbers, IntNumbers>;
 using MultiwordNumbers = NumberKinds<LongNumbers, WideNumbers>;
 using AllNumbers = NumberKinds<DoubleNumbers, NarrowNumbers, IntNumbers, LongNumbers, WideNumbers>;
 
-// The kinds for coordinates of a type: those whose determinants are so cheap that all are computed exactly, and those
-// with which each is first bounded.
+// The kinds of numbers for a coordinate type: those so cheap that all determinants are computed exactly, and those for
+// which each determinant is first bounded.
 template <class Real>
 struct KindsFor {
   using Machine = MachineNumbers;

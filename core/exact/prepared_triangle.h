@@ -5,8 +5,8 @@
 //
 // The slabs are the thinnest ones: perpendicular to the triangle's normal and, within its plane, to its longest edge.
 // Their directions may be rounded in any way, because the reference's extent is computed along the direction as stored.
-// Let d be the direction, |d| <= 1/4 the sum of its magnitudes, and m the triangle's largest magnitude. A height d . v
-// - middle is off by less than 4.001 2^-23 (|d| m + |middle|) in any rounding mode, and by 2^-146 if something
+// Let |d| <= 1/4 be the sum of the magnitudes of the direction d, and m the triangle's largest magnitude. A height
+// d . v - middle is off by less than 4.001 2^-23 (|d| m + |middle|) in any rounding mode, and by 2^-146 if something
 // underflows; nothing overflows.
 #pragma once
 
@@ -90,9 +90,9 @@ inline Slab slab_along(const Vec<double>& direction, const float* v, bool rounde
 
 }  // namespace detail
 
-// If the reference is not finite, no slab shows anything and the filter in floats is unsure.
-// rounded: the coordinates of the reference, and of the triangles that is_beyond takes, are others rounded to float32,
-// and the slabs show what holds for those. Then the filter in floats does not apply.
+// If the reference is not finite, no slab certifies anything and the filter in floats is unsure.
+// rounded: the coordinates of the reference, and of the triangles that is_beyond takes, were rounded to float32. The
+// slabs then certify what holds before rounding, and the filter in floats does not apply.
 inline PreparedTriangle prepare(const float* v, bool rounded = false) {
   using Direction = detail::Vec<double>;
   PreparedTriangle r;
@@ -118,14 +118,14 @@ inline PreparedTriangle prepare(const float* v, bool rounded = false) {
     r.high[i] = detail::greater(detail::greater(x, y), z);
   }
   const Direction n = detail::cross<double>(at[1] - at[0], at[2] - at[0]);
-  const bool flat = is_zero(n);  // a segment or a point: any direction does
+  const bool flat = is_zero(n);  // a segment or a point: any direction will do
   r.slabs[0] = detail::slab_along(flat ? Direction{1, 0, 0} : n, v, rounded);
   r.slabs[1] = detail::slab_along(flat ? Direction{0, 1, 0} : detail::cross<double>(n, longest), v, rounded);
   return r;
 }
 
-// Of doubles, as seen from the reference's first vertex: a difference of doubles has a small relative error wherever
-// the triangles are. is_beyond takes the differences of the other triangle likewise.
+// For doubles, as differences from the reference's first vertex: such a difference has a small relative error wherever
+// the triangles are. is_beyond takes the other triangle as differences from the same vertex.
 inline PreparedTriangle prepare(const double* v) {
   float seen[9];
   for (int k = 0; k < 9; ++k) seen[k] = static_cast<float>(v[k] - v[k % 3]);
@@ -139,8 +139,8 @@ GRAZE_HD inline float size_of(const float* t) {
   return sum;
 }
 
-// Returns: true if the triangle is certainly beyond one of the slabs, so disjoint; false if it is not finite.
-// Exact: in any rounding mode, with contraction and without.
+// Returns: true if the triangle is certainly beyond one of the slabs, and so disjoint; false if it is not finite.
+// Exact: in any rounding mode, with or without contraction.
 GRAZE_HD inline bool is_beyond(const PreparedTriangle& r, const float* t) {
   using detail::bits_of, detail::lesser, detail::magnitude;
   const float size = size_of(t);

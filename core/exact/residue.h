@@ -4,7 +4,7 @@
 //
 // Coordinates have 34 bits and differences 35. A minor is less than 2^71 and its double is off by less than 2^20. A
 // determinant is less than 2^108 and its double is off by less than 2^59; the difference of two is off by less than
-// 2^60, in any rounding mode, with contraction and without. If a double is at most 2^61, its integer is below 2^62.
+// 2^60, in any rounding mode, with or without contraction. If a double is at most 2^61, its integer is below 2^62.
 #pragma once
 
 #include <cstdint>

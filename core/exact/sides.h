@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sides of the other triangle's plane on which vertices lie, and the vertex that is alone on its side.
+// On which sides of the other triangle's plane the vertices lie, and which vertex is alone on its side.
 #pragma once
 
 #include "core/exact/host_device.h"
 
 namespace graze::exact::detail {
 
-// The result of the sides and two orientations. crosses: the triangles intersect, in general position. coplanar: all
-// vertices lie in the plane of a proper triangle. unsure: none of these is certain.
+// The result of testing the sides and two orientations. crosses: the triangles intersect, in general position.
+// coplanar: all vertices lie in the plane of a proper triangle. unsure: none of these is certain.
 enum class Finding { disjoint, intersects, crosses, coplanar, unsure };
 
 // A triangle's vertices above, below and in a plane: bit i is vertex i. A vertex in none of them is unknown.
@@ -32,7 +32,7 @@ struct Sides {
   }
 };
 
-// The order of vertices that puts each triangle's lone vertex first, and that vertex above the other triangle.
+// The vertex orders that put each triangle's lone vertex first and above the other triangle.
 struct Turn {
   unsigned a[3], b[3];
 };

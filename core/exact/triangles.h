@@ -46,13 +46,13 @@ GRAZE_HD inline void convert(float x, double, Wide<5>& out) {
   if (bits >> 31) out = -out;
 }
 
-// Doubles on the grid of this exponent. A scale may be beyond what a double holds, so their bits are shifted.
+// Doubles on the grid of this exponent. A double may be unable to hold the scale, so their bits are shifted.
 // Requires: x is a multiple of 2^exponent.
 GRAZE_HD inline void convert(double x, int, double& out) { out = x; }
 GRAZE_HD inline void convert(double x, int exponent, std::int64_t& out) {
   int own;
   const std::uint64_t mantissa = mantissa_of(x, own);
-  const int shift = own - exponent;  // of zero it may be anything
+  const int shift = own - exponent;  // for zero it may be anything
   const auto size = static_cast<std::int64_t>(mantissa == 0 ? 0 : shift < 0 ? mantissa >> -shift : mantissa << shift);
   out = x < 0 ? -size : size;
 }
@@ -73,7 +73,7 @@ GRAZE_HD void convert(double x, int exponent, Wide<N>& out) {
   if (x < 0) out = -out;
 }
 
-// What puts coordinates on the grid of an exponent: for floats a factor, for doubles the exponent.
+// The value that puts coordinates on the grid of an exponent: a factor for floats, the exponent for doubles.
 template <class Real>
 using PlaceOf = std::conditional_t<sizeof(Real) == sizeof(float), double, int>;
 

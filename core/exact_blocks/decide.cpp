@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Uses Google Highway: compiled for each instruction set; the best one is chosen at run time. Instruction sets may
-// round differently, because some contract. Decisions beyond the error bound do not depend on that; all others are
-// exact.
+// round differently, because some of them contract. Decisions beyond the error bound do not depend on that; all others
+// are exact.
 #ifdef __wasm__
 #include "core/exact_blocks/one_by_one.h"
 
@@ -40,7 +40,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #include "core/exact_blocks/doubles-inl.h"
 
-constexpr std::size_t kChunk = 512;  // most pairs of which the undecided ones are gathered
+constexpr std::size_t kChunk = 512;  // undecided pairs are gathered from at most this many
 template <class Real>
 constexpr std::size_t kChunkOf = kChunk * sizeof(float) / sizeof(Real);  // 36 KB
 constexpr unsigned kAll = (1u << kAtOnce) - 1;
@@ -178,7 +178,7 @@ HWY_EXPORT(decide_doubles);
 HWY_EXPORT(target);
 
 void decide(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-  if (count == 1) return one_by_one(pairs, count, intersects, declined);  // vectors gain only from several
+  if (count == 1) return one_by_one(pairs, count, intersects, declined);  // vectors pay only for several pairs
   HWY_DYNAMIC_DISPATCH(decide_floats)(pairs, count, intersects, declined);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs in blocks are decided as each alone, with every instruction set of this processor.
+// Pairs in a block must get the same verdicts as each pair alone, with every instruction set of this processor.
 // analysis/truth_over_strata.test.cpp compares the decision with the oracle in every stratum.
 #include "core/exact_blocks/decide.h"
 
@@ -56,7 +56,7 @@ class ExactBlocks : public testing::Test {
       ASSERT_EQ(yes[i / 64] >> i % 64 & 1, meet) << what << ", pair " << i << " of " << count;
       ASSERT_EQ(declined[i / 64] >> i % 64 & 1, i < count && !finite) << what << ", pair " << i << " of " << count;
     }
-    EXPECT_EQ(yes[words] & declined[words], ~0ull) << "written behind the end";
+    EXPECT_EQ(yes[words] & declined[words], ~0ull) << "wrote past the end";
   }
 };
 
@@ -97,7 +97,7 @@ TEST_F(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
   const auto whole = [&](int bits) {
     return static_cast<float>(static_cast<std::int64_t>(random() >> (63 - bits)) - (std::int64_t{1} << bits));
   };
-  const auto vertices_again = [&](auto all) {  // some of b's are a's: contacts and coplanar pairs
+  const auto vertices_again = [&](auto all) {  // some vertices of b are a's: contacts, coplanar pairs
     for (std::size_t pair = 0; pair < all.size(); pair += 18) {
       for (std::size_t v = 9; v < 18; v += 3) {
         if (random() % 3 == 0) std::copy_n(&all[pair + random() % 3 * 3], 3, &all[pair + v]);

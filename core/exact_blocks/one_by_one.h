@@ -6,7 +6,7 @@
 
 namespace graze::exact {
 
-// Like decide (decide.h), but one pair after the other.
+// Like decide (decide.h), but one pair at a time.
 template <class Real>
 void one_by_one(const Real* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
   using AnyPair = BasicPair<Real>;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// What decide.cpp computes with: vectors of doubles with one pair in each vector lane. Included once for each
-// instruction set, within its namespace, so there is no include guard.
+// Vector code for decide.cpp: vectors of doubles with one pair in each vector lane. Included once for each instruction
+// set, within its namespace, so there is no include guard.
 //
 //   filter_all    the decision by planes with one error bound for each pair, like core/exact/filter.h; in Double, or
 //                 in DoubleDouble (doubles-inl.h)
 //   share_vertex  like core/exact/shared_vertex.h
-//   separated     the decision by axes, like core/exact/by_axes.h, on numbers whose signs are exact. These are Double
-//                 where nothing rounds, and else DoubleAndInteger. The latter stores each number as a double, which is
-//                 close, and as a 64-bit integer, which is the number modulo 2^64. If the double is small, the integer
-//                 is the number.
+//   separated     the decision by axes, like core/exact/by_axes.h, on numbers whose signs are exact: Double where
+//                 nothing rounds, otherwise DoubleAndInteger. The latter stores each number as a nearby double and as
+//                 a 64-bit integer, which is the number modulo 2^64. If the double is small, the integer is the
+//                 number.
 
 constexpr std::size_t kNumbers = 18;  // coordinates of a pair
 using Tag = hn::CappedTag<double, 8>;
@@ -59,7 +59,7 @@ struct Double {
 };
 
 // For integers of up to 34 bits. A difference has 35 bits, a determinant is less than 6 * 2^105, and its double is off
-// by at most 2^-50 of that (error_bound.h), less than 2^58. Beyond 2^60 the double's sign is right, also for a
+// by at most 2^-50 of that (error_bound.h), less than 2^58. Beyond 2^60 the double has the correct sign, even for a
 // difference of two determinants. Otherwise the number fits in 64 bits, even with the error.
 static_assert(2 * 6 * (std::int64_t{1} << (3 * (kBitsOfBoth + 1) - 50)) < std::int64_t{1} << 60);
 struct DoubleAndInteger {
@@ -142,7 +142,7 @@ struct Filtered {
   unsigned intersects, disjoint, declined;
 };
 
-// One triangle's vertices: first the one alone on its side, in the order of lone_vertices (core/exact/sides.h).
+// One triangle's vertices, starting with the one alone on its side, in the order of lone_vertices (core/exact/sides.h).
 struct Turned {
   Three<Double> first, second, third;
 };
@@ -166,7 +166,7 @@ HWY_INLINE Three<Number> difference(const Three<Double>& l, const Three<Double>&
   return {Number::difference(l.x.v, r.x.v), Number::difference(l.y.v, r.y.v), Number::difference(l.z.v, r.z.v)};
 }
 
-// The determinant (p - o) x (q - o) . (r - o), of which the sign counts.
+// The determinant (p - o) x (q - o) . (r - o); only its sign matters.
 template <class Number>
 HWY_INLINE V orientation(const Three<Double>& o, const Three<Double>& p, const Three<Double>& q,
                          const Three<Double>& r) {
@@ -250,7 +250,7 @@ struct OnGrid {
 
   template <class Real>
   HWY_INLINE OnGrid(const CoordinatesOf<Real>& pairs, int bits_of_grid) {
-    // A grid of smaller numbers only is treated as a finer one.
+    // If all coordinates are smaller than this, this sets the scale.
     auto largest = hn::Set(pairs.tag, sizeof(Real) == sizeof(float) ? Real(0x1p-126) : Real(0x1p-900));
     for (const auto& c : pairs.x) largest = hn::Max(largest, hn::Abs(c));
     // Values stay below 2^bits_of_grid. It is enough that the largest is at least half of that, so the scale is

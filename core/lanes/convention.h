@@ -18,7 +18,7 @@ bool share_a_vertex(const BasicPair<Real>& pair) {
   return false;
 }
 
-// outside: a sum of Outside.   Requires: finite coordinates; the truth is the pair's.
+// outside: a sum of Outside.   Requires: finite coordinates; `truth` is the pair's truth.
 template <class Real>
 bool is_outside(unsigned outside, const BasicPair<Real>& pair, const Relation& truth) {
   const Hulls& hulls = truth.hulls;

@@ -11,8 +11,8 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// Decides like rung `at`, and finds the next rung for which some comparison of this decision has another outcome. On
-// all rungs before it, all comparisons and therefore the verdict are the same.
+// Decides like rung `at`, and finds the next rung for which some comparison of this decision has a different outcome.
+// On all rungs before that one, all comparisons and therefore the verdict are the same.
 template <class Real>
 class Climb {
  public:
@@ -34,7 +34,7 @@ class Climb {
     return false;
   }
 
-  // Like those of Tolerances.
+  // These work like the members of Tolerances.
   template <class Number>
   Number snap(Site site, const Number& x) const {
     return near_zero(site, x) ? Number(0) : x;

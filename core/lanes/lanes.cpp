@@ -189,8 +189,8 @@ Lane lane_under(const Lane& lane, std::string_view policy) {
   result.id = id_of(result.lane_name());
   result.under = parse_policy(policy, *lane.info);
   if (info_of(lane.variant).arithmetic == Arithmetic::fast && result.under->kind != Policy::Kind::tolerances)
-    throw UsageError("expected another policy than " + result.policy + " for " + lane.id +
-                     ": the compiler's fast math keeps no error bound");
+    throw UsageError("expected a policy other than " + result.policy + " for " + lane.id +
+                     ": fast math invalidates error bounds");
   result.explainable = false;
   result.decide = lane.is_cuda() ? nullptr : block_under(*result.under, tables_of(lane.variant), lane);
   return result;
@@ -199,7 +199,7 @@ Lane lane_under(const Lane& lane, std::string_view policy) {
 namespace {
 
 // A pattern, split into one for lanes without a policy and one for the policy. The policy begins at the fourth part. If
-// a star stands for several parts ("*/cpu/rel:8"), it is the last part, if that names a policy.
+// a star stands for several parts ("*/cpu/rel:8"), the policy is the last part, if that names one.
 struct PolicyPattern {
   std::string zero, policy;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lane table: one row for each way to decide a pair. A name is `subject/scalar/variant`, plus `/policy` unless
-// zero. A row describes the lane and its abilities; its position in the table has no meaning.
+// The lane table: one row for each way to decide a pair. A name is `subject/scalar/variant`, plus `/policy` unless the
+// policy is zero. A row describes the lane and its abilities; its position in the table has no meaning.
 #pragma once
 
 #include <cstddef>
@@ -142,7 +142,7 @@ struct Lane {
   bool foreign = false;
   unsigned outside = 0;  // the kinds of pairs that its convention excludes: a sum of Outside
   std::string evidence;  // what runs a CUDA lane: "device", "twin, not yet verified"; or why nothing runs the lane
-  std::string toolchain = {};  // of Variant::toolchain: its name, which is also the variant's in the lane's name
+  std::string toolchain = {};  // for Variant::toolchain: its name, which is the variant in the lane's name
 
   std::string_view variant_name() const { return toolchain.empty() ? name(variant) : toolchain; }
   bool is_cuda() const { return info_of(variant).runs_on == RunsOn::device; }
@@ -178,7 +178,7 @@ const Lane* counterpart(const Lane& lane, Variant variant);
 // Whether this processor can run the host lane (cpu-fma needs FMA instructions).
 bool runs_on_this_cpu(const Lane& lane);
 
-// Whether any of the shell patterns (fnmatch) matches, or there is none, and no pattern after a `!` matches.
+// Whether the id matches one of the shell patterns (fnmatch), or there are none, and matches no pattern after a `!`.
 bool matches_any(const std::vector<std::string>& globs, std::string_view id);
 
 }  // namespace graze

@@ -67,7 +67,7 @@ Policy parse_policy(std::string_view text, const AlgorithmInfo& info) {
   Policy policy;
   if (text == "bound" || text == "filtered") {
     if (!info.right_without_rounding)
-      refuse(text, ": " + std::string(info.id) + " is wrong on some pairs without any rounding, so no bound helps it");
+      refuse(text, ": " + std::string(info.id) + " is wrong on some pairs even without rounding, so no bound helps");
     policy.kind = text == "bound" ? Policy::Kind::bound : Policy::Kind::filtered;
     return policy;
   }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Policies by name, the last part of a lane's name: what a published algorithm does near zero. Their numbers are read
 // at run time, so a sweep compiles nothing.
-//   abs:E        treats as zero what is smaller than E, in the unit of the quantity compared (mostly lengths cubed)
-//   rel:K        ... than K times machine epsilon times the quantity's size (core/lanes/with_magnitude.h)
+//   abs:E        values smaller than E count as zero, in the unit of the quantity compared (mostly lengths cubed)
+//   rel:K        likewise, for K times machine epsilon times the quantity's size (core/lanes/with_magnitude.h)
 //   SITE=abs:E,SITE=rel:K   at these sites only; the others compare with zero
 //   paper        the tolerances of the algorithm's published code
 //   bound        decides if certified error bounds suffice (core/lanes/with_error_bound.h); otherwise declines
-//   filtered     bound; the exact decision decides what it declines
+//   filtered     like bound, but the exact decision decides the pairs that it declines
 #pragma once
 
 #include <string>

@@ -31,7 +31,7 @@ std::string refusal(const std::string& id) {
   return "accepted";
 }
 
-// Two parallel triangles at half their size from each other, scaled.
+// Two parallel triangles, half their size apart, scaled.
 Pair apart(float scale) {
   Pair pair{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0.5f}, {1, 0, 0.5f}, {0, 1, 0.5f}}};
   for (int c = 0; c < kCoordinates; ++c) coordinates(pair)[c] *= scale;
@@ -128,7 +128,7 @@ TEST(Policies, OfOneSiteMayBeAbsoluteAndRelative) {
   EXPECT_EQ(both.relative[static_cast<int>(Site::plane_distance)], 5);
 }
 
-// Pairs of doubles near contact: b's first vertex lies in a's plane but for the last bits.
+// Pairs of doubles near contact: b's first vertex lies in a's plane up to the last bits.
 std::vector<DoublePair> near_contacts() {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> number(-1, 1);
@@ -159,14 +159,14 @@ TEST(LanesInDouble, DecideDoublesAsTheirAlgorithmDoes) {
   }(static_cast<const Algorithms*>(nullptr));
 }
 
-// On doubles that float32 holds both functions of a lane agree, under every kind of policy.
+// On doubles that float32 holds, both functions of a lane agree, under every kind of policy.
 TEST(LanesInDouble, AgreeWithThemselvesOnFloat32) {
   std::size_t lanes_seen = 0;
   for (const char* policy : {"", "abs:1e-9", "rel:8", "bound", "filtered"}) {
     if (*policy) add_policy_lanes("*/f64/cpu*/" + std::string(policy));
   }
   for (const Lane& lane : lanes()) {
-    // What fast math makes of a function depends on what is compiled beside it.
+    // With fast math, the code of a function depends on what is compiled beside it.
     if (lane.scalar != Scalar::f64 || !lane.decide || info_of(lane.variant).arithmetic == Arithmetic::fast) continue;
     if (!runs_on_this_cpu(lane)) continue;
     ASSERT_TRUE(lane.decide.decides_doubles()) << lane.id;
@@ -193,10 +193,9 @@ TEST(Policies, RefuseWhatTheyDoNotKnow) {
   EXPECT_EQ(refusal("separating_axes/f32/cpu/paper"),
             forms + "\"paper\": the paper of separating_axes compares with zero, like the lane without a policy");
   EXPECT_EQ(refusal("projected_sat/f32/cpu/bound"),
-            forms + "\"bound\": projected_sat is wrong on some pairs without any rounding, so no bound helps it");
-  EXPECT_EQ(
-      refusal("moller_1997/f32/cpu-fast/bound"),
-      "expected another policy than bound for moller_1997/f32/cpu-fast: the compiler's fast math keeps no error bound");
+            forms + "\"bound\": projected_sat is wrong on some pairs even without rounding, so no bound helps");
+  EXPECT_EQ(refusal("moller_1997/f32/cpu-fast/bound"),
+            "expected a policy other than bound for moller_1997/f32/cpu-fast: fast math invalidates error bounds");
 }
 
 TEST(WithErrorBound, KnowsWhatIsExact) {
@@ -222,7 +221,7 @@ TEST(WithErrorBound, KnowsWhatIsExact) {
   EXPECT_TRUE(doubt);  // infinity decides nothing
 }
 
-// Random expressions, compared with the same in long double, which is precise enough for them.
+// Random expressions, compared with their values in long double, which is precise enough for them.
 TEST(WithErrorBound, HoldsTheExactQuantity) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<float> mantissa(-2, 2);

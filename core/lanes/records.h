@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lanes record of a block of pairs: every value that a comparison of theirs sees.
+// The records of lanes on a block of pairs: every value that one of their comparisons sees.
 #pragma once
 
 #include <cstddef>

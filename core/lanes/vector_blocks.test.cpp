@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs in vectors are decided as each alone, with every instruction set of this processor.
+// Pairs in vectors must get the same verdicts as each pair alone, with every instruction set of this processor.
 // analysis/truth_over_strata.test.cpp compares them in every stratum.
 #include "core/lanes/vector_blocks.h"
 
@@ -42,7 +42,7 @@ class VectorBlocks : public testing::TestWithParam<Scalar> {
                                      : decide_widened<SeparatingAxes, double>(pair);
   }
 
-  // Checks every pair, and that bits and words behind the last pair are as promised.
+  // Checks every pair, and that bits and words after the last pair are as promised.
   static void expect_as_each_alone(const std::vector<Pair>& pairs) {
     const std::size_t words = (pairs.size() + 63) / 64;
     std::vector<std::uint64_t> yes(words + 1, ~0ull), declined(words + 1, ~0ull);
@@ -52,7 +52,7 @@ class VectorBlocks : public testing::TestWithParam<Scalar> {
       ASSERT_EQ(yes[i / 64] >> i % 64 & 1, meet) << "pair " << i << " of " << pairs.size();
       ASSERT_EQ(declined[i / 64] >> i % 64 & 1, 0u) << "pair " << i << " of " << pairs.size();
     }
-    EXPECT_EQ(yes[words] & declined[words], ~0ull) << "written behind the end";
+    EXPECT_EQ(yes[words] & declined[words], ~0ull) << "wrote past the end";
   }
 
   template <class Coordinate>

@@ -22,10 +22,10 @@ struct VerdictBits {
 void decide(const DecideBlock& block, std::span<const Pair> pairs, VerdictBits& to);
 void decide(const DecideBlock& block, std::span<const DoublePair> pairs, VerdictBits& to);
 
-// What a lane's bits say.
+// The verdicts that a lane's bits encode.
 struct LaneVerdicts {
   std::span<const std::uint64_t> intersects, declined;
-  const DecideBlock* foreign = nullptr;  // of foreign code what decided, and the pairs: both bits say that it failed
+  const DecideBlock* foreign = nullptr;  // foreign code only: what decided, and the pairs; both bits set: it failed
   const Pair* pairs = nullptr;
   const DoublePair* doubles = nullptr;  // in place of `pairs`
 

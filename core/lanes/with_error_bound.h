@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that certify comparisons, for the policy `bound`: a value, computed as usual, and a bound of its forward
-// error. A comparison that the bounds do not settle raises a doubt. Without a doubt, every comparison came out as in
-// exact arithmetic, and so did the algorithm's verdict.
+// Numbers that certify comparisons, for the policy `bound`: a value, computed as usual, and a bound on its forward
+// error. A comparison that the bounds do not settle raises a doubt. If no doubt is raised, every comparison came out as
+// in exact arithmetic, and so did the algorithm's verdict.
 // Derivation: running error analysis, N. J. Higham, Accuracy and Stability of Numerical Algorithms, second edition
-// (2002), section 3.3. With u the unit roundoff and t half the smallest number, fl(x op y) = (x op y)(1 + d) + e, where
+// (2002), section 3.3. With u the unit roundoff and t half the least subnormal, fl(x op y) = (x op y)(1 + d) + e, where
 // |d| <= u, and |e| <= t for products and quotients, 0 for sums. Let X, Y be the exact quantities that x, y stand for,
 // with |X - x| <= ex and |Y - y| <= ey. Then
 //   |X + Y - fl(x + y)|  <= ex + ey + u |fl(x + y)|
@@ -28,7 +28,7 @@ template <class Real>
 struct WithErrorBound {
   static constexpr bool kIsFloat = sizeof(Real) == sizeof(float);
   static constexpr Real kUnit = kIsFloat ? Real(0x1p-24) : Real(0x1p-53);
-  static constexpr Real kTiny = kIsFloat ? Real(0x1p-126f) : Real(0x1p-1022);  // normal, as subnormals are slow
+  static constexpr Real kTiny = kIsFloat ? Real(0x1p-126f) : Real(0x1p-1022);  // normal, because subnormals are slow
   static constexpr Real kSlack = Real(1) + 32 * kUnit;
 
   Real value = 0;

@@ -18,7 +18,7 @@ inline std::string_view name(Axis axis) {
   return axis == Axis::none ? "none" : axis == Axis::offset ? "offset" : "scale";
 }
 
-// log2 of the width of a place on a scale axis: on that of float32, -152 is 2^-152 to 2^-148.
+// log2 of the width of a place on a scale axis: on the axis of float32, -152 is 2^-152 to 2^-148.
 GRAZE_HD constexpr int width_of_place(Axis axis) { return axis == Axis::scale ? 4 : axis == Axis::wide_scale ? 32 : 1; }
 
 // log2 of the lower end of place `extreme`.
@@ -27,7 +27,7 @@ GRAZE_HD constexpr int exponent_of(Axis axis, std::int8_t extreme) { return widt
 inline namespace GRAZE_FP {
 
 // The pair's place on the axis, in [-kBucketMost, kBucketMost]. scale: floor(log2(m) / 4), where m is the largest
-// magnitude of a coordinate (2^-149 if all are zero); of doubles floor(log2(m) / 32), with 2^-1023 for all smaller m.
+// magnitude of a coordinate (2^-149 if all are zero); for doubles floor(log2(m) / 32), with 2^-1023 for all smaller m.
 // offset: floor(log2(m / s)), where s is the longest side of the box around both triangles. kBucketMost stands for all
 // larger offsets, and for s = 0.
 // Requires: finite coordinates; compiled without contraction, on host and device alike.

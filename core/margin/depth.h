@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Certified bounds of the depth of two intersecting triangles: the least overlap along 11 axes. The faces of the
+// Certified bounds on the depth of two intersecting triangles: the least overlap along 11 axes. The faces of the
 // triangles' Minkowski difference are perpendicular to these axes.
 #pragma once
 
@@ -12,7 +12,7 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// Upper bound, up to rounding, of |axis - exact| / (5 kRoundoff) per component. If the edges are exact, the accurate
+// Upper bound, up to rounding, on |axis - exact| / (5 kRoundoff) per component. If the edges are exact, the accurate
 // cross product has a small relative error. Otherwise each product carries the errors of its two factors.
 template <class Real>
 GRAZE_HD Vec3<Real> axis_weight(const MarginFrame<Real>& f, int axis, const Vec3<Real>& n) {
@@ -22,9 +22,9 @@ GRAZE_HD Vec3<Real> axis_weight(const MarginFrame<Real>& f, int axis, const Vec3
   return {u.y * v.z + u.z * v.y, u.z * v.x + u.x * v.z, u.x * v.y + u.y * v.x};
 }
 
-// Bounds of min(max n.a - min n.b, max n.b - min n.a) along a separating axis. n is off by up to 5 kRoundoff weight,
+// Bounds on min(max n.a - min n.b, max n.b - min n.a) along a separating axis. n is off by up to 5 kRoundoff weight,
 // and |n| <= weight (1 + 5 kRoundoff). A projection is off by at most (5 for n, 1 for the difference, 3 roundings)
-// kRoundoff sum(weight * |difference|). Two roundings on the way to the overlap make that 11; 12 has slack.
+// kRoundoff sum(weight * |difference|). Two roundings on the way to the overlap make that 11; 12 leaves slack.
 template <class Real>
 GRAZE_HD Interval<Real> overlap(const MarginFrame<Real>& f, int axis, const Vec3<Real>& n, const Vec3<Real>& weight) {
   Vec3<Real> seen[3];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Certified bounds of the distance of two disjoint triangles. No separation is larger than the distance, and no
+// Certified bounds on the distance between two disjoint triangles. No separation is larger than the distance, and no
 // connection is shorter.
 #pragma once
 
@@ -13,9 +13,9 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// Lower bound of the distance: the separation along any direction is at most the distance. Direction d is taken exactly
+// Lower bound on the distance: the separation along any direction is at most the distance. Direction d is taken exactly
 // as computed, and all points are relative to a vertex of its feature. Each vertex then has an error of (1 for the
-// difference, 3 roundings) kRoundoff sum(|n| * |difference|); 6 has slack.
+// difference, 3 roundings) kRoundoff sum(|n| * |difference|); 6 leaves slack.
 template <class Real>
 GRAZE_HD double separation(const MarginFrame<Real>& f, int d) {
   const Vec3<Real> n = direction(f, d), weight = magnitudes(n) * Real(6 * kRoundoff<Real>);
@@ -49,7 +49,7 @@ GRAZE_HD void shorten(Connection<Real>& best, const Vec3<Real>& w, const Vec3<Re
   best = {squared, terms.x + terms.y + terms.z, towards};
 }
 
-// From point `at` (relative to the edge's start) to the foot of its perpendicular, if that lies in the edge.
+// From point `at` (relative to the edge's start) to the foot of its perpendicular, if that lies on the edge.
 template <class Real>
 GRAZE_HD void connect_to_edge(Connection<Real>& best, const Vec3<Real>& at, const Vec3<Real>& edge, int towards) {
   const Real along = dot(at, edge), length2 = dot(edge, edge);

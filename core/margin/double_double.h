@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Numbers of twice a double's precision: the sum of two doubles that do not overlap.
 // Reference: Joldes, Muller and Popescu 2017, "Tight and rigorous error bounds for basic building blocks of double-word
-// arithmetic": algorithms 6, 12, 9 and 17, of relative errors 3 u^2 + 13 u^3, 5 u^2, 2 u^2 and 15 u^2 + 56 u^3 with
+// arithmetic": algorithms 6, 12, 9 and 17, with relative errors 3 u^2 + 13 u^3, 5 u^2, 2 u^2 and 15 u^2 + 56 u^3, where
 // u = 2^-53, as long as nothing over- or underflows.
 #pragma once
 

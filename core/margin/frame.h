@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair in doubles, or in numbers of twice their precision, and the arithmetic that computes certified bounds of its
+// A pair in doubles, or in numbers of twice their precision, and the arithmetic that computes certified bounds on its
 // margin.
 #pragma once
 
@@ -136,7 +136,7 @@ struct Interval {
   Real lo, hi;
 };
 
-// Extends the bounds of a least and a greatest value by a value `at` that is known up to `error`.
+// Widens the bounds on the least and the greatest value to include a value `at` that is known up to `error`.
 template <class Real>
 GRAZE_HD void include(Interval<Real>& least, Interval<Real>& most, const Real& at, const Real& error) {
   least = {lesser(least.lo, at - error), lesser(least.hi, at + error)};

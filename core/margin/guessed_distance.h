@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Certified bounds of the distance of disjoint triangles, from a guess of their nearest features. They hold for any
-// guess, and are close if the guess is right.
+// Certified bounds on the distance between disjoint triangles, from a guess of their nearest features. They hold for
+// any guess, and are tight if the guess is correct.
 #pragma once
 
 #include <cmath>
@@ -16,8 +16,8 @@ namespace graze {
 inline namespace GRAZE_FP {
 namespace first_attempt {
 
-// Whether a coordinate axis joins the first vertices, no triangle reaches past its first vertex towards the other, and
-// nothing was rounded. Then these vertices are nearest and `distance` is exact, which decides ties with powers of two.
+// Whether the first vertices differ along one coordinate axis only, neither triangle reaches past its first vertex
+// towards the other, and nothing was rounded. `distance` is then exact, which decides ties with powers of two.
 GRAZE_HD inline bool joined_by_axis(const MarginFrame<double>& f, const Vec& between, double& distance) {
   const bool x = between.x != 0, y = between.y != 0, z = between.z != 0;
   if (x + y + z != 1) return false;
@@ -50,7 +50,7 @@ GRAZE_HD MarginBounds bounds_of_first(const MarginFrame<double>& f) {
   return {separation(f, d), sqrt(best.squared) * (1 + 8 * kHalfUlp) + 8 * kHalfUlp * best.terms, d, 0};
 }
 
-// Bounds of the distance of disjoint triangles. They always hold, and are close if `nearest` is right.
+// Bounds on the distance between disjoint triangles. They always hold, and are tight if `nearest` is correct.
 template <class Real>
 GRAZE_HD MarginBounds distance_bounds(const Corners<Real>& a, const Corners<Real>& b, const Features& nearest) {
   const bool exchange = nearest.kind == Kind::face_b || nearest.kind == Kind::edge_b;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Certified double-precision bounds of a pair's margin, given its verdict. They nearly always decide its bucket.
+// Certified double-precision bounds on a pair's margin, given its verdict. They nearly always decide its bucket.
 #pragma once
 
 #include "core/margin/bucket.h"
@@ -13,7 +13,7 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// Certified bounds of |margin|. Real: double, or DoubleDouble, whose bounds are closer after much cancellation.
+// Certified bounds on |margin|. Real: double, or DoubleDouble, whose bounds are tighter after much cancellation.
 // Requires: finite floats, or doubles on the grid of floats; verdict is the pair's true verdict, not declined.
 template <class Real = double, class Coordinate>
 GRAZE_HD MarginBounds margin_bounds(const BasicPair<Coordinate>& pair, Verdict verdict) {
@@ -21,7 +21,7 @@ GRAZE_HD MarginBounds margin_bounds(const BasicPair<Coordinate>& pair, Verdict v
   return verdict == Verdict::disjoint ? distance_bounds(frame) : depth_bounds(frame);
 }
 
-// Whether the bounds allow one bucket only, and which one. The margin of a disjoint pair is known not to be zero.
+// Whether the bounds allow only one bucket, and which one. The margin of a disjoint pair is known not to be zero.
 GRAZE_HD inline bool bucket_from_bounds(const MarginBounds& bounds, Verdict verdict, int log2_ulp, Bucket& bucket) {
   const int sign = verdict == Verdict::disjoint ? 1 : -1;
   bucket = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Certified bounds of the depth of intersecting triangles, in double. They use all axes, or only the axes that single
+// Certified bounds on the depth of intersecting triangles, in double. They use all axes, or only the axes that single
 // precision leaves as candidates for the least overlap.
 #pragma once
 
@@ -21,7 +21,7 @@ struct Overlap {
   Real along, n2;
 };
 
-// If `edges`, the axis is perpendicular to the first edges of a and b, else to the face a. The edge of a projects to 0.
+// The axis is perpendicular to the first edges of a and b if `edges`, else to a's face. The edge of a projects to 0.
 template <class Real>
 GRAZE_HD Overlap<Real> overlap_along(const Corners<Real>& a, const Corners<Real>& b, bool edges) {
   const Vec3<Real> u = a[1] - a[0], v = a[2] - a[0], w = b[1] - b[0];

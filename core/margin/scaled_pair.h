@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair of doubles on the grid of floats, where bounds of margins neither over- nor underflow.
+// A pair of doubles on the grid of floats, where bounds on margins neither over- nor underflow.
 #pragma once
 
 #include "core/exact/grid.h"
@@ -10,11 +10,11 @@
 
 namespace graze {
 
-// The pair times a power of two, which scales its margin alike. Nothing is rounded.
+// The pair times a power of two, which scales its margin by the same factor. Nothing is rounded.
 struct ScaledPair {
   DoublePair pair;
-  int ulp;    // log2 of the ulp of the pair as it was, scaled too
-  bool fits;  // if not, the pair is as it was
+  int ulp;    // log2 of the original pair's ulp, scaled too
+  bool fits;  // if not, the pair is unchanged
 
   GRAZE_HD explicit ScaledPair(const DoublePair& unscaled)
       : pair(unscaled), ulp(log2_ulp(pair)), fits(on_grid_of_floats(pair)) {

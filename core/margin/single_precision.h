@@ -28,7 +28,7 @@ GRAZE_HD inline Vec extent_of(const Pair& pair) {
 }
 
 // Whether the range of float suffices for determinants, for products of six differences, and for the errors of
-// determinants, compared with which underflow is negligible.
+// determinants, so that underflow is negligible beside those errors.
 GRAZE_HD inline bool fits_single(const Vec& extent) {
   const double largest = greater(extent.x, greater(extent.y, extent.z));
   const auto sensible = [](double r) { return r == 0 || r >= 0x1p-30; };
@@ -54,7 +54,7 @@ GRAZE_HD inline bool bucket_by_single(const Pair& pair, Verdict verdict, Bucket&
   if (verdict == Verdict::disjoint) {
     const Nearest<float> nearest = seem_nearest(pair.a, pair.b);
     const auto largest = static_cast<float>(greater(extent.x, greater(extent.y, extent.z)));
-    if (nearest.next < 0x1p-44f * largest * largest) return false;  // rounding may have chosen them
+    if (nearest.next < 0x1p-44f * largest * largest) return false;  // rounding may have decided which
     bounds = distance_bounds(pair.a, pair.b, nearest.features);
   } else {
     float lo, hi;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bounds of margins in vectors of doubles, one pair in each vector lane, with the errors that core/margin/distance.h
+// Bounds on margins in vectors of doubles, one pair in each vector lane, with the errors that core/margin/distance.h
 // and depth.h derive. Included once for each instruction set, after core/exact_blocks/vectors-inl.h and in its
 // namespace, so there is no include guard.
 

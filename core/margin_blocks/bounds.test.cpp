@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bounds of margins must be exactly as wide as their comments derive, in scalar code and for every instruction set.
+// The bounds on margins must be exactly as wide as their comments derive, in scalar code and for every instruction set.
 // No random pair would show a bound that counts one rounding too few or too many.
 #include <gtest/gtest.h>
 

@@ -47,8 +47,8 @@ HWY_INLINE Coordinates coordinates_at(const float* pairs, const Numbers& numbers
   return Coordinates(where);
 }
 
-// Writes the buckets that the bounds decide. squares: whether the bounds are of the squared margins.   Returns: which
-// it wrote.
+// Writes the buckets that the bounds decide. squares: whether these are bounds on the squared margins.   Returns: which
+// buckets it wrote.
 HWY_INLINE unsigned settle(const Bounds& bounds, bool squares, V largest, std::int64_t sign, const Numbers& numbers,
                            unsigned which, Bucket* buckets) {
   const auto log2 = [&](V x) HWY_ATTR { return squares ? hn::ShiftRight<1>(floor_log2_of(x)) : floor_log2_of(x); };
@@ -84,7 +84,7 @@ HWY_ATTR void measure_depths(const float* pairs, const Numbers& numbers, Bucket*
   for (; open != 0; open &= open - 1) buckets[numbers.pair[std::countr_zero(open)]] = 0;
 }
 
-// Takes kAtOnce pairs of a verdict at a time. The last group is filled up with its first pair.
+// Takes kAtOnce pairs with the same verdict at a time. The last group is padded with its first pair.
 HWY_ATTR void measure_all(const float* pairs, std::size_t count, const std::uint64_t* intersects, Bucket* buckets) {
   std::fill_n(buckets, count, kOpenBucket);
   Numbers waiting[2] = {};

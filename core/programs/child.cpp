@@ -41,7 +41,7 @@ Child::Child(const std::function<void(int pipe)>& work) {
   pipe_ = ends[0];
   if (process_ > 0) return;
   close(pipe_);
-  throw std::system_error(error, std::generic_category(), "no other process");
+  throw std::system_error(error, std::generic_category(), "cannot start another process");
 }
 
 Child::~Child() {

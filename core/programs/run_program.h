@@ -25,8 +25,8 @@ class Scratch {
   int lock_ = -1;
 };
 
-// The program's file on the PATH, as a shell finds it; empty when there is none. A folder without a name is the current
-// one.
+// The program's file on the PATH, as a shell finds it; empty if there is none. An empty entry in the PATH is the
+// current folder.
 std::filesystem::path on_path(const std::string& program);
 
 struct Program {
@@ -39,10 +39,10 @@ struct Program {
 // Runs the program with `scratch` for its temporary files. If graze is killed, the supervisor removes `scratch`.
 // Returns: the exit status, or 128 plus the signal, as a shell does; 127 if there is no such program.
 // output: what it wrote to both streams.   Throws: Stopped; std::runtime_error if it takes too long or too
-// much memory. Each file that it writes may have up to 1 GiB.
+// much memory. Each file that it writes may be up to 1 GiB large.
 int run_program(const Program& program, const std::filesystem::path& scratch, std::string& output);
 
-// Runs the command in a shell, as run_program.   Returns: its output; its exit status in `status`.
+// Runs the command in a shell, like run_program.   Returns: its output; its exit status in `status`.
 std::string shell_output(const std::string& command, const std::filesystem::path& scratch, int& status,
                          double seconds = Program().seconds);
 

@@ -82,7 +82,7 @@ SupervisorProcess::SupervisorProcess(const std::string& program, const std::vect
 
 SupervisorProcess::~SupervisorProcess() {
   using Clock = std::chrono::steady_clock;
-  shutdown(socket_, SHUT_WR);  // it still tells that it is alive
+  shutdown(socket_, SHUT_WR);  // the supervisor still reports that it is alive
   const Clock::time_point start = Clock::now();
   const auto has_ended = [&] {
     const pid_t ended = waitpid(process_, nullptr, WNOHANG);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Graze's end of graze-subject-host, the supervisor of programs that graze did not write. graze-subject-host lies
-// beside the running program; subjects/README.md describes its end.
+// Graze's side of graze-subject-host, the supervisor of programs that graze did not write. The supervisor's file lies
+// in the folder of the running program; subjects/README.md describes the supervisor.
 #pragma once
 
 #include <sys/types.h>
@@ -14,10 +14,10 @@ namespace graze {
 // While graze waits, the supervisor sends this one-byte message at least once a second.
 inline constexpr char kAlive = 1;
 
-// A supervisor of a build tool reports this, not an exit status.
+// A supervisor of a build tool reports this in place of an exit status.
 inline constexpr int kTookTooMuchMemory = -2;
 
-// The file of a program that lies in the folder of the running one.
+// The file of a program that lies in the same folder as the running one.
 std::filesystem::path beside_this(const std::string& program);
 
 class SupervisorProcess {

@@ -44,7 +44,7 @@ void append_each(Pairs<Real>& moved, Make make) {
   append(moved, result);
 }
 
-// 2^exponent, exactly; 0 or infinite beyond the exponents of double. Avoids a call of std::ldexp, which took half the
+// 2^exponent, exactly; 0 or infinite beyond the exponents of double. Avoids a call to std::ldexp, which took half the
 // time of a move.
 double power_of_two(int exponent) {
   if (exponent < -1022 || exponent > 1023) return std::ldexp(1.0, exponent);

@@ -11,7 +11,7 @@
 namespace graze {
 
 // The moves come in kinds. The number of kinds and their moves, in order:
-//   7   a vertex to the origin (none, then each); all coordinates rounded to a lattice of 1 to 24 bits (51 of
+//   7   a vertex moved to the origin (none, then each); all coordinates rounded to a lattice of 1 to 24 bits (51 for
 //       doubles) or not at all; then scaled to whole numbers, or to a size of about one, or not
 //   6   a vertex replaced by another, by one of the 27 points with coordinates in {-1, 0, 1}, or by p + q - r of
 //       three vertices
@@ -23,9 +23,9 @@ namespace graze {
 //   1   two axes or vertices exchanged, the triangles exchanged, an axis mirrored; a multiple of an axis added to
 //       another: once, twice, or so that a vertex's coordinate becomes 0 or the remainder of a division; all scaled
 //       by a power of two
-//   6   four vertices to the origin and the ends of the unit vectors, rounded to such a lattice or not
-// A value is replaced by 0, a value that occurs, its half or double, a whole number up to 9, each with either sign,
-// itself rounded towards and away from zero to any smaller number of bits or to a whole number, or its neighbours.
+//   6   four vertices mapped to the origin and the ends of the unit vectors, rounded to such a lattice or not
+// A value is replaced by 0, a value that occurs, its half or double, or a whole number up to 9, each with either sign;
+// by itself rounded towards or away from zero, to fewer bits or to a whole number; or by its neighbours.
 inline constexpr int kMoveKinds = 77;
 
 // Appends the results of the moves of a kind; only finite pairs, some of which may equal the original pair.

@@ -12,7 +12,7 @@
 namespace graze {
 namespace {
 
-// Bits of each count. There are at most 18 coordinates of 53 bits, an exponent's distance of 1074 each, and 6 vertices.
+// Bits of each count. There are at most 18 coordinates of 53 bits, with exponents up to 1074 from 0, and 6 vertices.
 constexpr int kWidths[] = {5, 5, 5, 10, 15, 3, 2, 5};
 
 constexpr int bits_below(int criterion) {

@@ -14,8 +14,8 @@ namespace graze {
 //   1. different magnitudes other than 0 and 1
 //   2. coordinates that are not zero
 //   3. coordinates that are not whole numbers below 1000
-//   4. bits of the mantissas, from the first to the last one that is set, of all coordinates together
-//   5. distances of the exponents from 0, of all coordinates together
+//   4. bits of the mantissas, from the first set bit to the last, summed over all coordinates
+//   5. distances of the exponents from 0, summed over all coordinates
 //   6. different vertices
 //   7. 0 when the first triangle lies in the plane z = 0, 1 when in x = 0 or y = 0, else 2
 //   8. minus signs, that of -0 included
@@ -26,7 +26,7 @@ struct Simplicity {
   auto operator<=>(const Simplicity&) const = default;
 };
 
-// Pairs of floats and of doubles are in one order.   Requires: finite coordinates.
+// Pairs of floats and of doubles share one order.   Requires: finite coordinates.
 template <class Real>
 Simplicity simplicity(const BasicPair<Real>& pair);
 

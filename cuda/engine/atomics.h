@@ -37,7 +37,7 @@ GRAZE_HD inline std::uint64_t load_relaxed(const std::uint64_t* at) {
 #endif
 }
 
-// Replaces `from` by `to`.   Returns: whether the value was `from`.
+// Replaces `from` with `to`.   Returns: whether the value was `from`.
 GRAZE_HD inline bool replace(std::uint64_t* at, std::uint64_t from, std::uint64_t to) {
 #ifdef __CUDA_ARCH__
   return atomicCAS(reinterpret_cast<unsigned long long*>(at), from, to) == from;

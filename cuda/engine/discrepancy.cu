@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled without contraction: the counts have the host's bits only so.
+// Compiled without contraction: only then do the counts have the host's bits.
 #include "cuda/engine/discrepancy.h"
 
 #include <tbb/blocked_range.h>
@@ -86,7 +86,7 @@ void launch_compare(Pairs pairs, const DeviceRecords& first, const DeviceRecords
       <<<(pairs.count + 127) / 128, 128>>>(pairs, first, second, degrees, axis, counts, maxima, unlike);
 }
 
-// Pairs of doubles are compared in double alone, so their entries for float are never called.
+// Pairs of doubles are compared only in double, so their entries for float are never called.
 template <class Pairs, int... algorithm>
 constexpr DeviceKernels<LaunchCompare<Pairs>> launchers(std::integer_sequence<int, algorithm...>) {
   return {std::array<LaunchCompare<Pairs>, 2>{launch_compare<algorithm, typename Pairs::Real, Pairs>,
@@ -152,7 +152,7 @@ void for_each_block(const strata::PairSource& source, const WithBlock& with_bloc
   }
 }
 
-// As count_discrepancies, of a source of pairs in this layout.
+// Like count_discrepancies, but for a source of pairs in this layout.
 template <class Pairs>
 void count_on_device(const Lane& first, const Lane& second, const strata::PairSource& source,
                      const DiscrepancySums& to) {
@@ -183,7 +183,7 @@ void count_on_device(const Lane& first, const Lane& second, const strata::PairSo
     check(cudaMemcpy(parts[p].data(), places[p], parts[p].size_bytes(), cudaMemcpyDeviceToHost));
 }
 
-// As count_different_runs; record: the host lane's records of such pairs.
+// Like count_different_runs. record: the function that records the host lane on such pairs.
 template <class Pairs>
 std::uint64_t different_runs(const Lane& host, RecordFunction<BasicPair<typename Pairs::Real>> record,
                              const Lane& device, const strata::PairSource& source) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the values of two lanes on a device, as core/discrepancy/count.h says. This header needs no CUDA header, and
-// building it needs no nvcc.
+// Compares the values of two lanes on a device, as core/discrepancy/count.h describes. This header needs no CUDA
+// header, and building it needs no nvcc.
 #pragma once
 
 #include <cstdint>

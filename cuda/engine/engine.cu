@@ -53,7 +53,7 @@ class CudaEngine final : public DeviceEngine {
         lanes_(lanes.begin(), lanes.end()),
         groups_{lane_groups(lanes, false), lane_groups(lanes, true)} {
     check(cudaSetDevice(ordinal_));
-    check(cudaSetDeviceFlags(cudaDeviceLmemResizeToMax));  // otherwise kernels with other stack sizes wait
+    check(cudaSetDeviceFlags(cudaDeviceLmemResizeToMax));  // otherwise kernels with different stack sizes wait
     for (std::unique_ptr<Buffers>& buffers : buffers_) buffers = std::make_unique<Buffers>();
     for (const bool of_doubles : {false, true}) {
       const std::vector<LaneGroup>& of = groups_[of_doubles];
@@ -95,7 +95,7 @@ class CudaEngine final : public DeviceEngine {
     return result;
   }
 
-  // Clears the memory that accumulates over blocks.
+  // Zeroes the counters that add up over blocks.
   template <class Block>
   Block begin(Axis axis) {
     const std::vector<LaneGroup>& groups = groups_[kOfDoubles<Block>];
@@ -173,8 +173,8 @@ class CudaEngine final : public DeviceEngine {
     block.changed_for_lane = for_lane;
   }
 
-  // Starts the drawing of the pairs, and their decision exactly and by the lanes. Pairs are finite, so nothing is
-  // declined. `wrong` receives the unused declined bits, and is overwritten later.
+  // Starts drawing the pairs and deciding them, exactly and with the lanes. Pairs are finite, so nothing is declined.
+  // `wrong` receives the unused declined bits, and is overwritten later.
   void decide(const EngineBlock& block, Buffers& buffers, const strata::PairSource& source) {
     drawing_.draw(source, block.first, block.pairs.count, buffers.coordinates.at_least(0), buffers.stream);
     buffers.exact.decide(block.pairs, buffers.truth.at_least(0), block.wrong, nullptr, buffers.stream);
@@ -209,7 +209,7 @@ class CudaEngine final : public DeviceEngine {
     check(cudaEventRecord(buffers.done, stream));
   }
 
-  // An upper bound of the number of pairs left so far; does not wait for blocks in progress.
+  // An upper bound on the number of pairs left so far; does not wait for blocks in progress.
   std::uint32_t may_be_left(std::uint32_t block_pairs) const {
     std::uint32_t most = 0;
     for (const std::unique_ptr<Buffers>& buffers : buffers_) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The engine on a device, as the host sees it. The device draws pairs of a stratum, with or without a scene, or takes
-// pairs from the host. It decides them by lanes, judges them exactly, measures and counts them. Only counts and chosen
-// cases come back. This header needs no CUDA header, and building it needs no nvcc.
+// pairs from the host. It decides them with the lanes, judges them exactly, and measures and counts them. Only counts
+// and chosen cases come back. This header needs no CUDA header, and building it needs no nvcc.
 #pragma once
 
 #include <cstdint>
@@ -24,11 +24,11 @@ struct LaneGroup {
   std::uint32_t first, count;
 };
 
-// The groups of these lanes. On pairs of float32 exact lanes never fail, so they are in no group. On doubles those of
-// float32 fail where storing a pair changes its verdict.   Requires: lanes in table order.
+// The groups of these lanes. On pairs of float32, exact lanes never fail, so they are in no group. On doubles, exact
+// lanes of float32 fail where storing a pair changes its verdict.   Requires: lanes in table order.
 std::vector<LaneGroup> lane_groups(std::span<const Lane* const> lanes, bool of_doubles = false);
 
-// The counters of each lane in an EngineResult.
+// The number of counters of each lane in an EngineResult.
 constexpr std::uint32_t counters_of_lane(bool of_doubles) { return of_doubles ? 4 : 3; }
 
 // The signature of one subject's failures, and the pairs that have it.
@@ -46,7 +46,7 @@ struct EngineSignature {
 struct EngineResult {
   std::uint64_t done = 0;  // pairs judged; fewer than requested when `undecided` was about to overflow
   // Indexed by bucket + kBucketMost. In order: pairs; intersecting pairs; then for each lane its false positives, false
-  // negatives and declined pairs, and on doubles those of the wrong ones that are `stored` (analysis/tally.h).
+  // negatives and declined pairs, and on doubles its wrong verdicts counted as `stored` (analysis/tally.h).
   std::vector<std::uint64_t> counts;
   std::vector<std::uint64_t> extreme_counts;  // same, by place_on_axis + kBucketMost; empty without an axis
   std::vector<EngineSignature> signatures;

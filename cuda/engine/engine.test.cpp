@@ -177,7 +177,7 @@ TEST_F(EngineTest, GroupsOnDoublesHoldTheExactLanes) {
   EXPECT_EQ(groups[3].count, 1u);
 }
 
-// The counts of lanes in float, in double, and of both exact lanes.
+// The counts of lanes in float and in double, and of both exact lanes.
 TEST(EngineOnDoubles, CountsAsThePlainWayAndLeavesFewPairs) {
   constexpr std::uint64_t kCount = 1000;
   constexpr const char* kLanes[] = {"moller_1997/f32/cpu", "moller_1997/f64/cpu", "exact/f32/cpu", "exact/f64/cpu"};
@@ -243,7 +243,7 @@ TEST_F(EngineTest, AFullSignatureTableIsAnError) {
             "the engine found more signatures than it can hold");
 }
 
-// A stratum with pairs that the bounds leave open, among its first 20,000.
+// A stratum whose first 20,000 pairs include some that the bounds leave open.
 constexpr strata::Stratum kLeavesSome = strata::Stratum::mixed_scale;
 
 TEST_F(EngineTest, MoreUndecidedPairsThanTheListHoldsAreAnError) {

@@ -36,11 +36,11 @@ struct IndexList {
 // The lists of pairs that one step leaves to a later one:
 // - kOpenGaps, kOpenDepths: disjoint and intersecting pairs whose bucket single precision does not decide.
 // - kTies: disjoint pairs whose bucket double precision does not decide either.
-// - kCloseTies: those of kTies whose bucket double bounds along all directions do not decide.
+// - kCloseTies: those of kTies whose bucket is still open after double bounds along all directions.
 // - kRelated: pairs that need their relation. kByBounds: those of kRelated with large grids.
 // - kByDoubles to kByWide: pairs that need all axes, by the number type that holds them.
 // - kDepths: intersecting pairs with a nonzero margin whose bucket double precision does not decide.
-// - kCloseDepths: those of kDepths whose bucket double bounds along all axes do not decide.
+// - kCloseDepths: those of kDepths whose bucket is still open after double bounds along all axes.
 enum EngineList {
   kOpenGaps,
   kOpenDepths,
@@ -78,7 +78,7 @@ struct EngineBlock {
   std::uint64_t* disagreements;
 };
 
-// A block of doubles. `pairs` are what float32 stores of them; all else is that of the doubles.
+// A block of doubles. `pairs` holds the pairs as float32 stores them; everything else belongs to the doubles.
 struct DoubleEngineBlock : EngineBlock {
   static constexpr std::uint32_t kCountersOfLane = counters_of_lane(true);
 
@@ -140,7 +140,7 @@ constexpr SignatureHead unpacked(std::uint64_t word) {
           unpacked_nesting(relation), bucket};
 }
 
-// The marks that up to 32 lanes of the group get for pair i, from lane 32 * word on.
+// The marks that up to 32 lanes of the group get for pair i, starting at lane 32 * word.
 GRAZE_HD inline std::uint64_t marks(const EngineBlock& block, const LaneGroup& group, std::uint32_t word,
                                     std::uint32_t i, bool truth) {
   const std::uint32_t from = word * kMarksOfWord;

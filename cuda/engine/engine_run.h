@@ -18,7 +18,7 @@ struct EngineLimits {
   std::uint32_t undecided = 1u << 26;    // pairs left to the host
 };
 
-// The words of a key: room for the marks of any of these groups.
+// The number of words in a key that has room for the marks of any of these groups.
 std::uint32_t key_words(std::span<const LaneGroup> groups);
 
 // Calls judge(b, first, count) for blocks b = 0, 1, … of pairs [first, first + count). After each block it calls

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the engine does with a block of pairs, step by step: the same code on a device, where each step is a kernel, and
-// on the host. Every pair gets its margin's bucket, from the cheapest bounds that decide it: each step lists what it
-// leaves for the next, so that a warp does not wait for one hard pair in 32. The relation is computed
-// only if a lane is wrong or the margin may be zero. Then everything is counted.
+// The engine's steps on a block of pairs: the same code on a device, where each step is a kernel, and on the host.
+// Every pair gets its margin's bucket from the cheapest bounds that decide it. Each step lists the pairs that it leaves
+// to the next, so that a warp does not wait for one hard pair in 32. The relation is computed only if a lane is wrong
+// or the margin may be zero. Then everything is counted.
 #pragma once
 
 #include <type_traits>
@@ -74,7 +74,7 @@ GRAZE_HD inline void leave_to_host(const EngineBlock& block, std::uint32_t i) {
   if (n < block.undecided.size) block.undecided.indices[n] = block.first + i;
 }
 
-// The bucket that the bounds leave, or kUndecided. ulp: log2 of the pair's ulp.   Requires: the margin is not zero.
+// The bucket, if the bounds allow only one, or kUndecided. ulp: log2 of the pair's ulp.   Requires: a nonzero margin.
 template <class Coordinate>
 GRAZE_HD Bucket bucket_within(const Coordinate* c, const MarginBounds& bounds, Verdict verdict, int ulp) {
   const int upper = floor_log2(bounds.hi);
@@ -84,7 +84,7 @@ GRAZE_HD Bucket bucket_within(const Coordinate* c, const MarginBounds& bounds, V
   return are_apart_by(c, c + 9, bounds.direction, upper) ? make_bucket(1, upper - ulp) : kUndecided;
 }
 
-// The bucket by all axes and features in numbers of this type, or kUndecided.   Requires: the margin is not zero.
+// The bucket from all axes and features in numbers of this type, or kUndecided.   Requires: the margin is not zero.
 template <class Real>
 GRAZE_HD Bucket bucket_by_bounds(const float* c, Verdict verdict) {
   const Pair pair = pair_of(c);
@@ -114,7 +114,7 @@ GRAZE_HD bool nest_quickly(const EngineBlock& block, std::uint32_t i, const Real
   return !bit(block.wrong, i) || exact::detail::nesting_quickly(c, c + 9, r, nesting);
 }
 
-// The relation is known: completes the bucket of an intersecting pair, or leaves that to the next step.
+// Uses the known relation to complete the bucket of an intersecting pair, or leaves that to the next step.
 GRAZE_HD inline void settle(const EngineBlock& block, std::uint32_t i, const Relation& r, Nesting nesting) {
   block.relations[i] = packed(r, nesting);
   if (block.buckets[i] != kUndecided || !r.intersects()) return;
@@ -197,9 +197,9 @@ struct PlaceExtreme {
   }
 };
 
-// The steps for blocks of doubles. Their single precision is that of the stored pair, which shows wide margins. Bounds
-// in double-double numbers measure the others. What neither decides goes to the host, and so do pairs whose relation
-// needs more than the bits of `RelatingDoubles`.
+// The steps for blocks of doubles. In single precision they use the stored pair, which shows wide margins. Bounds in
+// double-double numbers measure the others. Pairs that neither decides go to the host, and so do pairs whose relation
+// needs more bits than `RelatingDoubles` holds.
 using RelatingDoubles = exact::detail::LongNumbers;
 
 struct FindChanged {
@@ -296,8 +296,8 @@ struct PlaceExtremeOfDoubles {
   }
 };
 
-// Calls add(counter, pairs) for each counter of lanes [from, to) to which pairs of the word contribute. same: the
-// pairs, all of one bucket. Counters are laid out as in EngineResult, starting with lane `from`.
+// Calls add(counter, pairs) for each counter of lanes [from, to) to which pairs of the word contribute. same: the pairs
+// to count, all in one bucket. Counters are laid out as in EngineResult, starting with lane `from`.
 template <class Block, class Add>
 GRAZE_HD void count_word(const Block& block, std::uint32_t word, std::uint32_t same, std::uint32_t from,
                          std::uint32_t to, const Add& add) {

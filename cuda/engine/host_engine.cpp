@@ -163,7 +163,7 @@ class HostEngine final : public DeviceEngine {
   std::uint64_t* column(std::size_t k) { return &bits_[k * words_]; }
   std::uint32_t* words(std::size_t k) { return reinterpret_cast<std::uint32_t*>(column(k)); }
 
-  // Draws the pairs, then decides them exactly and by the lanes.
+  // Draws the pairs, then decides them exactly and with the lanes.
   void decide(const EngineBlock& block, const strata::PairSource& source) {
     std::vector<Pair> pairs(block.pairs.count);
     for (std::uint32_t i = 0; i < block.pairs.count; ++i) pairs[i] = source.pair(block.first + i);
@@ -207,7 +207,7 @@ class HostEngine final : public DeviceEngine {
     }
   }
 
-  // By those lanes that `which` accepts.
+  // Decides with those lanes that `which` accepts.
   template <class AnyPair, class Which>
   void decide_by_lanes(const std::vector<AnyPair>& pairs, const Which& which) {
     for (std::size_t l = 0; l < on_host_.size(); ++l) {

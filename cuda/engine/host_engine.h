@@ -12,8 +12,8 @@
 
 namespace graze::cuda {
 
-// on_host[i] decides pairs by lanes[i]. It is not called for exact lanes. For sources of doubles, those of lanes in
-// double decide doubles.
+// on_host[i] decides pairs with lanes[i]. It is not called for exact lanes. For sources of doubles, it decides the
+// doubles if the lane is in double.
 std::unique_ptr<DeviceEngine> make_host_engine(std::span<const Lane* const> lanes, std::span<const DecideBlock> on_host,
                                                const EngineLimits& limits = {});
 

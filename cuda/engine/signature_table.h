@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hash table of signatures with open addressing, used by many threads at once, on host and device. A key is a number
-// of 64-bit words, the same number for all keys of a table. The first word of a row says whether the row is free, being
-// written by the thread that claimed it, or published. So no thread reads an incomplete key. A thread that finds a row
-// being written waits. On a device this needs independent thread scheduling (sm_70 and later).
+// A hash table of signatures with open addressing, used by many threads at once, on host and device. All keys of a
+// table have the same number of 64-bit words. The first word of a row says whether the row is free, being written by
+// the thread that claimed it, or published, so no thread reads an incomplete key. A thread that finds a row being
+// written waits. On a device this needs independent thread scheduling (sm_70 and later).
 #pragma once
 
 #include <cstdint>

@@ -19,8 +19,8 @@ struct ErrorCounts : Counts {
   std::uint64_t first_fixed = ~std::uint64_t{0}, first_broken = ~std::uint64_t{0};  // first index, or ~0
 };
 
-// Counts for each lane over all pairs of the source. `zero` is the lane to compare with. Of pairs of doubles, lanes in
-// float decide what float32 stores.
+// Counts for each lane over all pairs of the source. `zero` is the lane to compare with. Lanes in float decide pairs of
+// doubles as float32 stores them.
 // Requires: CUDA lanes, including `zero`.   Throws: std::runtime_error on any CUDA error.
 std::vector<ErrorCounts> count_errors(const Lane& zero, std::span<const Lane> lanes, const strata::PairSource& source);
 

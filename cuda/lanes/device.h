@@ -18,8 +18,8 @@ class Device {
  public:
   virtual ~Device() = default;
 
-  // Decides the pairs by each lane; bits[k] has the verdicts of cuda_lanes[k]. If doubles is not empty, lanes in double
-  // decide the doubles, and the pairs are those as stored in float32; none if all lanes are in double.
+  // Decides the pairs with each lane; bits[k] has the verdicts of cuda_lanes[k]. If `doubles` is not empty, lanes in
+  // double decide the doubles, and `pairs` holds them as float32 stores them, or nothing if all lanes are in double.
   // Requires: CUDA lanes.
   // Throws: std::runtime_error on any CUDA error.
   virtual void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,

@@ -40,7 +40,7 @@ class Stream {
     return double{milliseconds} * 1e6;
   }
 
-  // The first kernel that `work` submits to the stream, which does not run.   Requires: `work` allocates nothing.
+  // The first kernel that `work` submits to the stream. It does not run.   Requires: `work` allocates nothing.
   const void* first_kernel(const std::function<void()>& work) const {
     cudaGraph_t graph;
     check(cudaStreamBeginCapture(stream_, cudaStreamCaptureModeThreadLocal));

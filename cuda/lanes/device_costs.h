@@ -33,7 +33,7 @@ struct DeviceCosts {
   std::vector<DeviceCost> of;  // for each lane
 };
 
-// Of pairs of doubles, lanes in double decide the doubles, and the others what float32 stores.
+// Lanes in double decide pairs of doubles as they are; other lanes decide them as float32 stores them.
 // Requires: CUDA lanes, pairs.   Throws: std::runtime_error on any CUDA error, or without a device.
 DeviceCosts measure_on_device(std::span<const Lane* const> lanes, const strata::PairBlock& pairs, int passes);
 

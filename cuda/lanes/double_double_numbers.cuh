@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Determinants in double-double precision, with a bound of their error. For pairs whose grid does not fit any built-in
+// Determinants in double-double precision, with a bound on their error. For pairs whose grid does not fit any built-in
 // number type.
 //
 // Differences are exact: the sum of two doubles and its error are both doubles. Each of a determinant's six products

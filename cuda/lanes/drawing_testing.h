@@ -5,7 +5,7 @@
 
 namespace graze::cuda {
 
-// As strata::pairs_of, drawn for the first device; of doubles, `floats` are those that the device stores.
+// Like strata::pairs_of, drawn for the first device. For doubles, `floats` has the pairs that the device stores.
 // Throws: std::runtime_error on any CUDA error.
 strata::PairBlock drawn_for_device(const strata::PairSource& source, std::uint64_t first, std::uint32_t count);
 

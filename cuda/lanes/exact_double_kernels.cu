@@ -8,7 +8,7 @@ namespace {
 
 using namespace exact::detail;
 
-// Decides by a bound for each determinant, and by integers of several words those that it leaves open.
+// Decides with a bound for each determinant. Determinants that it leaves open are computed in multiword integers.
 template <class Kinds>
 __global__ void __launch_bounds__(kThreads) decide_each_closely(ArrayPairs pairs, PairList from, PairList left,
                                                                 std::uint32_t* intersects, unsigned long long* stages) {

@@ -19,7 +19,7 @@ struct Lane;
 
 namespace graze::cuda {
 
-// Pairs of doubles: pair i has triangle first + i of b, and that of a, or the reference if a is empty.
+// Pairs of doubles: pair i is triangle first + i of a (or the reference if a is empty) and triangle first + i of b.
 struct ArrayPairs {
   using Real = double;
   TriangleArray a, b;

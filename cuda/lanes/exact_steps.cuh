@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The steps of the exact decision after the filter. The first steps take the pairs whose determinants fit in floats or
-// in doubles. The next ones use residues, then 128-bit integers or closer bounds, then wide integers. Each step lists
+// in doubles. The next ones use residues, then 128-bit integers or tighter bounds, then wide integers. Each step lists
 // the pairs that it cannot decide, so that a warp does not wait for one hard pair in 32. Pairs is any type with
 // load(pairs, i, coordinates), whose coordinates are of type Real. Device code only.
 #pragma once
@@ -51,11 +51,11 @@ __device__ bool floats_hold(const float* c) {
   return whole;
 }
 
-// The list for a pair that the filter leaves open: 0 if floats hold it, which no pair of doubles asks, else 1.
+// The list for a pair that the filter leaves open: 0 if floats hold it (not tested for doubles), else 1.
 __device__ int list_of(const float* c) { return floats_hold(c) ? 0 : 1; }
 __device__ int list_of(const double*) { return 1; }
 
-// The filter, with one thread for each pair, and a shared vertex. Lists the pairs that it leaves open.
+// The filter, with one thread for each pair, and the test for a shared vertex. Lists the pairs that it leaves open.
 template <int kThreadBlocks, class Pairs>
 __global__ void __launch_bounds__(kThreads, kThreadBlocks)
     decide_most(Pairs pairs, PairList in_floats, PairList left, std::uint32_t* intersects, std::uint32_t* declined,
@@ -105,7 +105,7 @@ __global__ void __launch_bounds__(kThreads)
   add_of_block(in_floats, left, list, i);
 }
 
-// Calls decide(coordinates, yes) for each pair of a list. It returns the stage that decided, and sets `yes` to
+// Calls decide(coordinates, yes) for each pair of a list. `decide` returns the stage that decided, and sets `yes` to
 // whether the pair intersects. If it returns kLeft, the pair goes to the list `left`.
 constexpr int kLeft = exact::kStages;
 
@@ -142,7 +142,7 @@ __global__ void __launch_bounds__(kThreads, 3)
   });
 }
 
-// Decides by the smallest number type of Kinds that holds a pair's grid. kThreadBlocks: the number of thread blocks
+// Decides with the smallest number type of Kinds that holds a pair's grid. kThreadBlocks: the number of thread blocks
 // that a multiprocessor should run at once, which limits the registers.
 template <class Kinds, int kThreadBlocks, class Pairs>
 __global__ void __launch_bounds__(kThreads, kThreadBlocks)
@@ -178,7 +178,7 @@ __global__ void __launch_bounds__(kThreads, 2)
 __device__ bool is_moderate(const float*) { return true; }
 __device__ bool is_moderate(const double* c) { return exact::detail::is_moderate(exact::detail::grid_of(c, c + 9)); }
 
-// Decides by closer bounds, in double-double precision.
+// Decides with tighter bounds, in double-double precision.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads, 2)
     decide_closely(Pairs pairs, PairList from, PairList left, std::uint32_t* intersects, unsigned long long* stages) {
@@ -190,7 +190,7 @@ __global__ void __launch_bounds__(kThreads, 2)
   });
 }
 
-// Decides by the same bounds; determinants that they leave open are computed in wide integers.
+// Decides with the same bounds; determinants that they leave open are computed in wide integers.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads) decide_one_by_one(Pairs pairs, PairList from, PairList left,
                                                               std::uint32_t* intersects, unsigned long long* stages) {

@@ -25,7 +25,7 @@ using LaunchDecide = void (*)(DevicePairs pairs, std::uint32_t* intersects, std:
 // Starts a kernel that writes each pair's trace hash; see cuda/lanes/trace.h.
 using LaunchTrace = void (*)(DevicePairs pairs, std::uint64_t* hashes, cudaStream_t stream);
 
-// As LaunchDecide, for lanes with tolerances.
+// Like LaunchDecide, for lanes with tolerances.
 using LaunchWithin = void (*)(const Epsilons& epsilons, DevicePairs pairs, std::uint32_t* intersects,
                               std::uint32_t* declined, cudaStream_t stream);
 
@@ -45,7 +45,7 @@ using LaunchValuesDoubles = void (*)(DeviceDoubles pairs, void* values, std::uin
 template <class Launch>
 using DeviceKernels = std::array<std::array<Launch, 2>, kAlgorithmCount>;
 
-// Those of lanes in double, for pairs of doubles.
+// The kernels of lanes in double, for pairs of doubles.
 template <class Launch>
 using DoubleKernels = std::array<Launch, kAlgorithmCount>;
 

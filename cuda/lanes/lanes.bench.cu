@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs per second of each CUDA lane, by stratum, on pairs in device memory: of float32, and of doubles for lanes in
 // double. For comparison, the limits set by memory: a copy, and a kernel that only reads the pairs (72 or 144 bytes
-// each) and writes a bit. Before that, the exact lane must give the same bits as the host on a sample. Without a
+// each) and writes a bit. Before measuring, the exact lane must give the same bits as the host on a sample. Without a
 // device, prints a line and succeeds.
 #include <benchmark/benchmark.h>
 
@@ -48,7 +48,7 @@ void draw(const strata::StratumInfo& stratum, std::uint64_t first, float* to) {
   check(cudaGetLastError());
 }
 
-// On all CPU cores, then copied.
+// Draws on all CPU cores, then copies.
 void draw(const strata::StratumInfo& stratum, std::uint64_t first, double* to) {
   const std::string name = std::string(stratum.id) + std::string(strata::kInDoubles);
   Drawing().draw(strata::named_sources(1, kPairs, {name}).front(), first, kPairs, to, nullptr);
@@ -238,7 +238,7 @@ void add(const std::string& name, Function function) {
   benchmark::RegisterBenchmark(name.c_str(), function)->UseManualTime()->Unit(benchmark::kMicrosecond);
 }
 
-// suffix: of the benchmarks' names.
+// suffix: appended to the benchmarks' names.
 template <class Real>
 void add_of(Resident<Real>& resident, const std::string& suffix) {
   const std::span<const strata::StratumInfo> all = strata_of(Real());
@@ -278,8 +278,8 @@ void add_sweeps() {
 }  // namespace
 }  // namespace graze::cuda
 
-// `graze_device_bench compare FIRST END` compares the exact lanes of device and host instead of measuring, `compare_f64
-// FIRST END` those on pairs of doubles.
+// `graze_device_bench compare FIRST END` compares the exact lanes of device and host instead of measuring; `compare_f64
+// FIRST END` does the same on pairs of doubles.
 int main(int argc, char** argv) try {
   if (argc == 4 && std::string_view(argv[1]) == "compare")
     return graze::cuda::device_is_host<float>(std::stoull(argv[2]), std::stoull(argv[3])) ? 0 : 1;

@@ -33,8 +33,8 @@ struct PairList {
 
 #ifdef __CUDACC__
 // Adds the indices of a thread block to two lists; `which` is 0 or 1, or -1 for neither. All threads of the block call
-// this. It makes one atomic operation for each block and list, because one counter takes only one such operation in 0.7
-// ns.
+// this. It makes one atomic operation for each block and list, because one counter takes only one such operation every
+// 0.7 ns.
 __device__ inline void add_of_block(const PairList& first, const PairList& second, int which, std::uint32_t place) {
   __shared__ std::uint32_t begins[2][32];
   if (!__syncthreads_or(which >= 0)) return;

@@ -24,12 +24,12 @@ struct Differences {
 // Writes pairs [first, first + count) of the stratum.
 void launch_generate(float* coordinates, std::uint32_t count, std::uint64_t seed, int stratum, std::uint64_t first,
                      cudaStream_t stream);
-// The same of a source of doubles, in its scene if it has one.   Requires: its stratum is known.
+// The same for a source of doubles, in its scene if it has one.   Requires: its stratum is known.
 void launch_generate(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, double* coordinates,
                      cudaStream_t stream);
 
-// Brings a source's pairs to a device. They are drawn on the device if it has the kernels, else by all CPU cores and
-// copied.
+// Brings a source's pairs to a device. They are drawn on the device if it has the kernels. Otherwise all CPU cores draw
+// them, and they are copied.
 class Drawing {
  public:
   // Writes pairs [first, first + count) as 18 arrays of `count`, in the stream's order.

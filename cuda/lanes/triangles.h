@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // An array of triangles in its owner's layout: rows of nine coordinates with a stride, nine columns, or an indexed
-// mesh. The array lies in host or device memory and can be read in either. Its coordinates are floats or doubles, as
-// its reader knows.
+// mesh. The array lies in host or device memory and can be read in either. Its reader must know whether its coordinates
+// are floats or doubles.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Queries on a device. Chunks go through two or three slots, each with its own stream. So the host's work on one chunk
-// (packing, taking results) overlaps with the copies of another and the kernels of a third. Triangles in the device's
-// memory are read in place; those of the host come through pinned memory.
+// (packing, taking results) overlaps with the copies of another and the kernels of a third. Triangles in device memory
+// are read in place; those in host memory come through pinned memory.
 #include "cuda/query/device_query.h"
 
 #include <cuda_runtime.h>
@@ -68,7 +68,7 @@ struct Verdicts {
   DeviceArray<float> columns;
   DeviceArray<char> triangles;
   DeviceArray<QueryCounts> found;
-  DeviceExact exact;  // of a lane with a filter
+  DeviceExact exact;  // for a lane with a filter
 };
 
 struct Slot {
@@ -118,12 +118,12 @@ class Run {
     most_ = std::max<std::uint64_t>(1 << 12, most_ / references_.size() / 64 * 64);
     std::size_t free = 0, all = 0;
     check(cudaMemGetInfo(&free, &all));
-    // Bytes per triangle in all slots: lists, verdicts and, where copied, the triangles. At most half of the free
-    // memory.
+    // Bytes per triangle in all slots: lists, verdicts and, where copied, the triangles. Chunks use at most half of the
+    // free memory.
     const std::size_t bytes =
         (resident_ ? 32 : 3 * (24 + 9 * real_)) + references_.size() + (question.lane->exact ? 0 : 3 * 76);
     while (most_ > 1 << 12 && most_ * bytes > free / 2) most_ /= 2;
-    // The first chunks may be large if the time that a launch may take is not very short.
+    // The first chunks may be large unless the time limit for a launch is very short.
     const bool at_leisure = resident_ && question.lane->exact && question.launch_seconds >= 0.05;
     if (resident_ && !question.stream) wait_for_default_stream();
     chunk_ = std::min(most_, question.any ? kFirstOfAny : at_leisure ? kFirstResident : kFirstOfAll);
@@ -254,7 +254,7 @@ class Run {
     const double seconds = milliseconds / 1000.0;
     record_.longest = std::max(record_.longest, seconds);
     ++record_.chunks;
-    // The next chunk may grow as long as it would take less than half of the time that a launch may take.
+    // The next chunk may grow as long as it would take less than half of the time limit for a launch.
     const double fitting = static_cast<double>(range.count) * question_.launch_seconds / 2 / std::max(seconds, 1e-9);
     const std::uint64_t wanted = std::min(most_, std::max(chunk_, range.count * kGrowth));
     chunk_ = fitting < static_cast<double>(wanted) ? static_cast<std::uint64_t>(fitting) : wanted;
@@ -289,7 +289,7 @@ class Current {
   Current(const Current&) = delete;
   Current& operator=(const Current&) = delete;
   ~Current() {
-    cudaGetLastError();  // of a call that failed here; otherwise the next check would report it
+    cudaGetLastError();  // clears a failure in this run, which the next check would report
     cudaSetDevice(before_);
   }
 

@@ -41,12 +41,12 @@ class QueryWork {
   // Used instead where wants_bits() is false: the counts for each reference.
   virtual void take(const QueryRange& range, std::span<const QueryCounts> counts) = 0;
   virtual bool wants_bits() const = 0;
-  // Hands out no more ranges and does not wait for missing ones, because a worker failed.
+  // Called when a worker failed: hands out no more ranges, and does not wait for missing ones.
   virtual void stop() = 0;
 };
 
 struct DeviceQuestion {
-  bool in_doubles = false;           // the coordinates of references and triangles; otherwise in floats
+  bool in_doubles = false;           // the coordinates are doubles, not floats
   const void* references = nullptr;  // nine coordinates for each reference
   std::uint64_t reference_count = 0;
   std::span<const TriangleArray> parts;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Device memory for benchmarks and tests that do not include CUDA. Also measures what bounds a query: copies within the
+// Device memory for benchmarks and tests that do not include CUDA. Also measures what limits a query: copies within the
 // device, copies from the host, and the resources of its kernel.
 #pragma once
 
@@ -33,7 +33,7 @@ struct DeviceSpeeds {
 // The best of a few copies of `bytes` bytes.   Throws: DeviceFailure.
 DeviceSpeeds measure_speeds(int device, std::size_t bytes);
 
-// Of the kernel that sees every triangle of an exact query.   Throws: DeviceFailure.
+// The resources of the kernel that sees every triangle of an exact query.   Throws: DeviceFailure.
 KernelNeeds needs_of_exact_query(int device);
 
 }  // namespace graze::cuda

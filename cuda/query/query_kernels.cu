@@ -60,7 +60,7 @@ __global__ void __launch_bounds__(kThreads, 3)
   }
 }
 
-// Triangles of doubles, as the reference's slabs see them from its first vertex. Lists those that are not beyond one.
+// Tests triangles of doubles, relative to the reference's first vertex, against its slabs. Lists those beyond no slab.
 __global__ void __launch_bounds__(kThreads)
     decide_doubles_by_slabs(const __grid_constant__ exact::PreparedTriangle seen,
                             const __grid_constant__ ArrayPairs pairs, std::uint32_t count, PairList left,
@@ -83,7 +83,7 @@ __global__ void __launch_bounds__(kThreads)
   add_of_block(left, left, open && finite ? 0 : -1, i);
 }
 
-// The filter in doubles, and a shared vertex.
+// The filter in doubles, and the test for a shared vertex.
 __global__ void __launch_bounds__(kThreads, 2)
     filter_doubles(const __grid_constant__ ArrayPairs pairs, PairList from, PairList left, std::uint32_t* hits) {
   decide_listed(pairs, from, left, hits, nullptr, [](const double* c, bool& yes) {

@@ -25,7 +25,7 @@ constexpr std::uint32_t row_words(std::uint32_t count) { return (count + 255) / 
 
 inline constexpr int kQueryLists = 6;
 
-// Decides triangles of a chunk by the reference's slabs and the filter in floats. It writes all words of `hits`, and
+// Decides triangles of a chunk with the reference's slabs and the filter in floats. It writes all words of `hits`, and
 // lists in `left` the triangles that remain open.
 void launch_slabs(const exact::PreparedTriangle& reference, const QueryChunk& chunk, PairList left, std::uint32_t* hits,
                   cudaStream_t stream);
@@ -45,7 +45,7 @@ void launch_exact_query(const exact::PreparedTriangle& seen, const double* refer
 void launch_pair_up(const exact::PreparedTriangle& reference, const QueryChunk& chunk, float* columns,
                     std::uint32_t* not_finite, cudaStream_t stream);
 
-// Changes the verdicts on triangles that are not finite to declined.
+// Sets the verdicts on triangles with coordinates that are not finite to declined.
 void launch_decline(std::uint32_t words, const std::uint32_t* not_finite, std::uint32_t* hits, std::uint32_t* declined,
                     cudaStream_t stream);
 

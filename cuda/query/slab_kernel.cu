@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each warp takes tiles of triangles and prefetches them into shared memory by asynchronous copies. Memory bandwidth
-// bounds the kernel. The reference's slabs decide most triangles. The others are queued until there are 32 or their
+// Each warp takes tiles of triangles and prefetches them into shared memory with asynchronous copies. Memory bandwidth
+// limits the kernel. The reference's slabs decide most triangles. The others are queued until there are 32 or their
 // tile is about to be overwritten; then the filter in floats decides them together. It leaves about one in a hundred,
 // which are listed.
 #include <cuda_pipeline_primitives.h>

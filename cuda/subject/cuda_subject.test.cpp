@@ -123,7 +123,7 @@ TEST_F(CudaSubject, InDoubleDecidesDoublesAsTheyAre) {
     const TwinLibrary twin(one.twin, Scalar::f64);
     std::int8_t answers[2] = {};
     twin.decide(std::span(doubles), answers);
-    EXPECT_EQ(answers[0], fuses);  // the product is rounded to the difference's other operand
+    EXPECT_EQ(answers[0], fuses);  // rounded, the product equals the other operand
     EXPECT_EQ(answers[1], 1);
     const std::uint64_t all = ~std::uint64_t{0}, none = 0;
     EXPECT_EQ(twin.decide_fusing(doubles[0], {&all, 1}), fuses);
@@ -215,7 +215,7 @@ TEST_F(CudaSubject, RefusesByName) {
   EXPECT_NE(why("count = 1; return a[0] > b[0];", "__device__ int count;\n")
                 .find("a write to global memory cannot be replayed"),
             std::string::npos);
-  EXPECT_NE(why("printf(\"%f\", a[0]); return a[0] > b[0];").find("function of another file cannot be replayed"),
+  EXPECT_NE(why("printf(\"%f\", a[0]); return a[0] > b[0];").find("function in another file cannot be replayed"),
             std::string::npos);
 }
 

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 template <class T>
 T read(const std::string& file, std::size_t at) {
   T value;
-  if (at + sizeof value > file.size()) throw std::runtime_error("a cubin that ends early");
+  if (at + sizeof value > file.size()) throw std::runtime_error("the cubin is truncated");
   std::memcpy(&value, file.data() + at, sizeof value);
   return value;
 }

@@ -34,7 +34,7 @@ std::vector<fs::path> places() {
   return all;
 }
 
-// Runs the work in a child process and returns its result, because NVRTC may compile for ever, crash, or catch signals
+// Runs the work in a child process and returns its result, because NVRTC may compile forever, crash, or catch signals
 // itself.
 // Throws: what the work throws, as CompileError or std::runtime_error; Stopped, within 0.1 s of the request.
 std::string in_child(const std::function<std::string()>& work) {
@@ -121,7 +121,7 @@ std::string Nvrtc::compiled(const std::string& source, const std::string& name,
   for (const std::string& option : options) words.push_back(option.c_str());
   Program program = nullptr;
   if (create_(&program, source.c_str(), name.c_str(), static_cast<int>(texts.size()), texts.data(), names.data()) != 0)
-    throw std::runtime_error("NVRTC takes no program");
+    throw std::runtime_error("NVRTC cannot create a program");
   const auto destroy = [this](Program* p) { destroy_(p); };
   const std::unique_ptr<Program, decltype(destroy)> owner(&program, destroy);
   std::size_t size = 0;
@@ -133,7 +133,7 @@ std::string Nvrtc::compiled(const std::string& source, const std::string& name,
   }
   ptx_size_(program, &size);
   std::string result(size, 0);
-  if (ptx_(program, result.data()) != 0) throw std::runtime_error("NVRTC gives no PTX");
+  if (ptx_(program, result.data()) != 0) throw std::runtime_error("NVRTC returns no PTX");
   result.resize(result.find_last_not_of('\0') + 1);
   return result;
 }

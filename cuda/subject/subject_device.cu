@@ -51,7 +51,7 @@ class Subject final : public SubjectOnDevice {
     check(cudaMemcpy(answers, answers_.at_least(n), n, cudaMemcpyDeviceToHost));
   }
 
-  // The coordinates as the kernel takes them: they themselves, or doubles.
+  // The coordinates in the kernel's type: unchanged, or converted to doubles.
   const void* in_its_type(const float* coordinates, unsigned n) {
     if (scalar_ == Scalar::f32) return coordinates;
     const std::size_t count = std::size_t{n} * kCoordinates;

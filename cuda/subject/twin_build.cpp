@@ -83,7 +83,7 @@ fs::path build_twin(const twin::Module& module, Scalar scalar, bool contracted, 
   if (run_program({words}, scratch.path(), said) != 0) {
     const auto error = said.find("error");
     const auto start = error == said.npos ? 0 : said.rfind('\n', error) + 1;  // npos + 1 is 0
-    throw std::runtime_error(fmt::format("the twin does not compile by {}: {}", compiler(),
+    throw std::runtime_error(fmt::format("the twin does not compile with {}: {}", compiler(),
                                          said.substr(start, said.find('\n', start) - start)));
   }
   keep_file(out, library);

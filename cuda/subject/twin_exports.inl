@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The source of a twin's shared library, after cuda/twin/twin_ops*.h and subjects/include/graze/subject.h: the kernels
-// that the generator writes, and what others call; see cuda/twin/twin_library.h. The kernel is the one that wrapper.cpp
-// appends.
+// that the generator writes, and the functions that others call; see cuda/twin/twin_library.h. The kernel is the one
+// that wrapper.cpp appends.
 #include <cstddef>
 #include <iterator>
 #include <string_view>

@@ -13,7 +13,7 @@
 namespace graze::cuda {
 
 namespace twin_wrong {
-extern const TwinTable kTwinTable;  // contracted with the right product first
+extern const TwinTable kTwinTable;  // contracts the right-hand product first
 }
 
 namespace {

@@ -54,7 +54,7 @@ struct LaneRun {
   DeviceArray<std::uint64_t> hashes[2];
 };
 
-// What depends on the coordinate type of the pairs.
+// The parts that depend on the coordinate type of the pairs.
 struct OfFloats {
   using Real = float;
   using Block = DevicePairs;

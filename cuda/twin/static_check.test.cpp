@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The contraction rule against ptxas, without a GPU: kernel by kernel, machine code of the default build beside that of
-// the PTX in which this project wrote out every contraction. Equal counts of fused and unfused operations are
-// required everywhere; most kernels are the same code, instruction for instruction. Skipped if there is no nvcc.
+// Checks the contraction rule against ptxas, without a GPU. For each kernel, it compares the machine code of the
+// default build with that of the PTX in which this project wrote out every contraction. Counts of fused and unfused
+// operations must be equal; most kernels are the same, instruction for instruction. Skipped if there is no nvcc.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -99,7 +99,7 @@ TEST(StaticCheck, SeesContraction) {
   EXPECT_EQ(same_code(contracted, not_contracted), 0);
 }
 
-// Fused operations and products, which alone tell contraction: ptxas may repeat or reorder additions.
+// Counts of fused operations and of products. Only these show contraction: ptxas may repeat or reorder additions.
 std::map<std::string, int> fused_and_products(const std::string& code) {
   std::map<std::string, int> counts = operations(code);
   counts.erase("FADD");
@@ -147,7 +147,7 @@ TEST_P(KernelsUnderTolerances, HaveTwinsJustWhereMachineCodeHasTheirContractions
 INSTANTIATE_TEST_SUITE_P(Variants, KernelsUnderTolerances, testing::Values("cuda_fma", "cuda_nofma"),
                          [](const auto& row) { return std::string(row.param); });
 
-// A program without branches, dead code and equal products: sums and products of inputs, of sums, and of products that
+// A program without branches, dead code or equal products: sums and products of inputs, of sums, and of products that
 // other sums share. Every sum and every product that nothing reads is stored.
 std::string random_program(std::mt19937& random, const std::string& name, const std::string& type) {
   const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };

@@ -52,7 +52,7 @@ struct TwinProof {
 // 1e+10".
 std::string evidence(const TwinProof& proof);
 
-// evidence() of the record in cuda/proofs for this very kernel; "twin" when there is none. of_doubles: for the kernel
+// evidence() of the record in cuda/proofs for exactly this kernel; "twin" if there is none. of_doubles: for the kernel
 // that decides pairs of doubles, if the lane has one.
 std::string twin_evidence(const Lane& lane, bool of_doubles = false);
 
@@ -80,7 +80,7 @@ struct ComparisonSite {
 
 // The contraction sites of a lane's twin, in program order. Empty without a twin or without contractions.
 std::span<const ContractionSite> contraction_sites(const Lane& lane);
-// Of the kernel that decides this pair.
+// The sites of the kernel that decides this pair.
 std::span<const ContractionSite> contraction_sites(const Lane& lane, const AnyPair& pair);
 
 // Gives a foreign CUDA lane the sites of its twin, a library of cuda/subject. A verdict may take `most_seconds`
@@ -96,7 +96,7 @@ double most_seconds(const Lane& lane);  // for one verdict.   Requires: a foreig
 Verdict decide_fusing(const Lane& lane, const AnyPair& pair, std::span<const std::uint64_t> fused);
 
 // The comparisons of numbers in a foreign CUDA lane with contraction sites, in program order. `min`, `max` and tests of
-// bits are none.
+// bits do not count.
 std::span<const ComparisonSite> comparison_sites(const Lane& lane);
 
 struct Comparison {
@@ -104,8 +104,8 @@ struct Comparison {
   int ptx_line, outcome;
 };
 
-// decide_fusing of such a lane. `made` gets the first comparisons that it makes, as many as fit, and `count` their
-// number.
+// decide_fusing for such a lane. `made` receives its first comparisons, as many as fit, and `count` how many these
+// are.
 Verdict decide_comparing(const Lane& lane, const AnyPair& pair, std::span<const std::uint64_t> fused,
                          std::span<Comparison> made, std::size_t& count);
 

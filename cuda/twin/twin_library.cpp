@@ -27,7 +27,7 @@ void decide_part(void* block, Scalar scalar, std::span<const Pair> pairs, signed
   decide_part(block, scalar, wide, answers);
 }
 
-// Shares the pairs among threads, which call decide(pairs, answers).
+// Splits the pairs among threads, which call decide(pairs, answers).
 template <class AnyPair, class Decide>
 void on_all_cores(std::span<const AnyPair> pairs, std::int8_t* answers, const Decide& decide) {
   std::atomic<std::size_t> next = 0;

@@ -45,8 +45,8 @@ class TwinLibrary {
   std::span<const ComparisonSite> comparisons() const { return comparisons_; }
 
   // The answer when sites whose bit is not set round twice. Bit i % 64 of word i / 64 belongs to site i. `made`
-  // gets the first comparisons that the kernel makes, as many as fit, and `count` their number. A twin in float decides
-  // what float32 stores of a pair of doubles.
+  // receives the first comparisons that the kernel makes, as many as fit, and `count` their number. A twin in float
+  // decides a pair of doubles as float32 stores it.
   // Throws: std::invalid_argument for too few bits.
   int decide_fusing(const AnyPair& pair, std::span<const std::uint64_t> fused, std::span<Comparison> made = {},
                     std::size_t* count = nullptr) const;

@@ -158,7 +158,7 @@ struct BlockRun {
       : values(2 * questions_of(lane.algorithm).size() * pairs), paths(pairs) {
     record(Records{values.data(), pairs, paths.data()});
   }
-  // In how many pairs the path or some value's bits differ. NaNs are alike.
+  // The number of pairs in which the path or some value's bits differ. All NaNs count as equal.
   std::size_t differences(const BlockRun& other) const {
     std::size_t count = 0;
     for (std::size_t i = 0; i < paths.size(); ++i) {
@@ -239,7 +239,7 @@ TEST_P(TwinOfDoubles, RecordsOfFloatsAreThoseOfTheTwinOfFloats) {
   EXPECT_EQ(recorded(lane(), doubles, twin_record_of_doubles(lane())).differences(of_floats), 0u);
 }
 
-// The evidence is that of the record for these kernels, not for those of float32.
+// The evidence comes from the record of these kernels, not of those for float32.
 TEST_P(TwinOfDoubles, EvidenceSaysWhatTheRecordSays) {
   const auto record =
       nlohmann::json::parse(std::ifstream(GRAZE_SOURCE_DIR "/cuda/proofs/nvidia_h200_nvcc_13.0.88_f64.json"));

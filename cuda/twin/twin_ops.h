@@ -33,8 +33,8 @@ template <class T>
 using Bits = std::conditional_t<sizeof(T) == 1, u8,
                                 std::conditional_t<sizeof(T) == 2, u16, std::conditional_t<sizeof(T) == 4, u32, u64>>>;
 
-// The bits of a register. A device's float32 operations return another NaN than those of x86, which shows when the bits
-// are read. For float64 the NaN is the same.
+// The bits of a register. A device's float32 operations return a different NaN from those of x86, which shows when the
+// bits are read. Float64 operations return the same NaN.
 constexpr u32 bits_of(f32 x) {
   const u32 bits = std::bit_cast<u32>(x);
   return bits == 0xffc00000u ? 0x7fffffffu : bits;
@@ -86,7 +86,7 @@ T abs(T x) {
     return std::bit_cast<T>(std::bit_cast<Bits<T>>(x) & ~kSign<T>);
 }
 
-// The magnitude of b with the sign of a, in PTX's order of operands.
+// The magnitude of b with the sign of a, in PTX's operand order.
 template <class T>
 T copysign(T a, T b) {
   return std::bit_cast<T>((bits_of(a) & kSign<T>) | (std::bit_cast<Bits<T>>(b) & ~kSign<T>));

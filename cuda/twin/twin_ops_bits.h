@@ -25,7 +25,7 @@ T brev(T x) {
   return result;
 }
 
-// Index of the highest set bit; of a negative number, the highest clear bit. All ones when there is none.
+// Index of the highest set bit; for a negative number, the highest clear bit. All ones when there is none.
 template <class T>
 u32 bfind(T x) {
   const Bits<T> bits = static_cast<Bits<T>>(x < 0 ? ~x : x);

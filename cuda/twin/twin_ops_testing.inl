@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kernels of generator/semantics*.ptx over special values: each slot of their results against what is expected of it,
-// and against a device. Included after the kernels, in the namespace of the operations.
+// Runs the kernels of generator/semantics*.ptx on special values, and compares each slot of their results with the
+// expected value and with a device. Included after the kernels, in the namespace of the operations.
 template <class Real>
 using Limits = std::numeric_limits<Real>;
 
@@ -29,7 +29,7 @@ std::vector<Real> special_values() {
                               1 / least,
                               most,
                               Limits<Real>::infinity()};
-  if (sizeof(Real) == 8) {  // what becomes the least normal float, or just does not
+  if (sizeof(Real) == 8) {  // values that become the least normal float, or just do not
     for (double x : {0x1p-126 - 0x1p-151, 0x1p-126 - 0x1p-150, 0x1p-126 - 0x1p-170, 0x1p-126, 0x1p-140}) {
       values.push_back(static_cast<Real>(x));
     }
@@ -107,7 +107,7 @@ void check(const std::vector<Slot<In>>& slots, const std::vector<In>& values) {
 }
 
 #ifdef GRAZE_HAS_NVCC
-// Both NaN, as doubles or, where the upper halves are zero, as floats.
+// Whether both are NaN: as doubles, or as floats where the upper halves are zero.
 bool both_nan(std::uint64_t a, std::uint64_t b) {
   if (is_nan(std::bit_cast<f64>(a)) && is_nan(std::bit_cast<f64>(b))) return true;
   return a >> 32 == 0 && b >> 32 == 0 && is_nan(std::bit_cast<f32>(static_cast<u32>(a))) &&
@@ -115,7 +115,7 @@ bool both_nan(std::uint64_t a, std::uint64_t b) {
 }
 #endif
 
-// The same kernel on a device, slot by slot.
+// Compares the same kernel on a device, slot by slot.
 template <class Kernel, class In>
 void check_on_device(const std::string& ptx_file, const std::vector<Slot<In>>& slots, const std::vector<In>& values) {
 #ifdef GRAZE_HAS_NVCC

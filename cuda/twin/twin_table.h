@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The twins' functions: a table [algorithm][scalar] for each variant with a twin, in its own namespace. Contracted
 // kernels are compiled twice, for processors with and without FMA instructions. Both give the same verdicts at
-// different speed.
+// different speeds.
 #pragma once
 
 #include <array>
@@ -11,14 +11,14 @@
 
 namespace graze::cuda {
 
-// Of the kernels for pairs of one coordinate type.
+// The functions of the kernels for pairs of one coordinate type.
 template <class AnyPair>
 struct TwinFunctions {
   DecideFunction<AnyPair> decide = nullptr;
-  DecideWithin<AnyPair> absolute = nullptr, relative = nullptr;  // with tolerances: absolute; also relative
+  DecideWithin<AnyPair> absolute = nullptr, relative = nullptr;  // with absolute tolerances; also with relative ones
   TraceFunction<AnyPair> trace = nullptr;
   Verdict (*decide_fusing)(const AnyPair& pair, const std::uint64_t* fused) = nullptr;
-  // Of the kernel that records, in a table of its own: `sites` are then those of this kernel.
+  // The functions of the kernel that records, in a table of its own whose `sites` are those of this kernel.
   RecordFunction<AnyPair> record = nullptr;
   void (*record_fusing)(const AnyPair* pairs, std::size_t count, const Records& to,
                         const std::uint64_t* fused) = nullptr;

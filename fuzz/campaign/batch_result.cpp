@@ -22,7 +22,7 @@ void SignatureCount::add(const SignatureCount& other) {
 }
 
 void VerdictDigests::add(std::size_t lane, std::uint64_t index, Verdict verdict) {
-  // splitmix64 of a number that no other pair and verdict has.   Reference: Steele, Lea and Flood 2014.
+  // splitmix64 of a number that is unique to the pair and verdict.   Reference: Steele, Lea and Flood 2014.
   std::uint64_t z = (index * 8 + static_cast<std::uint64_t>(verdict) + 1) * 0x9e3779b97f4a7c15;
   z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
   z = (z ^ z >> 27) * 0x94d049bb133111eb;

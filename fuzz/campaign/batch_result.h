@@ -13,7 +13,7 @@
 
 namespace graze::fuzz {
 
-// The number of cases kept for each signature: those with the smallest keys, no matter which are found first.
+// How many cases each signature keeps: those with the smallest keys, in whatever order they are found.
 inline constexpr std::size_t kKeptCases = 4;
 
 // Identifies a pair: its source in the campaign, and its index in that source.
@@ -34,12 +34,12 @@ struct SignatureCount {
   void keep(const CaseKey& found);
 };
 
-// A digest of each lane's verdicts on some pairs. Two runs on the same pairs with the same digests have the same
-// verdicts: the digest is a sum of hashes, one for each pair whose verdict is not the truth, so it can be added in any
-// order, and equal sums of other verdicts have a chance of 2^-64.
+// A digest of each lane's verdicts on some pairs. Two runs on the same pairs with equal digests have the same verdicts.
+// A digest is a sum of hashes, one for each pair whose verdict is not the truth, so parts can be added in any order.
+// Different verdicts have equal sums with a probability of 2^-64.
 struct VerdictDigests {
   std::vector<std::uint64_t> of_lane;
-  std::uint64_t pairs = 0;  // that they cover: not those that a device's engine judged
+  std::uint64_t pairs = 0;  // pairs covered by the digests; pairs that a device's engine judged are not
 
   void add(std::size_t lane, std::uint64_t index, Verdict verdict);
   void add(const VerdictDigests& other);

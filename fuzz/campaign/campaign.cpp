@@ -26,14 +26,14 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::uint64_t kBatchPairs = 65536;  // pairs in a transaction of the CPU engine
-// Batch limit for pairs that the cores draw for a device, and for doubles, of which a device leaves many to the cores.
+constexpr std::uint64_t kBatchPairs = 65536;  // pairs per transaction of the CPU engine
+// Batch limit for pairs that the cores draw for a device, and for doubles, because a device leaves many to the cores.
 constexpr std::uint64_t kOfCores = std::uint64_t{1} << 25;
 
 // Chooses the next batch. It comes from the source with the fewest pairs done, so that an interrupted campaign has seen
-// all sources. A large source with unknown cost first gets a small batch, so that the remaining time is known early.
-// Once every source has been seen, such a small batch waits until a whole batch is done; otherwise a campaign that is
-// always interrupted would never end.
+// all sources. A large source of unknown cost first gets a small batch, so that the remaining time is known early. When
+// a source already has pairs, its small batch waits until a whole batch is done here; otherwise a campaign that keeps
+// being interrupted would never end.
 std::optional<PairRange> next_batch(const Campaign& campaign, const Store& store,
                                     const std::vector<std::uint64_t>& done, const CostEstimate& costs,
                                     std::uint64_t done_here, int threads) {
@@ -113,7 +113,7 @@ StoreSpec store_spec(const Campaign& campaign) {
 std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& campaign, EngineChoice choice) {
   if (choice == EngineChoice::cpu || (choice == EngineChoice::automatic && !campaign.under_test->device)) return {};
   if (!campaign.under_test->device)
-    throw std::runtime_error("--engine gpu needs a CUDA device, and there is none; use --engine cpu");
+    throw std::runtime_error("--engine gpu needs a CUDA device, but there is none; use --engine cpu");
   std::string hindrance;
   for (std::size_t l = 0; l < campaign.under_test->lanes.size(); ++l) {
     if (!campaign.under_test->on_device(l) || campaign.under_test->on_both(l))
@@ -121,8 +121,8 @@ std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& 
   }
   if (hindrance.empty()) return cuda::open_engines(campaign.under_test->lanes);
   if (choice == EngineChoice::automatic) return {};
-  throw UsageError("--engine gpu runs lanes on the device alone, and " + hindrance +
-                   " does not run there; choose other --lanes");
+  throw UsageError("--engine gpu runs every lane only on the device, but " + hindrance +
+                   " runs elsewhere; choose other --lanes");
 }
 
 namespace {
@@ -171,7 +171,7 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
     std::optional<BatchResult> judged_batch;
     try {
       judged_batch = judged(*batch);
-    } catch (const Stopped&) {  // foreign code was interrupted; the batch will run again
+    } catch (const Stopped&) {  // foreign code was interrupted; a later run repeats the batch
       break;
     }
     const BatchResult& result = *judged_batch;
@@ -193,7 +193,7 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
   if (campaign.shard.whole() && !campaign.take) {
     outcome.summary = write_summary(campaign, store, complete);
   } else {
-    if (complete) store.compact();  // keeps merges of thousands of shards small
+    if (complete) store.compact();  // so that merging thousands of shards stays cheap
     outcome.summary = shard_summary(campaign.shard, store, complete, progress.done);
   }
   store.finish();

@@ -26,16 +26,15 @@ struct Campaign {
   const SelectedLanes* under_test = nullptr;  // the lanes and their executors
   int threads = 0;                            // 0: one for each core
   std::vector<std::unique_ptr<cuda::DeviceEngine>>
-      engines;        // the devices' engines, which share the work; none: the CPU engine
+      engines;        // the devices' engines, which share the work; empty: the CPU engine
   DecideBlock exact;  // decides the truth for the CPU engine, confirmed by the oracle; null: the oracle decides
-  std::uint64_t engine_batch = std::uint64_t{1}
-                               << 32;  // pairs of an engine in a transaction: about a second on a device
+  std::uint64_t engine_batch = std::uint64_t{1} << 32;  // pairs per engine and transaction: about a second on a device
   std::filesystem::path directory;
-  std::filesystem::path scratch;  // folder of the running store, if not `directory`; see scratch.h
+  std::filesystem::path scratch;  // folder of the store during the run, if not `directory`; see scratch.h
   Shard shard;                    // the part of the campaign to run
   Json spec;                      // identifies the campaign; see campaign_spec
   Json build;
-  // If set, returns the next batch to run, from a pool that several processes share; nothing once the pool is empty.
+  // If set, takes the next batch from a pool that several processes share; nothing once the pool is empty.
   std::function<std::optional<PairRange>()> take;
 };
 
@@ -44,7 +43,7 @@ struct Progress {
   std::uint64_t done_here = 0;                      // by this process
   double seconds = 0;                               // of this process
   std::optional<double> seconds_left;               // estimated from the cost of each source's pairs; see CostEstimate
-  std::uint64_t disagreements = 0, signatures = 0;  // so far; disagreements by this process only
+  std::uint64_t disagreements = 0, signatures = 0;  // so far; disagreements of this process only
   std::uint64_t all_disagreements = 0;
   std::vector<std::uint64_t> disagreements_of_source;
 };
@@ -52,10 +51,10 @@ struct Progress {
 // {"seed", "pairs", "strata", "lanes"}: recorded with the results, and compared when the campaign resumes.
 Json campaign_spec(const Campaign& campaign);
 
-// The commit of the sources of this build, with "-dirty" if they were changed, or "unknown".
+// The commit of this build's sources, with "-dirty" if they were changed, or "unknown".
 std::string commit_of_build();
 
-// Version, commit, compiler, type and flags of the build, CUDA toolkit, device, and the executor of each CUDA lane.
+// The build's version, commit, compiler, type and flags, the CUDA toolkit, the device, and each CUDA lane's executor.
 Json build_info(const SelectedLanes& under_test);
 
 // The processor's name and the architecture, for timings.
@@ -64,7 +63,7 @@ std::string machine_name();
 // The engine that judges the pairs. automatic: the devices if all lanes run only there, otherwise the CPU.
 enum class EngineChoice { automatic, cpu, gpu };
 
-// Returns the engines that run the campaign; none means the CPU engine.
+// Returns the engines that run the campaign; an empty list means the CPU engine.
 // Throws: UsageError if the GPU engine is requested but cannot run the campaign; std::runtime_error without a device.
 std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& campaign, EngineChoice choice);
 
@@ -72,14 +71,14 @@ std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& 
 StoreSpec store_spec(const Campaign& campaign);
 
 struct Outcome {
-  bool complete;  // all work of this run is done
-  Json summary;   // of a whole campaign; of a shard {"shard", "complete", "pairs", "disagreements", "signatures"}
+  bool complete;  // all of this run's work is done
+  Json summary;   // a shard's is {"shard", "complete", "pairs", "disagreements", "signatures"}
   Json oracle;    // {"cgal", "gmp", "exact", "apart"}: pairs that each exact decision saw; depends on the engine
 };
 
 // Runs or resumes the campaign until it is done or `stop` is set. Updates status.json as it runs. At the end it writes
 // timings.json and, for a whole campaign, summary.json and cases/.
-// Throws: OracleMismatch, UsageError, std::runtime_error. Committed batches are kept in any case.
+// Throws: OracleMismatch, UsageError, std::runtime_error. Even then, committed batches are kept.
 Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
                      const std::function<void(const Progress&)>& report);
 

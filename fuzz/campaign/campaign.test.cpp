@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The guarantees of campaigns: the same bytes for any number of threads and interruptions, and no loss.
+// What campaigns guarantee: the same bytes for any number of threads and interruptions, and no loss.
 #include "fuzz/campaign/campaign.h"
 
 #include <gtest/gtest.h>
@@ -41,8 +41,8 @@ TEST_F(CampaignTest, SameBytesForOneThreadAndMany) {
   EXPECT_EQ(lasting_files(root_ / "one"), lasting_files(root_ / "many"));
 }
 
-// A lane's code changes between two campaigns on the same pairs. Each stratum on which a verdict changed shows it, and
-// no other one does; the bounds hold, whatever the threads and the judge.
+// A lane's code changes between two campaigns on the same pairs. Exactly the strata on which a verdict changed are
+// reported as changed. The bounds hold for any number of threads and any judge.
 TEST_F(CampaignTest, ChangedVerdictsShowInDigests) {
   const SelectedLanes one = select_lanes({"moller_1997/f32/cpu", "exact/f32/cpu"}),
                       other = select_lanes({"guigue_devillers_2003/f32/cpu"});
@@ -81,7 +81,7 @@ TEST_F(CampaignTest, ChangedVerdictsShowInDigests) {
 
 TEST_F(CampaignTest, SameBytesWhenInterruptedAfterEveryBatch) {
   run(campaign("whole", 2));
-  EXPECT_EQ(run_in_parts(campaign("parts", 2)), 3 * 3);  // for each source a few pairs, a batch, and the rest
+  EXPECT_EQ(run_in_parts(campaign("parts", 2)), 3 * 3);  // a few pairs, a batch and the rest of each source
   EXPECT_EQ(lasting_files(root_ / "parts"), lasting_files(root_ / "whole"));
 }
 
@@ -108,7 +108,7 @@ TEST_F(CampaignTest, CountsEveryPairAndStoresCasesThatAreDisagreements) {
   }
   const std::uint64_t disagreements = summary["disagreements"];
   EXPECT_GE(failures, disagreements);  // one for each failing algorithm
-  std::uint64_t sampled = 0;           // right in every lane, but checked by GMP anyway
+  std::uint64_t sampled = 0;           // right in every lane, but in GMP's sample
   for (const strata::PairSource& source : campaign("counts", 2).sources) {
     for (std::uint64_t index = 0; index < source.pairs; index += 1024) {
       const Pair pair = source.pair(index);
@@ -153,7 +153,7 @@ TEST_F(CampaignTest, CountsExtremesWhereAStratumVariesThem) {
   }
 }
 
-// By margin, a lane's verdicts unlike its cpu lane's are those that a second look at each pair finds.
+// In each margin bucket, as many verdicts differ from the cpu lane's as when each pair is decided again.
 TEST_F(CampaignTest, CountsDifferencesFromCpuByMargin) {
   Campaign c = campaign("differ", 2);
   c.sources = strata::stratum_sources(c.seed, 4000, {"near_edge_edge", "thesis"});
@@ -182,7 +182,7 @@ TEST_F(CampaignTest, CountsDifferencesFromCpuByMargin) {
   EXPECT_GT(differ, 500u);
 }
 
-// Without the database, counts by margin that do not add up are refused.
+// Without the database, counts by margin that do not add up are rejected.
 TEST_F(CampaignTest, RefusesDifferencesFromCpuThatDoNotAddUp) {
   Campaign c = campaign("alone", 2, 3000);
   const Json summary = run(c);
@@ -232,7 +232,7 @@ TEST_F(CampaignTest, RefusesADirectoryOfAnotherCampaign) {
 TEST_F(CampaignTest, RefusesForeignAndDamagedDatabases) {
   fs::create_directories(root_ / "foreign");
   std::ofstream(root_ / "foreign" / "campaign.sqlite")
-      << "This is no database, and long enough to be looked at as one: " << std::string(4096, 'x');
+      << "This is not a database, but long enough to be read as one: " << std::string(4096, 'x');
   EXPECT_THROW(run(campaign("foreign", 1, 4000)), std::runtime_error);
 
   {
@@ -249,7 +249,7 @@ TEST_F(CampaignTest, RefusesForeignAndDamagedDatabases) {
   EXPECT_THROW(run(campaign("cut", 1, 4000)), std::runtime_error);
 }
 
-// A device that equals its twin, except on the eighth pair of every block.
+// A device that agrees with its twin except on the eighth pair of every block.
 class WrongOnce final : public cuda::Device {
  public:
   void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes, std::vector<VerdictBits>& bits,

@@ -61,7 +61,7 @@ AnyPair draw_again(const SceneCase& named) {
   if (!whole && scene.name().substr(scene.name().rfind('#')) != named.scene.substr(hash))
     throw std::runtime_error(cannot(
         "draw from", file,
-        fmt::format("the scene has changed: it is {}, not {}; a campaign directory has its own scene: {}@DIR:{}:{}",
+        fmt::format("the scene has changed: it is {}, not {}; a campaign directory keeps its scene: {}@DIR:{}:{}",
                     scene.name(), named.scene, named.id, named.seed, named.index)));
   const bool in_doubles = strata::stratum_in_doubles(named.id).has_value();
   const strata::SceneSources drawn =

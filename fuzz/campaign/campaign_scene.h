@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene in campaigns and cases: its file name, and its contents, which are recorded with the results.
+// A scene in campaigns and cases: its file name and its contents, which are recorded with the results.
 #pragma once
 
 #include <cstdint>
@@ -19,21 +19,21 @@ struct NamedScene {
   std::string name() const { return strata::scene_name(file, scene); }  // arm.toml#0123456789abcdef
 };
 
-// Throws: as strata::read_scene.
+// Throws: what strata::read_scene throws.
 NamedScene open_scene(const std::string& file);
 
-// As strata::scene_sources; looks for meshes beside the scene's file.
+// Like strata::scene_sources; looks for meshes beside the scene's file.
 strata::SceneSources sources_of(const NamedScene& scene, std::uint64_t seed, std::uint64_t pairs,
                                 const std::vector<std::string>& globs, std::optional<PairTypes> types = std::nullopt);
 
-// As strata::named_scene_sources: the sources that a campaign recorded.
+// Like strata::named_scene_sources, for the sources that a campaign recorded.
 strata::SceneSources recorded_sources_of(const NamedScene& scene, std::uint64_t seed, std::uint64_t pairs,
                                          const std::vector<std::string>& names);
 
 // Returns a campaign's record under "scene": {"file", "name", "pairs" requested, "text", "left_out": {stratum: why}}.
 nlohmann::ordered_json scene_spec(const NamedScene& scene, std::uint64_t pairs, const strata::SceneSources& drawn);
 
-// Reads what scene_spec recorded.   Throws: std::runtime_error; nlohmann's exceptions for another shape.
+// Reads what scene_spec recorded.   Throws: std::runtime_error; nlohmann's exceptions for JSON of another shape.
 NamedScene recorded_scene(const nlohmann::ordered_json& recorded);
 
 // The parts of ID@SCENE:SEED:INDEX. SCENE is a scene's file, with or without #HASH, or a campaign's directory.
@@ -42,8 +42,8 @@ struct SceneCase {
   std::uint64_t seed, index;
 };
 
-// Draws the named pair; of doubles, ID ends in "/f64".   Throws: UsageError; std::runtime_error if the scene's file has
-// changed.
+// Draws the named pair. For a pair of doubles, ID ends in "/f64".   Throws: UsageError; std::runtime_error if the
+// scene's file has changed.
 AnyPair draw_again(const SceneCase& named);
 
 }  // namespace graze::fuzz

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests that compare results: runs campaigns in a folder of their own.
+// For tests that compare results: runs campaigns in their own folders.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 
 namespace graze::fuzz {
 
-// All files of a campaign that must not depend on how it ran.
+// The campaign's files that must not depend on how it ran.
 inline std::map<std::string, std::string> lasting_files(const std::filesystem::path& directory) {
   std::map<std::string, std::string> files{{"summary.json", read_whole(directory / "summary.json")}};
   for (const auto& file : std::filesystem::directory_iterator(directory / "cases"))
@@ -26,7 +26,7 @@ inline std::map<std::string, std::string> lasting_files(const std::filesystem::p
   return files;
 }
 
-// Strata in scenes of several kinds, and pairs that no device can draw.
+// Strata in several kinds of scenes, and pairs that no device can draw.
 inline std::vector<strata::PairSource> sources_in_scenes(std::uint64_t seed, std::uint64_t pairs) {
   std::vector<strata::PairSource> sources;
   for (const char* text :
@@ -84,7 +84,7 @@ class CampaignFiles : public testing::Test {
   // Compares lasting_files of two campaigns byte by byte.
   void expect_same_bytes(const std::string& one, const std::string& other) const {
     const auto files = lasting_files(root_ / one), others = lasting_files(root_ / other);
-    EXPECT_EQ(files.size(), others.size()) << one << " and " << other << " keep other cases";
+    EXPECT_EQ(files.size(), others.size()) << one << " and " << other << " keep different cases";
     for (const auto& [name, text] : files) {
       const auto found = others.find(name);
       ASSERT_NE(found, others.end()) << name << " of " << one << " is not in " << other;
@@ -95,8 +95,8 @@ class CampaignFiles : public testing::Test {
   std::filesystem::path root_;
 };
 
-// Makes `copies` adjacent copies of each lane under test, with policy names that have no effect. This gives more lanes
-// than a subject has.
+// Makes `copies` adjacent copies of each lane under test, with policy names that have no effect, so that there are more
+// lanes than a subject has.
 class ManyLanes {
  public:
   ManyLanes(const SelectedLanes& of, int copies) {

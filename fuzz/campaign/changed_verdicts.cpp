@@ -10,8 +10,8 @@ namespace {
 
 std::uint64_t gap(std::uint64_t l, std::uint64_t r) { return l < r ? r - l : l - r; }
 
-// Each changed verdict moves its pair from one count to another, or between the right ones and a count. A verdict that
-// a convention excuses may have moved without a change, so these pairs are left out of the lower bound.
+// Each changed verdict moves its pair from one count to another, or between a count and the right verdicts. A pair that
+// a convention excuses may move without a changed verdict, so these pairs are subtracted from the lower bound.
 void add_bounds(const Counts& before, const Counts& after, std::uint64_t pairs, ChangedVerdicts& to) {
   const auto not_right = [](const Counts& counts) { return counts.not_right() + counts.by_convention; };
   std::uint64_t moved = gap(not_right(before), not_right(after));

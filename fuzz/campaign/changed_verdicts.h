@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the databases of two campaigns on the same pairs tell of verdicts that changed, without the code that ran.
+// Finds verdicts that changed between two campaigns on the same pairs, from their databases and without their code.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,17 @@
 
 namespace graze::fuzz {
 
-// Of a lane on a stratum, both in both campaigns.
+// A lane's changed verdicts on a stratum. Both campaigns have the lane and the stratum.
 struct ChangedVerdicts {
-  enum class Known { same, changed, unknown };  // same and changed by the digests, or changed by the counts alone
+  enum class Known { same, changed, unknown };  // known from the digests, or else from the counts
 
   std::string lane, stratum;
   std::uint64_t pairs = 0;
   Known known = Known::unknown;
-  std::uint64_t least = 0, most = 0;  // bounds of the number of pairs whose verdict changed
+  std::uint64_t least = 0, most = 0;  // bounds on the number of pairs whose verdict changed
 };
 
-// Requires: databases of complete campaigns on the same pairs.   Throws: as counts_of_database.
+// Requires: databases of complete campaigns on the same pairs.   Throws: what counts_of_database throws.
 std::vector<ChangedVerdicts> changed_verdicts(const std::filesystem::path& before, const std::filesystem::path& after);
 
 }  // namespace graze::fuzz

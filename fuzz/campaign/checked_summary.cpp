@@ -24,15 +24,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A summary has impossible counts; what() describes them.
+// Thrown for a summary with impossible counts, which what() describes.
 struct Impossible : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 void expect(bool possible, const std::string& expected, std::uint64_t found) {
   if (!possible)
-    throw Impossible(
-        fmt::format("its counts contradict each other: {} are possible, {} are recorded", expected, found));
+    throw Impossible(fmt::format("its counts contradict each other: expected {}, found {}", expected, found));
 }
 
 std::uint64_t count(const Json& row, const char* field) {
@@ -71,7 +70,7 @@ void expect_split(const std::string& where, const Json& rows, const Json& stratu
   }
 }
 
-// Checks that the margins of pairs that intersect are not positive, and that wrong verdicts are on the right side.
+// Checks that pairs that intersect have no positive margin, and that wrong verdicts match the sign of the margin.
 void expect_sides(const Json& stratum) {
   const Json& margins = stratum.at("margins");
   std::size_t known = 0;
@@ -85,7 +84,7 @@ void expect_sides(const Json& stratum) {
     for (const auto& [lane, unused] : row->at("wrong").items())
       wrong[b <= 0][lane] += count(row->at("wrong"), lane.c_str());
   }
-  if (known != margins.size()) throw Impossible("it has margins of invalid names");
+  if (known != margins.size()) throw Impossible("it has margins with invalid names");
   const std::uint64_t intersects = count(stratum, "intersects");
   expect(pairs == intersects, fmt::format("exactly {} pairs that intersect, by margin", intersects), pairs);
   for (const auto& [lane, row] : stratum.at("lanes").items()) {
@@ -130,7 +129,7 @@ void expect_lanes(const Json& stratum, const std::vector<std::string>& lanes) {
   }
 }
 
-// Checks that the signatures account for each wrong verdict: a pair has one signature of each subject that is wrong.
+// Checks that the signatures account for each wrong verdict: a pair has one signature for each subject that is wrong.
 void expect_possible_signatures(const Json& summary, std::uint64_t pairs) {
   constexpr std::pair<char, std::uint64_t Counts::*> kMarks[] = {{'+', &Counts::false_positive},
                                                                  {'-', &Counts::false_negative},
@@ -165,8 +164,8 @@ void expect_possible_signatures(const Json& summary, std::uint64_t pairs) {
       expect(counts.wrong() == stored, fmt::format("exactly {} wrong verdicts of {}", stored, lane), counts.wrong());
     for (const auto& [mark, field] : kMarks) {
       const std::uint64_t found = of_lanes[{lane, mark}];
-      expect(found == counts.*field, fmt::format("exactly {} pairs '{}' of {} by signature", counts.*field, mark, lane),
-             found);
+      expect(found == counts.*field,
+             fmt::format("exactly {} pairs marked '{}' of {} by signature", counts.*field, mark, lane), found);
     }
   }
   const std::uint64_t disagreements = count(summary, "disagreements");
@@ -174,13 +173,13 @@ void expect_possible_signatures(const Json& summary, std::uint64_t pairs) {
          fmt::format("{} to {} disagreements", most, std::min(all, pairs)), disagreements);
 }
 
-// Checks a summary that has no database: counts are within their limits, and sums agree.
+// Checks a summary that has no database: counts must be within their limits, and sums must agree.
 void expect_possible_summary(const Json& summary) {
   if (const std::uint64_t seed = count(summary.at("spec"), "seed"); seed > kMostWhole)
     throw Impossible(fmt::format("expected a seed up to 2^53, found {}", seed));
   for (const auto& [field, value] : summary.at("build").items()) {
     if (!value.is_string() && !value.is_null() && field != "executors")
-      throw Impossible(fmt::format("expected a text as build's {}, found {}", field, value.dump()));
+      throw Impossible(fmt::format("expected a string as build's {}, found {}", field, value.dump()));
   }
   for (const char* field : {"version", "commit", "compiler"}) summary["build"].at(field).get_ref<const std::string&>();
   std::uint64_t pairs = 0;
@@ -208,7 +207,7 @@ void expect_possible_summary(const Json& summary) {
   expect_possible_signatures(summary, pairs);
 }
 
-// The summary that follows from the sums of the store's rows.
+// The summary that follows from the sums over the store's rows.
 Json summary_of_database(const fs::path& directory) {
   const auto [store, of_source, pairs] = counts_of_database(directory);
   StoredCounts all(static_cast<int>(store.lanes.size()));
@@ -222,7 +221,7 @@ DatabaseCounts counts_of_database(const fs::path& directory) {
   DatabaseCounts found{recorded_store(directory), {}};
   StoreSpec& store = found.store;
   for (const std::string id : store.spec.at("strata")) {
-    // Only the mesh itself tells how many pairs it has. So this only checks that no source has more pairs than the
+    // Only the mesh itself says how many pairs it has. So this only checks that no source has more pairs than the
     // campaign.
     strata::PairSource source{id, store.spec.at("pairs"), nullptr};
     if (!store.spec.contains("scene")) source.axis = strata::axis_of(id);

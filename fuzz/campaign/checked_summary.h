@@ -10,22 +10,22 @@ namespace graze::fuzz {
 
 // Returns the summary.json in a campaign's directory. It must agree with the database; without a database, its counts
 // must be possible.
-// Throws: std::runtime_error, in one line, if it is missing, disagrees with the database or is impossible, and as
-// recorded_store; FormatError for another shape.
+// Throws: std::runtime_error, in one line, if it is missing, contradicts the database or is impossible; FormatError for
+// JSON of another shape; and what recorded_store throws.
 Json checked_summary(const std::filesystem::path& directory);
 
-// Returns the campaign's recorded "spec", from its database, or from its summary if there is no database.
-// Returns: null if there is neither.   Throws: as recorded_store.
+// Returns: the campaign's recorded "spec", from its database, or from its summary if there is no database; null if
+// there is neither.   Throws: what recorded_store throws.
 Json recorded_spec(const std::filesystem::path& directory);
 
-// What a campaign's database records, added up.
+// The sums of what a campaign's database records.
 struct DatabaseCounts {
   StoreSpec store;
-  std::vector<StoredCounts> of_source;  // of spec.strata
-  std::uint64_t pairs = 0;              // judged
+  std::vector<StoredCounts> of_source;  // in the order of spec.strata
+  std::uint64_t pairs = 0;              // pairs judged
 };
 
-// Throws: as recorded_store.
+// Throws: what recorded_store throws.
 DatabaseCounts counts_of_database(const std::filesystem::path& directory);
 
 // Whether the campaign's database is in the directory.

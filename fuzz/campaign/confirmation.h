@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// If the exact lane judges, on the CPU or on devices, CGAL and GMP check each kept case again.
+// When the exact lane judges, on the CPU or on devices, CGAL and GMP check each kept case.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@ class Confirmation {
   // Requires: campaign outlives this.
   explicit Confirmation(const Campaign& campaign) : campaign_(campaign) {}
 
-  // Makes the oracle judge the cases of `result` that would be kept and that it has not judged yet.
+  // Lets the oracle judge those cases of `result` that would be kept and that it has not judged yet.
   // Throws: OracleMismatch if the oracle contradicts the result on a case.
   void confirm(int source, BatchResult& result);
 

@@ -20,13 +20,13 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::size_t kBlockPairs = 1024;   // a task, or less where there are few pairs; a multiple of 64
-constexpr std::uint64_t kGmpSample = 1024;  // GMP confirms one pair in so many, besides every disagreement
-constexpr std::uint64_t kSample = 1000;     // where the exact lane judges, CGAL and GMP decide one pair in so many
+constexpr std::size_t kBlockPairs = 1024;   // pairs per task, or fewer if there are few pairs; a multiple of 64
+constexpr std::uint64_t kGmpSample = 1024;  // GMP confirms one pair in 1024, besides every disagreement
+constexpr std::uint64_t kSample = 1000;     // when the exact lane judges, CGAL and GMP decide one pair in 1000
 
 constexpr std::size_t kSidePatterns = 729;
 
-// A number in [0, kSidePatterns) for the sides of each triangle's plane on which the other's vertices seem to lie.
+// A number in [0, kSidePatterns): on which side of each triangle's plane the other triangle's vertices seem to lie.
 std::size_t side_pattern(const Pair& pair) {
   const Vec3<float> normal_a = cross(pair.a[1] - pair.a[0], pair.a[2] - pair.a[0]);
   const Vec3<float> normal_b = cross(pair.b[1] - pair.b[0], pair.b[2] - pair.b[0]);
@@ -38,8 +38,8 @@ std::size_t side_pattern(const Pair& pair) {
 }
 
 // Orders the indices by their pairs' side patterns, and keeps the order within a pattern. Lanes take the same branches
-// for such neighbours, so the processor predicts them. Nothing that is counted or kept depends on the order.
-// Returns: the old places, in the new order.
+// on neighbours with one pattern, so the processor predicts them. No count and no kept case depends on the order.
+// Returns: the old indices, in the new order.
 std::vector<std::uint32_t> bring_together(std::span<const Pair> pairs) {
   std::array<std::uint32_t, kSidePatterns + 1> next{};
   std::vector<std::uint16_t> patterns(pairs.size());
@@ -59,7 +59,7 @@ void reorder(std::span<T> values, const std::vector<std::uint32_t>& order) {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = before[order[i]];
 }
 
-// Pairs to judge, as they are stored in float32; and, if their coordinates are doubles, those.
+// Pairs to judge, as float32 stores them, and the doubles if the pairs have doubles.
 struct PairsToJudge {
   std::span<const Pair> pairs;
   std::span<const DoublePair> doubles = {};
@@ -71,10 +71,10 @@ struct PairsToJudge {
   }
 };
 
-// Judges one block of pairs: host lanes, twins and truth here, device lanes from their bits.
+// Judges one block of pairs. Runs host lanes, twins and the truth; takes device lanes' verdicts from their bits.
 class BlockJudge {
  public:
-  // exact: decides in CGAL's and GMP's place, unless null.
+  // exact: decides instead of CGAL and GMP, unless null.
   BlockJudge(const Campaign& campaign, int source, const DecideBlock& exact,
              const std::vector<VerdictBits>& device_bits)
       : campaign_(campaign),
@@ -86,7 +86,7 @@ class BlockJudge {
         verdicts_(under_test_.lanes.size()),
         signatures_(under_test_.lanes) {}
 
-  // `begin` is the first pair's place among the device lanes' bits.
+  // begin: the position of the first pair in the device lanes' bits.
   void judge(const PairsToJudge& to_judge, std::span<const std::uint64_t> indices, std::size_t begin,
              BatchResult& result, PairJudge::Found* found = nullptr) {
     const std::span<const Pair> pairs = to_judge.pairs;
@@ -124,7 +124,7 @@ class BlockJudge {
     found->verdicts = verdicts_;
   }
 
-  // Adds the signatures counted since the last time.
+  // Adds the signatures counted since the last call.
   void add_signatures(BatchResult& result) { signatures_.move_to(result.signatures); }
 
  private:
@@ -167,7 +167,7 @@ class BlockJudge {
     }
   }
 
-  // By the exact decision. A pair beyond float32's range counts as changed.
+  // With the exact lane, finds pairs of doubles whose verdict changes in float32. Pairs beyond its range count too.
   void find_changed_by_storing(std::span<const Pair> stored) {
     none_.resize(truth_.size());
     changed_by_storing_.resize(truth_.size());
@@ -176,7 +176,7 @@ class BlockJudge {
       changed_by_storing_[w] = (changed_by_storing_[w] ^ truth_[w]) | none_[w];
   }
 
-  // The buckets of pairs of doubles whose margin is wide already as float32 stores them; the others stay open.
+  // Finds the buckets of those pairs of doubles whose margin is wide in float32 too; the others stay open.
   void find_wide_margins(std::span<const Pair> stored) {
     std::vector<Pair> unchanged;
     std::vector<std::size_t> places;
@@ -265,7 +265,7 @@ class BlockJudge {
   std::vector<Bucket> buckets_;
   std::vector<std::int8_t> extremes_;
   BlockVerdicts decider_;
-  std::span<const LaneVerdicts> views_;  // of each lane on the present block
+  std::span<const LaneVerdicts> views_;  // of each lane on the current block
   std::vector<Verdict> verdicts_;
   SignatureCounts signatures_;
 };

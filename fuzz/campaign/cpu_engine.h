@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CPU engine judges all lanes. CGAL decides every pair, GMP every disagreement and a sample. With --judge exact,
-// the exact lane decides every pair, CGAL and GMP a sample, and Confirmation checks the cases that are kept.
+// The CPU engine judges all lanes. CGAL decides every pair; GMP confirms every disagreement and a sample. With --judge
+// exact, the exact lane decides every pair, CGAL and GMP decide a sample, and Confirmation checks the kept cases.
 #pragma once
 
 #include <functional>
@@ -11,24 +11,24 @@
 
 namespace graze::fuzz {
 
-// Judges `count` pairs of the source, whose indices are index_of(0), index_of(1), …; on the threads at hand.
-// exact: decides in CGAL's and GMP's place, unless null.
+// Judges `count` pairs of the source, with the indices index_of(0), index_of(1), …, on the available threads.
+// exact: decides instead of CGAL and GMP, unless null.
 // Throws: OracleMismatch when two exact decisions differ.
 BatchResult judge(const Campaign& campaign, int source, std::size_t count,
                   const std::function<std::uint64_t(std::size_t)>& index_of, const DecideBlock& exact = nullptr);
 
-// Judges one pair at a time, by host lanes and twins, and returns the finding of each.
+// Judges one pair at a time with host lanes and twins, and returns what each pair shows.
 class PairJudge {
  public:
-  // Requires: campaign outlives this, has one source, and nothing runs on a device.
+  // Requires: the campaign outlives this object and has one source, and none of its lanes runs on a device.
   explicit PairJudge(const Campaign& campaign);
   ~PairJudge();
 
   struct Found {
     Verdict truth;
     Bucket bucket;
-    std::vector<Verdict> verdicts;              // of each lane; of one that is right by its convention the truth
-    std::vector<analysis::Signature> failures;  // of each subject that is wrong
+    std::vector<Verdict> verdicts;              // of each lane; the truth for a lane that its convention excuses
+    std::vector<analysis::Signature> failures;  // one for each subject that is wrong
   };
   // Adds the pair's counts to `total`. All pairs have the source's coordinate type.   Throws: OracleMismatch.
   const Found& judge(const AnyPair& pair, std::uint64_t index, BatchResult& total);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Judged by the exact lane, a campaign leaves the bytes that it leaves judged by the oracle; and the oracle finds an
-// exact lane that is wrong.
+// A campaign leaves the same bytes whether the exact lane or the oracle judges it, and the oracle finds an exact lane
+// that is wrong.
 #include "fuzz/campaign/cpu_engine.h"
 
 #include "fuzz/campaign/campaign_testing.h"
@@ -39,7 +39,7 @@ TEST_F(ExactJudge, LeavesTheBytesOfTheOracleOverAllStrata) {
     EXPECT_EQ(seen(oracle, "cgal"), 40'007u);
     EXPECT_EQ(seen(oracle, "exact"), 0u);
     EXPECT_EQ(seen(exact, "exact"), 40'007u);
-    // CGAL decides three pairs of each stratum for the sample; all others are cases that were kept.
+    // CGAL decides three sampled pairs of each stratum; the other pairs that it decides are kept cases.
     EXPECT_GE(seen(exact, "cgal"), summary["signatures"].size() / 4 + 3u * strata::kStrataCount);
     EXPECT_LT(seen(exact, "cgal"), 40'007u);
     EXPECT_GE(seen(exact, "gmp"), seen(exact, "cgal"));
@@ -79,7 +79,7 @@ TEST_F(ExactJudge, TheSampleFindsWhatNoLaneShows) {
   c.exact = &sometimes_wrong<20>;
   EXPECT_THROW(run(c), oracle::OracleMismatch);
   c = campaign("right", 20'000, 3, {"uniform"});
-  c.exact = &sometimes_wrong<1u << 25>;  // never
+  c.exact = &sometimes_wrong<1u << 25>;  // never wrong
   lanes_.on_host[0] = exact_lane();
   EXPECT_NO_THROW(run(c));
 }
@@ -92,7 +92,7 @@ TEST(SignatureCounts, AreThoseOfEachFailureAlone) {
   std::map<analysis::Signature, SignatureCount> found;
   for (const std::uint64_t index : {9, 3, 5}) {
     const Verdict f64 = index == 5 ? no : index == 9 ? Verdict::declined : yes;
-    const Verdict verdicts[] = {yes, f64, Verdict::declined, no};  // a subject that only declines has no failure
+    const Verdict verdicts[] = {yes, f64, Verdict::declined, no};  // a subject that only declines does not fail
     counts.add(Relation{no, Contact::none, 1, {2, 1, true}}, Nesting::none, 7, verdicts, {index, 2});
     if (index == 3) counts.move_to(found);
   }

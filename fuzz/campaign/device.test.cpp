@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests with devices: the GPU engine, the CPU engine with lanes on a device, and the CPU engine with their twins must
-// leave the same bytes. This is a separate program, to be carried to a GPU machine. Without a device its tests are
-// skipped; with --require-device, or GRAZE_REQUIRE_DEVICE=1 in the environment, they fail.
+// Tests on devices: the GPU engine, the CPU engine with lanes on a device, and the CPU engine with their twins must
+// leave the same bytes. This is a separate program, so that it can be copied to a GPU machine. Without a device its
+// tests are skipped; with --require-device, or GRAZE_REQUIRE_DEVICE=1 in the environment, they fail instead.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -30,7 +30,7 @@ class DeviceTest : public CampaignFiles {
     if (cuda::open_device(why_not)) {
       on_device_ = select_lanes(kWithTwins, Executor::device);
     } else if (device_required) {
-      FAIL() << "a device is required, found: " << why_not;
+      FAIL() << "a device is required, but: " << why_not;
     } else {
       GTEST_SKIP() << why_not;
     }
@@ -48,7 +48,7 @@ class DeviceTest : public CampaignFiles {
     return c;
   }
 
-  // The same on all strata of doubles, or of both types.
+  // Likewise on all strata of doubles, or of both types.
   Campaign campaign_of_doubles(const SelectedLanes& under_test, const std::string& name, std::uint64_t pairs,
                                std::size_t engines = 0, PairTypes types = PairTypes::f64) const {
     Campaign c = campaign(under_test, name, 0, engines);
@@ -62,7 +62,7 @@ class DeviceTest : public CampaignFiles {
 };
 
 #ifdef GRAZE_HAS_NVCC
-// The bits of every stratum of both types, without a scene and in one of each type.
+// The bits of every stratum of both types, without a scene and in a scene of each type.
 TEST_F(DeviceTest, StrataHaveTheBitsOfTheHost) {
   constexpr std::uint32_t kPairs = 20'000;
   const std::vector<std::string> scenes = {
@@ -88,7 +88,7 @@ TEST_F(DeviceTest, StrataHaveTheBitsOfTheHost) {
     EXPECT_TRUE(bytes(drawn.floats) == bytes(expected.floats)) << source.id << (source.scene ? " in a scene" : "");
     EXPECT_TRUE(bytes(drawn.doubles) == bytes(expected.doubles)) << source.id << (source.scene ? " in a scene" : "");
   }
-  EXPECT_GE(on_device, 27 + 2 * 15);  // all but `stored`
+  EXPECT_GE(on_device, 27 + 2 * 15);  // all strata but `stored`
 }
 #endif
 
@@ -134,7 +134,7 @@ TEST_F(DeviceTest, DiscrepanciesOfDoublesAreThoseOfTheHost) {
   EXPECT_GT(verdicts, 100u);
 }
 
-// A host lane has the same values as cuda-nofma, and count_different_runs finds lanes that do not.
+// A host lane has the same values as cuda-nofma, and count_different_runs finds a lane whose values differ.
 TEST_F(DeviceTest, RunsThatDifferAreFound) {
   const strata::PairSource source = strata::stratum_sources(8, 50'000, {"thesis"})[0];
   const auto lane = [](const char* id) -> const Lane& { return *find_lane(id); };
@@ -169,14 +169,14 @@ TEST_F(DeviceTest, DoublesAreDecidedAsByTheTwins) {
   expect_same_bytes("twins", "engine");
   const Json timings = Json::parse(read_whole(root_ / "engine" / "timings.json"));
   EXPECT_GT(timings["oracle"]["exact"].get<std::uint64_t>(), kPairs * 95 / 100);  // the host judged few
-  // Fast math has no twin: its lanes decide doubles on a device alone.
+  // Lanes with fast math have no twin, so they decide doubles only on a device.
   SelectedLanes fast = select_lanes({"*/f64/cuda-fast", "moller_1997/f64/cpu-fma"}, Executor::device);
   EXPECT_TRUE(select_for_doubles(fast).empty());
   const Json counts = run(campaign_of_doubles(fast, "fast", kPairs))["strata"]["near_edge_edge/f64"]["lanes"];
   EXPECT_EQ(counts.size(), 6u) << counts;
 }
 
-// Sources of both types take turns on one engine, which ends in the middle of a stratum.
+// Sources of both types take turns on one engine, and runs end in the middle of a stratum.
 TEST_F(DeviceTest, TheEngineTakesBothTypesInParts) {
   select_for_doubles(twins_);
   select_for_doubles(on_device_);
@@ -278,7 +278,7 @@ TEST_F(DeviceTest, CostsAreOfEachLaneAndNameItsKernel) {
       ASSERT_EQ(cost.resident.size(), 5u);
       for (std::size_t pass = 0; pass < 5; ++pass) {
         EXPECT_GT(cost.resident[pass], 0);
-        EXPECT_GT(cost.with_copies[pass], 0.1);  // 72 bytes at 720 GB/s: no link is as fast
+        EXPECT_GT(cost.with_copies[pass], 0.1);  // 72 bytes at 720 GB/s, faster than any link
       }
       EXPECT_GT(cost.needs.registers, 15);
       EXPECT_GT(cost.needs.active_threads, 0);
@@ -291,7 +291,7 @@ TEST_F(DeviceTest, LanesUnderTolerancesLeaveTheSameBytesByTheirTwins) {
   const std::vector<std::string> globs = {"*/cuda-nofma/abs:1e-6", "*/cuda-nofma/rel:16", "*/cuda-fma/abs:1e-6",
                                           "*/cuda-fma/rel:16", "*/cuda-fma/plane_distance=rel:3,separation=abs:1e-9"};
   const SelectedLanes asked = select_lanes(globs, Executor::twin);
-  ASSERT_EQ(asked.lanes.size(), globs.size() * 10 - 2);  // two have none: see twin.cpp
+  ASSERT_EQ(asked.lanes.size(), globs.size() * 10 - 2);  // two lanes have no twin: see twin.cpp
   std::vector<std::string> ids;
   for (const Lane* lane : asked.lanes) ids.push_back(lane->id);
   const SelectedLanes by_twins = select_lanes(ids, Executor::twin), by_device = select_lanes(ids, Executor::device);
@@ -344,12 +344,12 @@ TEST_F(DeviceTest, OddCountsLeaveTheSameBytes) {
 TEST_F(DeviceTest, InterruptionsInTheMiddleOfAStratumChangeNothing) {
   run(campaign(twins_, "twins", 30'011, 0));
   Campaign parts = campaign(on_device_, "parts", 30'011, 1);
-  parts.engine_batch = 701;  // out of a stratum's 1429 or 1430
+  parts.engine_batch = 701;  // of a stratum's 1429 or 1430 pairs
   EXPECT_EQ(run_in_parts(parts), strata::kStrataCount * 3);
   expect_same_bytes("twins", "parts");
 }
 
-// More pairs than memory holds at once: seven blocks, compared with runs at different borders.
+// More pairs than memory holds at once: seven blocks, compared with runs that end at other pairs.
 TEST_F(DeviceTest, ManyBlocksCountAsManyRuns) {
   constexpr std::uint64_t kPairs = (std::uint64_t{7} << 22) - 12'345;
   for (const char* stratum : {"near_edge_edge", "extreme_scale"}) {
@@ -364,7 +364,7 @@ TEST_F(DeviceTest, ManyBlocksCountAsManyRuns) {
 
 TEST_F(DeviceTest, TwoDevicesLeaveTheBytesOfOne) {
   const std::size_t devices = cuda::open_engines(on_device_.lanes).size();
-  if (devices < 2) GTEST_SKIP() << "one device only";
+  if (devices < 2) GTEST_SKIP() << "there is only one device";
   run(campaign(twins_, "twins", 30'011, 0));
   run(campaign(on_device_, "one", 30'011, 1));
   run(campaign(on_device_, "two", 30'011, 2));
@@ -375,7 +375,7 @@ TEST_F(DeviceTest, TwoDevicesLeaveTheBytesOfOne) {
 }
 
 TEST_F(DeviceTest, TakesAnyNumberOfLanes) {
-  ManyLanes on_host(twins_, 9), on_device(on_device_, 9);  // 36 of each algorithm: five chunks of the tally
+  ManyLanes on_host(twins_, 9), on_device(on_device_, 9);  // 36 lanes of each algorithm: five chunks of the tally
   std::string why_not;
   on_device.under_test.device = cuda::open_device(why_not);
   run(campaign(on_host.under_test, "twins", 4'001, 0));
@@ -392,7 +392,7 @@ int main(int argc, char** argv) {
   graze::fuzz::device_required = variable && std::strcmp(variable, "1") == 0;
   for (int i = 1; i < argc; ++i) {
     if (std::string_view(argv[i]) != "--require-device") {
-      std::fprintf(stderr, "expected --require-device or options of GoogleTest, found '%s'\n", argv[i]);
+      std::fprintf(stderr, "expected --require-device or GoogleTest options, found '%s'\n", argv[i]);
       return 2;
     }
     graze::fuzz::device_required = true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Campaigns on pairs of doubles: lanes in double decide the doubles, lanes in float the pairs as float32 stores them.
-// Counts are compared with each verdict alone; bytes do not depend on how the campaign ran.
+// Campaigns on pairs of doubles: lanes in double decide the doubles, and lanes in float decide the pairs that float32
+// stores. Counts must match verdicts decided one by one, and the bytes must not depend on how the campaign ran.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ class CampaignOfDoubles : public CampaignFiles {
   SelectedLanes lanes_ = select_lanes({}, Executor::twin);
 };
 
-// The margins of the summary are those of GMP, although float32 decides most of the wide ones.
+// The summary's margins are those of GMP, although float32 decides most of the wide ones.
 TEST_F(CampaignOfDoubles, MarginsAreTheOracles) {
   const Campaign c = campaign("margins", 28 * 200);
   const Json strata = run(c)["strata"];
@@ -84,7 +84,7 @@ TEST_F(CampaignOfDoubles, CountsAreThoseOfEachPairAlone) {
       EXPECT_EQ(row.value("stored", std::uint64_t{0}), expected[l].stored) << where;
     }
     EXPECT_EQ(strata[source.id]["lanes"]["exact/f64/cpu"]["false_positive"], 0);
-    // What the exact lane in float32 does not decide as the doubles is what storing them changes.
+    // The exact lane in float32 is wrong only where storing the doubles changes the verdict.
     const Json& exact = strata[source.id]["lanes"]["exact/f32/cpu"];
     EXPECT_EQ(exact["stored"], exact["false_positive"].get<int>() + exact["false_negative"].get<int>()) << source.id;
   }
@@ -104,7 +104,7 @@ TEST_F(CampaignOfDoubles, LanesAreThoseThatTakeThem) {
     });
   };
   EXPECT_TRUE(has(lanes_.lanes, "exact/f64/cpu"));
-  EXPECT_TRUE(has(lanes_.lanes, "moller_1997/f32/cuda-fma"));  // which decides what float32 stores
+  EXPECT_TRUE(has(lanes_.lanes, "moller_1997/f32/cuda-fma"));  // it decides the pairs that float32 stores
   EXPECT_TRUE(has(lanes_.lanes, "moller_1997/f64/cuda-fma"));
   EXPECT_TRUE(has(lanes_.lanes, "exact/f64/cuda"));
   EXPECT_TRUE(lanes_.left_out.empty());
@@ -113,12 +113,12 @@ TEST_F(CampaignOfDoubles, LanesAreThoseThatTakeThem) {
   EXPECT_TRUE(has(tolerant.lanes, "moller_1997/f64/cuda-fma/abs:1e-6"));
   EXPECT_TRUE(has(tolerant.lanes, "moller_1997/f64/cpu/abs:1e-6"));
   for (const char* exact : {"exact/f64/cpu", "exact/f64/cuda"}) {
-    EXPECT_FALSE(has(select_lanes({"exact/*"}, Executor::twin).lanes, exact));  // not on pairs of float32
+    EXPECT_FALSE(has(select_lanes({"exact/*"}, Executor::twin).lanes, exact));  // not selected for pairs of float32
     EXPECT_TRUE(has(select_lanes({exact}, Executor::twin).lanes, exact));
   }
 }
 
-// Both coordinate types in one campaign: the float32 strata are those of a campaign of their own.
+// With both coordinate types in one campaign, the float32 strata give the same results as in a campaign of their own.
 TEST_F(CampaignOfDoubles, LeavesTheSameBytesHoweverItRan) {
   const std::vector<std::string> strata = {"near_edge_edge", "extreme_scale", "stored", "degenerate"};
   const Json whole = run(campaign("whole", 7003, strata, PairTypes::both));
@@ -160,16 +160,16 @@ TEST_F(CampaignOfDoubles, RecordsAreReadBackAndChecked) {
   EXPECT_TRUE(std::equal(coordinates(one), coordinates(one) + kCoordinates, coordinates(other)));
   const std::vector<std::string> words = command_words(summary["spec"], {}, "o", summary);
   EXPECT_NE(std::find(words.begin(), words.end(), "--coordinates"), words.end());
-  // A coordinate that is moved by one bit is not the one that the stratum draws.
+  // A coordinate changed by one bit is not the one that the stratum draws.
   const std::filesystem::path file = directory / summary["signatures"][0]["case"].get<std::string>();
   std::string text = read_whole(file);
   const std::size_t at = text.find("p", text.find("0x1.")) - 1;
   text[at] = text[at] == '4' ? '5' : '4';
   write_whole(file, text);
   EXPECT_THROW(read_cases(directory, summary["spec"], summary["signatures"][0]), corpus::FormatError);
-  // An exact lane that is wrong otherwise than by storing, and errors of storing that are more than the errors.
+  // Rejects an exact lane with errors not caused by storing, and more errors of storing than errors.
   std::filesystem::remove(directory / kDatabase);
-  EXPECT_EQ(checked_summary(directory), summary);  // also without its database
+  EXPECT_EQ(checked_summary(directory), summary);  // even without its database
   for (const char* lane : {"exact/f32/cpu", "exact/f64/cpu"}) {
     Json wrong = summary;
     Json& row = wrong["strata"]["near_vertex_face/f64"];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Judges pairs of float32 or of doubles on the devices. The CPU engine, and with it CGAL and GMP, also judges each kept
-// case and the few pairs that the devices leave undecided.
+// Judges pairs of float32 or of doubles on the devices. The CPU engine, and with it CGAL and GMP, also judges the kept
+// cases and the few pairs that the devices leave undecided.
 #pragma once
 
 #include "fuzz/campaign/confirmation.h"

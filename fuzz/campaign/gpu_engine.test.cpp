@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GPU engine without a GPU. Its steps run on this processor, and the campaign must leave the same bytes as the CPU
-// engine. device.test.cpp tests the same on devices.
+// The GPU engine without a GPU: its steps run on this processor, and the campaign must leave the same bytes as with the
+// CPU engine. device.test.cpp tests the same on devices.
 #include "fuzz/campaign/gpu_engine.h"
 
 #include "cuda/engine/host_engine.h"
@@ -103,7 +103,7 @@ TEST_F(GpuEngineTest, SaysWhenItsMemoryIsNotEnough) {
   EXPECT_EQ(error("enough", {}), "");
 }
 
-// An engine that takes one lane's right verdict for a wrong one.
+// An engine that counts one right verdict of a lane as wrong.
 class WrongEngine final : public cuda::DeviceEngine {
  public:
   explicit WrongEngine(std::unique_ptr<cuda::DeviceEngine> engine) : engine_(std::move(engine)) {}
@@ -125,7 +125,7 @@ TEST_F(GpuEngineTest, TheOracleFindsAnEngineThatIsWrongOnOneSignature) {
   EXPECT_THROW(run(c), oracle::OracleMismatch);
 }
 
-// Lanes in double decide the doubles, lanes in float what float32 stores of them.
+// Lanes in double decide the doubles, and lanes in float decide the pairs that float32 stores.
 class GpuEngineOnDoubles : public GpuEngineTest {
  protected:
   GpuEngineOnDoubles() { select_for_doubles(twins_); }

@@ -22,6 +22,7 @@ Json quartiles(std::vector<double> passes) {
 }
 
 constexpr std::uint64_t kMostPasses = 1'000'000;
+constexpr double kLeastCost = 1e-6, kMostCost = 1e15;  // nanoseconds for a pair; the latter are eleven days
 
 }  // namespace
 
@@ -55,7 +56,7 @@ Json measure_costs(const Campaign& campaign) {
 void expect_possible_costs(const Json& costs, const std::vector<std::string>& lanes,
                            const std::map<std::string, std::uint64_t>& sources) {
   const auto refuse_name = [](const std::string& name, const char* what) {
-    throw std::runtime_error(fmt::format("it has costs of {}, but the campaign has no such {}", shown(name), what));
+    throw std::runtime_error(fmt::format("it has costs for {}, but the campaign has no such {}", shown(name), what));
   };
   const auto is_one_to = [](const Json& count, std::uint64_t limit) {
     return count.is_number_integer() && count >= 1 && count <= limit;
@@ -70,7 +71,8 @@ void expect_possible_costs(const Json& costs, const std::vector<std::string>& la
       const std::uint64_t most = std::min(kPairsTimed, found->second);
       const double low = row.at("low").get<double>(), middle = row.at("middle").get<double>(),
                    high = row.at("high").get<double>();
-      if (!is_one_to(row.at("pairs"), most) || !(0 < low && low <= middle && middle <= high))
+      if (!is_one_to(row.at("pairs"), most) ||
+          !(kLeastCost <= low && low <= middle && middle <= high && high <= kMostCost))
         throw std::runtime_error(fmt::format("it has impossible costs of {} on {} (at most {} pairs): {}", lane, source,
                                              most, shown(row.dump())));
     }
@@ -80,7 +82,7 @@ void expect_possible_costs(const Json& costs, const std::vector<std::string>& la
 void expect_possible_run(const Json& run, const std::vector<std::string>& lanes,
                          const std::map<std::string, std::uint64_t>& sources, std::uint64_t pairs) {
   if (run.contains("pairs")) {
-    // The parts of a merged campaign may have judged pairs again, after damage.
+    // Parts of a merged campaign may have judged some pairs twice, after damage.
     const Json& judged = run["pairs"];
     if (!judged.is_number_integer() || judged < 0 || (judged > pairs && !run.contains("merged")))
       throw std::runtime_error(

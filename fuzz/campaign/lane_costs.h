@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lane's cost on the campaign's own pairs, in nanoseconds a pair on one core. It goes into timings.json, because it
-// depends on the machine and on its load.
+// A lane's cost on the campaign's own pairs, in nanoseconds per pair on one core. It is stored in timings.json, because
+// it depends on the machine and its load.
 #pragma once
 
 #include <map>
@@ -12,19 +12,19 @@ namespace graze::fuzz {
 inline constexpr std::uint64_t kPairsTimed = 1024;  // the first pairs of each source
 inline constexpr int kPassesTimed = 9;
 
-// Times the host lanes. Device lanes and their twins are not timed, nor is foreign code, whose time would be that of
-// its processes. In each of the kPassesTimed passes, every lane runs over all pairs in turn. So other load on the
-// machine affects all lanes, and no lane benefits from trained branch prediction.
+// Times the host lanes. Device lanes and their twins are not timed, and neither is foreign code, because its time would
+// include its processes. In each of the kPassesTimed passes, the lanes run over all pairs one after another. So other
+// load on the machine affects all lanes, and no lane benefits from a trained branch predictor.
 // Returns: {"passes", "lanes": {lane: {source: {"pairs", "low", "middle", "high"}}}}, with the quartiles of the passes.
 Json measure_costs(const Campaign& campaign);
 
 // Checks costs from a file: lanes and sources (by id, with their pairs) must be the campaign's, and times possible.
-// Throws: std::runtime_error that says what is wrong; Json::exception for another shape.
+// Throws: std::runtime_error that says what is wrong; Json::exception for JSON of another shape.
 void expect_possible_costs(const Json& costs, const std::vector<std::string>& lanes,
                            const std::map<std::string, std::uint64_t>& sources);
 
-// Checks a run of timings.json, with its costs if it has any.   pairs: of the campaign, or the part, that ran. Throws:
-// the same.
+// Checks a run in timings.json, with its costs if it has any. pairs: the pairs of the campaign or part that ran.
+// Throws: what expect_possible_costs throws.
 void expect_possible_run(const Json& run, const std::vector<std::string>& lanes,
                          const std::map<std::string, std::uint64_t>& sources, std::uint64_t pairs);
 

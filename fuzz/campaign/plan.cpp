@@ -15,13 +15,13 @@ namespace graze::fuzz {
 namespace {
 
 constexpr std::uint64_t kSample = 2048, kSampleOfDevice = std::uint64_t{1} << 22;
-constexpr std::uint64_t kSampleOfDoubles = std::uint64_t{1} << 18;  // of a device too; cores judge some of them
+constexpr std::uint64_t kSampleOfDoubles = std::uint64_t{1} << 18;  // on a device too, because cores judge some of them
 constexpr double kShardSeconds = 3600;    // an hour suits job schedulers; a shard that dies loses nothing
-constexpr double kRowPairs = 16777216;    // of the CPU engine; see store.cpp
-constexpr std::uint64_t kFewer = 8;       // the part of a sample that shows how its bytes grow
-constexpr double kDatabaseBytes = 65536;  // without rows; includes the small files beside it
+constexpr double kRowPairs = 16777216;    // pairs per row of the CPU engine; see store.cpp
+constexpr std::uint64_t kFewer = 8;       // one eighth of a sample shows how its bytes grow
+constexpr double kDatabaseBytes = 65536;  // without rows, but with the small files beside it
 
-// Estimates the bytes for `pairs` pairs. New signatures become rarer and rarer, so the estimate is rather too high.
+// Estimates the bytes for `pairs` pairs. The estimate tends to be too high, because new signatures become rarer.
 double bytes_of(const Growing& growing, const Sample& sample, double pairs) {
   const double more = pairs / static_cast<double>(sample.pairs_of_row);
   return growing.bytes * std::pow(std::max(more, 1.0), growing.exponent);
@@ -31,7 +31,7 @@ Growing growing(double few, double bytes) {
   return {bytes, std::clamp(std::log(bytes / few) / std::log(kFewer), 0.0, 0.25)};
 }
 
-// The bytes of summary.json on the pairs of one source.
+// The bytes of summary.json for the pairs of one source.
 double summary_bytes(const StoreSpec& spec, const StoredCounts& counts) {
   const Json summary = summary_of(spec, {counts}, counts.signatures, counts.executor_mismatches, true);
   return static_cast<double>(summary["strata"].dump(1).size() + summary["signatures"].dump(1).size());

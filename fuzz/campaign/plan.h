@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Estimates a campaign's duration and disk use from measured costs of each stratum's pairs, or from a given rate.
+// Estimates a campaign's duration and disk use from the measured costs of each stratum's pairs, or from a given rate.
 #pragma once
 
 #include <optional>
@@ -8,15 +8,15 @@
 
 namespace graze::fuzz {
 
-// The bytes for the sample's pairs, and the exponent by which they grow with the number of pairs.
+// The bytes for the sample's pairs, and the exponent of their growth with the number of pairs.
 struct Growing {
   double bytes = 0, exponent = 0;
 };
 
-// Measurements of each source, by one core or one device.
+// Measurements of each source on one core or one device.
 struct Sample {
   std::vector<double> seconds_a_pair;  // by source
-  std::vector<Growing> row, summary;   // a row of the store, and what summary.json says of its pairs, by source
+  std::vector<Growing> row, summary;   // a row of the store, and its pairs' part of summary.json, by source
   std::uint64_t pairs = 0;             // in all samples
   std::uint64_t pairs_of_row = 1;      // pairs in each source's row
 };
@@ -26,15 +26,15 @@ Sample measure(const Campaign& campaign);
 
 struct Plan {
   std::uint64_t pairs = 0, shards = 1;
-  double rate = 0;           // pairs a second of one worker
+  double rate = 0;           // pairs per second of one worker
   double seconds = 0;        // of all workers together
   double shard_seconds = 0;  // of one shard on one worker
   double shard_bytes = 0, merged_bytes = 0;
 };
 
 struct Workers {
-  std::uint64_t count = 1;     // at least
-  bool devices = false;        // GPUs; else cores
+  std::uint64_t count = 1;     // at least 1
+  bool devices = false;        // GPUs, otherwise cores
   std::optional<double> rate;  // of each worker, instead of the sample's rate
 };
 Plan plan(const Campaign& campaign, const Sample& sample, const Workers& workers);

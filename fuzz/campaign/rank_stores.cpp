@@ -40,7 +40,7 @@ void take_in_ranks(const Campaign& campaign, Store& store) {
         if (!found.shard.whole())
           throw std::runtime_error(cannot("use", directory,
                                           "it holds shard " + found.shard.name() +
-                                              " of the campaign and no rank; move it away, and join shards by "
+                                              " of the campaign, not a rank; move it away, and merge shards with "
                                               "`graze merge`"));
         for_each_row(of_rank, [&](const PairRange& range, const StoredCounts& counts) {
           if (!store.holds(range)) store.commit(range, counts);  // a killed run may have committed it already

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stores DIR/rank-R that ranks leave in a campaign's directory until their rows are in the campaign's own store.
+// The stores DIR/rank-R that ranks keep in a campaign's directory until their rows are in the campaign's own store.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +10,10 @@ namespace graze::fuzz {
 
 std::filesystem::path rank_directory(const std::filesystem::path& campaign, int rank);
 
-// All rank directories, sorted by name: folders that hold a store or nothing. Other folders are not Graze's.
+// All rank directories, sorted by name. They hold a store or nothing; other folders are not Graze's.
 std::vector<std::filesystem::path> rank_directories(const std::filesystem::path& campaign);
 
-// Commits the rows that a killed run left in rank stores, and removes these stores.
+// Commits the rows that a killed run left in rank stores, then removes these stores.
 // Throws: std::runtime_error, in one line, for a store that is damaged or belongs to another campaign.
 void take_in_ranks(const Campaign& campaign, Store& store);
 

@@ -72,7 +72,7 @@ bool is_of_mesh(std::string_view source) { return strata::stratum_in_doubles(sou
 
 namespace {
 
-// The pairs of the mesh: from the summary, if it has them, else from the mesh itself.
+// The mesh's number of pairs: from the summary if it has it, otherwise from the mesh itself.
 std::uint64_t mesh_pairs(const Json& spec, const Json& summary) {
   std::uint64_t found = 0;
   const Json strata = summary.value("strata", Json::object());
@@ -89,9 +89,9 @@ std::uint64_t mesh_pairs(const Json& spec, const Json& summary) {
   }
 }
 
-// The choice of --executor that the evidence of the CUDA lanes shows; empty for the default.
+// The --executor that the recorded executors of the CUDA lanes imply; empty for the default.
 std::string executor_of(const Json& spec, const Json& summary) {
-  // The reasons for lanes that were left out are shorter if no device was looked for (--executor twin).
+  // With --executor twin no device is looked for, so the reason for leaving out a lane is just "no twin".
   const Json why = spec.value("lanes_left_out", Json::object()).value("why", Json::object());
   bool both = false, twin = std::any_of(why.begin(), why.end(), [](const Json&reason) { return reason == "no twin"; });
   for (const Json& by : summary.value("build", Json::object()).value("executors", Json::object())) {
@@ -110,7 +110,7 @@ std::vector<std::string> command_words(const Json& spec, const Shard& shard, con
                            all_lanes, words = {"graze", hunt ? "hunt" : "fuzz"};
   std::uint64_t pairs = scene ? spec["scene"].at("pairs") : spec.at("pairs");
   const auto add = [&](const std::string& name, const std::string& value) {
-    if (value.starts_with('-')) {  // in a word of its own it would be taken for an option
+    if (value.starts_with('-')) {  // as a separate word it would be read as an option
       words.push_back(name + '=' + value);
     } else {
       words.insert(words.end(), {name, value});
@@ -144,7 +144,7 @@ std::vector<std::string> command_words(const Json& spec, const Shard& shard, con
   for (const Json& row : spec.value("subjects", Json::array())) {
     const std::string what = row.at("what");
     if (what != "published") add("--subject", row.at("name").get<std::string>() + '=' + what);
-    if (what.ends_with(".cl") || what.find(".cl:") != what.npos) continue;  // their lanes are there without a list
+    if (what.ends_with(".cl") || what.find(".cl:") != what.npos) continue;  // their lanes need no list
     for (const Json& toolchain : row.value("toolchains", Json::array()))
       toolchains.push_back(subjects::toolchain_of_json(toolchain));
   }
@@ -167,7 +167,7 @@ std::vector<std::string> command_words(const Json& spec, const Shard& shard, con
 }
 
 std::string command_of(const Json& spec, const Shard& shard, const std::filesystem::path& out, const Json& summary) {
-  std::map<std::string, std::string> environment;  // that chose the compiler
+  std::map<std::string, std::string> environment;  // the variables that chose the compiler
   for (const Json& row : spec.value("subjects", Json::array())) {
     const Json set = row.value("environment", Json::object());
     for (const auto& [name, value] : set.items()) environment[name] = value;

@@ -33,7 +33,7 @@ std::string signature_line(const std::string& key, std::uint64_t count) {
   return fmt::format("# {}: {} pairs\n", key, count);
 }
 
-// Whether the entry's truth and its signature match its pair.
+// Whether the entry's truth and signature match its pair.
 bool has_its_truth(const corpus::Entry& entry, const analysis::Signature& signature) {
   const AnyPair pair = corpus::pair_of(entry);
   const oracle::Truth truth = oracle::truth(pair);
@@ -71,7 +71,7 @@ std::string cpu_lane_of(const std::string& id) {
   return id_of(name);
 }
 
-// differs_from_cpu becomes null where nothing was compared.
+// Sets differs_from_cpu to null where nothing was compared.
 void leave_out_what_was_not_compared(Json& strata, const std::vector<std::string>& lanes) {
   for (const std::string& lane : lanes) {
     if (is_compared_with_cpu(lane, lanes)) continue;
@@ -122,7 +122,7 @@ Json summary_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_sourc
                   {"strata", results["strata"]},
                   {"disagreements", results["disagreements"]},
                   {"signatures", rows}};
-  // Pairs on which a device and its twin differ are nobody's failures, so no subject has them.
+  // Pairs on which a device and its twin differ are no subject's failures.
   for (const auto& [lane, found] : executor_mismatches)
     summary["executor_mismatches"].push_back({{"lane", lane}, {"count", found.count}, {"case", case_name(lane)}});
   return summary;
@@ -153,15 +153,15 @@ Json shard_summary(const Shard& shard, const Store& store, bool complete, std::u
 std::filesystem::path case_file(const std::filesystem::path& directory, const Json& row) {
   const std::filesystem::path file = row.at("case").get<std::string>();
   if (file.parent_path() != "cases" || file.extension() != ".pairs")
-    throw std::runtime_error(fmt::format("{}: expected cases of the form cases/NAME.pairs, found '{}'",
+    throw std::runtime_error(fmt::format("{}: expected a case file cases/NAME.pairs, found '{}'",
                                          (directory / "summary.json").string(), file.string()));
   return directory / file;
 }
 
 corpus::FormatError wrong_cases(const std::filesystem::path& directory, const Json& row, const std::string& found) {
   const std::string again = has_database(directory)
-                                ? "remove this file, then: " + command_of(recorded_spec(directory), {}, directory)
-                                : "take this file from a copy of the campaign";
+                                ? "remove this file, then run: " + command_of(recorded_spec(directory), {}, directory)
+                                : "restore this file from a copy of the campaign";
   return corpus::FormatError(cannot("use", case_file(directory, row),
                                     fmt::format("{}; it should hold the cases of the signature {}; {}", found,
                                                 row.at("key").get<std::string>(), again)));
@@ -188,22 +188,25 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
     throw refuse(std::string("it is not a file of pairs: ") + error.what());
   }
   const std::string head = signature_line(key, count);
-  if (text.compare(text.find('\n') + 1, head.size(), head) != 0) throw refuse("its head is not that of this signature");
+  if (text.compare(text.find('\n') + 1, head.size(), head) != 0)
+    throw refuse("its second line is not that of this signature");
   std::size_t kept = 0;
   const std::set<std::string> strata = spec.at("strata");
   std::set<std::string> origins;
   const auto belongs = [&](const corpus::Entry& entry) {
-    return strata.contains(corpus::text_of(entry, "stratum")) && is_drawn(entry) &&
+    const auto seed = parse_whole(corpus::text_of(entry, "seed")), index = parse_whole(corpus::text_of(entry, "index"));
+    return strata.contains(corpus::text_of(entry, "stratum")) && seed == spec.at("seed").get<std::uint64_t>() &&
+           index && *index < spec.at("pairs").get<std::uint64_t>() && is_drawn(entry) &&
            origins.insert(corpus::origin_of(entry)).second;
   };
   for (std::size_t e = 0; e < entries.size(); ++e) {
     const corpus::Entry& entry = entries[e];
     const bool result = corpus::field(entry, "kind") != nullptr;
-    // Results come first: each time the minimised pair, then the worst one.
+    // The minimiser's results come first, in turn a minimised pair and a worst pair.
     const char* const turn = e % 2 == 0 ? "minimised" : "worst";
     const bool in_order = result ? kept == 0 && corpus::text_of(entry, "kind") == turn : kept > 0 || e % 2 == 0;
     if (!in_order)
-      throw refuse(fmt::format("line {} is out of its order: minimised and worst pairs, then the cases", entry.line));
+      throw refuse(fmt::format("line {} is out of order: minimised and worst pairs, then the cases", entry.line));
     const std::optional<analysis::Signature> own = analysis::parse_signature(corpus::text_of(entry, "signature"));
     kept += !result;
     if (!own || own->subject != recorded->subject || (!result && *own != *recorded))
@@ -211,18 +214,19 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
     if (!has_its_truth(entry, *own) || (!result && !belongs(entry)))
       throw refuse(fmt::format("line {} has a pair that does not belong to the campaign", entry.line));
   }
-  if (kept != std::min<std::uint64_t>(count, kKeptCases)) throw refuse(fmt::format("it has {} cases", kept));
+  if (kept != std::min<std::uint64_t>(count, kKeptCases))
+    throw refuse(fmt::format("it has the wrong number of cases: {}", kept));
   return entries;
 }
 
 namespace {
 
-// Of timings.json: texts, times that are not negative, counts, yes or no; `costs` is checked where it is used.
+// Whether this can be a run in timings.json: its values must be texts, nonnegative times, counts or booleans.
 bool is_run(const Json& run) {
   if (!run.is_object()) return false;
   for (const auto& [name, value] : run.items()) {
     const bool is_text = name == "machine" || name == "engine", is_time = name.find("seconds") != name.npos;
-    const bool checked_later = name == "pairs" || name == "seconds";  // expect_possible_run tells the value
+    const bool checked_later = name == "pairs" || name == "seconds";  // by expect_possible_run
     const bool fits = checked_later      ? true
                       : name == "costs"  ? value.is_object()
                       : is_text          ? value.is_string()
@@ -234,7 +238,7 @@ bool is_run(const Json& run) {
   return true;
 }
 
-// The whole of timings.json.
+// All of timings.json.
 Json timings_in(const std::filesystem::path& file) {
   Json timings = read_sealed(file, "remove it; only times are lost");
   if (timings.is_null()) return {{"runs", Json::array()}};
@@ -242,7 +246,7 @@ Json timings_in(const std::filesystem::path& file) {
   const bool fits =
       runs.is_array() && std::all_of(runs.begin(), runs.end(), is_run) && oracle.is_object() &&
       std::all_of(oracle.begin(), oracle.end(), [](const Json& count) { return count.is_number_unsigned(); });
-  if (!fits) throw corpus::FormatError(cannot("use", file, "it does not hold the timings of a campaign; remove it"));
+  if (!fits) throw corpus::FormatError(cannot("use", file, "it does not hold a campaign's timings; remove it"));
   return timings;
 }
 

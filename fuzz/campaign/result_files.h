@@ -15,7 +15,7 @@ namespace graze::fuzz {
 // The truth as fields of a case: truth, contact, margin, margin_ulps.
 std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Truth& truth);
 
-// Whether the lane's differences from its cpu lane are counted: `lanes` has that cpu lane, and it is another lane.
+// Whether the lane's differences from its cpu lane are counted: it is not that cpu lane, and `lanes` has the cpu lane.
 bool is_compared_with_cpu(const std::string& lane, const std::vector<std::string>& lanes);
 
 // Writes summary.json and cases/ from the store. A case file whose cases have not changed keeps the minimiser's
@@ -28,38 +28,38 @@ Json summary_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_sourc
                 const std::map<std::string, SignatureCount>& signatures,
                 const std::map<std::string, SignatureCount>& executor_mismatches, bool complete);
 
-// The summary of a shard that is not merged yet: {"shard", "complete", "pairs", "disagreements", "signatures"}.
+// The summary of an unmerged shard: {"shard", "complete", "pairs", "disagreements", "signatures"}.
 Json shard_summary(const Shard& shard, const Store& store, bool complete, std::uint64_t pairs);
 
 // The file of a signature's cases, from its row in the summary.
 // Throws: std::runtime_error if the path is not within cases/, because readers of a summary also write these files.
 std::filesystem::path case_file(const std::filesystem::path& directory, const Json& row);
 
-// Reads a signature's cases, named by its row in the summary, with the minimiser's results before them. Checks that the
-// file's name, its head and its cases belong to the signature, that no case is missing, that each has another origin in
-// the campaign's strata, and that each pair has the truth recorded beside it.   spec: the campaign's.
+// Reads a signature's cases, preceded by the minimiser's results, from the file named in its row of the summary. Checks
+// that the file's name, second line and cases belong to the signature, that no case is missing, that all cases have
+// different origins in the campaign's strata, and that the recorded truth of each pair is right. spec: the campaign's.
 // Throws: FormatError, in one line, with the command that writes the file again.
 std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, const Json& spec, const Json& row);
 
-// Whether the pair is the one that its stratum, seed and index name. Also true if that is not known: for scenes, meshes
-// and hunts, and for a case without them.
+// Whether the pair is the one that its stratum, seed and index name. Also true if this cannot be known: for scenes,
+// meshes and hunts, and for a case without these fields.
 bool is_drawn(const corpus::Entry& entry);
 
-// Whether the file's text is `fresh`, as a campaign writes it, with or without results of the minimiser.
+// Whether the file's text is `fresh`, which a campaign would write, with or without the minimiser's results.
 bool is_minimised_from(const std::string& text, const std::string& fresh);
 
-// The error for a file of cases that fails a check.   found: for example "another pair".
+// The error for a case file that fails a check.   found: what is wrong with it, such as "it is missing or empty".
 corpus::FormatError wrong_cases(const std::filesystem::path& directory, const Json& row, const std::string& found);
 
-// Whether results may go into the folder (see may_fill). It may hold nothing, or the results of `graze fuzz`, `hunt` or
-// `merge` for a campaign or a shard.
+// Whether results may be written to the folder (see may_fill): it must be empty, or hold the results of `graze fuzz`,
+// `hunt` or `merge` for a campaign or a shard.
 bool may_hold_campaign(const std::filesystem::path& folder);
 
-// Returns the runs in timings.json, each an object; none without such a file.   Throws: FormatError for a damaged one.
+// Returns the runs in timings.json, each an object; none if there is no file.   Throws: FormatError if it is damaged.
 Json read_timings(const std::filesystem::path& directory);
 
-// Checks the records before a run, so that they do not stop it at its end: timings.json must be readable, and a damaged
-// status.json is removed. Throws: as read_timings and remove_damaged_status.
+// Called before a run, so that damaged records cannot stop it at its end: timings.json must be readable, and a damaged
+// status.json is removed. Throws: what read_timings and remove_damaged_status throw.
 void expect_usable_records(const std::filesystem::path& directory);
 
 // Adds a run to timings.json, the only file that depends on when, where and with which engine the campaign ran.

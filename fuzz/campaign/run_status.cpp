@@ -29,7 +29,7 @@ std::int64_t now() {
   return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-// The distinct hashes of the signatures without their margins.
+// The distinct hashes of the signatures, margins ignored.
 std::set<std::string> ways_of(const std::map<std::string, SignatureCount>& signatures) {
   std::set<std::string> ways;
   for (const auto& [key, count] : signatures) {
@@ -39,7 +39,7 @@ std::set<std::string> ways_of(const std::map<std::string, SignatureCount>& signa
   return ways;
 }
 
-// Throws: std::runtime_error that says what is wrong; Json::exception for another shape.
+// Throws: std::runtime_error that says what is wrong; Json::exception for JSON of another shape.
 void expect_possible_status(const Json& status) {
   const std::string state = status.at("state"), shard = status.at("shard");
   if (state != "running" && state != "done" && state != "stopped" && state != "failed")
@@ -54,11 +54,11 @@ void expect_possible_status(const Json& status) {
   const Json& left = status.at("seconds_left");
   if (status.at("rate").get<double>() < 0 || (!left.is_null() && left.get<double>() < 0))
     throw std::runtime_error(
-        fmt::format("its rate or its time left is below 0: {}, {}", status["rate"].dump(), left.dump()));
+        fmt::format("its rate or its remaining time is below 0: {}, {}", status["rate"].dump(), left.dump()));
   const std::vector<std::string> all_ways = status.at("ways");
   const std::set<std::string> ways(all_ways.begin(), all_ways.end());
-  if (ways.size() < all_ways.size()) throw std::runtime_error("it has one of its ways twice");
-  if (!std::all_of(ways.begin(), ways.end(), is_hash)) throw std::runtime_error("one of its ways is no hash");
+  if (ways.size() < all_ways.size()) throw std::runtime_error("one of its ways occurs twice");
+  if (!std::all_of(ways.begin(), ways.end(), is_hash)) throw std::runtime_error("one of its ways is not a hash");
   const std::uint64_t signatures = status["signatures"];
   if (ways.size() > signatures || (signatures > 0 && (disagreements == 0 || ways.empty())))
     throw std::runtime_error(fmt::format("its counts contradict each other: {} disagreements, {} signatures, {} ways",
@@ -70,7 +70,7 @@ void expect_possible_status(const Json& status) {
   status.at("host").get_ref<const std::string&>();
   if (status.contains("why")) status["why"].get_ref<const std::string&>();
   if (status.contains("hash") && !is_hash(status["hash"].get_ref<const std::string&>()))
-    throw std::runtime_error("its hash is none");
+    throw std::runtime_error("its hash is not 16 hexadecimal digits");
 }
 
 }  // namespace
@@ -104,7 +104,7 @@ void RunStatus::tell(const Progress& progress, const std::map<std::string, Signa
   status_["pairs"] = progress.total;
   status_["done"] = progress.done;
   status_["rate"] = progress.seconds > 0 ? static_cast<double>(progress.done_here) / progress.seconds : 0;
-  // After the last pair, the run measures costs and writes its results; nothing says how long that takes.
+  // After the last pair, the run measures costs and writes its results. How long that takes is not estimated.
   status_["seconds_left"] =
       progress.seconds_left && progress.done < progress.total ? Json(*progress.seconds_left) : Json();
   status_["disagreements"] = progress.all_disagreements;
@@ -139,7 +139,7 @@ void seal(const fs::path& directory) {
   Json status;
   try {
     status = read_status(directory);
-  } catch (const std::runtime_error&) {  // changed since the run wrote it; the run is done all the same
+  } catch (const std::runtime_error&) {  // it was changed after the run wrote it; the run is done anyway
   }
   if (status.is_null()) return;
   status["hash"] = file_hash(directory / kDatabase);
@@ -157,8 +157,8 @@ void remove_damaged_status(const fs::path& directory) {
       throw UsageError(cannot("replace", file, "it is a link to a file that is not a status; remove the link"));
     const Json there = parse_shallow(read_whole(file));
     if (there.is_object() && !there.empty() && !there.contains("state"))
-      expect_own(file, Json{{"state", ""}, {"pairs", 0}}.dump(1));  // another program's
-    std::error_code later;                                          // where it cannot be removed, it cannot be written
+      expect_own(file, Json{{"state", ""}, {"pairs", 0}}.dump(1));  // refuses another program's file
+    std::error_code later;                                          // if removal fails, so does the later write
     fs::remove(file, later);
   }
 }

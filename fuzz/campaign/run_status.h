@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// status.json: a run's progress, updated every few seconds for `graze status` and for merge. No count of a campaign
-// comes from it.
+// status.json: a run's progress, updated every few seconds for `graze status` and `graze merge`. No count of a campaign
+// is taken from it.
 #pragma once
 
 #include <filesystem>
@@ -13,11 +13,11 @@ namespace graze::fuzz {
 
 class RunStatus {
  public:
-  // Writes nothing before the first tell, because the directory may belong to another campaign.
+  // Writes nothing before the first call of tell, because the directory may belong to another campaign.
   explicit RunStatus(const Campaign& campaign);
 
-  // Records the progress and the signatures so far, at most once every few seconds unless it is the last time. Write
-  // errors are ignored, because the file only serves observers.
+  // Records the progress and the signatures so far, at most once every few seconds unless `last`. Write errors are
+  // ignored, because the file only serves observers.
   void tell(const Progress& progress, const std::map<std::string, SignatureCount>& signatures, bool last = false);
 
   // Records how the run ended: "done", "stopped" or "failed", and why it failed. Does nothing if `tell` was never
@@ -35,12 +35,12 @@ class RunStatus {
 // The hash of a file's bytes, as 16 hex digits.   Throws: std::runtime_error.
 std::string file_hash(const std::filesystem::path& file);
 
-// Adds the hash of the directory's database to its status; merge compares it.   Requires: no run uses the database any
+// Adds the database's hash to the directory's status, for merge to compare.   Requires: no run uses the database any
 // more.
 void seal(const std::filesystem::path& directory);
 
-// Removes a status that is damaged or has impossible counts. In a campaign's folder this name is Graze's own.
-// Throws: std::runtime_error if it is not a file; UsageError if it is behind a link.
+// Removes a status that is damaged or has impossible counts. In a campaign's folder the name status.json is Graze's.
+// Throws: std::runtime_error if it is not a file; UsageError if it is a link.
 void remove_damaged_status(const std::filesystem::path& directory);
 
 // Returns the directory's status; null if there is none.

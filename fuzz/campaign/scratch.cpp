@@ -17,14 +17,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The folder's name is known to everyone who may write to the disk, such as /tmp.
+// Anyone who may write to the disk, such as /tmp, knows the folder's name.
 // Throws: std::runtime_error if it is a link, or belongs to another user.
 void expect_own_folder(const fs::path& folder) {
   struct stat there {};
   if (lstat(folder.c_str(), &there) != 0) throw std::runtime_error(cannot("use", folder, errno));
   if (!S_ISDIR(there.st_mode) || there.st_uid != geteuid())
     throw std::runtime_error(
-        cannot("use", folder, "it is a link, or another user's; remove it, or choose another --scratch"));
+        cannot("use", folder, "it is a link, or belongs to another user; remove it, or choose another --scratch"));
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ void fetch_from_directory(const Campaign& campaign) {
   expect_own_folder(campaign.scratch);
   make(campaign.directory);
   const FolderLock alone(campaign.scratch, FolderLock::WhenTaken::refuse);
-  make(campaign.scratch);  // a process that ended while this one waited has removed it
+  make(campaign.scratch);  // again, because a process that ended while this one waited may have removed it
   expect_own_folder(campaign.scratch);
   if (fs::exists(campaign.scratch / kDatabase) || !fs::exists(campaign.directory / kDatabase)) return;
   copy_whole(campaign.directory / kDatabase, campaign.scratch / kDatabase);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts failures by their distinguishing bytes; converts each kind of failure to a Signature once, at the end.
+// Counts failures by a key of a few bytes, and converts each key to a Signature once, at the end.
 #pragma once
 
 #include <map>

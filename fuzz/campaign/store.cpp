@@ -10,8 +10,8 @@
 namespace graze::fuzz {
 namespace {
 
-// Rows grow up to this many pairs, which keeps the database of a long campaign small. The pairs of a damaged row are
-// judged again in a minute or two. A batch of a device's engine is larger, and is a row of its own.
+// Rows grow up to this many pairs, which keeps the database of a long campaign small. Judging a damaged row's pairs
+// again takes a minute or two. A batch from a device's engine is larger, and has its own row.
 constexpr std::uint64_t kRowPairs = std::uint64_t{1} << 24;
 
 const std::filesystem::path& with_folders(const StoreSpec& spec) {
@@ -24,7 +24,7 @@ const std::filesystem::path& with_folders(const StoreSpec& spec) {
   return directory;
 }
 
-// Whether the lane belongs to foreign code, opened here or recorded.
+// Whether the lane belongs to foreign code, either opened here or only recorded.
 bool is_foreign(const StoreSpec& spec, const std::string& id) {
   if (const Lane* lane = find_lane(id)) return lane->foreign;
   const Json subjects = spec.spec.value("subjects", Json::array());
@@ -148,7 +148,7 @@ void Store::commit(const PairRange& range, const StoredCounts& fresh) {
   add(range, fresh);
 }
 
-// Replaces all rows of the source by one row for its whole share: their counts and `counts`.
+// Replaces all rows of the source with one row for its whole share: the sum of their counts and `counts`.
 void Store::put_whole(int source, StoredCounts counts) {
   auto& rows = rows_[static_cast<std::size_t>(source)];
   const PairRange all = share_of(spec_.shard, source, spec_.sources[static_cast<std::size_t>(source)].pairs);

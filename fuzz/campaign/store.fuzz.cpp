@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edits a campaign's store at random. The store must open, or refuse in one line that names it. After --discard-damaged
-// it must open. Once the missing batches are added, the results must equal those of the whole store.
+// Edits a campaign's store at random. The store must open, or be refused with one line that names it. After
+// --discard-damaged it must open. Once the missing batches are added, the results must equal those of the whole store.
 #include "fuzz/campaign/store.h"
 
 #include <unistd.h>
@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A store of two sources in five rows, in two states: after a normal end, and after a kill, with a log beside it.
+// A store of two sources in five rows, in two states: after a normal end, and after a kill that leaves a log beside it.
 class Whole {
  public:
   Whole() {
@@ -125,7 +125,7 @@ std::string refusal(const Whole& whole) {
     whole.check(store);
     return "";
   } catch (const UsageError&) {
-    must_hold(false, "a damaged store is not taken for another campaign's");
+    must_hold(false, "a damaged store is not mistaken for another campaign's");
   } catch (const std::runtime_error& error) {
     const std::string said = error.what();
     must_be_one_line(said);
@@ -146,7 +146,7 @@ const RegisterFuzzTarget kStore("store", [](std::string_view bytes) {
   reached(16 + said.size() % 512);
   if (said.find("--discard-damaged") == said.npos) return;
   try {
-    must_hold(discard_damaged(whole.spec()).has_value(), "only a damaged store is refused as damaged");
+    must_hold(discard_damaged(whole.spec()).has_value(), "only a damaged store is reported as damaged");
   } catch (const std::runtime_error& error) {
     must_be_one_line(error.what());
     return;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The campaign's store: one SQLite database with one transaction for each batch. If the process is killed at any point,
-// committed batches stay, and the same campaign resumes from there. Totals are not stored; they are sums over rows
-// whose checksums are right. A changed row is detected, and pairs whose row is lost are judged again.
+// The campaign's store: one SQLite database with one transaction per batch. If the process is killed at any point,
+// committed batches remain, and the same campaign resumes from there. Totals are not stored; they are sums over rows
+// whose checksums are correct. A changed row is detected, and pairs whose row is lost are judged again.
 #pragma once
 
 #include <cstdint>
@@ -19,27 +19,27 @@ Json results_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_sourc
 
 class Store {
  public:
-  // Opens or creates the store in the directory. No other process can open it while this object lives.
-  // Throws: as StoreFile; std::runtime_error if another process uses it.
+  // Opens or creates the store in the spec's directory. No other process can open it while this object lives.
+  // Throws: what StoreFile throws; std::runtime_error if another process uses the store.
   explicit Store(StoreSpec spec);
 
   // How many pairs of the source are done.
   std::uint64_t done(int source) const;
 
-  // The first range of missing pairs of the source, at most `most` pairs.
+  // The source's first range of missing pairs, with at most `most` pairs.
   PairRange missing(int source, std::uint64_t most) const;
 
-  // All missing pairs of the source within the store's shard.
+  // All of the source's missing pairs within the store's shard.
   std::vector<PairRange> gaps(int source) const;
   // Whether all of these pairs are done.
   bool holds(const PairRange& range) const;
 
-  // Commits these pairs in one transaction.
+  // Commits these pairs' counts in one transaction.
   // Requires: none of them was committed before.
   void commit(const PairRange& range, const StoredCounts& fresh);
 
-  // Commits all missing pairs of the source, with the sum of their counts, in one transaction. Leaves one row for the
-  // source.
+  // Commits all missing pairs of the source in one transaction; `rest` is the sum of their counts. Leaves one row for
+  // the source.
   void complete(int source, const StoredCounts& rest);
 
   // Leaves one row for each source, and shrinks the file.   Requires: no pairs are missing.
@@ -50,7 +50,7 @@ class Store {
   // How many committed pairs each exact decision saw.
   Json oracle() const;
 
-  // Pairs on which some lane is wrong.
+  // How many pairs some lane is wrong on.
   std::uint64_t disagreements() const;
 
   // The results of all committed pairs; see results_of.

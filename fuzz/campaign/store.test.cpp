@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A damaged store is never accepted: changes are detected, and batches whose checksums are right can be kept.
+// A damaged store is never accepted: changes are detected, and batches with correct checksums can be kept.
 #include "fuzz/campaign/store.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ class StoreTest : public testing::Test {
   StoreTest() {
     std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
     std::replace(name.begin(), name.end(), '/', '-');
-    // In memory if possible: a disk's file system takes milliseconds for each of 100,000 databases.
+    // In memory if possible, because a file system on disk takes milliseconds for each of 100,000 databases.
     const fs::path folder = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : fs::temp_directory_path();
     root_ = folder / ("graze-store-" + name + std::to_string(getpid()));
     fs::remove_all(root_);
@@ -56,8 +56,8 @@ class StoreTest : public testing::Test {
     store.commit(range, judge(c, range.source, range.pairs, [&](std::size_t i) { return range.first + i; }));
   }
 
-  // A campaign of 400 pairs for each source, in seven rows: (0, 300), (300, 80), (380, 20) of two sources, and (0,
-  // 400).
+  // A campaign of three sources with 400 pairs each, in seven rows: (0, 300), (300, 80), (380, 20) of two sources, and
+  // (0, 400) of the third.
   Campaign in_seven_rows(const std::string& name) const {
     Campaign c = campaign(name);
     Store store(store_spec(c));
@@ -133,7 +133,7 @@ TEST_F(StoreTest, EditsAreFoundOutAndWhatChecksIsKept) {
   }
 }
 
-// A range of one pair works.
+// A source may have a single pair.
 TEST_F(StoreTest, OnePairOfASourceIsEnough) {
   const Campaign c = campaign("three", 3);
   const std::string whole = run(c);
@@ -153,7 +153,7 @@ TEST_F(StoreTest, GapsAreFilled) {
   }
 }
 
-// Rows with right checksums that are outside the source's 400 pairs, or outside the shard's share.
+// Rows with correct checksums that are outside the source's 400 pairs, or outside the shard's share.
 TEST_F(StoreTest, RangesThatTheStoreDoesNotHoldAreFoundOut) {
   int number = 0;
   const auto refused = [&](const Shard& shard, const PairRange& range) {
@@ -169,11 +169,11 @@ TEST_F(StoreTest, RangesThatTheStoreDoesNotHoldAreFoundOut) {
   for (const PairRange& range : {PairRange{0, 0, 400}, {0, 399, 1}, {1, 200, 200}})
     EXPECT_EQ(refused({}, range), "") << range.first;
   for (const PairRange& range : {PairRange{0, 0, 401}, {0, 399, 2}, {0, 400, 1}, {0, 500, 3}})
-    EXPECT_TRUE(names(refused({}, range), {"do not agree", "--discard-damaged"})) << range.first;
+    EXPECT_TRUE(names(refused({}, range), {"this store's share", "--discard-damaged"})) << range.first;
   for (const PairRange& range : {PairRange{0, 100, 100}, {0, 199, 1}})
     EXPECT_EQ(refused(middle, range), "") << range.first;
   for (const PairRange& range : {PairRange{0, 99, 2}, {0, 0, 50}, {0, 199, 2}, {0, 200, 1}, {0, 300, 10}})
-    EXPECT_TRUE(names(refused(middle, range), {"do not agree", "--discard-damaged"})) << range.first;
+    EXPECT_TRUE(names(refused(middle, range), {"this store's share", "--discard-damaged"})) << range.first;
 }
 
 TEST(FirstDifference, NamesThePlaceAndBothValues) {
@@ -186,7 +186,7 @@ TEST(FirstDifference, NamesThePlaceAndBothValues) {
   EXPECT_EQ(first_difference({{"a", 1}}, {{"a", 1}, {"flags", Json::array()}}), "flags is null, not none");
 }
 
-// Somebody's file, link, pipe or folder may have the name under which a database is set aside or prepared.
+// A user's file, link, pipe or folder may have the name under which a database is set aside or prepared.
 TEST_F(StoreTest, DiscardingDamageReplacesAndRemovesNothing) {
   const std::string whole = run(campaign("whole"));
   const Campaign c = in_seven_rows("taken");
@@ -233,7 +233,7 @@ TEST_F(StoreTest, DiscardingDamageReplacesAndRemovesNothing) {
   EXPECT_FALSE(fs::exists(root_ / "nothing"));
 }
 
-// SQLite would read the log beside the file to which the link leads.
+// SQLite would read the log beside the file that the link points to.
 TEST_F(StoreTest, ADamagedDatabaseBehindALinkIsMendedThere) {
   const std::string whole = run(campaign("whole"));
   const Campaign c = in_seven_rows("linked");
@@ -249,7 +249,7 @@ TEST_F(StoreTest, ADamagedDatabaseBehindALinkIsMendedThere) {
   EXPECT_TRUE(fs::is_symlink(file(c)));
 }
 
-// Cases would be written to, and removed from, somebody's folder.
+// Otherwise cases would be written to, and removed from, a user's folder.
 TEST_F(StoreTest, ALinkInPlaceOfTheFolderOfCasesIsRefused) {
   const Campaign c = campaign("cases_elsewhere");
   fs::create_directories(root_ / "theirs_too");
@@ -266,7 +266,7 @@ TEST_F(StoreTest, ALinkInPlaceOfTheFolderOfCasesIsRefused) {
   EXPECT_EQ(std::distance(fs::directory_iterator(root_ / "theirs_too"), {}), 1);
 }
 
-// A reader that may not write leaves an index and an empty log.
+// A read-only reader leaves an index and an empty log.
 TEST_F(StoreTest, ReadingRemovesWhatOtherReadersOfTheDatabaseLeft) {
   const Campaign c = campaign("read");
   run(c);
@@ -293,7 +293,7 @@ TEST_F(StoreTest, RemovingAStoreLeavesWhatOthersPutBesideIt) {
   EXPECT_EQ(read_whole(file(c).string() + ".part"), "precious");
 }
 
-// Writing the log back fails as on a full disk; the rows stay in the log.
+// Writing the log back fails as it would on a full disk; the rows stay in the log.
 TEST_F(StoreTest, AStoreThatCannotBeFinishedSaysSo) {
   const Campaign c = campaign("full");
   Store store(store_spec(c));
@@ -318,7 +318,7 @@ TEST_F(StoreTest, AStoreThatCannotBeFinishedSaysSo) {
   EXPECT_EQ(pairs, 400u);
 }
 
-// SQLite would replace the pages of a whole database by those of the other one's log.
+// SQLite would replace pages of an undamaged database with those in another database's log.
 TEST_F(StoreTest, TheLogOfAnotherDatabaseIsRefused) {
   const Campaign c = campaign("whole");
   const std::string whole = run(c);
@@ -402,7 +402,7 @@ TEST_F(StoreTest, ResultsOfForeignLanesSayMore) {
   }
 }
 
-// Equal batches merge into rows like the digits of a binary number.
+// Equal batches merge into rows as digits carry in a binary number.
 TEST_F(StoreTest, RowsMergeAndResultsStayTheSame) {
   const Campaign parts = campaign("parts"), whole = campaign("whole");
   Json results;
@@ -477,7 +477,7 @@ TEST_F(StoreTest, SumsThatDoNotAgreeAndIndicesOutOfRangeAreFoundOut) {
   EXPECT_THROW(from_bytes(bytes, range, Axis::none, 2), Damaged);
 }
 
-// Flips every bit of a small campaign's database, in parts: the results are the same, or the error is one line.
+// Flips each bit of a small campaign's database, in parts: the results are the same, or there is a one-line error.
 class EveryBit : public StoreTest, public testing::WithParamInterface<int> {
  protected:
   static constexpr int kParts = 8;

@@ -56,11 +56,11 @@ int last_errno(const SQLite::Database& database) {
   return error;
 }
 
-// Calls body() and turns its errors into one line that names the file. database: knows the system's reason, if any.
+// Calls body() and turns its errors into one line that names the file. database: gives the system's reason, if any.
 template <class Body>
 auto in_one_line(const fs::path& file, const Body& body, const std::optional<SQLite::Database>& database = {}) {
   constexpr const char* kGoOn =
-      "run `graze fuzz` again with --discard-damaged to keep the batches whose checksum is right";
+      "run `graze fuzz` again with --discard-damaged to keep the batches whose checksum is correct";
   try {
     return body();
   } catch (const Damaged& error) {
@@ -76,7 +76,7 @@ auto in_one_line(const fs::path& file, const Body& body, const std::optional<SQL
       throw std::runtime_error(system != 0 ? cannot("read and write", file, system)
                                            : cannot("read and write", file, one_line(error.what())));
     throw DamagedStore(cannot("use", file,
-                              fmt::format("it is not a campaign database of graze, or it is damaged ({}); {}",
+                              fmt::format("it is not a campaign database of Graze, or it is damaged ({}); {}",
                                           one_line(error.what()), kGoOn)));
   }
 }
@@ -91,13 +91,13 @@ std::string text_of(const StoreSpec& spec) {
 
 std::int64_t number(SQLite::Database& database, const char* sql) { return database.execAndGet(sql).getInt64(); }
 
-// Throws: Damaged unless the database has our two tables and nothing else. A trigger could drop stored rows.
+// Throws: Damaged unless the database has our two tables and nothing else. A trigger, for example, could drop rows.
 void expect_our_tables(SQLite::Database& database) {
   SQLite::Statement query(database, "SELECT sql FROM sqlite_schema ORDER BY rowid");
   std::size_t count = 0;
   for (; query.executeStep(); ++count) {
     if (count >= std::size(kTables) || query.getColumn(0).getString() != kTables[count])
-      throw Damaged("it has other tables, triggers or views than those of graze");
+      throw Damaged("it has tables, triggers or views that are not Graze's");
   }
   if (count != std::size(kTables)) throw Damaged("one of its tables is missing");
 }
@@ -108,11 +108,11 @@ bool is_fresh(SQLite::Database& database, const fs::path& file) {
   const std::int64_t application = number(database, "PRAGMA application_id");
   if (application == 0 && number(database, "SELECT count(*) FROM sqlite_schema") == 0) return true;
   if (application != kApplicationId)
-    throw std::runtime_error(cannot("use", file, "it is the database of another program; choose another --out"));
+    throw std::runtime_error(cannot("use", file, "it is another program's database; choose another --out"));
   if (const auto format = number(database, "PRAGMA user_version"); format != kFormat)
     throw std::runtime_error(
         cannot("use", file,
-               fmt::format("it has format {}, and this build reads format {}; choose another --out", format, kFormat)));
+               fmt::format("it has format {}, but this build reads format {}; choose another --out", format, kFormat)));
   expect_our_tables(database);
   return false;
 }
@@ -127,10 +127,10 @@ void begin(SQLite::Database& database, const std::string& text) {
   transaction.commit();
 }
 
-// The campaign's identity as the database records it.   Throws: Damaged.
+// The campaign's identity that the database records.   Throws: Damaged.
 std::string recorded_text(SQLite::Database& database) {
   SQLite::Statement query(database, "SELECT text, checksum FROM campaign");
-  if (!query.executeStep()) throw Damaged("the record of its campaign is gone");
+  if (!query.executeStep()) throw Damaged("the record of its campaign is missing");
   const std::string text = query.getColumn(0).getString();
   if (query.getColumn(1).getInt64() != static_cast<std::int64_t>(fnv1a(text)))
     throw Damaged("the record of its campaign does not match its checksum");
@@ -145,7 +145,7 @@ std::string first_difference(const Json& expected, const Json& found) {
   const auto value = [](const Json& of, const std::string& place) {
     return of.contains(place) ? of[place].dump(-1, ' ', false, Json::error_handler_t::replace) : "none";
   };
-  for (const bool empty : {false, true}) {  // an empty list is null there; what the other side has in it tells more
+  for (const bool empty : {false, true}) {  // an empty list is null there; the other side's elements say more
     for (const Json& side : {ours, theirs}) {
       for (const auto& [place, one] : side.items()) {
         if (one.is_null() != empty || (ours.contains(place) && theirs.contains(place) && ours[place] == theirs[place]))
@@ -159,7 +159,7 @@ std::string first_difference(const Json& expected, const Json& found) {
 
 namespace {
 
-// Throws: UsageError if the text, whose checksum is right, belongs to another campaign.
+// Throws: UsageError if the text, whose checksum is correct, belongs to another campaign.
 void compare(const StoreSpec& spec, const std::string& text) {
   if (text == text_of(spec)) return;
   const Json found = parse_shallow(text);
@@ -172,11 +172,11 @@ void compare(const StoreSpec& spec, const std::string& text) {
   throw UsageError(cannot(
       "use", spec.directory,
       fmt::format(
-          "{}: {}; choose another --out", another ? "it holds another campaign" : "another build began its campaign",
+          "{}: {}; choose another --out", another ? "it holds another campaign" : "another build started its campaign",
           another ? first_difference(spec.spec, found["spec"]) : first_difference(spec.build, found["build"]))));
 }
 
-// The ranges seen so far, for each source by their first pair.
+// The ranges seen so far, by source and first pair.
 class Coverage {
  public:
   explicit Coverage(const StoreSpec& spec) : spec_(spec), pairs_(spec.sources.size()) {}
@@ -187,13 +187,13 @@ class Coverage {
     const PairRange share = share_of(spec_.shard, range.source, size);
     if (range.pairs == 0 || range.first < share.first || range.first > share.first + share.pairs ||
         range.pairs > share.first + share.pairs - range.first)
-      throw Damaged(
-          fmt::format("{} pairs from {} on and the {} of {} do not agree", range.pairs, range.first, size, id(range)));
+      throw Damaged(fmt::format("{} pairs from index {} on are outside this store's share of the {} pairs of {}",
+                                range.pairs, range.first, size, id(range)));
     auto& pairs = pairs_[static_cast<std::size_t>(range.source)];
     const auto next = pairs.lower_bound(range.first);
     if ((next != pairs.end() && next->first < range.first + range.pairs) ||
         (next != pairs.begin() && std::prev(next)->first + std::prev(next)->second > range.first))
-      throw Damaged(fmt::format("two batches hold pairs of {} from {} on", id(range), range.first));
+      throw Damaged(fmt::format("two batches hold the same pairs of {}, from index {} on", id(range), range.first));
     pairs.emplace(range.first, range.pairs);
   }
 
@@ -215,12 +215,12 @@ CheckedRow checked_row(SQLite::Statement& query, const StoreSpec& spec, std::uin
                      pairs = query.getColumn(3).getInt64();
   const std::string where = fmt::format("batch {}", query.getColumn(0).getInt64());
   if (source < 0 || source >= static_cast<std::int64_t>(spec.sources.size()) || first < 0 || pairs <= 0)
-    throw Damaged(fmt::format("{} is of {} pairs from {} on of source {}, of {} sources", where, pairs, first, source,
+    throw Damaged(fmt::format("{} has {} pairs, from {} on, of source {} of {} sources", where, pairs, first, source,
                               spec.sources.size()));
   const PairRange range{static_cast<int>(source), static_cast<std::uint64_t>(first), static_cast<std::uint64_t>(pairs)};
   const std::string bytes = query.getColumn(4).getString();
   if (query.getColumn(5).getInt64() != static_cast<std::int64_t>(checksum(campaign, range, bytes)))
-    throw Damaged(where + " and its checksum do not agree");
+    throw Damaged(where + " does not match its checksum");
   try {
     return {range, from_bytes(bytes, range, spec.sources[static_cast<std::size_t>(source)].axis,
                               static_cast<int>(spec.lanes.size()))};
@@ -239,18 +239,18 @@ std::int64_t insert(SQLite::Database& database, std::uint64_t campaign, const Pa
   return database.getLastInsertRowid();
 }
 
-// Whether the database is as a run sealed it that ended. Then no log belongs to it.
+// Whether the database is unchanged since a run ended and sealed it. Then no log belongs to it.
 bool is_closed(const fs::path& database) {
   try {
     const Json status = read_status(database.parent_path());
     return status.is_object() && status.contains("hash") && status["hash"] == file_hash(database);
-  } catch (const std::exception&) {  // a status that says nothing
+  } catch (const std::exception&) {  // the status cannot be used
     return false;
   }
 }
 
-// The files beside the database that SQLite would read although it did not write them for it: damaged files, files of
-// other programs or databases, and links. Throws: std::runtime_error for a pipe or a device.
+// The files beside the database that SQLite would read although it did not write them for this database: damaged files,
+// files of other programs or databases, and links. Throws: std::runtime_error for a pipe or a device.
 std::vector<fs::path> unusable_files_of(const fs::path& database) {
   constexpr std::string_view kJournal = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", kLog = "\x37\x7f\x06",
                              kIndex = "\x18\xe2\x2d";
@@ -262,7 +262,7 @@ std::vector<fs::path> unusable_files_of(const fs::path& database) {
     expect_file(file);
     std::string begin = beginning_of(file, begins.size());
     begin.resize(begins.size());
-    const bool is_empty = begin.find_first_not_of('\0') == begin.npos;  // SQLite clears the beginning of an old one
+    const bool is_empty = begin.find_first_not_of('\0') == begin.npos;  // SQLite clears the beginning of an old journal
     if (!S_ISREG(there.st_mode) || there.st_nlink != 1 || (begin != begins && !is_empty) ||
         (begins == kLog && there.st_size > 0 && is_closed(database)))
       found.push_back(file);
@@ -270,12 +270,12 @@ std::vector<fs::path> unusable_files_of(const fs::path& database) {
   return found;
 }
 
-// Throws: DamagedStore if there are any.
+// Throws: DamagedStore if there are any such files.
 void expect_usable_files_of(const fs::path& database) {
   for (const fs::path& file : unusable_files_of(database))
     throw DamagedStore(
         cannot("use", file,
-               "it is damaged, a link, or not of this database; move it away, or run `graze fuzz` again with "
+               "it is damaged, a link, or from another database; move it away, or run `graze fuzz` again with "
                "--discard-damaged, which renames it"));
 }
 
@@ -285,8 +285,8 @@ SQLite::Database opened(const fs::path& file, int how = SQLite::OPEN_READWRITE |
   return {fs::absolute(file).string(), how};  // a relative name may begin like a URI
 }
 
-// Opens a store for reading only. If its last run ended normally, it is one file that nobody writes to. A killed run
-// leaves a log beside the file; the next reader merges the log, under an exclusive lock.
+// Opens a store for reading. If its last run ended normally, it is one file that nobody writes to. A killed run leaves
+// a log beside the file; the next reader merges the log under an exclusive lock.
 struct OpenedToRead {
   explicit OpenedToRead(const fs::path& directory)
       : lock(fs::exists(directory / (std::string(kDatabase) + "-wal"))
@@ -294,7 +294,7 @@ struct OpenedToRead {
                  : nullptr),
         database(lock ? opened(directory / kDatabase, SQLite::OPEN_READWRITE)
                       : SQLite::Database(as_uri(directory / kDatabase), SQLite::OPEN_READONLY | SQLite::OPEN_URI)) {
-    // An exclusive reader needs no index file, and would not remove one that another program's reader left.
+    // An exclusive reader needs no index file, but it would not remove one that another program's reader left.
     if (lock && !fs::exists(directory / (std::string(kDatabase) + "-shm")))
       database.exec("PRAGMA locking_mode = EXCLUSIVE");
   }
@@ -319,12 +319,12 @@ struct KeptRow {
   std::string bytes;
 };
 
-// Returns the rows whose checksums are right. Reads from both ends, because a B-tree that is damaged in the middle can
-// be read up to the damage.
+// Returns the rows whose checksums are correct. Reads from both ends, because a B-tree that is damaged in the middle
+// can be read up to the damage.
 std::vector<KeptRow> rows_that_check(SQLite::Database& database, const StoreSpec& spec, std::uint64_t campaign,
                                      std::size_t& seen) {
   std::vector<KeptRow> kept;
-  // A view could go on for ever.
+  // A view could have infinitely many rows.
   if (number(database, "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name = 'batch'") != 1) return kept;
   Coverage coverage(spec);
   for (const char* order : {"ORDER BY id", "ORDER BY id DESC"}) {
@@ -352,7 +352,7 @@ fs::path place_of_damaged(const fs::path& file) {
   return place;
 }
 
-// The bytes of a database file with these rows.
+// The bytes of a new database file with these rows.
 std::string bytes_of_store(const std::string& text, const std::vector<KeptRow>& rows) {
   SQLite::Database database(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   begin(database, text);
@@ -366,8 +366,8 @@ std::string bytes_of_store(const std::string& text, const std::vector<KeptRow>& 
   return {bytes.get(), bytes.get() + size};
 }
 
-// A row's checksum starts from the campaign's. So a row with the right checksum belongs to this campaign, even if the
-// rest is damaged.
+// A row's checksum starts from the campaign's. So a row with a correct checksum belongs to this campaign, even if the
+// rest of the database is damaged.
 Salvage salvage(const StoreSpec& spec) {
   const fs::path file = behind_links(database_file(spec));
   const std::string text = text_of(spec);
@@ -392,14 +392,14 @@ Salvage salvage(const StoreSpec& spec) {
   for (const KeptRow& row : kept) result.pairs += row.range.pairs;
   const std::string bytes = bytes_of_store(text, kept);
   copy_whole(file, result.damaged);
-  fs::remove(file.string() + "-wal");  // log of the old database, already read
+  fs::remove(file.string() + "-wal");  // the old database's log, already read
   write_whole(file, bytes);
   return result;
 }
 
 }  // namespace
 
-// As in_one_line, with the system's reason from the database.
+// Like in_one_line, with the system's reason from the database.
 template <class Body>
 auto StoreFile::checked(const Body& body) {
   return in_one_line(file_, body, database_);
@@ -410,7 +410,7 @@ StoreFile::StoreFile(const StoreSpec& spec) : spec_(spec), file_(database_file(s
   const auto refuse = [&] {
     throw UsageError(cannot("resume", spec.directory, "it holds results but not their database; choose another --out"));
   };
-  if (has_results && !fs::exists(file_)) refuse();  // before the database is made
+  if (has_results && !fs::exists(file_)) refuse();  // before the database is created
   checked([&] {
     SQLite::Database& database = database_.emplace(opened(file_));
     const bool fresh = is_fresh(database, file_);
@@ -451,7 +451,7 @@ StoredCounts StoreFile::counts(std::int64_t id) {
   return checked([&] {
     SQLite::Statement query(*database_, std::string(kColumns) + "WHERE id = ?");
     query.bind(1, id);
-    if (!query.executeStep()) throw Damaged(fmt::format("batch {} is gone", id));
+    if (!query.executeStep()) throw Damaged(fmt::format("batch {} is missing", id));
     return checked_row(query, spec_, campaign_).counts;
   });
 }
@@ -474,7 +474,7 @@ StoreSpec recorded_store(const fs::path& directory) {
     OpenedToRead store(directory);
     if (is_fresh(store.database, file))
       throw std::runtime_error(
-          cannot("use", file, "it is empty, so the campaign is lost; run it again with another --out"));
+          cannot("use", file, "it is empty, so the campaign is lost; run the campaign again with another --out"));
     const Json text = parse_shallow(recorded_text(store.database));
     if (!text.is_object()) throw Damaged("its campaign is not a JSON object");
     try {
@@ -503,7 +503,7 @@ void for_each_row(const StoreSpec& spec, const std::function<void(const PairRang
     coverage.take(row.range);
     return row;
   };
-  // visit is called outside in_one_line: its exceptions are not the database's.
+  // visit is called outside in_one_line, because its exceptions are not the database's.
   while (const auto row = in_one_line(database_file(spec), next)) visit(row->range, row->counts);
 }
 
@@ -525,7 +525,7 @@ void remove_store(const fs::path& directory) {
   for (const char* file : {"status.json", "timings.json"}) {
     try {
       if (!read_sealed(directory / file, "").is_null()) fs::remove(directory / file);
-    } catch (const std::runtime_error&) {  // not written by the run
+    } catch (const std::runtime_error&) {  // the run did not write it
     }
   }
   std::error_code not_empty;

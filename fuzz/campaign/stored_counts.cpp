@@ -15,9 +15,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// [[bucket, pairs, intersects, [[lane, false positive, false negative, declined, differs from cpu], …]], …]. Foreign
-// code with such counts also has crashed, timed out, unstable and by convention; a lane in float32 with errors of
-// storing has these (of foreign code, or zeros) and that count.
+// [[bucket, pairs, intersects, [[lane, false positive, false negative, declined, differs from cpu], …]], …]. The counts
+// crashed, timed out, unstable and by convention follow if foreign code has any of them, or if the lane has errors of
+// storing doubles in float32; in that case the count of these errors is last.
 Json to_json(const analysis::Tally& tally) {
   Json rows = Json::array();
   for (int b = -kBucketMost; b <= kBucketMost; ++b) {
@@ -50,7 +50,7 @@ Json to_json(const std::map<std::string, SignatureCount>& signatures) {
 }
 
 void expect(bool holds, const char* what) {
-  if (!holds) throw Damaged(fmt::format("{} do not agree", what));
+  if (!holds) throw Damaged(fmt::format("{} are inconsistent", what));
 }
 
 std::uint64_t whole(const Json& value, std::uint64_t most, const char* what) {
@@ -129,7 +129,7 @@ bool is_printable(std::string_view text) {
 Json parsed(const std::string& bytes) {
   try {
     return Json::from_cbor(bytes, true, false);
-  } catch (const Json::exception&) {  // for sizes beyond the memory, although exceptions are off
+  } catch (const Json::exception&) {  // thrown for sizes that exceed memory, even with exceptions turned off
     return nullptr;
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stored counts for a range of one source's pairs, converted to bytes (CBOR) and back. Reading checks every sum
-// that must agree and the range of every index.
+// The stored counts for a range of one source's pairs, converted to bytes (CBOR) and back. Reading checks that all sums
+// agree and that every index is in its range.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace graze::fuzz {
 
-// Stored bytes contradict each other; what() says which.
+// Thrown for stored bytes that are damaged or contradict each other; what() says which.
 struct Damaged : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -39,16 +39,15 @@ struct StoredCounts {
 
 std::string to_bytes(const StoredCounts& counts);
 
-// Requires: the range lies within the source and holds at least `pairs` pairs; the bytes are the counts of `pairs`
-// pairs.
+// Requires: the range lies within the source and has at least `pairs` pairs. The bytes are the counts of `pairs` pairs.
 // Throws: Damaged.
 StoredCounts from_bytes(const std::string& bytes, const PairRange& range, std::uint64_t pairs, Axis axis, int lanes);
 inline StoredCounts from_bytes(const std::string& bytes, const PairRange& range, Axis axis, int lanes) {
   return from_bytes(bytes, range, range.pairs, axis, lanes);
 }
 
-// The checksum of the range and of its stored bytes. `campaign` is the checksum of the campaign that they belong to.
-// Any single change alters it.
+// The checksum of the range and its stored bytes. `campaign` is the checksum of their campaign. Any single change
+// alters the result.
 std::uint64_t checksum(std::uint64_t campaign, const PairRange& range, const std::string& bytes);
 
 }  // namespace graze::fuzz

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stored counts that contradict each other are damage; tests each count at its limit.
+// Stored counts that contradict each other count as damage. Each count is tested at its limit.
 #include "fuzz/campaign/stored_counts.h"
 
 #include <gtest/gtest.h>
@@ -52,9 +52,10 @@ TEST(StoredCounts, AreReadBack) {
 }
 
 TEST(StoredCounts, ThatDoNotAgreeAreDamage) {
-  const std::string margins = "the margins do not agree", all = "the margins and the batch's pairs do not agree",
-                    signatures = "the signatures and the batch's pairs do not agree",
-                    digests = "the digests and the batch's pairs do not agree";
+  const std::string margins = "the margins are inconsistent",
+                    all = "the margins and the batch's pairs are inconsistent",
+                    signatures = "the signatures and the batch's pairs are inconsistent",
+                    digests = "the digests and the batch's pairs are inconsistent";
   struct Edit {
     const char* place;
     Json value;
@@ -62,33 +63,33 @@ TEST(StoredCounts, ThatDoNotAgreeAreDamage) {
   };
   for (const auto& [place, value, said] : {
            Edit{"/0/0/0", 5, margins},  // a bucket twice
-           {"/0/1/0", -5, margins},     // not in their order
+           {"/0/1/0", -5, margins},     // out of order
            {"/0/1/0", kBucketMost, ""},
            {"/0/1/0", kBucketMost + 1, margins},
            {"/0/0/0", -kBucketMost, ""},
            {"/0/0/0", -kBucketMost - 1, margins},
            {"/0/1/1", 5, all},          // fewer pairs than the range has
-           {"/0/1/1", 7, margins},      // more
-           {"/0/1/2", 7, margins},      // more of them intersect
+           {"/0/1/1", 7, margins},      // more pairs
+           {"/0/1/2", 7, margins},      // more pairs that intersect than pairs
            {"/0/1/3/0/0", 1, margins},  // a lane twice
            {"/0/1/3/1/0", 2, margins},  // no such lane
-           {"/0/1/3/0/1", 4, ""},       // all that are apart
+           {"/0/1/3/0/1", 4, ""},       // all disjoint pairs
            {"/0/1/3/0/1", 5, margins},
-           {"/0/1/3/0/2", 2, ""},  // all that intersect
+           {"/0/1/3/0/2", 2, ""},  // all pairs that intersect
            {"/0/1/3/0/2", 3, margins},
            {"/0/1/3/0/3", 3, ""},  // wrong on all six
            {"/0/1/3/0/3", 4, margins},
            {"/0/1/3/0/4", 7, margins},
            {"/0/1/3/0", Json{0, 2, 1, 0, 3, 0}, margins},
-           {"/0/1/3/0", Json{0, 2, 1, 0, 3, 0, 0, 0, 0}, margins},  // foreign counts, of nothing
-           {"/0/1/3/1/8", 4, ""},                                   // by convention, on all but two
+           {"/0/1/3/0", Json{0, 2, 1, 0, 3, 0, 0, 0, 0}, margins},  // foreign counts that are all 0
+           {"/0/1/3/1/8", 4, ""},                                   // by convention on all but two pairs
            {"/0/1/3/1/8", 5, margins},
-           {"/1", Json{{0, 10, 0, Json::array()}}, "the extremes and the batch's pairs do not agree"},
+           {"/1", Json{{0, 10, 0, Json::array()}}, "the extremes and the batch's pairs are inconsistent"},
            {"/2/0/0", "none/22", signatures},
            {"/2/0/0", "none/22/skew/+2^3/moller 1997:+f32/cpu", signatures},
            {"/2/0/1", 10, ""},
            {"/2/0/1", 11, signatures},
-           {"/2/0/1", 2, signatures},  // fewer than the cases kept
+           {"/2/0/1", 2, signatures},  // fewer than the kept cases
            {"/2/0/2", Json::array(), signatures},
            {"/2/0/2", Json{101, 101}, signatures},
            {"/2/0/2", Json{99}, signatures},
@@ -97,22 +98,22 @@ TEST(StoredCounts, ThatDoNotAgreeAreDamage) {
            {"/2/1", Json{kKey, 1, {102}}, signatures},  // the same key again
            {"/3/0/0", "moller_1997", signatures},
            {"/4", 10, ""},
-           {"/4", 11, "the disagreements and the batch's pairs do not agree"},
-           {"/5", -1, "the pairs that CGAL decided do not agree"},
-           {"/6", "5", "the pairs that GMP confirmed do not agree"},
-           {"/7", 11, "the exact lane's pairs and the batch's pairs do not agree"},
+           {"/4", 11, "the disagreements and the batch's pairs are inconsistent"},
+           {"/5", -1, "the pairs that CGAL decided are inconsistent"},
+           {"/6", "5", "the pairs that GMP confirmed are inconsistent"},
+           {"/7", 11, "the exact lane's pairs and the batch's pairs are inconsistent"},
            {"/8/0", 10, ""},
            {"/8/0", 11, digests},
            {"/8/1", Json{1}, digests},  // not one for each lane
            {"/8/1/1", -1, digests},
            {"/8", 0, digests},
-           {"/9", 0, "a batch's parts do not agree"},
+           {"/9", 0, "a batch's parts are inconsistent"},
        }) {
     Json edited = good();
     edited[Json::json_pointer(place)] = value;
     EXPECT_EQ(complaint(edited), said) << place << " " << value;
   }
-  EXPECT_EQ(complaint(good(), Axis::scale), "the extremes and the batch's pairs do not agree");
+  EXPECT_EQ(complaint(good(), Axis::scale), "the extremes and the batch's pairs are inconsistent");
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adds up several stores: one sum for each source, and the set of pairs that it covers. Its size depends on the sources
-// and their signatures, not on the number of stores.
+// Adds up several stores: one sum for each source, and the set of pairs that the sum covers. The size depends on the
+// sources and their signatures, not on the number of stores.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ class Sums {
   // Requires: the sources outlive this.
   Sums(const std::vector<strata::PairSource>& sources, int lanes);
 
-  // from: identifies the origin of the row.
+  // from: identifies the row's origin.
   // Throws: Overlap if some of the pairs were added before.
   void add(const PairRange& range, const StoredCounts& counts, std::size_t from);
 
@@ -26,7 +26,7 @@ class Sums {
     std::size_t before, now;
   };
 
-  // The missing ranges of the source within `within`, in order.
+  // The ranges that are missing within `within`, in order.
   std::vector<PairRange> gaps(const PairRange& within) const;
   // The same for all sources.
   std::vector<PairRange> gaps() const;

@@ -15,7 +15,7 @@ namespace {
 
 enum class Kind : std::uint32_t { failure, closeness, site, parting, contraction };
 
-std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {  // FNV-1a, a word at a time, with a final shift
+std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {  // FNV-1a over whole words, with a final shift
   hash = (hash ^ value) * 0x100000001b3u;
   return hash ^ hash >> 29;
 }
@@ -50,7 +50,7 @@ struct Meter {
  private:
   void note(Site site, Real value, Real error, const std::source_location& where) const {
     constexpr int kMost = 24, kNotFinite = 99;
-    int octave = -kMost;  // of a zero
+    int octave = -kMost;  // for zero
     if (!std::isfinite(value) || !std::isfinite(error))
       octave = kNotFinite;
     else if (value != 0)
@@ -86,7 +86,7 @@ void measure_sites(int algorithm, const Pair& stored, const DoublePair& doubles,
   (std::make_index_sequence<kAlgorithmCount>());
 }
 
-// The line at which the algorithm's runs in float32 and float64 first differ in an outcome; 0 if they do not.
+// The line at which the outcomes of the algorithm's runs in float32 and float64 first differ; 0 if they do not.
 unsigned line_of_parting(int algorithm, const Pair& stored, const DoublePair& doubles) {
   const Trace<double> narrow = run_traced<float>(algorithm, stored), wide = run_traced<double>(algorithm, doubles);
   const std::size_t both = std::min(narrow.seen.size(), wide.seen.size());

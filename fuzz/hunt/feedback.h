@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Feedback of guided search besides branch coverage. A pair is kept if it shows a feature that no pair before it
-// showed. The features of a pair, as numbers:
+// Feedback for guided search, in addition to branch coverage. A pair is kept if it shows a feature that no earlier pair
+// showed. The features of a pair are numbers for:
 //   failures     how each subject's lanes are wrong together, with the contact and the shape
 //   closeness    margin bucket and shape
-//   sites        for each value or comparison passed to the policy: log2 of the ratio between its distance from zero
-//                and its error bound (core/lanes/with_error_bound.h), in float32 and in float64
-//   parting      for a wrong algorithm: the line of the first comparison at which float32 and float64 part
+//   sites        for each value or comparison passed to the policy: log2 of its distance from zero divided by its error
+//                bound (core/lanes/with_error_bound.h), in float32 and in float64
+//   parting      for a wrong algorithm: the line of the first comparison with different outcomes in float32 and float64
 //   contractions for a cuda-fma lane whose verdict differs from the same source without contraction: each contraction
 //                site that, if it alone is not fused, changes the verdict
 #pragma once
@@ -33,7 +33,7 @@ class Feedback {
     std::size_t lane, rounded;  // a cuda-fma lane, and the same source without contraction
   };
   std::vector<const Lane*> lanes_;
-  std::vector<int> algorithms_;  // distinct algorithms of the published lanes
+  std::vector<int> algorithms_;  // the distinct algorithms of the published lanes
   std::vector<Fused> fused_;
 };
 

@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-// The processes of rounds; the destructor kills those that still run.
+// The processes of the rounds; the destructor kills those that are still running.
 class Processes {
  public:
   ~Processes() {
@@ -41,7 +41,7 @@ class Processes {
   }
   std::size_t size() const { return running_.size(); }
   void add(pid_t pid) { running_.emplace(pid, 0); }
-  // Waits a little.   Returns: whether a process has ended.
+  // Waits for a short time.   Returns: whether a process has ended.
   bool wait_for_one() {
     for (auto it = running_.begin(); it != running_.end(); ++it) {
       if (waitpid(it->first, nullptr, WNOHANG) == 0) continue;
@@ -57,7 +57,7 @@ class Processes {
   std::map<pid_t, int> running_;
 };
 
-// Whether a killed process left the file: a round's unread result or a partial file, such as "000012.result".
+// Whether a killed process left the file: a round's unread result, such as "000012.result", or a partial file.
 bool is_of_killed_round(const fs::directory_entry& file) {
   const std::string name = file.path().filename().string();
   const std::size_t digits = name.find_first_not_of("0123456789");
@@ -81,8 +81,8 @@ class Hunter {
     threads_ = hunt.campaign.threads > 0 ? hunt.campaign.threads : tbb::info::default_concurrency();
     store_.emplace(store_spec(hunt.campaign));
     if (fs::exists(merged_rounds_file(hunt.campaign.directory)))
-      throw UsageError(
-          cannot("resume", hunt.campaign.directory, "it is a finished hunt, merged from shards; choose another --out"));
+      throw UsageError(cannot("resume", hunt.campaign.directory,
+                              "it is a finished hunt that was merged from shards; choose another --out"));
     expect_usable_records(hunt.campaign.directory);
     checksum_ = hunt_checksum(hunt.campaign.spec, hunt.campaign.build);
     fs::create_directories(folder());
@@ -123,7 +123,7 @@ class Hunter {
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   bool over() const { return stop_ || (hunt_.seconds > 0 && seconds() >= hunt_.seconds); }
 
-  // Runs rounds [first, last), all from the present corpus, then takes their findings in order.
+  // Runs the rounds [first, last), all from the current corpus, then adds their findings in order.
   void generation(std::uint64_t first, std::uint64_t last) {
     std::vector<Wanted> rounds;
     for (std::uint64_t r = first; r < last; ++r) {
@@ -131,7 +131,7 @@ class Hunter {
       wanted.range = {0, share_.first + r * per_round_, std::min(per_round_, share_.pairs - r * per_round_)};
       wanted.kept = parse_round(read_whole(file_of(wanted.range)), checksum_);
       if (wanted.kept && (wanted.kept->first != wanted.range.first || wanted.kept->pairs != wanted.range.pairs))
-        wanted.kept.reset();  // a file of another round was put in its place
+        wanted.kept.reset();  // the file is another round's
       wanted.committed = store_->holds(wanted.range);
       rounds.push_back(std::move(wanted));
     }
@@ -143,7 +143,7 @@ class Hunter {
     }
   }
 
-  // Runs the rounds that are not whole, at most `threads_` at once.   Returns: whether all of them ended.
+  // Runs the rounds that are not done yet, at most `threads_` at once.   Returns: whether all of them ended.
   bool play(const std::vector<Wanted>& rounds) {
     Processes processes;
     for (const Wanted& round : rounds) {
@@ -201,7 +201,7 @@ class Hunter {
     fs::remove(result_file);
   }
 
-  // One pair stands for all that are wrong in the same way, at any margin.
+  // One pair represents all that are wrong in the same way, at any margin.
   void find_kinds_of(const RoundResult& result, KeptRound& kept) const {
     struct New {
       analysis::Signature signature;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Guided search: rounds of libFuzzer (round.h) whose findings are stored like a campaign's, with the single source
-// `hunt`, or `hunt/f64` if it searches pairs of doubles. All rounds of a generation start from the same corpus, which
-// the earlier generations left. So the results do not depend on interruptions or on how many rounds run at once.
+// `hunt`, or `hunt/f64` for pairs of doubles. All rounds of a generation start from the same corpus, which the earlier
+// generations left. So the results do not depend on interruptions or on how many rounds run at once.
 #pragma once
 
 #include <atomic>
@@ -17,7 +17,7 @@ inline constexpr std::uint64_t kRoundsOfGeneration = 4;
 
 struct Hunt {
   Campaign campaign;  // run_hunt sets its one source
-  Drawn drawn;        // the strata or scene that pairs are drawn from
+  Drawn drawn;        // the strata or the scene from which pairs are drawn
   std::uint64_t pairs = 0;
   double seconds = 0;  // time limit; 0: none
 };
@@ -31,14 +31,14 @@ struct HuntProgress {
   double seconds_since_kind = 0;  // since the last new kind, or the start
 };
 
-// The store's record of a hunt: as campaign_spec, with that source, and the strata it draws from under "hunt".
+// The store's record of a hunt: like campaign_spec, with that one source; the strata that it draws from are in "hunt".
 Json hunt_spec(const Hunt& hunt);
 
-// Runs or resumes the hunt, or a shard of it, until it is done, its time is over, or `stop` is set. Updates status.json
+// Runs or resumes the hunt, or a shard of it, until it is done, its time is up, or `stop` is set. Updates status.json
 // as it runs. At the end it writes hunt.json and timings.json and, for a whole hunt, summary.json and cases/. A shard
-// is an independent search, over its share of the pairs' numbers.
+// is an independent search with its share of the hunt's pairs.
 // Requires: has_libfuzzer(); no lane runs on a device.
-// Throws: OracleMismatch, UsageError, std::runtime_error. Committed rounds are kept in any case.
+// Throws: OracleMismatch, UsageError, std::runtime_error. Even then, committed rounds are kept.
 Outcome run_hunt(Hunt& hunt, const std::atomic<bool>& stop, const std::function<void(const HuntProgress&)>& report);
 
 }  // namespace graze::fuzz

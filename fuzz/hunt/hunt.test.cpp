@@ -94,7 +94,7 @@ TYPED_TEST(Mutations, DoWhatTheyAreNamedAfter) {
                                        oracle::margin_bucket(after, Verdict::intersects) < make_bucket(-1, 7);
                               }),
             0)
-      << "deeper than 2^8 ulps, they are far from a common plane";
+      << "pairs deeper than 2^8 ulps are far from a common plane";
   const auto of_whole_numbers =
       sizeof(Own) == sizeof(DoublePair) ? strata::Stratum::lattice_15 : strata::Stratum::lattice;
   EXPECT_GT(this->count_after(Mutation::coplanar, flat, of_whole_numbers), 10);
@@ -118,7 +118,7 @@ TYPED_TEST(Mutations, DoWhatTheyAreNamedAfter) {
             200);
 }
 
-// Of a scene around `origin` on a grid of 2^-6.   type: the line of its file that names its type.
+// Checks mutations in a scene around `origin` on a grid of 2^-6.   type: the line of the scene's file with its type.
 template <class Draws>
 void expect_within_the_scene(const std::string& type, double origin) {
   using Real = typename Draws::Real;
@@ -214,7 +214,7 @@ class HuntFiles : public CampaignFiles {
         .summary;
   }
 
-  // Checks that every pair of every case is wrong as its signature says.   Returns: the number of pairs.
+  // Checks that every pair of every case fails as its signature says.   Returns: the number of pairs.
   std::size_t expect_cases_are_true(const std::string& name, const Json& summary) const {
     Campaign campaign;
     campaign.under_test = &under_test_;
@@ -251,7 +251,7 @@ TEST_F(HuntFiles, GivesTheSameBytesOnAnyThreadsAfterInterruptionsAndDamage) {
   expect_same_hunt("whole", "one");
   for (int part = 0; !run("parts", 2, 3)["complete"].get<bool>(); ++part) {
     ASSERT_LT(part, 10);
-    std::ofstream(root_ / "parts/hunt/000000.round", std::ios::app) << "x";  // is detected, and the round is made again
+    std::ofstream(root_ / "parts/hunt/000000.round", std::ios::app) << "x";  // detected: the round is run again
   }
   expect_same_hunt("whole", "parts");
   EXPECT_EQ(read_whole(root_ / "whole/hunt/000000.round"), read_whole(root_ / "one/hunt/000000.round"));
@@ -329,7 +329,7 @@ TEST_F(HuntFiles, ShardsMergeByKindInAnyOrder) {
     wrong += summary["disagreements"].get<std::uint64_t>();
     units += told["units"].get<std::uint64_t>();
   }
-  EXPECT_LT(kinds.size(), new_kinds);  // several shards found the same kinds
+  EXPECT_LT(kinds.size(), new_kinds);  // because several shards found the same kinds
 
   const Outcome merged = merge({parts, root_ / "merged", false});
   EXPECT_TRUE(merged.complete);
@@ -366,7 +366,7 @@ TEST_F(HuntFiles, ShardsMergeByKindInAnyOrder) {
   write_whole(parts[1] / "hunt/000001.round", own);
   std::ofstream(parts[1] / "hunt/000001.round", std::ios::app) << "x";
   EXPECT_TRUE(names(refusal({parts, root_ / "none", false}), {"part-2/hunt", "1667", "1411", "--shard 2/3"}));
-  run_shard("part-2", {2, 3});  // the same round again
+  run_shard("part-2", {2, 3});  // runs the same round again
   merge({parts, root_ / "repaired", false});
   expect_same_hunt("merged", "repaired");
   EXPECT_THROW(run("merged", 1), UsageError);

@@ -95,7 +95,7 @@ void expect_rounds_told(const StoreSpec& hunt) {
         cannot("use", rounds_folder(hunt.directory), std::string("a round is missing or damaged") + again));
   if (read_whole(hunt.directory / "hunt.json") != found.told().dump(1) + "\n")
     throw std::runtime_error(
-        cannot("use", hunt.directory / "hunt.json", std::string("it does not tell of the rounds beside it") + again));
+        cannot("use", hunt.directory / "hunt.json", std::string("it does not match the rounds beside it") + again));
 }
 
 }  // namespace graze::fuzz

@@ -23,7 +23,7 @@ void store(Vec3<Real>& vertex, const Vec& v) {
   vertex = {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
 }
 
-// The two triangles, in either order.
+// The two triangles in either order; only `own` may change.
 template <class Real>
 struct Sides {
   Vec3<Real>* own;
@@ -47,7 +47,7 @@ void bring(Vec3<Real>* triangle, std::uint32_t vertex, const Vec& to, bool alone
   store(triangle[vertex], to);
 }
 
-// A place on a segment; often an end or a simple fraction.
+// A position on a segment, or sometimes beyond its ends; often an end or a simple fraction.
 template <class Draws>
 double draw_share(Draws& draws) {
   constexpr double kShares[] = {0, 1, 0.5, 0.25, 0.75};
@@ -99,7 +99,7 @@ Vec onto_plane(const Vec& point, const Vec3<Real>* plane, bool along_axis) {
 template <class Real>
 void scale(BasicPair<Real>& pair, strata::Draws& draws) {
   constexpr int kFar = sizeof(Real) == sizeof(float) ? 60 : 500;
-  const std::uint32_t what = draws.below(6);  // 0: both, 1: a, 2: b, from 3 on: an axis
+  const std::uint32_t what = draws.below(6);  // 0: both triangles, 1: a, 2: b, 3 to 5: an axis
   const Real factor = static_cast<Real>(strata::power_of_two(draws.coin() ? draws.integer(4) : draws.integer(kFar)));
   for (int i = 0; i < kCoordinates; ++i) {
     const bool meant =
@@ -118,7 +118,7 @@ double largest_of(const BasicPair<Real>& pair) {
 
 template <class Draws>
 void move_both(DrawnPair<Draws>& pair, Draws& draws) {
-  if (draws.coin()) {  // a vertex to the origin
+  if (draws.coin()) {  // moves a vertex to the origin
     const std::uint32_t vertex = draws.below(6);
     const Vec by = wide(vertex < 3 ? pair.a[vertex] : pair.b[vertex - 3]) * -1.0;
     shift(pair.a, by);
@@ -175,7 +175,7 @@ double edge_length(const Vec3<Real>& u, const Vec3<Real>& v) {
 
 template <class Real>
 bool has_size_of(const strata::Scene& scene, const Vec3<Real> (&t)[3]) {
-  constexpr double kRoom = 1 + 0x1p-20;  // for the rounding of coordinates and of this computation
+  constexpr double kRoom = 1 + 0x1p-20;  // allows for the rounding of coordinates and of this computation
   const double longest = std::max({edge_length(t[0], t[1]), edge_length(t[1], t[2]), edge_length(t[2], t[0])});
   if (longest > scene.edges.at[strata::kQuantiles - 1] * kRoom) return false;
   const Vec normal = cross(wide(t[1]) - wide(t[0]), wide(t[2]) - wide(t[0]));
@@ -277,7 +277,7 @@ template <class Draws>
 DrawnPair<Draws> next_pair(const Drawn& drawn, const DrawnPair<Draws>& pair, const DrawnPair<Draws>* other,
                            Draws& draws, Mutation& mutation) {
   for (int attempt = 0; attempt < 4; ++attempt) {
-    // If libFuzzer offers a second pair, it wants a crossing.
+    // If libFuzzer offers a second pair, it asks for a crossing.
     mutation = other ? Mutation::crossed : static_cast<Mutation>(draws.below(kMutationCount - 1));
     if (mutation == Mutation::fresh) break;
     DrawnPair<Draws> result = mutated(mutation, pair, other ? *other : pair, draws);

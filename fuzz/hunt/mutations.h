@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Geometric changes of a pair, which guided search tries on the pairs that it keeps.
+// Geometric changes to a pair. Guided search tries them on the pairs that it keeps.
 #pragma once
 
 #include <array>
@@ -15,28 +15,28 @@
 namespace graze::fuzz {
 
 enum class Mutation : std::uint8_t {
-  fresh,        // another pair of the strata, or of the scene
-  ulps,         // one coordinate, or one vertex, by a few ulps
-  onto_vertex,  // a vertex onto one of the other triangle, alone or with its triangle
-  onto_edge,    // a vertex, or a point of an edge, onto an edge of the other triangle
-  onto_plane,   // a vertex onto the other triangle's plane
-  coplanar,     // a triangle into the other's plane
-  collinear,    // a vertex onto the line through the two others
-  shared_edge,  // an edge becomes one of the other triangle's
-  scaled,       // both triangles, one of them, or one axis, by a power of two
-  moved,        // both triangles away from the origin, or back
-  on_grid,      // all coordinates onto a coarser grid
-  mirrored,     // a triangle becomes the other's mirror image
-  reordered,    // another of the 72 orders
-  crossed,      // one triangle of each of two pairs
+  fresh,        // draws another pair from the strata or the scene
+  ulps,         // moves one coordinate, or one vertex, by a few ulps
+  onto_vertex,  // moves a vertex onto one of the other triangle, alone or with its triangle
+  onto_edge,    // moves a vertex, or a point on an edge, onto an edge of the other triangle
+  onto_plane,   // moves a vertex onto the other triangle's plane
+  coplanar,     // moves a triangle into the other's plane
+  collinear,    // moves a vertex onto the line through the two others
+  shared_edge,  // makes an edge equal to one of the other triangle's
+  scaled,       // scales both triangles, one of them, or one axis by a power of two
+  moved,        // moves both triangles away from the origin, or back
+  on_grid,      // rounds all coordinates to a coarser grid
+  mirrored,     // makes a triangle the other's mirror image
+  reordered,    // chooses another of the 72 vertex orders
+  crossed,      // takes one triangle from each of two pairs
 };
 inline constexpr std::array<std::string_view, 14> kMutationIds{
     "fresh",       "ulps",   "onto_vertex", "onto_edge", "onto_plane", "coplanar",  "collinear",
     "shared_edge", "scaled", "moved",       "on_grid",   "mirrored",   "reordered", "crossed"};
 inline constexpr int kMutationCount = static_cast<int>(kMutationIds.size());
 
-// The sources that pairs are drawn from, all of one coordinate type, and, in a scene, the envelope for that type, in
-// which pairs must stay.
+// The sources from which pairs are drawn, all of one coordinate type. In a scene, also the envelope for that type:
+// pairs must stay within it.
 struct Drawn {
   std::vector<strata::PairSource> sources;
   const strata::Scene* scene = nullptr;
@@ -48,22 +48,22 @@ struct Drawn {
 template <class Draws>
 using DrawnPair = BasicPair<typename Draws::Real>;
 
-// Applies the mutation to the pair; `crossed` takes triangles from `other`. The result is not finite if numbers
-// overflow.
+// Applies the mutation to the pair; `crossed` takes a triangle from `other`. If numbers overflow, the result is not
+// finite.
 template <class Draws>
 DrawnPair<Draws> mutated(Mutation mutation, const DrawnPair<Draws>& pair, const DrawnPair<Draws>& other, Draws& draws);
 
-// A pair of one of the sources.
+// A pair from one of the sources.
 template <class Draws>
 DrawnPair<Draws> fresh_pair(const Drawn& drawn, Draws& draws);
 
-// Rounds the pair into the scene: onto its grid, within its extent.
-// Returns: false if a triangle is larger, or a proper triangle is thinner, than the scene allows.
+// Rounds the pair into the scene: to its grid, and into its extent.
+// Returns: false if a triangle is larger than the scene allows, or thinner without being degenerate.
 template <class Real>
 bool fit(const strata::Scene& scene, BasicPair<Real>& pair);
 
-// Applies one mutation, and stores which one in `mutation`. An attempt fails if the result is not finite, does not fit
-// the scene, or equals the pair. After four failed attempts it draws a fresh pair. `other`: null if no pair is
+// Applies one mutation, and stores in `mutation` which one. An attempt fails if the result is not finite, does not fit
+// the scene, or equals the pair. After four failed attempts a fresh pair is drawn. `other`: null if no pair is
 // available for crossing.
 template <class Draws>
 DrawnPair<Draws> next_pair(const Drawn& drawn, const DrawnPair<Draws>& pair, const DrawnPair<Draws>* other,

@@ -21,8 +21,8 @@
 #ifdef GRAZE_LIBFUZZER
 extern "C" int LLVMFuzzerRunDriver(int* count, char*** arguments, int (*one)(const std::uint8_t*, std::size_t));
 
-// libFuzzer finds these counters by their section's name. A pair is interesting if it sets a counter that no pair
-// before set.
+// libFuzzer finds these counters by their section's name. A pair is interesting if it sets a counter that no earlier
+// pair set.
 __attribute__((used, section("__libfuzzer_extra_counters"))) static std::uint8_t extra_counters[graze::fuzz::kFeatures];
 #else
 static std::uint8_t extra_counters[graze::fuzz::kFeatures];
@@ -31,13 +31,13 @@ static std::uint8_t extra_counters[graze::fuzz::kFeatures];
 namespace graze::fuzz {
 namespace {
 
-constexpr std::uint32_t kMutations = 0x301;  // stands in place of a stratum's number in draws
+constexpr std::uint32_t kMutations = 0x301;  // used in draws instead of a stratum's number
 
-// Ends this process without the exit handlers of others, because it is a copy of a process that continues.
+// Ends this process without running exit handlers, because it is a copy of a process that continues.
 [[noreturn]] void leave(int status) { _exit(status); }
 
-// Closes all descriptors but the streams and those of foreign code, which new processes load. An open one would keep
-// the folder's lock after the parent process has ended.
+// Closes all descriptors except the standard streams and those of the code that new processes load. An open
+// descriptor would keep the folder locked after the parent process has ended.
 void close_all_but_code(const SelectedLanes& under_test) {
   std::vector<int> kept;
   for (const Lane* lane : under_test.lanes) {
@@ -59,7 +59,7 @@ class Round {
         file_(std::move(file)),
         counts_(no_counts(*task.campaign)),
         feedback_(task.campaign->under_test->lanes) {
-    // The foreign code's processes belong to the parent and answer only the parent, so start new ones.
+    // The foreign code's processes belong to the parent and answer only the parent, so new ones are started.
     under_test_.lanes = task.campaign->under_test->lanes;
     for (std::size_t l = 0; l < under_test_.lanes.size(); ++l) {
       under_test_.on_host.push_back(task.campaign->under_test->on_host[l]);
@@ -77,7 +77,7 @@ class Round {
     }
   }
 
-  // Returns libFuzzer's next input: first the units of the corpus, then mutations of the pairs that it kept.
+  // Writes libFuzzer's next input and returns its size: first the corpus's units, then mutations of kept pairs.
   std::size_t next(std::uint8_t* data, std::size_t size, const std::uint8_t* other_data, std::uint32_t seed) {
     given_ = nullptr;
     const auto put = [data](const auto& pair) {
@@ -106,7 +106,7 @@ class Round {
 
   void one(const std::uint8_t* data, std::size_t size) {
     const std::optional<AnyPair> pair = pair_from(data, size);
-    if (!pair) {  // libFuzzer's own first input
+    if (!pair) {  // libFuzzer's initial input
       extra_counters[0] = 1;
       return;
     }
@@ -131,7 +131,7 @@ class Round {
     pairs_.push_back({*pair, mutation_});
   }
 
-  // This process ends here, whether or not something throws.
+  // The process ends here even if writing the error fails.
   [[noreturn]] void fail(const char* what, bool apart) {
     try {
       write_whole(file_, error_bytes(what, apart));
@@ -167,12 +167,12 @@ class Round {
   std::vector<Unit> units_;
   std::array<MutationCounts, kMutationCount> mutations_{};
   std::size_t next_unit_ = 0;
-  const Unit* given_ = nullptr;  // the corpus unit that is the next input
+  const Unit* given_ = nullptr;  // the corpus unit that is the next input, if it is one
   Mutation mutation_ = Mutation::fresh;
   std::uint64_t turn_ = 0;
 };
 
-Round* current = nullptr;  // libFuzzer calls functions, not objects
+Round* current = nullptr;  // a global, because libFuzzer calls functions
 
 // An exception must not pass through libFuzzer, which is built without exceptions.
 template <class Act>
@@ -194,7 +194,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   return guarded([&] { return current->next(data, size, nullptr, seed); });
 }
 
-// Returns 0 to skip the crossing. One mutation in fourteen is a crossing, like every other kind.
+// Returns 0 to skip the crossing. One mutation in fourteen is a crossing, as for every other kind.
 extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* data, std::size_t size, const std::uint8_t* other,
                                                  std::size_t other_size, std::uint8_t* out, std::size_t,
                                                  unsigned seed) {
@@ -210,20 +210,20 @@ bool has_libfuzzer() { return true; }
 pid_t start_round(const RoundTask& task, const std::filesystem::path& file) {
   const pid_t parent = getpid(), child = fork();
   if (child < 0)
-    throw std::runtime_error(fmt::format("cannot start a process for a round of the hunt: {}", std::strerror(errno)));
+    throw std::runtime_error(fmt::format("cannot start the process of a hunt's round: {}", std::strerror(errno)));
   if (child > 0) return child;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) leave(1);
   close_all_but_code(*task.campaign->under_test);
   const int nowhere = open("/dev/null", O_RDWR);
   for (const int stream : {0, 1, 2}) dup2(nowhere, stream);
-  for (const int number : {SIGINT, SIGTERM}) std::signal(number, SIG_IGN);  // the parent ends this
+  for (const int number : {SIGINT, SIGTERM}) std::signal(number, SIG_IGN);  // the parent ends this process
   Round round(task, file);
   current = &round;
   // The seed is never 0, because libFuzzer would use the time of day instead.
   const std::uint64_t seed = fnv1a(fmt::format("{} {}", task.campaign->seed, task.range.first)) % 0xffffffffu + 1;
   const std::string length = fmt::format("-max_len={}", round.pair_size()), seeded = fmt::format("-seed={}", seed);
-  // The entropic schedule is off: with a hundred features a pair, it costs more here than the lanes and the oracle.
+  // The entropic schedule is off: with a hundred features per pair, it would cost more than the lanes and the oracle.
   std::vector<const char*> words{"graze",
                                  length.c_str(),
                                  seeded.c_str(),
@@ -270,8 +270,7 @@ pid_t start_round(const RoundTask&, const std::filesystem::path&) { throw std::l
 
 RoundResult round_result(const RoundTask& task, const std::filesystem::path& file) {
   const std::string bytes = read_whole(file);
-  if (bytes.empty())
-    throw std::runtime_error(cannot("read", file, "the process of this round of the hunt ended without a result"));
+  if (bytes.empty()) throw std::runtime_error(cannot("read", file, "the process of this round ended without a result"));
   return parse_result(bytes, task);
 }
 

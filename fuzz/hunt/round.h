@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A round of guided search: libFuzzer, in a process of its own, changes pairs of a corpus and keeps those that show
+// A round of guided search: libFuzzer, in a separate process, changes pairs of a corpus and keeps those that show
 // something new. The result depends only on the task.
 #pragma once
 
@@ -23,9 +23,9 @@ struct Unit {
 };
 
 struct MutationCounts {
-  std::uint64_t pairs = 0;          // pairs whose last mutation was this one, of up to five in a row
-  std::uint64_t disagreements = 0;  // of these pairs
-  std::uint64_t units = 0;          // of these pairs; new within their round
+  std::uint64_t pairs = 0;          // pairs made with this mutation as the last of up to five in a row
+  std::uint64_t disagreements = 0;  // how many of them are disagreements
+  std::uint64_t units = 0;          // how many of them became units: new within their round
 };
 
 struct FoundPair {
@@ -52,11 +52,11 @@ struct RoundResult {
 // Whether this build has libFuzzer.
 bool has_libfuzzer();
 
-// Starts a round in a new process, which writes its result or its error to the file.
+// Starts a round in a new process, which writes its result or error to the file.
 // Requires: has_libfuzzer().   Throws: std::runtime_error.
 pid_t start_round(const RoundTask& task, const std::filesystem::path& file);
 
-// Reads the result that the process wrote.   Throws: OracleMismatch, std::runtime_error, if the process failed.
+// Reads the result that the process wrote.   Throws: OracleMismatch or std::runtime_error if the process failed.
 RoundResult round_result(const RoundTask& task, const std::filesystem::path& file);
 
 }  // namespace graze::fuzz

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rounds as bytes (CBOR, with a checksum): the result that a round's process passes on, and the part that a hunt keeps.
+// Rounds as bytes (CBOR with a checksum): the result that a round's process passes on, and the part that a hunt keeps.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace graze::fuzz {
 
-// The pair of the type that has this size; nothing for other sizes.
+// The pair of floats or doubles that has this size; nothing for other sizes.
 std::optional<AnyPair> pair_from(const void* bytes, std::size_t size);
 
 std::string error_bytes(const std::string& what, bool apart);
@@ -19,14 +19,14 @@ bool are_of_result(const std::string& bytes);  // whether result_bytes or error_
 // Throws: the error that error_bytes encoded; Damaged.
 RoundResult parse_result(const std::string& bytes, const RoundTask& task);
 
-// A kind of failure, and the pair on which it was found first.
+// A kind of failure, and the pair on which it was first found.
 struct NewKind {
   std::string key;  // see kinds.h
   std::uint64_t index = 0;
   Mutation mutation = Mutation::fresh;
 };
 
-// The part of a round that is kept. Its counts are in the campaign's store instead.
+// The part of a round that is kept in a file. Its counts are in the campaign's store.
 struct KeptRound {
   std::uint64_t first = 0, pairs = 0;
   std::vector<Unit> units;                  // pairs that still showed something new when rounds were combined

@@ -27,16 +27,16 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::size_t kBatchPairs = 1 << 16;  // a fresh process for each lane and batch that has failures
+constexpr std::size_t kBatchPairs = 1 << 16;  // each lane with failures in a batch costs a fresh process
 constexpr std::size_t kBlockPairs = 1024;
-constexpr std::uint64_t kOrderSample = 950;  // pairs asked in all orders, shared evenly by the strata
-constexpr std::uint64_t kOrderShare = 20;    // at most one in so many of a lane's pairs
+constexpr std::uint64_t kOrderSample = 950;  // pairs decided in all orders, shared evenly by the strata
+constexpr std::uint64_t kOrderShare = 20;    // but at most one in 20 of a lane's pairs
 
 template <class Real>
 Relation true_of(const BasicPair<Real>& pair) {
   const Relation found = relation_of(pair);
   if (found.verdict != oracle::cgal_verdict(pair))
-    throw oracle::OracleMismatch(pair_text(pair) + ": CGAL and the exact decision of core differ");
+    throw oracle::OracleMismatch(pair_text(pair) + ": CGAL and the exact decision differ");
   return found;
 }
 
@@ -45,16 +45,16 @@ struct Counting {
   LeagueRow row;
   const Lane* fused;  // its cpu-fma counterpart; null for none
   const DecideBlock* decide;
-  std::uint64_t of_source;  // it takes so many pairs of each source, the first ones
+  std::uint64_t of_source;  // how many pairs of each source the lane gets: the first ones
   Smallest smallest;
 
-  // Checks with GMP the truth of a pair on which the lane is wrong.
+  // Confirms with GMP the truth of a pair on which the lane is wrong.
   template <class Real>
   void confirm(const BasicPair<Real>& pair, const Relation& truth) const {
     const Contact contact = oracle::gmp_contact(pair);
     if (contact != truth.contact) {
-      throw oracle::OracleMismatch(fmt::format("{}: the exact decision of core says contact {}, GMP {}",
-                                               pair_text(pair), name(truth.contact), name(contact)));
+      throw oracle::OracleMismatch(fmt::format("{}: the exact decision says contact {}, GMP {}", pair_text(pair),
+                                               name(truth.contact), name(contact)));
     }
   }
 
@@ -103,7 +103,7 @@ struct Counting {
     }
   }
 
-  // Whether the verdict breaks an invariant on an image within the lane's contract. The orders are counted separately.
+  // Whether the verdict breaks an invariant on an image within the lane's contract. Orders are counted separately.
   template <class Real>
   bool breaks_an_invariant(const BasicPair<Real>& pair, Verdict of_pair) const {
     std::vector<BasicPair<Real>> all;
@@ -124,8 +124,8 @@ struct Counting {
     return false;
   }
 
-  // Counts the pairs on which the verdict changes with the order, or breaks another invariant. Pairs outside the lane's
-  // contract are skipped.
+  // Counts pairs on which the verdict changes with the order, and pairs on which it breaks another invariant. Pairs
+  // outside the lane's contract are skipped.
   template <class Real>
   void count_orders(std::span<const BasicPair<Real>> pairs, const std::vector<Relation>& truths) {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -206,7 +206,7 @@ League run_league(const SelectedLanes& under_test, std::vector<strata::PairSourc
   League league;
   league.seed = seed;
   bool stopped = false;
-  // The pairs from `begin` on of a source that has so many.
+  // Counts these pairs, of which the first has the index `begin` in a source of `of_source` pairs.
   const auto count = [&](const auto& pairs, std::uint64_t begin, std::uint64_t of_source, std::size_t group) {
     const std::vector<Relation> truths = truths_of(pairs);
     tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t l) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A league of planted subjects, whose every number is known: each is counted here a second time, with the oracle alone.
+// A league of planted subjects. Every number in it is known, because it is counted again here with only the oracle.
 #include "fuzz/league/league.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ PLANT(narrow, GRAZE_OUTSIDE_DEGENERATE);
 PLANT(one_sided, 0);
 )";
 
-constexpr std::uint64_t kSeed = 3, kPairs = 3000, kOrders = 50;  // of each source's 1,000 pairs one in 20 in all orders
+constexpr std::uint64_t kSeed = 3, kPairs = 3000, kOrders = 50;  // one in 20 of each source's 1,000 pairs in all orders
 constexpr const char* kNames[] = {"truth", "blind", "dies", "narrow", "one_sided"};
 
 std::vector<strata::PairSource> sources(PairTypes types = PairTypes::f32) {
@@ -87,7 +87,7 @@ struct Planted : testing::Test {
   static void expect_independent_counts(const League& found, PairTypes types);
 };
 
-// The verdict that a planted subject must give, by the oracle.
+// The verdict that a planted subject must give, according to the oracle.
 template <class Real>
 Verdict planted(std::string_view name, const BasicPair<Real>& pair) {
   const Hulls hulls = oracle::hulls(pair);
@@ -189,7 +189,7 @@ TEST_F(Planted, OnDoublesToo) {
 
 TEST_F(Planted, FlipsAreThePairsOnWhichContractionChangesTheVerdict) {
   const Lane *cpu = find_lane("moller_1997/f32/cpu"), *fused = find_lane("moller_1997/f32/cpu-fma");
-  if (!runs_on_this_cpu(*fused)) GTEST_SKIP() << "no FMA instructions";
+  if (!runs_on_this_cpu(*fused)) GTEST_SKIP() << "this processor has no FMA instructions";
   std::uint64_t flips = 0;
   for (const strata::PairSource& source : sources()) {
     for (std::uint64_t i = 0; i < source.pairs; ++i)

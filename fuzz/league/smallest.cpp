@@ -18,7 +18,7 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::size_t kMostMovedHere = 150'000;  // there may be hundreds; where a pair dies, each costs a process
+constexpr std::size_t kMostMovedHere = 150'000;  // there may be hundreds of failures
 
 // A crash costs a new process, so a lane that dies gets fewer moves. A timeout costs its whole limit, and an unstable
 // verdict may not occur again, so neither is minimised.
@@ -52,12 +52,12 @@ LeagueFailure minimised(const Candidate& candidate) {
     result.minimised = true;
   } catch (const oracle::OracleMismatch&) {
     throw;
-  } catch (const std::runtime_error&) {  // its failure comes and goes: the pair stays as it was met
+  } catch (const std::runtime_error&) {  // the failure comes and goes, so the original pair is kept
   }
   return result;
 }
 
-// Whether the lane fails on this pair as on the failure's own pair: the same shape and verdict, within its contract.
+// Whether the lane fails on this pair like on the failure's own pair: same shape and verdict, within its contract.
 bool fails_so(const LeagueFailure& failure, const AnyPair& pair) {
   const Verdict verdict = visit(pair, [&](const auto& own) { return decide_one(failure.lane->decide, own); });
   const oracle::Truth truth = oracle::truth(pair);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The league's smallest failures: for each subject, shape and wrong verdict, one minimised pair. A process that has
-// seen no other pair repeats each failure.
+// The league's smallest failures: one minimised pair for each subject, shape and wrong verdict. Each failure is
+// repeated in a process that has seen no other pair.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@
 
 namespace graze::fuzz {
 
-// The lane's verdicts in a process that has seen no pair before these.
+// The lane's verdicts in a process that has seen no earlier pair.
 template <class Real>
 std::vector<Verdict> verdicts_in_fresh_process(const Lane& lane, const std::vector<BasicPair<Real>>& pairs);
 
@@ -23,7 +23,7 @@ struct Candidate {
   std::string shape;
   Verdict says;  // wrong
   AnyPair pair;
-  bool lane_dies;  // it crashed or did not return on some pair of the league
+  bool lane_dies;  // the lane crashed or did not return on some pair of the league
 };
 
 // Keeps one lane's simplest pair of each shape and wrong verdict. The order in which pairs are added does not matter.
@@ -36,9 +36,9 @@ class Smallest {
   std::map<std::pair<std::string, Verdict>, std::pair<Simplicity, AnyPair>> pairs_;
 };
 
-// Minimises the first candidate of each subject, shape and verdict. If another subject's pair is simpler and fails in
-// the same way here, it is taken instead. Candidates are in the order of lanes. Returns: the failures that a fresh
-// process repeats. not_repeated: the number of all others. Throws: OracleMismatch.
+// Minimises the first candidate of each subject, shape and verdict. If another subject's pair is simpler and this lane
+// fails on it in the same way, that pair is used instead. Candidates are in the order of lanes. Returns: the failures
+// that a fresh process repeats. not_repeated: receives the number of the others. Throws: OracleMismatch.
 std::vector<LeagueFailure> smallest_failures(const std::vector<Candidate>& candidates, std::uint64_t& not_repeated);
 
 }  // namespace graze::fuzz

@@ -24,7 +24,7 @@
 namespace graze::fuzz {
 namespace {
 
-// A signature's case file: its pairs, and the reasons why lanes are wrong on the pair that is shown.
+// A signature's case file: its pairs, and the reasons why lanes are wrong on the pair that users see.
 struct Case {
   analysis::Signature signature;
   std::string file;
@@ -45,7 +45,7 @@ Case read_case(const SelectedLanes& under_test, const Json& spec, const std::fil
                               row.at("key").dump());
   Case c{*signature, row.at("case"), row.at("count"), {}, {}};
   c.entries = checked_cases(under_test, spec, directory, row);
-  for (corpus::Entry& entry : c.entries) entry.written.clear();  // there are many
+  for (corpus::Entry& entry : c.entries) entry.written.clear();  // saves memory
   c.reasons = reasons_of(under_test, c.signature.subject, c.shown_pair(), truth_of(c.shown()));
   return c;
 }
@@ -54,9 +54,9 @@ struct Kind {
   std::string key, subject, cause, line;
   std::string_view shape;
   std::uint64_t pairs = 0, intersecting = 0;  // intersecting: those on which a wrong verdict is a false negative
-  std::array<std::uint64_t, 2> settled{};     // yes, of
+  std::array<std::uint64_t, 2> settled{};     // settled reasons, out of all audited ones
 
-  bool is_rarer(const Case& c) const {  // whether fewer of its pairs have the case's truth than the other one
+  bool is_rarer(const Case& c) const {  // whether the case's truth is the rarer one among the kind's pairs
     return c.intersects() ? 2 * intersecting < pairs : 2 * intersecting > pairs;
   }
   std::vector<std::size_t> places;
@@ -91,9 +91,9 @@ bool is_of(const Kind& kind, const Case& c, const LaneReason& reason) {
   return kind_key(c.signature.subject, reason, shape_name(c.signature)) == kind.key;
 }
 
-// The index of the case whose pair shows the kind best. Prefers a pair on which no lane is wrong for another reason,
-// then one with the kind's commoner error, then one with settled reasons, then one that no earlier kind shows, and then
-// the simplest.
+// The index of the case whose pair shows the kind best. In order, it prefers a pair on which no lane is wrong for
+// another reason, one with the kind's commoner error, one with settled reasons, one that no earlier kind shows, and the
+// simplest pair.
 std::size_t simplest_of(const Kind& kind, const std::vector<Case>& cases, std::set<std::string>& shown) {
   const auto rank = [&](std::size_t place) {
     const Case& c = cases[place];
@@ -115,11 +115,11 @@ double ulps_of(const corpus::Entry& entry) {
   return text.empty() ? 0 : std::abs(std::strtod(text.c_str(), nullptr));
 }
 
-// The pair as users see it, with all lanes' verdicts, and the reasons why lanes of the kind are wrong.
+// The pair that users see, with all lanes' verdicts and the reasons why lanes of the kind are wrong.
 Json simplest_pair(const SelectedLanes& under_test, const Kind& kind, const Case& c) {
   std::vector<const Lane*> apart;
   const std::vector<Verdict> verdicts = decide(under_test, c.shown_pair(), apart);
-  if (!apart.empty()) throw std::runtime_error(apart.front()->id + ": the verdicts of device and twin differ");
+  if (!apart.empty()) throw std::runtime_error(apart.front()->id + ": the verdicts of the device and the twin differ");
   Json result = {{"case", c.file},         {"pair", pair_text(c.shown_pair())}, {"from", corpus::origin_of(c.shown())},
                  {"lanes", Json::array()}, {"verdicts", Json::object()},        {"sentences", Json::array()}};
   std::vector<const Lane*> own, others;
@@ -138,7 +138,7 @@ Json simplest_pair(const SelectedLanes& under_test, const Kind& kind, const Case
   tell(own);
   if (sentences.empty())
     sentences.push_back(fmt::format(
-        "{} failed on this pair, but not when it was asked again: its verdicts change from one call to the next.",
+        "{} failed on this pair, but not when it was run again: its verdicts change from one call to the next.",
         kind.subject));
   tell(others);
   return result;
@@ -160,7 +160,8 @@ Json worst_pair(const SelectedLanes& under_test, const Kind& kind, const std::ve
                    [](const Candidate& l, const Candidate& r) { return l.ulps > r.ulps; });
   candidates.resize(std::min(candidates.size(), kMostLookedAt));
   candidates.push_back({&simplest, &simplest.shown(), ulps_of(simplest.shown())});
-  // The simplest was of the kind before; code whose verdicts change may be right about it now.
+  // The last candidate, the simplest pair, was of the kind before. If verdicts change, it may no longer be, so it is
+  // not examined again.
   const auto worst = std::find_if(candidates.begin(), candidates.end() - 1, [&](const Candidate& candidate) {
     const std::vector<LaneReason> reasons =
         reasons_of(under_test, kind.subject, corpus::pair_of(*candidate.entry), truth_of(*candidate.entry));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kinds of failure group a campaign's signatures. A kind is a subject, a cause, the source line of the deciding
+// Kinds of failure group a campaign's signatures. A kind has a subject, a cause, the source line of the deciding
 // comparison, and a shape: degenerate, contained, coplanar or general. A signature whose lanes are wrong for different
 // reasons belongs to several kinds.
 #pragma once
@@ -21,27 +21,27 @@ namespace graze::fuzz {
 struct LaneReason {
   const Lane* lane;
   std::string cause;
-  std::string line;  // "core/algorithms/moller_1997.h:117"; empty if no comparison is to blame, or none is known
+  std::string line;  // "core/algorithms/moller_1997.h:117"; empty if no comparison is to blame or known
   bool settled;
-  bool audited;  // the cause could be checked: the lane's computation is known, or experiments on foreign code decided
+  bool audited;  // the cause could be checked: the computation is known, or experiments on foreign code decided
 };
 
-// Returns the reasons of the subject's lanes under test that are wrong on the pair. A lane whose run is not known gets
-// the reason of its source with every operation rounded as written, if that is wrong in the same way.
+// Returns the reasons of those of the subject's lanes under test that are wrong on the pair. If a lane's computation is
+// not known, its source with every operation rounded as written gives the reason, if that is wrong in the same way.
 std::vector<LaneReason> reasons_of(const SelectedLanes& under_test, std::string_view subject, const AnyPair& pair,
                                    Verdict truth);
 
-// The most kinds that are listed, put on cards, or mapped. There may be hundreds, most of them with a few pairs.
+// The most kinds that are listed, shown on cards, or mapped. There may be hundreds, most of them with a few pairs.
 inline constexpr std::size_t kMostShown = 40;
 
-// The truth as a campaign's case records it.
+// The truth that a campaign's case records.
 Verdict truth_of(const corpus::Entry& entry);
 
-// The 18 hex floats in the format of a file of pairs, in their own coordinate type.
+// The pair's 18 hex floats, in the format of a file of pairs.
 std::string pair_text(const AnyPair& pair);
 
-// "degenerate" if a triangle is a segment or a point; "contained" if one triangle lies in the other, in one plane;
-// otherwise "coplanar" or "general".
+// "degenerate" if a triangle is a segment or a point; "contained" if the triangles are coplanar and one lies in the
+// other; otherwise "coplanar" or "general".
 std::string_view shape_name(const Hulls& hulls, Nesting nesting = Nesting::none);
 std::string_view shape_name(const analysis::Signature& signature);
 
@@ -53,11 +53,11 @@ std::string kind_key(std::string_view subject, const LaneReason& reason, std::st
 //  "settled": [yes, of], "strata": {id: kept pairs}, "margins": {bucket: pairs}, "places": [in summary["signatures"]],
 //  "simplest": {"case", "pair", "from", "lanes": [id], "verdicts": {id: verdict}, "sentences": [text]},
 //  "worst": {"case", "pair", "from", "margin_ulps"}}
-// `pairs` counts the pairs of its signatures; one pair stands for each signature: the minimised one, or else the first
-// kept one. `intersecting` counts those that intersect: their wrong verdicts are false negatives. The simplest pair is
-// of the commoner error. If possible, every lane that is wrong on the simplest pair belongs to the kind. The worst pair
-// has the largest margin among the kept pairs of the kind that were examined (at most kMostLookedAt). Returns: the
-// kinds, most frequent first, ties by key. Nothing once `stop`, which is called now and then, returns true.
+// `pairs` counts the pairs of its signatures. One pair represents each signature: the minimised one, or else the first
+// kept one. `intersecting` counts the pairs that intersect; their wrong verdicts are false negatives. The simplest pair
+// shows the commoner error if possible, and every lane that is wrong on it belongs to the kind if possible. The worst
+// pair has the largest margin among the examined kept pairs of the kind (at most kMostLookedAt). Returns: the kinds,
+// most frequent first, ties by key; nothing once `stop`, which is called from time to time, returns true.
 // Deterministic for any number of threads. Throws: FormatError; std::runtime_error if a device and its twin differ.
 inline constexpr std::size_t kMostLookedAt = 40;
 Json find_kinds(
@@ -65,19 +65,19 @@ Json find_kinds(
     const std::function<bool()>& stop = [] { return false; });
 
 // Reads the kinds from failures.json; null if the file does not exist, or if the summary or a case has changed since.
-// Everything is compared with the summary and the cases, except causes, lines, sentences, and verdicts of lanes of
-// other subjects.
+// Everything is compared with the summary and the cases, except for causes, lines, sentences, and the verdicts of other
+// subjects' lanes.
 // Throws: FormatError, with the command that writes the file again.
 Json read_kinds(const std::filesystem::path& directory);
-// Reads the kinds, or finds and stores the kinds of the campaign's lanes if there are none.
-// Throws: as find_kinds; UsageError for lanes that this build does not have.
+// Reads the kinds; if there are none, finds and stores the kinds of the campaign's lanes.
+// Throws: what find_kinds throws; UsageError for lanes that this build does not have.
 Json kinds_of(
     const std::filesystem::path& directory, const Json& summary,
     const std::function<bool()>& stop = [] { return false; });
 void write_kinds(const std::filesystem::path& directory, const SelectedLanes& under_test, const Json& kinds);
 
-// How many of the summary's signatures belong to no kind: their lanes were not examined, run only on a device, or are
-// foreign code that did not fail again.
+// How many of the summary's signatures belong to no kind, because their lanes were not examined, run only on a device,
+// or are foreign code that did not fail again.
 std::size_t signatures_without_kind(const Json& summary, const Json& kinds);
 
 }  // namespace graze::fuzz

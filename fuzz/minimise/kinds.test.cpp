@@ -77,7 +77,7 @@ TEST_F(Kinds, EverySignatureHasOneAndPairsAddUp) {
   EXPECT_EQ(places.size(), summary_["signatures"].size());
 }
 
-// The title is true of the pairs shown: each named lane is wrong on them, for that cause, at that line.
+// A kind's key is true of its pairs: each named lane is wrong on them, for that cause and at that line.
 TEST_F(Kinds, TheirPairsAreOfTheKind) {
   for (const Json& kind : kinds_) {
     for (const char* which : {"simplest", "worst"}) {
@@ -135,7 +135,7 @@ TEST_F(Kinds, StoredOnesAreWhole) {
   fs::remove(directory_ / "failures.json");
 }
 
-// Everything else that follows from the summary and the cases is compared with them.
+// Everything that follows from the summary and the cases is compared with them.
 TEST_F(Kinds, StoredOnesAgreeWithTheCampaign) {
   const fs::path file = directory_ / "failures.json";
   write_kinds(directory_, under_test_, kinds_);
@@ -158,7 +158,7 @@ TEST_F(Kinds, StoredOnesAgreeWithTheCampaign) {
   const auto refused = [&](const char* place, const Json& value) {
     Json other = whole;
     other[Json::json_pointer(place)] = value;
-    EXPECT_NE(error_of(sealed(other).dump()), "") << place << " was taken as " << value;
+    EXPECT_NE(error_of(sealed(other).dump()), "") << place << " was accepted as " << value;
   };
   Json other_sentence = whole;
   other_sentence["kinds"][0]["simplest"]["sentences"][0] = "It is right.";
@@ -220,7 +220,7 @@ TEST_F(Kinds, StoredOnesAgreeWithTheCampaign) {
   fs::remove(file);
 }
 
-// Kinds found with only some lanes, or with none that runs here, do not hide the other failures.
+// Kinds found with only some lanes, or with lanes that do not run here, do not hide the other failures.
 TEST_F(Kinds, SignaturesWithoutAKindAreCounted) {
   EXPECT_EQ(signatures_without_kind(summary_, kinds_), 0u);
   EXPECT_EQ(signatures_without_kind(summary_, Json::array()), summary_["signatures"].size());

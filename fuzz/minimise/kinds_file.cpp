@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads and writes failures.json. On reading, it must agree with the summary and the cases beside it.
+// Reads and writes failures.json. When it is read, it must agree with the summary and the cases beside it.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// failures.json has an impossible entry; what() describes it.
+// Thrown if failures.json has an impossible entry, which what() describes.
 struct Impossible : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -37,7 +37,7 @@ void expect(bool possible, const std::string& found) {
   if (!possible) throw Impossible(found);
 }
 
-// A signature of the summary, and its case file. The first pair decides which kinds the signature belongs to.
+// A signature in the summary, and its case file. The first pair decides to which kinds the signature belongs.
 struct Case {
   std::string key, file;
   std::uint64_t pairs = 0;
@@ -53,7 +53,7 @@ Case read_case(const fs::path& directory, const Json& row) {
          {},
          corpus::read_pairs(case_file(directory, row), PairTypes::both)};
   if (c.entries.empty()) throw wrong_cases(directory, row, "it has no case");
-  for (corpus::Entry& entry : c.entries) entry.written.clear();  // there are many
+  for (corpus::Entry& entry : c.entries) entry.written.clear();  // saves memory
   const auto signature = analysis::parse_signature(c.key),
              of_first = analysis::parse_signature(corpus::text_of(c.entries.front(), "signature"));
   if (!signature || !of_first) throw wrong_cases(directory, row, "its first line has another signature");
@@ -62,11 +62,11 @@ Case read_case(const fs::path& directory, const Json& row) {
   return c;
 }
 
-// The data that kinds are compared with.
+// The data with which kinds are compared.
 struct Known {
   std::vector<Case> cases;          // by index in the summary
   std::set<std::string> lanes;      // lanes that were examined
-  std::map<std::string, bool> own;  // those that always have a reason where they are wrong; whether it is audited
+  std::map<std::string, bool> own;  // lanes that always have a reason when they are wrong; whether it is audited
 };
 
 Known known_of(const fs::path& directory, const Json& summary, const Json& lanes) {
@@ -155,10 +155,10 @@ void expect_lanes(const Known& known, const Json& kind) {
              own = kind.at("simplest").at("lanes").get<std::set<std::string>>();
   expect(all.size() == lanes.size() && !own.empty() && own.size() == kind["simplest"]["lanes"].size() &&
              std::includes(all.begin(), all.end(), own.begin(), own.end()),
-         "a kind without lanes, with a lane twice, or with others on its simplest pair");
+         "a kind without lanes, with a lane twice, or with other lanes on its simplest pair");
 }
 
-// Checks that the subject's own lanes have the verdicts of the case's first signature, and exact lanes the truth.
+// Checks that the subject's lanes have the verdicts of the case's first signature, and that exact lanes have the truth.
 void expect_verdicts(const Known& known, const Json& verdicts, const Case& c) {
   expect(verdicts.size() == known.lanes.size(), "verdicts that are not those of the examined lanes");
   const corpus::Entry& first = c.entries.front();
@@ -173,7 +173,7 @@ void expect_verdicts(const Known& known, const Json& verdicts, const Case& c) {
     const Lane* row = find_lane(id);
     const bool is_truth = row && analysis::is_never_wrong(*row, corpus::pair_of(first));
     expect((!told || analysis::mark(*verdict, truth_of(first)) == mark) && (!is_truth || *verdict == truth_of(first)),
-           "another verdict of " + id + " on " + corpus::origin_of(first));
+           "a different verdict of " + id + " on " + corpus::origin_of(first));
   }
 }
 
@@ -198,11 +198,11 @@ void expect_pairs(const Known& known, const Json& kind) {
                        const double ulps = std::strtod(corpus::text_of(entry, "margin_ulps").c_str(), nullptr);
                        return is_shown(kind["worst"], entry) && kind["worst"].at("margin_ulps") == ulps;
                      }),
-         "a worst pair that is not in its case");
+         "a worst pair that is not in its case file");
 }
 
-// Checks that each own lane that is wrong on a signature's first pair has a kind there. Also checks that a pair on
-// which a lane is wrong counts in only one kind.
+// Checks that each own lane that is wrong on a signature's first pair is in a kind with that signature. Also checks
+// that the kinds have at least as many audited reasons as there are such lanes.
 void expect_all_covered(const Known& known, const Json& kinds) {
   std::vector<std::set<std::string>> covered(known.cases.size());
   std::map<std::string, std::uint64_t> told, least;  // audited reasons, by subject
@@ -218,7 +218,7 @@ void expect_all_covered(const Known& known, const Json& kinds) {
       const std::string id = first.subject + '/' + wrong.lane;
       const auto own = known.own.find(id);
       if (own == known.own.end()) continue;
-      expect(covered[place].contains(id), "no kind of " + id + " for the signature " + known.cases[place].key);
+      expect(covered[place].contains(id), "no kind with " + id + " for the signature " + known.cases[place].key);
       least[first.subject] += own->second;
     }
   }
@@ -238,7 +238,7 @@ void expect_possible(const Known& known, const Json& kinds) {
     expect(keys.insert(kind["key"]).second, "a kind twice: " + kind["key"].get<std::string>());
     expect(!before || (*before)["pairs"] > kind["pairs"] ||
                ((*before)["pairs"] == kind["pairs"] && (*before)["key"] < kind["key"]),
-           "kinds that are not sorted by their numbers of pairs");
+           "kinds that are not sorted by number of pairs");
     before = &kind;
   }
   expect_all_covered(known, kinds);
@@ -251,7 +251,7 @@ std::string hash_of_summary(const fs::path& directory) {
 // The campaign's summary. If the file is not JSON, access to its fields throws Json::exception.
 Json summary_in(const fs::path& directory) { return parse_shallow(read_whole(directory / "summary.json")); }
 
-// The hash of the present case files of all signatures.
+// The hash of all signatures' current case files.
 std::string hash_of_cases(const fs::path& directory, const Json& summary) {
   std::uint64_t hash = fnv1a("");
   for (const Json& row : summary.at("signatures")) hash = fnv1a(read_whole(case_file(directory, row)), hash);
@@ -292,7 +292,7 @@ Json kinds_of(const fs::path& directory, const Json& summary, const std::functio
   kinds = find_kinds(under_test, directory, summary, stop);
   try {
     if (!kinds.is_null()) write_kinds(directory, under_test, kinds);
-  } catch (const std::runtime_error&) {  // in a read-only folder, the kinds are found again each time
+  } catch (const std::runtime_error&) {  // if the folder is read-only, the kinds are found again each time
   }
   return kinds;
 }

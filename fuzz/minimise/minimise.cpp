@@ -23,8 +23,8 @@ constexpr std::size_t kBlockPairs = 64;  // one word of verdicts
 
 constexpr int kMostLate = 3;  // timeouts after which a case ends
 
-// Returns those of at most 64 pairs that get the failure's verdict from every lane. Wrong lanes decide first, because
-// they leave the fewest pairs to the others. late: increased by the number of timeouts of foreign code.
+// Returns those of the pairs (at most 64) that get the failure's verdict from every lane. Wrong lanes decide first,
+// because they leave the fewest pairs to the others. late: increased by the number of timeouts of foreign code.
 template <class Real>
 std::vector<BasicPair<Real>> decided_alike(const Failure& failure, std::vector<BasicPair<Real>> pairs,
                                            int* late = nullptr) {
@@ -40,7 +40,7 @@ std::vector<BasicPair<Real>> decided_alike(const Failure& failure, std::vector<B
   return pairs;
 }
 
-// A device takes one thread at a time.
+// Decides in one thread at a time, as a device requires.
 std::vector<Verdict> decide_in_turn(const SelectedLanes& under_test, const AnyPair& pair) {
   static std::mutex mutex;
   std::vector<const Lane*> apart;
@@ -49,7 +49,7 @@ std::vector<Verdict> decide_in_turn(const SelectedLanes& under_test, const AnyPa
   return decide(under_test, pair, apart);
 }
 
-// Replaces the worst pair so far by this one, if its margin is larger. Bounds decide nearly always.
+// Replaces the worst pair so far with this one if its margin is larger. Bounds nearly always decide that.
 template <class Real>
 void keep_worst(Minimised& result, const BasicPair<Real>& pair, Verdict verdict) {
   if constexpr (std::is_same_v<Real, float>) {
@@ -66,7 +66,7 @@ bool in_range(const Failure& failure, const AnyPair& pair) {
   return !analysis::leaves_exponents(failure.first_wrong(pair), pair);
 }
 
-// A quick check before the cause is computed: false if the pair cannot have the reason.
+// A quick check before the cause is computed; false if the pair cannot have the reason.
 bool may_have_reason(const Failure& failure, const Reason& reason, const AnyPair& pair) {
   const bool by_range = reason.cause == analysis::Cause::overflow || reason.cause == analysis::Cause::underflow;
   if (!reason.in_range && !by_range) return true;
@@ -78,14 +78,14 @@ bool same_bits(const BasicPair<Real>& l, const BasicPair<Real>& r) {
   return !simpler_coordinates(l, r) && !simpler_coordinates(r, l);
 }
 
-// Applies the move from `before` to `after` `times` times. Where it scaled a coordinate by a
-// power of two, scales by that power `times` times; moves other coordinates `times` as far.   Returns: nothing if a
+// Applies the move from `before` to `after` `times` times. If the move scaled all changed coordinates by one power of
+// two, they are scaled by it `times` times; otherwise they are moved `times` times as far.   Returns: nothing if a
 // coordinate is not finite.
 template <class Real>
 std::optional<BasicPair<Real>> repeated(const BasicPair<Real>& before, const BasicPair<Real>& after,
                                         std::int64_t times) {
   const Real *from = coordinates(before), *to = coordinates(after);
-  std::optional<int> exponent;  // of the power of two; 0 when it is none
+  std::optional<int> exponent;  // of that power of two; 0 if there is none
   for (int i = 0; i < kCoordinates; ++i) {
     if (to[i] == from[i]) continue;
     const int apart = from[i] == 0 || to[i] == 0 ? 0 : std::ilogb(to[i]) - std::ilogb(from[i]);
@@ -93,7 +93,7 @@ std::optional<BasicPair<Real>> repeated(const BasicPair<Real>& before, const Bas
     if (!exponent) exponent = apart;
   }
   const bool scaled = exponent && *exponent != 0;
-  if (scaled && times > (std::is_same_v<Real, float> ? 300 : 2200)) return {};  // there are no more exponents
+  if (scaled && times > (std::is_same_v<Real, float> ? 300 : 2200)) return {};  // no exponent goes further
   BasicPair<Real> result = before;
   for (int i = 0; i < kCoordinates; ++i) {
     if (to[i] == from[i]) continue;
@@ -105,8 +105,8 @@ std::optional<BasicPair<Real>> repeated(const BasicPair<Real>& before, const Bas
   return result;
 }
 
-// The index of the first wrong lane, not counting lanes that differ only by their convention. The number of lanes if
-// there is none.
+// The index of the first wrong lane; lanes that their convention excuses do not count. The number of lanes if there is
+// none.
 template <class Real>
 std::size_t wrong_at(const Failure& failure, const BasicPair<Real>& pair) {
   const Relation& truth = failure.truth;
@@ -133,11 +133,11 @@ const BasicPair<Real>* pair_in(const AnyPair& pair) {
 
 struct FoundCause {
   analysis::Cause cause;
-  bool settled;  // only foreign code is asked
+  bool settled;  // used only for foreign code
 };
 
 FoundCause found_cause(const Lane& lane, const AnyPair& pair, Verdict truth) {
-  const bool stored = !pair.floats && lane.scalar == Scalar::f32;  // it decides another pair
+  const bool stored = !pair.floats && lane.scalar == Scalar::f32;  // the lane decides another pair
   if (!lane.foreign || stored) return {analysis::cause_of(lane, pair, truth), false};
   const Verdict verdict = analysis::decide_lane(lane, pair);
   const analysis::Experiment found =
@@ -154,11 +154,11 @@ struct Walk {
   std::size_t most;
   Minimised result;
   std::vector<PairOf> way;  // from the first pair to the current one
-  std::size_t sure = 0;     // the last pair of the way that is known to have the cause
-  bool ask_all = false;     // every pair's cause, before it is taken
-  bool open;                // foreign code whose cause is not settled on the first pair
-  int late = 0;             // verdicts of foreign code that took all of their time
-  bool prompt = false;      // it has given a block of verdicts before its time was up
+  std::size_t sure = 0;     // the last pair on the way that is known to have the cause
+  bool ask_all = false;     // whether to check every pair's cause before taking it
+  bool open;                // whether this is foreign code whose cause is not settled on the first pair
+  int late = 0;             // how many verdicts of foreign code timed out
+  bool prompt = false;      // whether it has decided a block of pairs in time
 
   Walk(const Failure& of, const PairOf& pair, std::span<const Minimised> results, std::size_t limit)
       : Walk(of, pair, results, limit, found_cause(of.first_wrong(pair), pair, of.truth.verdict)) {}
@@ -181,14 +181,15 @@ struct Walk {
     const FoundCause found = found_cause(lane, pair, failure.truth.verdict);
     const analysis::Cause first = result.reason.cause;
     if (found.cause == first) return true;
-    // Only a guess gives way to what a simpler pair settles. Other causes made an experiment right.
+    // Only a guess may be replaced with what a simpler pair settles. Other causes come from experiments that made the
+    // verdict right.
     const bool guessed = first == analysis::Cause::rounding || first == analysis::Cause::logic;
     const bool is_order = found.cause == analysis::Cause::order_dependent;
     return open && guessed && (found.settled || (is_order && first == analysis::Cause::rounding));
   }
 
-  // Makes the candidate the current pair if it fails in the same way for the same reason. Requires: its verdicts are
-  // the failure's.
+  // Makes the candidate the current pair if it fails in the same way and for the same reason. Requires: it has the
+  // failure's verdicts.
   bool take(const PairOf& candidate) {
     if (!failure.has_shape_of(candidate) || !counts(failure, candidate)) return false;
     if (!may_have_reason(failure, result.reason, candidate)) return false;
@@ -221,7 +222,7 @@ struct Walk {
     }
   }
 
-  // Tries all moves of this kind on the current pair; takes the simplest result that fails in the same way, if any.
+  // Tries all moves of this kind on the current pair, and takes the simplest result that fails in the same way, if any.
   bool improve(int kind) {
     const std::vector<PairOf> simpler = simpler_moves(way.back(), kind, result.moved);
     for (auto first = simpler.begin(); first != simpler.end();) {
@@ -269,7 +270,7 @@ struct Walk {
 
   bool ends_with_cause() { return sure == way.size() - 1 || has_cause(way.back()); }
 
-  // Goes back to a pair that has the cause while the next one lacks it.   Requires: the last pair lacks it.
+  // Goes back to a pair that has the cause although the next one lacks it.   Requires: the last pair lacks it.
   void go_back() {
     std::size_t has = sure, lacks = way.size() - 1;
     while (lacks - has > 1) {
@@ -280,9 +281,9 @@ struct Walk {
     result.reason.in_range = in_range(failure, way.back());
   }
 
-  // Goes down without asking for causes, which are dear. Where that ends without the cause, goes back and down by pairs
-  // that have it, and tries once more from there: until nothing changes, so that to minimise the result again changes
-  // nothing.
+  // Goes down without computing causes, which are expensive. If the end lacks the cause, goes back, goes down through
+  // pairs that have it, and then goes down without causes again. Repeats this until nothing changes, so that minimising
+  // the result again would change nothing.
   void run() {
     go_down();
     while (!ends_with_cause()) {
@@ -340,7 +341,7 @@ std::vector<Failure> failures_of(const SelectedLanes& under_test, const AnyPair&
     if (!visit(pair, [&](const auto& own) { return counts(failure, own); })) return;
     if (!failure.lanes.front()->foreign && !fails_alike(failure, pair)) {
       throw std::runtime_error("cannot minimise with the twins of " + std::string(failure.lanes.front()->info->id) +
-                               ": their verdicts differ from the device's");
+                               ": their verdicts differ from those of the device");
     }
     failures.push_back(std::move(failure));
   });
@@ -391,10 +392,10 @@ Minimised minimise(const Failure& failure, const AnyPair& pair, std::span<const 
 void confirm(const SelectedLanes& under_test, const Failure& failure, const AnyPair& pair) {
   const Relation by_oracle = oracle::truth(pair);
   if (by_oracle != failure.truth) throw oracle::OracleMismatch("the minimiser's truth and the oracle's differ");
-  if (!can_shrink(failure)) return;  // its pair is the first one, and to ask again would be of no use
+  if (!can_shrink(failure)) return;  // its pair is the original one, and running it again would prove nothing
   const std::vector<Failure> failures = failures_of(under_test, pair);
   if (std::find(failures.begin(), failures.end(), failure) == failures.end())
-    throw std::runtime_error("the minimised pair does not fail as the original does: this is a bug of graze");
+    throw std::runtime_error("the minimised pair does not fail like the original: this is a bug in Graze");
 }
 
 }  // namespace graze::fuzz

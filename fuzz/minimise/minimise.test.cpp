@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The minimiser's promises: a total order, the same failure, nothing simpler one move away, the same bytes again.
+// What the minimiser promises: a total order, the same failure, nothing simpler one move away, the same bytes again.
 #include "fuzz/minimise/minimise.h"
 
 #include <gtest/gtest.h>
@@ -65,7 +65,7 @@ std::vector<Case> cases_of(strata::Stratum stratum, std::size_t most) {
   return found;
 }
 
-// Each row has a pair, a less simple one, and the first criterion in which they differ. Criterion 9 compares the
+// Each row has a pair, a less simple pair, and the first criterion in which they differ. Criterion 9 compares the
 // coordinates.
 TEST(Simplicity, ComparesInTheStatedOrder) {
   struct Row {
@@ -105,7 +105,7 @@ TEST(Simplicity, ComparesInTheStatedOrder) {
   EXPECT_EQ(count_of(simplicity(in_space), 7), 2);
 }
 
-// Of any two pairs one is simpler, unless their bits are the same, and the relation is transitive.
+// One of any two pairs is simpler, unless their bits are the same, and the relation is transitive.
 TEST(Simplicity, IsATotalOrder) {
   std::vector<Pair> pairs;
   for (const strata::StratumInfo& row : strata::kStrata) {
@@ -119,7 +119,7 @@ TEST(Simplicity, IsATotalOrder) {
       // The faster functions that the minimiser calls must agree with `<`.
       const std::uint64_t l = simplicity_counts(pairs[i]), r = simplicity_counts(pairs[j]);
       ASSERT_EQ(simplicity_counts(pairs[j], l) > l, r > l);
-      ASSERT_EQ(simplicity_counts(pairs[i], r), l);  // at most r, as the pairs are sorted
+      ASSERT_EQ(simplicity_counts(pairs[i], r), l);  // at most r, because the pairs are sorted
       if (l == r) {
         ASSERT_EQ(simpler_coordinates(pairs[i], pairs[j]), !same_bits(pairs[i], pairs[j]));
         ASSERT_FALSE(simpler_coordinates(pairs[j], pairs[i]));
@@ -184,14 +184,14 @@ TEST(Simplicity, IsThatOfTheSameNumbersInDoubles) {
       of_floats += moved_floats.size();
     }
   }
-  EXPECT_GT(reached, of_floats / 2);  // other moves round to float32
+  EXPECT_GT(reached, of_floats / 2);  // the other moves round to float32
   EXPECT_LT(reached, of_floats);
 }
 
 class MinimiseStratum : public testing::TestWithParam<strata::StratumInfo> {};
 
-// The oracle confirms the same failure, the pair is not less simple, no move of any kind improves it, and minimising it
-// again changes nothing.
+// The oracle confirms the same failure, the pair is at least as simple, no move of any kind improves it, and minimising
+// it again changes nothing.
 TEST_P(MinimiseStratum, MinimisesToAOneMinimalPairThatFailsAlike) {
   const std::vector<Case> cases = cases_of(GetParam().stratum, 4);
   ASSERT_FALSE(cases.empty());
@@ -232,7 +232,7 @@ TEST_P(MinimiseStratum, MinimisesToAOneMinimalPairThatFailsAlike) {
     EXPECT_EQ(found.reason.cause, before.cause);
     EXPECT_TRUE(found.reason == reason_of(c.failure, found.pair));
     EXPECT_TRUE(fails_for_reason(c.failure, before, found.pair));
-    EXPECT_LE(found.single_moves, simpler);  // it counts equal ones of a kind once
+    EXPECT_LE(found.single_moves, simpler);  // equal results of a kind are counted once
     EXPECT_EQ(found.single_moves == 0, simpler == 0);
 
     const Minimised again = minimise(c.failure, found.pair);
@@ -298,7 +298,7 @@ TEST(MinimiseDoubles, MinimisesToAOneMinimalPairThatFailsAlike) {
 }
 
 TEST(Minimise, ShrinksWhatFailsOnlyAtTheEndsOfTheRange) {
-  // A crossing pair scaled to 1e-30 and to 1e38: products under- and overflow in float32.
+  // A crossing pair at very small and very large scales, where products underflow or overflow in float32.
   for (const float scale : {0x1p-149f, 1e-30f, 1e37f}) {
     Pair pair = pair_of({-1, -1, 0, 3, -1, 0, -1, 3, 0, 0, 0, -1, 0, 0, 1, 1, 1, 2});
     for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] *= scale;
@@ -324,7 +324,7 @@ TEST(Minimise, MovesThatHelpAreDoneManyTimesAtOnce) {
   EXPECT_EQ(nontrivial_magnitudes(found.pair), 1);
 }
 
-// With any limit, the search ends within it, and its result fails alike and states its own reason.
+// The search ends within any limit, and its result fails alike and states its own reason.
 TEST(Minimise, EndsWithinItsLimit) {
   int stopped = 0;
   for (const auto stratum : {strata::Stratum::near_edge_edge, strata::Stratum::extreme_scale}) {
@@ -334,7 +334,7 @@ TEST(Minimise, EndsWithinItsLimit) {
       const Minimised whole = minimise(c.failure, c.pair);
       for (std::size_t most = kLeastMoved + 1; most < kLeastMoved + 60'000; most = most + 15'000) {
         const Minimised part = minimise(c.failure, c.pair, {}, most);
-        EXPECT_LE(part.moved, most + 2'000);  // what one kind of moves makes
+        EXPECT_LE(part.moved, most + 2'000);  // one kind of moves may go beyond the limit
         EXPECT_LE(simplicity(part.pair), simplicity(c.pair));
         EXPECT_LE(simplicity(whole.pair), simplicity(part.pair));
         EXPECT_TRUE(fails_for_reason(c.failure, before, part.pair));
@@ -346,7 +346,7 @@ TEST(Minimise, EndsWithinItsLimit) {
   EXPECT_GT(stopped, 10);
 }
 
-// A known result that the search meets is returned, and is the same as without it.
+// A known result that the search meets is returned; the search without it gives the same result.
 TEST(Minimise, EndsWhereAnotherCaseEnded) {
   for (const Case& c : cases_of(strata::Stratum::near_vertex_face, 1)) {
     SCOPED_TRACE(c.name);
@@ -381,7 +381,7 @@ TEST(Minimise, TheCauseStays) {
   EXPECT_GT(out_of_range, 0);
 }
 
-// A lane that differs only by its convention is not the first wrong lane, even if it comes first.
+// A lane that its convention excuses is not the first wrong lane, even if it comes first.
 TEST(Minimise, TheFirstWrongLaneIsNotExcused) {
   const Pair touching = pair_of({0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, 0, 1, 1, 1, 3, 3, 1});
   static const AlgorithmInfo info{"excused", "test", "", "", "", false};

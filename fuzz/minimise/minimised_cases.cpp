@@ -73,7 +73,7 @@ std::vector<corpus::Entry> checked_cases(const SelectedLanes& under_test, const 
       throw wrong_cases(
           directory, row,
           fmt::format(
-              "in line {} the verdict of {} differs: either the file is not the campaign's, or the lane has changed",
+              "in line {} the verdict of {} differs: the file is not from this campaign, or the lane has changed",
               entry.line, lane->id));
     }
   }
@@ -83,7 +83,7 @@ std::vector<corpus::Entry> checked_cases(const SelectedLanes& under_test, const 
 std::vector<MinimisedCase> minimise_cases(const SelectedLanes& under_test, const std::vector<corpus::Entry>& entries,
                                           const std::function<bool()>& stop) {
   std::vector<MinimisedCase> results;
-  std::vector<std::vector<Minimised>> ended;  // for each result, the minimised forms of its originals
+  std::vector<std::vector<Minimised>> ended;  // the minimised originals of each result
   for (const corpus::Entry* entry : originals(entries)) {
     if (stop()) return {};
     const AnyPair pair = corpus::pair_of(*entry);
@@ -127,8 +127,8 @@ std::vector<MinimisedCase> minimise_cases(const SelectedLanes& under_test, const
     } catch (const oracle::OracleMismatch&) {
       throw;
     } catch (const std::runtime_error&) {
-      // Foreign code may give a different verdict the second time, just because of timing. Then the original is the
-      // result.
+      // Foreign code may give a different verdict the second time, merely because of timing. Then the original becomes
+      // the result.
       if (!result.failure.lanes.front()->foreign) throw;
       result.result.pair = result.result.worst = result.original;
       result.result.one_minimal = false;
@@ -152,7 +152,7 @@ std::string with_results(const std::string& text, const std::vector<corpus::Entr
       for (const MinimisedCase& r : results) {
         corpus::Entry minimised = result_entry(r, r.result.pair, "minimised", r.from);
         std::string cause(analysis::name(r.result.reason.cause));
-        std::replace(cause.begin(), cause.end(), ' ', '_');  // a field has no spaces
+        std::replace(cause.begin(), cause.end(), ' ', '_');  // the field's value has no spaces
         minimised.fields.push_back({"cause", cause});
         if (r.result.one_minimal) {
           minimised.fields.push_back({"one_minimal", "yes"});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Minimised cases as files. Before a file's cases, which stay unchanged, come their minimised result (kind=minimised)
-// and the worst pair met on the way (kind=worst).
+// Minimised cases in files. A file's cases stay unchanged. Before them come their minimised result (kind=minimised) and
+// the worst pair found on the way (kind=worst).
 #pragma once
 
 #include <filesystem>
@@ -22,36 +22,35 @@ struct MinimisedCase {
   AnyPair original;
 };
 
-// As read_cases. Also checks that the lanes under test that ran in the campaign, except foreign code, have the verdicts
-// that each pair's signature records. spec: the campaign's.   Throws: as read_cases.
+// Like read_cases. Also checks that the lanes under test that ran in the campaign, except foreign code, give the
+// verdicts that each pair's signature records. spec: the campaign's.   Throws: what read_cases throws.
 std::vector<corpus::Entry> checked_cases(const SelectedLanes& under_test, const Json& spec,
                                          const std::filesystem::path& directory, const Json& row);
 
 // Whether the entry is a minimised result.
 bool is_minimised(const corpus::Entry& entry);
 
-// Makes one result for all cases that share a recorded signature, its algorithm, and the first case's cause: the
-// simplest pair and the worst pair of all. Cases with another cause stay unchanged. Cases without a recorded signature
-// get one result for each algorithm that is wrong. Minimised entries count as cases only if there are no others. Each
-// result is confirmed.
-// Returns: nothing for cases on which no lane under test is wrong; nothing at all once `stop`, called before each case,
-// returns true.
+// All cases that share a recorded signature, its algorithm, and the first case's cause get one result: the simplest and
+// the worst of their pairs. Cases with another cause are skipped. Cases without a recorded signature get one result for
+// each algorithm that is wrong. Minimised entries count as cases only if there are no others. Each result is confirmed.
+// Returns: the results; none for cases on which no lane under test is wrong, and none at all once `stop`, which is
+// called before each case, returns true.
 // Throws: OracleMismatch, std::runtime_error.
 std::vector<MinimisedCase> minimise_cases(
     const SelectedLanes& under_test, const std::vector<corpus::Entry>& entries,
     const std::function<bool()>& stop = [] { return false; });
 
-// The text of a file with these results instead of those that it may already hold.
-// Requires: `entries` are those of the text.
+// The text of a file with these results; they replace results that it already holds.
+// Requires: `entries` are the text's entries.
 std::string with_results(const std::string& text, const std::vector<corpus::Entry>& entries,
                          const std::vector<MinimisedCase>& results);
 
-// Minimises the cases of that file and writes the results into it, before the cases.
-// Requires: `entries` are those of the file.   Returns, throws: as minimise_cases.
+// Minimises the file's cases and writes the results into the file, before the cases.
+// Requires: `entries` are the file's entries.   Returns and throws what minimise_cases does.
 std::vector<MinimisedCase> minimise_file(const SelectedLanes& under_test, const std::filesystem::path& file,
                                          const std::vector<corpus::Entry>& entries);
 
-// Whether the file holds the result for its first case on these lanes.
+// Whether the file already holds the result of its first case on these lanes.
 bool has_result(const SelectedLanes& under_test, const std::vector<corpus::Entry>& entries);
 
 }  // namespace graze::fuzz

@@ -30,12 +30,12 @@ constexpr std::size_t kMostFiles = 100'000, kLongestName = 1000, kLongestPart = 
 constexpr std::string_view kMagic{"SQLite format 3\0", 16};
 constexpr std::size_t kApplicationAt = 68;  // in the file's first 100 bytes; big-endian
 
-// What is wrong with an archive, without its name.
+// What is wrong with an archive, without the archive's name.
 struct BadArchive : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// A name that is also the folder of another one cannot be written.
+// Throws: BadArchive if a file's name is also the folder of another file.
 void expect_no_folder(const std::vector<PackedFile>& files) {
   std::vector<std::string> names;
   for (const PackedFile& file : files) names.push_back(file.name);
@@ -44,18 +44,18 @@ void expect_no_folder(const std::vector<PackedFile>& files) {
     const std::string inside = name + '/';
     const auto next = std::lower_bound(names.begin(), names.end(), inside);
     if (next != names.end() && next->starts_with(inside))
-      throw BadArchive(fmt::format("{} is a file and a folder", shown_path(name)));
+      throw BadArchive(fmt::format("{} is both a file and a folder", shown_path(name)));
   }
 }
 
 void expect_our_table(SQLite::Database& database) {
-  if (database.execAndGet("PRAGMA application_id").getInt64() != kPackId) throw BadArchive("it is not a pack of graze");
+  if (database.execAndGet("PRAGMA application_id").getInt64() != kPackId) throw BadArchive("it is not a pack of Graze");
   SQLite::Statement query(database, "SELECT sql FROM sqlite_schema WHERE sql IS NOT NULL");
   std::size_t tables = 0;
   for (; query.executeStep(); ++tables) {
     if (query.getColumn(0).getString() != kTable) throw BadArchive("it has other tables, triggers or views");
   }
-  if (tables != 1) throw BadArchive("its table is missing or there twice");
+  if (tables != 1) throw BadArchive("its table is missing or occurs twice");
 }
 
 std::vector<PackedFile> files_of(SQLite::Database& database, std::size_t most_bytes) {
@@ -69,13 +69,13 @@ std::vector<PackedFile> files_of(SQLite::Database& database, std::size_t most_by
     const std::string text = name.isText() ? name.getString() : "";
     if (!may_be_packed(text)) throw BadArchive(fmt::format("it has a file named {}", shown_path(text)));
     if (files.size() == kMostFiles) throw BadArchive(fmt::format("it has more than {} files", kMostFiles));
-    if (!files.empty() && files.back().name >= text) throw BadArchive(shown_path(text) + " is there twice");
+    if (!files.empty() && files.back().name >= text) throw BadArchive(shown_path(text) + " occurs twice");
     if (!mode.isInteger() || (mode.getInt64() != kFileMode && mode.getInt64() != kProgramMode))
-      throw BadArchive(shown_path(text) + " is no regular file, such as a link or a device");
+      throw BadArchive(shown_path(text) + " is not a regular file, but for example a link or a device");
     if (!(data.isBlob() || data.isNull()) || !size.isInteger() || size.getInt64() != data.getBytes())
       throw BadArchive(shown_path(text) + " is compressed, or its size is wrong");
     bytes += static_cast<std::size_t>(data.getBytes());
-    if (bytes > most_bytes) throw BadArchive("its files are larger than itself");
+    if (bytes > most_bytes) throw BadArchive("its files are larger than the archive");
     const char* begin = static_cast<const char*>(data.getBlob());
     files.push_back({text, mode.getInt64() == kProgramMode,
                      begin ? std::string(begin, static_cast<std::size_t>(data.getBytes())) : std::string()});
@@ -108,7 +108,7 @@ std::string archive_of(std::vector<PackedFile> files) {
   SQLite::Statement put(database, "INSERT INTO sqlar VALUES(?, ?, 0, ?, ?)");
   for (const PackedFile& file : files) {
     if (!may_be_packed(file.name))
-      throw std::runtime_error(cannot("pack", file.name, "its name cannot be that of a file in a pack; rename it"));
+      throw std::runtime_error(cannot("pack", file.name, "a file in a pack cannot have this name; rename it"));
     constexpr std::size_t kMostBytes = 1'000'000'000;  // SQLite's limit of a value
     if (file.bytes.size() > kMostBytes)
       throw std::runtime_error(cannot("pack", file.name, "it has more than 10^9 bytes"));
@@ -144,16 +144,16 @@ std::vector<PackedFile> read_archive(const fs::path& file) {
     for (const int option :
          {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_TRIGGER, SQLITE_DBCONFIG_ENABLE_VIEW})
       sqlite3_db_config(database.getHandle(), option, 0, nullptr);
-    // From memory, no file beside the archive is read.
+    // The archive is read from memory, so that SQLite reads no file beside it.
     if (sqlite3_deserialize(database.getHandle(), "main", reinterpret_cast<unsigned char*>(bytes.data()), size, size,
                             SQLITE_DESERIALIZE_READONLY) != SQLITE_OK)
-      throw BadArchive("it is not a pack of graze");
+      throw BadArchive("it is not a pack of Graze");
     return files_of(database, bytes.size());
   } catch (const BadArchive& error) {
-    throw corpus::FormatError(cannot("use", file, std::string(error.what()) + "; take it from its source again"));
+    throw corpus::FormatError(cannot("use", file, std::string(error.what()) + "; get the pack from its source again"));
   } catch (const SQLite::Exception& error) {
     throw corpus::FormatError(cannot("use", file,
-                                     fmt::format("it is not a pack of graze, or it is damaged ({}); take it from its "
+                                     fmt::format("it is not a pack of Graze, or it is damaged ({}); get it from its "
                                                  "source again",
                                                  printable(error.what()))));
   }
@@ -162,7 +162,7 @@ std::vector<PackedFile> read_archive(const fs::path& file) {
 void unpack(const std::vector<PackedFile>& files, const fs::path& folder) {
   std::error_code error;
   if (fs::exists(fs::symlink_status(folder, error)))
-    throw UsageError(cannot("unpack into", folder, "something has this name already; move it away"));
+    throw UsageError(cannot("unpack into", folder, "it already exists; move it away"));
   if (!fs::create_directory(folder, error))
     throw std::runtime_error(cannot("make the folder", folder, error.message()));
   for (const PackedFile& file : files) {

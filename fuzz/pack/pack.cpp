@@ -55,8 +55,8 @@ class Collected {
   std::map<std::string, PackedFile> files_;
 };
 
-// The database without its two counters of changes, which grow when a campaign is resumed.
-// Reference: the database file format of SQLite, bytes 24 to 27 and 92 to 95, which have to agree.
+// The database without its two change counters, which grow when a campaign is resumed.
+// Reference: SQLite's database file format, bytes 24 to 27 and 92 to 95, which must agree.
 std::string without_change_counters(std::string database) {
   for (const std::size_t at : {24, 92}) {
     if (at + 4 <= database.size()) database.replace(at, 4, std::string("\0\0\0\1", 4));
@@ -89,7 +89,7 @@ Json add_subjects(const Json& recorded, Collected& to, Json& not_packed) {
     const std::string name = row.at("name");
     if (row.contains("toolchains"))
       throw UsageError(cannot("pack", name,
-                              "its lanes of toolchains need compilers and emulators, which no pack holds; "
+                              "its toolchain lanes need compilers and emulators, which a pack cannot hold; "
                               "run a campaign without --toolchains"));
     const subjects::Opened* opened = subjects::opened(name);
     if (!opened) throw std::logic_error("expected the campaign's subjects to be open");
@@ -104,7 +104,7 @@ Json add_subjects(const Json& recorded, Collected& to, Json& not_packed) {
 // Adds the meshes of --mesh.   Returns: their names.
 Json add_meshes(const Json& spec, Collected& to) {
   Json names = Json::array();
-  recorded_sources(spec);  // which notices a mesh that changed
+  recorded_sources(spec);  // throws if a mesh has changed
   for (const std::string file : spec.at("mesh").at("files")) {
     names.push_back(fmt::format("mesh/{}/{}", names.size(), fs::path(file).filename().string()));
     to.add_file("files/" + names.back().get<std::string>(), file);
@@ -112,21 +112,21 @@ Json add_meshes(const Json& spec, Collected& to) {
   return names;
 }
 
-// Adds the scene and its meshes, which it names relative to its folder.   Returns: its name.
+// Adds the scene and its meshes, whose names are relative to the scene's folder.   Returns: the scene's name.
 std::string add_scene(const Json& recorded, Collected& to) {
   const NamedScene scene = recorded_scene(recorded);
-  sources_of(scene, 0, 1, {});  // which notices a mesh that changed
+  sources_of(scene, 0, 1, {});  // throws if a mesh has changed
   const fs::path file = scene.file;
   std::vector<fs::path> inputs(scene.scene.meshes.files.begin(), scene.scene.meshes.files.end());
   if (!scene.scene.meshes.poses.empty()) inputs.emplace_back(scene.scene.meshes.poses);
-  std::ptrdiff_t most_up = 0;  // folders above that of the scene
+  std::ptrdiff_t most_up = 0;  // how many folders above the scene's folder a name leads
   for (fs::path& input : inputs) {
     input = input.lexically_normal();
     most_up = std::max(most_up, std::count(input.begin(), input.end(), fs::path("..")));
     if (input.is_absolute())
       throw std::runtime_error(
           cannot("pack", file,
-                 fmt::format("it names {} by a path from the root; name it from the scene's folder, "
+                 fmt::format("it names {} with an absolute path; use a path relative to the scene, "
                              "and run the campaign again",
                              shown_path(input.string()))));
   }
@@ -140,27 +140,33 @@ std::string add_scene(const Json& recorded, Collected& to) {
 }
 
 void expect_listed(const std::vector<PackedFile>& files, const Json& manifest) {
-  std::map<std::string, std::string> listed;
-  for (const Json& row : manifest.at("files"))
-    listed[row.at("name").get<std::string>()] = row.at("hash").get<std::string>();
+  std::map<std::string, Json> listed;
+  for (const Json& row : manifest.at("files")) {
+    if (!listed.emplace(row.at("name").get<std::string>(), row).second)
+      throw std::runtime_error(fmt::format("{} lists {} twice", kManifest, shown_path(row["name"].get<std::string>())));
+  }
   for (const PackedFile& file : files) {
     if (file.name == kManifest) continue;
     const auto found = listed.find(file.name);
     if (found == listed.end()) throw std::runtime_error(fmt::format("{} does not list {}", kManifest, file.name));
-    if (found->second != hash_text(file.bytes)) throw std::runtime_error(file.name + " does not match its hash");
+    if (found->second.at("hash") != hash_text(file.bytes))
+      throw std::runtime_error(file.name + " does not match its hash");
+    if (found->second.at("bytes") != file.bytes.size())
+      throw std::runtime_error(
+          fmt::format("{} has {} bytes, not those that {} lists", file.name, file.bytes.size(), kManifest));
     listed.erase(found);
   }
   if (!listed.empty()) throw std::runtime_error("it lacks " + shown_path(listed.begin()->first));
 }
 
-// Whether it is the name of a file of the pack, or a command.
+// Throws: std::runtime_error unless `what` names a file in the pack or is a command.
 void expect_in_pack(const std::vector<PackedFile>& files, const std::string& what) {
   const auto is_there = [&](const PackedFile& file) {
     const std::string name = "files/" + what;
     return name == file.name || name.starts_with(file.name + ':');
   };
   if (!what.starts_with("cmd:") && std::none_of(files.begin(), files.end(), is_there))
-    throw std::runtime_error(shown_path(what) + " is not in it");
+    throw std::runtime_error(shown_path(what) + " is not in the pack");
 }
 
 }  // namespace
@@ -174,8 +180,8 @@ Pack pack_campaign(const fs::path& directory) {
                                                              : "the campaign is not complete; finish it: " +
                                                                    command_of(spec, {}, directory, summary)));
   if (fs::exists((directory / kDatabase).string() + "-wal"))
-    throw std::runtime_error(cannot(
-        "pack", directory, "its last run was killed; end it in order: " + command_of(spec, {}, directory, summary)));
+    throw std::runtime_error(
+        cannot("pack", directory, "its last run was killed; finish it: " + command_of(spec, {}, directory, summary)));
   Collected files;
   add_results(directory, summary, files);
   Json inputs = Json::object(), not_packed = Json::array();
@@ -204,12 +210,12 @@ Pack read_pack(const fs::path& file) {
     if (found == pack.files.end()) throw std::runtime_error("it has no pack.json");
     Json manifest = parse_shallow(found->bytes);
     if (!manifest.is_object() || manifest.value("graze_pack", Json()) != kPackFormat)
-      throw std::runtime_error(fmt::format("its pack.json is not one of format {}", kPackFormat));
+      throw std::runtime_error(fmt::format("its pack.json does not have format {}", kPackFormat));
     manifest.erase("checksum");
     if (sealed(manifest).dump(1) + "\n" != found->bytes) throw std::runtime_error("its pack.json is damaged");
     for (const PackedFile& packed : pack.files) {
       if (packed.name != kManifest && !packed.name.starts_with("campaign/") && !packed.name.starts_with("files/"))
-        throw std::runtime_error("it has a file beside campaign/ and files/: " + shown_path(packed.name));
+        throw std::runtime_error("it has a file outside campaign/ and files/: " + shown_path(packed.name));
     }
     expect_listed(pack.files, manifest);
     const Json& inputs = manifest.at("inputs");
@@ -219,9 +225,9 @@ Pack read_pack(const fs::path& file) {
     for (const Json& sentence : manifest.at("not_packed")) sentence.get_ref<const std::string&>();
     pack.manifest = std::move(manifest);
   } catch (const Json::exception&) {
-    throw corpus::FormatError(cannot("use", file, "its pack.json is not one that graze wrote"));
+    throw corpus::FormatError(cannot("use", file, "its pack.json was not written by Graze"));
   } catch (const std::runtime_error& error) {
-    throw corpus::FormatError(cannot("use", file, std::string(error.what()) + "; take it from its source again"));
+    throw corpus::FormatError(cannot("use", file, std::string(error.what()) + "; get the pack from its source again"));
   }
   return pack;
 }

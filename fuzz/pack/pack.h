@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A campaign with everything that runs it again, in one file: pack.json, its results in campaign/, and in files/ the
-// subjects' sources, meshes and scene. docs/formats.md describes pack.json.
+// One file with a campaign and everything needed to run it again: pack.json, the results in campaign/, and the
+// subjects' sources, the meshes and the scene in files/. docs/formats.md describes pack.json.
 #pragma once
 
 #include <filesystem>
@@ -20,11 +20,11 @@ struct Pack {
 // Throws: std::runtime_error if the campaign is not complete, or a file that it needs is missing or changed.
 Pack pack_campaign(const std::filesystem::path& directory);
 
-// Throws: FormatError for a damaged or a hostile one.
+// Throws: FormatError if the pack is damaged or hostile.
 Pack read_pack(const std::filesystem::path& file);
 
-// A campaign's spec with the subjects, meshes and scene of a pack, as they are named within files/.
-// Throws: std::runtime_error if these are not those of the spec; nlohmann's exceptions for another shape.
+// A campaign's spec with the pack's subjects, meshes and scene, under their names within files/.
+// Throws: std::runtime_error if they are not the spec's; nlohmann's exceptions for JSON of another shape.
 Json spec_of_pack(Json spec, const Json& manifest);
 
 }  // namespace graze::fuzz

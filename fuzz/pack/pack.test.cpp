@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Archives that are damaged or made to harm: each is refused in one line, and nothing is written outside a new folder.
+// Damaged and hostile archives: each is refused in one line, and nothing is written outside a new folder.
 #include "fuzz/pack/pack.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -31,7 +31,7 @@ class PackTest : public testing::Test {
   }
   ~PackTest() override { fs::remove_all(root_); }
 
-  // What read_archive says of these bytes; empty if it reads them.
+  // The error of read_archive for these bytes; empty if it reads them.
   std::string refusal(const std::string& bytes) const {
     const fs::path file = root_ / "a.sqlar";
     write_whole(file, bytes);
@@ -46,7 +46,7 @@ class PackTest : public testing::Test {
     }
   }
 
-  // The archive after these statements of SQL.
+  // The archive after these SQL statements.
   std::string edited(const std::string& bytes, const std::string& sql) const {
     const fs::path file = root_ / "edited.sqlar";
     write_whole(file, bytes);
@@ -107,7 +107,7 @@ TEST_F(PackTest, WhatIsNoPlainFileIsRefused) {
       "UPDATE sqlar SET mode = 41471, data = '/etc/passwd', sz = 11 WHERE name = 'files/empty'",  // a link
       "UPDATE sqlar SET mode = 41471, sz = -1 WHERE name = 'files/empty'",
       "UPDATE sqlar SET mode = 16877 WHERE name = 'files/empty'",   // a folder
-      "UPDATE sqlar SET mode = 35309 WHERE name = 'files/run.sh'",  // runs as its owner
+      "UPDATE sqlar SET mode = 35309 WHERE name = 'files/run.sh'",  // a program that runs as its owner
       "UPDATE sqlar SET mode = 'x' WHERE name = 'files/empty'",
       "UPDATE sqlar SET sz = 1000000000000 WHERE name = 'files/run.sh'",  // as if it were compressed
       "UPDATE sqlar SET data = 7 WHERE name = 'files/empty'",
@@ -127,7 +127,7 @@ TEST_F(PackTest, WhatIsNoPlainFileIsRefused) {
   EXPECT_NE(refusal("graze"), "");
 }
 
-// Pages that several rows share would make an archive larger than itself.
+// Pages that several rows share would make the files larger than the archive.
 TEST_F(PackTest, DamageIsRefusedOrHarmless) {
   std::vector<PackedFile> files = files_;
   for (int i = 0; i < 200; ++i) files.push_back({fmt::format("files/{:03}", i), false, std::string(100, 'y')});
@@ -157,7 +157,7 @@ TEST_F(PackTest, DamageIsRefusedOrHarmless) {
   EXPECT_GT(refused, 300);
 }
 
-// pack.json lists every file with its hash, and names only what is in the pack.
+// pack.json must list every file with its hash, and may name only what is in the pack.
 TEST_F(PackTest, TheListOfFilesIsChecked) {
   const auto packed = [&](const std::function<void(Json&, std::vector<PackedFile>&)>& edit, bool seal = true) {
     std::vector<PackedFile> files = {{"campaign/summary.json", false, "{}"}, {"files/subjects/m/m.c", false, "int x;"}};
@@ -199,6 +199,9 @@ TEST_F(PackTest, TheListOfFilesIsChecked) {
       },
       [](Json& manifest, List&) { manifest["graze_pack"] = 2; },
       [](Json& manifest, List&) { manifest["files"][1].erase("hash"); },
+      [](Json& manifest, List&) { manifest["files"][1]["bytes"] = -5; },
+      [](Json& manifest, List&) { manifest["files"][1]["bytes"] = "x"; },
+      [](Json& manifest, List&) { manifest["files"].push_back(manifest["files"][1]); },
       [](Json& manifest, List&) { manifest["inputs"]["subjects"][0]["what"] = "/etc/m.c"; },
       [](Json& manifest, List&) { manifest["inputs"]["subjects"][0]["what"] = "../../m.c:x"; },
       [](Json& manifest, List&) { manifest["inputs"]["mesh"] = {"../mesh.off"}; },
@@ -209,7 +212,7 @@ TEST_F(PackTest, TheListOfFilesIsChecked) {
   EXPECT_NE(packed([](Json&, auto&) {}, false), "");
 }
 
-// Subjects, meshes and scenes are those that the campaign recorded, under other names.
+// Subjects, meshes and scenes must be those that the campaign recorded, under other names.
 TEST_F(PackTest, APackRunsItsOwnCampaign) {
   const Json spec = {
       {"subjects", {{{"name", "m"}, {"what", "/a/m.c"}, {"flags", {"-I/a"}}, {"environment", {{"CC", "x"}}}}}},

@@ -16,7 +16,7 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::uint64_t kMostOnCpu = std::uint64_t{1} << 20;  // a block of the CPU engine: takes some seconds
+constexpr std::uint64_t kMostOnCpu = std::uint64_t{1} << 20;  // pairs per block of the CPU engine: some seconds
 
 struct Tree final : Ranks::Reduction {
   explicit Tree(Sums& sums_) : sums(sums_) {}
@@ -63,7 +63,7 @@ PairRange Blocks::at(std::uint64_t number) const {
 
 std::optional<Outcome> run_on_ranks(Campaign& campaign, Ranks& ranks, const std::atomic<bool>& stop) {
   const auto start = std::chrono::steady_clock::now();
-  std::optional<Store> store;  // on the root; it holds the campaign's lock
+  std::optional<Store> store;  // on the root, where it holds the campaign's lock
   Json plan;
   if (ranks.rank == 0) {
     try {
@@ -79,7 +79,7 @@ std::optional<Outcome> run_on_ranks(Campaign& campaign, Ranks& ranks, const std:
   plan = Json::parse(ranks.from_root(plan.dump()));
   if (plan.contains("error")) return {};
   if (plan["build"] != campaign.build)
-    throw std::runtime_error(fmt::format("rank {} has another build or device than rank 0: {}; run shards instead",
+    throw std::runtime_error(fmt::format("rank {} has a different build or device from rank 0: {}; run shards instead",
                                          ranks.rank, first_difference(plan["build"], campaign.build)));
   std::vector<PairRange> gaps;
   for (const Json& gap : plan["gaps"]) gaps.push_back({gap[0], gap[1], gap[2]});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs a campaign on the ranks that mpirun started. Each rank takes blocks from the shared counter and writes to its
-// own store, DIR/rank-R. At the end a tree of reductions brings the sums to the root, whose campaign equals that of one
-// process. If a rank dies, its committed pairs stay: the next run adds them and judges the missing ones.
+// own store, DIR/rank-R. At the end a tree of reductions brings the sums to the root, whose campaign equals that of a
+// single process. If a rank dies, its committed pairs remain: the next run adds them and judges the missing ones.
 #pragma once
 
 #include <optional>
@@ -12,14 +12,14 @@
 namespace graze::fuzz {
 
 // Runs or resumes the campaign.
-// Returns: the outcome on the root once everything is done; nothing on the other ranks, or if a rank was stopped.
-// Throws: as run_campaign, on the rank that fails, which must then abort.
+// Returns: on the root, the outcome once everything is done; nothing on the other ranks, or if a rank was stopped.
+// Throws: what run_campaign throws, on the rank that fails, which must then abort.
 std::optional<Outcome> run_on_ranks(Campaign& campaign, Ranks& ranks, const std::atomic<bool>& stop);
 
-// The number of pairs in a block if `left` pairs are left.
+// The number of pairs per block when `left` pairs are left.
 std::uint64_t block_pairs(std::uint64_t left, int ranks, std::uint64_t most);
 
-// Splits these ranges into numbered blocks, in an order that soon reaches all sources.
+// Splits ranges into numbered blocks, in an order that reaches all sources early.
 class Blocks {
  public:
   Blocks(std::vector<PairRange> ranges, std::uint64_t pairs);
@@ -30,7 +30,7 @@ class Blocks {
  private:
   std::vector<PairRange> ranges_;
   std::uint64_t pairs_, stride_ = 1;
-  std::vector<std::uint64_t> until_;  // total number of blocks up to the end of each range
+  std::vector<std::uint64_t> until_;  // the number of blocks up to the end of each range
 };
 
 }  // namespace graze::fuzz

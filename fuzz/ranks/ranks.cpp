@@ -28,7 +28,7 @@ std::unique_ptr<Ranks> open_ranks() {
       std::filesystem::read_symlink("/proc/self/exe").parent_path() / "libgraze_mpi.so";
   if (!std::filesystem::exists(library))
     throw std::runtime_error(
-        cannot("start by mpirun without", library, "this build found no MPI; install MPI and build again"));
+        cannot("run under mpirun without", library, "this build found no MPI; install MPI and build again"));
   void* handle = dlopen(library.c_str(), RTLD_NOW | RTLD_GLOBAL);  // Open MPI's plugins need its symbols globally
   if (!handle) throw std::runtime_error(cannot("load", library, dlerror()));
   const auto open = reinterpret_cast<Ranks* (*)()>(dlsym(handle, "graze_open_ranks"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The processes that `mpirun` started together, as the rest of Graze sees them. Only mpi.cpp includes MPI. It is a
-// separate library beside the program, opened only under mpirun, so nothing changes without MPI.
+// separate library beside the program, and is loaded only under mpirun, so nothing changes without MPI.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,19 @@ namespace graze::fuzz {
 
 class Ranks {
  public:
-  virtual ~Ranks() = default;  // collective: all ranks must get here, or none
+  virtual ~Ranks() = default;  // collective: either all ranks get here or none
 
   int rank = 0, size = 1;
-  int local_rank = 0, local_size = 1;  // among those on this host
+  int local_rank = 0, local_size = 1;  // among the ranks on this host
 
   // Broadcasts the root's text to all ranks.
   virtual std::string from_root(const std::string& text) = 0;
 
-  // Takes the next number of a counter that all ranks share, without waiting for other ranks.
+  // Takes the next number from a counter that all ranks share, without waiting for other ranks.
   virtual std::uint64_t next() = 0;
 
-  // Sends everything that a rank and those below it in the tree know to its parent, in log2(size) rounds. In each round
-  // a rank either sends the result of `give` and is done, or passes what it received to `take`.
+  // Sends what a rank and the ranks below it in the tree know to its parent, in log2(size) rounds. In each round a rank
+  // either sends the result of `give` and is done, or passes what it received to `take`.
   struct Reduction {
     virtual ~Reduction() = default;
     virtual std::string give() = 0;
@@ -31,7 +31,7 @@ class Ranks {
   };
   virtual void reduce(Reduction& reduction) = 0;
 
-  // Whether `here` is true on every rank.
+  // Returns whether `here` is true on every rank.
   virtual bool all(bool here) = 0;
 
   // Ends all ranks at once, so that a failed rank does not leave the others waiting.

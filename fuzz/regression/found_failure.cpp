@@ -36,7 +36,7 @@ std::string seen_by(const Json& build, std::string_view kind, const std::string&
                      fnv1a(identity));
 }
 
-// The signature without its lanes: its pair's properties and its subject.
+// The signature without its lanes, that is, its pair's properties and its subject.
 std::optional<analysis::Signature> without_lanes(const std::string& key) {
   std::optional<analysis::Signature> signature = analysis::parse_signature(key);
   if (signature) signature->wrong_lanes.clear();
@@ -145,7 +145,7 @@ Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const
       if (s.subject == algorithm) found = analysis::key(s);
     }
   }
-  // A minimised pair has its own margin, so it records its own signature.
+  // A minimised pair has its own margin, and so records its own signature.
   const std::string* own = corpus::field(failure.entry, "signature");
   const std::string& recorded = own ? *own : failure.signature;
   if (!without_lanes(found) || without_lanes(found) != without_lanes(recorded)) {

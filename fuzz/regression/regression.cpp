@@ -25,7 +25,7 @@ constexpr std::string_view kOwnFields[] = {"name",      "truth", "contact", "sta
 
 constexpr std::string_view kMarks = ".+-?!@%~";
 
-// "moller_1997:-f32/cpu.f64/cpu;projected_sat:.f32/cpu": each subject with its lanes, a mark before each lane.
+// "moller_1997:-f32/cpu.f64/cpu;projected_sat:.f32/cpu": each subject with its lanes, each lane after its mark.
 std::string text_of(const Marks& marks) {
   std::string text, last;
   for (const auto& [id, mark] : marks) {
@@ -63,11 +63,11 @@ struct Line {
   std::uint64_t count() const {
     const std::string& word = text("count");
     const std::optional<std::uint64_t> value = parse_whole(word);
-    if (!value || *value == 0 || *value > kMostWhole) fail("a whole number above 0 as count", '\'' + word + '\'');
+    if (!value || *value == 0 || *value > kMostWhole) fail("a positive whole number as count", '\'' + word + '\'');
     return *value;
   }
 
-  // Lanes that the text does not name did not run. Lanes of other builds stay in it.
+  // Lanes that are not named did not run. Lanes of other builds are kept.
   Marks marks() const {
     Marks marks;
     std::istringstream subjects(text("lanes"));
@@ -76,17 +76,17 @@ struct Line {
       std::string_view rest = std::string_view(subject).substr(std::min(id.size() + 1, subject.size()));
       if (rest.empty()) fail("a subject and the marks of its lanes in the field lanes", '\'' + subject + '\'');
       while (!rest.empty()) {
-        std::size_t end = rest.find(',');  // the lane ends at the end, or at a comma before a mark
+        std::size_t end = rest.find(',');  // a lane ends at the end of the text, or at a comma before a mark
         while (end != rest.npos && end + 1 < rest.size() && kMarks.find(rest[end + 1]) == kMarks.npos)
           end = rest.find(',', end + 1);
         const std::string lane = id + '/' + std::string(rest.substr(1, end == rest.npos ? end : end - 1));
         if (kMarks.find(rest.front()) == kMarks.npos || end == rest.npos || !parse_lane_name(lane))
-          fail("a mark and a lane of " + id + " in lanes", '\'' + std::string(rest) + '\'');
-        if (!marks.emplace(lane, rest.front()).second) fail("every lane once in lanes", "a second " + lane);
+          fail("a mark and a lane of " + id + " in the field lanes", '\'' + std::string(rest) + '\'');
+        if (!marks.emplace(lane, rest.front()).second) fail("each lane only once in lanes", "a second " + lane);
         rest.remove_prefix(end + 1);
       }
     }
-    if (marks.empty()) fail("a mark of at least one lane in lanes", "none");
+    if (marks.empty()) fail("at least one marked lane in lanes", "none");
     return marks;
   }
 };
@@ -134,7 +134,7 @@ std::string case_name(const std::string& signature) {
 
 RegressionCorpus read_regressions(const std::filesystem::path& file) {
   if (const std::string text = read_whole(file); !text.empty() && text.back() != '\n')
-    throw corpus::FormatError(cannot("use", file, "it is cut off: its last line has no end"));
+    throw corpus::FormatError(cannot("use", file, "it is cut off: its last line does not end"));
   RegressionCorpus corpus;
   for (const corpus::Entry& entry : corpus::read_pairs(file, PairTypes::both)) {
     const Line line{entry, fmt::format("{}:{}", file.string(), entry.line)};
@@ -145,7 +145,7 @@ RegressionCorpus read_regressions(const std::filesystem::path& file) {
     if (!analysis::parse_signature(signature)) line.fail("the signature of a failure", '\'' + signature + '\'');
     if (const std::string own = case_name(signature); c.name != own)
       line.fail(fmt::format("{}, the name that belongs to its signature", own), '\'' + c.name + '\'');
-    if (!corpus.emplace(signature, std::move(c)).second) line.fail("every signature once", "a second " + signature);
+    if (!corpus.emplace(signature, std::move(c)).second) line.fail("each signature only once", "a second " + signature);
   }
   return corpus;
 }
@@ -218,7 +218,7 @@ Verified verify(RegressionCorpus& corpus, std::span<const Lane* const> run, cons
       const auto known = c.marks.find(lane->id);
       const bool recorded = known != c.marks.end(), never_wrong = analysis::is_never_wrong(*lane, c.pair);
       if (recorded && known->second == '~' && !never_wrong) continue;
-      if (recorded || never_wrong) {  // such a lane's record is the truth if the file has none
+      if (recorded || never_wrong) {  // without a record, a lane that is never wrong is compared with the truth
         ++result.compared;
         const std::string was = recorded ? verdict_of_mark(known->second, c.truth) : verdict_of_mark('.', truth_now);
         const std::string is = verdict_of_mark(mark_now, truth_now);

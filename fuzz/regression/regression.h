@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The regression corpus: known failures, one case for each signature, in one file of pairs, with their current state.
-// Nothing in it depends on the clock. The same failures in the same order give the same bytes.
+// The regression corpus: known failures with their current states, one case for each signature, in one file of pairs.
+// Nothing in it depends on the time. The same failures in the same order give the same bytes.
 #pragma once
 
 #include <cstdint>
@@ -20,48 +20,49 @@
 namespace graze::fuzz {
 
 // failing: a lane of the signature's algorithm is wrong. fixed: all lanes that were wrong are right. flaky: a verdict
-// differed between replays, or between a device and its twin. Later replays that agree prove nothing, so it stays
-// flaky.
+// differed between replays, or between a device and its twin. A flaky case stays flaky, because later replays that
+// agree prove nothing.
 enum class CaseState { failing, fixed, flaky };
 std::string_view name(CaseState state);
 
-// The mark of each lane that ran, by the lane's name: a mark of analysis/signature.h, or '~' if its verdict differed
-// between replays.
+// The mark of each lane that ran, by the lane's name: a mark from analysis/signature.h, or '~' if the lane's verdict
+// differed between replays.
 using Marks = std::map<std::string, char>;
 
 struct RegressionCase {
-  std::string name;  // a word, unique
+  std::string name;  // a unique word
   AnyPair pair;
   std::string truth, contact;
   CaseState state = CaseState::failing;
   std::uint64_t count = 0;  // pairs seen with this signature
   Marks marks;
-  std::string first, last;  // first and last time it was seen; see FoundFailure::seen
+  std::string first, last;  // where it was first and last seen; see FoundFailure::seen
   std::vector<std::pair<std::string, std::string>> other = {};  // other fields of the original entry
 };
 
-// The fields of an entry that a case does not store itself.
+// Those fields of an entry that a case has no members for.
 std::vector<std::pair<std::string, std::string>> other_fields(const corpus::Entry& entry);
 
-// Cases by the signature that they were first seen with.
+// Cases by the signature with which they were first seen.
 using RegressionCorpus = std::map<std::string, RegressionCase>;
 
 // The name of a case: its subject and a hash of its signature.
 std::string case_name(const std::string& signature);
 
-// Throws: FormatError, also if the file is missing, holds a signature twice, or a name is not that of its signature.
+// Throws: FormatError, including if the file is missing, holds a signature twice, or has a name that is not its
+// signature's.
 RegressionCorpus read_regressions(const std::filesystem::path& file);
 
 // Replaces the file atomically.
 void write_regressions(const std::filesystem::path& file, const RegressionCorpus& corpus);
 
-// Each lane's verdict on a pair; `apart` receives the lanes whose executors disagree. See decide in
+// Gives each lane's verdict on a pair; `apart` receives the lanes whose executors disagree. See decide in
 // fuzz/selected_lanes.h.
 using DecideLanes = std::function<std::vector<Verdict>(const AnyPair&, std::vector<const Lane*>& apart)>;
 
 struct Replay {
   oracle::Truth truth;
-  Marks marks;  // of the lanes that take the pair
+  Marks marks;  // of the lanes that decide the pair
 };
 
 inline constexpr int kReplays = 3;
@@ -69,7 +70,7 @@ inline constexpr int kReplays = 3;
 // Runs the lanes on the pair kReplays times.
 Replay replay(const AnyPair& pair, std::span<const Lane* const> lanes, const DecideLanes& decide);
 
-// The state of a case with this signature after a replay; `before` if the replay cannot tell.
+// The state of a case with this signature after a replay; `before` if the replay does not show it.
 CaseState state_after(CaseState before, const std::string& signature, const Marks& now);
 
 struct Change {
@@ -83,8 +84,8 @@ struct Verified {
 };
 
 // Replays every case and updates verdicts and states in the corpus.
-// Returns: the differences from the record; for an exact lane, the record is the truth. Lanes without a record, and
-// lanes that did not run, make no difference.
+// Returns: the differences from the record. For an exact lane without a record, the truth is the record. Other lanes
+// without a record, and lanes that did not run, make no difference.
 Verified verify(RegressionCorpus& corpus, std::span<const Lane* const> lanes, const DecideLanes& decide);
 
 }  // namespace graze::fuzz

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The regression corpus with lanes that are wrong on request: the changes that verify reports, and the life of a case.
+// The regression corpus, with lanes that are wrong on request: the changes that verify reports, and a case's states.
 #include "fuzz/regression/regression.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ constexpr Pair kTouching{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {1, 2, 4
 constexpr Pair kShifted{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{2, 1, 0}, {2, 2, 4}, {3, 1, 4}}};
 const std::string kSignature = "point/22/skew/0/moller_1997:-f32/cpu";
 
-// All lanes. Those in `wrong` say disjoint, which is wrong for these pairs; the others are right.
+// All lanes. Those in `wrong` say disjoint, which is wrong on these pairs; the others are right.
 struct Liars {
   std::vector<const Lane*> lanes;
   std::set<std::string> wrong{"moller_1997/f32/cpu"};
@@ -147,7 +147,7 @@ TEST_F(Regression, EveryLaneIsCompared) {
   EXPECT_EQ(verify(corpus, liars.lanes, liars.decide()).compared, published_lanes().size());
   liars.wrong.insert("separating_axes/f64/cuda-fma");
   EXPECT_EQ(changes(), Texts{"separating_axes/f64/cuda-fma: was intersects (right), is disjoint (wrong)"});
-  EXPECT_EQ(changes(), Texts());  // now it is recorded
+  EXPECT_EQ(changes(), Texts());  // now the change is recorded
 }
 
 TEST_F(Regression, AFailingCaseIsFixedAndFailsAgain) {
@@ -162,7 +162,7 @@ TEST_F(Regression, AFixedCaseTakesThePairThatFailsAgain) {
   liars.wrong.clear();
   changes();
   EXPECT_EQ(add({kSignature, {kShifted}, 1, "s2"}), Added::seen_again);
-  EXPECT_EQ(only().state, CaseState::fixed);  // another build saw it fail; this one does not
+  EXPECT_EQ(only().state, CaseState::fixed);  // it failed in another build, but not in this one
   liars.wrong = {"moller_1997/f32/cpu"};
   EXPECT_EQ(add({kSignature, {kShifted}, 1, "s3"}), Added::seen_again);
   EXPECT_EQ(only().state, CaseState::failing);
@@ -172,7 +172,7 @@ TEST_F(Regression, AFixedCaseTakesThePairThatFailsAgain) {
   EXPECT_EQ(changes(), Texts());
 }
 
-// A minimised pair has its own margin, but stays the case of the campaign's signature.
+// A minimised pair has its own margin, but remains the case of the campaign's signature.
 TEST_F(Regression, AMinimisedPairIsTheCaseOfItsSignature) {
   std::string other = kSignature;
   other.replace(other.find("/0/"), 3, "/-2^-3/");
@@ -222,7 +222,7 @@ TEST(Failures, OfACaseAreAllItsWrongAlgorithms) {
   liars.wrong.insert("separating_axes/f32/cpu");
   const Json build{{"commit", "c"}, {"compiler", "GNU 1"}, {"cuda", nullptr}, {"device", "H100"}, {"executors", {}}};
   const auto found = found_in_cases({{kTouching}, {kShifted}}, build, liars.lanes, liars.decide());
-  ASSERT_EQ(found.size(), 2u);  // the second pair has the same two
+  ASSERT_EQ(found.size(), 2u);  // the second pair has the same two signatures
   EXPECT_EQ(found[0].signature, kSignature);
   EXPECT_EQ(found[1].signature, "point/22/skew/0/separating_axes:-f32/cpu");
   EXPECT_TRUE(found[0].seen.starts_with("c, GNU 1, no nvcc, H100; case ")) << found[0].seen;
@@ -230,7 +230,7 @@ TEST(Failures, OfACaseAreAllItsWrongAlgorithms) {
   EXPECT_NE(found[0].seen, found_in_cases({{kShifted}}, build, liars.lanes, liars.decide())[0].seen);
 }
 
-// Where the file has no mark of an exact lane, the truth is its record.
+// If the file has no mark of an exact lane, the truth is its record.
 TEST_F(Regression, AnExactLaneThatIsWrongIsAChange) {
   for (const Lane& lane : lanes()) {
     if (lane.id == "exact/f32/cpu") liars.lanes.push_back(&lane);

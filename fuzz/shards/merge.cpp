@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Merges the words of both, as in "device; twin, verified on …".
+// Combines the words of both, as in "device; twin, verified on …".
 std::string common_words(const std::string& one, const std::string& other) {
   std::set<std::string> words;
   for (const std::string& text : {one, other}) {
@@ -39,7 +39,7 @@ std::string common_words(const std::string& one, const std::string& other) {
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
-// Reads the record of each part; all must belong to one campaign.
+// Reads each part's record; all parts must belong to one campaign.
 std::vector<StoreSpec> read_records(const std::vector<fs::path>& parts) {
   std::vector<StoreSpec> stores;
   for (const fs::path& part : parts) {
@@ -56,7 +56,7 @@ std::string named(const StoreSpec& store) {
   return store.directory.string() + (store.shard.whole() ? "" : ", shard " + store.shard.name());
 }
 
-// A folder beside the others for a missing shard: a new one, or one where it was begun.
+// A folder for a missing shard, beside the others: a new one, or one where that shard was started.
 fs::path place_for(const Shard& shard, const StoreSpec& beside, const fs::path& out) {
   const auto fits = [&](const fs::path& place) {
     if (place.lexically_normal() == out.lexically_normal()) return false;
@@ -92,7 +92,7 @@ void expect_no_gaps(const std::vector<StoreSpec>& stores, const Sums& sums, cons
   }
   if (!undone.empty()) {
     throw std::runtime_error(
-        fmt::format("cannot merge {}: it {} not done; to go on, run: {}", named(*undone.front()),
+        fmt::format("cannot merge {}: it {} not done; to resume, run: {}", named(*undone.front()),
                     undone.size() == 1 ? "is" : fmt::format("and {} other shards are", undone.size() - 1),
                     command_of(spec, undone.front()->shard, undone.front()->directory)));
   }
@@ -101,7 +101,7 @@ void expect_no_gaps(const std::vector<StoreSpec>& stores, const Sums& sums, cons
       of > 1 && std::all_of(stores.begin(), stores.end(), [&](auto& store) { return store.shard.of == of; });
   if (!alike) {
     throw std::runtime_error(fmt::format(
-        "cannot merge: {} pairs are in none of these directories; merge these with --partial into {}, then run: {}",
+        "cannot merge: {} pairs are missing in these directories; merge these with --partial into {}, then run: {}",
         missing, out.string(), command_of(spec, {}, out)));
   }
   std::set<std::uint64_t> lacking;
@@ -128,11 +128,11 @@ void expect_sealed(const StoreSpec& store) {
   if (const std::string found = file_hash(store.directory / kDatabase); found != status["hash"].get<std::string>())
     throw DamagedStore(
         cannot("merge", store.directory / kDatabase,
-               fmt::format("it has changed since the run ended: its hash is {}, not {}; copy it again, or", found,
+               fmt::format("it has changed since the run ended: its hash is {}, not {}; copy it again, or run", found,
                            printable(status["hash"].get<std::string>()))));
 }
 
-// Whether the folder holds the whole campaign, for example because a merge into it has ended.
+// Whether the folder already holds the whole campaign, for example because a merge into it has just ended.
 bool holds_whole(const fs::path& out, const Json& spec) {
   try {
     const StoreSpec found = recorded_store(out);
@@ -145,11 +145,11 @@ bool holds_whole(const fs::path& out, const Json& spec) {
 
 void expect_new(const fs::path& out, const Json& spec) {
   if (!fs::exists(out) || (fs::is_directory(out) && fs::is_empty(out))) return;
-  const std::string why = holds_whole(out, spec) ? "it holds this campaign already, complete" : "it holds other files";
+  const std::string why = holds_whole(out, spec) ? "it already holds this campaign, complete" : "it holds other files";
   throw UsageError(cannot("use", out, why + "; choose a new or an empty directory as --out"));
 }
 
-// The folder that `out` names, without links; the finished campaign is renamed to it.
+// The folder that `out` names, after following links; the finished campaign is renamed to it.
 // Throws: UsageError if that is impossible.
 fs::path place_of(const fs::path& out, const Json& spec) {
   std::error_code error;
@@ -158,7 +158,7 @@ fs::path place_of(const fs::path& out, const Json& spec) {
   expect_new(out, spec);
   if (!place.has_filename()) place = place.parent_path();
   if (place == fs::current_path(error))
-    throw UsageError(cannot("replace", out, "it is the working directory; run the command elsewhere"));
+    throw UsageError(cannot("replace", out, "it is the working directory; run the command from another directory"));
   struct statx found {};
   if (statx(AT_FDCWD, place.c_str(), 0, STATX_TYPE, &found) == 0 && (found.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0)
     throw UsageError(
@@ -169,7 +169,7 @@ fs::path place_of(const fs::path& out, const Json& spec) {
 
 constexpr std::string_view kCampaignPart = "campaign.graze.part";
 
-// The folder beside the target in which the campaign is built, as kCampaignPart. A killed merge may have left it.
+// The folder beside the target in which the campaign is built as kCampaignPart. A killed merge may have left it there.
 fs::path folder_beside(const fs::path& place) {
   std::error_code error;
   fs::path part = place;
@@ -178,11 +178,11 @@ fs::path folder_beside(const fs::path& place) {
   if (error) throw std::runtime_error(cannot("make the directory", part, error.message()));
   const auto is_ours = [](const fs::directory_entry& entry) { return entry.path().filename() == kCampaignPart; };
   if (fs::is_symlink(part) || !std::all_of(fs::directory_iterator(part), fs::directory_iterator(), is_ours))
-    throw UsageError(cannot("use", part, "a killed merge did not leave it; remove it"));
+    throw UsageError(cannot("use", part, "it was not left by a killed merge; remove it"));
   return part;
 }
 
-// Adds the part's runs to those of the same machine.   Throws: as expect_possible_run.
+// Adds the part's runs to those of the same machine.   Throws: what expect_possible_run throws.
 void add_timings(const StoreSpec& part, const Json& runs, std::size_t parts, std::map<std::string, Json>& by_machine) {
   std::map<std::string, std::uint64_t> sources;
   std::uint64_t share = 0;
@@ -212,7 +212,7 @@ std::map<std::string, Json> timings_of(const std::vector<StoreSpec>& stores) {
     try {
       add_timings(store, runs, stores.size(), by_machine);
     } catch (const Json::exception&) {
-      throw std::runtime_error(cannot("use", file, "it does not hold the timings of a campaign"));
+      throw std::runtime_error(cannot("use", file, "it does not hold a campaign's timings"));
     } catch (const std::runtime_error& error) {
       throw std::runtime_error(cannot("use", file, error.what()));
     }
@@ -220,7 +220,7 @@ std::map<std::string, Json> timings_of(const std::vector<StoreSpec>& stores) {
   return by_machine;
 }
 
-// Joins the rounds of a hunt's parts into those of the campaign, which draws its cases from them.
+// Combines the rounds of a hunt's parts into those of the campaign, which takes its cases from them.
 // held: the number of pairs in each part.
 void join_rounds(const std::vector<StoreSpec>& stores, const std::vector<std::uint64_t>& held, const Sums& sums,
                  Campaign& campaign) {
@@ -306,17 +306,17 @@ Outcome merge(const MergeOptions& options) {
     campaign.build = common_build(campaign.build, store.build, store.directory);
     store.sources = campaign.sources;
   }
-  // The pairs of the cases are drawn again by this build.
+  // This build draws the cases' pairs again, so it must be the same.
   if (const Json here = build_info({}); campaign.build.at("commit") != here["commit"])
     throw std::runtime_error(
         cannot("merge", stores.front().directory,
-               fmt::format("the build of commit {} ran it, and this build is of commit {}; use that build",
+               fmt::format("it was run by a build of commit {}, but this build is of commit {}; use that build",
                            printable(campaign.build["commit"].get<std::string>()), here["commit"].get<std::string>())));
   const SelectedLanes under_test = recorded_lanes(campaign.spec);
   campaign.under_test = &under_test;
   const std::map<std::string, Json> timings = timings_of(stores);
   const fs::path place = place_of(options.out, campaign.spec), beside = folder_beside(place);
-  const FolderLock alone(beside, FolderLock::WhenTaken::refuse);  // held to the end; other merges must not empty it
+  const FolderLock alone(beside, FolderLock::WhenTaken::refuse);  // to the end, so that no other merge empties it
   campaign.directory = beside / kCampaignPart;
 
   Sums sums(campaign.sources, static_cast<int>(under_test.lanes.size()));
@@ -344,7 +344,7 @@ Outcome merge(const MergeOptions& options) {
                                       : what + ": " + again + " --discard-damaged");
       } catch (const Sums::Overlap& overlap) {
         throw std::runtime_error(
-            fmt::format("cannot merge {} and {}: both have {} pairs of {} from {} on; leave one out",
+            fmt::format("cannot merge {} and {}: both have {} pairs of {}, from index {} on; leave one out",
                         named(stores[overlap.before]), named(stores[overlap.now]), overlap.pairs.pairs,
                         campaign.sources[static_cast<std::size_t>(overlap.pairs.source)].id, overlap.pairs.first));
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Merging gives the bytes of one run, whatever the number of shards, their executors and their order.
+// Merging gives the bytes of one run, for any number of shards, executors and order.
 #include "fuzz/shards/merge.h"
 
 #include <fmt/format.h>
@@ -32,7 +32,7 @@ class MergeTest : public CampaignFiles {
     return c;
   }
 
-  // Returns the directories of all shards. Every third one runs with the steps of the device engine; every fifth one is
+  // Returns the directories of all shards. Every third shard runs with the steps of the device engine; every fifth is
   // interrupted after every batch.
   std::vector<fs::path> run_shards(std::uint64_t of) const {
     std::vector<fs::path> parts;
@@ -84,7 +84,7 @@ TEST_F(MergeTest, AnyNumberOfShardsInAnyOrderLeavesTheBytesOfTheWhole) {
     EXPECT_TRUE(outcome.complete);
     EXPECT_EQ(outcome.summary.dump(), whole.dump()) << of;
     expect_same_bytes("whole", name);
-    // The store is that of a finished campaign: nothing is judged again.
+    // The store is a finished campaign's, so nothing is judged again.
     Campaign again = campaign(name);
     std::atomic<bool> stop{false};
     EXPECT_TRUE(run_campaign(again, stop, [](const Progress&) { ADD_FAILURE() << "a batch"; }).complete);
@@ -120,7 +120,7 @@ TEST_F(MergeTest, APartialMergeIsACampaignToGoOnWith) {
   expect_same_bytes("whole", "partial");
 }
 
-// The folder beside the target may have been left by a killed merge. Other files and folders of that name stay.
+// A killed merge may have left the folder beside the target. Other files and folders of that name are kept.
 TEST_F(MergeTest, OnlyWhatAKilledMergeLeftIsReplaced) {
   const std::vector<fs::path> parts = run_shards(2);
   const fs::path out = root_ / "all", beside = out.string() + kPart, other = root_ / "other";
@@ -220,8 +220,8 @@ TEST_F(MergeTest, WhatIsWrongGetsOneLineAndLeavesNothing) {
   EXPECT_EQ(refusal(parts), "");
 }
 
-// The command that runs a part of a campaign again asks for the pairs that the user requested, without those of the
-// mesh.
+// The command that runs a part of a campaign again requests the pairs that the user requested, not counting those of
+// the mesh.
 TEST_F(MergeTest, CommandsNameTheMeshAndThePairsBesideIt) {
   fs::create_directories(root_);
   const std::string file = (root_ / "mesh.off").string();
@@ -241,7 +241,7 @@ TEST_F(MergeTest, CommandsNameTheMeshAndThePairsBesideIt) {
   EXPECT_EQ(command(R"(["mesh"])", 6, true), "graze fuzz --mesh " + file + " --seed 3" + of_lanes);
 }
 
-// Lanes that were left out were requested as well, by patterns each of which matched a lane that ran.
+// Lanes that were left out were requested too, with patterns that each matched a lane that ran.
 TEST_F(MergeTest, CommandsAskForTheLanesThatWereLeftOutToo) {
   const SelectedLanes some = select_lanes({"moller_1997/f32/cuda-*", "exact/f32/cpu"}, Executor::twin);
   Json spec = {
@@ -287,7 +287,7 @@ TEST(Shard, PartsAreTheWholeEachIndexOnce) {
     EXPECT_FALSE(parse_shard(text)) << text;
 }
 
-// One process plays all ranks in turn.
+// One process acts as all ranks in turn.
 TEST_F(MergeTest, BlocksOfRanksAreTheWholeAndWhatARankLeftIsTakenIn) {
   const Json whole = run(campaign("whole"));
   const Campaign left = campaign("left");
@@ -327,7 +327,7 @@ TEST_F(MergeTest, SumsOfRanksTravelAsBytes) {
   EXPECT_EQ(root.bytes(), direct.bytes());
   EXPECT_THROW(root.add(leaf.bytes()), Sums::Overlap);
   EXPECT_THROW(root.add("nonsense"), Damaged);
-  EXPECT_EQ(direct.gaps().size(), 3u + 4u + 4u);  // the first source has its first pairs
+  EXPECT_EQ(direct.gaps().size(), 3u + 4u + 4u);  // the first source has only its first pairs
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze_targets TARGET [libFuzzer's arguments]: runs a fuzz target under libFuzzer. Without arguments: their names.
+// graze_targets TARGET [libFuzzer's arguments]: runs a fuzz target under libFuzzer. Without arguments: lists them.
 #include <cstdint>
 #include <cstdio>
 #include <cstring>

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pairs of triangles that are hard to decide, and the exact answers.
 
-A pair is two triangles of three vertices x y z: a float32 or float64 array of shape (2, 3, 3). Many are one array of
-shape (n, 2, 3, 3). A triangle is the closed hull of its vertices, so touching counts as intersecting.
+A pair is two triangles of three vertices x y z: a float32 or float64 array of shape (2, 3, 3). Many pairs are one
+array of shape (n, 2, 3, 3). A triangle is the closed hull of its vertices, so touching counts as intersecting.
 
 >>> import graze
 >>> pairs = graze.pairs("near_edge_edge", seed=1, count=1000)

@@ -19,8 +19,8 @@ _RELATION = np.dtype(
 
 
 class Pair:
-    """Two triangles, from 18 numbers in a text or an array: `array`, float32 of shape (2, 3, 3). In a notebook it shows
-    itself in 3-D if the program `graze` is there.
+    """Two triangles, made from 18 numbers in a text or an array: `array`, float32 of shape (2, 3, 3). A notebook shows
+    the pair in 3-D if the program `graze` is installed.
 
     >>> touching = Pair("0 0 0  1 0 0  0 1 0   0 0 0  0 0 1  0 1 1")
     >>> touching.relation["contact"] == CONTACTS.index("point")
@@ -71,8 +71,8 @@ class Pair:
 
 
 def _float32(word: str) -> np.float32:
-    """The nearest float32. numpy.float32(word) rounds twice, to a double first: here that is rounded to odd, after which
-    the second rounding is right (S. Boldo and G. Melquiond, Emulation of FMA and correctly rounded sums: proved
+    """The nearest float32. numpy.float32(word) would round twice, first to a double. Here the first rounding is to odd,
+    so that the second is correct (S. Boldo and G. Melquiond, Emulation of FMA and correctly rounded sums: proved
     algorithms using rounding to odd, 2008)."""
     near = float(word)
     if near != 0 and math.isfinite(near) and Decimal(word) != near and np.float64(near).view(np.int64) % 2 == 0:
@@ -102,8 +102,8 @@ def lanes() -> list[str]:
 def pairs(strata: str = "*", *, seed: int = 1, count: int = 1000, coordinates: str = "f32") -> np.ndarray:
     """Draws pairs of the strata, in order of their names; the strata share them evenly.
 
-    strata: names with * and ?, separated by commas; "!x" leaves out x. A pair depends on seed, stratum and its place
-    alone; it is the same on every machine. coordinates: "f32", or "f64" for pairs of doubles, of which there are more
+    strata: names with * and ?, separated by commas; "!x" leaves out x. A pair depends only on seed, stratum and
+    place, and is the same on every machine. coordinates: "f32", or "f64" for pairs of doubles, which have more
     strata.
     Returns: float32 or float64, shape (count, 2, 3, 3).   Raises: ValueError.
     """
@@ -175,10 +175,10 @@ def margin(pairs: Any) -> np.ndarray:
 
 
 def verdicts(lane: str, pairs: Any) -> np.ndarray:
-    """What the lane says of each pair: 1 intersects, 0 disjoint, -1 declined. int8. CUDA lanes run as twins, which
-    replay the kernels on this processor. A float32 lane decides pairs of doubles as a program does that stores them in
-    float32: each coordinate rounded once.
-    Raises: ValueError for a lane that is not there, and for doubles where a float64 lane reads float32 alone."""
+    """The lane's verdict on each pair: 1 intersects, 0 disjoint, -1 declined. int8. CUDA lanes run as twins, which
+    replay the kernels on this processor. A float32 lane decides pairs of doubles like a program that stores them in
+    float32: each coordinate is rounded once.
+    Raises: ValueError for a lane that does not exist, and for doubles if a float64 lane reads only float32."""
     checked = _checked(pairs)
     doubles, name = _library.in_doubles(checked), _library.name_of(lane, "lane")
     return _of_pairs("verdicts", checked, np.empty(len(checked), np.int8), name, after=(doubles,))
@@ -235,6 +235,6 @@ def self_intersections(triangles: Any, *, touching: bool = False) -> np.ndarray:
 
 
 def intersections(a: Any, b: Any, *, touching: bool = True) -> np.ndarray:
-    """The pairs of a triangle of `a` and one of `b` that intersect. Exact. touching=False: those that pierce each other
-    alone.   Returns: uint32, shape (k, 2), sorted."""
+    """The pairs of a triangle of `a` and one of `b` that intersect. Exact. touching=False: only those that pierce
+    each other.   Returns: uint32, shape (k, 2), sorted."""
     return _found(*_triangles(a, b), touching)

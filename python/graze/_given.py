@@ -139,7 +139,7 @@ def given(
         examples: list[Pair] = list(getattr(function, "_graze_examples", ()))
         name = getattr(function, "__name__", "the function")
 
-        def test(*self: Any) -> None:  # of a method: its object
+        def test(*self: Any) -> None:  # self: for a method, its object
             __tracebackhide__ = True
             tested = _Tested(functools.partial(function, *self), name, vectorized)
             why = _check(tested, name, options, test._graze_examples)  # type: ignore[attr-defined]
@@ -157,7 +157,7 @@ def given(
 
 
 def example(pair: Any) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Adds a pair, as 18 numbers in a text or an array, that a test by `given` checks first."""
+    """Adds a pair, as 18 numbers in a text or an array, that a test made with `given` checks first."""
     added = pair if isinstance(pair, Pair) else Pair(pair)
 
     def decorate(function: Callable[..., Any]) -> Callable[..., Any]:

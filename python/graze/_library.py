@@ -55,7 +55,7 @@ def call(function: str, *arguments: Any) -> None:
 
 @contextlib.contextmanager
 def failures_on_entering(callback: Callable[..., Any], end: Callable[[BaseException], None]) -> Iterator[None]:
-    """Calls end() with what a signal's handler raises before the first line of a callback, which ctypes only prints."""
+    """Calls end() with an exception that a signal's handler raises on entering a callback; ctypes only prints it."""
     before = sys.unraisablehook
 
     def hook(unraisable: Any) -> None:
@@ -72,8 +72,8 @@ def failures_on_entering(callback: Callable[..., Any], end: Callable[[BaseExcept
 
 
 def call_in_thread(function: str, *arguments: Any, then: Callable[[], None]) -> None:
-    """As call, for one long call whose last argument asks it to stop: Ctrl+C does, and is raised when it has stopped.
-    `then` runs in the same thread after it, because what it found is kept for that thread."""
+    """Like call, for one long call whose last argument asks it to stop. Ctrl+C stops it, and is then raised.
+    `then` runs in the same thread after it, because the library keeps the result for that thread."""
     stop = ctypes.c_int(0)
     failures: list[BaseException] = []
 
@@ -126,14 +126,14 @@ def in_pieces(count: int, f: Callable[[int, int], None]) -> None:
 
 
 def _masked(array: Any) -> int:
-    """How many values are masked, also in lists of masked arrays."""
+    """How many values are masked, including those in lists of masked arrays."""
     if isinstance(array, np.ma.MaskedArray):
         return int(np.ma.getmaskarray(array).sum())
     return sum(map(_masked, array)) if isinstance(array, (list, tuple)) else 0
 
 
 def unmasked(array: Any, what: str) -> np.ndarray:
-    """The array without a mask. Raises ValueError if values are masked, for NumPy would take what lies below them."""
+    """The array without a mask. Raises ValueError for masked values, because NumPy would use what the mask hides."""
     if masked := _masked(array):
         raise ValueError(
             f"{what}: masked values ({masked}) are refused; fill them (x.filled) or leave out what they belong to"
@@ -143,7 +143,7 @@ def unmasked(array: Any, what: str) -> np.ndarray:
 
 def floats(array: Any, shape: tuple[int, ...], what: str, doubles: bool = True) -> np.ndarray:
     """The array as contiguous float32, or float64 if it is that and `doubles`, of shape (n, *shape); one element may
-    lack the first axis. Without a copy if it is that already. Raises TypeError for other numbers, which would have to
+    lack the first axis. Makes no copy if it is that already. Raises TypeError for other numbers, which would have to
     be rounded, and ValueError for another shape or masked values."""
     found = unmasked(array, what)
     if found.dtype != np.float32 and not (doubles and found.dtype == np.float64):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the program `graze` does better than the library: campaigns and drawings."""
+"""Calls the program `graze` for what it does better than the library: campaigns and drawings."""
 import json
 import os
 import pathlib

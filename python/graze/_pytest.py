@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The plug-in for pytest: how many pairs tests by graze.given draw, for a nightly run. A failure is shown without the
-lines of graze itself."""
+"""The plug-in for pytest. Its options set how many pairs tests with graze.given draw, such as for a nightly run. A
+failure is shown without the lines of graze itself."""
 import os
 from typing import Any, Generator
 
@@ -9,7 +9,7 @@ import pytest
 
 def pytest_addoption(parser: Any) -> None:
     group = parser.getgroup("graze")
-    group.addoption("--graze-pairs", metavar="N", help="pairs of each test by graze.given")
+    group.addoption("--graze-pairs", metavar="N", help="number of pairs in each test with graze.given")
     group.addoption("--graze-seed", metavar="N", help="seed of their pairs")
 
 

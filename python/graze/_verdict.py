@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an answer of a function of two triangles means. `graze try` holds this file too, so it needs no NumPy."""
+"""Reads a function's answer about two triangles. `graze try` contains this file too, so it must not need NumPy."""
 import numbers
 from typing import Any
 
@@ -7,7 +7,7 @@ DISJOINT, INTERSECTS, DECLINED = range(3)  # as the library numbers verdicts
 
 
 def verdict_of(answer: Any, function: str) -> int:
-    """The verdict of a bool or an int, also NumPy's. Raises TypeError for other answers."""
+    """The verdict of a bool or an int, including NumPy's. Raises TypeError for other answers."""
     kind = type(answer)
     is_bool = kind.__module__ == "numpy" and kind.__name__ in ("bool", "bool_")  # no numbers.Integral
     if not is_bool and not isinstance(answer, numbers.Integral):

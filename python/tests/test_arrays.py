@@ -376,7 +376,7 @@ def normals(points):
 
 
 def flattened(points, normal):
-    """The points of the plane without one coordinate in which its normal is not 0."""
+    """The points of the plane, without a coordinate in which its normal is not 0."""
     drop = next(k for k, n in enumerate(normal) if n)
     return [p[:drop] + p[drop + 1 :] for p in points]
 

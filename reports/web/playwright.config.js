@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Settings of the page's tests. They use the system's Chromium (GRAZE_CHROMIUM, or chromium on the PATH), and download
-// none.
+// Settings of the page's tests. They use the system's Chromium (GRAZE_CHROMIUM, or chromium on the PATH) and do not
+// download one.
 import { execSync } from 'node:child_process';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { defineConfig } from '@playwright/test';
 
 const chromium = process.env.GRAZE_CHROMIUM ?? execSync('command -v chromium', { encoding: 'utf8' }).trim();
+
+// Without the sandbox, because root in a container cannot have one.
+const launched = (...args) => ({ executablePath: chromium, args: ['--no-sandbox', ...args] });
 
 export default defineConfig({
   testDir: 'tests',
@@ -17,15 +20,19 @@ export default defineConfig({
   timeout: 300_000,
   expect: { timeout: 60_000 },
   reporter: 'list',
-  use: {
-    // A low window: parts out of view need no painting, which costs most processor time here, and their maps are not
-    // computed.
-    viewport: { width: 1360, height: 480 },
-    launchOptions: {
-      executablePath: chromium,
-      // WebGL in software if there is no GPU; no sandbox, because root in a container cannot have one.
-      args: ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--no-sandbox'],
+  // Drawing by a GPU that is emulated takes most of the processor time, so only the tests of WebGL have one.
+  projects: [
+    { name: 'plain', grepInvert: /by WebGL/, use: { launchOptions: launched('--disable-gpu') } },
+    {
+      name: 'webgl',
+      grep: /by WebGL/,
+      use: { launchOptions: launched('--use-angle=swiftshader', '--enable-unsafe-swiftshader') },
     },
+  ],
+  use: {
+    // A low window: parts out of view are not painted, which takes most of the processor time here, and their maps are
+    // not computed.
+    viewport: { width: 1360, height: 480 },
     contextOptions: { permissions: ['clipboard-read', 'clipboard-write'] },
   },
 });

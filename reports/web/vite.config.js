@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes one file that contains everything, with no chunk, style sheet or picture beside it, so that the page opens from
-// disk. The report is index.html; with --mode viewer, view.html. GRAZE_VIEWER says whether there is a viewer, which
-// quotes source lines; its module is among the data that graze writes into the page.
+// disk. The report is index.html; with --mode viewer it is view.html. GRAZE_VIEWER says whether there is a viewer,
+// which quotes source lines; graze writes the viewer's module into the page with the other data.
 import { readFileSync, readdirSync } from 'node:fs';
 import { defineConfig } from 'vite';
 import { viteSingleFile } from 'vite-plugin-singlefile';

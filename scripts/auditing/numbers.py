@@ -9,7 +9,7 @@ np.seterr(all="ignore")
 
 
 class Root:
-    """p + q sqrt(m), exact. If p is None: not a number. m is the argument of the run's only square root."""
+    """p + q sqrt(m), exact; not a number if p is None. m is the argument of the run's only square root."""
 
     __slots__ = ("p", "q", "m")
 
@@ -183,7 +183,7 @@ def fma(a, b, c):
 
 
 class Fused:
-    """A number of a contracting lane. It stores the product that it is the result of."""
+    """A number of a contracting lane. If it is a product, it stores the factors."""
 
     __slots__ = ("v", "run", "x", "y", "product", "quotient", "scaled")
 

@@ -235,7 +235,7 @@ class Runner:
         return self.test_what_it_writes(group, mutated, folder) if "writes" in group else ("survived", "")
 
     def test_what_it_writes(self, group, mutated, folder, env=None):
-        """For a generator: runs its program to write sources. If a source differs from before, runs that source's
+        """For a generator: runs its program to write sources. If a source differs from the build's, runs that source's
         test."""
         writer = self.link(group["writes"]["program"], mutated, folder / "writer")
         for source, flag, written, test in group["writes"]["runs"]:

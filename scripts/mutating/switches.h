@@ -11,7 +11,7 @@
 
 namespace graze_mutant {
 
-constexpr int kNotSwitched = 98;  // exit status: the selected mutant does not compile with a switch; try it by itself
+constexpr int kNotSwitched = 98;  // exit status: the selected mutant does not compile with a switch; build it by itself
 
 struct Asked {
   bool of[8192] = {};

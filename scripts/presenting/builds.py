@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Results about builds and processors: the same test, compiled otherwise."""
+"""Results about builds and processors: the same test, built differently."""
 import math
 
 from presenting.figures import bars
@@ -51,11 +51,12 @@ def riddle(r):
         "verdicts differed, and it could not say why. We ran its algorithm, `interval_overlap` in float32, on "
         f"{count(pairs)} pairs drawn as the thesis drew them, on an H100 and on a CPU. {count(differ)} verdicts "
         f"differ: {one_in(differ, pairs)} (95 % interval {one_in_interval(differ, pairs)}), which is "
-        f"{percent(share, 1)} of the thesis's rate. By default nvcc fuses `a * b + c` into one rounding "
+        f"{percent(share, 1)} of the thesis's rate. By default nvcc computes `a * b + c` with one rounding "
         "(*contraction*); our host compiler is told not to. Built with `-fmad=false`, the GPU differs from the CPU "
-        f"on {count(none)} of {count(of(without))} verdicts of all lanes. The rest of the rate is open. The thesis "
-        f"gives no counts, no compiler and no flags. If it saw a single difference among {count(saw)} triangles, its "
-        f"own 95 % interval is {one_pair_in(high, '')} to {one_pair_in(low, '')}, and our rate lies within it.",
+        f"on {count(none)} of {count(of(without))} verdicts of all lanes. The rest of the rate is unexplained: the "
+        f"thesis gives no counts, no compiler and no flags. If it saw a single difference among {count(saw)} "
+        f"triangles, its own 95 % interval is {one_pair_in(high, '')} to {one_pair_in(low, '')}, and our rate lies "
+        "within it.",
         figure,
         alt,
         main=("agreement", changed),
@@ -97,14 +98,14 @@ def hosts(r):
         "hosts",
         f"The nearest model of the machines of 2012 differs on {one_pair_in(nearest)}, but only with the "
         "thesis's second reference triangle",
-        f"Contraction alone does not come to {one_in(1, saw)}. Which arithmetic of 2012 does? We compared {word(3)} "
+        f"Contraction alone does not explain {one_in(1, saw)}. Which arithmetic of 2012 could? We compared {word(3)} "
         f"hosts with {word(len(devices))} models of devices, on {count(of(special))} pairs for each of the thesis's "
-        "reference triangles. With that of its special cases, a host that computes on the x87 differs from a device "
-        f"that fuses on {one_pair_in(fused)}, and on {one_pair_in(nearest, '')} ({count(its[0])} to {count(its[1])}, "
-        "95 %) if the device also divides as badly as its documentation allows. With the reference of the random "
-        f"triangles the nearest is {one_pair_in(best, '')} ({count(best_its[0])} to {count(best_its[1])}). The "
-        "devices' division is a model, and no GPU of 2012 ran. The thesis does not say which reference its "
-        "triangles met. So this shows what could explain the thesis's rate, not what did. [All "
+        "reference triangles. With the reference of its special cases, a host that computes on the x87 differs from a "
+        f"device that fuses on {one_pair_in(fused)}. If the device also divides as badly as its documentation allows, "
+        f"they differ on {one_pair_in(nearest, '')} ({count(its[0])} to {count(its[1])}, 95 %). With the reference of "
+        f"the random triangles, the nearest model differs on {one_pair_in(best, '')} ({count(best_its[0])} to "
+        f"{count(best_its[1])}). The devices' division is a model, and we ran no GPU of 2012. The thesis does not say "
+        "which reference triangle its rate belongs to. So this shows what could explain that rate, not what did. [All "
         "combinations](2012.md).",
         bars(
             alt,
@@ -145,12 +146,13 @@ def fast_math(r):
         f"pairs; contraction alone changes {percent(min(fused), pairs)} to {percent(max(fused), pairs)}",
         "The same source, compiled with `-O3 -ffast-math -march=x86-64-v3` and with contraction alone, decides the "
         f"{count(pairs)} pairs of the default campaign, most of them near contact. The figure counts verdicts that "
-        "differ from those of the build that rounds every operation as written. For each test contraction alone "
-        f"changes at least {percent(least_share, 1, 2, math.floor)} as many as fast math. A changed verdict may be "
+        "differ from those of the build that rounds every operation as written. For each test, contraction alone "
+        f"changes at least {percent(least_share, 1, 2, math.floor)} as many verdicts as fast math. A changed verdict "
+        "may be "
         f"right or wrong: {word(more)} of {word(len(errors))} lanes ({word(len(ALGORITHMS))} tests, float32 and "
-        "float64) err more often under fast math, the others less. In float32 GCC divides by an approximation whose "
-        "bits depend on the processor's maker, so these counts hold for an AMD EPYC. On ordinary pairs (`uniform`) "
-        "no lane that is right without fast math is wrong with it.",
+        "float64) err more often with fast math, the others less often. In float32, GCC then divides with an "
+        "approximate reciprocal, whose bits depend on the processor's vendor. These counts hold for an AMD EPYC. On "
+        "ordinary pairs (`uniform`), no lane that is right without fast math is wrong with it.",
         bars(alt, f"% of {count(pairs)} verdicts that the build changes, float32", rows),
         alt,
         main=("campaign", "Wrong verdicts of the default campaign, `moller_1997/f32/cpu-fast`: other than `cpu`"),
@@ -180,7 +182,7 @@ def processors(r):
     rows.append(("every lane, contraction off", number(differ), f"{count(differ)}", "b"))
     low, high = min(apart.values()), max(apart.values())
     alt = (
-        f"Share of verdicts on which ARM64 and x86-64 differ, both by GCC as it comes: {count(low)} % to "
+        f"Share of verdicts on which ARM64 and x86-64 differ, both with GCC's defaults: {count(low)} % to "
         f"{count(high)} % of hard pairs; with contraction off, {count(differ)}."
     )
     return Result(
@@ -189,11 +191,11 @@ def processors(r):
         f"defaults {count(low)} % to {count(high)} % differ",
         "GCC contracts by default where the processor has a fused multiply-add. ARM64 has it; plain x86-64 does "
         f"not. So the same source differs on {count(low)} % to {count(high)} % of {count(of(table))} pairs of all "
-        "strata, most of them near contact. Compiled for x86-64 processors with it (`-march=x86-64-v3`), it changes "
-        f"about as much. With `-ffp-contract=off` the {word(len(lanes))} lanes have {count(differ)} different "
-        f"verdicts on {count(pairs)} pairs each: at 95 % confidence, fewer than {at_most_one_in(pairs)} for a lane. "
-        "ARM64 ran under QEMU, whose arithmetic `graze toolchain` checks, and not on a processor. [All "
-        "toolchains](toolchains.md).",
+        "strata, most of them near contact. Compiled for x86-64 processors that have it (`-march=x86-64-v3`), the "
+        f"source changes about as many verdicts. With `-ffp-contract=off`, the {word(len(lanes))} lanes have "
+        f"{count(differ)} different verdicts on {count(pairs)} pairs each: with 95 % confidence, fewer than "
+        f"{at_most_one_in(pairs)} for each lane. ARM64 code ran under QEMU, whose arithmetic `graze toolchain` checks, "
+        "and not on an ARM64 processor. [All toolchains](toolchains.md).",
         bars(alt, f"% of {count(of(table))} pairs: GCC, ARM64 against x86-64", rows),
         alt,
         main=("toolchains", f"{table}, `moller_1997/f32`: `arm64-gcc`, differs"),

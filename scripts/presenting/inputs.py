@@ -37,19 +37,19 @@ def stored(r):
     return Result(
         "stored",
         f"Stored in float32, surveys in map coordinates give another verdict on {share(exact, 'survey')} of their "
-        f"near pairs; with a local origin on {share(exact, 'local')}",
-        "What does it cost to store a model of doubles in float32, as everyone does who uploads it to a GPU? Of "
-        "models that lie near each other we took all pairs of triangles whose boxes overlap, and compared the exact "
-        "verdict on the stored triangles with that on the doubles. Surveys of the same ground, in UTM coordinates, "
-        "change "
+        f"near pairs; with a local origin, on {share(exact, 'local')}",
+        "What does it cost to store a model of doubles in float32, as everyone does who uploads it to a GPU? For "
+        "models that lie near each other, we took all pairs of triangles whose boxes overlap, and compared the exact "
+        "verdict on the stored triangles with that on the doubles. For surveys of the same ground, in UTM "
+        "coordinates, storing changes "
         f"{count(exact['survey'])} of {count(pairs['survey'])} verdicts; no test that reads floats can be right on "
-        "these. Counted from a corner of the area before they are stored, they change "
-        f"{count(exact['local'])} of {count(pairs['local'])}. On machine parts computing in float32 costs more than "
-        "storing. A shaft in its bore, far from the origin of its assembly, changes "
+        "these. With the origin at a corner of the area, storing changes only "
+        f"{count(exact['local'])} of {count(pairs['local'])}. On machine parts, computing in float32 costs more than "
+        "storing. For a shaft in its bore, far from the origin of its assembly, storing changes "
         f"{count(exact['bore'])} of {count(pairs['bore'])} verdicts, and `moller_1997` is wrong on "
-        f"{count(moller['bore'])}; a turbine blade beside a copy that is moved by a thousandth changes "
-        f"{count(exact['part'])} of {count(pairs['part'])}, and `moller_1997` is wrong on {count(moller['part'])}. The "
-        "models but the blade are made, by `scripts/near_models`.",
+        f"{count(moller['bore'])}. For a turbine blade beside a copy that is moved by a thousandth, storing changes "
+        f"{count(exact['part'])} of {count(pairs['part'])}, and `moller_1997` is wrong on {count(moller['part'])}. "
+        "`scripts/near_models` generates all models except the blade.",
         bars(alt, "% of pairs of triangles that lie near each other", rows),
         alt,
         main=("stored", f"{table}, `exact/f32`: `survey`, wrong"),

@@ -52,14 +52,14 @@ def price(r):
         "price",
         f"Exact costs less than float32 on {count(cheaper)} of {count(len(STRATA))} strata, and at most "
         f"{times(ratio[last], math.ceil)} as much on the others",
-        f"The exact decision has the verdict of CGAL on all of {count(of(against))} pairs of all strata (so at 95 % "
-        f"confidence they differ on fewer than {at_most_one_in(of(against))}). The figure compares its time with "
-        "that of `separating_axes` in float32, the published test that also decides several pairs of a call at a "
-        f"time, in the processor's vectors. On `uniform` exact takes {count(exact['uniform'])} ns a pair and "
+        f"The exact decision gives the same verdict as CGAL on all {count(of(against))} pairs of all strata (so with "
+        f"95 % confidence they differ on fewer than {at_most_one_in(of(against))}). The figure compares its time with "
+        "that of `separating_axes` in float32, the published test that also decides several pairs at once in the "
+        f"processor's vectors. On `uniform`, exact takes {count(exact['uniform'])} ns a pair and "
         f"`separating_axes` {count(axes['uniform'])} ns. Exact is cheaper on random pairs, on pairs that nearly "
-        "touch, and on pairs that share a vertex or an edge. It is dearest where triangles are exactly coplanar or "
+        "touch, and on pairs that share a vertex or an edge. It costs most where triangles are exactly coplanar or "
         f"degenerate, touch exactly, or have very different sizes: up to {count(exact[last])} ns against "
-        f"{count(axes[last])} ns (`{last}`). In calls of one pair it takes {times(min(alone), math.floor)} to "
+        f"{count(axes[last])} ns (`{last}`). In calls of one pair, it takes {times(min(alone), math.floor)} to "
         f"{times(max(alone), math.ceil)} as long as `guigue_devillers_2003`. Times are medians on one core of a "
         f"shared machine. On an H200, exact takes {count(gpu)} ns on near pairs, and `moller_1997` in float32 "
         f"{count(fastest)} ns.",
@@ -107,28 +107,29 @@ def which(r):
     return Result(
         "which",
         f"In float64 `separating_axes` errs least, on {share('general', axes)} of hard general pairs, against "
-        f"{percent(others[0], pairs)} to {percent(others[-1], pairs)} of the other {word(len(others))} published "
+        f"{percent(others[0], pairs)} to {percent(others[-1], pairs)} for the other {word(len(others))} published "
         "tests",
-        f"The default campaign asked every test on {count(wrong_in(r, 'all', axes)[1])} pairs of nineteen strata "
-        "(`thesis_special` and `nested` came later), most of them near contact by design, so the shares compare tests and are not those of your scene. On `uniform`, where "
+        f"The default campaign ran every test on {count(wrong_in(r, 'all', axes)[1])} pairs of nineteen strata "
+        "(`thesis_special` and `nested` were added later). Most of its pairs are near contact by design, so the "
+        "shares compare tests and are not those of your scene. On `uniform`, where "
         f"triangles are random, {word(len(right))} of {word(len(both))} lanes (a test in a precision) are right on "
         f"all {count(wrong_in(r, 'uniform', axes)[1])} pairs (95 %: wrong on at most "
         f"{at_most_percent(wrong_in(r, 'uniform', axes)[1])}); `projected_sat` is wrong on "
         f"{share('uniform', lanes['f64'][0])}, in float64 too, because its logic is wrong. On general pairs "
         "(triangles of usual shape and size, most of them with near or exact contacts) `separating_axes` in float64 "
-        f"is wrong on {share('general', axes)} (95 % interval {percent_interval(wrong('general', axes), pairs)}); it "
-        f"errs least on coplanar ({share('coplanar', axes)}), degenerate ({share('degenerate', axes)}) and extreme "
-        f"pairs ({share('extreme', axes)}) too. If you must stay in float32, it again errs least "
+        f"is wrong on {share('general', axes)} (95 % interval {percent_interval(wrong('general', axes), pairs)}). It "
+        f"also errs least on coplanar ({share('coplanar', axes)}), degenerate ({share('degenerate', axes)}) and "
+        f"extreme pairs ({share('extreme', axes)}). If you must stay in float32, it again errs least "
         f"({share('general', axes32)} of general pairs), except on needles and extreme coordinates, where "
-        f"`guigue_devillers_2003` does ({share('extreme', devillers32)} against {share('extreme', axes32)}). Where a "
-        "wrong verdict matters, use `exact`: wrong on none.",
+        f"`guigue_devillers_2003` does ({share('extreme', devillers32)} against {share('extreme', axes32)}). If a "
+        "wrong verdict matters, use `exact`, which is wrong on none.",
         bars(alt, f"% of {count(pairs)} general pairs on which a test is wrong", rows),
         alt,
         main=("campaign", f"Wrong verdicts of the default campaign, `{axes}`: general"),
     )
 
 
-# Where a library has several lanes, they begin with its name.
+# If a library has several lanes, they begin with its name.
 LIBRARIES = {
     "cgal": "CGAL",
     "sfcgal": "SFCGAL",
@@ -181,12 +182,13 @@ def league(r):
         "league",
         f"{word(len(wrong)).title()} of {count(libraries)} libraries are clearly wrong on proper triangles, and "
         f"{word(findings)} findings are written as bug reports",
-        f"The league asks the triangle tests of {count(libraries)} libraries about the same {count(pairs)} pairs; "
-        "slow ones get the first pairs of each stratum. A verdict is *clearly* wrong on proper triangles that are "
-        "not coplanar, outside needles and extreme coordinates, and at least 2^12 ulps of the largest coordinate "
-        "(in float32) away from touching: no convention and no rounding of the input excuses it. The figure has the "
-        f"{word(len(rows))} lanes, of {count(len(clear))}, with such verdicts. {word(len(double)).title()} libraries "
-        f"have them in float64 too ({', '.join(double)}). CGAL is here with its kernel that computes in plain "
+        f"The league runs the triangle tests of {count(libraries)} libraries on the same {count(pairs)} pairs; "
+        "slow libraries get only the first pairs of each stratum. A wrong verdict is *clearly* wrong if the triangles "
+        "are proper, are neither coplanar nor needles, have no extreme coordinates, and are at least 2^12 ulps of "
+        "the largest coordinate (in float32) away from touching: no convention and no rounding of the input excuses "
+        f"it. The figure shows the {word(len(rows))} lanes, of {count(len(clear))}, with such verdicts. "
+        f"{word(len(double)).title()} libraries "
+        f"have them in float64 too ({', '.join(double)}). CGAL appears only with its kernel that computes in plain "
         "float32; its exact kernels have none. None of the pairs is from an application, and a library without such "
         "verdicts can still fail on closer pairs: [the league](../league.md) has all groups. Each of the "
         f"{word(findings)} [findings](../league.md#findings) has the smallest pair and a program that shows the "
@@ -229,14 +231,14 @@ def epsilon(r):
     return Result(
         "epsilon",
         f"The best epsilon of `guigue_devillers_2003` fixes {count(fixes)} verdicts and breaks {count(breaks)} others",
-        "An epsilon lets nearly-zero count as zero. It finds touching pairs that rounding has missed, and joins "
+        "An epsilon makes nearly zero count as zero. It finds touching pairs that rounding has missed, and joins "
         "pairs that are apart. We swept the tolerance of the plane distances of `guigue_devillers_2003` in float32 "
-        f"over all strata. On {count(pairs)} pairs other than those of the choice, the best value takes false "
-        f"negatives from {percent(missed_before, pairs)} to {percent(missed, pairs)}, and false positives from "
-        f"{percent(false_before, pairs)} to {percent(false, pairs)} (each share to within "
+        f"over all strata. On {count(pairs)} pairs other than those on which it was chosen, the best value lowers "
+        f"false negatives from {percent(missed_before, pairs)} to {percent(missed, pairs)}, and raises false positives "
+        f"from {percent(false_before, pairs)} to {percent(false, pairs)} (each share to within "
         f"{within_points((missed_before, pairs), (false, pairs))}, 95 %). It fixes more than it breaks. But no "
         f"value, at this comparison or another, leaves fewer than {percent(best, sample, 2, math.floor)} of the "
-        "verdicts wrong. In a scene of a terrain, `moller_1997` under its best tolerance goes from "
+        "verdicts wrong. In a scene of a terrain, `moller_1997` with its best tolerance goes from "
         f"{count(misses[0])} misses to {count(misses[1])}, and from {count(hits[0])} false hits to {count(hits[1])}. "
         "So choose an epsilon for the error that hurts you, and for your own pairs: [docs/tuning.md](../tuning.md).",
         curves(

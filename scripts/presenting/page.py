@@ -3,13 +3,13 @@
 import measurements
 from presenting.records import plain
 
-# Files of Markdown have one line for a paragraph.
+# A paragraph of a Markdown file is one line.
 HEAD = (
     "# What Graze found\n"
-    "Graze asks triangle-triangle intersection tests about pairs of triangles whose exact answer it knows. Here are "
+    "Graze runs triangle-triangle intersection tests on pairs of triangles whose exact answer it knows. Here are "
     "its main results, for readers who will never run it. Most of its pairs nearly touch, are degenerate or are "
-    "coplanar, because tests fail there; a *stratum* is a family of pairs. So a share of wrong verdicts compares "
-    "tests on the same pairs; on your own data it is far smaller. Intervals and bounds have 95 % confidence and are "
+    "coplanar, because tests fail there. A *stratum* is a family of pairs. Shares of wrong verdicts compare "
+    "tests on the same pairs; on your own data they are far smaller. Intervals and bounds have 95 % confidence and are "
     "rounded outward. The [glossary](../glossary.md) defines the terms.\n\n"
 )
 TAIL = (
@@ -17,16 +17,16 @@ TAIL = (
     "- [toolchains.md](toolchains.md): the same source under many compilers and processors.\n"
     "- [2012.md](2012.md): which toolchains of 2012 come near the difference that the thesis saw; `2012.toml` has its "
     "hosts and devices for `--toolchains`.\n"
-    "- [measurements.md](../measurements.md): every record, also those of speed.\n\n"
+    "- [measurements.md](../measurements.md): every record, including those of speed.\n\n"
     "`scripts/results` writes this page and its figures from the records in "
     "[docs/measurements](../measurements/README.md); do not edit. A test fails if a record changes and the page "
     "does not, or if the page has a number without a record. `scripts/results --site DIR` writes it as a web site, "
-    "with some of the pairs to look at in 3-D.\n"
+    "which shows some of the pairs in 3-D.\n"
 )
 
 
 def sources(result):
-    """Returns: (topic, what was measured, on what) of the records, the main one first, each once."""
+    """Returns: (topic, commit and machine) of the records, the main one first, without duplicates."""
     order = sorted(result.records, key=lambda key: key != result.main)
     found = {}
     for key in order:
@@ -44,7 +44,7 @@ def section(result):
     records = "; ".join(f"[{topic}](../measurements/{topic}.toml) ({place})" for topic, place in sources(result))
     return plain(
         f"## {result.headline}\n![{result.alt}]({result.name}.svg)\n\n{result.paragraph}\n\n"
-        f"*Again:* {command(result)}.\n\n*Records:* {records}.\n\n"
+        f"*Reproduce:* {command(result)}.\n\n*Records:* {records}.\n\n"
     )
 
 

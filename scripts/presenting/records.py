@@ -9,7 +9,7 @@ import measurements
 from verdicts_apart import wilson
 
 BEGIN, END = "\x02", "\x03"
-# Digits and words that are names, definitions or the confidence of every interval, and no measured numbers.
+# Digits and words that are no measured numbers: names, definitions, and the confidence of every interval.
 NAMES = re.compile(
     r"float(32|64)|2012|ARM64|x86-64|x87|95 %|H[12]00|Debian 12|C\+\+|2\^12 ulps|ulps?\b|3-D|GTX 590|8800 GT"
     r"|one rounding|one core|one pair|moller_1997|guigue_devillers_2003|Open3D|3d"
@@ -24,8 +24,8 @@ class Unsupported(Exception):
 
 
 class Records:
-    """The newest record of each metric. `used` has those that were asked for, `values` all values that were. In a test,
-    `changed` has other values, by topic, metric and key."""
+    """The newest record of each metric. `used` has the records that were asked for, `values` the values. A test may put
+    other values into `changed`, by topic, metric and key."""
 
     def __init__(self, folder=measurements.RECORDS):
         machines, topics = measurements.read(folder)
@@ -75,7 +75,7 @@ def digits(x, n=3, towards=None):
 
 
 def count(x):
-    """A number as it stands in its record."""
+    """A number as its record has it."""
     return backed(measurements.text(x))
 
 
@@ -87,7 +87,7 @@ def word(x):
 
 
 def one_in(x, of=1):
-    """x of so many as "1 in 3,270"."""
+    """x of `of` as "1 in 3,270"."""
     return backed(f"1 in {digits(float(of) / float(x))}")
 
 
@@ -97,18 +97,18 @@ def times(x, towards=None):
 
 
 def one_pair_in(x, what="pair "):
-    """A number of pairs for one, as it stands in its record."""
+    """One pair in x, as its record has x."""
     return backed(f"1 {what}in {x:,}")
 
 
 def one_in_interval(x, of):
-    """The 95 % interval of x of so many, rounded outward."""
+    """The 95 % interval of x of `of`, rounded outward."""
     low, high = wilson(x, of)
     return backed(f"1 in {digits(1 / low, towards=math.ceil)} to 1 in {digits(1 / high, towards=math.floor)}")
 
 
 def at_most_one_in(of):
-    """The 95 % bound of 0 of so many, rounded outward."""
+    """The 95 % bound of 0 of `of`, rounded outward."""
     return backed(f"1 in {digits(1 / wilson(0, of)[1], towards=math.floor)}")
 
 

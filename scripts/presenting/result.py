@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A result of docs/results. Its numbers stand in its text only by way of presenting.records."""
+"""A result of docs/results. All numbers in its text come from presenting.records."""
 import dataclasses
 import re
 
@@ -14,7 +14,7 @@ class Result:
     figure: str
     alt: str
     records: dict = dataclasses.field(default_factory=dict)  # those that it uses, by topic and metric
-    main: tuple = ()  # the topic and metric whose command makes the headline again
+    main: tuple = ()  # the topic and metric whose command reproduces the headline
 
 
 def of(metric):

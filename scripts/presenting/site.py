@@ -16,7 +16,7 @@ class NoViewer(Exception):
     """graze cannot write a page of the viewer."""
 
 
-# Pairs to look at: for each result the pair, the lane that the viewer shows first, and what there is to see.
+# Pairs to look at. For each result: the pair, the lane that the viewer shows first, and what the reader sees there.
 PAIRS = {
     "riddle": (
         "0x1p+1 -0x1p+1 0x1p+2 0x1p+0 0x1.4p+2 -0x1p+1 0x1p+0 -0x1.8p+1 -0x1.8p+1 -0x1.99998p-4 0x1.133334p+2 "
@@ -29,7 +29,7 @@ PAIRS = {
         "0 0 1  0 -1 0  1 1 0   0 0 0  0 1 0  1 0 1",
         "exact/f32/cpu",
         "The smallest pair of a finding. The triangles cross, and every lane of the viewer says so. "
-        "`vtkTriangle::TrianglesIntersect` of VTK 9.1.0 says that they do not, unless they are exchanged.",
+        "`vtkTriangle::TrianglesIntersect` of VTK 9.1.0 says that they do not, unless the triangles are swapped.",
     ),
     "epsilon": (
         "0 0 0  .0125 0 0  0 .0125 0   0 0 .00625  .0125 0 .00625  0 .0125 .00625",
@@ -107,7 +107,7 @@ def section(result):
         f'<section id="{result.name}">\n<h2>{html(result.headline)}</h2>\n{result.figure}'
         f"<p>{html(result.paragraph)}</p>\n"
         f"{look(result.name) if result.name in PAIRS else ''}"
-        f'<p class="small">Again: {html(page.command(result))}.</p>\n'
+        f'<p class="small">Reproduce: {html(page.command(result))}.</p>\n'
         f'<p class="small">Records: {records}.</p>\n</section>\n'
     )
 

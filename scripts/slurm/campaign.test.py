@@ -3,7 +3,7 @@
 """Runs campaign.sbatch on a Slurm of one node, which it starts and stops: an array of shards, one of them requeued while
 it runs, and the merge, which depends on them. The result is that of one run of the whole.
   campaign.test.py GRAZE [--pairs N] [--shards N]
-Exits with 77, which skips the test, where Slurm or munge is not installed, or only root may start them.
+Exits with 77, which skips the test, if Slurm or munge is not installed, or if only root may start them.
 """
 import argparse
 import filecmp

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Damages a campaign's database. Then graze gives the results of an undisturbed run, or it refuses in one line and
---discard-damaged leads to these results."""
+"""Damages a campaign's database. graze must then give the results of an undisturbed run, or refuse in one line; after
+that, --discard-damaged must lead to these results."""
 import shutil
 import sqlite3
 
@@ -129,7 +129,7 @@ def flips(turn):
 
 
 def database_bytes(turn):
-    """Changes bytes, pieces or the end of the database, or replaces it by something else."""
+    """Changes bytes, pieces or the end of the database, or replaces it with something else."""
     for attempt in range(ATTEMPTS):
         campaign = copy(turn, attempt)
         file = campaign / DATABASE

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Subjects that attack the process that runs them (subjects/hostile.c), in campaigns that end, are stopped or are
-killed, also while a subject is compiled. The campaign must end, the other lanes must have the verdicts of a campaign
+killed, even while a subject is compiled. The campaign must end, the other lanes must have the verdicts of a campaign
 without these subjects, and no process may be left."""
 import json
 import os

@@ -10,7 +10,7 @@ from torture_attacks.bench import Violation
 ATTEMPTS = 12
 PROJECT = pathlib.Path(__file__).resolve().parents[2]
 LANES = ["--lanes", "guigue_devillers_2003/f32/cpu,interval_overlap/f32/cpu"]
-# A name that is not UTF-8 cannot appear in a message that is.
+# A name that is not UTF-8 cannot appear in a message, which is UTF-8.
 NAMES = ["mutated", "mutated", "mutated", "with space", "umläut", b"\xff", "a:b:c", "-"]
 
 

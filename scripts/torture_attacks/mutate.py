@@ -145,7 +145,7 @@ def _places(value):
 
 
 def edit_json(random, data):
-    """Replaces a value somewhere by one of another type or size, or removes it."""
+    """Replaces a value somewhere with one of another type or size, or removes it."""
     value = json.loads(data)
     places = list(_places(value))
     if not places:

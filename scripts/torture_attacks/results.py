@@ -28,7 +28,7 @@ TIMED = {
     "nanoseconds",
     "ns",
     "updated",
-    "checksum",  # of all keys, these among them
+    "checksum",  # it covers all keys, including these
 }
 ASIDE = {
     "front.svg",
@@ -392,7 +392,7 @@ def texts(value, place=()):
 
 
 def unsealed(turn):
-    """A text that another changes, which no count contradicts: the checksum tells, whatever the file."""
+    """Changes a text, which no count contradicts. The checksum must reveal it in every kind of file."""
     reported = turn.bench.reference("tiny", minimised=True, reported=True)
     maps = turn.random.choice(sorted((reported / "cases").glob("*.maps.json"))).relative_to(reported).as_posix()
     page = ["report", "--from", "report.json", "--out", "page.html"]
@@ -457,7 +457,7 @@ def forged_cases(turn):
 
 
 def pipes(turn):
-    """A pipe at the name of a record: no verb waits for it, and what is refused is named."""
+    """Puts a pipe in place of a record. No verb may wait for it, and a refusal must name it."""
     reported = turn.bench.reference("tiny", minimised=True, reported=True)
     records = ["summary.json", "campaign.sqlite", "timings.json", "status.json", "failures.json", "costs.json"]
     records += [file.relative_to(reported).as_posix() for file in sorted((reported / "cases").iterdir())]

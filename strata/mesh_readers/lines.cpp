@@ -35,8 +35,10 @@ std::vector<std::string> rounding_note(const std::string& file, const Rounding& 
 }
 
 void add_face(Soup& soup, std::span<const std::uint32_t> face) {
-  if (face.size() < 3) ++soup.skipped["faces of fewer than three vertices"];
+  if (face.size() < 3) ++soup.skipped["faces with fewer than three vertices"];
+  const std::size_t begin = soup.triangles.size();
   for (std::size_t i = 2; i < face.size(); ++i) soup.triangles.push_back({face[0], face[i - 1], face[i]});
+  if (face.size() > 3) soup.fans.push_back({begin, soup.triangles.size()});
 }
 
 Lines::Lines(const MeshBytes& file, char comment, Continuation continuation)
@@ -89,7 +91,7 @@ void Lines::fail_at(std::size_t i, const std::string& expected) const {
 
 namespace {
 
-// Whether `written` is the double nearest to the shortest decimal of a float32, or to that of nine digits.
+// Whether `written` is the double nearest to the shortest decimal of `stored`, or to its decimal of nine digits.
 bool is_decimal_of(float stored, double written) {
   const auto nearest = [](const char* begin, const char* end) {
     double value = 0;
@@ -108,7 +110,7 @@ Coordinate Lines::coordinate(std::size_t i, Rounding& rounding) const {
   const std::optional<float> value = i < words_.size() ? parse_float32(words_[i]) : std::nullopt;
   if (!value || !file_.may_be(*value)) fail_at(i, "a coordinate that is finite in float32");
   const double written = std::strtod(std::string(words_[i]).c_str(), nullptr);
-  constexpr std::size_t kTold = 15;  // digits, by which doubles tell any two decimals apart
+  constexpr std::size_t kTold = 15;  // doubles distinguish all decimals of this many digits
   const bool is_zero = words_[i].find_first_not_of("+-0.") == words_[i].npos;
   const bool is_it = is_zero || (words_[i].size() <= kTold && written != 0) || written != static_cast<double>(*value) ||
                      !std::isfinite(written) || is_exactly(words_[i], written);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a mesh file of text line by line and splits each line into words.
+// Reads a text mesh file line by line and splits each line into words.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace graze::strata {
 
-// Whether a backslash at the end of a line continues it on the next one.
+// Whether a backslash at the end of a line joins it with the next one.
 enum class Continuation { none, backslash };
 
 class Lines {
@@ -29,13 +29,13 @@ class Lines {
   std::size_t next_byte() const { return byte_; }  // the first byte after the line
   std::size_t bytes_left() const { return file_.bytes.size() - byte_; }
 
-  // Parses word i.   Requires: i < words().size().   Throws: an error if it is not of that kind.
+  // Parses word i.   Requires: i < words().size().   Throws: an error if the word is not of that kind.
   Coordinate coordinate(std::size_t i, Rounding& rounding) const;
   std::uint64_t whole(std::size_t i, const std::string& expected) const;
   std::uint32_t vertex(std::size_t i, std::size_t vertices) const;
   void number(std::size_t i, const std::string& expected) const;
 
-  // Throws: an error at this line; at word i, or at the line's end if it has no such word.
+  // Throws: an error that names this line. fail_at reports word i as found, or the end of the line if it has no word i.
   [[noreturn]] void fail(const std::string& expected, const std::string& found) const;
   [[noreturn]] void fail_at(std::size_t i, const std::string& expected) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Readers of mesh files must return, for any bytes, an error of one line or finite vertices and valid triangles.
+// For any bytes, the mesh readers must give a one-line error, or finite vertices and valid triangles.
 #include <cmath>
 #include <stdexcept>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readers of mesh files are strict: they take exactly what the file says, and everything else is an error that
-// names its place. A damaged file never becomes another mesh.
+// The mesh readers are strict: they read exactly what the file says, or give an error that names the place. A damaged
+// file is never read as another mesh.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -47,14 +47,14 @@ TEST(ReadOff, TakesItsVariantsAndCountsWhatItSkips) {
                                   "CNOFF\n3 2 0\n0 0 0 0 0 1 255 0 0\n1 0 0 0 0 1 255 0 0\n0 1 0 0 0 1 1 0 0 .5\n"
                                   "3 0 1 2 9\n2 0 1 1 0 0\n"});
   EXPECT_EQ(coloured.triangles.size(), 1u);
-  EXPECT_EQ(coloured.skipped, (Skipped{{"normals", 3},
-                                       {"colours of vertices", 3},
-                                       {"colours of faces", 2},
-                                       {"faces of fewer than three vertices", 1}}));
+  EXPECT_EQ(
+      coloured.skipped,
+      (Skipped{
+          {"normals", 3}, {"vertex colours", 3}, {"face colours", 2}, {"faces with fewer than three vertices", 1}}));
 }
 
 TEST(ReadOff, RoundsDecimalsOnce) {
-  // A float32 tie except for its last digit, which a double cannot hold.
+  // Without its last digit, which a double cannot hold, the first number is a tie between two float32 numbers.
   const Soup soup = read_off({"m", "OFF\n3 1 0\n16777217.0000000001 0 0\n0.1 0 0\n-0 1e-46 7.1e-46\n3 0 1 2\n"});
   EXPECT_EQ(soup.vertices[0].x, 16777218.0f);
   EXPECT_EQ(soup.vertices[1].x, 0.1f);
@@ -104,7 +104,7 @@ TEST(ReadObj, TakesEveryNotationOfAFace) {
   EXPECT_EQ(soup.skipped, (Skipped{{"material libraries", 1},
                                    {"objects", 1},
                                    {"weights", 1},
-                                   {"colours of vertices", 1},
+                                   {"vertex colours", 1},
                                    {"texture coordinates", 1},
                                    {"normals", 1},
                                    {"groups", 1},
@@ -148,7 +148,7 @@ TEST(ReadStl, TellsTextFromBinaryByItsSize) {
   bytes[84 + 48] = 7;
   const Soup soup = read_stl({"m", bytes});
   EXPECT_EQ(soup.triangles, (Triangles{{0, 1, 2}, {3, 4, 5}}));
-  EXPECT_EQ(soup.skipped, (Skipped{{"normals", 2}, {"attributes of facets", 1}}));
+  EXPECT_EQ(soup.skipped, (Skipped{{"normals", 2}, {"facet attributes", 1}}));
 }
 
 TEST(ReadStl, NamesPlaceExpectedAndFound) {
@@ -209,8 +209,8 @@ TEST(ReadPly, TakesTextAndBothByteOrders) {
        "5\n3 0 1 2 1 7\n2 0 1 0\n"});
   EXPECT_EQ(soup.triangles, (Triangles{{0, 1, 2}}));
   EXPECT_EQ(soup.vertices[1].x, 1.0f);
-  EXPECT_EQ(soup.skipped, (Skipped{{"elements edge", 2},
-                                   {"faces of fewer than three vertices", 1},
+  EXPECT_EQ(soup.skipped, (Skipped{{"elements named edge", 2},
+                                   {"faces with fewer than three vertices", 1},
                                    {"values of vertex.red", 3},
                                    {"values of face.t", 2}}));
 }
@@ -247,7 +247,7 @@ TEST(ReadPly, NamesPlaceExpectedAndFound) {
        {ply_header("ascii", "3", "1") + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n", {"m:15", "end", "elements", "3"}}});
 }
 
-// Any damage gives an error of one line, or triangles whose vertices exist.
+// A damaged file gives a one-line error, or triangles whose vertices exist.
 TEST(MeshReaders, DamagedFilesNeverCrash) {
   const std::vector<std::pair<Reader, std::string>> files = {
       {read_off, kOff + "3 0 1 2\n"},

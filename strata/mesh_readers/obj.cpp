@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wavefront OBJ: reads vertices and faces. Lines, points, normals, groups and materials are counted and left out.
+// Wavefront OBJ: reads vertices and faces. Lines, points, normals, groups and materials are counted and skipped.
 #include <algorithm>
 #include <limits>
 
@@ -59,19 +59,20 @@ void add_vertex(Soup& soup, const Lines& lines) {
   if (count == 5 || count > 7)
     lines.fail("three coordinates, a weight or a colour", std::to_string(count) + " numbers");
   if (count == 4 || count == 7) ++soup.skipped["weights"];
-  if (count >= 6) ++soup.skipped["colours of vertices"];
+  if (count >= 6) ++soup.skipped["vertex colours"];
   if (soup.vertices.size() > std::numeric_limits<std::uint32_t>::max()) lines.fail("fewer than 2^32 vertices", "more");
 }
 
 void add_face(Soup& soup, const Lines& lines, std::vector<std::uint32_t>& face, Largest& largest) {
   const auto& words = lines.words();
-  if (words.size() < 4) lines.fail("a face of three vertices or more", std::to_string(words.size() - 1));
+  if (words.size() < 4) lines.fail("a face of at least three vertices", std::to_string(words.size() - 1));
   face.clear();
   for (std::size_t i = 1; i < words.size(); ++i) {
     const std::optional<std::int64_t> corner = parse_corner(words[i]);
     const auto defined = static_cast<std::int64_t>(soup.vertices.size());
     if (!corner || *corner < -defined)
-      lines.fail_at(i, "a vertex as 1, 1/2, 1//3 or 1/2/3, or one of the last " + std::to_string(defined) + " as -1");
+      lines.fail_at(
+          i, "a vertex such as 1, 1/2, 1//3 or 1/2/3, or one of the last " + std::to_string(defined) + ", such as -1");
     const auto vertex = static_cast<std::uint64_t>(*corner < 0 ? defined + *corner : *corner - 1);
     if (vertex >= largest.vertex || largest.line == 0) largest = {vertex, lines.line()};
     face.push_back(static_cast<std::uint32_t>(vertex));
@@ -100,7 +101,8 @@ Soup read_obj(const MeshBytes& file) {
     }
   }
   if (largest.line != 0 && largest.vertex >= soup.vertices.size())
-    fail(at_line(file, largest.line), "faces of the file's " + std::to_string(soup.vertices.size()) + " vertices",
+    fail(at_line(file, largest.line),
+         "faces that use only the file's " + std::to_string(soup.vertices.size()) + " vertices",
          "vertex " + std::to_string(largest.vertex + 1));
   return soup;
 }

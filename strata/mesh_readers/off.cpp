@@ -13,7 +13,7 @@ struct Header {
   std::uint64_t vertices = 0, faces = 0;
 };
 
-// Parses a keyword such as "CNOFF".   Returns: whether the word is one.
+// Parses a keyword such as "CNOFF".   Returns: whether the word is such a keyword.
 bool take_keyword(std::string_view word, Header& header) {
   const auto take = [&word](std::string_view prefix) {
     const bool found = word.starts_with(prefix);
@@ -63,11 +63,12 @@ void skip_attributes(const Lines& lines, const Header& header, Soup& soup) {
   const std::size_t colour = more - others;
   // Plain OFF files contain colours too.
   if (more < others || (colour != 0 && colour != 3 && colour != 4) || (header.colours && colour == 0))
-    lines.fail("three coordinates" + std::string(others + header.colours > 0 ? " and what the header announces" : ""),
+    lines.fail("three coordinates" +
+                   std::string(others + header.colours > 0 ? " and the values that the header announces" : ""),
                std::to_string(count) + " numbers");
   if (header.normals) ++soup.skipped["normals"];
   if (header.texture) ++soup.skipped["texture coordinates"];
-  if (colour > 0) ++soup.skipped["colours of vertices"];
+  if (colour > 0) ++soup.skipped["vertex colours"];
 }
 
 }  // namespace
@@ -90,16 +91,16 @@ Soup read_off(const MeshBytes& file) {
     const std::uint64_t count = lines.whole(0, "the number of a face's vertices");
     const std::size_t words = lines.words().size();
     if (count > words - 1)
-      lines.fail(std::to_string(count) + " vertices of a face", std::to_string(words - 1) + " numbers");
+      lines.fail(std::to_string(count) + " vertices for a face", std::to_string(words - 1) + " numbers");
     face.clear();
     for (std::size_t j = 1; j <= count; ++j) face.push_back(lines.vertex(j, soup.vertices.size()));
     add_face(soup, face);
     const std::size_t colour = words - 1 - count;
     for (std::size_t j = count + 1; j < words; ++j) lines.number(j, "a number or the end of the line");
     if (colour == 2 || colour > 4)
-      lines.fail(std::to_string(count) + " vertices of a face, and at most a colour",
+      lines.fail(std::to_string(count) + " vertices for a face and at most one colour",
                  std::to_string(words - 1) + " numbers");
-    if (colour > 0) ++soup.skipped["colours of faces"];
+    if (colour > 0) ++soup.skipped["face colours"];
   }
   if (lines.next())
     lines.fail_at(0, "the end of the file after " + std::to_string(header.vertices) + " vertices and " +

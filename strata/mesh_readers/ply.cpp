@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY, as text or binary of either byte order. Reads the coordinates of vertices and the vertices of faces.
+// PLY, as text or in binary of either byte order. Reads the coordinates of vertices and the vertices of faces.
 #include <bit>
 #include <cstring>
 #include <limits>
@@ -38,7 +38,7 @@ struct Element {
   Kind kind = Kind::other;
   std::vector<Property> properties;
 
-  // The index of the property; the number of properties if there is none of that name.
+  // The index of the property, or the number of properties if none has that name.
   std::size_t place(std::string_view property) const {
     std::size_t i = 0;
     while (i < properties.size() && properties[i].name != property) ++i;
@@ -100,7 +100,7 @@ void take_element(const Lines& lines, Header& header) {
 void check(const Lines& lines, const Header& header) {
   for (const Element& element : header.elements) {
     const auto expect = [&](bool holds, const char* what) {
-      if (!holds) lines.fail(std::string(what) + " of the element " + element.name, "none");
+      if (!holds) lines.fail(std::string(what) + " in the element " + element.name, "none");
     };
     expect(!element.properties.empty() || element.count == 0, "a property");
     if (element.kind == Kind::vertices) {
@@ -146,7 +146,7 @@ Header take_header(Lines& lines) {
   return header;
 }
 
-// The numbers of a file's body, one after another. The count of a list is also a number.
+// The numbers of a file's body, one after another. The count before a list is one of them.
 class Body {
  public:
   Body(const MeshBytes& file, Lines& lines, Header::Format format)
@@ -159,13 +159,13 @@ class Body {
       row += is_text() ? 2 : p.count_type ? p.count_type->size : p.type->size;
     const std::uint64_t bytes = is_text() ? lines_.bytes_left() + 1 : file_.bytes.size() - byte_;
     if (row > 0 && element.count > bytes / row)
-      fail("at most " + std::to_string(bytes / row) + " elements " + element.name + " in the " + std::to_string(bytes) +
-               " bytes that are left",
+      fail("at most " + std::to_string(bytes / row) + " elements named " + element.name + " in the " +
+               std::to_string(bytes) + " bytes that are left",
            std::to_string(element.count));
   }
   void begin_row(const Element& element) {
     if (!is_text()) return;
-    lines_.expect_next(std::to_string(element.count) + " elements " + element.name);
+    lines_.expect_next(std::to_string(element.count) + " elements named " + element.name);
     word_ = 0;
   }
   void end_row() const {
@@ -191,7 +191,7 @@ class Body {
     const std::uint64_t count = whole(*list.count_type, "the count of a list");
     const std::uint64_t room =
         is_text() ? lines_.words().size() - word_ : (file_.bytes.size() - byte_) / list.type->size;
-    if (count > room) fail("at most " + std::to_string(room) + " numbers of " + list.name, std::to_string(count));
+    if (count > room) fail("at most " + std::to_string(room) + " numbers in " + list.name, std::to_string(count));
     return count;
   }
   std::uint64_t whole(const Type& type, const std::string& expected) {
@@ -299,7 +299,7 @@ Soup read_ply(const MeshBytes& file) {
       body.end_row();
     }
     if (element.kind == Kind::other && element.count > 0)
-      soup.skipped["elements " + printable(element.name)] = element.count;
+      soup.skipped["elements named " + printable(element.name)] = element.count;
     for (const Property& p : element.properties) {
       const bool used = element.kind == Kind::vertices ? is_coordinate(p) : is_corners(p);
       if (element.kind != Kind::other && !used && element.count > 0)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the readers of mesh files return; each format has a reader. They are strict: text that does not parse completely
-// is an error that names the place, and so are numbers that contradict each other. Content that pairs do not need is
-// counted and left out. Nothing else is left out.
+// What the mesh readers return; each format has a reader. They are strict: text that does not parse completely, and
+// numbers that contradict each other, are errors that name the place. Content that pairs do not need is counted and
+// skipped. Nothing else is skipped.
 #pragma once
 
 #include <algorithm>
@@ -19,12 +19,12 @@
 namespace graze::strata {
 
 // How many coordinates float32 cannot hold, and by how much rounding moved them. `beyond` counts those that no program
-// prints of a float32: 1000000.01 is one. 0.1 is none, because it is the shortest decimal of the float32 nearest to it.
+// would print for a float32, such as 1000000.01. It does not count 0.1, the shortest decimal of the nearest float32.
 struct Rounding {
   std::uint64_t coordinates = 0, rounded = 0, beyond = 0;
   double most = 0;  // no coordinate moved by more
 
-  // written: the double nearest to the number in the file; slack: how far it can be from that number, if it is not it.
+  // written: the double nearest to the number in the file; is_it: they are equal; slack: how far apart they can be.
   void add(double written, float stored, double slack = 0, bool is_it = true) {
     ++coordinates;
     if (!std::isfinite(written) || (is_it && written == static_cast<double>(stored))) return;
@@ -40,14 +40,14 @@ struct Rounding {
   }
 };
 
-// "FILE: float32 rounded 5 of 18 coordinates, by at most 0.00012", rounded up; empty if it rounded none.
+// "FILE: float32 rounded 5 of 18 coordinates, by at most 0.00012" (rounded up). Empty if float32 rounded none.
 std::vector<std::string> rounding_note(const std::string& file, const Rounding& rounding);
 
-// The same for who decides doubles: "FILE: decided in doubles, because 6 of 18 coordinates have more digits than
-// float32 holds"; empty if none has.
+// The same for callers that use the doubles: "FILE: decided in doubles, because 6 of 18 coordinates have more digits
+// than float32 holds". Empty if none has.
 std::vector<std::string> doubles_note(const std::string& file, const Rounding& rounding);
 
-// A number of a file: the float32 nearest to it, and the double nearest to it.
+// The float32 and the double nearest to a number in a file.
 struct Coordinate {
   float stored;
   double written;
@@ -55,9 +55,10 @@ struct Coordinate {
 
 struct Soup {
   std::vector<Vec3<float>> vertices;                    // finite, unless MeshBytes::coordinates allows others
-  std::vector<Vec3<double>> in_doubles;                 // the same vertices, of which float32 may hold no coordinate
+  std::vector<Vec3<double>> in_doubles;                 // the same vertices before rounding to float32
   std::vector<std::array<std::uint32_t, 3>> triangles;  // indices of existing vertices, in file order
-  std::map<std::string, std::uint64_t> skipped;         // how many items were left out, by kind: "normals"
+  std::map<std::string, std::uint64_t> skipped;         // how many items were skipped, by kind: "normals"
+  std::vector<std::array<std::size_t, 2>> fans;         // of faces with more vertices than three: begin, end
   Rounding rounding;                                    // of the coordinates of vertices
 
   void add_vertex(const Coordinate (&v)[3]) {
@@ -66,7 +67,7 @@ struct Soup {
   }
 };
 
-// Whether a vertex that is not finite is an error, or is read as it is.
+// Whether a vertex that is not finite is an error (finite) or is read as it is (any).
 enum class Coordinates { finite, any };
 
 // The bytes of a file, and its name for error messages.
@@ -79,12 +80,12 @@ struct MeshBytes {
 };
 
 // Parses the bytes of a mesh file. Decimals become the nearest float32 and the nearest double, each rounded once.
-// Throws: std::runtime_error of one line that names the file, the line or byte, and what was expected and found.
+// Throws: std::runtime_error with one line: the file, its line or byte, and what was expected and found.
 #define GRAZE_MESH_FORMAT(extension, name) Soup read_##extension(const MeshBytes& file);
 #include "strata/mesh_readers/formats.inc"
 #undef GRAZE_MESH_FORMAT
 
-// Cuts a face into a fan from its first vertex. A face of fewer than three vertices is counted as skipped.
+// Cuts a face into a fan from its first vertex. A face with fewer than three vertices is counted as skipped.
 void add_face(Soup& soup, std::span<const std::uint32_t> face);
 
 // "FILE:LINE", or "FILE" with the position of a byte.

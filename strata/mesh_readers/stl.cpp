@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// STL, as text or binary. A file is binary if its size is the one that its binary facet count implies. That holds even
-// if its header begins with "solid", as many programs write it.
+// STL, as text or binary. A file is binary if its size matches the facet count of a binary header, even if the header
+// begins with "solid", as many programs write it.
 #include <bit>
 #include <cstring>
 
@@ -20,7 +20,7 @@ std::uint64_t count_of_binary(std::string_view bytes) {
   return count;
 }
 
-// Of the last three vertices.
+// Adds the triangle of the last three vertices.
 void add_triangle(Soup& soup) {
   const auto first = static_cast<std::uint32_t>(soup.vertices.size()) - 3;
   soup.triangles.push_back({first, first + 1, first + 2});
@@ -41,7 +41,7 @@ Soup read_binary(const MeshBytes& file) {
     }
     add_triangle(soup);
     soup.rounding.coordinates += 9;
-    if (file.bytes[at + 48] != 0 || file.bytes[at + 49] != 0) ++soup.skipped["attributes of facets"];
+    if (file.bytes[at + 48] != 0 || file.bytes[at + 49] != 0) ++soup.skipped["facet attributes"];
   }
   if (count > 0) soup.skipped["normals"] = count;
   return soup;
@@ -61,7 +61,7 @@ void expect_words(Lines& lines, const std::vector<std::string_view>& words, std:
 
 void take_facet(Lines& lines, Soup& soup) {
   expect_words(lines, {"facet", "normal"}, 3);
-  for (std::size_t i = 2; i < 5; ++i) lines.number(i, "three numbers of a normal");
+  for (std::size_t i = 2; i < 5; ++i) lines.number(i, "a normal of three numbers");
   ++soup.skipped["normals"];
   lines.expect_next("outer loop");
   expect_words(lines, {"outer", "loop"});
@@ -111,7 +111,7 @@ Soup read_stl(const MeshBytes& file) {
   // A text file has no zero byte.
   if (size >= kHeader && file.bytes.find('\0') != file.bytes.npos)
     fail(at_byte(file, 80),
-         std::to_string(count) + " facets, for which the file has " + std::to_string(kHeader + kFacet * count) +
+         std::to_string(count) + " facets, with which the file would have " + std::to_string(kHeader + kFacet * count) +
              " bytes",
          std::to_string(size) + " bytes");
   return read_text(file);

@@ -11,8 +11,8 @@
 namespace graze::strata {
 namespace {
 
-// Fills the gaps between the quantiles of the file: repeatedly with the geometric mean of neighbours. It uses square
-// roots, whose results are the same on every machine.
+// Fills the gaps between the file's quantiles by repeatedly inserting the geometric mean of neighbours. Square roots
+// give the same results on every machine.
 Quantiles spread(const std::vector<double>& values) {
   Quantiles quantiles{};
   if (values.size() == 1) {
@@ -37,7 +37,8 @@ double largest_of(const SceneFile& scene) {
   return largest;
 }
 
-// The least longest edge that a stratum needs, in steps of the exact grid, and the least ratio of edges.
+// In steps of the exact grid: the smallest longest edge of an exact stratum, and the largest longest edge of `lattice`.
+// For mixed_scale and nested: the smallest ratio of longest edges.
 constexpr double kLeastSteps = 64, kMostLatticeSteps = 64, kLeastFactor = 16;
 
 double longest_in_steps(const SceneFile& scene, const Grid& grid) {
@@ -53,7 +54,7 @@ std::string coordinates_stay_within(const SceneFile& scene) {
   return fmt::format("your coordinates stay within {} … {} {}", low, high, scene.units);
 }
 
-// The number of the point of a grid that is nearest to x, or nearly if there are 2^51 of them.
+// The number of the grid point nearest to x. It may be off if the grid has 2^51 points or more.
 double number_at(const Grid& grid, double x) {
   const double steps = grid.decimal ? x * grid.scale : x / grid.scale;
   return std::fabs(steps) < 0x1p51 ? in_scene::number_of(grid, x) : std::trunc(steps);
@@ -139,19 +140,19 @@ std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum) {
   switch (stratum) {
     case Stratum::thesis:
     case Stratum::thesis_special:
-      return "its triangles are fixed numbers, not those of a scene";
+      return "its triangles have fixed coordinates, not those of a scene";
     case Stratum::lattice_15:
     case Stratum::float_born:
     case Stratum::decimal_born:
     case Stratum::construction_born:
     case Stratum::stored:
-      return "its triangles have sizes of their own, not those of a scene";
+      return "its triangles have their own sizes, not those of a scene";
     case Stratum::far_from_origin:
     case Stratum::large_offset:
     case Stratum::radians:
       return coordinates_stay_within(scene);
     case Stratum::extreme_scale:
-      return fmt::format("{}, your triangles' longest edges within {} … {}", coordinates_stay_within(scene),
+      return fmt::format("{}, and your triangles' longest edges within {} … {}", coordinates_stay_within(scene),
                          scene.edges.front(), scene.edges.back());
     case Stratum::mixed_scale:
     case Stratum::nested:
@@ -167,7 +168,7 @@ std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum) {
     case Stratum::exact_contact:
     case Stratum::coplanar_wide:
       if (steps < kLeastSteps)
-        return fmt::format("your longest edge takes {:.3g} {}, fewer than {}", steps,
+        return fmt::format("your longest edge spans {:.3g} {}, fewer than {}", steps,
                            scene.grid ? "grid steps" : "ulps of your largest coordinate", kLeastSteps);
       for (int axis = 0; axis < 3; ++axis) {
         if (component(numbers.first, axis) > component(numbers.last, axis))
@@ -178,7 +179,7 @@ std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum) {
     case Stratum::lattice:
       if (!scene.grid) return "your scene has no grid";
       if (steps > kMostLatticeSteps)
-        return fmt::format("your longest edge takes {:.3g} grid steps, more than {}", steps, kMostLatticeSteps);
+        return fmt::format("your longest edge spans {:.3g} grid steps, more than {}", steps, kMostLatticeSteps);
       break;
     default:
       break;

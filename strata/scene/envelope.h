@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns a scene's file into numbers to draw from, and tells which strata the scene cannot contain.
+// Turns a scene file into numbers to draw from, and says which strata the scene cannot contain.
 #pragma once
 
 #include <optional>
@@ -13,11 +13,11 @@ namespace graze::strata {
 // The numbers for pairs of the scene's own type.   Requires: parse_scene accepted `scene`.
 Scene resolved(const SceneFile& scene);
 
-// The scene for pairs of the other type, if that is asked for.
-// Throws: UsageError if the scene would not be valid, as where float32 is too coarse for one of doubles.
+// The scene for pairs of the given type.
+// Throws: UsageError if that scene would not be valid, for example if float32 is too coarse for a scene of doubles.
 SceneFile with_type(const SceneFile& scene, bool in_doubles);
 
-// Why the scene cannot contain the stratum, worded to follow "left out, for"; nothing if it can.
+// Why the scene cannot contain the stratum; nothing if it can.
 std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum);
 
 // The kind of pairs that the stratum draws in a scene.

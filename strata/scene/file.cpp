@@ -21,11 +21,11 @@ namespace {
 constexpr std::uintmax_t kMostBytes = 1 << 20;
 constexpr double kMostCoordinate = 0x1p126;
 constexpr double kLeastUlps = 8;         // so that rounding does not turn all triangles into points
-constexpr double kLeastAspect = 1.1547;  // aspect of an equilateral triangle, 2 / sqrt(3), to five digits
+constexpr double kLeastAspect = 1.1547;  // aspect of an equilateral triangle: 2 / sqrt(3), to five digits
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }
 
-// The text as a TOML string. Bytes beyond ASCII stay, because they are UTF-8.
+// The text as a TOML string. Bytes beyond ASCII are kept, because they are UTF-8.
 std::string toml_string(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -87,7 +87,7 @@ class Reader {
 
   std::string text(const toml::node& node) const {
     const auto value = node.value_exact<std::string>();
-    if (!value || value->empty()) fail(node, "a text that is not empty", found_text(node));
+    if (!value || value->empty()) fail(node, "a string that is not empty", found_text(node));
     return *value;
   }
 
@@ -146,7 +146,7 @@ class Reader {
     for (const toml::node& value : *array) {
       values.push_back(number(value, low, high));
       if (values.size() > 1 && values.back() < values[values.size() - 2])
-        fail(value, fmt::format("a number from {} on", values[values.size() - 2]), found_text(value));
+        fail(value, fmt::format("a number of at least {}", values[values.size() - 2]), found_text(value));
     }
     return values;
   }
@@ -188,13 +188,12 @@ class Reader {
     bool several = false;
     for (int axis = 0; axis < 3; ++axis) {
       const double first = component(numbers.low, axis), last = component(numbers.high, axis);
-      if (first > last)
-        fail(node, "a point of the grid in each axis of the extent", fmt::format("none in {}", "xyz"[axis]));
+      if (first > last) fail(node, "a grid point on each axis of the extent", fmt::format("none in {}", "xyz"[axis]));
       several = several || first < last;
     }
-    if (!several) fail(node, "a grid of several points in the extent", "one");
+    if (!several) fail(node, "a grid with several points in the extent", "one");
     if (scene.edges.back() < step)
-      fail(node, fmt::format("steps of at most {}, the longest edge", scene.edges.back()), fmt::format("{}", step));
+      fail(node, fmt::format("a step of at most {}, the longest edge", scene.edges.back()), fmt::format("{}", step));
   }
 
   void read_mix(const toml::node& node, SceneFile& scene) {
@@ -236,7 +235,7 @@ class Reader {
     for (const toml::node& file : *files->as_array()) scene.meshes.files.push_back(text(file));
     if (const toml::node* poses = meshes.get("poses")) scene.meshes.poses = text(*poses);
     if (!scene.meshes.poses.empty() && scene.meshes.files.size() != 1)
-      fail(node, "one file beside poses", found_text(*files));
+      fail(node, "one file if there are poses", found_text(*files));
     const std::string hash = content ? text(*content) : "";
     if (!is_hash(hash))
       fail(content ? *content : node, "content: 16 hexadecimal digits, as `graze scene` writes them",
@@ -281,7 +280,7 @@ std::string scene_text(const SceneFile& scene) {
   text += fmt::format("edges = {}\naspect = {}\n", list_of(scene.edges), list_of(scene.aspect));
   if (scene.grid) {
     text += fmt::format("# All coordinates {}.\ngrid = {{ {} = {} }}\n",
-                        scene.grid->decimal ? "have so many decimals" : "are multiples of this power of two",
+                        scene.grid->decimal ? "have this many decimals" : "are multiples of this power of two",
                         scene.grid->decimal ? "decimals" : "power_of_two", scene.grid->places);
   }
   text += "\n# Shares of the pairs whose boxes overlap; strata are drawn in these shares.\n[mix]\n";
@@ -295,8 +294,8 @@ std::string scene_text(const SceneFile& scene) {
   }
   if (!scene.meshes.files.empty()) {
     text +=
-        "\n# Their own pairs are drawn too, moved by ulps and by rigid motions. Relative to this file's "
-        "folder.\n[meshes]\nfiles = [";
+        "\n# The pairs of these meshes are drawn too: as they are, moved by ulps, and moved rigidly. Paths are relative"
+        " to this file's folder.\n[meshes]\nfiles = [";
     for (std::size_t i = 0; i < scene.meshes.files.size(); ++i)
       text += (i > 0 ? ", " : "") + toml_string(scene.meshes.files[i]);
     text += "]\n";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene reader must return, for any bytes, an error of one line or a scene whose text gives the same scene.
+// For any bytes, the scene reader must give a one-line error, or a scene whose text gives the same scene again.
 #include <stdexcept>
 
 #include "core/fuzz_target.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene as a user writes it: TOML, at least two lines. docs/formats.md describes the format.
+// A scene as a user writes it: TOML of at least two lines. docs/formats.md describes the format.
 #pragma once
 
 #include <array>
@@ -15,14 +15,14 @@
 
 namespace graze::strata {
 
-// The kind of a scene's pair. The first match applies: degenerate (a triangle has no area), shared_edge (two stored
+// The kind of a scene's pair: the first that matches of degenerate (a triangle has no area), shared_edge (two stored
 // vertices in common), shared_vertex (one in common), coplanar (all six points in one plane), general (anything else).
 enum class Kind : std::uint8_t { general, shared_vertex, shared_edge, coplanar, degenerate };
 inline constexpr int kKinds = 5;
 inline constexpr std::array<std::string_view, kKinds> kKindIds{"general", "shared_vertex", "shared_edge", "coplanar",
                                                                "degenerate"};
 
-// All coordinates are multiples of 2^places, or, if decimal, have `places` decimals.
+// All coordinates are multiples of 2^places or, if decimal, have `places` decimals.
 struct GridSpec {
   bool decimal = false;
   int places = 0;
@@ -45,16 +45,16 @@ struct SceneFile {
   std::vector<double> aspect{1.2, 2, 10};         // longest edge divided by the height on it, as quantiles too
   std::optional<GridSpec> grid;
   std::array<double, kKinds> mix{0.6, 0.1, 0.1, 0.15, 0.05};  // share of each Kind among pairs whose boxes overlap
-  std::map<Bucket, double> margins;  // shares of these pairs by margin; for information, not drawn from
+  std::map<Bucket, double> margins;  // shares of these pairs by margin; for information, not used to draw
   SceneMeshes meshes;
   friend bool operator==(const SceneFile&, const SceneFile&) = default;
 };
 
-// What the units of a scene may be, in words and as a check.
+// The rule for a scene's units, in words and as a check.
 inline const std::string kUnits = "at most 32 bytes without control characters";
 bool is_units(std::string_view text);
 
-// Throws: std::runtime_error of one line: FILE:LINE: expected …, found ….
+// Throws: std::runtime_error with one line: FILE:LINE: expected …, found ….
 SceneFile read_scene(const std::filesystem::path& file);
 SceneFile parse_scene(const std::string& name, std::string_view text);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes as files: written scenes are read back, a few lines by hand suffice, and every error names its line.
+// Scenes as files: a written scene is read back unchanged, a few lines by hand suffice, and every error names its line.
 #include "strata/scene/file.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST(SceneFile, ThreeLinesAreEnough) {
   const Scene numbers = resolved(scene);
   EXPECT_EQ(numbers.high.z, 900);
   EXPECT_EQ(numbers.edges.at[0], 0.5);
-  EXPECT_NEAR(numbers.edges.at[16], std::sqrt(0.5 * 40), 1e-12);  // log-spaced between the quantiles of the file
+  EXPECT_NEAR(numbers.edges.at[16], std::sqrt(0.5 * 40), 1e-12);  // log-spaced between the file's quantiles
   EXPECT_EQ(numbers.edges.at[32], 40);
 }
 
@@ -148,7 +148,7 @@ TEST(SceneFile, HostileTextsAreOneLine) {
   }
 }
 
-// Found by fuzzing: outside quotes and comments they made toml++ reach code that it declares unreachable.
+// Found by fuzzing: outside quotes and comments, such characters made toml++ reach code that it declares unreachable.
 TEST(SceneFile, CharactersBeyondAsciiStandInQuotesAndCommentsAlone) {
   const std::string rest = "extent = [[-4, 4], [0, 8], [1, 2]]\nedges = [0.5, 2]\n";
   EXPECT_EQ(parse_scene("s", "\xef\xbb\xbfunits = \"\u00b5m \\\" \u00e9\" # \u00e9\n" + rest).units,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A pair's place in a scene. A draft around the origin is moved into the extent, then rounded to the grid, then pushed
-// by ulps or grid steps. In this order, near contacts are near in the scene's own ulps.
+// by ulps or grid steps. In this order, near contacts are near in ulps of the scene's coordinates.
 #pragma once
 
 #include "strata/contact.h"
@@ -26,8 +26,8 @@ GRAZE_INLINE Real stored(const Scene& scene, int axis, double x) {
   return static_cast<Real>(scene.on_grid ? point_of(scene.grid, number_of(scene.grid, inside)) : inside);
 }
 
-// The coordinate moved by that many grid steps, but kept within the extent. It moves by ulps if there is no grid or a
-// grid step does not change it.
+// The coordinate moved by `steps` grid steps, but kept within the extent. It moves by ulps instead if there is no grid,
+// or if the grid steps do not change it.
 template <class Real>
 GRAZE_INLINE Real pushed(const Scene& scene, int axis, Real x, int steps) {
   if (scene.on_grid) {
@@ -70,7 +70,7 @@ GRAZE_INLINE Interval span_of(const Draft& draft, int axis) {
   return {a.low < b.low ? a.low : b.low, a.high > b.high ? a.high : b.high};
 }
 
-// Moves the draft to a random place in the extent. First flattens it along axes in which it does not fit.
+// Moves the draft to a random place in the extent, after flattening it along each axis on which it does not fit.
 GRAZE_HD inline void place(auto& draws, const Scene& scene, Draft& draft) {
   Vec by{1, 1, 1};
   for (int axis = 0; axis < 3; ++axis) {
@@ -90,7 +90,7 @@ GRAZE_HD inline void place(auto& draws, const Scene& scene, Draft& draft) {
   move(draft.b, to);
 }
 
-// Like `finished` of strata/contact.h, but within the scene.
+// Like `finished` in strata/contact.h, but within the scene.
 template <class D>
 GRAZE_HD BasicPair<typename D::Real> finished(D& draws, const Scene& scene, Draft& draft, const Push& push) {
   place(draws, scene, draft);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene: the envelope from which pairs are drawn, so that their sizes, places and ulps are those of a user's data. It
-// holds the strata of strata.h under the same rules: pure functions, with the same bits on host and device.
+// A scene: the envelope from which pairs are drawn, so that their sizes, places and ulps are those of a user's data.
+// It draws the strata of strata.h under the same rules: pure functions, with the same bits on host and device.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,15 @@ struct Quantiles {
   double at[kQuantiles];
 };
 
-// Numbered points of an axis. Number n is at n * scale, or for decimals at n / scale, rounded to the type of the
-// coordinates.
+// Numbered points on an axis. Point n is n * scale, or n / scale on a decimal grid, rounded to the coordinates' type.
 struct Grid {
   double scale = 1;
   bool decimal = false;
 };
 
-// Made by resolved() of strata/scene/envelope.h from a scene's file, for pairs of float32 or of doubles.
+// resolved() in strata/scene/envelope.h makes it from a scene file, for pairs of float32 or of doubles.
 struct Scene {
-  Vec3<double> low, high;  // least and greatest coordinate on each axis; numbers of their type, on the grid
+  Vec3<double> low, high;  // least and greatest coordinate on each axis: representable, and on the grid
   Quantiles edges;         // longest edge of a triangle
   Quantiles aspect;        // longest edge divided by the height on it, at least 2 / sqrt(3)
   bool on_grid = false;    // whether all coordinates are on `grid`
@@ -35,9 +34,9 @@ struct Scene {
 
 inline namespace GRAZE_FP {
 
-// The pair with this index. It lies within the extent and on the grid, and no edge is longer than the longest, up to
-// rounding. A pair that does not fit the extent along an axis is flattened along it.
-// Requires: the scene can contain the stratum, see left_out(), and is one of float32; compiled without contraction.
+// The pair with this index. It lies within the extent and on the grid. Up to rounding, no edge is longer than the
+// scene's longest edge. A pair that does not fit into the extent along an axis is flattened along it.
+// Requires: a scene of float32 that can contain the stratum, see left_out(); compiled without contraction.
 GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, const Scene& scene, std::uint64_t index);
 
 // Likewise in doubles, in a scene of doubles.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strata in a scene, and the choice among all. Exact ones: exact.h.
+// The strata in a scene, and the switch that selects one. The exact strata are in exact.h.
 #include "strata/scene/triangles.h"
 
 #include "strata/scene/exact.h"
@@ -19,7 +19,7 @@ GRAZE_HD inline auto near_contact(auto& draws, const Scene& scene, Touch touch, 
   return finished(draws, scene, draft, push);
 }
 
-// Anywhere, as long as the boxes overlap.
+// Two triangles at random places where their boxes overlap.
 GRAZE_HD inline auto uniform(auto& draws, const Scene& scene) {
   Draft draft;
   const Space plane_a = draw_plane(draws);
@@ -35,7 +35,7 @@ GRAZE_HD inline auto uniform(auto& draws, const Scene& scene) {
   return finished(draws, scene, draft, {});
 }
 
-// Two triangles in a plane: half touch, or nearly, half overlap or lie apart.
+// Two triangles in a plane. In half of the pairs they touch or nearly touch; the other half overlap or lie apart.
 GRAZE_HD inline auto coplanar(auto& draws, const Scene& scene, const Space& plane) {
   if (draws.coin()) {
     const Touch touch = draws.coin() ? Touch::vertex_edge : draws.coin() ? Touch::edge_edge : Touch::vertex_vertex;
@@ -43,7 +43,7 @@ GRAZE_HD inline auto coplanar(auto& draws, const Scene& scene, const Space& plan
     const Form b = draw_form(draws, scene);
     Draft draft;
     const Vec away = put_contact(draws, touch, plane, a, b, draft);
-    // A gap lies in the plane; ulps would leave it.
+    // The gap lies in the plane; a push by ulps would leave it.
     const Push push = draw_push(draws);
     move(draft.b, away * (push.gap * (a.length < b.length ? a.length : b.length)));
     return finished(draws, scene, draft, {});
@@ -60,9 +60,9 @@ GRAZE_HD inline auto coplanar(auto& draws, const Scene& scene, const Space& plan
   return finished(draws, scene, draft, {});
 }
 
-// A large triangle and a small one, in one plane. In half of the pairs both share an inner point of the large one, and
-// the small one is usually inside; it pierces the face in a quarter of these. In the other half it touches an edge from
-// inside or outside, or nearly.
+// A large triangle and a small one. In half of the pairs they share an inner point of the large one: in a quarter of
+// these the small one pierces the face, otherwise it lies in the same plane, usually inside. In the other half it lies
+// in the plane and touches an edge of the large one, or nearly, from inside or outside.
 GRAZE_HD inline auto nested(auto& draws, const Scene& scene) {
   const bool tilted = draws.coin();
   const int normal = draws.between(0, 2);
@@ -85,13 +85,13 @@ GRAZE_HD inline auto nested(auto& draws, const Scene& scene) {
   const double side = draws.sign();
   put_edge(draws, plane, large, u, inward, draft.a);
   put_vertex(draws, plane, small, inward * side, draft.b);
-  const Push push = draw_push(draws);  // its ulps would leave the plane
+  const Push push = draw_push(draws);  // only its gap is used; its ulps would leave the plane
   move(draft.b, inward * (push.gap * small.length));
   return finished(draws, scene, draft, {});
 }
 
-// Half tilted, and parallel until rounding: by up to 2^-40 of the size (doubles: 2^-100); half along two axes, by up to
-// 4 steps or ulps.
+// Parallel planes. Half are tilted, parallel before rounding, and 1 … 2^-40 of the size apart (doubles: 2^-100). Half
+// are axis-aligned, at most 4 grid steps or ulps apart.
 template <class D>
 GRAZE_HD BasicPair<typename D::Real> parallel(D& draws, const Scene& scene) {
   const bool tilted = draws.coin();
@@ -115,8 +115,8 @@ GRAZE_HD BasicPair<typename D::Real> parallel(D& draws, const Scene& scene) {
   return shuffled(draws, pair);
 }
 
-// A segment through or from the origin; its third vertex is an end or, along an axis, where rounding cannot part it
-// from the line, anywhere on it.
+// A segment that contains the origin or starts there. The third vertex is an end. Along an axis it is any point of the
+// segment, because rounding cannot move it off the line there.
 GRAZE_HD inline void put_segment(auto& draws, const Vec& e, bool along_axis, double length, Vec (&triangle)[3]) {
   const double back = draws.coin() ? length * draws.positive() : 0;
   const double third = length * draws.positive();
@@ -126,7 +126,8 @@ GRAZE_HD inline void put_segment(auto& draws, const Vec& e, bool along_axis, dou
   triangle[2] = along_axis ? e * (third - back) : end ? triangle[0] : triangle[1];
 }
 
-// B is a segment or a point, A anything; both at one point, then half of the time B is a few steps or ulps off.
+// B is a segment or a point, and A is anything. Both contain a common point; half of the time B is then moved by a few
+// grid steps or ulps.
 template <class D>
 GRAZE_HD BasicPair<typename D::Real> degenerate(D& draws, const Scene& scene) {
   const Form a = draw_form(draws, scene);
@@ -155,7 +156,8 @@ GRAZE_HD BasicPair<typename D::Real> degenerate(D& draws, const Scene& scene) {
   return shuffled(draws, pair);
 }
 
-// How a neighbour's plane is turned out of the first triangle's: half not at all, half by 2^0 … 2^-30 (doubles: 2^-90).
+// How far the neighbour's plane is tilted out of the first triangle's: half not at all, half by 2^0 … 2^-30 (doubles:
+// 2^-90).
 GRAZE_HD inline double draw_lift(auto& draws) {
   const double sign = draws.sign();
   const double lift = sign * power_of_two(-draws.between(0, draws.kGap - 10));
@@ -174,7 +176,7 @@ GRAZE_HD inline auto shared_vertex(auto& draws, const Scene& scene) {
   return finished(draws, scene, draft, {});
 }
 
-// The neighbour is the triangle itself, mirrored, so that its edges are as long.
+// The neighbour is the mirrored triangle itself, so that its edges have the same lengths.
 GRAZE_HD inline auto shared_edge(auto& draws, const Scene& scene) {
   const Space plane = draw_plane(draws);
   const double lift = draw_lift(draws);
@@ -255,7 +257,7 @@ GRAZE_HD BasicPair<typename D::Real> draw_stratum(D draws, const Scene& scene) {
 
 template <Stratum stratum, class D>
 GRAZE_HD BasicPair<typename D::Real> generate_one(std::uint64_t seed, const Scene& scene, std::uint64_t index) {
-  // Not the words of strata without a scene.
+  // Other random words than those of the stratum without a scene.
   return draw_stratum<stratum>(D(seed, 0x100u + static_cast<std::uint32_t>(stratum), index), scene);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs drawn in a scene: every pair lies within the extent, on the grid, and has the scene's sizes. Strata keep their
-// promises. Sources get their shares of the mix, and strata that a scene cannot contain are left out with a reason.
+// Pairs drawn in a scene: every pair lies within the extent and on the grid, and has the scene's sizes. Strata keep
+// their promises. Sources get their shares of the mix. Strata that a scene cannot contain are left out with a reason.
 #include "strata/scene/scene.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,8 @@ using testing::edge;
 using testing::length;
 using testing::normal;
 
-// In millimetres far from the origin on thousandths; on a coarse grid; flat; and without a grid.
+// Scenes of several kinds: in millimetres far from the origin, on a grid of thousandths; on a coarse grid; flat; and
+// without a grid.
 const std::pair<const char*, const char*> kScenes[] = {
     {"millimetres",
      "extent = [[120000, 120800], [-5400, -5000], [300, 900.5]]\nedges = [0.5, 40]\n"
@@ -181,10 +182,10 @@ TEST(Scene, SameBytesAsEver) {
     if (left_out(parse_scene(kScenes[0].first, kScenes[0].second), row.stratum)) continue;
     for (std::uint64_t i = 0; i < 1000; ++i) hash = hash_bits(generate(kGoldenSeed, row.stratum, scene, i), hash);
   }
-  EXPECT_EQ(hash, 0xdc88fa2cdcf2a5e5u) << std::hex << hash;  // if it changes, every case of a scene has another meaning
+  EXPECT_EQ(hash, 0xdc88fa2cdcf2a5e5u) << std::hex << hash;  // if it changes, so does every case from a scene
 }
 
-// The same scenes in doubles, and one whose steps float32 does not hold: a site survey in millimetres.
+// The same scenes in doubles, and one whose grid float32 cannot hold: a site survey in millimetres.
 std::vector<std::pair<std::string, SceneFile>> double_scenes() {
   std::vector<std::pair<std::string, SceneFile>> scenes;
   for (const auto& [name, text] : kScenes)
@@ -242,7 +243,7 @@ TEST(DoubleScene, EveryPairIsWithinTheExtentOnTheGridAndOfTheSizes) {
   }
 }
 
-// Whether the triangles touch once one coordinate is moved by a step.
+// Whether moving one coordinate by a step makes the triangles touch.
 bool touches_a_step_away(const DoublePair& pair, double step) {
   for (int k = 0; k < kCoordinates; ++k) {
     for (const double by : {step, -step}) {
@@ -285,8 +286,8 @@ TEST(DoubleScene, ExactStrataAreExact) {
       tilted += spread == 3;
     }
     EXPECT_LE(inexact, file.grid ? 20 : 0) << name;  // edges of a few steps may be parallel
-    EXPECT_GT(touching, 4'850) << name;              // half of them
-    if (name != "plane") {                           // where all are coplanar
+    EXPECT_GT(touching, 4'850) << name;              // about half of the pairs
+    if (name != "plane") {                           // there all pairs are coplanar
       EXPECT_LT(touching, 7'000) << name;
       EXPECT_GT(tilted, 7'000) << name;
     }
@@ -346,20 +347,20 @@ TEST(Scene, WhatItCannotContainIsLeftOutWithTheReason) {
   const char* mm = "extent = [[0.003, 410], [5, 80], [7, 9]]\nedges = [0.5, 4]\nunits = \"mm\"";
   EXPECT_EQ(why(mm, Stratum::far_from_origin), "your coordinates stay within 0.003 … 410 mm");
   EXPECT_EQ(why(mm, Stratum::extreme_scale),
-            "your coordinates stay within 0.003 … 410 mm, your triangles' longest edges within 0.5 … 4");
-  EXPECT_EQ(why(mm, Stratum::thesis), "its triangles are fixed numbers, not those of a scene");
+            "your coordinates stay within 0.003 … 410 mm, and your triangles' longest edges within 0.5 … 4");
+  EXPECT_EQ(why(mm, Stratum::thesis), "its triangles have fixed coordinates, not those of a scene");
   EXPECT_EQ(why(mm, Stratum::mixed_scale), "your triangles' longest edges differ by a factor of 8, less than 16");
   EXPECT_EQ(why("extent = [0, 99]\nedges = [0.5, 40]", Stratum::mixed_scale), "drawn");
   EXPECT_EQ(why(mm, Stratum::sliver), "your aspect ratios stay within 1.2 … 10, below 1024");
   EXPECT_EQ(why(mm, Stratum::lattice), "your scene has no grid");
   EXPECT_EQ(why(mm, Stratum::exact_contact), "drawn");
   EXPECT_EQ(why("extent = [90000, 99000]\nedges = [0.1, 0.3]", Stratum::exact_contact),
-            "your longest edge takes 38.4 ulps of your largest coordinate, fewer than 64");
+            "your longest edge spans 38.4 ulps of your largest coordinate, fewer than 64");
   EXPECT_EQ(why(kScenes[6].second, Stratum::exact_contact),
             "your extent holds no multiple of 0.125, an ulp of your largest coordinate, in y");
-  EXPECT_EQ(why(kScenes[1].second, Stratum::coplanar_wide), "your longest edge takes 18 grid steps, fewer than 64");
+  EXPECT_EQ(why(kScenes[1].second, Stratum::coplanar_wide), "your longest edge spans 18 grid steps, fewer than 64");
   EXPECT_EQ(why(kScenes[1].second, Stratum::lattice), "drawn");
-  EXPECT_EQ(why(kScenes[2].second, Stratum::lattice), "your longest edge takes 2.4e+03 grid steps, more than 64");
+  EXPECT_EQ(why(kScenes[2].second, Stratum::lattice), "your longest edge spans 2.4e+03 grid steps, more than 64");
   EXPECT_EQ(why("extent = [0, 9]\nedges = 1\n[mix]\ngeneral = 1", Stratum::degenerate),
             "your mix has no pairs of the kind degenerate");
 }
@@ -370,7 +371,7 @@ TEST(DoubleScene, StrataOfDoublesAloneAreLeftOutWithTheReason) {
   EXPECT_EQ(why(survey, Stratum::radians), "your coordinates stay within 7 … 500300 units");
   for (const Stratum stratum :
        {Stratum::lattice_15, Stratum::float_born, Stratum::decimal_born, Stratum::construction_born, Stratum::stored})
-    EXPECT_EQ(why(survey, stratum), "its triangles have sizes of their own, not those of a scene");
+    EXPECT_EQ(why(survey, stratum), "its triangles have their own sizes, not those of a scene");
   EXPECT_EQ(why(survey, Stratum::exact_contact), "drawn");
 }
 
@@ -383,14 +384,14 @@ TEST(SceneSources, AreThoseOfTheType) {
     EXPECT_TRUE(source.in_doubles() && source.id.ends_with("/f64") && source.stratum >= 0 && source.scene) << source.id;
     EXPECT_EQ(group_of_name(source.id), group_of_name(source.id.substr(0, source.id.size() - 4)));
   }
-  // Float32 has steps of 1/32 there.
+  // The spacing of float32 numbers is 1/32 there.
   try {
     scene_sources(fine, "", 1, 100, {}, PairTypes::f32);
     FAIL();
   } catch (const UsageError& error) {
     EXPECT_TRUE(names(error.what(), {"float32", "0.25", "8 ulps", "0.2", "doubles"})) << error.what();
   }
-  // Of both types, each has its pairs, and the shares add up.
+  // Sources of both types get their pairs, and the shares add up.
   const SceneSources both = scene_sources(file, "", 1, 10'001, {"near_*", "uniform/f64"}, PairTypes::both);
   ASSERT_EQ(both.sources.size(), 9u);
   std::vector<std::string> ids;
@@ -405,7 +406,7 @@ TEST(SceneSources, AreThoseOfTheType) {
   EXPECT_EQ(both.sources[4].id, "uniform/f64");
   EXPECT_EQ(hash_bits(both.sources[4].double_pair(5)),
             hash_bits(generate_doubles(1, Stratum::uniform, resolved(with_type(file, true)), 5)));
-  // By its names alone, a campaign finds the same sources again.
+  // The names alone are enough for a campaign to find the same sources again.
   const SceneSources again = named_scene_sources(file, "", 1, 10'001, ids);
   ASSERT_EQ(again.sources.size(), ids.size());
   for (std::size_t s = 0; s < ids.size(); ++s) {
@@ -427,7 +428,7 @@ TEST(SceneSources, AreSharedByTheMix) {
     EXPECT_TRUE(source.stratum >= 0 && source.scene && source.seed == 1) << source.id;
   }
   EXPECT_EQ(sum, 100'000u);
-  EXPECT_EQ(pairs.size(), 7u);  // uniform, four near ones, exact_contact; shared_edge
+  EXPECT_EQ(pairs.size(), 7u);  // uniform, four near strata, exact_contact and shared_edge
   EXPECT_EQ(pairs["uniform"], 10'000u);
   EXPECT_EQ(pairs["shared_edge"], 40'000u);
   EXPECT_EQ(all.left_out.size(), kStrataCount - 7u);

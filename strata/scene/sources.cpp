@@ -29,7 +29,7 @@ struct MeshSourceInfo {
 };
 constexpr MeshSourceInfo kMeshSources[] = {{as_it_is, "mesh"}, {by_ulps, "mesh_ulps"}, {by_motions, "mesh_moved"}};
 
-// The meshes of a scene, and the scene for pairs of one type.
+// A scene's meshes, and the scene for pairs of one coordinate type.
 struct Meshes {
   Scene scene;
   std::shared_ptr<const MeshPairs> pairs;
@@ -48,7 +48,7 @@ DrawnPair<D> pair_at(const Meshes& meshes, std::size_t index) {
   }
 }
 
-// Visits every pair once before it repeats any.
+// The mesh's pair for this index. All pairs occur once before any repeats.
 template <class D>
 DrawnPair<D> own_pair(const Meshes& meshes, std::uint64_t index) {
   const std::uint64_t size = meshes.pairs->size();
@@ -85,8 +85,8 @@ Vec turned(double w, const Vec& q, const Vec& v) {
   return v + t * w + cross(q, t);
 }
 
-// Rotates the pair at random and puts it at a random place. It is not rotated if the rotated pair does not fit the
-// extent.
+// Rotates the pair at random and moves it to a random place. Leaves out the rotation if the rotated pair does not fit
+// into the extent.
 template <class D>
 DrawnPair<D> pair_by_motion(const Meshes& meshes, std::uint64_t seed, std::uint64_t index) {
   D draws(seed, 0x202, index);
@@ -155,7 +155,7 @@ std::shared_ptr<const Meshes> meshes_of(const SceneFile& scene, const std::files
   return std::make_shared<Meshes>(Meshes{resolved(scene), pairs, stride});
 }
 
-// A source of pairs of the type that draw(index) returns.
+// A source whose pairs have the type that draw(index) returns.
 template <class Draw>
 PairSource source_of(std::string_view id, const Draw& draw) {
   if constexpr (std::is_same_v<decltype(draw(0)), Pair>) {
@@ -242,7 +242,7 @@ void share(std::vector<PairSource>& sources, const std::vector<double>& weights,
   }
 }
 
-// is_wanted: tells by name. are_named: the user named sources, so those of meshes must exist.
+// is_wanted(id) selects sources. are_named: the user named sources, so a missing mesh source is reported.
 SceneSources sources_of(const SceneFile& file, const std::filesystem::path& folder, std::uint64_t seed,
                         std::uint64_t pairs, const std::vector<bool>& types, bool are_named,
                         const std::function<bool(const std::string&)>& is_wanted) {
@@ -305,8 +305,8 @@ SceneSources sources_of(const SceneFile& file, const std::filesystem::path& fold
   }
   if (run < pairs)
     result.notes.push_back(
-        fmt::format("{} of the {} pairs run: the scene's meshes have only {} pairs of triangles whose boxes overlap, "
-                    "and their share is {}",
+        fmt::format("{} of the {} pairs are drawn: the scene's meshes have only {} pairs of triangles whose boxes "
+                    "overlap, fewer than their share of {}",
                     run, pairs, mesh->size(), of_mesh));
   return result;
 }
@@ -330,7 +330,7 @@ SceneSources named_scene_sources(const SceneFile& file, const std::filesystem::p
                     [&](const std::string& name) { return stratum_in_doubles(name).has_value() == in_doubles; }))
       types.push_back(in_doubles);
   }
-  patterns_of(names, types);  // which notices unknown ones
+  patterns_of(names, types);  // throws if a name is unknown
   return sources_of(file, folder, seed, pairs, types, true,
                     [&](const std::string& id) { return std::find(names.begin(), names.end(), id) != names.end(); });
 }

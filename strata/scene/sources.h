@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sources that a campaign draws from a scene, of either type. They are the strata that the scene can contain, in
-// the shares of its mix, and the pairs of its meshes: as they are, moved by ulps, and moved as rigid bodies within the
-// extent.
+// The sources that a campaign draws from a scene, in float32 or doubles: the strata that the scene can contain, in the
+// shares of its mix, and the pairs of its meshes, which are taken as they are, moved by ulps, and moved as rigid bodies
+// within the extent.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@
 namespace graze::strata {
 
 struct LeftOut {
-  std::string id;   // a stratum, or mesh…
+  std::string id;   // a stratum, or mesh, mesh_ulps or mesh_moved
   std::string why;  // "your coordinates stay within 0.003 … 410 mm"
 };
 
@@ -27,18 +27,18 @@ struct SceneSources {
   Rounding rounding;               // of their coordinates
 };
 
-// Half of the pairs come from strata, in the shares of the mix, divided evenly among the strata of a kind. Half come
-// from the meshes, if there are any. Only sources whose names match are used (all for an empty list); those of doubles
-// match with or without "/f64".
-// types: without them, the type of the scene.
+// Half of the pairs come from strata: each kind gets its share of the mix, divided evenly among its strata. The other
+// half come from the meshes, if there are any. Only sources whose names match are used (all for an empty list). Sources
+// of doubles match with or without "/f64".
+// types: which types to draw; nothing: the scene's own.
 // folder: the folder of the scene's file, for its meshes.
 // Throws: UsageError if a pattern matches nothing or no source is left; std::runtime_error for a mesh that cannot be
-// read, is not the one that the scene describes, or lies outside the scene; as with_type.
+// read, is not the one that the scene describes, or lies outside the scene; and what with_type throws.
 SceneSources scene_sources(const SceneFile& scene, const std::filesystem::path& folder, std::uint64_t seed,
                            std::uint64_t pairs, const std::vector<std::string>& globs,
                            std::optional<PairTypes> types = std::nullopt);
 
-// The sources of exactly these names, of both types; as above.
+// Likewise for the sources with exactly these names, of both types.
 SceneSources named_scene_sources(const SceneFile& scene, const std::filesystem::path& folder, std::uint64_t seed,
                                  std::uint64_t pairs, const std::vector<std::string>& names);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of a scene's sizes, and two of them around a point of contact at the origin. Like strata/contact.h, but
-// rigid: the edge and the aspect are drawn first, then turned into place.
+// Triangles of a scene's sizes, and two of them that touch at the origin. Unlike in strata/contact.h, a triangle's edge
+// and aspect are drawn first, and the triangle is then rotated into place.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace graze::strata::in_scene {
 inline namespace GRAZE_FP {
 
-// The part of the quantiles to draw from.
+// The part of the quantiles from which to draw.
 struct Part {
   double from = 0, to = 1;
 };
@@ -30,9 +30,9 @@ GRAZE_HD inline double draw_from(auto& draws, const Quantiles& quantiles, const 
   return quantiles.at[i] + (quantiles.at[i + 1] - quantiles.at[i]) * (at - i);
 }
 
-inline constexpr double kSliver = 1024;  // the least aspect of a sliver
+inline constexpr double kSliver = 1024;  // a sliver's least aspect
 
-// The fraction of aspects below kSliver.   Requires: the greatest aspect is not below it.
+// The fraction of aspects below kSliver.   Requires: the greatest aspect is at least kSliver.
 GRAZE_HD inline double sliver_from(const Scene& scene) {
   const Quantiles& aspect = scene.aspect;
   int i = 0;
@@ -64,13 +64,13 @@ GRAZE_HD inline Form seen_from(const Form& form, std::uint32_t edge) {
   return {length, form.length * form.height / length, form.length * foot / length};
 }
 
-// v scaled to length 1; an axis if v is too short.
+// v scaled to length 1, or an axis if v is too short.
 GRAZE_HD inline Vec unit(const Vec& v) {
   const double squared = dot(v, v);
   return squared > 0x1p-200 ? v * (1 / sqrt(squared)) : unit_axis(0);
 }
 
-// The directions to draw from: all of space, or the plane of x and y. x and y are perpendicular and have length 1.
+// The directions to draw from: all, or (flat) those in the plane of x and y, which are perpendicular unit vectors.
 struct Space {
   bool flat = false;
   Vec x{1, 0, 0}, y{0, 1, 0};
@@ -91,7 +91,7 @@ GRAZE_HD inline Vec draw_across(auto& draws, const Space& space, const Vec& f) {
   return unit(dot(w, w) > 0x1p-40 ? w : cross(f, unit_axis((dominant_axis(f) + 1) % 3)));
 }
 
-// A plane through the origin: of random direction, or spanned by two coordinate axes.
+// draw_plane: a random plane through the origin. axis_plane: one that two coordinate axes span.
 GRAZE_HD inline Space draw_plane(auto& draws) {
   const Vec x = draw_direction(draws, {});
   return {true, x, draw_across(draws, {}, x)};
@@ -100,7 +100,7 @@ GRAZE_HD inline Space axis_plane(int normal) {
   return {true, unit_axis((normal + 1) % 3), unit_axis((normal + 2) % 3)};
 }
 
-// A triangle of the form: a randomly chosen corner, as vertex [0], is at the origin. The others lie on the given side.
+// A triangle of the form with a random corner at the origin, as vertex [0]. The other corners lie on the given side.
 GRAZE_HD inline void put_vertex(auto& draws, const Space& space, const Form& form, const Vec& side,
                                 Vec (&triangle)[3]) {
   const std::uint32_t corner = draws.below(3);
@@ -124,7 +124,7 @@ GRAZE_HD inline void put_vertex(auto& draws, const Space& space, const Form& for
   triangle[2] = up * form.height + across * right;
 }
 
-// A triangle whose edge [0][1] passes through the origin along e. e is perpendicular to the side.
+// A triangle whose edge [0][1] passes through the origin in the direction of e. e is perpendicular to the side.
 GRAZE_HD inline void put_edge(auto& draws, const Space& space, const Form& form, const Vec& e, const Vec& side,
                               Vec (&triangle)[3]) {
   const Form seen = seen_from(form, draws.below(3));
@@ -135,7 +135,7 @@ GRAZE_HD inline void put_edge(auto& draws, const Space& space, const Form& form,
   triangle[2] = e * (seen.foot - back) + up * seen.height;
 }
 
-// A triangle in the plane, with the origin inside.
+// A triangle in the plane that contains the origin.
 GRAZE_HD inline void put_face(auto& draws, const Space& plane, const Form& form, Vec (&triangle)[3]) {
   const double w0 = draws.positive();
   const double w1 = draws.positive();
@@ -147,8 +147,8 @@ GRAZE_HD inline void put_face(auto& draws, const Space& plane, const Form& form,
   triangle[2] = plane.x * (form.foot - x) + plane.y * (form.height - y);
 }
 
-// Two triangles that meet only at the origin if nothing is rounded. Within a plane their edges lie along each other.
-// Returns: the direction that separates B from A, of length 1.
+// Two triangles that meet only at the origin before rounding. In a plane, the edges that touch lie along each other.
+// Returns: the unit vector in the direction that separates B from A.
 GRAZE_HD inline Vec put_contact(auto& draws, Touch touch, const Space& space, const Form& form_a, const Form& form_b,
                                 Draft& draft) {
   const Vec u = draw_direction(draws, space);

@@ -17,9 +17,9 @@ enum class Mad {
   truncating,  // mad.f32 on devices of compute capability 1.x
   fused,       // fma.rn.f32; also mad.f32 of such code, compiled for later devices
 };
-enum class Fuses { left, right };  // which product of a * b + c * d meets the sum; the other one is rounded
+enum class Fuses { left, right };  // which product of a * b + c * d is fused into the sum; the other is rounded
 enum class Division {
-  ieee,        // division and square root with correct rounding; subnormal numbers are kept, else they are flushed
+  ieee,        // division and square root with correct rounding; keeps subnormal numbers, which the others flush
   reciprocal,  // x * (1 / y), and 1 / (1 / sqrt(x)), with each step rounded
   two_ulps,    // the rounded result moved by at most 2 ulps, the documented maximum of a division
 };
@@ -37,19 +37,19 @@ inline float truncating_mad(float a, float b, float c) {
   const double product = std::bit_cast<double>(std::bit_cast<std::uint64_t>(double{a} * double{b}) & ~kCut);
   const float in_range = static_cast<float>(product);
   if (double{in_range} == product) return in_range + c;
-  int exponent;  // beyond that of floats, so fma adds the product of two floats
+  int exponent;  // it may be beyond the range of float, so fma adds the product of two floats
   const auto mantissa = static_cast<float>(std::frexp(product, &exponent));
   return std::fma(std::ldexp(mantissa, exponent / 2), std::ldexp(1.0f, exponent - exponent / 2), c);
 }
 
-// Moves x by -2 to 2 ulps. Which, depends on its bits as if by chance.
+// Moves x by -2 to 2 ulps. Its bits determine by how many, as if by chance.
 inline float off_by_ulps(float x) {
   const auto bits = std::bit_cast<std::uint32_t>(x);
   return std::isnormal(x) ? std::bit_cast<float>(bits + (bits * 0x9e3779b9u >> 16) % 5 - 2) : x;
 }
 
-// A number remembers the factors of which it is the product, and the next sum may use them: across statements, as nvcc
-// fuses, and also where the product has other uses.
+// A product remembers its factors, and the next sum may fuse them: across statements, as nvcc does, and even if the
+// product has other uses.
 template <Device kDevice>
 class Number {
  public:

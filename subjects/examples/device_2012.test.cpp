@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arithmetic of devices of 2012 against exact arithmetic, and without its peculiarities against floats.
+// Compares the arithmetic of devices of 2012 with exact arithmetic and, without its peculiarities, with floats.
 #include "subjects/examples/device_2012.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ constexpr Device kTruncating{Mad::truncating, Fuses::left, Division::reciprocal}
 
 std::mt19937 bits(2012);
 
-float any_float() {  // all exponents are as likely, subnormal numbers among them
+float any_float() {  // all exponents are equally likely, including those of subnormal numbers
   for (;;) {
     const auto x = std::bit_cast<float>(static_cast<std::uint32_t>(bits()));
     if (std::isfinite(x)) return x;
@@ -46,7 +46,7 @@ Exact exact_mad(float a, float b, float c) {
   return ldexp(trunc(ldexp(mantissa, FLT_MANT_DIG)), exponent - FLT_MANT_DIG) + Exact(c);
 }
 
-// Whether x is the float nearest to `exact`, and of two such the one with an even mantissa.
+// Whether x is the float nearest to `exact`; if two are, the one with an even mantissa.
 bool is_rounded(float x, const Exact& exact) {
   const Exact most = ldexp(Exact(2) - ldexp(Exact(1), -FLT_MANT_DIG), FLT_MAX_EXP - 1);  // from here on infinite
   if (std::isinf(x) || abs(exact) >= most) return std::isinf(x) && abs(exact) >= most && (x > 0) == (exact > 0);

@@ -43,8 +43,8 @@ bool find(void* library, const char* name, Function& function) {
   return function != nullptr;
 }
 
-// The platforms of a loader of drivers, which exports all functions, or of a driver. A driver exports one function,
-// which finds another, which returns platforms. The first word of each is the address of its table of functions.
+// The platforms of a driver loader, which exports all functions, or of a driver. A driver exports one function, which
+// finds a second one, which returns the platforms. The first word of a platform is the address of its function table.
 // Sets `cl`.   Throws: Failure when there is no library.
 std::vector<cl_platform_id> load_platforms() {
   static cl_icd_dispatch table{};
@@ -56,7 +56,8 @@ std::vector<cl_platform_id> load_platforms() {
                   std::string("no OpenCL: ") + why + " (install ocl-icd-libopencl1 and a driver, or set GRAZE_OPENCL)");
   }
   const auto get = [&](const char* function, auto& to) {
-    if (!find(library, function, to)) throw Failure(3, name + " has no " + function + ", so it is no OpenCL library");
+    if (!find(library, function, to))
+      throw Failure(3, name + " has no " + function + ", so it is not an OpenCL library");
   };
   cl_api_clGetPlatformIDs get_platforms = nullptr;
   const bool is_driver = !find(library, "clGetPlatformIDs", get_platforms);

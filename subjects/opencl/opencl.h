@@ -29,14 +29,14 @@ struct Device {
   cl_device_id id;
 
   std::string text(cl_device_info what) const;
-  cl_device_fp_config floating(cl_device_info what) const;  // none where the device does not know the question
+  cl_device_fp_config floating(cl_device_info what) const;  // none if the device does not know the question
   bool has_double() const { return floating(CL_DEVICE_DOUBLE_FP_CONFIG) != 0; }
   // Division and square root of float, if the compiler is asked for it.
   bool rounds_correctly() const { return floating(CL_DEVICE_SINGLE_FP_CONFIG) & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT; }
 };
 
-// All devices of the library that the environment's GRAZE_OPENCL names, else of libOpenCL.so.1. It is a loader of
-// drivers, or a driver.   Throws: Failure when there is no library, or no platform.
+// All devices of the library that the environment's GRAZE_OPENCL names, else of libOpenCL.so.1. It is a driver loader
+// or a driver.   Throws: Failure when there is no library, or no platform.
 std::vector<Device> all_devices();
 
 // The first GPU of the platforms whose names contain the text, else their first device.   Throws: Failure.

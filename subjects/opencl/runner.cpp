@@ -5,16 +5,16 @@
 //   graze-subject-opencl --platforms
 // FILE.cl defines int FUNCTION(const REAL* a, const REAL* b), where each triangle is nine numbers in private memory. It
 // is compiled once with -DREAL=float -DREAL3=float3 and once with -DREAL=double -DREAL3=double3, and answers for those
-// of the two that compile. A function of float* or double* alone therefore works too. Files are OpenCL C 1.2, without
+// of the two that compile. So a function that takes only float* or double* works too. Files are OpenCL C 1.2, without
 // #include of other files.
-// MODE, of the compiler:
+// MODE of the compiler:
 //   default  contracts as it does by default
 //   nofma    #pragma OPENCL FP_CONTRACT OFF, before the source
 //   mad      -cl-mad-enable
 //   fast     -cl-fast-relaxed-math
 // In all modes but `fast`, division and square root are rounded correctly if the device can do this. Subnormal numbers
 // are as on the device. PLATFORM: a part of its name; else the first platform with a GPU, else the first with a device.
-// The environment's GRAZE_OPENCL names the library to load: a loader of drivers, or a driver such as
+// The environment's GRAZE_OPENCL names the library to load: a driver loader, or a driver such as
 // libnvidia-opencl.so.1; else libOpenCL.so.1.
 // Exit status: 1 a call failed; 2 wrong use; 3 no library, or no device; 4 the source does not compile.
 #define GRAZE_PROGRAM_TYPES_ONLY
@@ -63,8 +63,8 @@ std::string line_1_of(const std::string& file) {
   return "#line 1 \"" + name + "\"\n";
 }
 
-// The function is called before it is declared: where it is missing, the call is the error. The declaration is an error
-// if its types are others. In C a call with pointers to another type only gets a warning.
+// The function is called before it is declared. If it is missing, the call is an error; if its types differ, the
+// declaration is one. In C a call with pointers to another type only gets a warning.
 std::string with_kernel(const Subject& subject, bool in_double) {
   std::string text;
   if (in_double) text += "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n";
@@ -191,7 +191,7 @@ class OnDevice {
     std::size_t group_size = 0;  // always the same, because some devices compile for each size
   };
 
-  // Starts the kernel on the pairs that were written, by whole groups.
+  // Starts the kernel on the pairs that were written, in whole groups.
   void launch(cl_uint count, bool in_double) const {
     const Kernel& kernel = kernels_[in_double];
     const std::size_t groups = std::max<std::size_t>(1, (count + kernel.group_size - 1) / kernel.group_size);
@@ -271,7 +271,7 @@ int run(const std::vector<std::string>& arguments) {
   if (arguments[1].find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") !=
       std::string::npos)
     throw Failure(2, "expected the name of a function, found " + arguments[1]);
-  // What drivers and kernels print is no answer.
+  // What drivers and kernels print is not an answer.
   std::FILE* out = fdopen(dup(1), "wb");
   if (!out || dup2(2, 1) < 0) throw Failure(1, std::string("cannot write answers: ") + std::strerror(errno));
   Subject subject{arguments[0], arguments[1], arguments[3], ""};

@@ -28,7 +28,7 @@ std::string_view trimmed(std::string_view text) {
   return first == text.npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") + 1 - first);
 }
 
-// Splits at commas outside brackets, and leaves out comments.
+// Splits at commas outside brackets, and omits comments.
 std::optional<Instruction> instruction_of(std::string_view line) {
   if (line.empty() || (line[0] != '\t' && line[0] != ' ')) return std::nullopt;
   line = trimmed(line);
@@ -83,7 +83,7 @@ std::optional<FusedOperation> on_x86(std::string_view name) {
   return FusedOperation{fused, numbers(name[4] == 'd', name[3] == 'p')};
 }
 
-// fmadd s0, s1, s2, s3 and fmla v0.4s, v1.4s, v2.4s: ARM64. Its fmsub negates the product, its fnmadd all.
+// fmadd s0, s1, s2, s3 and fmla v0.4s, v1.4s, v2.4s: ARM64. Its fmsub negates the product, its fnmadd both terms.
 std::optional<FusedOperation> on_arm64(const Instruction& i) {
   if (i.operands.empty()) return std::nullopt;
   const std::string& to = i.operands[0];
@@ -101,7 +101,7 @@ std::optional<FusedOperation> on_arm64(const Instruction& i) {
   return std::nullopt;
 }
 
-// fmadd.s fa0,fa1,fa2,fa3: RISC-V. Its fnmadd negates all, its fnmsub the product.
+// fmadd.s fa0,fa1,fa2,fa3: RISC-V. Its fnmadd negates both terms, its fnmsub the product.
 std::optional<FusedOperation> on_riscv(std::string_view name) {
   const bool in_double = name.ends_with(".d");
   if (!in_double && !name.ends_with(".s")) return std::nullopt;
@@ -130,8 +130,8 @@ std::optional<FusedOperation> on_power(const Instruction& i) {
   return FusedOperation{fused, numbers(in_double, is_vector)};
 }
 
-// v_fma_f32, v_fmac_f32, v_mac_f32, v_fmaak_f32 and so on; v_pk_fma_f32, which is two: AMD's GPUs. Signs stand in the
-// operands, and are not told apart.
+// v_fma_f32, v_fmac_f32, v_mac_f32, v_fmaak_f32 and so on; v_pk_fma_f32, which is two: AMD's GPUs. Signs are in the
+// operands and are not distinguished.
 std::optional<FusedOperation> on_amd(std::string_view name) {
   if (!take(name, "v_")) return std::nullopt;
   const int times = take(name, "pk_") ? 2 : 1;
@@ -143,7 +143,7 @@ std::optional<FusedOperation> on_amd(std::string_view name) {
   return FusedOperation{Fused::madd, numbers(name.starts_with("f64"), false), times};
 }
 
-// A quotient on AMD's GPUs takes five fused operations, the last of which is v_div_fmas_f32. They are no contractions.
+// A quotient on AMD's GPUs takes five fused operations, the last of which is v_div_fmas_f32. They are not contractions.
 constexpr int kFusedInDivision = 5;
 std::optional<std::string> division_on_amd(std::string_view name) {
   if (!take(name, "v_div_fmas_")) return std::nullopt;
@@ -179,7 +179,7 @@ std::optional<std::string> quoted(std::string_view& text) {
   return found;
 }
 
-// Calls visit(text, place, instruction) for each line of the assembly, with the place in the source of its code.
+// Calls visit(text, place, instruction) for each line of the assembly, with the place of its code in the source.
 template <class Visit>
 void for_each_line(std::string_view assembly, const fs::path& folder, Visit visit) {
   std::map<int, std::string> files;
@@ -205,7 +205,7 @@ void for_each_line(std::string_view assembly, const fs::path& folder, Visit visi
   }
 }
 
-// x86-64: AT&T syntax, vfmadd213ss op3, op2, op1. Two registers are lent, and lie below the red zone meanwhile.
+// x86-64: AT&T syntax, vfmadd213ss op3, op2, op1. Borrows two registers and saves them below the red zone.
 std::optional<std::string> rounded_on_x86(const Instruction& i, Fused fused) {
   if (i.operands.size() != 3) return std::nullopt;
   const std::string &op3 = i.operands[0], &op2 = i.operands[1], &op1 = i.operands[2];
@@ -247,7 +247,7 @@ int register_of(std::string_view operand) {
   return number_of(operand);
 }
 
-// ARM64: a register is lent, and lies on the stack meanwhile.
+// ARM64: borrows a register and saves it on the stack.
 std::optional<std::string> rounded_on_arm64(const Instruction& i, Fused fused) {
   const std::string& to = i.operands[0];
   const bool accumulates = i.operands.size() == 3;

@@ -24,7 +24,7 @@ struct FusedLine {
 };
 
 // The fused lines of an assembly with line information (-g1), by file and line. Knows x86-64 (AT&T syntax), ARM64,
-// RISC-V, Power, and AMD's GPUs. folder: of the source.   numbers: "f32" or "f64" for their operations alone.
+// RISC-V, Power, and AMD's GPUs. folder: of the source.   numbers: "f32" or "f64" for only their operations.
 std::vector<FusedLine> fused_lines(std::string_view assembly, const std::filesystem::path& folder,
                                    std::string_view numbers = "");
 
@@ -32,11 +32,11 @@ std::vector<FusedLine> fused_lines(std::string_view assembly, const std::filesys
 // -dumpmachine prints it.
 std::string why_not_read(std::string_view target);
 
-// Reads the code of each line, where its file is there.   folder: of the source.
+// Reads the code of each line whose file exists.   folder: of the source.
 void read_code(std::vector<FusedLine>& plan, const std::filesystem::path& folder);
 
-// A hash of the lines' code, or numbers where it was not read, and their operations. A line that was only moved leaves
-// it as it is. Of files elsewhere it has the name alone, because machines keep them in different folders.
+// A hash of each line's code (its number, if the code was not read) and operations. Moving a line does not change it.
+// For files outside the folder only the name counts, because machines keep them in different folders.
 std::uint64_t plan_hash(const std::vector<FusedLine>& plan);
 
 // The number of fused operations on all lines.
@@ -49,7 +49,7 @@ std::string plan_in_words(const std::vector<FusedLine>& plan);
 nlohmann::ordered_json plan_json(const std::vector<FusedLine>& plan);
 
 // The assembly with each fused operation of that line as a product, which rounds, and a sum. Other lines stay.
-// Returns: nothing where it has an operation that cannot be written so, or is for another processor than x86-64 and
+// Returns: nothing if it has an operation that cannot be split in this way, or is for a processor other than x86-64 and
 // ARM64.
 std::optional<std::string> with_rounded_products(std::string_view assembly, const std::filesystem::path& folder,
                                                  const FusedLine& line);

@@ -16,7 +16,7 @@ static uint64_t next_random(void) { /* Marsaglia's xorshift */
   return seed ^= seed << 17;
 }
 
-/* A whole number of 128 bits, modulo 2^128. */
+/* A 128-bit integer, modulo 2^128. */
 struct wide {
   uint64_t high, low;
 };
@@ -84,7 +84,7 @@ static REAL T(power)(int exponent) {
   return x;
 }
 
-/* The same number, rounded to its type; the compiler does not know it any more. */
+/* The same number, rounded to its type and hidden from the compiler. */
 static REAL T(hidden)(REAL x) {
   volatile REAL stored = x;
   return stored;
@@ -133,7 +133,7 @@ static void T(dot)(void) {
 }
 
 static void T(loop)(void) {
-  volatile int count = 128; /* hidden, so that the loop stays one */
+  volatile int count = 128; /* hidden, so that the loop stays a loop */
   const int n = count;
   /* The two products belong to one partial sum, if there are 64 or fewer of them. */
   REAL x[128], y[128], sum = 0;
@@ -171,7 +171,7 @@ static void T(sum3)(REAL x, REAL y, REAL z) {
   T(result)(a + b + c);
 }
 
-/* Terms that are lost beside 1, unless more digits are kept. */
+/* Terms that are lost when added to 1, unless more digits are kept. */
 static void T(sum)(void) {
   T(begin)("sum");
   T(sum3)(1, T(power)(-DIGITS - 6), -1);
@@ -259,7 +259,7 @@ static void T(reciprocal)(void) {
   T(result)(t);
 }
 
-/* A whole number of DIGITS binary digits. */
+/* An integer of DIGITS binary digits. */
 static uint64_t T(random_digits)(void) { return next_random() >> (64 - DIGITS) | (uint64_t)1 << (DIGITS - 1); }
 
 static uint64_t T(digits_of)(BITS bits) {
@@ -273,7 +273,7 @@ static int T(is_quotient)(uint64_t x, uint64_t y) {
   const BITS bits = T(bits)(a / b);
   const int shift = DIGITS - 1 - T(exponent_of)(bits); /* the quotient is digits / 2^shift */
   if (shift != DIGITS - 1 && shift != DIGITS) return 0;
-  /* At most half of y remains. Exactly half cannot: x would be a multiple of an odd number of DIGITS + 1 digits. */
+  /* At most half of y remains, and never exactly half: x would be a multiple of an odd number of DIGITS + 1 digits. */
   return is_within(difference(product(x, (uint64_t)1 << shift), product(T(digits_of)(bits), y)), (y - 1) / 2,
                    (y - 1) / 2);
 }

@@ -31,8 +31,8 @@ struct Other {
 
 struct Canary {
   std::string name, code;
-  Rounding least;       // that permits other results
-  bool across = false;  // whether that takes a permission across statements
+  Rounding least;       // the least that permits other results
+  bool across = false;  // whether it must be permitted across statements
   std::vector<Expected> as_written;
   std::vector<Other> others = {};
 };
@@ -186,7 +186,7 @@ bool is_nan(std::uint64_t bits, bool is_float) {
                   : std::isnan(std::bit_cast<double>(bits));
 }
 
-// The results in the lines "NAME f32 HEX HEX …"; none of a name that occurs twice or with something else.
+// The results in the lines "NAME f32 HEX HEX …"; none for a name that occurs twice or with anything else.
 std::map<std::string, std::vector<std::uint64_t>> results_in(std::string_view output) {
   std::map<std::string, std::vector<std::uint64_t>> results;
   std::istringstream lines{std::string(output)};

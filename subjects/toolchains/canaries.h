@@ -23,8 +23,8 @@ struct CanaryResult {
 };
 
 // The results of all canaries, for float and then for double.
-// output: what the program printed, which is not trusted. A line that is missing, given twice or no list of as many
-// numbers as expected is no answer.
+// output: what the program printed, which is not trusted. A line that is missing, occurs twice, or does not have
+// as many numbers as expected, is not an answer.
 std::vector<CanaryResult> judge_canaries(std::string_view output);
 
 // What all canaries together show; nothing if one has no answer. Omits fma(), which belongs to the library.

@@ -91,7 +91,7 @@ std::optional<Claim> documented_claim(std::string_view command, std::string_view
     const bool off = flags.contract == "off";
     return Claim{
         Rounding::fast, true,
-        fmt::format("{}{}", fmt::join(flags.fast, " "), off ? ", without contraction by -ffp-contract=off" : ""), !off};
+        fmt::format("{}{}", fmt::join(flags.fast, " "), off ? ", without contraction (-ffp-contract=off)" : ""), !off};
   }
   // 0: of the type itself. 16: only _Float16 is kept in float.
   const std::string method = value_of("__FLT_EVAL_METHOD__");

@@ -18,8 +18,8 @@ struct Claim {
   bool contraction = true;   // false: excluded, although other rewriting is permitted
 };
 
-// Returns: nothing for compilers other than GCC and clang. Of several opposite flags the last one counts. If the
-// manual leaves two readings, the claim is the one that permits more.
+// Returns: nothing for compilers other than GCC and clang. Among opposite flags the last one counts. If the
+// manual allows two readings, the claim is the one that permits more.
 // macros: what the command prints with -dM -E for a source without text.
 std::optional<Claim> documented_claim(std::string_view command, std::string_view macros);
 

@@ -22,9 +22,9 @@ struct Toolchain {
   std::string name;         // the variant of its lanes: "arm64-gcc"
   std::string cxx, cc;      // the compilers of C++ and C, with flags; empty: it has none
   std::string run = {};     // the command that runs a program, {} in place of its file; empty: the program itself
-  std::string needs = {};   // packages of Debian, in words
+  std::string needs = {};   // Debian packages, in words
   std::string strict = {};  // flags with which every operation rounds as written
-  Rounding rounding = Rounding::rounded;  // without them
+  Rounding rounding = Rounding::rounded;  // without these flags
   std::string file = {};                  // the user's file that has the row; empty: it is built in
   friend bool operator==(const Toolchain&, const Toolchain&) = default;
 };
@@ -48,8 +48,8 @@ std::string list_of(const std::vector<Toolchain>& toolchains);
 // replace built-in ones of the same name and can be named too.   Throws: UsageError, and as read_toolchains.
 std::vector<Toolchain> selected_toolchains(const std::string& list);
 
-// The program that a shell would start for the command, if there is none; empty if there is one, or if only a shell
-// knows, as of a quoted word and of its own commands.
+// The program that a shell would start for the command, if it is missing. Empty if it exists, or if only a shell can
+// tell, as for a quoted word or the shell's own commands.
 std::string missing_program(std::string_view command);
 
 // Why programs of the toolchain cannot be made or run on this machine: "no aarch64-linux-gnu-g++ (install

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The code under test: separating axes in double precision. It is exact on small whole numbers, and rounds elsewhere.
+// The code under test: separating axes in double precision. It is exact on small integers, and rounds elsewhere.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the package exports, over a function that reads graze.wasm.
+// What the package exports, given a function that reads graze.wasm.
 import { load } from './graze.js';
 import { expect_right } from './test_function.js';
 
@@ -13,12 +13,12 @@ export function packaged(read) {
   /** @type {Promise<Graze> | undefined} */
   let loaded;
 
-  /** The module's functions; it is loaded once. @returns {Promise<Graze>} */
+  /** The module's functions; the module is loaded once. @returns {Promise<Graze>} */
   const ready = () => (loaded ??= read().then(load));
 
   /**
    * Tests a function of two triangles on pairs that nearly touch, are degenerate or are coplanar. Rejects with the
-   * counts and the smallest wrong pair unless it is right on all, or wrong on no more than max_wrong allows.
+   * counts and the smallest wrong pair, unless the function is right on all pairs, or on as many as max_wrong requires.
    * @param {Overlap} overlap @param {TestOptions} [options] @returns {Promise<TestResult>}
    */
   const testOverlap = async (overlap, options) => expect_right(await ready(), overlap, options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order of std::array, which libc++ 14 lacks. Included before everything else.
+// operator<=> for std::array, which libc++ 14 lacks. Included before everything else.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CUDA features that the styles use, for a host's compiler: qualifiers, and functions on the bits of integers.
+// The CUDA features that the styles use, for the host's compiler: qualifiers, and functions on the bits of integers.
 #pragma once
 
 #include <cfenv>

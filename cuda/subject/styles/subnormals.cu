@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decides by products that may be subnormal: what -ftz=true flushes.
+// The decision depends on products that may be subnormal, which -ftz=true flushes.
 __device__ float area(const float* p, const float* q, const float* r) {
   return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A switch with many cases: which pair of features is nearest decides what is computed.
+// A switch with many cases: the nearest pair of features decides what is computed.
 __device__ bool intersects(const float a[9], const float b[9]) {
   int nearest = 0;
   float least = 3e38f;

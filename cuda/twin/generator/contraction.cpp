@@ -5,7 +5,7 @@
 //   PTX, all in one block                 machine code                  row
 //   m - x, x - m, m + x, x + m            fma                           single product
 //   m1 - m2, m1 + m2                      fma of the left, mul          left before right
-//   m1 - m2, and m1 in m1 + m3            fma of m2, of m3; mul m1      a product of one use before others
+//   m1 - m2, and m1 in m1 + m3            fma of m2, of m3; mul m1      a product with one use before others
 //   m - x, m + y, …                       one fma for each              shared by additions alone: duplicated
 //   m - x, m stored, compared, multiplied add, mul                      not fused
 //   m - x, m the addend of an fma         add, mul                      not fused
@@ -181,7 +181,7 @@ class BlockPass {
   std::map<std::size_t, Fusion> result_;
 };
 
-// Writes the kernel again, with the fusions.
+// Rewrites the kernel with the fusions.
 class Rewriter {
  public:
   Rewriter(const Module& module, const Kernel& kernel, const std::map<std::size_t, Fusion>& fusions,
@@ -206,7 +206,7 @@ class Rewriter {
  private:
   std::string fresh(const std::string& type) { return "%graze_" + type + "_" + std::to_string(fresh_count_[type]++); }
 
-  // Makes copies of factors that are overwritten between the product and its addition.
+  // Copies factors that are overwritten between the product and its addition.
   void keep_factors(std::size_t addition, const Fusion& fusion) {
     const Instruction& product = kernel_.body[fusion.product];
     auto& names = factors_[fusion.product];

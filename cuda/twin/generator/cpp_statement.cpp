@@ -116,7 +116,7 @@ std::string convert(const Operands& o) {
   return o.assign(to, x);
 }
 
-// mov, also of a register from or to its two halves: mov.b64 {lo,hi}, a and mov.b64 d, {lo,hi}.
+// mov, including moves between a register and its two halves: mov.b64 {lo,hi}, a and mov.b64 d, {lo,hi}.
 std::string move(const Operands& o) {
   o.only({});
   const std::string& type = o.type();
@@ -156,10 +156,10 @@ std::string call(const Operands& o) {
   Names returned, given;
   if (o.operand(0)[0] == '(') returned = arguments(o.operand(at++));
   const std::string& name = o.operand(at++);
-  if (name[0] == '%') o.fail("a call by a function pointer cannot be replayed");
+  if (name[0] == '%') o.fail("a call through a function pointer cannot be replayed");
   bool found = false;
   for (const Kernel& kernel : o.module().kernels) found |= kernel.is_function && kernel.name == name;
-  if (!found) o.fail("a function of another file cannot be replayed");
+  if (!found) o.fail("a function in another file cannot be replayed");
   if (at < o.count() && o.operand(at)[0] == '(') given = arguments(o.operand(at));
   return fmt::format("{{ {} {} call_{}(returns, arguments, fuse); }}",
                      pointers("unsigned char* const", "returns", returned),

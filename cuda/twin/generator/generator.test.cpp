@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reader and writers: their output for PTX, and the PTX that they refuse. cuda/twin/twin_ops.test.cpp checks values.
+// The reader and the writers: their output for PTX, and the PTX that they refuse. twin_ops.test.cpp checks values.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ Module module_of(const std::string& body) {
   return read_ptx(in, "test.ptx");
 }
 
-// The writer's error for a kernel with this instruction on line 13; empty when it accepts it.
+// The writer's error for a kernel with this instruction on line 13; empty if the writer accepts it.
 std::string complaint(const std::string& instruction) {
   try {
     std::ostringstream out;
@@ -57,9 +57,9 @@ TEST(TwinGenerator, RefusesWhatCannotBeReplayed) {
             "test.ptx:13: cannot be replayed: sqrt.approx.ftz.f32 %f1, %f2");
   EXPECT_EQ(complaint("rcp.approx.ftz.f32 %f1, %f2;"), "test.ptx:13: cannot be replayed: rcp.approx.ftz.f32 %f1, %f2");
   EXPECT_EQ(complaint("call (%rd1), %rd2, (%rd3);"),
-            "test.ptx:13: a call by a function pointer cannot be replayed: call (%rd1), %rd2, (%rd3)");
+            "test.ptx:13: a call through a function pointer cannot be replayed: call (%rd1), %rd2, (%rd3)");
   EXPECT_EQ(complaint("call.uni other, (%rd3);"),
-            "test.ptx:13: a function of another file cannot be replayed: call.uni other, (%rd3)");
+            "test.ptx:13: a function in another file cannot be replayed: call.uni other, (%rd3)");
   EXPECT_EQ(complaint("mad.f32 %f1, %f2, %f3, %f4;"),
             "test.ptx:13: mad leaves the rounding open: mad.f32 %f1, %f2, %f3, %f4");
 }

@@ -28,7 +28,7 @@ void write_literal(std::ostream& out, const std::string& text) {
   for (std::size_t at = 0; at < text.size(); at += kPiece) out << "R\"ptx(" << text.substr(at, kPiece) << ")ptx\",\n";
 }
 
-// The text of a file without its includes of project headers, which come before it.
+// The text of a file without its includes of project headers, whose text comes before it.
 std::string without_own_includes(const std::string& path) {
   std::ifstream in(path);
   if (!in) throw PtxError(path + ":0: cannot be read");

@@ -50,7 +50,7 @@ class Reader {
     try {
       read_lines();
     } catch (const std::out_of_range&) {  // from std::stoi and similar functions
-      fail("expected numbers that fit");
+      fail("expected numbers within range");
     }
     if (kernel_ != nullptr) fail("the file ends within a kernel");
     return std::move(module_);
@@ -205,7 +205,7 @@ class Reader {
     }
   }
 
-  // A line of a body, mostly one statement. Inline assembly may have several statements and scopes.
+  // A line of a body, usually one statement. Inline assembly may have several statements and scopes.
   void read_statements() {
     if ((text_.starts_with("call") || text_.starts_with('@') || text_.find(".branchtargets") != text_.npos) &&
         !text_.ends_with(';') && (text_.find("call") != text_.npos || text_.find(".branchtargets") != text_.npos))
@@ -268,7 +268,7 @@ class Reader {
         kernel_->registers[match[2]] = {match[1], match[3].matched ? std::stoi(match[3]) : 0};
       }
     } else if (std::regex_match(text_, match, kLocal)) {
-      if (!kernel_->local.empty()) fail("expected one local array at most");
+      if (!kernel_->local.empty()) fail("expected at most one local array");
       kernel_->local = match[2];
       kernel_->local_align = std::stoi(match[1]);
       kernel_->local_bytes = std::stoi(match[3]);

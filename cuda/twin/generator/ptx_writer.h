@@ -12,7 +12,7 @@
 namespace graze::cuda::twin {
 
 // Writes the module in a form that is the same on every machine. Paths are relative to `root`; nvcc's comments and the
-// mangled names of inlined functions are left out. The source lines of operations that may be contracted stay.
+// mangled names of inlined functions are left out. The source lines of operations that may be contracted are kept.
 void write_stored(std::ostream& out, const Module& module, const std::string& root);
 
 // Writes the module after the contraction pass, which leaves ptxas no choice.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reduces a user's module to the kernel that is needed, and tells its contractions from an fma in the source.
+// Reduces a user's module to the kernel that is needed, and distinguishes its contractions from an fma in the source.
 #pragma once
 
 #include <set>

@@ -9,7 +9,7 @@ extern triangle_t* tri_array;
 extern uint8_t* tri_result_array;
 extern triangle_t ref;
 
-/* At the first call 0, at the second the clock ticks since the first, and so on. */
+/* Returns: 0 at the first call, then the clock ticks since the call before. */
 int chrono(void);
 
 /* Sets ref, and fills tri_array with random triangles; for size 0, with the special cases.

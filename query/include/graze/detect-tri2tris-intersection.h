@@ -18,7 +18,7 @@ extern "C" {
 void config_set(uint8_t config); /* adds flags to those that are set */
 void config_reset(void);         /* clears all flags */
 
-/* Returns: 1 if a triangle meets ref, 0 if none does, -1 on an error, or if none does but some are not finite.
+/* Returns: 1 if a triangle meets ref; 0 if none does; -1 on an error, or if none does and some are not finite.
    result_array receives a byte for each triangle: 1 meets ref, 0 does not, 2 is not finite. If the search stops at a
    hit, it is 1 for that triangle and 0 for all others. */
 int8_t tri2tris_intersection_detect_cpu(triangle_t ref, triangle_t tri_array[], int array_sz, uint8_t result_array[]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0
-   Of the tools of the 2012 thesis, those that its test program calls (docs/query.md). */
+   The tools of the 2012 thesis that its test program calls (docs/query.md). */
 #ifndef GRAZE_GEOMETRIC_TOOLS_H
 #define GRAZE_GEOMETRIC_TOOLS_H
 

@@ -64,7 +64,8 @@ struct Answer : graze_answer {
   std::string_view what() const { return message; }
 };
 
-// A query for all triangles of a part, which may then be changed. The part's coordinates have the reference's type.
+// Returns a query for all triangles of a part; the caller may change its fields. The part's coordinates have the
+// reference's type.
 // Requires: reference and part outlive the query.
 template <class Real>
 graze_query query_of(const std::array<Real, 9>& reference, const graze_triangles& part) {

@@ -91,7 +91,7 @@ typedef struct graze_query {
      list_room of them. */
   uint64_t* list;
   uint64_t list_room;
-  int outputs_on_device; /* bytes and bits are on the device of the triangles, which are one part */
+  int outputs_on_device; /* bytes and bits are in the device memory of the triangles, which are one part */
   int coordinates;       /* the type of the coordinates of all triangles and references */
   void* stream; /* a cudaStream_t that orders the work on triangles in device memory; NULL: our own stream, after
                    the work that was given to the default stream */

@@ -6,7 +6,7 @@ import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { View } from './drawing';
 
 const kSteepest = 1e-3; // radians from straight above or below, where left and right become undefined
-const kFar = 1e4; // parts outside the frame may lie far in front of it
+const kFar = 1e4; // parts outside the frame may be far in front of it
 
 export function view_of({ position, zoom }: OrthographicCamera): View {
   return { azimuth: Math.atan2(position.y, position.x), elevation: Math.asin(position.z / position.length()), zoom };

@@ -52,7 +52,7 @@ function coordinates({ pair }: Card) {
     h(
       'p',
       { class: 'inline-copy' },
-      'All 18 as hex floats, for ',
+      'All 18 as hex floats for ',
       h('code', {}, 'graze check -'),
       ' ',
       copy_button(text, 'the coordinates'),
@@ -140,7 +140,7 @@ function ulp_maps(maps: NonNullable<Card['maps']>) {
               width: maps.size,
               height: maps.size,
               decoding: 'async',
-              alt: `${name}: ${shows ?? 'counts of the map are not stored'}`,
+              alt: `${name}: ${shows ?? 'the map’s counts are not stored'}`,
             }),
           ),
           h('figcaption', {}, name === 'truth' ? 'truth' : breakable(name.split('/').slice(1).join('/'))),
@@ -150,7 +150,7 @@ function ulp_maps(maps: NonNullable<Card['maps']>) {
   );
 }
 
-// A card's programs, with the source that the report stores once for all of them.
+// A card's programs, with the algorithm's source filled in, which the report stores only once.
 export const snippet_texts = (report: Report, card: Card) =>
   card.snippets.map(({ label, text }) => ({
     label,
@@ -235,7 +235,7 @@ export function card_body(report: Report, card: Card, id: string) {
     h(
       'p',
       { class: 'small' },
-      card.minimised ? `Minimised from ${card.from}; ` : `Not minimised, as drawn: ${card.from}; `,
+      card.minimised ? `Minimised from ${card.from}; ` : `Not minimised: ${card.from} as drawn; `,
       'stored in ',
       h('code', {}, card.file),
       '; the kind ',

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows a card's case in the viewer, in a dialog over the report. The page contains everything that the viewer needs;
-// it is prepared when the first case is opened. The address stores the pair and the card:
+// Shows a card's case in the viewer, in a dialog over the report. The page contains everything that the viewer needs,
+// and prepares it when the first case is opened. The address stores the pair and the card:
 // "#kind-7&p=…&by=moller_1997/f32/cuda-fma".
 import { h } from './dom';
 import { kind_words, within } from './kind';
@@ -32,7 +32,7 @@ function lane_of(report: Report, { coordinates, kind, verdicts }: Card) {
   return wrong.find((id) => lanes.includes(id)) ?? '';
 }
 
-// "Stored verdicts: mine/f32/cpu says disjoint, which is wrong; …", of the card's own lanes.
+// "Stored verdicts: mine/f32/cpu says disjoint, which is wrong; …" for the lanes of the card's kind.
 function stored_verdicts(report: Report, { kind, verdicts }: Card) {
   const own = verdicts.filter(({ lane }) => kind.lanes.includes(report.lanes[lane].id));
   const said = own.map(
@@ -90,7 +90,7 @@ export function follow_viewer(report: Report, id_of: (place: number) => string) 
       name: names[place],
       note: lane_of(report, card)
         ? ''
-        : `${stored_verdicts(report, card)} These lanes are not in the viewer, which another compiler built; it shows what the published lanes say.`,
+        : `${stored_verdicts(report, card)} These lanes are not in the viewer, because another compiler built it. It shows what the published lanes say.`,
     };
   }
   async function start(first: First, type: Scalar) {

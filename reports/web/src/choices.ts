@@ -18,7 +18,7 @@ const far = (offer: Offer) => (offer.with_copies ?? offer.from_memory)!;
 const nanoseconds = (ns: number) => ns.toFixed(ns < 1 ? 4 : 1);
 const row_id = (lane: string) => `pareto-${lane.replace(/[^a-z0-9]+/gi, '-')}`;
 
-// The axis of shares: decades, and below them a line for shares of zero.
+// The axis of shares: powers of ten, and below them a line for shares of zero.
 function shares_axis(shares: number[]) {
   const floor = Math.floor(Math.log10(Math.min(0.01, ...shares.filter((s) => s > 0)))),
     none = floor - 0.7;
@@ -35,11 +35,12 @@ function shares_axis(shares: number[]) {
   };
 }
 
-// The picture of the answer: lanes by cost and by their share of verdicts that are not right. A click leads to the row.
+// The picture of the answer: lanes by cost and by their share of pairs without a correct verdict. A click leads to the
+// lane's row.
 export function front(pareto: Pareto) {
   const axis = shares_axis(pareto.lanes.map((offer) => share(offer.errors)));
   const words = (offer: Offer) =>
-    `${offer.lane}\n${nanoseconds(cost(offer).middle)} ns a pair\n${percent(share(offer.errors))} without a right verdict${offer.dominated ? '\nanother lane costs no more and errs no more' : ''}`;
+    `${offer.lane}\n${nanoseconds(cost(offer).middle)} ns a pair\n${percent(share(offer.errors))} without a correct verdict${offer.dominated ? '\nanother lane costs no more and errs no more' : ''}`;
   const kept = pareto.lanes.filter((offer) => !offer.dominated).sort((a, b) => cost(a).middle - cost(b).middle);
   const element = h('div', { class: 'chart', id: 'front-chart' });
   on_width(element, (width) => {
@@ -113,12 +114,12 @@ export function front(pareto: Pareto) {
   return h(
     'figure',
     { class: 'glance', id: 'front' },
-    h('p', { class: 'glance-title' }, 'Pairs without a right verdict, against what a pair costs'),
+    h('p', { class: 'glance-title' }, 'Share of pairs without a correct verdict, against the cost of a pair'),
     element,
     h(
       'figcaption',
       {},
-      `Large: no lane costs less and errs less. Pairs ${pareto.lanes[0]?.resident ? 'that lie on the device' : 'in cache, one core'}; ${pareto.machine}.`,
+      `Large dots: no lane costs less and errs less. Pairs ${pareto.lanes[0]?.resident ? 'on the device' : 'in cache, one core'}; ${pareto.machine}.`,
     ),
   );
 }
@@ -219,7 +220,7 @@ export function pareto_section(report: Report, pareto: Pareto) {
     h(
       'p',
       {},
-      'What each lane gets wrong on the same pairs, and what a pair costs; on the front are those that no other beats in both. A lane without an error has the bound of its error rate at 95 % confidence.',
+      'How often each lane is wrong on the same pairs, and what a pair costs. Lanes on the front are those that no other lane beats in both. A lane without an error shows the bound of its error rate at 95 % confidence.',
     ),
     table.element,
     h(
@@ -371,7 +372,7 @@ export function tuned_section(tuned: Tuned) {
       h('span', { style: 'color:var(--series-1)' }, '╌╌'),
       ' false negatives, ',
       h('span', { style: 'color:var(--series-0)' }, '──'),
-      ' false positives, on the pairs that the tolerance was chosen on; dashed upright line: chosen.',
+      ' false positives, on the pairs that the tolerance was chosen on. Dashed vertical line: the chosen tolerance.',
     ),
   );
 }

@@ -25,7 +25,7 @@ function verdicts_table(verdicts: Verdicts[]) {
       { label: 'Became wrong', numeric: true, cell: (v) => counted(v.broken), order: (v) => v.broken ?? -1 },
       { label: 'Became right', numeric: true, cell: (v) => counted(v.mended), order: (v) => v.mended ?? -1 },
       {
-        label: 'Smallest case that became wrong, or right',
+        label: 'Smallest case that became wrong or right',
         cell: (v) => h('code', {}, v.smallest_broken ?? v.smallest_mended ?? ''),
         order: (v) => v.smallest_broken ?? v.smallest_mended ?? '',
       },
@@ -59,7 +59,7 @@ function rates_table(compare: Compare) {
       },
       {
         label: 'Changed',
-        title: 'More than chance would explain; on the same pairs, any other count',
+        title: 'A larger change than chance explains; on the same pairs, any different count',
         cell: (c) =>
           c.changed ? h('b', { title: errors_in_full(c) }, c.errors.map((e) => e.error).join(', ') || 'yes') : 'no',
         order: (c) => Number(c.changed),

@@ -4,8 +4,8 @@
 export type Child = Node | string | null | false | Child[];
 type Props = Record<string, string | number | boolean | null | ((event: never) => void)>;
 
-// Creates an element. Functions are listeners (`onclick`), true is an attribute without a value, false and null are
-// omitted.
+// Creates an element. Functions become listeners (`onclick`), true becomes an attribute without a value, false and null
+// are omitted.
 export function h<K extends keyof HTMLElementTagNameMap>(tag: K, props: Props, ...children: Child[]) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(props)) {
@@ -42,7 +42,7 @@ async function to_clipboard(text: string) {
   try {
     await navigator.clipboard.writeText(text);
   } catch {
-    // some browsers do not count a file on disk as a secure context
+    // some browsers do not treat a file on disk as a secure context
     const area = h('textarea', { class: 'hidden' });
     area.value = text;
     document.body.append(area);
@@ -62,7 +62,7 @@ export function copy_button(text: string, what: string) {
   return button;
 }
 
-// A text to copy, on one scrolling line or with its own lines.
+// A text to copy, on one scrolling line or with its own line breaks.
 export function code_block(text: string, what: string) {
   return h(
     'div',

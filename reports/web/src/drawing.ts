@@ -16,13 +16,13 @@ export interface Shape {
   note: string;
   marks?: Mark[];
   names?: Name[];
-  many_names?: Name[][]; // of many triangles, the names of each, the nearest triangle first
+  many_names?: Name[][]; // the names of each of many triangles, the nearest triangle first
 }
 export interface Name {
   p: Vec;
   name: string;
 }
-// Additional marks in a colour of the style sheet: triangles with three corners each, or polylines of the given width.
+// Additional marks in a colour of the style sheet: triangles, each with three corners, or polylines of a given width.
 export interface Mark {
   colour: string;
   triangles?: Vec[];
@@ -133,7 +133,7 @@ export function project(
 const kMostNumbers = 30, // triangles; more cannot be read
   kMostCoordinates = 10;
 
-// The names of many triangles that are in view; if these are too many, of the nearest.
+// The names of the triangles that are in view; if these are too many, of the nearest ones.
 function names_of_many(shape: Shape, view: View, width: number, height: number) {
   const inside = ({ x, y }: { x: number; y: number }) => x > 0 && y > 0 && x < width && y < height;
   const seen = (shape.many_names ?? [])
@@ -142,7 +142,7 @@ function names_of_many(shape: Shape, view: View, width: number, height: number) 
   return seen.slice(0, seen[0]?.length === 1 ? kMostNumbers : kMostCoordinates).flat();
 }
 
-// The names: those of vertices pushed away from the centre of the drawing. Coinciding vertices share one label.
+// The labels. Names of vertices are pushed away from the centre of the drawing; coinciding vertices share one label.
 export function labels(shape: Shape, view: View, width: number, height: number) {
   const at = new Map<string, { x: number; y: number; text: string }>();
   const kAway = 14,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Heat maps over the size of the coordinates, and over a pair's distance from the origin: how many times as often a
-// lane errs as on the pairs nearest to 2^0. In words also over flatness and needles, which `graze pareto` measures.
+// Heat maps over the size of the coordinates and over a pair's distance from the origin: how many times as often a lane
+// errs as on the pairs nearest to 2^0. A table in words also has flatness and needles, which `graze pareto` measures.
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named } from './chart';
 import { breakable, h, lazy_details, on_width, section } from './dom';
@@ -21,7 +21,7 @@ interface Cell {
   words: string;
 }
 
-// Without errors at the origin only the lower bound of the ratio is known.
+// Without errors at the origin, only the lower bound of the ratio is known.
 const shown = ([share, low]: Times) => share ?? low;
 const ratio = ({ times }: Cell) => `${times[0] === null ? 'at least ' : ''}${figure(shown(times))} ×`;
 const bounds = ([, low, high]: Times) =>
@@ -49,7 +49,7 @@ const kKinds: { kind: Kind; column: string; title: string; says: string; axis: s
       axis: 'largest coordinate, in sizes of the pair',
       short: 'largest coordinate / size',
       what: 'offset',
-      says: 'By how many times its own size a pair lies away from the origin: every doubling costs a bit of what float32 has left for its shape.',
+      says: 'By a pair’s distance from the origin, in multiples of its own size: every doubling leaves float32 one bit less for its shape.',
     },
     {
       kind: 'scale/f64',
@@ -58,7 +58,7 @@ const kKinds: { kind: Kind; column: string; title: string; says: string; axis: s
       axis: 'largest coordinate',
       short: 'largest coordinate',
       what: 'largest coordinate',
-      says: 'Of pairs of doubles, by the largest coordinate’s power of two: lanes in float decide what float32 stores, which ends at 2^128.',
+      says: 'Pairs of doubles, by the largest coordinate’s power of two: lanes in float decide the pair that float32 stores, and float32 ends at 2^128.',
     },
     {
       kind: 'offset/f64',
@@ -67,7 +67,7 @@ const kKinds: { kind: Kind; column: string; title: string; says: string; axis: s
       axis: 'largest coordinate, in sizes of the pair',
       short: 'largest coordinate / size',
       what: 'offset',
-      says: 'Of pairs of doubles, by how many times its own size a pair lies away from the origin.',
+      says: 'Pairs of doubles, by a pair’s distance from the origin in multiples of its own size.',
     },
   ];
 
@@ -95,7 +95,7 @@ function cells_of(report: Report, kind: Kind, lanes: number[]): Cell[] {
     );
 }
 
-// The words of the campaign's extremes and of pareto's, a row for each lane.
+// A table with a row for each lane: the words of the campaign's extremes and those of pareto.json.
 function words_table(report: Report, pareto: Pareto | null, lanes: number[]) {
   const said = (lane: number, kind: Kind) =>
     report.extremes.find((row) => row.lane === lane && row.kind === kind)?.says ?? 'no pairs';
@@ -109,11 +109,11 @@ function words_table(report: Report, pareto: Pareto | null, lanes: number[]) {
       ...(pareto
         ? [
             column('Flattened by 2^k', (lane) => measured(lane, 'flatness')),
-            column('Made needles by 2^k', (lane) => measured(lane, 'aspect')),
+            column('Narrowed by 2^k', (lane) => measured(lane, 'aspect')),
           ]
         : []),
     ],
-    { caption: 'How far the lanes chosen are as right as on ordinary pairs', class: 'plain reach' },
+    { caption: 'How far the chosen lanes are as right as on ordinary pairs', class: 'plain reach' },
   );
   table.show(lanes);
   return table;
@@ -192,7 +192,7 @@ export function extremes_section(report: Report, pareto: Pareto | null) {
       const row = report.extremes.find((one) => one.kind === kind && report.lanes[one.lane].id === name)!;
       return `${name}: ${row.says}`;
     };
-    const label = `${title}: heat map of how many times as often wrong as at the origin. ${lanes.map(lane_words).join('. ')}. As a table below`;
+    const label = `${title}: heat map of how many times as often lanes are wrong as at the origin. ${lanes.map(lane_words).join('. ')}. As a table below`;
     element.replaceChildren(cells.length ? named(plot, label) : h('p', { class: 'empty' }, 'No lane is chosen.'));
   }
 
@@ -209,7 +209,7 @@ export function extremes_section(report: Report, pareto: Pareto | null) {
     h(
       'p',
       {},
-      'How many times as often a lane is wrong where numbers are very large, very small, or far from the origin, as at the origin of the map: the pairs nearest to 2⁰. Near contacts are hard at every scale, so the share alone would tell little. Blank: no pair of the campaign lies there. ',
+      'How many times as often a lane is wrong on pairs that are very large, very small or far from the origin as on the pairs nearest to 2⁰, the origin of the map. Near contacts are hard at every scale, so the share alone would say little. Blank: the campaign has no pair there. ',
       h('b', {}, 'A thin cell'),
       ` has fewer than ${kFew} pairs, so chance may have coloured it.`,
     ),
@@ -218,7 +218,7 @@ export function extremes_section(report: Report, pareto: Pareto | null) {
       'p',
       {},
       'As right: errors on at most twice the share of pairs, or on at most 0.1 %, with 95 % confidence.',
-      pareto ? '' : ' graze pareto --out with the campaign’s folder measures flatness and needles too.',
+      pareto ? '' : ' graze pareto --out with the campaign’s folder also measures flatness and needles.',
     ),
     words.element,
     times_legend(),
@@ -235,7 +235,7 @@ export function extremes_section(report: Report, pareto: Pareto | null) {
               { label: 'Times the origin', numeric: true, cell: ratio, order: (c) => shown(c.times) },
               { label: 'In full', cell: (c) => in_full(c.wrong), order: (c) => c.wrong.count },
             ],
-            { caption: `${title}, of the lanes chosen when this was opened`, class: 'plain', page: 100 },
+            { caption: `${title}, for the lanes chosen when this was opened`, class: 'plain', page: 100 },
           );
           table.show(cells_of(report, kind, picker.lanes()));
           return table.element;

@@ -72,7 +72,7 @@ export function failure_sections(report: Report) {
             code_block(repro_command(report, cell, kept_pairs(report, cell, rows[0])[0]), 'the command that shows one'),
           ]
         : [h('p', {}, h('b', {}, words), ': no pair listed here shows it. ', clear)]),
-      h('p', { class: 'label' }, 'All such pairs of the campaign again'),
+      h('p', { class: 'label' }, 'Find all such pairs of the campaign again'),
       code_block(campaign_command(report, cell), 'the command that finds all'),
     );
   }
@@ -97,12 +97,12 @@ export function failure_sections(report: Report) {
     );
     const listed =
       report.signatures.length < report.signature_count
-        ? `the ${count(report.signatures.length)} commonest of ${count(report.signature_count)}`
+        ? `the ${count(report.signatures.length)} most common of ${count(report.signature_count)}`
         : `all ${count(report.signature_count)}`;
     shown.textContent = `${count(rows.length)} shown, of ${listed} signatures.`;
     table.show(rows);
 
-    // A kind belongs to a cell if its lane makes the cell's error on a signature with pairs of the cell's strata.
+    // A kind belongs to a cell if the cell's lane makes the cell's error in a signature with pairs of its strata.
     const of_cell = cell && new Set(rows.flatMap((s) => s.cards));
     const shows = (place: number) =>
       !of_cell ||
@@ -157,9 +157,9 @@ export function failure_sections(report: Report) {
       h(
         'p',
         {},
-        'Failures with one reason: an algorithm, the cause, the source line of the comparison that decides, and whether the triangles are degenerate, contained (one in the other, in one plane), coplanar or neither. A pair on which lanes are wrong for different reasons is of several kinds. Graze looks at one pair of each signature; it stands for all of them in these counts.',
+        'Failures for the same reason: the algorithm, the cause, the source line of the comparison that decides, and whether the triangles are degenerate, contained (one in the other, in the same plane), coplanar or none of these. A pair on which lanes are wrong for different reasons belongs to several kinds. Graze examines one pair of each signature; in these counts it stands for all pairs of that signature.',
         !has_viewer() &&
-          ' No card opens in the viewer: graze was built without the compiler for WebAssembly that it takes.',
+          ' Cards do not open in the viewer, because graze was built without the compiler for WebAssembly that it needs.',
       ),
       h('div', { class: 'controls' }, h('label', { class: 'field' }, h('span', {}, 'Find'), search), by_algorithm),
       cell_note,
@@ -185,7 +185,7 @@ export function failure_sections(report: Report) {
       h(
         'p',
         {},
-        'Failures that look alike, counted together: how the triangles meet, how close the call was, and which lanes of the algorithm are wrong. What is chosen above the kinds of failure holds here too.',
+        'Failures that look alike, counted together: how the triangles meet, how close the call was, and which lanes of the algorithm are wrong. The filters above the kinds of failure apply here too.',
       ),
       shown,
       table.element,

@@ -64,7 +64,7 @@ const small = (percent: number) => percent !== 0 && percent < 0.001;
 
 export const percent = (share: number) => `${small(100 * share) ? figure(100 * share) : bare_percent(share)} %`;
 
-// A bound in per cent, rounded outward: the printed number is not below an upper bound, nor above a lower one.
+// A bound in per cent, rounded outward: the printed number is never below an upper bound or above a lower one.
 export function percent_bound(share: number, bound: 'lower' | 'upper'): string {
   const value = 100 * share,
     step = bound === 'upper' ? 1 : -1;

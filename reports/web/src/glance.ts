@@ -27,7 +27,7 @@ function cost_ground(report: Report) {
   return general < 0 ? null : general;
 }
 
-// One lane of each algorithm and precision, preferably the cpu lane; the least wrong first.
+// One lane for each algorithm and precision, preferably the cpu lane; the least wrong lane comes first.
 export function glance_rows(report: Report, costs: Costs | null): Row[] {
   const total = new Map(
     report.rates.filter((rate) => rate.stratum === null).map((rate) => [rate.lane, rate.wrong.count]),

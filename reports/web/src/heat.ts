@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The colours of shares: magma (van der Walt and Smith 2015), perceptually uniform and safe for the colour-blind. The
-// scale is the cube root, because rates of one in 10^4 and of one in two must both be distinguishable from their
-// neighbours. Steps are classes and custom properties, so that dark mode needs only CSS: the worst share is darkest on
-// a white page and brightest on a dark one.
+// scale is the cube root, because both rates near one in 10^4 and rates near one in two must be distinguishable. Steps
+// are classes and custom properties, so that dark mode needs only CSS: the worst share is darkest on a white page and
+// brightest on a dark one.
 import { interpolateMagma } from 'd3-scale-chromatic';
 import { h } from './dom';
 
@@ -48,7 +48,7 @@ export function heat_styles() {
 }
 
 const kMostTimes = 32;
-// The colour for a share that is so many times another one: none up to 1, the darkest from kMostTimes on.
+// The colour for a share that is this many times another one: none up to 1, the darkest from kMostTimes upwards.
 export const times_fill = (times: number) => heat_fill(Math.min(1, Math.log2(times) / Math.log2(kMostTimes)) ** 3);
 
 function legend(describes: string, none: string, marks: [number, string][]) {
@@ -69,14 +69,14 @@ function legend(describes: string, none: string, marks: [number, string][]) {
 
 export const heat_legend = () =>
   legend(
-    'share of wrong verdicts; no colour where none is wrong',
+    'share of wrong verdicts; no colour if none is wrong',
     'none wrong',
     [0.001, 0.01, 0.1, 0.3, 1].map((share) => [Math.cbrt(share), share === 1 ? '100 %' : String(100 * share)]),
   );
 
 export const times_legend = () =>
   legend(
-    'how many times as often wrong as at the origin; no colour where not more often',
+    'how many times as often wrong as at the origin; no colour if not more often',
     'not more often',
     [2, 4, 8, 16, kMostTimes].map((times) => [Math.log2(times) / Math.log2(kMostTimes), `${times} ×`]),
   );

@@ -32,7 +32,7 @@ export function kind_lanes(report: Report, { kind, verdicts }: Card) {
   return h(
     'p',
     { class: 'kind-lanes' },
-    'Lanes that fail so: ',
+    'Lanes that fail in this way: ',
     h('span', { class: 'all' }, within(kind.lanes)),
     '. ',
     here.length < kind.lanes.length && [
@@ -40,7 +40,7 @@ export function kind_lanes(report: Report, { kind, verdicts }: Card) {
       h('span', { class: 'here' }, within(here)),
       '. ',
     ],
-    yes < of && `The cause is settled for ${count(yes)} of ${count(of)} lanes looked at.`,
+    yes < of && `The cause is settled for ${count(yes)} of ${count(of)} examined lanes.`,
   );
 }
 
@@ -70,7 +70,7 @@ function strata_histogram({ strata }: FailureKind) {
     .sort((l, r) => r[1] - l[1])
     .map(([name, pairs]) => ({ name, pairs, words: `${name} ${count(pairs)}` }));
   const sum = bars.reduce((all, bar) => all + bar.pairs, 0);
-  return histogram('strata', `Strata of the ${counted(sum, 'pair')} kept of it`, bars, (width) =>
+  return histogram('strata', `Strata of the ${counted(sum, 'pair')} kept of this kind`, bars, (width) =>
     Plot.plot({
       width,
       height: 22 + 18 * bars.length,
@@ -103,7 +103,7 @@ function buckets_of(margins: FailureKind['margins']): string[] {
   return [...side('-'), '0', ...side('+')].sort((l, r) => margin_order(l) - margin_order(r));
 }
 
-// The buckets whose names stand below their columns: 0, both ends, and others as far as there is room.
+// The buckets whose names are shown below their columns: 0, both ends, and as many others as there is room for.
 function ticks_of(bars: Bar[], column: number): string[] {
   const named = (i: number) => Number(bars[i].name.slice(3)) % 4 === 0;
   const wanted = [bars.findIndex((bar) => bar.name === '0'), 0, bars.length - 1, ...bars.keys()].filter(
@@ -159,8 +159,8 @@ function worst({ kind, pair, commands }: Card) {
   const margin =
     margin_ulps === 0 ? 'margin 0' : `${figure(Math.abs(margin_ulps))} ulps ${margin_ulps < 0 ? 'deep' : 'apart'}`;
   if (kind.worst.pair === pair.hex.join(' '))
-    return h('p', { class: 'worst' }, `The pair shown is also the worst one looked at: ${margin}.`);
-  // Reuses the card's own command, which names the place of foreign code.
+    return h('p', { class: 'worst' }, `The pair shown is also the worst of the examined ones: ${margin}.`);
+  // Reuses the card's own command, because it says where foreign code is.
   const explain = commands
     .find(({ label }) => label === 'explain')!
     .text.replace(/^.*graze explain case.pairs/, 'graze explain worst.pairs');
@@ -168,7 +168,7 @@ function worst({ kind, pair, commands }: Card) {
   return h(
     'div',
     { class: 'worst' },
-    h('p', {}, `Its worst pair of those looked at: ${margin}, from `, h('code', {}, from), '.'),
+    h('p', {}, `The worst examined pair of the kind: ${margin}, from `, h('code', {}, from), '.'),
     code_block(command, 'the command that explains the worst pair'),
   );
 }

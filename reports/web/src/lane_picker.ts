@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses lanes by algorithm, scalar and target; a lane is shown if all three rows of buttons allow it. The URL stores
-// a choice under `key`, as in "league-target=cpu,cpu-fma", if it differs from the default.
+// Chooses lanes by algorithm, scalar and target; a lane is shown if all three rows of buttons allow it. If a choice
+// differs from the default, the URL stores it under `key`, as in "league-target=cpu,cpu-fma".
 import { h } from './dom';
 import type { Report } from './report';
 import { choose, chosen, when_chosen } from './state';

@@ -48,7 +48,7 @@ export function league_section(report: Report) {
 
   const readout = h('p', { class: 'readout', 'aria-live': 'polite' });
   const kHint =
-    'Point at a cell, or walk through them with the arrow keys, for counts and intervals; press it, or Enter, for the pairs behind it.';
+    'For counts and intervals, point at a cell, or move with the arrow keys; for the pairs behind it, click it or press Enter.';
   readout.textContent = kHint;
 
   const part = (share: Share | null, kind: Kind) =>
@@ -62,7 +62,7 @@ export function league_section(report: Report) {
     const kind = (pressed ?? (show === 'both' ? 'wrong' : show)) as Kind;
     const cell = { lane: rate.lane, stratum: rate.stratum, kind };
     if (!rate[kind]?.count) {
-      readout.textContent = `${cell_words(report, cell)}: ${rate[kind] ? `none in ${in_full(rate[kind])}` : 'not counted'}, so no pair shows one.`;
+      readout.textContent = `${cell_words(report, cell)}: ${rate[kind] ? `none in ${in_full(rate[kind])}` : 'not counted'}, so no pair shows it.`;
       return;
     }
     go_to('kinds', { cell: cell_text(report, cell) });
@@ -186,9 +186,9 @@ export function league_section(report: Report) {
       {},
       'In per cent. A ',
       h('b', {}, 'false positive'),
-      ' says “intersects” of triangles that are apart, and is counted against the pairs that are apart; a ',
+      ' says “intersects” about triangles that are apart, and its share is of the pairs that are apart; a ',
       h('b', {}, 'false negative'),
-      ' misses a contact, and is counted against the pairs that intersect. In each cell false positives stand above false negatives; every head sorts.',
+      ' misses a contact, and its share is of the pairs that intersect. Each cell has false positives above false negatives. A click on a column’s heading sorts by it.',
     ),
     h(
       'div',

@@ -68,13 +68,12 @@ const data = (id: string) => document.getElementById(id)?.textContent?.trim() ??
 function start() {
   const page = document.getElementById('page')!;
   const text = data('report');
-  if (!text || text.startsWith('<!--'))
-    page.textContent = 'This is the empty page: graze report DIR writes one with data.';
+  if (!text || text.startsWith('<!--')) page.textContent = 'This page is empty: graze report DIR writes one with data.';
   else {
     const report = JSON.parse(text) as Report;
     if (report.format === 2)
       build(report, JSON.parse(data('costs') || 'null') as Costs | null, JSON.parse(data('choices')) as Choices);
-    else page.textContent = `This page reads reports of format 2, and its data is of format ${report.format}.`;
+    else page.textContent = `This page reads reports in format 2, but its data is in format ${report.format}.`;
   }
 }
 

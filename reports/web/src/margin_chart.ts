@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A share of pairs against the exact margin, a curve for each lane.
+// A share of pairs against the exact margin, with a curve for each lane.
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named } from './chart';
 import { h } from './dom';
@@ -16,7 +16,7 @@ export interface Dot {
   words: string;
 }
 
-const kNearest = -33; // below every exponent: position next to zero
+const kNearest = -33; // below every exponent: the position next to zero
 const kGap = 3; // on both sides of the zero column
 
 const kOutermost = [-32, 31]; // these buckets are open-ended
@@ -35,7 +35,7 @@ function side_words({ side, exponent }: Point) {
   return side === 'disjoint' ? `${bucket(exponent)} apart` : `${bucket(exponent)} deep`;
 }
 
-// Draws into `element`. what: the share to draw; `title` and `label` name it, `word` is what such a verdict is.
+// Draws into `element`. what: the share to draw; `title` and `label` name it, and `word` describes such a verdict.
 export function margin_chart(
   report: Report,
   element: HTMLElement,
@@ -47,7 +47,7 @@ export function margin_chart(
   const exponents = report.margins.flatMap((row) =>
     row.points.flatMap((p) => (p.exponent === null || !p.wrong.of ? [] : [p.exponent])),
   );
-  const some = exponents.length > 0 ? exponents : [0]; // if all pairs touch
+  const some = exponents.length > 0 ? exponents : [0]; // [0] if all pairs touch
   const lowest = Math.max(kNearest + 1, Math.min(...some)),
     highest = Math.max(...some);
   // Disjoint pairs are to the right of zero, intersecting ones to the left.
@@ -141,7 +141,7 @@ export function margin_chart(
           ? [
               {
                 x: place(side, t.exponent),
-                words: `${report.lanes[lane].id}\nno error in ${count(t.above)} pairs from ${power_of_two(t.exponent)} ulps on\nrate below ${percent_bound(t.bound, 'upper')} (95 %)`,
+                words: `${report.lanes[lane].id}\nno error in ${count(t.above)} pairs from ${power_of_two(t.exponent)} ulps upwards\nrate below ${percent_bound(t.bound, 'upper')} (95 %)`,
               },
             ]
           : [];
@@ -204,7 +204,7 @@ export function margin_chart(
     );
   }
 
-  // Describes a lane's curve in words: its worst margin, its share at margin 0, and the margins at which it is right.
+  // Describes a lane's curve in words: its share at margin 0, its worst margin, and the margins from which it is right.
   function lane_words(lane: number) {
     const points = (report.margins.find((row) => row.lane === lane)?.points ?? []).flatMap((point) => {
       const share = point[what];

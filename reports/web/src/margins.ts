@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Error against margin: the share of wrong verdicts by the exact margin in ulps, and the threshold from which no error
-// was seen.
+// Error against margin: the share of wrong verdicts by the exact margin in ulps, and the threshold at or above which no
+// error was seen.
 import { breakable, choice, h, lazy_details, on_width, section } from './dom';
 import { count, in_full, percent_bound, power_of_two } from './format';
 import { lane_picker, type Picker } from './lane_picker';
@@ -46,7 +46,7 @@ export function margins_section(report: Report) {
         ];
       }),
     ],
-    { caption: 'Thresholds of the lanes chosen', class: 'plain thresholds' },
+    { caption: 'Thresholds of the chosen lanes', class: 'plain thresholds' },
   );
 
   // The strata of a threshold: a group, one stratum, or all.
@@ -105,7 +105,7 @@ export function margins_section(report: Report) {
     { class: 'key' },
     'Colour: algorithm. Thick: f32, thin: f64. Full line: cpu; dashes: cpu-fma; dots: cuda-nofma; dash and dot: cuda-fma. Band: 95 % interval. ',
     h('b', {}, '▲'),
-    ' no error was seen from here on.',
+    ' no error was seen from here outwards.',
   );
   return section(
     'margins',
@@ -113,7 +113,7 @@ export function margins_section(report: Report) {
     h(
       'p',
       {},
-      'How often a lane is wrong, against how close the call was. To the right pairs that are apart (errors are false positives), to the left pairs that intersect (errors are false negatives), by the exact distance or depth in ulps; in the middle pairs that touch.',
+      'How often a lane is wrong, against how close the call was: the exact distance or depth in ulps. Pairs on the right are apart (errors are false positives), pairs on the left intersect (errors are false negatives), and pairs in the middle touch.',
     ),
     h(
       'div',
@@ -135,11 +135,11 @@ export function margins_section(report: Report) {
     picker.element,
     figure_element,
     key,
-    h('h3', {}, 'From which margin on may a lane be trusted?'),
+    h('h3', {}, 'From which margin upwards can a lane be trusted?'),
     h(
       'p',
       {},
-      'That depends on the pairs: of those chosen, the smallest margin, a power of two, from which on no error was seen; how many pairs lie beyond it; and below which rate errors there are, with 95 % confidence for a threshold fixed before the campaign: the same data chose this one, so run another seed to confirm it.',
+      'That depends on the pairs. For the chosen ones, the table shows the smallest margin, a power of two, from which upwards no error was seen, how many pairs lie beyond it, and a bound on the error rate there. The bound holds with 95 % confidence for a threshold that was fixed before the campaign. These thresholds come from the same data, so confirm them with another seed.',
     ),
     h('div', { class: 'controls' }, trust),
     describes,
@@ -153,7 +153,7 @@ export function margins_section(report: Report) {
             { label: 'Margin', cell: (d) => d.words.split('\n')[1], order: (d) => d.x },
             { label: 'Wrong', cell: (d) => in_full(d.share), order: (d) => d.share.share, descending_first: true },
           ],
-          { caption: 'Share wrong by margin, of the lanes chosen when this was opened', class: 'plain', page: 100 },
+          { caption: 'Share wrong by margin, for the lanes chosen when this was opened', class: 'plain', page: 100 },
         );
         table.show(chart.dots());
         return table.element;

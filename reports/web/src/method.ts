@@ -3,7 +3,7 @@
 import { h, section, type Child } from './dom';
 
 const kTerms: [string, Child[]][] = [
-  ['Pair', ['Two triangles of 18 float32 numbers. The stored bits are the question: nothing rounds them again.']],
+  ['Pair', ['Two triangles, given by 18 float32 numbers. The stored bits are the input: nothing rounds them again.']],
   ['Triangle', ['The closed convex hull of its three points, so a degenerate one is a segment or a point.']],
   [
     'Intersects',
@@ -33,25 +33,25 @@ const kTerms: [string, Child[]][] = [
     'Twin',
     [
       'A replay of a CUDA kernel’s PTX on the CPU, contractions and all, with the same bits. ',
-      '“Verified on” a GPU means that GPU and twin agreed on all pairs of the first number, in verdicts and in the numbers that decide. Explicit PTX is the kernel with every contraction written out, from which the twin is made; it was compared on the GPU with what nvcc builds by default.',
+      '“Verified on” a GPU means that GPU and twin agreed on as many pairs as the first number says, in verdicts and in the numbers that decide. Explicit PTX is the kernel with every contraction written out. The twin is made from it, and it was compared on the GPU with what nvcc builds by default.',
     ],
   ],
   [
     'Stratum',
     [
-      'A named generator of pairs, a pure function of seed and index. Each is hard in its own way; shares over all strata depend on the mix and say nothing of your data, shares within a stratum do.',
+      'A named generator of pairs, a pure function of seed and index. Each is hard in its own way. Shares over all strata depend on the mix of strata and say nothing about your data; shares within a stratum can.',
     ],
   ],
   [
     'Truth',
     [
-      'CGAL’s exact kernel decides; an independent decision on integers of any size (GMP) confirms every disagreement that is kept. If the two ever part, the campaign stops.',
+      'CGAL’s exact kernel decides; an independent decision on integers of any size (GMP) confirms every disagreement that is kept. If the two ever differ, the campaign stops.',
     ],
   ],
   [
     'False positive, false negative',
     [
-      'The lane says “intersects” of triangles that are apart; says “disjoint” of triangles that meet. Shares are of the pairs on which that error is possible; “wrong” is of all. ',
+      'False positive: the lane says “intersects” about triangles that are apart. False negative: it says “disjoint” about triangles that meet. Their shares are of the pairs on which that error is possible; the share “wrong” is of all pairs. ',
       h('i', {}, 'Declined'),
       ' is neither.',
     ],
@@ -59,19 +59,19 @@ const kTerms: [string, Child[]][] = [
   [
     'Margin',
     [
-      'How close the call was: the distance of a disjoint pair; of an intersecting one the smallest shift that parts it, drawn to the left. It is 0 where any push parts the two: touching or coplanar. Computed exactly, then rounded once.',
+      'How close the call was. For a disjoint pair it is the distance. For an intersecting one it is the length of the smallest translation that separates it, drawn to the left; it is 0 if an arbitrarily small one does, as for touching or coplanar pairs. It is computed exactly, then rounded once.',
     ],
   ],
   [
     'Ulp',
     [
-      'The step between neighbouring float32 numbers at the pair’s largest coordinate. Margins are given in ulps, so that size does not matter.',
+      'The step between neighbouring float32 numbers at the pair’s largest coordinate. Margins are given in ulps, so that the pair’s size does not matter.',
     ],
   ],
   [
     'Interval',
     [
-      'Wilson’s, at 95 %. Where no error was seen in n pairs, the rate is below 1 − 0.05^(1/n) with 95 % confidence: about 3/n.',
+      'Wilson’s, at 95 %. If no error was seen in n pairs, the rate is below 1 − 0.05^(1/n), about 3/n, with 95 % confidence.',
     ],
   ],
   [
@@ -79,15 +79,15 @@ const kTerms: [string, Child[]][] = [
     [
       'What signatures have in common: the algorithm, why it is wrong (rounding, overflow, underflow, contraction, fast math, or its own logic), the source line of the comparison that decides, and the shape: ',
       h('i', {}, 'degenerate'),
-      ' where a triangle is a segment or a point, else ',
+      ' if a triangle is a segment or a point, otherwise ',
       h('i', {}, 'contained'),
-      ' where one lies in the other in one plane, ',
+      ' if one lies in the other in the same plane, ',
       h('i', {}, 'coplanar'),
       ' or ',
       h('i', {}, 'general'),
       '. A cause is ',
       h('i', {}, 'settled'),
-      ' for a lane when the verdict becomes right without it, and stays wrong with it alone.',
+      ' for a lane if the verdict becomes right without it and stays wrong with it alone.',
     ],
   ],
   [
@@ -107,13 +107,13 @@ const kTerms: [string, Child[]][] = [
   [
     'Minimised',
     [
-      'Made simpler move by move, as long as the same lanes fail in the same way, until no single move makes it simpler.',
+      'Made simpler step by step, as long as the same lanes fail in the same way, until no single step makes it simpler.',
     ],
   ],
   [
     'Ulp map',
     [
-      'The verdicts around a case: two coordinates move by single ulps, one step a pixel, after Kettner, Mehlhorn, Pion, Schirra and Yap (Classroom examples of robustness problems in geometric computations, 2008). A lane that can be trusted has the truth’s picture.',
+      'The verdicts around a case: two coordinates move by single ulps, one step a pixel, after Kettner, Mehlhorn, Pion, Schirra and Yap (Classroom examples of robustness problems in geometric computations, 2008). The picture of a lane that can be trusted is that of the truth.',
     ],
   ],
 ];
@@ -125,7 +125,7 @@ export function method_section() {
     h(
       'p',
       {},
-      'Every pair is drawn by its stratum, decided by every lane, and judged by exact arithmetic. Nothing on this page is recomputed: it shows the numbers of the campaign’s summary and cases.',
+      'Every pair is drawn by its stratum, decided by every lane, and judged by exact arithmetic. This page recomputes nothing: it shows the numbers of the campaign’s summary and cases.',
     ),
     h(
       'dl',

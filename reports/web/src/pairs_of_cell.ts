@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Leads from a cell of the league table to pairs that show it: the kept pairs of signatures in which the lane fails
-// this way.
+// Leads from a cell of the league table to pairs that show its error: the kept pairs of signatures in which the lane
+// fails in this way.
 import type { Report } from './report';
 
 type Signature = Report['signatures'][number];
@@ -51,7 +51,7 @@ export function wrong_lanes(report: Report, signature: Signature): string[] {
   return lanes.flatMap((lane, i) => ('+-?'.includes(signature.marks[i] ?? '_') ? [lane.id] : []));
 }
 
-// The kept pairs of the signature that show the cell.
+// The kept pairs of the signature that show the cell's error.
 export function kept_pairs(report: Report, { lane, stratum, kind }: Cell, signature: Signature): string[] {
   if (signature.algorithm !== report.lanes[lane].algorithm) return [];
   const lanes = lanes_beside(report, lane);
@@ -74,7 +74,7 @@ export function kept_pairs(report: Report, { lane, stratum, kind }: Cell, signat
 const twin = (report: Report, lane: number) =>
   report.lanes[lane].evidence?.startsWith('twin') ? ' --executor twin' : '';
 
-// The command that shows such a pair again, and the one that finds all of them.
+// The command that shows such a pair again, and the command that finds all of them.
 export const repro_command = (report: Report, { lane }: Cell, pair: string) =>
   `graze repro ${pair} --lanes '${report.lanes[lane].id}'${twin(report, lane)}`;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The contents of report.json, which reports/report.cpp writes; tests/types.spec.ts checks real reports against these
-// types. All numbers are computed there; the page only renders them. Lanes and strata are given by their index in
-// `lanes` and `strata`. Missing values are null or an empty array.
+// The contents of report.json. reports/report.cpp writes it and computes all numbers; the page only renders them.
+// tests/types.spec.ts checks real reports against these types. Lanes and strata are given by their index in `lanes` and
+// `strata`. Missing values are null or an empty array.
 
 export interface Share {
   count: number;
@@ -14,9 +14,9 @@ export interface Share {
 export type Times = [number | null, number, number | null];
 
 // The smallest margin (in ulps, a power of two) at or above which no error was seen; if there was no error, the
-// smallest margin seen. `bound`: 95 % upper bound of the error rate of the `above` pairs beyond it (1 - 0.05^(1/n)). If
-// exponent is null, errors were seen up to the largest margin, 2^largest. If largest is null, there is no pair on that
-// side of zero.
+// smallest margin seen. `bound`: the 95 % upper bound of the error rate on the `above` pairs beyond it, 1 - 0.05^(1/n).
+// If exponent is null, errors were seen up to the largest margin, 2^largest. If largest is null, there is no pair on
+// that side of zero.
 export interface Threshold {
   exponent: number | null;
   above: number;
@@ -25,7 +25,7 @@ export interface Threshold {
 }
 
 // costs.json: lane costs in nanoseconds a pair on one core. It is a separate file because it depends on the machine.
-// low, middle and high are the quartiles of the passes. A null group means all strata. answer: the report's, with
+// low, middle and high are the quartiles of the passes. A null group means all strata. answer: the report's answer with
 // costs.
 export interface Costs {
   machine: string;
@@ -121,12 +121,12 @@ export interface Report {
     map_command: string; // regenerates the page from stored data: "graze report DIR"
     build: { version: string; commit: string; compiler: string; cuda: string | null; device: string | null };
     scene: string | null; // "arm.toml#0123456789abcdef"
-    machine: string | null; // from timings.json only if deterministic; else null
+    machine: string | null; // from timings.json only if deterministic; otherwise null
     subjects?: {
       name: string; // foreign code, as the campaign recorded it
       what: string;
-      hash: string; // of all that was compiled or run
-      source_hash?: string; // of a source's file alone
+      hash: string; // of everything that was compiled or run
+      source_hash?: string; // only of the source file
       compiler?: string;
       flags?: string[];
       environment?: { [variable: string]: string }; // that chose the compiler or what it reads
@@ -143,7 +143,7 @@ export interface Report {
     evidence: string | null;
     exact: boolean;
   }[];
-  answer: string[]; // sentences, the most useful first; used if costs are unknown
+  answer: string[]; // sentences, the most useful first; shown if costs are unknown
   groups: { id: string; describes: string; strata: number[] }[]; // strata reported together, by index
   // One row for each lane and stratum that has pairs, and one for each lane over all strata (stratum null).
   rates: {
@@ -154,7 +154,7 @@ export interface Report {
     wrong: Share;
     declined: number;
     differs_from_cpu: Share | null;
-    stored?: number; // pairs of doubles that are wrong by storing them in float32
+    stored?: number; // pairs of doubles on which the lane is wrong because float32 stores another pair
   }[];
   group_rates: { lane: number; group: number; wrong: Share; false_positive?: Share; false_negative?: Share }[];
   // Pairs of lanes of one algorithm. `differs` counts pair by pair if known, otherwise it is null. A null stratum means
@@ -167,8 +167,8 @@ export interface Report {
   }[];
   toolchains?: ToolchainMap | null; // null: no toolchain ran
   // Error against margin over all strata (stratum null; margins.csv has each stratum). side: disjoint or intersecting
-  // pairs. exponent e stands for margins in [2^e, 2^(e+1)) ulps; zero margins have an entry with exponent null. Only
-  // buckets that have pairs. differs: from the lane’s cpu lane, if there is one.
+  // pairs. exponent e stands for margins in [2^e, 2^(e+1)) ulps; zero margins have an entry with exponent null. Buckets
+  // without pairs are absent. differs: from the lane’s cpu lane, if there is one.
   margins: {
     lane: number;
     stratum: number | null;
@@ -188,11 +188,10 @@ export interface Report {
     intersects: Threshold;
   }[];
   // kind scale: by the exponent of the largest coordinate; offset: by log2(largest coordinate / extent of the pair);
-  // …/f64: of pairs of doubles. A
-  // cell stands for exponents [exponent, exponent + step); cells without pairs are absent.
-  // origin: the exponent nearest to 0 that has enough pairs to compare with; null if none has. says: how far the lane is
-  // as right as there. times, if the lane errs in the cell: the ratio of the cell's share and the origin's, and
-  // its lower and upper bound from both 95 % intervals; null where that would divide by 0.
+  // …/f64: the same on pairs of doubles. A cell stands for exponents [exponent, exponent + step); cells without pairs
+  // are absent. origin: the exponent nearest to 0 that has enough pairs to compare with; null if none has. says: how far
+  // the lane is as right as there. times, if the lane errs in the cell: the ratio of the cell's share to the origin's,
+  // and its lower and upper bound from both 95 % intervals; null where that would divide by 0.
   extremes: {
     kind: 'scale' | 'offset' | 'scale/f64' | 'offset/f64';
     step: number;
@@ -201,7 +200,7 @@ export interface Report {
     origin: number | null;
     says: string;
   }[];
-  signature_count: number; // of all; `signatures` has the most frequent ones
+  signature_count: number; // of all signatures; `signatures` has the most frequent ones
   signatures: {
     // one for each signature that fits, most frequent first
     key: string;
@@ -214,7 +213,7 @@ export interface Report {
     nesting?: 'a_in_b' | 'b_in_a' | 'same'; // which triangle lies in the other
     margin: string; // "-2^-3", "0", "2^4" ulps
     marks: string; // one character ('.' '+' '-' '?') for each lane of the algorithm, in the order of `lanes`
-    cards: number[]; // indices in `cards` of its kinds, most frequent first
+    cards: number[]; // indices in `cards` of the signature's kinds, most frequent first
     pairs: string[]; // kept pairs, such as "near_edge_edge:1:42"
   }[];
   sources: { [algorithm: string]: string }; // replaces "@SOURCE@" in the snippets of the algorithm's cards
@@ -227,11 +226,11 @@ export interface Report {
     coordinates: 'f32' | 'f64';
     pair: { decimal: string[]; hex: string[]; value: number[] }; // 18 each, a[0].x … b[2].z
     truth: { verdict: string; contact: string; margin: number; margin_ulps: number };
-    // For the drawing: points in double (from exact values), the common set, and the line of both planes, clipped to
-    // it.
+    // For the drawing, in double from exact values: the points of the common set, and the line where the planes meet,
+    // clipped to the pair's enlarged box.
     drawing: { contact: number[][]; planes_line: number[][] }; // 0, 1, 2 or more points; 0 or 2 points
     verdicts: { lane: number; verdict: 'disjoint' | 'intersects' | 'declined'; wrong: boolean }[]; // all that ran
-    sentences: string[]; // explain's sentences; those on lanes of the kind come first
+    sentences: string[]; // explain's sentences; those about lanes of the kind come first
     // The result of `graze minimize DIR`; null if it is missing, belongs to another pair, or does not fit the page.
     maps: {
       title: string;
@@ -245,7 +244,7 @@ export interface Report {
     commands: { label: string; text: string }[]; // "repro", "explain", "minimize"
     snippets: { label: string; text: string }[]; // "cpp", "python", …; may be empty to save space
   }[];
-  missing: string[]; // sentences on what this report lacks (not minimised, no maps, …)
+  missing: string[]; // sentences about what this report lacks (not minimised, no maps, …)
   compare: Compare | null;
 }
 
@@ -275,7 +274,7 @@ export interface FailureKind {
   intersecting: number; // of these; their wrong verdicts are false negatives
   signatures: number;
   lanes: string[]; // ids of the lanes that fail in this way on some pair of the kind
-  settled: [number, number]; // lanes whose cause passed the audit, and lanes that it could check
+  settled: [number, number]; // lanes whose cause passed the audit, and lanes that the audit could check
   strata: { [id: string]: number }; // kept pairs by stratum; at most four for each signature
   margins: { [bucket: string]: number }; // all its pairs by margin; "-2^-3", "0", "+2^4" ulps
   worst: { case: string; pair: string; from: string; margin_ulps: number }; // pair: 18 hex floats
@@ -288,7 +287,7 @@ export interface ChangedVerdicts {
   known: string; // same, changed, unknown
   least: number; // changed verdicts, at least and at most
   most: number;
-  broken?: number; // became wrong, where the pairs were decided again by both codes
+  broken?: number; // became wrong; only if both versions of the code decided the pairs again
   mended?: number; // became right
   smallest_broken?: string; // "STRATUM:SEED:INDEX 18 numbers"
   smallest_mended?: string;
@@ -304,12 +303,12 @@ export interface Compare {
     stratum: string;
     before: Share; // wrong
     after: Share;
-    changed: boolean; // beyond chance; on the same pairs, at all
-    unseen?: number | null; // a smaller difference could pass for chance; not on the same pairs
+    changed: boolean; // beyond chance; on the same pairs, by any amount
+    unseen?: number | null; // a smaller difference could pass for chance; absent on the same pairs
     errors: { error: string; before: Share; after: Share }[]; // kinds of error that changed: "false positives", …
   }[];
   gained: { key: string; signatures: number; count: number }[]; // kinds, with their signatures and pairs
   lost: { key: string; signatures: number; count: number }[];
   kinds_compared: boolean; // false unless `graze minimize` ran on both
-  verdicts?: ChangedVerdicts[] | null; // on the same pairs
+  verdicts?: ChangedVerdicts[] | null; // only on the same pairs
 }

@@ -42,7 +42,7 @@ function lanes_table(report: Report) {
       { label: 'Lane', cell: (lane) => breakable(lane.id), order: (lane) => report.lanes.indexOf(lane) },
       { label: 'Reference', cell: (lane) => lane.paper, order: (lane) => lane.paper },
       {
-        label: 'Ran by',
+        label: 'How it ran',
         cell: (lane) => lane.evidence ?? 'this build, on the CPU',
         order: (lane) => lane.evidence ?? '',
       },
@@ -65,7 +65,7 @@ function costs_table(report: Report, costs: Costs) {
       return cost
         ? h(
             'td',
-            { class: 'number', title: `${spread_words(cost)}, of ${count(cost.pairs)} pairs` },
+            { class: 'number', title: `${spread_words(cost)}, over ${count(cost.pairs)} pairs` },
             nanoseconds(cost.middle) + noisy_mark(cost),
           )
         : '–';
@@ -131,15 +131,15 @@ export function run_section(report: Report, costs: Costs | null) {
         .filter(([, value]) => value !== null)
         .map(([name, value]) => h('div', {}, h('dt', {}, name), h('dd', {}, value))),
     ),
-    h('p', { class: 'label' }, 'The whole campaign again'),
+    h('p', { class: 'label' }, 'Run the whole campaign again'),
     code_block(run.command, 'the campaign’s command'),
-    h('p', { class: 'label' }, 'This page again, from the stored results'),
+    h('p', { class: 'label' }, 'Make this page again from the stored results'),
     code_block(run.map_command, 'the report’s command'),
     lazy_details([`${report.strata.length} strata`], () => strata_table(report), { class: 'more-facts' }).details,
     lazy_details([`${report.lanes.length} lanes`], () => lanes_table(report), { class: 'more-facts' }).details,
     costs &&
       lazy_details(
-        [`What ${new Set(costs.rows.map((row) => row.lane)).size} lanes cost`],
+        [`Costs of ${new Set(costs.rows.map((row) => row.lane)).size} lanes`],
         () => costs_table(report, costs),
         { class: 'more-facts' },
       ).details,

@@ -57,7 +57,7 @@ function by_margin(report: Report) {
     element,
     'differs',
     {
-      title: 'Share of verdicts unlike the cpu lane’s, against the exact margin, all strata',
+      title: 'Share of verdicts that differ from the cpu lane’s, against the exact margin, all strata',
       label: 'share that differs from cpu',
       word: 'different',
     },
@@ -77,7 +77,7 @@ function by_margin(report: Report) {
     h(
       'p',
       {},
-      'How often a lane gives another verdict than the cpu lane of its algorithm and precision, against the exact margin. CUDA without contraction is equal to cpu, so the curves of CUDA with contraction compare with both. f32 and f64 are not compared pair by pair.',
+      'How often a lane’s verdict differs from that of the cpu lane of its algorithm and precision, against the exact margin. CUDA without contraction equals cpu, so the curves of CUDA with contraction compare with both. f32 and f64 are not compared pair by pair.',
     ),
     picker.element,
     element,
@@ -118,7 +118,7 @@ export function side_by_side_section(report: Report) {
           ? [
               {
                 label: 'Differ',
-                title: 'Pairs on which the two give another verdict',
+                title: 'Pairs on which the two give different verdicts',
                 numeric: true,
                 cell: (side: Side) => differs_cell(of(side)?.differs ?? null, equal),
                 order: (side: Side) => of(side)?.differs?.share ?? -1,

@@ -70,17 +70,17 @@ export function signature_table(report: Report, pair_of: (signature: Signature) 
       },
       {
         label: 'Kinds',
-        title: 'The kinds of failure that it belongs to, of those with a card',
+        title: 'The kinds of failure that it belongs to and that have a card',
         cell: kinds,
         order: (s) => s.cards[0] ?? Infinity,
       },
       {
         label: 'A pair',
-        title: 'One of the pairs kept',
+        title: 'One of the kept pairs',
         cell: (s) => h('code', {}, pair_of(s)),
         order: (s) => pair_of(s),
       },
     ],
-    { caption: 'Signatures listed', class: 'plain signatures', page: 12 },
+    { caption: 'Listed signatures', class: 'plain signatures', page: 12 },
   );
 }

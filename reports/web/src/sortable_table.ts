@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A table that sorts by any column, shows rows in pages, and moves between cells with the arrow keys.
+// A table that sorts by any column and shows rows in pages; arrow keys move between its cells.
 import { h, type Child } from './dom';
 
 export interface Column<Row> {
@@ -21,8 +21,8 @@ export interface Table<Row> {
 interface Options {
   caption: string;
   class?: string;
-  page?: number; // rows shown at first; a button adds as many
-  walk?: boolean; // cells are focusable; the table is one tab stop
+  page?: number; // rows shown at first; a button adds the same number
+  walk?: boolean; // whether cells can have the focus; the table is one tab stop
 }
 
 export function sortable_table<Row>(columns: Column<Row>[], options: Options): Table<Row> {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The drawing of a card, turned by dragging and by keys.
+// The drawing of a card, which dragging and keys turn.
 import { orbit, view_of } from './camera';
 import { choice, h } from './dom';
 import { good_frame, good_view, shape_of, type Frame } from './drawing';

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's choices, kept in the URL's fragment so that links, reloads and Back restore them.
-// "#kind-7&find=moller+f64" is a place and the filters. A link to a place alone keeps the filters. A pair in the viewer
-// (card_viewer.ts) is not a filter: "#kind-7&p=…&by=…".
+// "#kind-7&find=moller+f64" is a place and the filters. A link with only a place keeps the filters. A pair in the
+// viewer (card_viewer.ts) is not a filter: "#kind-7&p=…&by=…".
 
 let place = '';
 let entered = false; // the viewer was opened from the history entry before this one
@@ -38,7 +38,7 @@ export function choose(key: string, value: string) {
 // Calls back after a link or Back has changed the choices.
 export const when_chosen = (changed: () => void) => listeners.push(changed);
 
-// Shows the element with that id, like a click on a link, with additional choices.
+// Shows the element with that id, as a click on a link does, and sets additional choices.
 export function go_to(id: string, more: Record<string, string> = {}) {
   place = id;
   Object.entries(more).forEach(([key, value]) => values.set(key, value));

@@ -45,7 +45,7 @@ export function toolchains_section(report: Report) {
   return section(
     'toolchains',
     'Toolchains',
-    h('p', {}, 'The same source by each compiler and processor; cpu and cuda lanes are this build’s own.'),
+    h('p', {}, 'The same source, built for each compiler and processor. The cpu and cuda lanes are from this build.'),
     h(
       'ul',
       {},

@@ -99,7 +99,7 @@ export function picture(shape: Shape): Picture {
     coloured.push({ material, name });
     made.push(geometry, material);
     add_line(segments([...points], true), `${name}-edge`, 2, 'shown');
-    add_line(segments([...points], true), `${name}-edge`, 1.2, 'faint').renderOrder = 1; // even if the other hides it
+    add_line(segments([...points], true), `${name}-edge`, 1.2, 'faint').renderOrder = 1; // even if the other triangle hides it
   }
   for (const { colour, triangles, opacity, lines, width, dashed } of shape.marks ?? []) {
     if (triangles?.length) {

@@ -67,11 +67,13 @@ test('a card opens in the viewer, says there what it says here, and back again',
   await page.keyboard.press('h'); // not while it is closed
   await expect(page.locator('#help')).toBeHidden();
   if (without > 0) {
-    // another one, in the viewer that is there
+    // another card, in the viewer that is already there
     await open_card(page, without);
     await open_button(page, without).click();
     await expect_verdicts_of(page, report, without);
-    await expect(viewer(page).locator('.message')).toContainText('are not in the viewer, which another compiler built');
+    await expect(viewer(page).locator('.message')).toContainText(
+      'are not in the viewer, because another compiler built it',
+    );
     await page.goBack();
     await expect(viewer(page)).toBeHidden();
   }
@@ -145,7 +147,7 @@ unwatched('without the module no card has the button, and the page says so', asy
   await page.addInitScript(without_webgl);
   await page.goto(pathToFileURL(altered).href);
   await expect(page.locator('#kinds')).toContainText(
-    'No card opens in the viewer: graze was built without the compiler for WebAssembly that it takes.',
+    'Cards do not open in the viewer, because graze was built without the compiler for WebAssembly that it needs.',
   );
   await expect(page.locator('.card-body').first()).toBeVisible();
   await expect(page.locator('.in-viewer')).toHaveCount(0);

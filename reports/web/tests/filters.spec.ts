@@ -151,7 +151,7 @@ test('a cell without a kept pair gives the command, one without errors says so',
   }
   const none = find_cell(report, (_, count) => count === 0)!;
   await cell_at(page, report, none).locator('[data-kind=false_negative]').click();
-  await expect(page.locator('#league .readout')).toContainText('so no pair shows one');
+  await expect(page.locator('#league .readout')).toContainText('so no pair shows it');
   await expect(page.locator('.cell-note')).toBeEmpty();
   await cell_at(
     page,
@@ -181,8 +181,8 @@ test('where lanes of a device fail, a card has their program', async ({ report }
     );
   const has = (card: Report['cards'][number], program: string) => card.snippets.some(({ label }) => label === program);
   for (const card of report.cards) {
-    // On the pair shown, some lanes of the subject may fail for another reason than the kind's. Then the card may lack
-    // a program.
+    // On the pair shown, some lanes of the subject may fail for a reason other than the kind's. Then the card may lack a
+    // program.
     const mixed = card.verdicts.some(
       ({ lane, wrong }) =>
         wrong && report.lanes[lane].algorithm === card.kind.subject && !card.kind.lanes.includes(report.lanes[lane].id),

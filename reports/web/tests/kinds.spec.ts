@@ -77,7 +77,7 @@ test('title, sentence, lanes and verdicts of a card do not contradict each other
     expect(text.includes('The cause is settled for')).toBe(yes < of);
     if (yes < of)
       expect(text).toContain(
-        `settled for ${yes.toLocaleString('en-US')} of ${of.toLocaleString('en-US')} lanes looked at`,
+        `settled for ${yes.toLocaleString('en-US')} of ${of.toLocaleString('en-US')} examined lanes`,
       );
   }
   expect(partly).toBeGreaterThan(0);
@@ -136,6 +136,6 @@ test('the worst pair is named, with a command that explains it', async ({ page, 
   const same = report.cards.findIndex(({ kind: one, pair }) => one.worst.pair === pair.hex.join(' '));
   if (same >= 0)
     await expect((await open_card(page, same + 1)).locator('.worst')).toHaveText(
-      /^The pair shown is also the worst one looked at/,
+      /^The pair shown is also the worst of the examined ones/,
     );
 });

@@ -26,7 +26,7 @@ test('the league table holds the report’s numbers, with intervals', async ({ p
 
 test('a campaign of both coordinate types has a switch, and says what storing costs', async ({ page }) => {
   test.skip(!process.env.GRAZE_DOUBLES, 'no such campaign');
-  await expect(page.locator('#league label', { hasText: 'Coordinates' })).toHaveCount(0); // float32 alone
+  await expect(page.locator('#league label', { hasText: 'Coordinates' })).toHaveCount(0); // only float32
   await page.goto(doubles_url());
   await page.waitForSelector('#league');
   const report = JSON.parse((await page.locator('#report').textContent())!) as Report;

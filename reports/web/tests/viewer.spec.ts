@@ -27,7 +27,7 @@ const kEndsApart =
 const kOverflow =
   'd01cb3ffcf1130a24fd0e03dd0111e894fc5fbfb4fb67a05cee82f564ea92d6bce58537dceb4244ccf02f27ccf8846bbcf581c374eb351f54dda496bcec4d16a4f5f9694ce41af95'; // extreme_scale:1:2
 
-// A change of the hash alone would race with what the page writes there.
+// Changing only the hash would race with what the page writes there.
 async function open_afresh(page: Page, address: string) {
   await page.goto('about:blank');
   await page.goto(address);
@@ -51,7 +51,7 @@ test('where a verdict differs from the stored one it shows none', async ({ page 
   );
   await page.goto(pathToFileURL(altered).href);
   await expect(page.locator('#warning')).toContainText(
-    /decides otherwise than the native build: stored pair 1, projected_sat\/f32\/cpu: here \w+, natively \w+\./,
+    /decides differently from the native build: stored pair 1, projected_sat\/f32\/cpu: here \w+, natively \w+\./,
   );
   await expect(page.locator('[data-lane]')).toHaveCount(0);
 });
@@ -90,7 +90,7 @@ test('a pair on which CPU and GPU differ: which lane, and why', async ({ viewer 
   await expect(verdict(viewer, 'guigue_devillers_2003/f64/cuda-fma')).toHaveAttribute('aria-pressed', 'true');
   await expect(verdict(viewer, 'guigue_devillers_2003/f64/cuda-fma')).toHaveAttribute(
     'aria-label',
-    'guigue_devillers_2003/f64/cuda-fma: disjoint, wrong, not what the CPU says',
+    'guigue_devillers_2003/f64/cuda-fma: disjoint, wrong, differs from the CPU',
   );
   await expect(viewer.locator('#summary')).toContainText('4 of 32 lanes are wrong, 1 of them only on the GPU.');
   await expect(viewer.locator('#brief')).toHaveText(
@@ -103,10 +103,10 @@ test('a pair on which CPU and GPU differ: which lane, and why', async ({ viewer 
     'guigue_devillers_2003 in float64 says intersects on the CPU (right) and disjoint on the GPU (wrong). The cause is contraction: for the GPU nvcc fuses',
     'into one operation that rounds once; the CPU rounds twice',
     'Built with -fmad=false, the GPU says intersects.',
-    'Both run the same source on the same numbers. The first comparison that goes otherwise is at core/algorithms/guigue_devillers_2003.h:121',
+    'Both run the same source on the same numbers. The first comparison with a different outcome is at core/algorithms/guigue_devillers_2003.h:121',
     'if (db[0] * db[1] > zero && db[0] * db[2] > zero) return Verdict::disjoint;',
-    'more than 0 where both lie on one side of it: on the CPU of 0 and -0.235, on the GPU of -1.11·10⁻¹⁸ and -0.235. With 113 bits the value is 0: anything else there is rounding, and its sign decides.',
-    'Fused here alone, the verdict is already the GPU’s: core/vec3.h:48',
+    'more than 0 if both lie on the same side of it: on the CPU of 0 and -0.235, on the GPU of -1.11·10⁻¹⁸ and -0.235. With 113 bits the value is 0: any other value there is a rounding error, and its sign decides.',
+    'Fusing only here already gives the GPU’s verdict: core/vec3.h:48',
     'called at core/algorithms/guigue_devillers_2003.h:120',
   ])
     await expect(why).toContainText(said);
@@ -142,7 +142,7 @@ test('what it says of a contraction is what graze explain finds', async ({ viewe
         encoding: 'utf8',
       }),
     ) as { lanes: { lane: string; cause: string; contractions: { at: string }[] }[] };
-    // A CPU lane that is wrong by logic is reported so, and no other lane is.
+    // CPU lanes that are wrong because of their logic are reported as such, and no others are.
     const causes = JSON.parse(
       execFileSync(process.env.GRAZE!, ['explain', (await name(viewer))!, '--lanes', '*/cpu', '--json'], {
         encoding: 'utf8',

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The viewer on pairs of doubles: two parallel triangles of a model in metres, which float32 makes one.
+// The viewer on pairs of doubles: two parallel triangles of a model in metres, which coincide in float32.
 import {
   checked,
   coordinate,
@@ -25,11 +25,11 @@ test('the truth is that of the doubles, and float lanes decide what float32 stor
     expect(said, lane).toBe(lane.includes('/f32/') ? 'intersects' : 'disjoint');
   await verdict(viewer, 'moller_1997/f32/cpu').click();
   await expect(viewer.locator('#why')).toContainText(
-    'It is wrong. It decides the coordinates as float32 stores them. Of these its verdict is right, so the cause is rounding of the input.',
+    'It is wrong. It decides the coordinates as float32 stores them. For these its verdict is right, so the cause is rounding of the input.',
   );
   await verdict(viewer, 'exact/f32/cpu').click();
   await expect(viewer.locator('#why')).toContainText(
-    'It decides the coordinates as float32 stores them. It is the exact decision: integers',
+    'It decides the coordinates as float32 stores them. It is the exact decision: it computes with integers',
   );
   await verdict(viewer, 'moller_1997/f64/cpu').click();
   await expect(viewer.locator('#why')).toContainText('It is right.');
@@ -72,7 +72,7 @@ test('doubles are typed, stepped and linked in full', async ({ viewer }) => {
   await viewer.goto('about:blank');
   await viewer.goto(link);
   await expect(coordinate(viewer, 4)).toHaveValue('0.10000000000000002');
-  // A pair of float32 in a link is that pair in doubles.
+  // A link with a pair of float32 shows the same pair in doubles.
   await viewer.goto('about:blank');
   await viewer.goto(`${doubles_url()}#p=${'3dcccccd'.repeat(18)}`);
   await expect(coordinate(viewer, 4)).toHaveValue('0.10000000149011612');

@@ -55,7 +55,7 @@ export const paste = (page: Page, text: string) =>
     field.dispatchEvent(new ClipboardEvent('paste', { clipboardData: data, cancelable: true, bubbles: true }));
   }, text);
 
-// What `graze check` says of the pair that is shown.
+// What `graze check` says about the pair that is shown.
 export async function checked(page: Page) {
   await page.locator('#copies button', { hasText: 'check line' }).click();
   const line = (await page.locator('.copied code').textContent())!;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  * What a CUDA source finds in place of CUDA's headers when a host compiler compiles it: decorations, vector types and
  * their functions. As in nvcc's pass for the host, __CUDACC__ is defined and __CUDA_ARCH__ is not. Intrinsics such as
- * __fmul_rn are left out, for a compiler that contracts would not keep their rounding. */
+ * __fmul_rn are left out, because a compiler that contracts would not keep their rounding. */
 #pragma once
 
 #include <cfloat>

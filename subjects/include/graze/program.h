@@ -5,7 +5,7 @@
  * Include this after the definition of `const struct graze_subject graze_subject`.
  *
  * On standard output the program first writes struct graze_hello. Then it reads questions from standard input until
- * that ends. A question is a struct graze_question, `count` numbers of places (uint32_t each), and `count` pairs of 18
+ * that ends. A question is a struct graze_question, `count` place numbers (uint32_t each), and `count` pairs of 18
  * float or double each. The answer to it is `count` words of uint64_t: graze_word of each place, in this order.
  *
  * With GRAZE_PROGRAM_TYPES_ONLY defined, this header has no main function, and needs no subject.
@@ -74,7 +74,7 @@ int main(void) {
   struct graze_question question;
   FILE* out = stdout;
 #ifndef __wasi__
-  /* What the subject prints is no answer. */
+  /* What the subject prints is not an answer. */
   out = fdopen(dup(1), "wb");
   if (!out || dup2(2, 1) < 0) return 1;
 #endif

@@ -32,7 +32,7 @@
  * as GRAZE_INTERSECTS. */
 enum { GRAZE_DECLINED = -1, GRAZE_DISJOINT = 0, GRAZE_INTERSECTS = 1 };
 
-/* The subject's convention: kinds of pairs for which it may answer otherwise. Its answers on them are counted
+/* The subject's convention: kinds of pairs on which its answer may differ from the truth. Such answers are counted
  * separately, neither as errors nor as right. */
 enum {
   GRAZE_OUTSIDE_TOUCHING = 1, /* the hulls meet in points or segments, and an arbitrarily small motion separates them */

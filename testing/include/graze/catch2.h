@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// GRAZE_TEST(Name, function, …), as <graze/gtest.h>, as a test case of Catch2, versions 2 and 3.
+// GRAZE_TEST(Name, function, …) as in <graze/gtest.h>, but as a test case of Catch2, version 2 or 3.
 #pragma once
 
 #if __has_include(<catch2/catch_test_macros.hpp>)

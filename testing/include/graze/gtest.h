@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// GRAZE_TEST(Name, function) and GRAZE_TEST(Name, function, .strata = "near_*", …): a GoogleTest test, Name.Overlap.
-// The options are those of graze::TestOptions, in their order.
+// GRAZE_TEST(Name, function) and GRAZE_TEST(Name, function, .strata = "near_*", …) define the GoogleTest test
+// Name.Overlap. The options are the members of graze::TestOptions, in the same order.
 #pragma once
 
 #include <graze/test.h>

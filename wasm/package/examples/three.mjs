@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles of two three.js geometries meet, exactly. Apply a mesh's matrix first:
+// Finds exactly which triangles of two three.js geometries meet. Apply a mesh's matrix first:
 // geometry.clone().applyMatrix4(mesh.matrixWorld).
 import { ready } from 'graze-wasm';
 
@@ -33,7 +33,7 @@ const boxes_meet = (a, b) =>
   });
 
 /**
- * The pairs [i, j] of triangles that meet, i of the first geometry and j of the second.
+ * The pairs [i, j] of triangles that meet; i is in the first geometry, j in the second.
  * @param {Parameters<typeof triangles_of>[0]} first @param {Parameters<typeof triangles_of>[0]} second
  */
 export async function meeting(first, second) {

@@ -17,7 +17,7 @@ interface Parts {
   toggle_help: () => void;
 }
 
-// As seen from the first view of 2012, which looked along -x: w moved the reference away, d to the right.
+// As seen in the first view of 2012, which looked along -x: w moved the reference away, d moved it to the right.
 const kMoves: [string, number, number, string][] = [
   ['w', 0, -kMove, '−x'],
   ['s', 0, kMove, '+x'],
@@ -60,9 +60,9 @@ function keys_of_2012({ model, drawing, many, other_processor, toggle_help }: Pa
     { keys: ['i'], shown: 'i', does: 'ids of the vertices; of many triangles, their numbers', press: show('ids') },
     { keys: ['p'], shown: 'p', does: 'planes', press: show('planes') },
     { keys: ['t'], shown: 't', does: 'the ten special cases at once, and back', press: many.special },
-    { keys: ['g'], shown: 'g', does: 'the chosen lane on the CPU or on the GPU', press: other_processor },
-    { keys: ['+', '='], shown: '+', does: 'a triangle more against the first', press: () => many.add(1) },
-    { keys: ['-'], shown: '-', does: 'a triangle less', press: () => many.add(-1) },
+    { keys: ['g'], shown: 'g', does: 'switch the chosen lane between CPU and GPU', press: other_processor },
+    { keys: ['+', '='], shown: '+', does: 'one more triangle against the first', press: () => many.add(1) },
+    { keys: ['-'], shown: '-', does: 'one triangle fewer', press: () => many.add(-1) },
   ];
   return [...on_board.map((key) => ({ ...key, on_board: true })), ...anywhere].map((key) => ({
     ...key,
@@ -76,7 +76,7 @@ function new_keys({ model, drawing, from, say }: Parts): Key[] {
     {
       keys: ['n'],
       shown: 'n',
-      does: 'next pair; with Shift the next on which CPU and GPU differ',
+      does: 'next pair; with Shift the next one on which CPU and GPU differ',
       press: (event) => void from.go(1, event.shiftKey ? 'apart' : 'any'),
     },
     { keys: ['b'], shown: 'b', does: 'previous pair', press: () => void from.go(-1) },
@@ -95,17 +95,17 @@ function new_keys({ model, drawing, from, say }: Parts): Key[] {
     {
       keys: ['['],
       shown: '[',
-      does: 'the chosen coordinate an ulp down; with Shift 256, with Alt 65,536',
+      does: 'the chosen coordinate down by 1 ulp; with Shift 256, with Alt 65,536',
       press: (event) => model.step(-ulps(event)),
     },
-    { keys: [']'], shown: ']', does: 'the same, up', press: (event) => model.step(ulps(event)) },
+    { keys: [']'], shown: ']', does: 'the same upwards', press: (event) => model.step(ulps(event)) },
     {
       keys: ['f'],
       shown: 'f',
-      does: 'what is in the middle: both triangles, the chosen vertex, the contact or gap',
+      does: 'what is in the middle: both triangles, the chosen vertex, or the contact or gap',
       press: () => model.set({ centre: kCentres[(kCentres.indexOf(model.centre) + 1) % kCentres.length] }),
     },
-    { keys: ['Home'], shown: 'Home', does: 'the view as it was', on_board: true, press: () => drawing.reset() },
+    { keys: ['Home'], shown: 'Home', does: 'reset the view', on_board: true, press: () => drawing.reset() },
     {
       keys: ['u'],
       shown: 'u',

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Explains why a GPU lane decides differently from the same source on the CPU: the comparison at which they part, the
-// values there, and the operations that nvcc fused.
+// Explains why a GPU lane decides differently from the same source on the CPU: the first comparison with different
+// outcomes, the values there, and the operations that nvcc fused.
 import { h, type Child } from '../dom';
 import { figure } from '../format';
 import type { Site, Step } from './graze.js';
@@ -37,7 +37,7 @@ function meaning(runs: [Step[], number][], scalar: string): Child {
   const [[run, at]] = runs,
     step = run[at];
   if (step.site === 'separation')
-    return 'It asks whether the two triangles’ ranges on a line overlap: the end of one against the end of the other. ';
+    return 'It compares an end of one triangle’s range on a line with an end of the other’s, to see whether they overlap. ';
   const asked = run
     .slice(0, at)
     .filter((before) => !before.relation && before.result >= 0 && before.result === step.result)
@@ -47,7 +47,7 @@ function meaning(runs: [Step[], number][], scalar: string): Child {
   if (asked === 'orientation')
     return 'The sign of this value says on which side of a line or plane through other vertices a vertex lies. ';
   if (asked === 'parallel')
-    return 'It is a part of the direction of the line that both planes share: zero for parallel planes. ';
+    return 'It is one component of the direction of the line where the planes meet, which is zero for parallel planes. ';
   if (step.relation !== '>' || step.right !== 0) return false;
   const round = scalar === 'f32' ? Math.fround : (x: number) => x;
   const distances = runs.map(([steps, end]) =>
@@ -63,7 +63,7 @@ function meaning(runs: [Step[], number][], scalar: string): Child {
       const j = d.findIndex((y, k) => k > i && round(d[i] * y) === steps[end].left);
       if (j < 0) continue;
       const [mine, theirs] = distances.map((all) => told_apart([all[i], all[j]]).join(' and '));
-      return `The value is the product of two vertices’ distances from the other triangle’s plane, more than 0 where both lie on one side of it: on the CPU of ${theirs}, on the GPU of ${mine}. `;
+      return `The value is the product of two vertices’ distances from the other triangle’s plane, more than 0 if both lie on the same side of it: on the CPU of ${theirs}, on the GPU of ${mine}. `;
     }
   }
   return false;
@@ -142,7 +142,7 @@ function places(sites: Site[]): Child {
   return h(
     'p',
     {},
-    `Fused ${all.length > 1 ? 'at these places' : 'here'} alone, the verdict is already the GPU’s: `,
+    `Fusing only ${all.length > 1 ? 'at these places' : 'here'} already gives the GPU’s verdict: `,
     all
       .slice(0, kMostPlaces)
       .map(({ line, from }, i) => [
@@ -179,9 +179,9 @@ export function apart(model: Model, lane: string): { parts: Child[]; brief: Chil
         ? [
             'The cause is ',
             bold('contraction'),
-            ': for the GPU nvcc fuses a multiplication and the addition after it, ',
+            ': for the GPU nvcc fuses a multiplication and the following addition, ',
             h('code', {}, 'a * b + c'),
-            ', into one operation that rounds once; the CPU rounds twice, after each. So the last digits differ, and here they decide. Built with ',
+            ', into one operation that rounds once; the CPU rounds twice, after each of them. So the last digits differ, and here they decide. Built with ',
             h('code', {}, '-fmad=false'),
             `, the GPU says ${decided.verdicts[lane.replace('cuda-fma', 'cuda-nofma')]}.`,
           ]
@@ -196,7 +196,7 @@ export function apart(model: Model, lane: string): { parts: Child[]; brief: Chil
       h(
         'p',
         {},
-        'Both run the same source on the same numbers. The first comparison that goes otherwise is at ',
+        'Both run the same source on the same numbers. The first comparison with a different outcome is at ',
         quoted(mine.line),
       ),
       table(
@@ -237,7 +237,7 @@ export function apart(model: Model, lane: string): { parts: Child[]; brief: Chil
         h(
           'span',
           { class: 'small' },
-          `113 bits: the same algorithm in numbers of 113 bits; ${long} has ${bits}.${Number.isFinite(step) && mine.right !== 0 ? ` Neighbouring numbers of ${long} are ${figure(step)} apart at this size.` : ''}`,
+          `113 bits: the same algorithm with numbers of 113 bits; ${long} has ${bits}.${Number.isFinite(step) && mine.right !== 0 ? ` Neighbouring numbers of ${long} are ${figure(step)} apart at this size.` : ''}`,
         ),
       ),
     );
@@ -252,7 +252,7 @@ export function apart(model: Model, lane: string): { parts: Child[]; brief: Chil
       mine.right === 0 &&
       mine.exactRight === 0 &&
       mine.exactLeft === 0 &&
-      'With 113 bits the value is 0: anything else there is rounding, and its sign decides.';
+      'With 113 bits the value is 0: any other value there is a rounding error, and its sign decides.';
     if (asked || noise) parts.push(h('p', {}, asked, noise));
     if (!known.own)
       parts.push(
@@ -261,11 +261,11 @@ export function apart(model: Model, lane: string): { parts: Child[]; brief: Chil
           {},
           'The GPU’s numbers here are ',
           bold('not settled'),
-          ': a rule of contraction gave them, and the lane’s verdict.',
+          ': they come from a rule of contraction that gives the lane’s verdict.',
         ),
       );
   } else {
-    parts.push(h('p', {}, 'At which comparison they part is ', bold('not settled'), '.'));
+    parts.push(h('p', {}, 'Which comparison goes differently first is ', bold('not settled'), '.'));
   }
   if (sites.length) parts.push(places(sites));
   return { parts, brief };

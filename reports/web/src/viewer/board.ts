@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The drawing: dragging the background turns it, dragging a vertex changes the pair.
+// The drawing: dragging the background turns it; dragging a vertex changes the pair.
 import { orbit, view_of } from '../camera';
 import { choice, h } from '../dom';
 import { axes, framed_half_height, good_view, project, type Vec } from '../drawing';
@@ -8,7 +8,7 @@ import { has_webgl, picture, type Picture } from '../view3d';
 import { kCentres, without_changed, type Centre, type Model } from './model';
 import { placed, type Field, type Placed } from './shape';
 
-const kReach = 16; // pixels around a vertex in which it can be grabbed
+const kReach = 16; // pixels around a vertex within which it can be grabbed
 const kTurn = Math.PI / 18;
 const kFine = 1 / 64; // factor of a drag with Shift
 const kGapSeen = 0.5; // half-widths of the board that the gap takes after "Show the gap"
@@ -75,7 +75,8 @@ export function board(model: Model, fields: () => Field | null) {
     witness_key.hidden = !now.shape.marks?.some(({ colour }) => colour === '--witness');
     gap_button.hidden = witness_key.hidden;
     gap_button.textContent = truth.verdict === 'disjoint' ? 'Show the gap' : 'Show the depth';
-    witness_key.textContent = truth.verdict === 'disjoint' ? 'nearest points' : 'shortest push of b that parts them';
+    witness_key.textContent =
+      truth.verdict === 'disjoint' ? 'nearest points' : 'shortest push of b that separates them';
     b_key.hidden = field !== null;
     field_keys.forEach((key) => (key.hidden = field === null));
     shadow_key.hidden = field !== null || !model.lane.startsWith('projected_sat/');
@@ -116,7 +117,7 @@ export function board(model: Model, fields: () => Field | null) {
     const box = ground.getBoundingClientRect();
     return { x: event.clientX - box.left, y: event.clientY - box.top, width: box.width, height: box.height };
   };
-  // The vertex under the pointer; the frontmost of several.
+  // The vertex under the pointer; if there are several, the frontmost.
   function taken(event: PointerEvent): number | null {
     const { x, y, width, height } = local(event);
     let best: { v: number; away: number; depth: number } | null = null;
@@ -205,7 +206,7 @@ export function board(model: Model, fields: () => Field | null) {
     return { what, box };
   });
   const contact_key = h('span', { class: 'key-contact' }, 'contact'),
-    line_key = h('span', { class: 'key-line' }, 'the planes’ line, with both sections');
+    line_key = h('span', { class: 'key-line' }, 'the line where the planes meet, with both sections');
   const b_key = h('span', { class: 'key-b' }, 'b'),
     field_keys = [
       ['hit', 'hit'],
@@ -214,7 +215,7 @@ export function board(model: Model, fields: () => Field | null) {
     ].map(([colour, text]) => h('span', { class: `key-${colour}` }, text));
   const gap_button = button('Show the gap', 'Magnify what the margin measures', show_gap);
   const witness_key = h('span', { class: 'key-witness' }),
-    shadow_key = h('span', { class: 'key-shadow' }, 'b on the plane of a, as projected_sat sees it');
+    shadow_key = h('span', { class: 'key-shadow' }, 'b projected onto the plane of a, as projected_sat sees it');
   const element = h(
     'figure',
     { class: 'stage' },
@@ -244,7 +245,7 @@ export function board(model: Model, fields: () => Field | null) {
       witness_key,
       shadow_key,
       note,
-      h('span', {}, 'Drag a vertex to move it (with Shift finely), the ground to turn.'),
+      h('span', {}, 'Drag a vertex to move it (with Shift for fine steps), or the background to turn.'),
     ),
   );
   return {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws two ranges on a line: as a whole, and magnified where their ends are closest to each other.
+// Draws two ranges on a line: first as a whole, then magnified where their ends are closest to each other.
 import { figure } from '../format';
 import { node } from '../projection';
 import type { Ends } from './ranges';
@@ -17,7 +17,8 @@ const kMargin = 8,
 // The two closest ends, one of each range.
 const critical = ({ a, b }: Row): [number, number] => (b[0] - a[1] > a[0] - b[1] ? [a[1], b[0]] : [b[1], a[0]]);
 
-// ulp: the distance of the lane's numbers there.   Returns: the picture, and the magnification of its lower half.
+// ulp: the distance between neighbouring numbers of the lane.   Returns: the picture, and the magnification of its lower
+// half.
 export function chart(rows: Row[], ulp: (at: number) => number, width: number): { svg: SVGElement; magnified: number } {
   const all = rows.flatMap(({ a, b }) => [...a, ...b]),
     low = Math.min(...all),

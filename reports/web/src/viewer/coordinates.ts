@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 18 coordinates: chosen, typed, pasted, stepped.
+// The 18 coordinates, which can be chosen, typed, pasted and stepped.
 import { h } from '../dom';
 import { coordinate_name, decimal, hex_float, stored_as } from './data';
 import type { Model } from './model';
@@ -107,7 +107,7 @@ export function coordinates(model: Model, say: (text: string) => void) {
       h(
         'table',
         { class: 'plain pair' },
-        h('caption', {}, `In ${type}. Type one, or paste 18 numbers into any field.`),
+        h('caption', {}, `In ${type}. Type a number, or paste 18 numbers into any field.`),
         h(
           'thead',
           {},

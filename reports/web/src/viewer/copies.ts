@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pair as text for other places.
+// The pair as text to paste elsewhere.
 import { copy_button, h } from '../dom';
 import { decimal, hex_float, type Coordinates } from './data';
 import type { Model } from './model';
@@ -67,7 +67,7 @@ export function copies(model: Model, link: (model: Model) => string) {
       h('div', { class: 'chips' }, buttons),
       shown,
     ),
-    // A text that no longer holds goes; one that does stays.
+    // Hides a text that is out of date.
     update: () => {
       if (!text_now || text_now(model) === text) return;
       shown.replaceChildren();

@@ -6,18 +6,18 @@ import { kVerdicts } from './graze.js';
 export type Scalar = 'f32' | 'f64';
 export type Coordinates = Float32Array | Float64Array; // 18: a[0].x to b[2].z
 
-// bits: 18 words of 8 hex digits, or 16 of doubles. verdicts: a digit for each lane, 0 disjoint, 1 intersects, 2 declined.
+// bits: 18 words of 8 hex digits, or 16 for doubles. verdicts: a digit per lane, 0 disjoint, 1 intersects, 2 declined.
 export interface Replay {
   lanes: string[];
   pairs: { bits: string; truth: Verdict; contact: string; verdicts: string }[];
 }
-// Of the build, for pairs of one coordinate type. module: graze.wasm or graze_f64.wasm, compressed with gzip, in base64.
+// What the build stored for pairs of one coordinate type. module: graze.wasm or graze_f64.wasm, gzipped, in base64.
 export interface Stored {
   module: string;
   evidence: string;
   replay: Replay;
 }
-// What a lane of the user's own code says of a pair; `stored`: in the campaign, whose code is not there any more.
+// What a lane of the user's own code says about a pair; `stored`: the campaign stored it, because its code is gone.
 export interface Said {
   lane: string;
   verdict: string;
@@ -31,9 +31,9 @@ export interface ViewData extends Stored {
   pairs: { name: string; bits: string; said?: Said[] }[];
   lanes_left_out?: { why: Record<string, string> }; // of the user's own code
   triangles: string[]; // of a mesh or a query, 9 words each; may be empty
-  ids?: number[]; // of these triangles; without it, they are numbered as they come
+  ids?: number[]; // of these triangles; without it, they are numbered in order
   opens?: 'pair' | 'triangles' | 'random'; // triangles: all at once, against the first triangle of the pair
-  random?: number; // how many random triangles are drawn first
+  random?: number; // how many random triangles are shown first
 }
 
 export function from_bits(bits: string, type: Scalar): Coordinates {
@@ -51,7 +51,7 @@ export function to_bits(pair: Coordinates): string {
     : Array.from(new Uint32Array(buffer), (word) => word.toString(16).padStart(8, '0')).join('');
 }
 
-// The coordinate type of a link's pair, by its bits; null if they are none.
+// The coordinate type of a link's pair, found from its bits; null if they are not those of a pair.
 export const type_of_bits = (bits: string): Scalar | null =>
   /^([0-9a-f]{144}|[0-9a-f]{288})$/.test(bits) ? (bits.length === 288 ? 'f64' : 'f32') : null;
 
@@ -59,7 +59,7 @@ export const type_of_bits = (bits: string): Scalar | null =>
 export const stored_as = (type: Scalar, numbers: ArrayLike<number>): Coordinates =>
   type === 'f64' ? Float64Array.from(numbers) : Float32Array.from(numbers);
 
-// The shortest decimal whose nearest number of this type is this number.
+// The shortest decimal whose nearest number of this type is x.
 export function decimal(x: number, type: Scalar): string {
   if (!Number.isFinite(x)) return String(x);
   if (Object.is(x, -0)) return '-0';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many triangles against the reference, as in 2012: random ones of the thesis's generator, its special cases, or those
-// of a mesh or a query.
+// Many triangles against the reference, as in 2012: random ones from the thesis's generator, its special cases, or
+// those of a mesh or a query.
 import { h } from '../dom';
 import { count } from '../format';
 import { from_bits, type Coordinates, type ViewData } from './data';
@@ -17,9 +17,9 @@ export function field(model: Model, data: ViewData, say: (text: string) => void,
     special = special_cases(graze.coordinates),
     thesis = graze.coordinates === 'f64' ? 'thesis/f64' : 'thesis',
     given = data.triangles.map((bits) => from_bits(bits, data.coordinates));
-  let kind: Kind | null = null, // null: the pair
+  let kind: Kind | null = null, // null: the pair alone
     seed = 1n,
-    own: { name: string; pair: Coordinates }, // the pair with the reference that the triangles were made for
+    own: { name: string; pair: Coordinates }, // the pair whose first triangle is the reference of the triangles
     triangles: Coordinates[] = [],
     ids: number[] = [],
     current: Field | null = null;
@@ -27,7 +27,7 @@ export function field(model: Model, data: ViewData, say: (text: string) => void,
   const left: { kind: Kind | null; name: string; pair: Coordinates }[] = []; // what was drawn before
   const told = h('p', { class: 'small', id: 'field' });
 
-  // Random triangles and special cases have a reference of their own, so another pair ends them.
+  // Random triangles and special cases have their own reference, so showing another pair removes them.
   const drawn = () => (kind && (kind === 'given' || without_changed(model.name) === own.name) ? kind : null);
   const moved = () => kind !== 'given' && own.pair.subarray(0, 9).some((x, c) => x !== model.pair[c]);
 
@@ -62,7 +62,7 @@ export function field(model: Model, data: ViewData, say: (text: string) => void,
     if (kind !== 'given') face();
     make();
   }
-  // Sets the pair to the reference of these triangles, and the first of them.
+  // Sets the pair to the reference of these triangles and the first of them.
   function face() {
     own = pair_of(0);
     model.show(own.pair, own.name);
@@ -116,7 +116,7 @@ export function field(model: Model, data: ViewData, say: (text: string) => void,
               `${count(triangles.length)} triangle${triangles.length === 1 ? '' : 's'} against a, the reference: `,
             ),
             h('code', {}, model.lane),
-            ` hits ${sum(current.hit)}, wrong on ${sum(current.wrong)} (outlined). The table is of one pair, ${model.name}; press a verdict to see its lane here. `,
+            ` hits ${sum(current.hit)}, wrong on ${sum(current.wrong)} (outlined). The table shows one pair, ${model.name}; press a verdict to see its lane here. `,
             ...(current.hit.some(Boolean) || current.wrong.some(Boolean)
               ? [
                   h(
@@ -149,9 +149,9 @@ export function field(model: Model, data: ViewData, say: (text: string) => void,
     model.show(pair, unchanged ? name : `${without_changed(name)}, changed`);
   }
 
-  // What +, - and space change: the triangles of a mesh or a query if there are any, otherwise random ones.
+  // Which triangles +, - and space change: those of a mesh or a query if there are any, otherwise random ones.
   const changing = given.length ? 'given' : 'random';
-  const special_stay = () => say('the special cases stay as they are; t leaves them');
+  const special_stay = () => say('the special cases stay as they are; press t to leave them');
   return {
     element: told,
     title,

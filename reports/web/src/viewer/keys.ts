@@ -2,8 +2,8 @@
 // All keys, and the help that lists them.
 import { h } from '../dom';
 
-// keys: as KeyboardEvent.key, without Shift and Alt; shown: for readers. of_2012: whether the thesis's viewer had the
-// key.
+// keys: as in KeyboardEvent.key, without Shift and Alt; shown: for readers. of_2012: whether the thesis's viewer had
+// the key.
 export interface Key {
   keys: string[];
   shown: string;
@@ -45,7 +45,7 @@ export function keys(all: Key[], active: () => boolean) {
     h(
       'p',
       {},
-      'By mouse or finger: drag a vertex to move it, with Shift finely; drag the ground to turn. Keys act wherever the page has the focus, but in fields; arrows and space in the drawing.',
+      'With mouse or finger: drag a vertex to move it, with Shift for fine steps; drag the background to turn. Keys act wherever the page has the focus, except in fields; arrows and space act only in the drawing.',
     ),
     h(
       'table',
@@ -59,7 +59,7 @@ export function keys(all: Key[], active: () => boolean) {
         table(all.filter((key) => !key.of_2012)),
       ),
     ),
-    h('label', {}, on, ' keys of one letter act'),
+    h('label', {}, on, ' single-letter keys are active'),
   );
   document.addEventListener('keydown', (event) => {
     if (!active() || event.defaultPrevented) return;

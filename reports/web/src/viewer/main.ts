@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of `graze view`: the viewer; the address stores the pair.
+// The page of `graze view`. The address stores the pair.
 import '../style.css';
 import { h } from '../dom';
 import { from_bits, type ViewData } from './data';
@@ -24,7 +24,7 @@ async function start() {
   const page = document.getElementById('page')!,
     text = document.getElementById('view')?.textContent?.trim() ?? '';
   if (!text || text.startsWith('<!--'))
-    return void (page.textContent = 'This is the empty page: graze view writes one with data.');
+    return void (page.textContent = 'This page is empty: graze view writes one with data.');
   const data = JSON.parse(text) as ViewData;
   try {
     const shown = viewer(data, await make_ready(data), first_of(data), {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ulp map: the verdicts around the pair when two of its coordinates move by ulps.
+// The ulp map: the verdicts around the pair as two of its coordinates move by ulps.
 import { choice, h } from '../dom';
 import { coordinate_name } from './data';
 import type { Model } from './model';
@@ -23,7 +23,7 @@ const kCells = [
   ['4,096 ulps', 4096],
   ['65,536 ulps', 65536],
 ] as const;
-const kWait = 40; // milliseconds of rest before a map is drawn again
+const kWait = 40; // milliseconds without a change before the map is drawn again
 
 // The index in kPalette of a lane's verdict, given the truth.
 const cell_of = (verdict: number, truth: number) =>
@@ -155,7 +155,7 @@ export function map(model: Model, module: WebAssembly.Module) {
         'Lanes',
         [
           ['variants', 'the chosen algorithm'],
-          ['algorithms', 'all algorithms, so built'],
+          ['algorithms', 'all algorithms, built the same way'],
         ],
         of,
         (value) => {

@@ -85,7 +85,7 @@ export function matrix(model: Model) {
       }
       button.setAttribute(
         'aria-label',
-        `${lane}: ${verdict ?? 'no such policy'}${wrong ? ', wrong' : ''}${differs ? ', not what the CPU says' : ''}`,
+        `${lane}: ${verdict ?? 'no such policy'}${wrong ? ', wrong' : ''}${differs ? ', differs from the CPU' : ''}`,
       );
       button.setAttribute('aria-pressed', String(lane === model.lane));
     }
@@ -104,12 +104,12 @@ export function matrix(model: Model) {
     h('b', { class: 'bad' }, '✗'),
     ' wrong, ',
     h('u', {}, '≠'),
-    ' not what the CPU says. Press a verdict to learn why.',
+    ' differs from the CPU. Press a verdict to learn why.',
   );
   const asked = h(
     'p',
     { class: 'small' },
-    'Each lane says: an algorithm in float32 (f32) or float64 (f64), built for CPU or GPU.',
+    'What each lane says. A lane is an algorithm in float32 (f32) or float64 (f64), built for CPU or GPU.',
   );
   return { element: h('div', { class: 'verdicts-of-all' }, asked, table, key), told, update };
 }

@@ -21,7 +21,7 @@ const kSpecial = [
   ['B pierces the reference', 2, 0, 0.5, -2, 0, 1.5, 1, 0, 4],
   ['in the same plane', 0, 3, 1, 0, 1, 1.5, 0, 4, 3],
 ] as const;
-// They are numbers of float32, in either type.
+// In either type, their coordinates are float32 numbers.
 export const special_cases = (type: Scalar): { name: string; pair: Coordinates }[] =>
   kSpecial.map(([what, ...b], i) => ({
     name: `special case ${i + 1} of 2012: ${what}`,
@@ -34,7 +34,7 @@ export interface Decided {
   verdicts: Record<string, Verdict | null>;
   truth: Truth;
   margin: Margin;
-  stored: Truth | null; // of doubles, the truth of what float32 stores of them, if that is another pair
+  stored: Truth | null; // for doubles, the truth of the pair that float32 stores, if that is another pair
 }
 
 export class Model {
@@ -134,8 +134,8 @@ export class Model {
       verdict = verdicts[lane];
     return verdict !== null && truth.verdict !== 'declined' && verdict !== truth.verdict;
   }
-  // Chooses the lane that is most likely of interest: a GPU lane that differs from the CPU, else a wrong one, else no
-  // change.
+  // Chooses the lane that is most likely of interest: a GPU lane that differs from the CPU, otherwise a wrong one. If
+  // there is neither, keeps the chosen one.
   choose_telling() {
     const { lanes } = this.graze;
     this.set({ lane: lanes.find((lane) => this.differs(lane)) ?? lanes.find((lane) => this.wrong(lane)) ?? this.lane });
@@ -160,7 +160,7 @@ export class Model {
   }
 }
 
-// Parses a link's "#p=…&lane=…"; null if it holds no pair that numbers of this type hold.
+// Parses a link's "#p=…&lane=…"; null if it has no pair that this type can hold.
 export function from_fragment(type: Scalar, url = location.href): { pair: Coordinates; lane: string } | null {
   const values = new URLSearchParams(new URL(url).hash.slice(1)),
     bits = values.get('p') ?? '',

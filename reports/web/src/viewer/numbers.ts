@@ -17,11 +17,11 @@ const number = (x: number) =>
 
 const in_full = (x: number) => (Object.is(x, -0) ? '-0' : String(Number(x.toPrecision(9))));
 
-// The distance of neighbouring numbers of this scalar near x.
+// The distance between neighbouring numbers of this scalar near x.
 export const ulp_of = (scalar: string) => (x: number) =>
   2 ** (Math.floor(Math.log2(Math.abs(x) || 2 ** -100)) - (scalar === 'f32' ? 23 : 52));
 
-// Writes different numbers with as many digits as it takes to tell them apart.
+// Writes the numbers with as many digits as it takes to tell them apart.
 export function told_apart(numbers: number[]): string[] {
   const distinct = new Set(numbers.map((x) => (x === 0 ? 0 : x))).size;
   const unlike = (texts: string[]) => new Set(texts.map((text) => (text === '-0' ? '0' : text))).size === distinct;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ranges on a line that the test reduces to: the intervals or projections that the chosen lane compared, beside 113
-// bits, and those on the axis of the margin.
+// The ranges on a line to which the test reduces: the intervals or projections that the chosen lane compared, beside
+// the same with 113 bits, and the ranges on the axis of the margin.
 import { choice, h, on_width, type Child } from '../dom';
 import { figure } from '../format';
 import { differing } from './apart';
@@ -12,8 +12,8 @@ import { exact_gap, intervals, lane_gap, projections, telling, type Ends, type R
 
 const kIntervals: Record<string, string> = {
   moller_1997:
-    'Its ends are positions along the largest axis of that line, all times one factor, as it divides by nothing.',
-  interval_overlap: 'Its ends are positions along that line, from the point of it that the lane computed.',
+    'Their ends are positions along the line’s largest axis, all multiplied by one factor, because the lane does not divide.',
+  interval_overlap: 'Their ends are positions along that line, measured from a point on it that the lane computed.',
 };
 
 const words = (gap: number, end: Ends[]) =>
@@ -94,7 +94,7 @@ export function on_a_line(model: Model) {
     if (found)
       return show(
         found,
-        ['Intervals on ', h('b', {}, 'L, the line of both planes'), `. ${kIntervals[name]} `],
+        ['Intervals on ', h('b', {}, 'L, the line where the planes meet'), `. ${kIntervals[name]} `],
         other ? [other, intervals(other_run)] : null,
       );
     if (!axes.length)
@@ -103,9 +103,9 @@ export function on_a_line(model: Model) {
           'p',
           {},
           name === 'guigue_devillers_2003'
-            ? 'This algorithm compares no ranges, it asks for signs alone.'
+            ? 'This algorithm compares no ranges; it asks only for signs.'
             : kIntervals[name] || name === 'projected_sat' || name === 'separating_axes'
-              ? `The lane decided before it came to ${kIntervals[name] ? 'intervals' : 'projections'}.`
+              ? `The lane decided before it computed ${kIntervals[name] ? 'intervals' : 'projections'}.`
               : 'The exact decision compares no ranges.',
         ),
       );
@@ -126,9 +126,9 @@ export function on_a_line(model: Model) {
     );
     const parts =
       lane_gap(axes[at]) > 0
-        ? 'on which the lane finds them apart'
+        ? 'on which the lane finds the triangles apart'
         : exact_gap(axes[at]) > 0
-          ? 'which separates with 113 bits, and not in the lane'
+          ? 'that separates them with 113 bits, but not in the lane'
           : axis >= 0
             ? ''
             : 'on which they overlap least';
@@ -149,7 +149,7 @@ export function on_a_line(model: Model) {
       return truth_said.replaceChildren(
         truth.verdict === 'disjoint'
           ? 'The gap is too small for 113 bits to draw a separating axis.'
-          : 'They touch, or lie in one plane: no axis separates them, and any push, however short, can.',
+          : 'They touch or lie in one plane: no axis separates them, but an arbitrarily short push does.',
       );
     truth_row = [{ name: 'with 113 bits', a: drawing.along[0], b: drawing.along[1] }];
     const [, high] = drawing.along[0],
@@ -159,11 +159,11 @@ export function on_a_line(model: Model) {
       ...(truth.verdict === 'disjoint'
         ? [
             h('b', {}, 'A separating axis'),
-            `, through the nearest points: of ${a} and of ${b}. On it a ends ${figure(low - high)} before b begins; that is the margin.`,
+            ` goes through the nearest points, which are on ${a} and on ${b}. On it a ends ${figure(low - high)} before b begins; that is the margin.`,
           ]
         : [
             h('b', {}, 'The shortest push'),
-            ` that parts them goes along ${normals.length ? `the normal of ${normals[0].slice(-1)}` : `the common normal of ${a} and ${b}`}, by ${figure(high - low)}; that is the margin.`,
+            ` that separates them goes along ${normals.length ? `the normal of ${normals[0].slice(-1)}` : `the common normal of ${a} and ${b}`}, by ${figure(high - low)}; that is the margin.`,
           ]),
     );
   }

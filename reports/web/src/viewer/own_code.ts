@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the user's own code says of the pair. The page cannot run it, so the verdicts are those of the pair as it was
+// What the user's own code says about the pair. The page cannot run it, so the verdicts are those on the pair that was
 // written into the page.
 import { h } from '../dom';
 import { to_bits, type ViewData } from './data';
@@ -30,7 +30,7 @@ export function own_code(model: Model, data: ViewData) {
       ? 'It ran only on the pairs of this page, not on this changed one.'
       : stored
         ? 'Its code has changed; these are the verdicts that the campaign stored.'
-        : 'Its verdicts on this pair, from when the page was written.';
+        : 'These are its verdicts on this pair from when the page was written.';
     list.replaceChildren(
       ...(lanes ?? []).map(({ lane, verdict, wrong }) =>
         h('li', { class: wrong ? 'bad' : '' }, `${lane}: ${wrong ? '✗ ' : ''}${verdict}`),

@@ -38,8 +38,8 @@ export function policy(model: Model) {
         ['', 'only zero, as published'],
         ['abs', 'what is small (abs:E)'],
         ['rel', 'what is small for its size (rel:K)'],
-        ['bound', 'nothing; unsure lanes decline (bound)'],
-        ['filtered', 'nothing; unsure lanes ask the exact one (filtered)'],
+        ['bound', 'nothing; if unsure, lanes decline (bound)'],
+        ['filtered', 'nothing; if unsure, lanes ask the exact one (filtered)'],
       ],
       '',
       (value) => {

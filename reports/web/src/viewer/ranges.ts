@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Extracts from a lane's steps the ranges of both triangles on a line that it compared: intervals on the line of both
-// planes, or projections on axes. Beside them the same ranges with 113 bits.
+// Extracts from a lane's steps the ranges of both triangles that it compared on a line: intervals on the line where the
+// planes meet, or projections on axes. Adds the same ranges with 113 bits.
 import type { Step } from './graze.js';
 
 export type Ends = [number, number]; // low, high
@@ -31,7 +31,7 @@ const span = ([first, ...rest]: number[]): Ends =>
   rest.reduce(([low, high], t) => [t < low ? t : low, t > high ? t : high], [first, first]);
 const same = (x: number, y: number) => x === y || (Number.isNaN(x) && Number.isNaN(y));
 
-// The ends of both triangles, from the comparisons that ordered them; swapped if only that fits the step.
+// The ends of both triangles' ranges, from the comparisons that ordered them; swapped if only that fits the step.
 function in_order(
   name: string,
   [one, other]: { lane: Ends; exact: Ends }[],
@@ -46,7 +46,7 @@ function in_order(
   return null;
 }
 
-// The intervals on the line of both planes.   Returns: null if the lane decided before it computed them.
+// The intervals on the line where the planes meet.   Returns: null if the lane decided before it computed them.
 export function intervals(run: Step[]): Ranges | null {
   const at = run.findIndex((step) => step.site === 'separation' && step.relation);
   if (at < 0) return null;
@@ -61,7 +61,7 @@ export function intervals(run: Step[]): Ranges | null {
   return two.length < 2
     ? null
     : in_order(
-        'the line of both planes',
+        'the line where the planes meet',
         two,
         (a, b) => same(relation === '<' ? a[1] : a[0], left) && same(b[0], right),
       );
@@ -99,8 +99,8 @@ export const gap = (a: Ends, b: Ends) => Math.max(b[0] - a[1], a[0] - b[1]);
 export const lane_gap = ({ a, b }: Ranges) => gap(a, b);
 export const exact_gap = ({ exact_a, exact_b }: Ranges) => gap(exact_a, exact_b);
 
-// The axis to show first: one that separates in the lane, else one that separates with 113 bits, else that of least
-// overlap.
+// The axis to show first: one that separates in the lane, otherwise one that separates with 113 bits, otherwise the one
+// with the least overlap.
 export function telling(all: Ranges[]): number {
   const size = ({ a, b }: Ranges) => Math.max(a[1], b[1]) - Math.min(a[0], b[0]) || 1;
   for (const of of [lane_gap, exact_gap]) {

@@ -23,7 +23,7 @@ export async function make_ready(stored: Stored): Promise<Ready> {
     apart = replay(graze, stored.replay);
   if (apart.length)
     throw new Error(
-      `This browser decides otherwise than the native build: ${apart.slice(0, 3).join('; ')}${apart.length > 3 ? `; and ${apart.length - 3} more` : ''}.`,
+      `This browser decides differently from the native build: ${apart.slice(0, 3).join('; ')}${apart.length > 3 ? `; and ${apart.length - 3} more` : ''}.`,
     );
   return {
     graze,
@@ -35,5 +35,5 @@ export async function make_ready(stored: Stored): Promise<Ready> {
 export const no_verdicts = (error: unknown) => [
   h('h1', {}, 'No verdicts'),
   h('p', { class: 'notice', role: 'alert', id: 'warning' }, String(error instanceof Error ? error.message : error)),
-  h('p', {}, 'The same pair in a terminal: ', h('code', {}, 'graze check FILE'), '.'),
+  h('p', {}, 'To decide the pair in a terminal: ', h('code', {}, 'graze check FILE'), '.'),
 ];

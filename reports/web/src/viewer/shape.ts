@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pair as a shape to draw. Takes exact differences from the centre and magnifies them in double before they become
-// float32, so that a single ulp is visible. Parts far outside are cut off first.
+// The pair as a shape to draw. Exact differences from the centre are magnified in double before they become float32, so
+// that a single ulp is visible. Parts far outside the drawing are cut off first.
 import type { Mark, Shape, Vec } from '../drawing';
 import { figure } from '../format';
 import { decimal, type Coordinates } from './data';
 import type { Drawing } from './graze.js';
 import type { Model } from './model';
 
-const kFar = 40; // half-widths of the board, beyond which polygons are cut
+const kFar = 40; // distance in half-widths of the board beyond which polygons are cut
 const kLongestToScale = 12;
 
 export interface Placed {
   shape: Shape;
   unit: Vec;
   middle: Vec;
-} // unit: length in coordinates that is 1 in the shape
+} // unit: the length in coordinates that is 1 in the shape
 
 const vertex = (pair: Coordinates, v: number) => [pair[3 * v], pair[3 * v + 1], pair[3 * v + 2]] as Vec;
 
-// The part of a convex polygon, or of a segment, within the box.
+// The part of a convex polygon or of a segment that is within the box.
 function cut(polygon: Vec[]): Vec[] {
   let points = polygon;
   for (let axis = 0; axis < 3; ++axis) {
@@ -62,7 +62,7 @@ function plane(corners: Vec[]): Vec[] {
   ].map(([s, t]) => middle.map((c, k) => c + s * e[k] + t * f[k]) as Vec);
 }
 
-// b's vertices projected onto a's plane, because projected_sat compares only this projection. Empty if a has no plane.
+// b's vertices projected onto a's plane, the only part of b that projected_sat compares. Empty if a has no plane.
 function shadow_of(points: Vec[]): Vec[] {
   const [p, q, r] = points,
     u = q.map((c, k) => c - p[k]),
@@ -129,7 +129,7 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
   const place = (p: readonly number[]) => [0, 1, 2].map((k) => (p[k] - middle[k]) / unit[k]) as Vec;
   const marks: Mark[] = [];
   const [a, b] = [points.slice(0, 3).map(place), points.slice(3).map(place)];
-  // The radius at which all of it fits from every direction, before magnification.
+  // The radius at which everything fits from every direction, before magnification.
   const radius =
     Math.max(
       0.6,

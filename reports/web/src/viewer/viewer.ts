@@ -25,11 +25,11 @@ import { words } from './words';
 
 function margin_words({ decided: { truth, margin } }: Model): string {
   if (truth.verdict === 'declined') return 'a coordinate is not finite';
-  if (margin.sign === 0) return 'margin exactly 0: any push parts them';
+  if (margin.sign === 0) return 'margin exactly 0: an arbitrarily short push separates them';
   const say = (x: number) => figure(x),
     [least, most] = [say(margin.least), say(margin.most)];
   const ulps = (x: number) => say(x / margin.ulp);
-  if (margin.most === Infinity) return 'margin not settled here: its sizes are too far apart';
+  if (margin.most === Infinity) return 'margin not settled here: the pair’s sizes are too far apart';
   const range =
     least === most
       ? `${least} (${ulps(margin.least)} ulps)`
@@ -37,14 +37,14 @@ function margin_words({ decided: { truth, margin } }: Model): string {
   return margin.sign > 0 ? `${range} apart` : `${range} deep`;
 }
 
-// What float32 makes of the pair, if that is not what the doubles are.
+// What float32 stores of the pair, if the truth of that differs from the truth of the doubles.
 function stored_words({ decided: { truth, stored } }: Model): string {
   if (!stored || (stored.verdict === truth.verdict && stored.contact === truth.contact)) return '';
   if (stored.verdict === 'declined') return '; float32 cannot store it';
   return `; as float32 stores it: ${stored.verdict}${stored.contact === 'none' ? '' : `, contact: ${stored.contact}`}`;
 }
 
-// The page around the viewer: its address stores the pair; keys work while it is active.
+// The page around the viewer. Its address stores the pair; keys work while the viewer is active.
 export interface Around {
   keep: (model: Model) => void;
   link: (model: Model) => string;
@@ -57,7 +57,7 @@ export interface First {
   note?: string;
 }
 
-// The vertex nearest to the contact or the gap, because moving and mapping it shows most.
+// The vertex nearest to the contact or the gap, because moving and mapping it shows the most.
 function nearest_vertex(pair: Coordinates, { contact, witness }: Drawing): number {
   const seen = contact.length ? contact : witness,
     away = [3, 4, 5, 0, 1, 2].map((v) => ({
@@ -98,7 +98,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
 
   const update_name = () => (name.textContent = many.title() ?? model.name);
 
-  // Updates text at once, drawings with the next frame, and slower parts after a moment of rest.
+  // Updates text at once, drawings with the next frame, and slower parts after a moment without changes.
   function update_text() {
     verdicts.update();
     const { decided, policy: under } = model,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Explains the chosen lane's verdict: where its run parts from that of the CPU, or from numbers of 113 bits.
+// Explains the chosen lane's verdict: where its run departs from that of the CPU, or from a run with 113 bits.
 import { h, type Child } from '../dom';
 import { apart, differing } from './apart';
 import type { Graze, Step, Verdict } from './graze.js';
@@ -14,18 +14,18 @@ function beside_exact(run: Step[], says: Verdict, with_113_bits: Verdict): Child
       h('strong', {}, with_113_bits),
       ' as well: its ',
       h('strong', {}, 'logic'),
-      ' is wrong here, not rounding.',
+      ' is wrong here, not its rounding.',
     ];
   const numbers = [wrong.left, wrong.right, wrong.exactLeft, wrong.exactRight];
   const lost = numbers.slice(0, 2).some((x) => !Number.isFinite(x))
     ? 'the numbers left their range, by overflow or underflow'
     : numbers.slice(0, 2).every((x) => x === 0) && numbers.slice(2).some((x) => x !== 0)
-      ? 'lost to zero, by underflow or in a difference'
+      ? 'the value became zero, by underflow or in a difference'
       : 'rounding';
   return [
-    'In numbers of 113 bits, where float32 has 24 and float64 53, the algorithm says ',
+    'With numbers of 113 bits (float32 has 24, float64 has 53), the algorithm says ',
     h('strong', {}, with_113_bits),
-    '. The first comparison that goes otherwise in the lane is at ',
+    '. The first comparison with a different outcome in the lane is at ',
     quoted(wrong.line),
     'The lane computes ',
     code(compared(wrong)),
@@ -103,7 +103,7 @@ export function why(model: Model) {
       return [
         of_stored,
         lane.startsWith('exact/')
-          ? 'It is the exact decision: integers of as many bits as it takes.'
+          ? 'It is the exact decision: it computes with integers of as many bits as it takes.'
           : 'Its steps are not known.',
       ];
     const wrong = model.wrong(lane) && !policy;
@@ -113,10 +113,10 @@ export function why(model: Model) {
         : h('strong', { class: wrong ? 'bad' : '' }, `It is ${wrong ? 'wrong' : 'right'}. `),
       of_stored,
       wrong && says === stored?.verdict
-        ? ['Of these its verdict is right, so the cause is ', h('strong', {}, 'rounding of the input'), '.']
+        ? ['For these its verdict is right, so the cause is ', h('strong', {}, 'rounding of the input'), '.']
         : wrong
           ? beside_exact(run, says, known!.with_113_bits)
-          : `Its ${run.filter((step) => step.relation).length} comparisons ${run.some((step) => step.relation && step.held !== step.holds) ? 'do not all go as they do with 113 bits, but the verdict stands.' : 'go as they do with 113 bits.'}`,
+          : `Its ${run.filter((step) => step.relation).length} comparisons ${run.some((step) => step.relation && step.held !== step.holds) ? 'do not all have the same outcome with 113 bits, but that does not change the verdict.' : 'have the same outcome with 113 bits.'}`,
     ];
   }
 

@@ -25,6 +25,8 @@ AgreeSpec spec_of(const Lane& first, const Lane& second, std::uint64_t pairs, co
   return spec;
 }
 
+TEST(Tolerance, MayBeSubnormal) { EXPECT_EQ(tolerance_of("plane_distance=abs:1e-320"), 1e-320); }
+
 // Compares every count with a recount by decide_one: without a policy, on ladders, and for twins.
 TEST(AgreementSweep, CountsWhatARecountCounts) {
   const auto sources = drawn(3, 3001, {"near_vertex_face", "shared_edge", "extreme_scale"});

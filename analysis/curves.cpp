@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "core/text.h"
+
 namespace graze::analysis {
 
-double tolerance_of(const std::string& policy) { return std::stod(policy.substr(policy.rfind(':') + 1)); }
+double tolerance_of(const std::string& policy) { return *parse_float64(policy.substr(policy.rfind(':') + 1)); }
 
 std::string tolerance(const std::string& site, bool relative, double value) {
   return fmt::format("{}{}{}:{:.3g}", site, site.empty() ? "" : "=", relative ? "rel" : "abs", value);

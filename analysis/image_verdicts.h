@@ -71,7 +71,8 @@ class ImageVerdicts {
   std::vector<bool> asked(const DecideBlock& block, const std::vector<PairOf>& pairs, bool until_wrong = false) const {
     std::vector<bool> right(pairs.size());
     for (std::size_t begin = 0, size; begin < pairs.size() && late_ < kMostLate; begin += size) {
-      size = std::min(foreign_at_once(asked_ >= 8 && late_ == 0 && !until_wrong), pairs.size() - begin);
+      const bool prompt = late_ == 0 && asked_ >= static_cast<int>(foreign_at_once(false));
+      size = std::min(foreign_at_once(prompt && !until_wrong), pairs.size() - begin);
       const std::vector<Verdict> verdicts = said(block, std::span(pairs).subspan(begin, size));
       std::transform(verdicts.begin(), verdicts.end(), right.begin() + static_cast<std::ptrdiff_t>(begin),
                      [this](Verdict verdict) { return verdict == truth_; });

@@ -364,9 +364,9 @@ TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
       "--lanes 'own/f32/cpu,moller*/f32/cpu' --out c --fail-above ";
   expect_error(fuzz + "0", 1, {"own", "0", "--fail-above"});
   const Ran ran = shell(fuzz + "0");
-  const std::size_t again = ran.err.find("again: ");
+  const std::size_t again = ran.err.find("to replay it: ");
   ASSERT_NE(again, std::string::npos) << ran.err;
-  const Ran repro = shell(ran.err.substr(again + 7) + " ");
+  const Ran repro = shell(ran.err.substr(again + 14) + " ");
   EXPECT_NE(repro.out.find("own/f32"), std::string::npos) << repro.out << repro.err;
   EXPECT_NE(repro.out.find("!"), std::string::npos) << repro.out;
   expect_done(fuzz + "400");  // moller is wrong too, but was not requested

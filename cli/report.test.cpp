@@ -92,7 +92,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   more = kinds;
   more["kinds"] = nlohmann::ordered_json::array();
   write("c/failures.json", more);
-  refused("no kind of moller_1997/f32/cpu");
+  refused("no kind with moller_1997/f32/cpu");
   for (const auto& [field, value, found] : {std::tuple<const char*, nlohmann::ordered_json, const char*>(
                                                 "lanes", {"x"}, "the lane \"x\", which is not an examined"),
                                             {"strata", {{"lattice", 99}}, "whose strata"},

@@ -282,7 +282,7 @@ TEST_F(Shards, StatusRefusesADamagedStatus) {
                                             {"rate", -1, "rate"},
                                             {"ways", {1}, damaged},
                                             {"ways", {way, way}, "twice"},
-                                            {"ways", {"such"}, "no hash"},
+                                            {"ways", {"such"}, "not a hash"},
                                             {"process", -1, "process"},
                                             {"hash", "", "hash"},
                                             {"updated", "x", "updated"}}) {

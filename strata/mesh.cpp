@@ -11,6 +11,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 
 #include "core/cannot.h"
@@ -89,16 +90,15 @@ std::array<Vec3<double>, 3> in_doubles(const Triangle& t) {
 // How many fans fold back over themselves, so that they do not cover their face: some triangle is turned against the
 // sum of all. Such a face is not convex. In double precision; a fold that rounding hides is narrower than that.
 std::size_t folded_fans(const Soup& soup) {
+  const auto normal = [&](const std::array<std::uint32_t, 3>& triangle) {
+    const Vec3<double>& corner = soup.in_doubles[triangle[0]];
+    return cross(soup.in_doubles[triangle[1]] - corner, soup.in_doubles[triangle[2]] - corner);
+  };
   return static_cast<std::size_t>(std::count_if(soup.fans.begin(), soup.fans.end(), [&](const auto& fan) {
-    std::vector<Vec3<double>> normals;
+    const auto triangles = std::span(soup.triangles).subspan(fan[0], fan[1] - fan[0]);
     Vec3<double> sum{0, 0, 0};
-    for (std::size_t t = fan[0]; t < fan[1]; ++t) {
-      const auto& [i, j, k] = soup.triangles[t];
-      const Vec3<double>& corner = soup.in_doubles[i];
-      normals.push_back(cross(soup.in_doubles[j] - corner, soup.in_doubles[k] - corner));
-      sum = sum + normals.back();
-    }
-    return std::any_of(normals.begin(), normals.end(), [&](const auto& normal) { return dot(normal, sum) < 0; });
+    for (const auto& triangle : triangles) sum = sum + normal(triangle);
+    return std::any_of(triangles.begin(), triangles.end(), [&](const auto& t) { return dot(normal(t), sum) < 0; });
   }));
 }
 

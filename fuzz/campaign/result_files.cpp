@@ -160,7 +160,7 @@ std::filesystem::path case_file(const std::filesystem::path& directory, const Js
 
 corpus::FormatError wrong_cases(const std::filesystem::path& directory, const Json& row, const std::string& found) {
   const std::string again = has_database(directory)
-                                ? "remove this file, then run: " + command_of(recorded_spec(directory), {}, directory)
+                                ? "remove this file, then: " + command_of(recorded_spec(directory), {}, directory)
                                 : "restore this file from a copy of the campaign";
   return corpus::FormatError(cannot("use", case_file(directory, row),
                                     fmt::format("{}; it should hold the cases of the signature {}; {}", found,
@@ -188,8 +188,7 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
     throw refuse(std::string("it is not a file of pairs: ") + error.what());
   }
   const std::string head = signature_line(key, count);
-  if (text.compare(text.find('\n') + 1, head.size(), head) != 0)
-    throw refuse("its second line is not that of this signature");
+  if (text.compare(text.find('\n') + 1, head.size(), head) != 0) throw refuse("its head is not that of this signature");
   std::size_t kept = 0;
   const std::set<std::string> strata = spec.at("strata");
   std::set<std::string> origins;
@@ -214,8 +213,8 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
     if (!has_its_truth(entry, *own) || (!result && !belongs(entry)))
       throw refuse(fmt::format("line {} has a pair that does not belong to the campaign", entry.line));
   }
-  if (kept != std::min<std::uint64_t>(count, kKeptCases))
-    throw refuse(fmt::format("it has the wrong number of cases: {}", kept));
+  const std::uint64_t due = std::min<std::uint64_t>(count, kKeptCases);
+  if (kept != due) throw refuse(fmt::format("it has {} cases instead of {}", kept, due));
   return entries;
 }
 

@@ -22,12 +22,6 @@
 namespace graze {
 namespace {
 
-Verdict decide(const Lane& lane, const Pair& pair) {
-  std::uint64_t intersects = 0, declined = 0;
-  lane.decide(&pair, 1, &intersects, &declined);
-  return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
-}
-
 std::vector<const Lane*> host_lanes() {
   std::vector<const Lane*> host;
   for (const Lane& lane : lanes()) {
@@ -81,7 +75,7 @@ TEST_P(EveryHostLane, IsRightOnHandExamplesInAllOrders) {
       const auto& first = order < 36 ? example.pair.a : example.pair.b;
       const auto& second = order < 36 ? example.pair.b : example.pair.a;
       const Pair pair{{first[p[0]], first[p[1]], first[p[2]]}, {second[q[0]], second[q[1]], second[q[2]]}};
-      EXPECT_EQ(name(decide(*GetParam(), pair)), name(example.truth)) << example.what << ", order " << order;
+      EXPECT_EQ(name(decide_one(GetParam()->decide, pair)), name(example.truth)) << example.what << ", order " << order;
     }
   }
 }
@@ -96,7 +90,7 @@ TEST_P(EveryHostLane, DoesNotSeePowersOfTwo) {
       coordinates(pair)[c] = uniform(random) * (c % 3 == 2 ? 0x1p-20f : 1.0f);
       coordinates(scaled)[c] = coordinates(pair)[c] * 4;
     }
-    EXPECT_EQ(decide(*GetParam(), pair), decide(*GetParam(), scaled)) << "pair " << i;
+    EXPECT_EQ(decide_one(GetParam()->decide, pair), decide_one(GetParam()->decide, scaled)) << "pair " << i;
   }
 }
 
@@ -192,14 +186,9 @@ TEST(Algorithms, IncludeNoOtherAlgorithm) {
 // Figure 3.4 of the thesis: both plane tests pass and the projections overlap, but the triangles are disjoint.
 TEST(ProjectedSat, HasTheFalsePositiveOfTheThesis) {
   const Pair pair{{{0, 0, 0}, {8, 0, 0}, {0, 8, 0}}, {{1, 1, 4}, {6, 6, 4}, {6, 6, -1}}};
-  Vec3<double> a[3], b[3];
-  for (int i = 0; i < 3; ++i) {
-    a[i] = {pair.a[i].x, pair.a[i].y, pair.a[i].z};
-    b[i] = {pair.b[i].x, pair.b[i].y, pair.b[i].z};
-  }
-  EXPECT_EQ(ProjectedSat::decide(a, b), kYes);
-  EXPECT_EQ(IntervalOverlap::decide(a, b), kNo);
-  EXPECT_EQ(Moller1997::decide(a, b), kNo);
+  EXPECT_EQ((decide_widened<ProjectedSat, double>(pair)), kYes);
+  EXPECT_EQ((decide_widened<IntervalOverlap, double>(pair)), kNo);
+  EXPECT_EQ((decide_widened<Moller1997, double>(pair)), kNo);
 }
 
 // With one NaN coordinate, wherever it is, Moller's test says intersects, because no comparison rejects the pair.
@@ -214,12 +203,7 @@ TEST(Moller1997, SaysIntersectsOfNaN) {
 template <class Real, class Algorithm>
 void expect_right_in(const char* scalar) {
   for (const Example& example : kExamples) {
-    Vec3<Real> a[3], b[3];
-    for (int i = 0; i < 3; ++i) {
-      a[i] = {Real(example.pair.a[i].x), Real(example.pair.a[i].y), Real(example.pair.a[i].z)};
-      b[i] = {Real(example.pair.b[i].x), Real(example.pair.b[i].y), Real(example.pair.b[i].z)};
-    }
-    EXPECT_EQ(Algorithm::decide(a, b), example.truth)
+    EXPECT_EQ((decide_widened<Algorithm, Real>(example.pair)), example.truth)
         << example.what << " in " << scalar << " by " << Algorithm::kInfo.id;
   }
 }

@@ -9,7 +9,6 @@
 #include <cstring>
 #include <limits>
 #include <string_view>
-#include <type_traits>
 
 #include "core/pair.h"
 
@@ -41,7 +40,7 @@ BasicPair<Real> pair_of(std::string_view bytes) {
 // Like pair_of, but the exponent of a coordinate that is not finite is one less, which makes it finite.
 template <class Real = float>
 BasicPair<Real> finite_pair_of(std::string_view bytes) {
-  using Bits = std::conditional_t<sizeof(Real) == sizeof(float), std::uint32_t, std::uint64_t>;
+  using Bits = BitsOf<Real>;
   BasicPair<Real> pair = pair_of<Real>(bytes);
   for (int i = 0; i < kCoordinates; ++i) {
     Real& x = coordinates(pair)[i];

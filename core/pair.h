@@ -23,6 +23,10 @@ static_assert(sizeof(Pair) == 72 && sizeof(DoublePair) == 144);
 
 inline constexpr int kCoordinates = 18;
 
+// The unsigned integer that is as wide as the number.
+template <class Real>
+using BitsOf = std::conditional_t<sizeof(Real) == sizeof(float), std::uint32_t, std::uint64_t>;
+
 // The coordinate types of the pairs that a reader takes or a source draws.
 enum class PairTypes { f32, f64, both };
 
@@ -38,7 +42,7 @@ Real* coordinates(BasicPair<Real>& pair) {
 
 template <class Real>
 bool is_finite(const BasicPair<Real>& pair) {
-  using Bits = std::conditional_t<std::is_same_v<Real, float>, std::uint32_t, std::uint64_t>;
+  using Bits = BitsOf<Real>;
   constexpr Bits kExponent = std::is_same_v<Real, float> ? Bits{0x7f800000u} : static_cast<Bits>(0x7ff0000000000000u);
   unsigned others = 0;  // no branch for each coordinate, so that this becomes vector instructions
   for (int i = 0; i < kCoordinates; ++i)

@@ -39,10 +39,6 @@ std::string cut_in_quotes(std::string_view text, std::size_t longest) {
   return text.size() <= longest ? in_quotes(text) : in_quotes(text.substr(0, longest)) + "...";
 }
 
-}  // namespace
-
-namespace {
-
 float rounded_by_library(const std::string& text, float) { return std::strtof(text.c_str(), nullptr); }
 double rounded_by_library(const std::string& text, double) { return std::strtod(text.c_str(), nullptr); }
 
@@ -66,13 +62,6 @@ std::optional<Real> parse_real(std::string_view text) {
   }
   return negative ? -magnitude : magnitude;
 }
-
-}  // namespace
-
-std::optional<float> parse_float32(std::string_view text) { return parse_real<float>(text); }
-std::optional<double> parse_float64(std::string_view text) { return parse_real<double>(text); }
-
-namespace {
 
 // A number without its sign: 0.DIGITS * 10^exponent, or 0.DIGITS * 16^exponent with any binary exponent left out.
 struct Digits {
@@ -100,6 +89,9 @@ struct Digits {
 };
 
 }  // namespace
+
+std::optional<float> parse_float32(std::string_view text) { return parse_real<float>(text); }
+std::optional<double> parse_float64(std::string_view text) { return parse_real<double>(text); }
 
 bool is_exactly(std::string_view text, double value) {
   if (const std::size_t x = text.find_first_of("xX"); x != text.npos) {

@@ -34,9 +34,10 @@ bool is_key_char(char c) {
 bool is_punctuation(char c) { return std::string_view(",;{}[]()").find(c) != std::string_view::npos; }
 bool is_opening(char c) { return std::string_view(",{[(").find(c) != std::string_view::npos; }
 
-// The name of coordinate i of a pair: a[0].x ... b[2].z.
-std::string coordinate_name(std::size_t i) {
-  return {i < 9 ? 'a' : 'b', '[', "012"[i % 9 / 3], ']', '.', "xyz"[i % 3]};
+// Number i of a pair, from 0, in a message: "number 1 (a[0].x)" to "number 18 (b[2].z)".
+std::string numbered(std::size_t i) {
+  return "number " + std::to_string(i + 1) + " (" + (i < 9 ? 'a' : 'b') + '[' + "012"[i % 9 / 3] + "]." + "xyz"[i % 3] +
+         ')';
 }
 
 // The unread rest of a line.
@@ -60,33 +61,35 @@ struct Line {
     return taken;
   }
 
-  // Takes the text up to the next white space.
-  std::string_view take_word() {
-    return take(static_cast<std::size_t>(std::find_if(rest.begin(), rest.end(), is_space) - rest.begin()));
+  // Takes the text up to the next character that ends it.
+  template <class Ends>
+  std::string_view take_until(const Ends& ends) {
+    return take(static_cast<std::size_t>(std::find_if(rest.begin(), rest.end(), ends) - rest.begin()));
   }
+
+  // Takes the text up to the next white space.
+  std::string_view take_word() { return take_until(is_space); }
 
   // Takes the text up to the next white space, punctuation or '|'.
   std::string_view take_number() {
-    const auto ends = [](char c) { return is_space(c) || is_punctuation(c) || c == '|'; };
-    return take(static_cast<std::size_t>(std::find_if(rest.begin(), rest.end(), ends) - rest.begin()));
+    return take_until([](char c) { return is_space(c) || is_punctuation(c) || c == '|'; });
   }
 };
 
 // Skips text such as "float t[2][3][3] =", or "Vec3 a" before a bracket.   Returns: whether there was any.
 bool skip_name(Line& line) {
-  const char first = line.rest[0];
-  if (std::isalpha(static_cast<unsigned char>(first)) == 0 && first != '_') return false;
+  const auto begins = [](const Line& at) {
+    return std::isalpha(static_cast<unsigned char>(at.rest[0])) != 0 || at.rest[0] == '_';
+  };
+  if (!begins(line)) return false;
   if (const std::size_t assigned = line.rest.find('='); assigned < line.rest.find('|')) {
     line.take(assigned + 1);
     return true;
   }
   // One or more names, then a bracket.
   Line ahead(line);
-  while (!ahead.at_end() && (std::isalpha(static_cast<unsigned char>(ahead.rest[0])) != 0 || ahead.rest[0] == '_')) {
-    const auto is_name = [](char c) { return is_key_char(c) || c == ':' || c == '<' || c == '>'; };
-    ahead.take(
-        static_cast<std::size_t>(std::find_if_not(ahead.rest.begin(), ahead.rest.end(), is_name) - ahead.rest.begin()));
-  }
+  while (!ahead.at_end() && begins(ahead))
+    ahead.take_until([](char c) { return !is_key_char(c) && c != ':' && c != '<' && c != '>'; });
   if (ahead.at_end() || std::string_view("([{").find(ahead.rest[0]) == std::string_view::npos) return false;
   line = ahead;
   return true;
@@ -108,10 +111,9 @@ bool is_hex(std::string_view number) { return number.find('x') != number.npos ||
 struct Draft {
   Entry entry;
   std::size_t count = 0;
-  bool open = false;  // the last line ended with a comma or an opening bracket
-  std::string where;  // FILE:LINE of the first line with a number
-  // The first number that needs a double, if any.
-  std::optional<std::size_t> only_double;
+  bool open = false;                       // the last line ended with a comma or an opening bracket
+  std::string where;                       // FILE:LINE of the first line with a number
+  std::optional<std::size_t> only_double;  // the first number that needs a double
 };
 
 // The oracle takes numbers as they are written, and exact numbers with such an exponent would fill the memory.
@@ -135,10 +137,7 @@ void take_numbers(Line& line, Draft& draft) {
     const std::string_view word = line.take_number(), number = number_in(word);
     draft.open = false;
     if (draft.count < kCoordinates) {
-      if (number.empty()) {
-        line.fail("a number as number " + std::to_string(draft.count + 1) + " (" + coordinate_name(draft.count) + ")",
-                  shown(word));
-      }
+      if (number.empty()) line.fail("a number as " + numbered(draft.count), shown(word));
       if (has_long_exponent(number)) line.fail("a number with an exponent of at most five digits", shown(word));
       if (draft.count == 0) draft.where = line.where;
       const double value = *parse_float64(number);
@@ -184,8 +183,7 @@ std::string take_quoted(Line& line, const std::string& key) {
 
 std::pair<std::string, std::string> take_field(Line& line) {
   const Line whole = line;
-  const auto key_end = std::find_if_not(line.rest.begin(), line.rest.end(), is_key_char);
-  const std::string key(line.take(static_cast<std::size_t>(key_end - line.rest.begin())));
+  const std::string key(line.take_until([](char c) { return !is_key_char(c); }));
   const bool has_value = line.take(1) == "=" && !line.rest.empty() && !is_space(line.rest[0]);
   if (key.empty() || !has_value) line.fail("a field key=value", shown(Line(whole).take_word()));
   if (line.rest[0] != '"') return {key, std::string(line.take_word())};
@@ -212,7 +210,7 @@ void take_type(Draft& draft, PairTypes taken) {
     refuse("expected coordinates=f32 or coordinates=f64, found " + shown(*type));
   const auto number = [&] {
     const std::size_t i = draft.only_double.value_or(0);
-    return "number " + std::to_string(i + 1) + " (" + coordinate_name(i) + "), " + shown(entry.written[i]);
+    return numbered(i) + ", " + shown(entry.written[i]);
   };
   if (type ? *type == kOfFloats : !draft.only_double) {
     if (draft.only_double) refuse("coordinates=f32, but float32 cannot hold " + number());

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -25,11 +26,7 @@ constexpr float kSmallest = std::numeric_limits<float>::denorm_min();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-std::uint32_t bits(float value) {
-  std::uint32_t result;
-  std::memcpy(&result, &value, sizeof result);
-  return result;
-}
+std::uint32_t bits(float value) { return std::bit_cast<std::uint32_t>(value); }
 
 std::string write(const Entry& entry) {
   std::ostringstream out;
@@ -78,8 +75,7 @@ TEST(HexFloat, EveryKindOfFloatReadsBack) {
   for (int i = 0; i < 200000; ++i) {
     auto pattern = static_cast<std::uint32_t>(random());
     if (i % 4 == 0) pattern &= 0x807fffffu;  // subnormal
-    float value;
-    std::memcpy(&value, &pattern, sizeof value);
+    const auto value = std::bit_cast<float>(pattern);
     const std::optional<float> back = parse_float32(hex_float(value));
     ASSERT_TRUE(back) << hex_float(value);
     if (std::isnan(value)) {

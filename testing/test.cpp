@@ -65,9 +65,6 @@ struct Tested {
     decide(&pair, 1, &verdict);
     return verdict;
   }
-  bool accepts(Verdict verdict, const Pair& pair, const Relation& relation) const {
-    return graze::accepts(outside, verdict, pair, relation);
-  }
 };
 
 // Shrinks the pair as long as its relation and the wrong verdict stay the same.
@@ -76,7 +73,7 @@ Pair smallest_like(Pair pair, const Tested& tested) {
   const Verdict verdict = tested.decide(pair);
   std::size_t calls = 0, moved = 0;
   const auto alike = [&](const Pair& candidate) {
-    return relation_of(candidate) == relation && !tested.accepts(verdict, candidate, relation) &&
+    return relation_of(candidate) == relation && !accepts(tested.outside, verdict, candidate, relation) &&
            ++calls < kMostCalls && tested.decide(candidate) == verdict;
   };
   int in_vain = 0;
@@ -209,7 +206,7 @@ TestResult tested_with(std::string_view name, const Tested& tested, const std::v
         const Pair& pair = pairs[i];
         const Relation relation = relation_of(pair);
         if (verdicts[i] == relation.verdict) continue;
-        if (tested.accepts(verdicts[i], pair, relation)) {
+        if (accepts(tested.outside, verdicts[i], pair, relation)) {
           ++row.counts.by_convention;
           continue;
         }

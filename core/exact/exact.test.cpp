@@ -420,21 +420,13 @@ TEST(Exact, WideIntegersMultiplyByOneLimb) {
   for (int i = 0; i < 100'000; ++i) {
     const auto l = static_cast<Int128>(static_cast<std::int64_t>(random())) * static_cast<std::int64_t>(random() >> 2);
     const auto r = static_cast<std::int64_t>(i % 5 == 0 ? random() & 1 : random());
-    Wide<3> other(0);
-    other.limb[0] = static_cast<std::uint64_t>(r);
-    other.limb[1] = other.limb[2] = r < 0 ? ~std::uint64_t{0} : 0;
-    ASSERT_TRUE(Wide<3>(l) * r == Wide<3>(l) * other) << i;
+    ASSERT_TRUE(Wide<3>(l) * r == Wide<3>(l) * Wide<3>(Int128{r})) << i;
   }
 }
 
 TEST(Exact, WideIntegersMultiplyAndCompare) {
   using detail::Wide;
-  const auto wide = [](std::int64_t x) {
-    Wide<5> w;
-    w.limb[0] = static_cast<std::uint64_t>(x);
-    for (int i = 1; i < 5; ++i) w.limb[i] = x < 0 ? ~std::uint64_t{0} : 0;
-    return w;
-  };
+  const auto wide = [](std::int64_t x) { return Wide<5>(detail::Int128{x}); };
   const std::int64_t values[] = {0, 1, -1, 3, -7, 1ll << 62, -(1ll << 62), 0x7fffffffffffffff};
   for (const std::int64_t l : values) {
     for (const std::int64_t r : values) {

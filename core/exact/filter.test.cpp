@@ -80,7 +80,7 @@ TEST(Filter, FindsNothingThatIsNotSo) {
       const Coordinates c = kind.draw(random);
       const Finding found = portable::filter(c.a, c.b);
       if (found == Finding::unsure) continue;
-      const bool intersects = AllNumbers::visit(grid_of(c.a, c.b), [&](auto numbers) {
+      const bool intersects = KindsFor<float>::All::visit(grid_of(c.a, c.b), [&](auto numbers) {
         return by_axes(triangles<decltype(numbers)>(c.a, c.b, grid_of(c.a, c.b).exponent)).intersects();
       });
       ASSERT_EQ(found, intersects ? Finding::crosses : Finding::disjoint) << kind.name << ' ' << i;

@@ -102,17 +102,15 @@ struct NumberKinds {
     return visit(Kind());
   }
 };
-using MachineNumbers = NumberKinds<DoubleNumbers, NarrowNumbers, IntNumbers>;
 using MultiwordNumbers = NumberKinds<LongNumbers, WideNumbers>;
-using AllNumbers = NumberKinds<DoubleNumbers, NarrowNumbers, IntNumbers, LongNumbers, WideNumbers>;
 
 // The kinds of numbers for a coordinate type: those so cheap that all determinants are computed exactly, and those for
 // which each determinant is first bounded.
 template <class Real>
 struct KindsFor {
-  using Machine = MachineNumbers;
+  using Machine = NumberKinds<DoubleNumbers, NarrowNumbers, IntNumbers>;
   using Multiword = MultiwordNumbers;
-  using All = AllNumbers;
+  using All = NumberKinds<DoubleNumbers, NarrowNumbers, IntNumbers, LongNumbers, WideNumbers>;
 };
 template <>
 struct KindsFor<double> {

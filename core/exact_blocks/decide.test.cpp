@@ -4,7 +4,6 @@
 #include "core/exact_blocks/decide.h"
 
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
 #include <array>
 #include <cmath>
@@ -15,50 +14,27 @@
 #include <string>
 #include <vector>
 
+#include "core/every_target_testing.h"
 #include "core/exact/exact.h"
 
 namespace graze::exact {
 namespace {
 
-class ExactBlocks : public testing::Test {
- protected:
-  ~ExactBlocks() override { take(hwy::SupportedTargets()); }
-
-  static void take(std::int64_t targets) {
-    hwy::SetSupportedTargetsForTest(targets);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+// Checks both bits of every pair, and zeros after the last pair.
+template <class Real>
+void expect_as_each_alone(const std::vector<Real>& pairs, const std::string& what = "") {
+  const std::size_t count = pairs.size() / 18, words = (count + 63) / 64;
+  std::vector<std::uint64_t> yes(words + 1, ~0ull), declined(words + 1, ~0ull);
+  decide(pairs.data(), count, yes.data(), declined.data());
+  for (std::size_t i = 0; i < words * 64; ++i) {
+    bool finite = i < count, meet = false;
+    for (std::size_t c = 0; finite && c < 18; ++c) finite = std::isfinite(pairs[18 * i + c]);
+    if (finite) meet = intersects(&pairs[18 * i], &pairs[18 * i + 9]);
+    ASSERT_EQ(yes[i / 64] >> i % 64 & 1, meet) << what << ", pair " << i << " of " << count;
+    ASSERT_EQ(declined[i / 64] >> i % 64 & 1, i < count && !finite) << what << ", pair " << i << " of " << count;
   }
-
-  // Calls check with the name of each instruction set that this processor supports.   Returns: the names.
-  template <class Check>
-  static std::set<std::string> on_every_target(const Check& check) {
-    hwy::SetSupportedTargetsForTest(0);
-    std::set<std::string> names;
-    for (std::int64_t all = hwy::SupportedTargets() & HWY_TARGETS; all != 0; all &= all - 1) {
-      take(all & -all);
-      names.insert(decide_target());
-      check(decide_target());
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    return names;
-  }
-
-  // Checks both bits of every pair, and zeros after the last pair.
-  template <class Real>
-  static void expect_as_each_alone(const std::vector<Real>& pairs, const std::string& what) {
-    const std::size_t count = pairs.size() / 18, words = (count + 63) / 64;
-    std::vector<std::uint64_t> yes(words + 1, ~0ull), declined(words + 1, ~0ull);
-    decide(pairs.data(), count, yes.data(), declined.data());
-    for (std::size_t i = 0; i < words * 64; ++i) {
-      bool finite = i < count, meet = false;
-      for (std::size_t c = 0; finite && c < 18; ++c) finite = std::isfinite(pairs[18 * i + c]);
-      if (finite) meet = intersects(&pairs[18 * i], &pairs[18 * i + 9]);
-      ASSERT_EQ(yes[i / 64] >> i % 64 & 1, meet) << what << ", pair " << i << " of " << count;
-      ASSERT_EQ(declined[i / 64] >> i % 64 & 1, i < count && !finite) << what << ", pair " << i << " of " << count;
-    }
-    EXPECT_EQ(yes[words] & declined[words], ~0ull) << "wrote past the end";
-  }
-};
+  EXPECT_EQ(yes[words] & declined[words], ~0ull) << "wrote past the end";
+}
 
 template <class Real = float>
 std::vector<Real> drawn(std::size_t pairs, auto coordinate) {
@@ -92,7 +68,7 @@ std::vector<float> contacts(int exponent) {
   return drawn(1024, [&] { return pair[next++ % 18]; });
 }
 
-TEST_F(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
+TEST(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
   std::mt19937_64 random(7);
   const auto whole = [&](int bits) {
     return static_cast<float>(static_cast<std::int64_t>(random() >> (63 - bits)) - (std::int64_t{1} << bits));
@@ -158,9 +134,11 @@ TEST_F(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
                                    return x;
                                  })},
   };
-  const std::set<std::string> names = on_every_target([&](const std::string& target) {
-    for (const auto& [kind, pairs] : kinds) expect_as_each_alone(pairs, target + ", " + kind);
-    for (const auto& [kind, pairs] : of_doubles) expect_as_each_alone(pairs, target + ", doubles, " + kind);
+  std::set<std::string> names;
+  on_every_target([&] {
+    names.insert(decide_target());
+    for (const auto& [kind, pairs] : kinds) expect_as_each_alone(pairs, kind);
+    for (const auto& [kind, pairs] : of_doubles) expect_as_each_alone(pairs, "doubles, " + kind);
   });
   EXPECT_TRUE(names.contains("scalar") || names.size() > 1) << "only one way of computing was tested";
   std::string all;
@@ -168,25 +146,23 @@ TEST_F(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
   RecordProperty("targets", all);
 }
 
-TEST_F(ExactBlocks, AreOfAnySizeAndDeclineWhatIsNotFinite) {
+TEST(ExactBlocks, AreOfAnySizeAndDeclineWhatIsNotFinite) {
   std::mt19937 random(8);
-  std::vector<float> pairs = drawn(1100, [&] { return static_cast<float>(random() % 9); });
-  const std::vector<double> doubles = [&] {
-    std::vector<double> all = drawn<double>(600, [&] { return static_cast<double>(random() % 9); });
+  const auto with_some_not_finite = [&]<class Real>(std::vector<Real> all) {
     for (std::size_t i = 0; i < all.size(); i += 18 * 5 + 7)
-      all[i] = i % 2 == 0 ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+      all[i] = i % 2 == 0 ? std::numeric_limits<Real>::infinity() : std::numeric_limits<Real>::quiet_NaN();
     return all;
-  }();
-  for (std::size_t i = 0; i < pairs.size(); i += 18 * 5 + 7)
-    pairs[i] = i % 2 == 0 ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
-  on_every_target([&](const std::string& target) {
-    for (std::size_t count = 0; count <= 140; ++count)
-      expect_as_each_alone<float>({pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(18 * count)}, target);
-    for (const std::size_t count : {1, 3, 8, 9, 64, 255, 256, 257, 511, 512, 513, 600})
-      expect_as_each_alone<double>({doubles.begin(), doubles.begin() + static_cast<std::ptrdiff_t>(18 * count)},
-                                   target);
-    for (const std::size_t count : {511, 512, 513, 1023, 1100})
-      expect_as_each_alone<float>({pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(18 * count)}, target);
+  };
+  const auto digit = [&] { return static_cast<float>(random() % 9); };
+  const std::vector<float> pairs = with_some_not_finite(drawn(1100, digit));
+  const std::vector<double> doubles = with_some_not_finite(drawn<double>(600, digit));
+  on_every_target([&] {
+    for (std::ptrdiff_t count = 0; count <= 140; ++count)
+      expect_as_each_alone<float>({pairs.begin(), pairs.begin() + 18 * count});
+    for (const std::ptrdiff_t count : {1, 3, 8, 9, 64, 255, 256, 257, 511, 512, 513, 600})
+      expect_as_each_alone<double>({doubles.begin(), doubles.begin() + 18 * count});
+    for (const std::ptrdiff_t count : {511, 512, 513, 1023, 1100})
+      expect_as_each_alone<float>({pairs.begin(), pairs.begin() + 18 * count});
   });
 }
 

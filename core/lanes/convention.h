@@ -3,20 +3,11 @@
 #pragma once
 
 #include "core/exact/relation.h"
+#include "core/exact/shared_vertex.h"
 #include "core/lanes/lanes.h"
 #include "core/pair.h"
 
 namespace graze {
-
-template <class Real>
-bool share_a_vertex(const BasicPair<Real>& pair) {
-  for (const Vec3<Real>& a : pair.a) {
-    for (const Vec3<Real>& b : pair.b) {
-      if (a.x == b.x && a.y == b.y && a.z == b.z) return true;
-    }
-  }
-  return false;
-}
 
 // outside: a sum of Outside.   Requires: finite coordinates; `truth` is the pair's truth.
 template <class Real>
@@ -25,7 +16,7 @@ bool is_outside(unsigned outside, const BasicPair<Real>& pair, const Relation& t
   return (outside & kOutsideTouching && truth.touches() && truth.contact != Contact::area) ||
          (outside & kOutsideCoplanar && hulls.coplanar) ||
          (outside & kOutsideDegenerate && (hulls.dimension_a < 2 || hulls.dimension_b < 2)) ||
-         (outside & kOutsideShared && share_a_vertex(pair));
+         (outside & kOutsideShared && exact::detail::shared_vertex(&pair.a[0].x, &pair.b[0].x) >= 0);
 }
 
 }  // namespace graze

@@ -12,7 +12,6 @@
 #include "core/error.h"
 #include "core/exact_blocks/decide.h"
 #include "core/lanes/host_blocks.h"
-#include "core/lanes/named_policies.h"
 #include "core/lanes/vector_blocks.h"
 
 namespace graze {
@@ -213,7 +212,9 @@ std::optional<PolicyPattern> split(std::string_view pattern) {
   const std::size_t slash = pattern.rfind('/');
   if (slash == pattern.npos) return std::nullopt;
   const std::string_view last = pattern.substr(slash + 1);
-  if (last.find(':') == last.npos && !is_named_policy(last)) return std::nullopt;
+  const bool is_named =
+      std::find(std::begin(kNamedPolicies), std::end(kNamedPolicies), last) != std::end(kNamedPolicies);
+  if (last.find(':') == last.npos && !is_named) return std::nullopt;
   return PolicyPattern{std::string(pattern.substr(0, slash)), std::string(last)};
 }
 
@@ -283,20 +284,6 @@ void DecideBlock::operator()(const DoublePair* pairs, std::size_t count, std::ui
   if (foreign_) return foreign_->decide_doubles(pairs, count, intersects, declined);
   doubles_.decide(epsilons_, pairs, count, intersects, declined);
 }
-
-namespace {
-
-template <class AnyPair>
-Verdict decide_one_of(const DecideBlock& block, const AnyPair& pair) {
-  std::uint64_t intersects = 0, declined = 0;
-  block(&pair, 1, &intersects, &declined);
-  return block.verdict_of(intersects & 1, declined & 1, pair);
-}
-
-}  // namespace
-
-Verdict decide_one(const DecideBlock& block, const Pair& pair) { return decide_one_of(block, pair); }
-Verdict decide_one(const DecideBlock& block, const DoublePair& pair) { return decide_one_of(block, pair); }
 
 bool runs_on_this_cpu(const Lane& lane) {
   if (lane.is_cuda()) return false;

@@ -69,18 +69,21 @@ struct DecideFunctions {
   bool operator==(const DecideFunctions&) const = default;
 };
 
+// The verdict that two bits encode for a lane of ours.
+constexpr Verdict verdict_of_bits(bool intersects, bool declined) {
+  return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
+}
+
 // Decides pairs[0..count). Bit i % 64 of word i / 64: intersects, or declined. Unused bits become zero. Lanes in double
 // take pairs of both coordinate types; others only float32.
 // Requires: room for (count + 63) / 64 words in each of the two arrays.
 class DecideBlock {
  public:
   using Function = DecideFunction<Pair>;
-  using Within = DecideWithin<Pair>;
   using Floats = DecideFunctions<Pair>;
   using Doubles = DecideFunctions<DoublePair>;
 
   constexpr DecideBlock(Function function = nullptr) : floats_{function} {}
-  DecideBlock(Within within, const Epsilons& epsilons) : floats_{.within = within}, epsilons_(epsilons) {}
   DecideBlock(const Floats& floats, const Doubles& doubles, const Epsilons& epsilons = {})
       : floats_(floats), doubles_(doubles), epsilons_(epsilons) {}
   DecideBlock(ForeignCode& foreign) : foreign_(&foreign) {}
@@ -103,7 +106,7 @@ class DecideBlock {
         return foreign_->failure_on_doubles(pair);
       }
     }
-    return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
+    return verdict_of_bits(intersects, declined);
   }
 
  private:
@@ -113,14 +116,13 @@ class DecideBlock {
   ForeignCode* foreign_ = nullptr;
 };
 
-// The verdict that two bits encode for a lane of ours.
-constexpr Verdict verdict_of_bits(bool intersects, bool declined) {
-  return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
-}
-
 // The block's verdict on one pair.
-Verdict decide_one(const DecideBlock& block, const Pair& pair);
-Verdict decide_one(const DecideBlock& block, const DoublePair& pair);
+template <class Real>
+Verdict decide_one(const DecideBlock& block, const BasicPair<Real>& pair) {
+  std::uint64_t intersects = 0, declined = 0;
+  block(&pair, 1, &intersects, &declined);
+  return block.verdict_of(intersects & 1, declined & 1, pair);
+}
 
 // Pairs that a subject does not promise to decide; see subjects/include/graze/subject.h.
 enum Outside : unsigned { kOutsideTouching = 1, kOutsideCoplanar = 2, kOutsideDegenerate = 4, kOutsideShared = 8 };

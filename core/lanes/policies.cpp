@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <set>
 
 #include "core/error.h"
-#include "core/lanes/named_policies.h"
 #include "core/text.h"
 
 namespace graze {

@@ -18,6 +18,9 @@
 
 namespace graze {
 
+// The policies that are one word. All other policies are tolerances ("rel:8").
+inline constexpr std::string_view kNamedPolicies[] = {"paper", "bound", "filtered"};
+
 struct Policy {
   enum class Kind { tolerances, bound, filtered };
   Kind kind = Kind::tolerances;

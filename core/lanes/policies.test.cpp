@@ -9,7 +9,6 @@
 #include "core/algorithms/algorithms.h"
 #include "core/error.h"
 #include "core/lanes/lanes.h"
-#include "core/lanes/named_policies.h"
 #include "core/lanes/with_error_bound.h"
 
 namespace graze {
@@ -31,19 +30,20 @@ std::string refusal(const std::string& id) {
   return "accepted";
 }
 
-// Two parallel triangles, half their size apart, scaled.
-Pair apart(float scale) {
-  Pair pair{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0.5f}, {1, 0, 0.5f}, {0, 1, 0.5f}}};
+Pair scaled(Pair pair, float scale) {
   for (int c = 0; c < kCoordinates; ++c) coordinates(pair)[c] *= scale;
   return pair;
+}
+
+// Two parallel triangles, half their size apart, scaled.
+Pair apart(float scale) {
+  return scaled({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0.5f}, {1, 0, 0.5f}, {0, 1, 0.5f}}}, scale);
 }
 
 // b stands upright above a; its lowest vertex is 2^-k of the size away from a's interior.
 Pair above(int k, float scale) {
   const float gap = std::ldexp(1.0f, -k);
-  Pair pair{{{0, 0, 0}, {3, 0, 1}, {0, 3, 1}}, {{0.75f, 0.75f, 0.5f + gap}, {1, 2, 4}, {2, 1, 4}}};
-  for (int c = 0; c < kCoordinates; ++c) coordinates(pair)[c] *= scale;
-  return pair;
+  return scaled({{{0, 0, 0}, {3, 0, 1}, {0, 3, 1}}, {{0.75f, 0.75f, 0.5f + gap}, {1, 2, 4}, {2, 1, 4}}}, scale);
 }
 
 TEST(Policies, OfMollersPaperBreakBelowTheScaleItWasMadeFor) {

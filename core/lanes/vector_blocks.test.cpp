@@ -4,7 +4,6 @@
 #include "core/lanes/vector_blocks.h"
 
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
 #include <bit>
 #include <cmath>
@@ -12,31 +11,13 @@
 #include <vector>
 
 #include "core/algorithms/algorithms.h"
+#include "core/every_target_testing.h"
 
 namespace graze {
 namespace {
 
 class VectorBlocks : public testing::TestWithParam<Scalar> {
  protected:
-  ~VectorBlocks() override { take(hwy::SupportedTargets()); }
-
-  static void take(std::int64_t targets) {
-    hwy::SetSupportedTargetsForTest(targets);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-
-  // Calls check for each instruction set that this processor supports.
-  template <class Check>
-  static void on_every_target(const Check& check) {
-    hwy::SetSupportedTargetsForTest(0);
-    for (std::int64_t all = hwy::SupportedTargets() & HWY_TARGETS; all != 0; all &= all - 1) {
-      SCOPED_TRACE(hwy::TargetName(all & -all));
-      take(all & -all);
-      check();
-    }
-    hwy::SetSupportedTargetsForTest(0);
-  }
-
   static Verdict alone(const Pair& pair) {
     return GetParam() == Scalar::f32 ? decide_widened<SeparatingAxes, float>(pair)
                                      : decide_widened<SeparatingAxes, double>(pair);

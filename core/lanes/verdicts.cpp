@@ -2,7 +2,6 @@
 #include "core/lanes/verdicts.h"
 
 namespace graze {
-
 namespace {
 
 template <class AnyPair>
@@ -12,6 +11,17 @@ void decide_all(const DecideBlock& block, std::span<const AnyPair> pairs, Verdic
   if (!pairs.empty()) block(pairs.data(), pairs.size(), to.intersects.data(), to.declined.data());
 }
 
+template <class AnyPair>
+std::vector<Verdict> all_verdicts(const DecideBlock& block, std::span<const AnyPair> pairs) {
+  VerdictBits bits;
+  decide_all(block, pairs, bits);
+  std::vector<Verdict> verdicts;
+  verdicts.reserve(pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    verdicts.push_back(block.verdict_of(test_bit(bits.intersects, i), test_bit(bits.declined, i), pairs[i]));
+  return verdicts;
+}
+
 }  // namespace
 
 void decide(const DecideBlock& block, std::span<const Pair> pairs, VerdictBits& to) { decide_all(block, pairs, to); }
@@ -19,27 +29,11 @@ void decide(const DecideBlock& block, std::span<const DoublePair> pairs, Verdict
   decide_all(block, pairs, to);
 }
 
-namespace {
-
-std::vector<Verdict> list_of(const LaneVerdicts& said, std::size_t pairs) {
-  std::vector<Verdict> verdicts;
-  verdicts.reserve(pairs);
-  for (std::size_t i = 0; i < pairs; ++i) verdicts.push_back(said.at(i));
-  return verdicts;
-}
-
-}  // namespace
-
 std::vector<Verdict> verdicts_of(const DecideBlock& block, std::span<const Pair> pairs) {
-  VerdictBits bits;
-  decide(block, pairs, bits);
-  return list_of({bits.intersects, bits.declined, &block, pairs.data()}, pairs.size());
+  return all_verdicts(block, pairs);
 }
-
 std::vector<Verdict> verdicts_of(const DecideBlock& block, std::span<const DoublePair> pairs) {
-  VerdictBits bits;
-  decide(block, pairs, bits);
-  return list_of({bits.intersects, bits.declined, &block, nullptr, pairs.data()}, pairs.size());
+  return all_verdicts(block, pairs);
 }
 
 std::optional<Verdict> verdict_named(std::string_view word) {

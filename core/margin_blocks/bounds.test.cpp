@@ -14,6 +14,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/every_target_testing.h"
 #include "core/exact/exact.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -58,20 +59,11 @@ HWY_EXPORT(in_vectors);
 // Calls check(bounds, exact) with the bounds from each instruction set of this processor that supports these vectors.
 template <class Check>
 void on_every_target(const Pair& pair, Verdict verdict, const Check& check) {
-  const auto take = [](std::int64_t targets) {
-    hwy::SetSupportedTargetsForTest(targets);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  };
-  take(0);
-  const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
-  for (std::int64_t all = supported; all != 0; all &= all - 1) {
-    take(all & -all);
-    SCOPED_TRACE(hwy::TargetName(all & -all));
+  graze::on_every_target([&] {
     MarginBounds bounds;
     bool exact;
     if (HWY_DYNAMIC_DISPATCH(in_vectors)(pair, verdict, bounds, exact)) check(bounds, exact);
-  }
-  take(0);
+  });
 }
 
 constexpr Verdict kApart = Verdict::disjoint, kMeet = Verdict::intersects;

@@ -208,7 +208,7 @@ void change_axis(const BasicPair<Real>& pair, int axis, Pairs<Real>& moved) {
 // The candidates that may replace a value in its pair.
 template <class Real>
 std::vector<Real> replacements(const BasicPair<Real>& pair, Real value) {
-  using Bits = std::conditional_t<std::is_same_v<Real, float>, std::uint32_t, std::uint64_t>;
+  using Bits = BitsOf<Real>;
   std::vector<Real> found{0, value / 2, value * 2};
   for (int n = 1; n <= 9; ++n) found.push_back(static_cast<Real>(n));
   for (int i = 0; i < kCoordinates; ++i) found.push_back(coordinates(pair)[i]);

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <type_traits>
 
 namespace graze {
 namespace {
@@ -20,10 +19,6 @@ constexpr int bits_below(int criterion) {
   for (int later = criterion; later < 8; ++later) bits += kWidths[later];
   return bits;
 }
-
-// The bits of a coordinate.
-template <class Real>
-using BitsOf = std::conditional_t<std::is_same_v<Real, float>, std::uint32_t, std::uint64_t>;
 
 template <class Real>
 BitsOf<Real> rank(Real value) {

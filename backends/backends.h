@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The backends that run lanes: this processor, a process with foreign code, or a CUDA device and its twins. Each is a
-// row of one table. Other code asks a lane's row what it can do, never which row it is (scripts/check_includes.py
-// checks that).
+// row of one table. Other code uses the functions of a lane's row and never tests which row it is
+// (scripts/check_includes.py checks that).
 #pragma once
 
 #include <string>
@@ -17,11 +17,11 @@ struct Backend {
   bool is_replayed;             // on_host replays the lane: the same verdicts on every processor
   // The function that gives the lane's verdicts on this host; null if there is none.
   DecideBlock (*on_host)(const Lane& lane);
-  // Why the host cannot run the lane: "no fma instructions". Empty if it can. why_no_device: why no device runs it; may
-  // be empty.
+  // Why the host cannot run the lane: "no fma instructions". Empty if it can. why_no_device: why no device runs the
+  // lane; may be empty.
   std::string (*why_not_on_host)(const Lane& lane, const std::string& why_no_device);
-  // Why on_host's verdicts are the lane's: "twin, verified on …". Empty if the lane's own code runs here. of_doubles:
-  // on pairs of doubles.
+  // The evidence that on_host gives the lane's verdicts: "twin, verified on …". Empty if the lane's own code runs here.
+  // of_doubles: whether the pairs are pairs of doubles.
   std::string (*evidence)(const Lane& lane, bool of_doubles);
 };
 

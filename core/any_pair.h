@@ -9,7 +9,7 @@
 
 namespace graze {
 
-// Its coordinates as doubles, which are exact. A pair of float32 also keeps its floats, because lanes decide those.
+// Holds the coordinates as doubles, without rounding. A pair of float32 also keeps its floats, for the lanes.
 struct AnyPair {
   DoublePair doubles;
   std::optional<Pair> floats;
@@ -17,11 +17,11 @@ struct AnyPair {
   AnyPair(const Pair& pair) : doubles(in_doubles(pair)), floats(pair) {}
   AnyPair(const DoublePair& pair) : doubles(pair) {}
 
-  // The pair itself, or the pair that a program with float32 coordinates would store.
+  // The pair in float32. A pair of doubles is rounded as a program with float32 coordinates would store it.
   Pair in_float32() const { return floats ? *floats : stored_in_float32(doubles); }
 };
 
-// Calls f with the pair in its own type.
+// Calls f with the pair in its own coordinate type.
 template <class F>
 decltype(auto) visit(const AnyPair& pair, F&& f) {
   return pair.floats ? std::forward<F>(f)(*pair.floats) : std::forward<F>(f)(pair.doubles);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hand-made examples and invariants for the whole lane table, and the same sources with other scalars and policies.
+// Tests all host lanes on hand-made examples and invariants, and the algorithms with other scalars and policies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,12 +34,12 @@ struct Example {
   const char* what;
   Pair pair;
   Verdict truth;
-  bool projection_overlaps = false;  // along some triangle's normal: projected_sat's logic is wrong there
+  bool projection_overlaps = false;  // the projections along some normal overlap, so projected_sat is wrong
 };
 
 constexpr Verdict kYes = Verdict::intersects, kNo = Verdict::disjoint;
 
-// Small integers, not degenerate: every algorithm must be right in any arithmetic (but see projection_overlaps).
+// Proper triangles with small integers. Every algorithm must be right in any arithmetic (but see projection_overlaps).
 const Example kExamples[] = {
     {"apart, all of b above a", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 0, 1}, {4, 0, 2}, {0, 4, 3}}}, kNo},
     {"apart, all of a beside b's plane", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{5, 0, -1}, {6, 0, 1}, {6, 4, 1}}}, kNo},
@@ -64,7 +64,7 @@ const Example kExamples[] = {
 class EveryHostLane : public testing::TestWithParam<const Lane*> {};
 
 TEST_P(EveryHostLane, IsRightOnHandExamplesInAllOrders) {
-  // -ffast-math assumes no NaN. interval_overlap divides zero by zero and is then wrong even on small integers.
+  // -ffast-math assumes that no value is NaN. interval_overlap divides zero by zero, so it is wrong on small integers.
   if (info_of(GetParam()->variant).arithmetic == Arithmetic::fast) GTEST_SKIP() << "fast math promises nothing";
   for (const Example& example : kExamples) {
     if (example.projection_overlaps && GetParam()->info->id == "projected_sat") continue;
@@ -80,7 +80,7 @@ TEST_P(EveryHostLane, IsRightOnHandExamplesInAllOrders) {
   }
 }
 
-// Multiplication by a power of two is exact, so no verdict may change. (Here nothing over- or underflows.)
+// Multiplication by a power of two is exact, so no verdict may change. (No value over- or underflows here.)
 TEST_P(EveryHostLane, DoesNotSeePowersOfTwo) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> uniform(-1, 1);
@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(Lanes, EveryHostLane, testing::ValuesIn(host_lanes()), 
   return id;
 });
 
-// Both conversions in one function, compiled with -O3, as in its callers.
+// As in the callers, both conversions are in one function; see stored_in_float32.
 TEST(Pair, StoringInFloat32RoundsEveryNumber) {
   for (int n = 1; n < 100; ++n) {
     DoublePair pair;
@@ -191,7 +191,7 @@ TEST(ProjectedSat, HasTheFalsePositiveOfTheThesis) {
   EXPECT_EQ((decide_widened<Moller1997, double>(pair)), kNo);
 }
 
-// With one NaN coordinate, wherever it is, Moller's test says intersects, because no comparison rejects the pair.
+// If any one coordinate is NaN, Moller's test says intersects, because no comparison rejects the pair.
 TEST(Moller1997, SaysIntersectsOfNaN) {
   for (int c = 0; c < kCoordinates; ++c) {
     Pair pair = kExamples[0].pair;
@@ -252,7 +252,7 @@ void expect_policy_decides(std::initializer_list<Site> sites) {
 // Counting a word of pairs at once gives the same as counting the verdicts one by one, for every combination of bits.
 TEST(JudgedBits, AreTheCountsOfVerdicts) {
   for (const bool foreign : {false, true}) {
-    std::uint32_t bits[4] = {};  // bit i of word b is bit b of i: intersects, declined, truth, judged
+    std::uint32_t bits[4] = {};  // intersects, declined, truth, judged; bit i of word b is bit b of i
     for (std::uint32_t i = 0; i < 32; ++i) {
       for (std::uint32_t b = 0; b < 4; ++b) bits[b] |= (i >> b & 1) << i;
     }
@@ -311,7 +311,7 @@ TEST(Extreme, OfDoublesIsTheScaleInStepsOf32) {
   pair.a[1].z = 0x1.fffffffffffffp1023;
   EXPECT_EQ(exponent(), 992);
   EXPECT_EQ(place_on_axis(pair, Axis::offset), 0);
-  pair.b[1].z = -0x1.fffffffffffffp1023;  // the box is larger than a double holds
+  pair.b[1].z = -0x1.fffffffffffffp1023;  // the box is larger than the largest double
   EXPECT_EQ(place_on_axis(pair, Axis::offset), -kBucketMost);
 }
 
@@ -333,7 +333,7 @@ TEST(Extreme, IsTheScaleInStepsOfFourOrTheOffsetInSizes) {
   EXPECT_EQ(place_on_axis(pair, Axis::offset), 9);
   EXPECT_EQ(exponent_of(Axis::scale, place_on_axis(pair, Axis::scale)), 8);
   for (int i = 0; i < kCoordinates; i += 3) coordinates(pair)[i] = 0x1p100f;
-  EXPECT_EQ(place_on_axis(pair, Axis::offset), kBucketMost);  // the size is 2^-148
+  EXPECT_EQ(place_on_axis(pair, Axis::offset), kBucketMost);  // the box has a size of 1.5 * 2^-148
   EXPECT_EQ(place_on_axis(pair, Axis::none), 0);
 }
 

@@ -8,15 +8,15 @@
 
 namespace graze {
 
-// A declined verdict is not wrong: it is counted beside the wrong ones and never added to them.
+// A declined verdict is not wrong: it is counted separately and never added to the wrong verdicts.
 constexpr bool is_wrong(Verdict verdict, Verdict truth) { return verdict != truth && verdict != Verdict::declined; }
 
 struct Counts {
   std::uint64_t false_positive = 0;
   std::uint64_t false_negative = 0;
   std::uint64_t declined = 0;
-  std::uint64_t crashed = 0, timed_out = 0, unstable = 0;  // foreign code only
-  std::uint64_t by_convention = 0;  // differs from the truth, but the lane's convention allows it
+  std::uint64_t crashed = 0, timed_out = 0, unstable = 0;  // only for foreign code
+  std::uint64_t by_convention = 0;                         // differ from the truth, as the lane's convention allows
 
   constexpr std::uint64_t failed() const { return crashed + timed_out + unstable; }
   constexpr std::uint64_t wrong() const { return false_positive + false_negative + failed(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Epsilon policies: every comparison that a paper or a library guards with an epsilon goes through a policy.
+// Epsilon policies. If a paper or a library guards a comparison with an epsilon, our code asks a policy instead.
 #pragma once
 
 #include <string_view>
@@ -33,13 +33,13 @@ struct At {
 
 inline namespace GRAZE_FP {
 
-// A value that the source itself compares, without an epsilon. Only policies that record see it.
+// Shows the policy a value that the algorithm compares without an epsilon. Only recording policies use it.
 template <class Policy, class Real>
 GRAZE_HD void see([[maybe_unused]] const Policy& policy, [[maybe_unused]] int question, [[maybe_unused]] Real& x) {
   if constexpr (requires { policy.seen(question, x); }) x = policy.seen(question, x);
 }
 
-// A choice that decides which quantities the source computes next, such as an axis. Only policies that record see it.
+// Tells the policy a choice, such as an axis, on which later quantities depend. Only recording policies use it.
 // Requires: 0 <= value < 15, which < 15.
 template <class Policy, class Choice>
 GRAZE_HD Choice chosen(const Policy& policy, int which, Choice value) {
@@ -56,7 +56,7 @@ GRAZE_HD void choose([[maybe_unused]] const Policy& policy, [[maybe_unused]] int
   if constexpr (requires { policy.chosen(which, 0); }) policy.chosen(which, value);
 }
 
-// The default policy: exact comparison. Other policies treat small values as zero; a tracing policy records.
+// The default policy: exact comparison. Other policies treat small values as zero; a tracing policy records values.
 struct ExactZero {
   // Returns x, or zero if the policy treats x as zero.
   template <class Real>

@@ -6,7 +6,7 @@
 
 namespace graze {
 
-// The user's request is invalid: the command exits with 2. After other errors it exits with 1.
+// An error in the user's request. The command exits with status 2; after other errors it exits with status 1.
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

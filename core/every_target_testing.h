@@ -16,7 +16,7 @@ void on_every_target(const Check& check) {
     hwy::SetSupportedTargetsForTest(targets);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
   };
-  take(0);  // all that the processor supports
+  take(0);  // all instruction sets that the processor supports
   for (std::int64_t all = hwy::SupportedTargets() & HWY_TARGETS; all != 0; all &= all - 1) {
     SCOPED_TRACE(hwy::TargetName(all & -all));
     take(all & -all);

@@ -14,9 +14,9 @@
 
 namespace graze {
 
-// First byte even: the next 72 or 144 bytes are the coordinates' bits. First byte odd: the second byte is an exponent,
-// eight times as large for doubles, and the next 18 are small whole numbers, scaled by that power of two so that
-// contacts are common. For doubles, 18 more bytes say by how many ulps each is moved. Missing bytes are zeros.
+// If the first byte is even, the next 72 or 144 bytes are the coordinates' bits. If it is odd, the second byte is an
+// exponent (times 8 for doubles). The next 18 bytes are small whole numbers, scaled by that power of two so that
+// contacts are common. For doubles, 18 more bytes move each coordinate by that many ulps. Missing bytes are zeros.
 template <class Real = float>
 BasicPair<Real> pair_of(std::string_view bytes) {
   constexpr bool kDoubles = sizeof(Real) == sizeof(double);
@@ -37,7 +37,7 @@ BasicPair<Real> pair_of(std::string_view bytes) {
   return pair;
 }
 
-// Like pair_of, but the exponent of a coordinate that is not finite is one less, which makes it finite.
+// Like pair_of, but makes every coordinate finite: it lowers the exponent of an infinity or NaN by 1.
 template <class Real = float>
 BasicPair<Real> finite_pair_of(std::string_view bytes) {
   using Bits = BitsOf<Real>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fuzz targets: functions that must handle any bytes. Each stands beside the code that it tests, as x.fuzz.cpp.
+// Fuzz targets: functions that must handle any bytes. Each is in a file x.fuzz.cpp beside the code that it tests.
 // fuzz/targets runs them under libFuzzer; core/fuzz_replay.test.cpp runs them on the stored corpora only.
 #pragma once
 
@@ -12,7 +12,7 @@
 namespace graze {
 
 struct FuzzTarget {
-  const char* name;  // and the name of its folder in corpus/fuzz
+  const char* name;  // also the name of its folder in corpus/fuzz
   void (*one)(std::string_view bytes);
 };
 
@@ -25,14 +25,14 @@ struct RegisterFuzzTarget {
   RegisterFuzzTarget(const char* name, void (*one)(std::string_view)) { fuzz_targets().push_back({name, one}); }
 };
 
-// Ends the process if a condition that must hold does not.
+// Ends the process unless the condition holds.
 inline void must_hold(bool holds, const char* what) {
   if (holds) return;
   std::fprintf(stderr, "expected that %s\n", what);
   std::abort();
 }
 
-// Tells libFuzzer to keep the input, for a feature that no branch shows or that lies in code without instrumentation.
+// Tells libFuzzer to keep the input, because it reached a feature that the coverage of branches does not show.
 // libFuzzer finds these counters by the section's name.
 __attribute__((used, section("__libfuzzer_extra_counters"))) inline std::uint8_t fuzz_counters[4096];
 inline void reached(std::size_t feature) { fuzz_counters[feature % sizeof fuzz_counters] = 1; }

@@ -7,7 +7,7 @@
 
 namespace graze {
 
-// Bit i belongs to pair i of the word. No pair is in two of the counts.
+// Bit i belongs to pair i of the word. Each pair has a bit in at most one of the words.
 template <class Word>
 struct JudgedBits {
   Word false_positive, false_negative;

@@ -23,7 +23,7 @@ static_assert(sizeof(Pair) == 72 && sizeof(DoublePair) == 144);
 
 inline constexpr int kCoordinates = 18;
 
-// The unsigned integer that is as wide as the number.
+// The unsigned integer type that is as wide as the number type.
 template <class Real>
 using BitsOf = std::conditional_t<sizeof(Real) == sizeof(float), std::uint32_t, std::uint64_t>;
 
@@ -50,9 +50,9 @@ bool is_finite(const BasicPair<Real>& pair) {
   return others == 0;
 }
 
-// The pair as a program with float32 coordinates stores it: each rounded to nearest, or to infinity beyond the largest
-// float32. Never inlined: where GCC 12 sees a pair become floats and then doubles again in one function, its vectorizer
-// (-O3) leaves the last two numbers unrounded.
+// The pair as a program with float32 coordinates stores it: each coordinate is rounded to nearest, or to infinity
+// beyond the largest float32. Never inlined: if GCC 12 sees a pair become floats and then doubles again in one
+// function, its vectorizer (-O3) leaves the last two numbers unrounded.
 [[gnu::noinline]] inline Pair stored_in_float32(const DoublePair& pair) {
   Pair result;
   for (int i = 0; i < kCoordinates; ++i) coordinates(result)[i] = static_cast<float>(coordinates(pair)[i]);

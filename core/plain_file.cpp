@@ -20,7 +20,7 @@ struct Descriptor {
   }
 };
 
-// Opens a regular file; otherwise says why not.
+// Opens a regular file.   Returns: its descriptor; or -1, with the reason in `why`.
 int opened(const std::filesystem::path& file, struct stat& state, std::string& why) {
   const int number = open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
   if (number >= 0 && fstat(number, &state) == 0 && S_ISREG(state.st_mode)) return number;

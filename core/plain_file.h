@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads files without ever waiting, neither for the writer of a pipe nor for a file without data yet, such as
-// /proc/kmsg. By the time a file is opened, its name may lead to anything.
+// /proc/kmsg. By the time a file is opened, its name may refer to anything.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ namespace graze {
 std::optional<std::string> plain_file(const std::filesystem::path& file, std::string& why,
                                       std::size_t most = std::size_t{1} << 30);
 
-// The first bytes of such a file, at most `most`; empty if it cannot be read.
+// The first bytes of a regular file, at most `most`; empty if it cannot be read.
 std::string beginning_of(const std::filesystem::path& file, std::size_t most);
 
 }  // namespace graze

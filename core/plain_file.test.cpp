@@ -40,7 +40,7 @@ TEST_F(PlainFile, HasItsBytes) {
   EXPECT_EQ(beginning_of(folder_, 18), "");
 }
 
-// None of these makes it wait.
+// plain_file waits for none of these files.
 TEST_F(PlainFile, SaysWhyItCannotBeRead) {
   EXPECT_EQ(why_not(folder_ / "missing"), "No such file or directory");
   EXPECT_EQ(why_not(folder_), "Is a directory");
@@ -50,7 +50,7 @@ TEST_F(PlainFile, SaysWhyItCannotBeRead) {
   std::ofstream(folder_ / "large").close();
   fs::resize_file(folder_ / "large", (1 << 20) + 1);
   EXPECT_EQ(why_not(folder_ / "large"), "it is larger than 1 MiB");
-  if (std::ifstream("/proc/kmsg")) {  // for root only; its mode says regular file, but it never ends
+  if (std::ifstream("/proc/kmsg")) {  // only root can open it; it looks like a regular file, but never ends
     EXPECT_NE(why_not("/proc/kmsg"), "");
   }
 }

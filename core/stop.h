@@ -15,8 +15,8 @@ struct Stopped {};
 
 extern "C" inline void request_stop(int) { stop_requested = true; }
 
-// While it lives, Ctrl-C and SIGTERM only set the flag and do not end the process. For verbs that wait and do not
-// handle the signals themselves. A signal that is ignored stays ignored.
+// During its lifetime, Ctrl-C and SIGTERM only set the flag and do not end the process. It is for verbs that wait and
+// do not handle the signals themselves. An ignored signal remains ignored.
 class StopSignals {
  public:
   StopSignals() {

@@ -14,7 +14,7 @@
 namespace graze {
 namespace {
 
-constexpr std::size_t kLongestQuote = 40, kLongestPath = 400;  // in a message
+constexpr std::size_t kLongestQuote = 40, kLongestPath = 400;  // bytes in a message
 
 bool is_hex_digit(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); }
 
@@ -119,7 +119,7 @@ std::optional<std::uint64_t> parse_whole(std::string_view text) {
 std::string rounded_up(double value, int digits) {
   const double nearest = std::strtod(general(value, digits).c_str(), nullptr);
   if (nearest >= value) return general(nearest, digits);
-  // The next decimal: one more in the last digit.
+  // Takes the next decimal, which is one more in the last digit.
   char text[32];
   std::snprintf(text, sizeof text, "%.*e", digits - 1, value);
   const int last = std::atoi(std::strchr(text, 'e') + 1) - (digits - 1);
@@ -184,7 +184,7 @@ std::string did_you_mean(std::string_view found, const std::vector<std::string>&
   std::size_t least = letters / 3 + 1;
   const std::string* nearest = nullptr;
   for (const std::string& candidate : candidates) {
-    // Levenshtein distance with one row per character of `found`. For a *, characters of the candidate cost nothing.
+    // Levenshtein distance with one row per character of `found`. A * matches any characters at no cost.
     std::vector<std::size_t> row(candidate.size() + 1);
     for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
     for (const char c : found) {

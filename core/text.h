@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For all readers: parses numbers completely or not at all, with one rounding, and makes foreign text fit to print.
+// For all readers: parses numbers with one rounding, refuses text that is not a number, and makes text printable.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ namespace graze {
 // Returns: the float32 nearest to the number that text spells, ties to even, rounded once. Nothing if text is not
 // entirely a number, or if it rounds beyond the largest float32. "inf" and "nan" are numbers.
 std::optional<float> parse_float32(std::string_view text);
-// Likewise for doubles.
+// The same for doubles.
 std::optional<double> parse_float64(std::string_view text);
 
-// Whether the number that text spells is exactly this one.
-// Requires: text is such a number, `value` the finite double nearest to it.   Exact: always.
+// Whether the number that text spells is exactly `value`.
+// Requires: text is a number, and `value` is the finite double nearest to it.   Exact: always.
 bool is_exactly(std::string_view text, double value);
 
 // Returns: the whole number that text spells, without a sign; nothing if it spells none, or one that is too large.
@@ -35,7 +35,7 @@ std::string printable(std::string_view text);
 // Returns: the text in quotes; a backslash before quotes and backslashes, other bytes as in printable().
 std::string in_quotes(std::string_view text);
 
-// in_quotes, shortened for a message. A path is shortened only if it is too long to read.
+// Like in_quotes, but shortened for a message: a text after 40 bytes, a path after 400 bytes.
 std::string shown(std::string_view text);
 std::string shown_path(std::string_view path);
 

@@ -65,7 +65,7 @@ TEST(ParseFloat32, RoundsUnderflow) {
 TEST(ParseFloat32, RefusesOverflow) {
   EXPECT_EQ(parse_float32("3.4028235e38"), kMax);
   EXPECT_EQ(parse_float32("3.4028235677973366e38"), kMax);  // just short of halfway to 2^128
-  EXPECT_EQ(parse_float32("3.4028236e38"), std::nullopt);   // beyond it
+  EXPECT_EQ(parse_float32("3.4028236e38"), std::nullopt);   // beyond halfway
   EXPECT_EQ(parse_float32("-1e39"), std::nullopt);
   EXPECT_EQ(parse_float32("1e999"), std::nullopt);
   EXPECT_EQ(parse_float32("0x1.fffffefp127"), kMax);

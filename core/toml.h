@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// toml++, as Graze uses it.
+// Includes toml++ with the settings that Graze needs.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 #define TOML_HEADER_ONLY 1
 #define TOML_EXCEPTIONS 0
 #define TOML_ENABLE_WINDOWS_COMPAT 0
-#define TOML_ASSERT(expr) static_cast<void>(0)  // toml++ asserts what "[[[" violates, then rejects it
+#define TOML_ASSERT(expr) static_cast<void>(0)  // "[[[" violates an assertion of toml++, which then rejects the text
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wshadow"

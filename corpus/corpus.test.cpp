@@ -42,7 +42,8 @@ Corpus read_corpus() {
       for (Entry& entry : read_pairs(file, PairTypes::both)) {
         const std::string* name = field(entry, "name");
         if (!name) {
-          corpus.errors += file.string() + ':' + std::to_string(entry.line) + ": expected a field name, found none\n";
+          corpus.errors +=
+              file.string() + ':' + std::to_string(entry.line) + ": expected name=…, found no such field\n";
           continue;
         }
         const std::string test_name = file.parent_path().filename().string() + '_' + *name;

@@ -86,7 +86,7 @@ bool skip_name(Line& line) {
     line.take(assigned + 1);
     return true;
   }
-  // One or more names, then a bracket.
+  // Otherwise, one or more names must precede a bracket.
   Line ahead(line);
   while (!ahead.at_end() && begins(ahead))
     ahead.take_until([](char c) { return !is_key_char(c) && c != ':' && c != '<' && c != '>'; });
@@ -116,7 +116,7 @@ struct Draft {
   std::optional<std::size_t> only_double;  // the first number that needs a double
 };
 
-// The oracle takes numbers as they are written, and exact numbers with such an exponent would fill the memory.
+// Whether the exponent has over five digits. The oracle reads numbers exactly, so such numbers would fill the memory.
 bool has_long_exponent(std::string_view number) {
   const std::size_t at = number.find_first_of(is_hex(number) ? "pP" : "eE");
   if (at == number.npos) return false;

@@ -39,7 +39,7 @@ const RegisterFuzzTarget kPairs("pairs", [](std::string_view bytes) {
       try {
         const std::optional<Entry> entry = reader.next();
         if (!entry) break;
-        must_hold(taken == PairTypes::both || !entry->doubles, "no doubles where only float32 is taken");
+        must_hold(taken == PairTypes::both || !entry->doubles, "a reader of float32 returns no doubles");
         written_and_read_again(*entry);
       } catch (const FormatError& error) {
         must_be_one_line(error.what());

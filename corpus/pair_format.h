@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The text format of pairs and cases: one pair per line, 18 numbers and optional fields. One reader, one writer.
-// docs/formats.md describes the format.
+// The text format of pairs and cases: one pair per line, 18 numbers and optional fields. This is its only reader and
+// writer. docs/formats.md describes the format.
 #pragma once
 
 #include <cstddef>
@@ -37,7 +37,7 @@ auto visit(const Entry& entry, const With& with) {
 // The entry's pair.
 AnyPair pair_of(const Entry& entry);
 
-// The entry of a pair that was not read.
+// Makes the entry of a pair that was not read from a file.
 Entry entry_of(const AnyPair& pair, std::vector<std::pair<std::string, std::string>> fields);
 
 // Input that is not in the format; what() is one line: "FILE:LINE: expected 18 numbers, found 17".
@@ -53,7 +53,7 @@ struct FormatError : std::runtime_error {
 // or if a hexadecimal number has more digits than float32 holds.
 class PairReader {
  public:
-  // Requires: `in` outlives the reader. name: the stream's name in error messages. taken: f32 or both.
+  // Requires: `in` outlives the reader. name: the stream's name in messages. taken: the accepted types, f32 or both.
   PairReader(std::istream& in, std::string name, PairTypes taken = PairTypes::f32);
 
   // Returns: the next entry, or nothing at the end of the stream.
@@ -76,7 +76,7 @@ class PairReader {
 // Opens a file of pairs.   Throws: FormatError if it is missing, is a folder, or cannot be read.
 std::ifstream open_pairs(const std::filesystem::path& file);
 
-// All entries in a file.   Throws: FormatError, including if the file is missing or cannot be read.
+// Reads all entries of a file.   Throws: FormatError, including if the file is missing or cannot be read.
 std::vector<Entry> read_pairs(const std::filesystem::path& file, PairTypes taken = PairTypes::f32);
 
 // Writes the version line, the first line of every file.
@@ -96,10 +96,10 @@ const std::string* field(const Entry& entry, std::string_view key);
 // Like field, but an empty string if there is no such key.
 std::string text_of(const Entry& entry, std::string_view key);
 
-// STRATUM:SEED:INDEX, or STRATUM@SCENE:SEED:INDEX if the case was drawn in a scene. Nothing if the fields are missing.
+// STRATUM:SEED:INDEX, or STRATUM@SCENE:SEED:INDEX if the case was drawn in a scene. Nothing if a field is missing.
 std::optional<std::string> numbers_of(const Entry& entry);
 
-// numbers_of, or else the field `from`, which says where a minimised case came from.
+// The result of numbers_of; or else the field `from`, the origin of a minimised case.
 std::string origin_of(const Entry& entry);
 
 }  // namespace graze::corpus

@@ -223,7 +223,7 @@ TEST(PairFormat, PastedTextThatIsNoPairIsNamed) {
   expect_named("0 0 0\ngraze-pairs 1\n", {"in.pairs:1", "18", "3"});
   expect_named("1.5g 0 0", {"in.pairs:1", "1", "a[0].x", "1.5g"});
   expect_named("point 7 (0 0 0)", {"in.pairs:1", "1", "a[0].x", "point"});
-  expect_named("0x1ff 0 0", {"in.pairs:1", "18", "3"});  // a number in hex, not a suffix
+  expect_named("0x1ff 0 0", {"in.pairs:1", "18", "3"});  // the f is a hex digit, not a suffix
   expect_named("\nv 0 0 0\nv 1 0\n", {"in.pairs:3", "coordinate", "float32"});
   expect_named("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", {"in.pairs:1", "triangles", "vertices", "1", "3"});
 }

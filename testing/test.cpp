@@ -21,7 +21,7 @@
 namespace graze {
 namespace {
 
-constexpr std::size_t kMostCalls = 50'000;  // of the function, to find the smallest pair: 1 s at 20 us per call
+constexpr std::size_t kMostCalls = 50'000;  // to find the smallest pair: 1 s at 20 us per call
 constexpr std::size_t kBlock = 4096;        // pairs per call
 
 std::vector<strata::PairSource> sources_of(std::string_view names, std::uint64_t seed, std::uint64_t count) {
@@ -86,7 +86,7 @@ Pair smallest_like(Pair pair, const Tested& tested) {
   return pair;
 }
 
-// The shortest decimal of this float32: "5" for 5.0. As a literal with an f if it has a point or an exponent: "1e30f".
+// The shortest decimal of this float32: "5" for 5.0. A literal has an f if it has a point or an exponent: "1e30f".
 std::string number(float value, bool literal) {
   char text[32];
   const std::to_chars_result end = std::to_chars(text, text + sizeof text, value);

@@ -40,7 +40,7 @@ int throws(const float a[9], const float b[9]) {
   return 0;
 }
 bool by_reference(const float (&a)[9], const float (&b)[9]) { return exact::intersects(a, b); }
-// Wrong on touching triangles, which it calls disjoint by convention.
+// Wrong on touching triangles, because it calls them disjoint.
 bool touching_is_apart(const float a[9], const float b[9]) {
   const Relation relation = exact::relation(a, b);
   return relation.intersects() && (relation.margin_sign != 0 || relation.contact == Contact::area);
@@ -104,7 +104,7 @@ TEST(TestOverlap, CountsWhatIsWrongAndShrinksIt) {
   for (int i = 0; i < kCoordinates; ++i) zeros += coordinates(small)[i] == 0;
   EXPECT_GE(zeros, 10) << result.message;
 
-  // The message has the pair, so that it can become a test, and the command that explains it.
+  // The message has the pair, which can become a test, and the command that explains the pair.
   const std::string& text = result.message;
   EXPECT_NE(text.find(std::to_string(expected.false_positive / 1000) + ","), text.npos) << text;
   EXPECT_NE(text.find("near_edge_edge"), text.npos) << text;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // T. Moller, A Fast Triangle-Triangle Intersection Test, Journal of Graphics Tools 2(2), 1997: the division-free
-// variant. In the paper's symbols V is a, U is b; du are b's distances to a's plane, dv are a's to b's.
+// variant. In the paper's symbols V is a, U is b; du are b's distances to a's plane, dv are a's distances to b's.
 #pragma once
 
 #include "core/algorithms/algorithm.h"

@@ -37,7 +37,7 @@ GRAZE_HD bool strictly_one_side(const Real (&distance)[3]) {
          (distance[0] < zero && distance[1] < zero && distance[2] < zero);
 }
 
-// Signed distances of the vertices v to the plane, times |normal|, each after the policy's snap. Asks three questions.
+// Signed distances of the vertices v to the plane, times |normal|, each snapped by the policy. Asks three questions.
 template <class Real, class Policy>
 GRAZE_HD void plane_distances(const Plane<Real>& plane, const Vec3<Real> (&v)[3], const Policy& policy, int question,
                               Real (&distance)[3]) {

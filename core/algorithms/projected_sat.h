@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The thesis's first algorithm (Maffina 2012, section 3.1): plane-side rejects, then a 2D separating-axis test of the
-// projections onto the first triangle's plane. Its logic is known to be wrong; it stays as a planted defect.
+// projections onto the first triangle's plane. Its logic is known to be wrong; it is kept as a known defect.
 #pragma once
 
 #include "core/algorithms/algorithm.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A policy that compares exactly and stores every value that it is asked about, and every choice.
+// A policy that compares exactly. It stores every value that it compares, and every choice.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace graze {
 inline constexpr int kMostQuestions = 64, kMostChoices = 15;
 
 // Memory for the values of a run: value k of question q is at values[(2 q + k) * stride]. A question about one value
-// has k = 0; a comparison of two has the left one at 0 and the right one at 1.
+// has k = 0; a comparison of two values has the left one at k = 0 and the right one at k = 1.
 template <class Real>
 struct Recorded {
   Real* values;

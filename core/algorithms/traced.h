@@ -106,7 +106,7 @@ struct Recorder {
 // `none`: every operation rounds. Otherwise a sum or difference fuses a product with the addition. If both terms are
 // products, `left` fuses the left one, as g++ does if it contracts at all. `nvcc` fuses the one with fewer uses, on a
 // tie the left one, like cuda/twin/generator/contraction.cpp. It fuses neither if both scale by a quotient: nvcc moves
-// that addition to another block (only in interval_overlap's common_line). Rules can fail: compare with the lane.
+// that addition to another block (only in interval_overlap's common_line). The rules can fail: compare with the lane.
 enum class Contraction { none, left, nvcc };
 
 inline namespace GRAZE_FP {

@@ -21,7 +21,7 @@ struct Certified {
   Certified() = default;
   GRAZE_HD explicit Certified(double given) : hi(given) {}
   GRAZE_HD Certified(const DoubleDouble& value, double error) : hi(value.hi), lo(value.lo), bound(error) {
-    // Beyond this, the error of a sum or a quotient may itself overflow.
+    // From 2^1000 on, the computed error of a sum or a quotient may overflow.
     if (!(fabs(hi) < 0x1p+1000)) bound = HUGE_VAL;
   }
 
@@ -44,10 +44,10 @@ GRAZE_HD inline double lost_below(double product, double x, double y) {
   return x != 0 && y != 0 && !(fabs(product) >= 0x1p-900) ? 0x1p-1060 : 0;
 }
 
-// |x| + |y| for the two parts of a number, rounded up.
+// |hi| + |lo|, rounded up.
 GRAZE_HD inline double above(const Certified& x) { return up(fabs(x.hi) + fabs(x.lo)); }
 
-// A lower bound on the number's magnitude; may be negative.
+// A lower bound on the number's magnitude; it may be negative.
 GRAZE_HD inline double least_size(const Certified& x) { return (fabs(x.hi) - fabs(x.lo)) * (1 - 0x1p-48) - x.bound; }
 
 }  // namespace certified

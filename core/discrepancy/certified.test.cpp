@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Certified numbers against rationals.
+// Compares certified numbers with rational numbers.
 #include "core/discrepancy/certified.h"
 
 #include <gtest/gtest.h>

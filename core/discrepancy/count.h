@@ -12,32 +12,32 @@
 
 namespace graze {
 
-// A value's counts. A value is compared if both lanes recorded it and it has the same meaning for both. Distances and
-// normals always have the same meaning, and other values have it if both lanes made the same choices.
+// The counts of a value. A value is compared if both lanes recorded it and if it means the same for both lanes.
+// Distances and normals always do. Other values do if both lanes made the same choices.
 namespace value_counts {
 inline constexpr int kOctaves = 64, kErrors = 40;
 enum : int {
   compared,
   equal,                           // the same bits, or both are NaN
   zero_sign,                       // zeros of different signs
-  not_finite,                      // other differences, where at least one is not finite
-  below,                           // kOctaves: finite, the second lane's is lower by 2^k to 2^(k+1) ulps
-  above = below + kOctaves,        // kOctaves: higher
+  not_finite,                      // other differences; at least one value is not finite
+  below,                           // kOctaves: the second lane's finite value is 2^k to 2^(k+1) ulps lower
+  above = below + kOctaves,        // kOctaves: the same, but higher
   first_error = above + kOctaves,  // kErrors: the first lane's error, see error_bucket
   second_error = first_error + kErrors,
-  nearer_first = second_error + kErrors,  // the values differ, and the first lane's is nearer to the exact one
+  nearer_first = second_error + kErrors,  // the values differ, and the first lane's is nearer to the exact value
   nearer_second,
   equally_near,
   nearer_unknown,  // the bounds do not decide, or one value is not finite
   kFields
 };
 
-// A value's error in ulps of the exact value (an ulp is at least the least subnormal number). 0: no error. 1: up to
-// half an ulp. 2 + k: above 2^(k-1) and up to 2^k ulps; the last of these has no upper end. Then the two below.
+// Buckets of a value's error, in ulps of the exact value (an ulp is at least the least subnormal number). 0: no error.
+// 1: up to half an ulp. 2 + k: above 2^(k-1) and up to 2^k ulps; the last k has no upper end. Two more buckets follow.
 inline constexpr int kErrorNotFinite = kErrors - 2, kErrorUnknown = kErrors - 1;
 }  // namespace value_counts
 
-// A question's counts. Its sign is that of its value, or of the left value minus the right one.
+// The counts of a question. A question's sign is the sign of its value, or of the left value minus the right value.
 namespace question_counts {
 inline constexpr int kBands = 34, kLowestBand = -32;
 enum : int {
@@ -45,12 +45,12 @@ enum : int {
   differs,  // some value's bits differ
   sign,     // the sign differs
   zero_on_one_side,
-  outcome,  // the comparison goes the other way; for a question about one value, the sign differs
+  outcome,  // the comparison's result differs; for a question about one value, the sign differs
   verdict,  // the verdicts differ, and this is the first question with a different outcome
-  band,     // kBands: the sign differs, and the larger magnitude of the two values, in error bounds, is from
-            // 2^(k + kLowestBand) to the next power; the first band has no lower end. It is at most 2: each value is
-            // within one bound of the exact one, and they lie on both sides of zero
-  band_unknown = band + kBands,  // Unrounded has no bound
+  band,     // kBands: the sign differs, and the larger of both magnitudes is between 2^(k + kLowestBand) and twice that
+            // many error bounds; the first band has no lower end. No magnitude exceeds two bounds, because the values
+            // have different signs and each is within one bound of the exact value
+  band_unknown = band + kBands,  // the error bound is infinite or NaN
   kFields
 };
 }  // namespace question_counts
@@ -72,8 +72,8 @@ enum : int {
 };
 }
 
-// The layout of an algorithm's counts: of pairs, by site, of pairs by their place on the stratum's axis, and by
-// question.
+// The layout of an algorithm's counts: pairs, pairs by site, pairs by their place on the stratum's axis, and the counts
+// of each question.
 inline constexpr int kPlacesAt = pair_counts::kFields + (kSiteCount + 1) * site_counts::kFields;
 inline constexpr int kValuesAt = kPlacesAt + kBucketCount * pair_counts::kFields;
 GRAZE_HD constexpr int site_at(int site) { return pair_counts::kFields + site * site_counts::kFields; }
@@ -86,15 +86,15 @@ GRAZE_HD constexpr int value_at(int question, int which) {
 }
 GRAZE_HD constexpr int counts_of(int questions) { return question_at(questions); }
 
-// For each question, the largest magnitude at which a sign differs: in multiples of the error bound, and as a length in
-// coordinate units. Stored as bits of nonnegative doubles, which are ordered like integers.
+// The largest magnitude at which a question's sign differs: in multiples of the error bound, and as a length in
+// coordinate units. It is stored as the bits of a nonnegative double, because these bits are ordered like integers.
 namespace band_maxima {
 enum : int { in_bounds, length, kFields };
 }
 
 inline namespace GRAZE_FP {
 
-// A float's bits as an integer that keeps the order of values. Neighbours differ by 1, and both zeros give 0.
+// Maps a number's bits to an integer that keeps the order of values. Neighbours differ by 1, and both zeros give 0.
 GRAZE_HD inline std::int64_t ordered_bits(float x) {
   std::int32_t bits;
   memcpy(&bits, &x, sizeof bits);
@@ -131,9 +131,9 @@ GRAZE_HD inline bool answers_otherwise(int order, int other, bool at_most) {
   return yes != other_yes;
 }
 
-// floor(log2(x)) of a positive number; for zero, less than for any other number.
+// floor(log2(x)) of a positive number; for zero, a value less than all others.
 GRAZE_HD inline int log2_of(const DoubleDouble& x) {
-  const bool is_subnormal = x.hi < 0x1p-1022;  // floor_log2 takes normal numbers
+  const bool is_subnormal = x.hi < 0x1p-1022;  // floor_log2 requires a normal number
   const double scale = is_subnormal ? 0x1p+54 : 1, hi = x.hi * scale, lo = x.lo * scale;
   const int k = floor_log2(hi);
   return (lo < 0 && hi == scalbn(1.0, k) ? k - 1 : k) - (is_subnormal ? 54 : 0);
@@ -168,7 +168,7 @@ GRAZE_HD SizeRange error_range(Real value, const Certified& exact) {
   return size_range(Certified(static_cast<double>(value)) - exact);
 }
 
-// The bucket of an error of `size`. An ulp is 2^ulp.
+// The bucket of an error of this size, where an ulp is 2^ulp.
 GRAZE_HD inline int error_bucket(const DoubleDouble& size, int ulp) {
   if (!(size.hi > 0)) return 0;
   const int k = log2_of(size), up = k - ulp + (size.hi != scalbn(1.0, k) || size.lo != 0);  // ceil(log2)
@@ -223,8 +223,8 @@ struct Run {
   }
 };
 
-// Sink: add(index) adds one to a count, most(question, which, size) keeps the largest. degrees: for each question, the
-// degree of its values as powers of a length.
+// Sink: add(index) adds 1 to a count, and most(question, which, size) keeps the largest size. degrees: the unit of each
+// question's values is a length to this power.
 template <class Real, class Sink>
 class PairComparison {
  public:
@@ -235,7 +235,7 @@ class PairComparison {
     verdict_differs_ = (first.path.path ^ second.path.path) >> 60 != 0;
   }
 
-  // The policy's `found`.
+  // LedPolicy calls these functions for each question.
   GRAZE_HD GRAZE_CALLED void one(int question, int site, const Unrounded& value) {
     if (!compared(question, site)) return;
     const Real x = lane_[0].value(question, 0), y = lane_[1].value(question, 0);
@@ -393,7 +393,7 @@ GRAZE_HD std::uint64_t run_hash(const Real* values, std::uint64_t stride, const 
   return hash;
 }
 
-// The largest extent of the pair along an axis.
+// The pair's extent along the axis on which it is largest.
 template <class Real>
 GRAZE_HD double extent_of(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3]) {
   double largest = 0;

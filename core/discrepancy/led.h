@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs an algorithm on certified numbers down the path that a lane's recorded run took: every comparison and every
-// choice goes as in the lane. Each value is therefore what the lane would have computed without rounding. It carries a
-// bound on the error that rounding can cause in it.
+// Runs an algorithm on certified numbers along the path of a lane's recorded run: every comparison and every choice has
+// the lane's result. Each value is therefore what the lane would have computed without rounding. Each value also
+// carries a bound on the error that rounding can cause in it.
 // Reference: N. J. Higham, Accuracy and Stability of Numerical Algorithms, second edition (2002), section 3.3: running
 // error analysis, extended here by second-order terms, underflow and overflow.
 #pragma once
@@ -12,15 +12,15 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// Data of a whole run. If the order of some numbers is uncertain, `doubt` bounds the error of their minimum or maximum.
-// It adds to the bound of every later value.
+// The data of a whole run. If the order of some numbers is uncertain, `doubt` bounds the error of their minimum or
+// maximum. `doubt` is added to the bound of every later value.
 struct LedRun {
   double doubt = 0;
 };
 
-// A value without rounding, and how far the computed value may be from it if each operation rounds to nearest,
-// whichever of its products are fused. `rounding` is infinite if the computed value may overflow or has no bound, or if
-// the exact value is not settled.
+// A value without rounding, and a bound on its distance from the computed value. The bound assumes that each operation
+// rounds to nearest, and holds whichever products are fused. `rounding` is infinite if the computed value may overflow
+// or has no bound, or if the exact value is not settled.
 struct Unrounded {
   Certified exact;
   double rounding = 0;
@@ -30,7 +30,7 @@ struct Unrounded {
 template <class Real>
 struct Led {
   Certified exact;
-  mutable double rounding = 0;  // see Unrounded; comparisons raise it
+  mutable double rounding = 0;  // see Unrounded; comparisons may raise it
   Real lane = 0;
   bool was_seen = false;
   LedRun* run = nullptr;
@@ -39,7 +39,7 @@ struct Led {
   GRAZE_HD explicit Led(int constant)
       : exact(static_cast<double>(constant)), lane(static_cast<Real>(constant)), was_seen(true) {}
   GRAZE_HD Led(Real coordinate, LedRun* r) : exact(static_cast<double>(coordinate)), run(r) {}
-  // `of_operands`: the operands' errors as they reach the result. `lost`: bound on the loss by underflow.
+  // `of_operands`: the result's error due to the operands' errors. `lost`: a bound on the loss by underflow.
   GRAZE_HD Led(const Certified& computed, const Led& l, const Led& r, double of_operands, double lost)
       : exact(computed), run(l.run ? l.run : r.run) {
     const double size = size_of(exact), error = certified::up(of_operands * (1 + kUnit) + kUnit * size + lost);
@@ -70,7 +70,7 @@ struct Led {
     result.lane = -x.lane;
     return result;
   }
-  // The product of two values that the lane compares, as in d0 * d1 > 0, is the lane's own: no contraction changes it.
+  // If the lane compares two values, as in d0 * d1 > 0, their product is the lane's: no contraction changes it.
   GRAZE_HD GRAZE_CALLED friend Led operator*(const Led& l, const Led& r) {
     const double moved = size_of(l.exact) * r.rounding + size_of(r.exact) * l.rounding + l.rounding * r.rounding;
     Led result(l.exact * r.exact, l, r, moved, l.is_zero() || r.is_zero() ? 0 : kLost);
@@ -99,7 +99,7 @@ struct Led {
   static constexpr bool kIsFloat = sizeof(Real) == sizeof(float);
   static constexpr double kUnit = kIsFloat ? 0x1p-24 : 0x1p-53,
                           kLargest = kIsFloat ? 0x1.fffffep+127 : 0x1.fffffffffffffp+1023;
-  // Exceeds the loss by underflow in a product or quotient and in the products of its bound.
+  // Upper bound on the loss by underflow in a product or quotient, and in the products that compute its bound.
   static constexpr double kLost = kIsFloat ? 0x1p-147 : 0x1p-1071;
 
   // An upper bound on the number's magnitude.
@@ -108,7 +108,7 @@ struct Led {
 
   // Values that the lane did not record, such as the least of several distances, are compared exactly. If their order
   // is in doubt, the wrong choice is off by at most their distance. The lane may have chosen the other value, so both
-  // get the larger rounding: that of a least or greatest value is at most the largest of all.
+  // get the larger rounding: a least or greatest value has at most the largest rounding of all.
   template <class Comparison>
   GRAZE_HD GRAZE_CALLED static bool compare(const Led& l, const Led& r, const Comparison& comparison) {
     if (l.was_seen && r.was_seen) return comparison(l.lane, r.lane);
@@ -121,9 +121,9 @@ struct Led {
   }
 };
 
-// The policy of such a run. It passes to `found` each question that the lane was asked: one(question, site, value) or
-// two(question, site, left, right, at_most), with values as Unrounded. `site` is kSiteCount for a comparison that the
-// source makes itself.
+// The policy of a run on Led numbers. For each question of the algorithm it calls found->one(question, site, value) or
+// found->two(question, site, left, right, at_most), with values as Unrounded. `site` is kSiteCount if the algorithm
+// compares without an epsilon.
 template <class Real, class Found>
 struct LedPolicy {
   Recorded<const Real> lane;

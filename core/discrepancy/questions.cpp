@@ -42,7 +42,7 @@ struct List {
     compare(degree, on, "a.high", "b.low", false);
     compare(degree, on, "b.high", "a.low", false);
   }
-  // The questions of `contains` in interval_overlap.h. `of`: for example "b.low in a".
+  // The questions of `contains` in interval_overlap.h. `of` is, for example, "b.low in a".
   void contained(int degree, const std::string& of) {
     const std::string point = of.substr(0, of.find(' ')), interval(1, of.back());
     compare(degree, of, interval + ".low", point, true);

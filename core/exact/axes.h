@@ -68,9 +68,9 @@ GRAZE_HD void look_in_plane(const Triangles<Numbers>& t, typename Numbers::D Vec
   }
 }
 
-// The axes that suffice if D lies in a plane through the origin, with normal n. Dropping a coordinate whose axis is not
-// perpendicular to n keeps D's shape, and its edges are edges of a and b. If n is zero, D is a segment or a point, and
-// some projection or some coordinate shows whether the origin is outside D.
+// Examines the axes that suffice if D lies in a plane through the origin, with normal n. Dropping a coordinate whose
+// axis is not perpendicular to n keeps D's shape, and D's edges are edges of a and b. If n is zero, D is a segment or a
+// point, and some projection or some coordinate shows whether the origin is outside D.
 template <class Numbers>
 GRAZE_HD void look_flat(const Triangles<Numbers>& t, const NormalOf<Numbers>& n, AxisEvidence& seen) {
   using D = typename Numbers::D;
@@ -88,8 +88,8 @@ GRAZE_HD void look_flat(const Triangles<Numbers>& t, const NormalOf<Numbers>& n,
   }
 }
 
-// The axes that decide a pair. If D has a volume, its faces are perpendicular to 11 axes: both normals and the edges'
-// cross products. If not, these axes show whether D's plane contains the origin. Extra axes do no harm.
+// Examines the axes that decide a pair. If D has a volume, its faces are perpendicular to 11 axes: both normals and the
+// edges' cross products. If D is flat, these axes show whether D's plane contains the origin. Extra axes do no harm.
 template <class Numbers>
 GRAZE_HD AxisEvidence look(const Triangles<Numbers>& t) {
   AxisEvidence seen;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The decision by axes: separating axes of the Minkowski difference of a and b. It handles proper, coplanar and
 // degenerate pairs alike, and also finds the contact, the margin's sign and the hulls.
-// Reference: the theorem is that of Gottschalk, Lin and Manocha 1996 (OBBTree).
+// Reference for the theorem: Gottschalk, Lin and Manocha 1996 (OBBTree).
 #pragma once
 
 #include "core/exact/axes.h"
@@ -31,7 +31,7 @@ GRAZE_HD int rank(const VecOf<Numbers> (&v)[4]) {
   return most_so_far;
 }
 
-// Two directions that span the hull of the vertices in the mask; those not needed are zero.
+// Two directions that span the hull of the vertices in the mask. A direction that is not needed is zero.
 template <class D>
 GRAZE_HD void directions(const Vec<D> (&v)[3], unsigned mask, Vec<D>& first, Vec<D>& second) {
   const int from = mask & 1 ? 0 : mask & 2 ? 1 : 2;

@@ -11,7 +11,7 @@
 
 namespace graze::exact::detail {
 
-// An axis along which triangles of a plane can be projected without collapsing: not perpendicular to its normal.
+// An axis along which triangles in a plane project without collapsing: it is not perpendicular to the plane's normal.
 template <class M>
 GRAZE_HD unsigned axis_to_drop(const Vec<M>& n) {
   return !(n.z == M(0)) ? 2 : !(n.x == M(0)) ? 0 : 1;
@@ -80,7 +80,7 @@ GRAZE_HD bool segments_meet(const Triangles<Numbers>& t) {
   const VecOf<Numbers> of_a = along(t.a), of_b = along(t.b), between = t.b[0] - t.a[0];
   const NormalOf<Numbers> n = cross<M>(of_a, of_b);
   if (!is_zero(n)) return dot<typename Numbers::T>(n, between) == typename Numbers::T(0) && meet_in_plane(t, n, n, n);
-  // Parallel segments, or a point. If they lie on one line, they intersect if their coordinates' ranges overlap.
+  // The segments are parallel, or one is a point. On one line, they intersect if their coordinates' ranges overlap.
   const bool a_is_point = same(t.a[1], t.a[0]) && same(t.a[2], t.a[0]);
   if (!is_zero(cross<M>(a_is_point ? of_b : of_a, between))) return false;
   for (unsigned axis = 0; axis < 3; ++axis) {
@@ -103,7 +103,7 @@ GRAZE_HD bool decide(const Real* a, const Real* b, int exponent) {
 }
 
 // The decision by planes for pairs that no machine number holds. Each determinant is first computed in `Near` numbers
-// with a bound of its own. Those whose sign remains unknown, mostly zeros, are computed one by one in exact numbers.
+// with a bound of its own. If its sign remains unknown, mostly because it is zero, it is computed in exact numbers.
 // Returns: unsure if all vertices of one triangle lie in the plane of the other.
 template <class Near, class Numbers, class Real>
 GRAZE_HD Finding by_planes_one_by_one(const Real* a, const Real* b, int exponent, Stage& stage) {
@@ -134,7 +134,7 @@ GRAZE_HD Finding by_planes_one_by_one(const Real* a, const Real* b, int exponent
   if (of_a.in == 7 || of_b.in == 7) return Finding::unsure;
 
   const Turn turn = lone_vertices(of_a, of_b);
-  for (unsigned k = 1; k < 3; ++k) {  // whether an edge of each separates them
+  for (unsigned k = 1; k < 3; ++k) {  // tests whether an edge of each triangle separates the pair
     const unsigned o = k == 1 ? turn.a[1] : turn.a[0], r = k == 1 ? turn.a[0] : turn.a[2],
                    s = k == 1 ? turn.b[1] : turn.b[2];
     const auto nearly = determinant<Near>(pick(near.a, o), pick(near.b, turn.b[0]), pick(near.a, r), pick(near.b, s));
@@ -146,7 +146,7 @@ GRAZE_HD Finding by_planes_one_by_one(const Real* a, const Real* b, int exponent
   return Finding::intersects;
 }
 
-// Decides the pairs about which the filter is unsure.
+// Decides a pair about which the filter is unsure.
 template <class Real>
 GRAZE_HD bool decide_unsure(const Real* a, const Real* b, Stage& stage) {
   using Machine = typename KindsFor<Real>::Machine;
@@ -177,7 +177,7 @@ GRAZE_HD bool relation_of(Finding found, const Real* a, const Real* b, Relation&
 }
 
 // The relation of pairs in general position: they cross, a plane or an edge of each separates them, or they share
-// a vertex.   Returns: false if rounding leaves that in doubt.
+// a vertex.   Returns: false if rounding leaves the relation in doubt.
 template <class Real>
 GRAZE_HD bool relate_quickly(const Real* a, const Real* b, Relation& r) {
   const Finding found = filter(a, b);
@@ -188,7 +188,7 @@ GRAZE_HD bool relate_quickly(const Real* a, const Real* b, Relation& r) {
   return relation_of(found, a, b, r);
 }
 
-// Like relate_quickly but without shared vertices. Each determinant has its own bound, so fewer are in doubt.
+// Like relate_quickly but without shared vertices. Each determinant has its own bound, so fewer pairs are in doubt.
 // Requires: floats, or doubles on a moderate grid.
 template <class Real>
 GRAZE_HD bool relate_by_bounds(const Real* a, const Real* b, Relation& r) {

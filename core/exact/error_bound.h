@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far rounding to doubles can move a determinant of three differences of floats or doubles: a bound for each
+// Bounds on the error of a determinant of three differences of floats or doubles, computed in doubles: a bound for each
 // determinant, and one bound for all determinants of a pair. Each difference is rounded once, so a determinant
 // is off by at most (7 + 56 e) e sum |products|, e = 2^-53 (Shewchuk 1997, orient3d stage A). Contraction only
 // removes roundings. With floats nothing over- or underflows: their differences are zero or lie between 2^-149 and
@@ -19,8 +19,8 @@ namespace graze::exact::detail {
 inline constexpr double kDeterminantError = 8 * 0x1p-53;
 
 // The bounds of a pair of doubles hold up to this extent, where nothing overflows. If a product of two differences
-// underflows, it is off by at most 2^-1075, a determinant by less than 6 * 2^-1075 * (2^300 + 1) < 2^-771 more, and a
-// minor by less than 2^-1073. Underflow in the bounds themselves costs less than that.
+// underflows, it is off by at most 2^-1075. A determinant is then off by less than 6 * 2^-1075 * (2^300 + 1) < 2^-771
+// more, and a minor by less than 2^-1073. Underflow in the computation of the bounds costs less than that.
 inline constexpr double kMostExtent = 0x1p300, kDeterminantUnderflow = 0x1p-700, kMinorUnderflow = 0x1p-1000;
 
 // Whether nothing over- or underflows in determinants of coordinates on this grid: differences are zero or lie between
@@ -39,7 +39,7 @@ struct Bounded {
   GRAZE_HD friend Bounded operator-(const Bounded& l, const Bounded& r) { return {l.value - r.value, l.size + r.size}; }
 };
 
-// The extent of the pair along each axis, each with one rounding.
+// The extent of the pair along each axis, rounded once.
 template <class Real>
 GRAZE_HD Vec<double> extent_of(const Real* a, const Real* b) {
   double extent[3];
@@ -67,8 +67,8 @@ GRAZE_HD double determinant_error(const Vec<double>& extent) {
   return holds ? error + kDeterminantUnderflow : __builtin_inf();
 }
 
-// Whether both are certainly proper: some component of each normal exceeds its error bound. Doubles whose differences
-// overflow may give infinities and NaN, which prove nothing.
+// Whether both triangles are certainly proper: some component of each normal exceeds its error bound. Doubles whose
+// differences overflow may give infinities and NaN, which prove nothing.
 template <class Real>
 GRAZE_HD bool both_proper(const Real* a, const Real* b) {
   const Vec<double> extent = extent_of(a, b);

@@ -108,7 +108,7 @@ const Example kExamples[] = {
      {0, 0, true}},
 };
 
-// The example, moved and scaled so that the given kind of numbers must decide it.
+// Tests the example, moved and scaled so that the given kind of numbers must decide it.
 template <class Real>
 void expect_relation(const Example& example, Real scale, Real offset, const char* numbers) {
   constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
@@ -271,9 +271,9 @@ TEST(Exact, ResiduesDecideAsIntegersOf128Bits) {
     float c[18];
     const int shift = static_cast<int>(random() % 11), kind = i % 4;
     for (float& x : c) x = static_cast<float>(static_cast<std::int64_t>(random() & 0x1ffffff) - 0x1000000);
-    if (kind == 1)  // vertices in each other's planes
+    if (kind == 1)  // puts vertices in each other's planes
       for (int k = 2; k < 18; k += 3) c[k] = 2 * c[k - 1] - (i % 3 == 0 && k == 17 ? 1.0f : 0.0f);
-    if (kind == 2)  // a vertex on an edge, or near it
+    if (kind == 2)  // puts a vertex on an edge, or near it
       for (int k = 0; k < 3; ++k) c[9 + k] = (c[k] + c[3 + k]) / 2;
     if (kind == 3)  // mixes small and large coordinates
       for (float& x : c) x = std::floor(std::ldexp(x, -static_cast<int>(random() % 25)));
@@ -293,7 +293,7 @@ TEST(Exact, ResiduesDecideAsIntegersOf128Bits) {
   for (const long count : by_contact) EXPECT_GT(count, 100);
 }
 
-// Segments and points in space, in one plane and on one line, also with triangles whose plane contains them.
+// Tests segments and points in space, in one plane and on one line, also with triangles whose plane contains them.
 TEST(Exact, SegmentsAndPointsMeetAsTheAxesSay) {
   std::mt19937_64 random(11);
   const auto small = [&](int most) { return static_cast<int>(random() % static_cast<unsigned>(2 * most + 1)) - most; };
@@ -343,7 +343,7 @@ TEST(Exact, SegmentsOfAnySizeMeetTrianglesAsTheAxesSay) {
   for (int i = 0; i < 20'000; ++i) {
     float c[18];
     for (float& x : c) x = coordinate();
-    if (i % 3 == 0) {  // in one coordinate plane, so that they meet more often
+    if (i % 3 == 0) {  // puts them in one coordinate plane, so that they meet more often
       for (int k = i % 2; k < 18; k += 3) c[k] = 0;
     }
     if (i % 2 == 0) std::copy_n(c + 3 * (i / 2 % 2), 3, c + 6);  // a is a segment
@@ -362,7 +362,7 @@ TEST(Exact, SegmentsOfAnySizeMeetTrianglesAsTheAxesSay) {
   EXPECT_GT(by_contact[1], 100);
 }
 
-// Products of 35-bit differences that are equal, that differ as little as possible, or that differ visibly in doubles.
+// Compares products of 35-bit differences: equal, as close as possible, and visibly different in doubles.
 TEST(Exact, ResiduesKnowTheSignsOfMinors) {
   using detail::Whole;
   std::mt19937_64 random(12);
@@ -383,7 +383,7 @@ TEST(Exact, ResiduesKnowTheSignsOfMinors) {
   EXPECT_GT(small, 100);
 }
 
-// At the limits of what residues hold: the largest determinant, 2^62 and its neighbours, zero.
+// Tests the limits of residues: the largest determinant, 2^62 and its neighbours, and zero.
 TEST(Exact, ResiduesKnowTheirSigns) {
   using detail::Residue, detail::Whole;
   const double most = 0x1p35 - 1;
@@ -405,7 +405,7 @@ TEST(Exact, ResiduesKnowTheirSigns) {
   }
 }
 
-// The bounds that error_bound.h derives. The tests on pairs do not come near them.
+// Tests the bounds that error_bound.h derives, because no pair of the other tests comes near them.
 TEST(ErrorBound, IsShewchuksAndNoMoreThanAFewPercentAbove) {
   const double e = 0x1p-53, stage_a = (7 + 56 * e) * e;
   EXPECT_GE(detail::kDeterminantError, stage_a);

@@ -88,7 +88,7 @@ TEST(Filter, FindsNothingThatIsNotSo) {
   }
 }
 
-// The same pairs as doubles, and scaled to the limits of the bounds.
+// Takes the same pairs as doubles, and scales them to the limits of the bounds.
 TEST(Filter, OfDoublesFindsNothingThatIsNotSo) {
   for (const Kind& kind : kKinds) {
     for (const int exponent : {0, -900, -300, 150, 299, 320, 890}) {

@@ -35,7 +35,7 @@ GRAZE_HD Finding filter(const Real* a, const Real* b) {
   const Vec<Two> v[3] = {both(vertex(a, 0), vertex(b, 0)), both(vertex(a, 1), vertex(b, 1)),
                          both(vertex(a, 2), vertex(b, 2))};
   const Vec<Two> n = cross<Two>(v[1] - v[0], v[2] - v[0]);
-  unsigned above[3], below[3];  // for each vertex: bit 0 for b's, bit 1 for a's
+  unsigned above[3], below[3];  // for each index: bit 0 is b's vertex, bit 1 is a's
   for (int i = 0; i < 3; ++i) {
     const Two height = dot<Two>(n, Vec<Two>{exchanged(v[i].x), exchanged(v[i].y), exchanged(v[i].z)} - v[0]);
     above[i] = exceeds(height, bound);

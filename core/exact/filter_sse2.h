@@ -15,7 +15,7 @@ namespace graze::exact::detail::sse2 {
 
 using Two = double __attribute__((vector_size(16)));
 
-// Bit 0 and bit 1: which of the two exceeds its bound.
+// Bit i is set if part i of x exceeds its bound.
 inline unsigned exceeds(Two x, Two bound) { return static_cast<unsigned>(_mm_movemask_pd(_mm_cmpgt_pd(x, bound))); }
 
 inline unsigned signs(Two x) { return static_cast<unsigned>(_mm_movemask_pd(x)); }
@@ -32,7 +32,7 @@ inline Two magnitude(Two x) { return _mm_andnot_pd(_mm_set1_pd(-0.0), x); }
 
 // The coordinates of a triangle as doubles, two at a time.
 struct Widened {
-  Two two[5];  // 0 and 1, 2 and 3, 4 and 5, 6 and 7, 8 and 8
+  Two two[5];  // coordinates 0 and 1, 2 and 3, 4 and 5, 6 and 7, 8 and 8
 
   explicit Widened(const float* v) {
     for (int i = 0; i < 4; ++i)
@@ -54,10 +54,10 @@ inline Two both(const Widened& l, const Widened& r, int i) {
   return i % 2 == 0 ? _mm_unpacklo_pd(l.two[i / 2], r.two[i / 2]) : _mm_unpackhi_pd(l.two[i / 2], r.two[i / 2]);
 }
 
-// Two vertices, as one vector of two.
+// Two vertices as one vector, each of whose coordinates has two parts.
 inline Vec<Two> both(const double* l, const double* r) { return {Two{l[0], r[0]}, Two{l[1], r[1]}, Two{l[2], r[2]}}; }
 
-// determinant_error<Real>(extent_of(a, b)), in both parts.   Requires: the vertices of both triangles.
+// Computes determinant_error<Real>(extent_of(a, b)) in both parts. v: the vertices of both triangles.
 template <class Real>
 Two determinant_error(const Vec<Two> (&v)[3]) {
   const Vec<Two> low{least(least(v[0].x, v[1].x), v[2].x), least(least(v[0].y, v[1].y), v[2].y),
@@ -93,8 +93,8 @@ struct Turns {
 };
 inline constexpr Turns kTurns;
 
-// It branches only where most pairs of one kind take the same branch: a mispredicted branch costs as much as everything
-// after it.
+// This function branches only where most pairs of one kind take the same branch: a mispredicted branch costs as much as
+// everything after it.
 template <class Real>
 Finding filter(const Real* a, const Real* b) {
   const Widened wide_a(a), wide_b(b);
@@ -105,7 +105,7 @@ Finding filter(const Real* a, const Real* b) {
   for (int i = 0; i < 3; ++i)
     v[i] = {both(wide_a, wide_b, 3 * i), both(wide_a, wide_b, 3 * i + 1), both(wide_a, wide_b, 3 * i + 2)};
   const Two bound = determinant_error<Real>(v);
-  // Relative to the other triangle: the heights of a's vertices over b, and of b's over a.
+  // The heights of a's vertices over b's plane, and of b's vertices over a's plane.
   const Vec<Two> n = exchanged(cross<Two>(v[1] - v[0], v[2] - v[0])), from = exchanged(v[0]);
   const Two height[3] = {dot<Two>(n, v[0] - from), dot<Two>(n, v[1] - from), dot<Two>(n, v[2] - from)};
   const Two lowest = least(least(height[0], height[1]), height[2]);

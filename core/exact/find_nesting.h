@@ -10,7 +10,7 @@ namespace graze::exact::detail {
 
 enum class Answer { no, yes, unknown };
 
-// Whether the line crosses the triangle q: no two of q's edges lie on different sides of it.
+// Whether the line crosses the triangle q: no two of q's edges lie on different sides of the line.
 template <class Numbers>
 GRAZE_HD Answer line_crosses(const VecOf<Numbers>& from, const VecOf<Numbers>& to, const VecOf<Numbers> (&q)[3],
                              const Numbers& numbers) {
@@ -25,7 +25,7 @@ GRAZE_HD Answer line_crosses(const VecOf<Numbers>& from, const VecOf<Numbers>& t
   return left && right ? Answer::no : open ? Answer::unknown : Answer::yes;
 }
 
-// Whether the part of p in q's plane lies in q. Its ends are where edges of p reach the plane.
+// Whether the part of p in q's plane lies in q. The part ends where edges of p reach the plane.
 // Requires: p reaches the plane of q and does not lie in it.
 template <class Numbers>
 GRAZE_HD Answer cut_inside(const VecOf<Numbers> (&p)[3], const Sides& of_p, const VecOf<Numbers> (&q)[3],
@@ -53,8 +53,8 @@ GRAZE_HD bool nesting_in_space(const Triangles<Numbers>& t, Nesting& nesting, co
   return a != Answer::unknown && b != Answer::unknown;
 }
 
-// Whether p lies in q, which may be a segment or a point. It does if, in each projection, no two edges of q have p on
-// different sides, and p lies in the box of q.   Requires: one plane holds q and p; exact numbers.
+// Whether p lies in q, which may be a segment or a point. p lies in q if, in each projection, no two edges of q have p
+// on different sides, and p lies in the box of q.   Requires: one plane holds q and p; exact numbers.
 template <class Numbers>
 GRAZE_HD bool lies_in(const VecOf<Numbers>& p, const VecOf<Numbers> (&q)[3]) {
   using D = typename Numbers::D;
@@ -75,7 +75,7 @@ GRAZE_HD bool lies_in(const VecOf<Numbers>& p, const VecOf<Numbers> (&q)[3]) {
   return inside;
 }
 
-// Requires: one plane holds both; exact numbers.
+// Requires: one plane holds both triangles; exact numbers.
 template <class Numbers>
 GRAZE_HD Nesting nesting_in_plane(const Triangles<Numbers>& t) {
   bool a = true, b = true;
@@ -101,8 +101,8 @@ GRAZE_HD Nesting nesting(const Triangles<Numbers>& t, const Relation& r) {
   return result;
 }
 
-// With doubles and error bounds.
-// Requires: floats, or doubles on a moderate grid.   Returns: false if rounding leaves it in doubt.
+// Like nesting, but in doubles with error bounds.
+// Requires: floats, or doubles on a moderate grid.   Returns: false if rounding leaves the nesting in doubt.
 template <class Real>
 GRAZE_HD bool nesting_quickly(const Real* a, const Real* b, const Relation& r, Nesting& nesting) {
   nesting = Nesting::none;

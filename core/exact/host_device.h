@@ -10,7 +10,7 @@
 #endif
 #endif
 
-// A function that device code calls but does not inline, because inlining would double nvcc's compile time.
+// GRAZE_CALLED marks a function that device code must not inline, because that would double nvcc's compile time.
 #ifdef __CUDACC__
 #define GRAZE_CALLED __noinline__
 #else

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangle lies inside the other. Coplanar: all of it. In space: its part in the other's plane. Code that looks
-// only for crossing edges misses coplanar nesting. find_nesting.h computes it.
+// Which triangle lies inside the other: all of it if they are coplanar, otherwise its part in the other's plane. Code
+// that looks only for crossing edges misses coplanar nesting. find_nesting.h computes the nesting.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace graze {
 
-// a_in_b: coplanar: all of a lies in b, boundary included. Not coplanar: two proper triangles meet in a segment, the
-// part of a in b's plane lies in b, and the part of b in a's plane does not lie in a. same: coplanar and equal.
+// a_in_b, coplanar: all of a lies in b, boundary included. a_in_b, otherwise: two proper triangles meet in a segment,
+// the part of a in b's plane lies in b, and the part of b in a's plane does not lie in a. same: coplanar and equal.
 enum class Nesting : std::uint8_t { none, a_in_b, b_in_a, same };
 
 // Relation and nesting in nine bits.   Requires: a known contact.

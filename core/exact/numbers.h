@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kinds of numbers that decide, each exact or able to report that it is not, and the choice of the smallest exact
+// The kinds of numbers for decisions, each exact or able to report that it is not, and the choice of the smallest exact
 // kind that holds a pair. If coordinates on the pair's grid have B bits, differences have B + 1, and a determinant is
-// less than 6 times the product of three differences. The bits below are those of coordinates:
+// less than 6 times the product of three differences. The list gives the bits of coordinates:
 //   bounded    doubles with an error bound; see core/exact/error_bound.h
 //   doubles    up to 15 bits: less than 6 * 2^(3 * 16) < 2^53, so nothing rounds; floats likewise up to 6 bits:
 //              6 * 2^(3 * 7) < 2^24
@@ -44,7 +44,7 @@ struct BoundedNumbers {
   GRAZE_HD bool is_proper(const Vec<M>&) const { return false; }
 };
 
-// Holds grids of up to `bits` bits.
+// Exact numbers for grids of up to `bits` bits.
 template <class Difference, class Minor, class Determinant, int bits, Stage stage>
 struct ExactNumbers {
   using D = Difference;
@@ -60,14 +60,14 @@ struct ExactNumbers {
 
 inline constexpr int kSingleBits = 6, kResidueBits = 34, kDoubleBits = 15, kNarrowBits = 30, kIntBits = 40,
                      kMediumBits = 61, kLongBits = 90, kLargeBits = 300;
-inline constexpr int kFloatBits = 277, kAllBits = 2098;  // of all floats as multiples of 2^-149, and of all doubles
+inline constexpr int kFloatBits = 277, kAllBits = 2098;  // bits of floats as multiples of 2^-149, and of doubles
 using DoubleNumbers = ExactNumbers<double, double, double, kDoubleBits, Stage::doubles>;
 using NarrowNumbers = ExactNumbers<std::int64_t, std::int64_t, Int128, kNarrowBits, Stage::int128>;
 using IntNumbers = ExactNumbers<std::int64_t, Int128, Int128, kIntBits, Stage::int128>;
 using LongNumbers = ExactNumbers<Wide<2>, Wide<3>, Wide<5>, kLongBits, Stage::wide>;
 using WideNumbers = ExactNumbers<Wide<5>, Wide<9>, Wide<14>, kFloatBits, Stage::wide>;
 
-// For doubles.
+// These kinds are for pairs of doubles.
 struct ModerateDoubleNumbers : DoubleNumbers {
   GRAZE_HD static bool holds(const Grid& grid) { return grid.bits <= kDoubleBits && is_moderate(grid); }
 };
@@ -104,8 +104,8 @@ struct NumberKinds {
 };
 using MultiwordNumbers = NumberKinds<LongNumbers, WideNumbers>;
 
-// The kinds of numbers for a coordinate type: those so cheap that all determinants are computed exactly, and those for
-// which each determinant is first bounded.
+// The kinds of numbers for a coordinate type. Machine: so cheap that all determinants are computed exactly. Multiword:
+// each determinant is first bounded.
 template <class Real>
 struct KindsFor {
   using Machine = NumberKinds<DoubleNumbers, NarrowNumbers, IntNumbers>;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One triangle (the reference) prepared for tests against many: its box, and two slabs that contain it, each between
 // two parallel planes. A triangle beyond a slab is disjoint; this certifies most disjoint triangles in floats. The
-// others go to a filter, also in floats, and then to the filter of core/exact/filter.h.
+// other triangles go to a filter, also in floats, and then to the filter of core/exact/filter.h.
 //
 // The slabs are the thinnest ones: perpendicular to the triangle's normal and, within its plane, to its longest edge.
 // Their directions may be rounded in any way, because the reference's extent is computed along the direction as stored.
@@ -42,7 +42,7 @@ GRAZE_HD inline float magnitude(float x) {
 #endif
 }
 
-// For two finite numbers. On a device each is one instruction.
+// lesser and greater require finite numbers. On a device, each is one instruction.
 GRAZE_HD inline float lesser(float x, float y) {
 #ifdef __CUDA_ARCH__
   return fminf(x, y);
@@ -92,7 +92,7 @@ inline Slab slab_along(const Vec<double>& direction, const float* v, bool rounde
 
 // If the reference is not finite, no slab certifies anything and the filter in floats is unsure.
 // rounded: the coordinates of the reference, and of the triangles that is_beyond takes, were rounded to float32. The
-// slabs then certify what holds before rounding, and the filter in floats does not apply.
+// slabs then certify the triangles before rounding, and the filter in floats does not apply.
 inline PreparedTriangle prepare(const float* v, bool rounded = false) {
   using Direction = detail::Vec<double>;
   PreparedTriangle r;
@@ -124,15 +124,15 @@ inline PreparedTriangle prepare(const float* v, bool rounded = false) {
   return r;
 }
 
-// For doubles, as differences from the reference's first vertex: such a difference has a small relative error wherever
-// the triangles are. is_beyond takes the other triangle as differences from the same vertex.
+// For doubles. The coordinates become differences from the reference's first vertex, because such a difference has a
+// small relative error wherever the triangles are. is_beyond takes the other triangle as such differences, too.
 inline PreparedTriangle prepare(const double* v) {
   float seen[9];
   for (int k = 0; k < 9; ++k) seen[k] = static_cast<float>(v[k] - v[k % 3]);
   return prepare(seen, true);
 }
 
-// The sum of the triangle's nine magnitudes. It is not finite if one of them is not, or if it overflows.
+// The sum of the triangle's nine magnitudes. It is not finite if a magnitude is not, or if the sum overflows.
 GRAZE_HD inline float size_of(const float* t) {
   float sum = detail::magnitude(t[0]);
   for (int i = 1; i < 9; ++i) sum += detail::magnitude(t[i]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Integers of up to 108 bits as a double and a remainder modulo 2^64. The double gives the sign unless it is small;
-// then the remainder is the whole integer. Exact like 128-bit integers, at half their cost where doubles are fast.
+// then the remainder is the whole integer. As exact as 128-bit integers, at half the cost if doubles are fast.
 //
 // Coordinates have 34 bits and differences 35. A minor is less than 2^71 and its double is off by less than 2^20. A
 // determinant is less than 2^108 and its double is off by less than 2^59; the difference of two is off by less than
@@ -56,7 +56,7 @@ struct Residue {
   GRAZE_HD friend bool operator==(Residue l, Residue r) { return (l - r).sign() == 0; }
 };
 
-// The sign of p q - r s, for differences. The remainder of this minor matters only if its double is small.
+// The sign of p q - r s; all four are differences. The remainder of this minor matters only if its double is small.
 GRAZE_HD inline int sign_of_difference(Whole p, Whole q, Whole r, Whole s) {
   constexpr double kSmall = 0x1p21;
   const double near = p.value * q.value - r.value * s.value;

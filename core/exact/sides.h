@@ -10,7 +10,7 @@ namespace graze::exact::detail {
 // coplanar: all vertices lie in the plane of a proper triangle. unsure: none of these is certain.
 enum class Finding { disjoint, intersects, crosses, coplanar, unsure };
 
-// A triangle's vertices above, below and in a plane: bit i is vertex i. A vertex in none of them is unknown.
+// A triangle's vertices above, below and in a plane: bit i is vertex i. If no mask has a vertex, its side is unknown.
 struct Sides {
   unsigned above = 0, below = 0, in = 0;
 
@@ -21,7 +21,7 @@ struct Sides {
   // branches, which would be mispredicted.
   // Requires: known; not one_side; not all in the plane.   Returns: its index; `over` is 1 if its side is below.
   GRAZE_HD constexpr unsigned alone(unsigned& over) const {
-    if (in == 0) {  // two bits, or one, for each of the eight values of `above`
+    if (in == 0) {  // the tables have two bits, or one, for each of the eight values of `above`
       over = 0x68u >> above & 1;
       return 0x690u >> 2 * above & 3;
     }

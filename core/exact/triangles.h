@@ -21,8 +21,8 @@ struct Triangles {
   VecOf<Numbers> a[3], b[3];
 };
 
-// A coordinate on its grid. Integers are multiples of 1 / scale, and the widest ones multiples of 2^-149. Floating
-// point is not scaled.
+// Puts a float on its grid. Integers are multiples of 1 / scale, and the widest integers are multiples of 2^-149.
+// Floating-point numbers are not scaled.
 GRAZE_HD inline void convert(float x, double, float& out) { out = x; }
 GRAZE_HD inline void convert(float x, double, double& out) { out = static_cast<double>(x); }
 GRAZE_HD inline void convert(float x, double scale, std::int64_t& out) { out = static_cast<std::int64_t>(x * scale); }
@@ -46,13 +46,13 @@ GRAZE_HD inline void convert(float x, double, Wide<5>& out) {
   if (bits >> 31) out = -out;
 }
 
-// Doubles on the grid of this exponent. A double may be unable to hold the scale, so their bits are shifted.
+// Puts a double on the grid of this exponent. A double may be unable to hold the scale, so the bits are shifted.
 // Requires: x is a multiple of 2^exponent.
 GRAZE_HD inline void convert(double x, int, double& out) { out = x; }
 GRAZE_HD inline void convert(double x, int exponent, std::int64_t& out) {
   int own;
   const std::uint64_t mantissa = mantissa_of(x, own);
-  const int shift = own - exponent;  // for zero it may be anything
+  const int shift = own - exponent;  // arbitrary if x is zero
   const auto size = static_cast<std::int64_t>(mantissa == 0 ? 0 : shift < 0 ? mantissa >> -shift : mantissa << shift);
   out = x < 0 ? -size : size;
 }

@@ -75,7 +75,7 @@ struct Wide {
     return turn ? -product : product;
   }
 
-  // Multiplies both as unsigned: modulo 2^(64 N), a negative r counts 2^64 too much.
+  // Multiplies l and r as unsigned numbers. A negative r then counts 2^64 too much, which `less` takes away.
   GRAZE_HD friend Wide operator*(const Wide& l, std::int64_t r) {
     Wide product;
     std::uint64_t carry = 0, borrow = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uses Google Highway: compiled for each instruction set; the best one is chosen at run time. Instruction sets may
-// round differently, because some of them contract. Decisions beyond the error bound do not depend on that; all others
-// are exact.
+// This file is compiled for each instruction set with Google Highway, which chooses the best one at run time.
+// Instruction sets may round differently, because some of them contract. Decisions beyond the error bound do not depend
+// on rounding; all other decisions are exact.
 #ifdef __wasm__
 #include "core/exact_blocks/one_by_one.h"
 
@@ -40,9 +40,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #include "core/exact_blocks/doubles-inl.h"
 
-constexpr std::size_t kChunk = 512;  // undecided pairs are gathered from at most this many
+constexpr std::size_t kChunk = 512;  // undecided pairs are gathered from at most this many pairs
 template <class Real>
-constexpr std::size_t kChunkOf = kChunk * sizeof(float) / sizeof(Real);  // 36 KB
+constexpr std::size_t kChunkOf = kChunk * sizeof(float) / sizeof(Real);  // a chunk has 36 KB
 constexpr unsigned kAll = (1u << kAtOnce) - 1;
 constexpr int kBitsOfDoubles = detail::kDoubleBits;
 
@@ -55,7 +55,8 @@ struct Waiting {
     for (; which != 0; which &= which - 1) pair[count++] = pairs[std::countr_zero(which)];
   }
 
-  // Calls step(numbers, which) with kAtOnce of them at a time, repeating the last one. `which` marks the real ones.
+  // Calls step(numbers, which) with kAtOnce pairs at a time. The last pair fills up the last group; `which` leaves out
+  // these copies.
   template <class Step>
   void take(const Step& step) {
     for (std::size_t i = 0; i < kAtOnce && count > 0; ++i) pair[count + i] = pair[count - 1];
@@ -66,7 +67,7 @@ struct Waiting {
 template <class Real>
 struct Chunk {
   const Real* pairs;
-  std::uint64_t *intersects, *declined;  // words of zeros
+  std::uint64_t *intersects, *declined;  // must be zeros at first
 
   // number(i): the index of the i-th pair.
   template <class Number>

@@ -73,7 +73,7 @@ TEST(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
   const auto whole = [&](int bits) {
     return static_cast<float>(static_cast<std::int64_t>(random() >> (63 - bits)) - (std::int64_t{1} << bits));
   };
-  const auto vertices_again = [&](auto all) {  // some vertices of b are a's: contacts, coplanar pairs
+  const auto vertices_again = [&](auto all) {  // makes vertices of b equal to vertices of a
     for (std::size_t pair = 0; pair < all.size(); pair += 18) {
       for (std::size_t v = 9; v < 18; v += 3) {
         if (random() % 3 == 0) std::copy_n(&all[pair + random() % 3 * 3], 3, &all[pair + v]);

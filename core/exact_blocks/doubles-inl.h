@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// More code for decide.cpp, included after vectors-inl.h: numbers for pairs on large grids, and pairs of
+// More code for decide.cpp, included after vectors-inl.h: numbers for pairs on large grids, and coordinates of pairs of
 // doubles.
 
 // Unevaluated sums of two doubles (Dekker 1971). Differences of doubles are exact. With u = 2^-53, a product of two
 // such numbers is off by at most 5 u^2 of itself, a sum or difference by at most 3 u^2 of the summands' magnitudes
 // (Joldes, Muller and Popescu 2017). A determinant is therefore off by at most (2 * 5 + 3 * 3) u^2 of its products'
 // magnitudes plus terms of u^3, which 32 u^2 bounds. `hi` has the number's sign and a relative error of u, so twice
-// that bounds `hi`. With float32 coordinates nothing underflows; with doubles, the loss is within kDeterminantUnderflow
-// (core/exact/error_bound.h).   Requires: fused multiply-adds, and no contraction by the compiler.
+// that bound holds for `hi`. With float32 coordinates nothing underflows; with doubles, the loss is within
+// kDeterminantUnderflow (core/exact/error_bound.h).   Requires: fused multiply-adds, no contraction by the compiler.
 struct DoubleDouble {
   static constexpr double kError = 6 * 64 * 0x1p-106;
   V hi, lo;
@@ -25,7 +25,7 @@ struct DoubleDouble {
     const DoubleDouble sum = quick_sum(high.hi, hn::Add(high.lo, low.hi));
     return quick_sum(sum.hi, hn::Add(sum.lo, low.lo));
   }
-  // p q - r s
+  // Computes p q - r s.
   static HWY_INLINE DoubleDouble minor_of(const DoubleDouble& p, const DoubleDouble& q, const DoubleDouble& r,
                                           const DoubleDouble& s) {
     return p * q + DoubleDouble{hn::Neg(r.hi), hn::Neg(r.lo)} * s;
@@ -35,7 +35,7 @@ struct DoubleDouble {
   }
 
  private:
-  // |x| >= |y|, or x is zero
+  // Requires: |x| >= |y|, or x is zero.
   static HWY_INLINE DoubleDouble quick_sum(V x, V y) {
     const V sum = hn::Add(x, y);
     return {sum, hn::Sub(y, hn::Sub(sum, x))};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vector code for decide.cpp: vectors of doubles with one pair in each vector lane. Included once for each instruction
-// set, within its namespace, so there is no include guard.
+// Vector code for decide.cpp: vectors of doubles with one pair in each vector lane. It is included once for each
+// instruction set, within its namespace, so it has no include guard.
 //
 //   filter_all    the decision by planes with one error bound for each pair, like core/exact/filter.h; in Double, or
 //                 in DoubleDouble (doubles-inl.h)
@@ -22,7 +22,7 @@ constexpr Tag d;
 constexpr FloatTag df;
 constexpr IntegerTag di;
 constexpr std::size_t kAtOnce = HWY_MAX_BYTES >= 64 ? 8 : 4;
-constexpr int kBitsOfBoth = 34;  // that DoubleAndInteger holds
+constexpr int kBitsOfBoth = 34;  // the most bits that DoubleAndInteger holds
 
 template <class AnyTag>
 HWY_INLINE unsigned bits(AnyTag tag, hn::Mask<AnyTag> mask) {
@@ -41,7 +41,7 @@ HWY_INLINE Three<T> operator-(const Three<T>& l, const Three<T>& r) {
   return {l.x - r.x, l.y - r.y, l.z - r.z};
 }
 
-// The kinds of numbers.
+// A double in each vector lane. Its operations round.
 struct Double {
   static constexpr double kError = 6 * detail::kDeterminantError;  // see determinant_error in core/exact/error_bound.h
   V v;
@@ -49,7 +49,7 @@ struct Double {
   static HWY_INLINE Double difference(V l, V r) { return {hn::Sub(l, r)}; }
   HWY_INLINE V sign() const { return v; }
   friend HWY_INLINE Double operator-(Double l, Double r) { return {hn::Sub(l.v, r.v)}; }
-  // p q - r s
+  // Computes p q - r s.
   static HWY_INLINE Double minor_of(Double p, Double q, Double r, Double s) {
     return {hn::MulSub(p.v, q.v, hn::Mul(r.v, s.v))};
   }
@@ -147,7 +147,7 @@ struct Turned {
   Three<Double> first, second, third;
 };
 
-// below: which vertices are below the other triangle's plane; not all or none of the three.
+// below: which vertices are below the other triangle's plane; neither all nor none of them.
 HWY_INLINE Turned turned(const Three<Double> (&v)[3], const M (&below)[3], M other_is_below) {
   const M apart_01 = hn::Xor(below[0], below[1]), apart_02 = hn::Xor(below[0], below[2]);
   const M is_1 = hn::AndNot(apart_02, apart_01), is_2 = hn::AndNot(apart_01, apart_02);
@@ -160,7 +160,7 @@ HWY_INLINE Turned turned(const Three<Double> (&v)[3], const M (&below)[3], M oth
 // Whether the lone vertex of three is below. The other two are equal and cancel.   Requires: not all three are equal.
 HWY_INLINE M alone_is_below(const M (&below)[3]) { return hn::Xor(hn::Xor(below[0], below[1]), below[2]); }
 
-// The differences of coordinates, as numbers of another kind.
+// The difference of two vertices, in this kind of numbers.
 template <class Number>
 HWY_INLINE Three<Number> difference(const Three<Double>& l, const Three<Double>& r) {
   return {Number::difference(l.x.v, r.x.v), Number::difference(l.y.v, r.y.v), Number::difference(l.z.v, r.z.v)};
@@ -175,7 +175,7 @@ HWY_INLINE V orientation(const Three<Double>& o, const Three<Double>& p, const T
 
 template <class Number = Double, class Real>
 HWY_INLINE Filtered filter_all(const CoordinatesOf<Real>& pairs) {
-  auto zeros = hn::Zero(pairs.tag);  // NaN instead if a coordinate is not finite
+  auto zeros = hn::Zero(pairs.tag);  // becomes NaN if a coordinate is not finite
   for (const auto& x : pairs.x) zeros = hn::MulAdd(x, hn::Zero(pairs.tag), zeros);
   const unsigned declined = bits(hn::IsNaN(widened(zeros)));
 
@@ -250,11 +250,11 @@ struct OnGrid {
 
   template <class Real>
   HWY_INLINE OnGrid(const CoordinatesOf<Real>& pairs, int bits_of_grid) {
-    // If all coordinates are smaller than this, this sets the scale.
+    // The largest coordinate sets the scale, or this number if all coordinates are smaller.
     auto largest = hn::Set(pairs.tag, sizeof(Real) == sizeof(float) ? Real(0x1p-126) : Real(0x1p-900));
     for (const auto& c : pairs.x) largest = hn::Max(largest, hn::Abs(c));
-    // Values stay below 2^bits_of_grid. It is enough that the largest is at least half of that, so the scale is
-    // 2^(bits_of_grid - 1 - e).
+    // Values stay below 2^bits_of_grid. It is enough that the largest value is at least half of that. If its exponent
+    // is e, the scale is 2^(bits_of_grid - 1 - e).
     const VI exponent = hn::And(hn::BitCast(di, widened(largest)), hn::Set(di, std::int64_t{0x7ff} << 52));
     const V scale = hn::BitCast(d, hn::Sub(hn::Set(di, std::int64_t{2 * 1023 + bits_of_grid - 1} << 52), exponent));
     M whole = hn::Eq(scale, scale);
@@ -270,7 +270,7 @@ struct OnGrid {
   }
 };
 
-// The range of the numbers' signs.
+// The least and the greatest of doubles that have the numbers' signs.
 struct Ends {
   V low = hn::Set(d, 0x1p1000), high = hn::Set(d, -0x1p1000);
 
@@ -283,7 +283,7 @@ struct Ends {
 // Whether an axis separates the triangles, which it does if all differences along it have the same sign.
 struct Axes {
   M separated;
-  V least, most;  // least and greatest difference of all axes
+  V least, most;  // the least and the greatest difference along all axes
 
   HWY_INLINE Axes() : separated(hn::Gt(hn::Zero(d), hn::Zero(d))), least(hn::Zero(d)), most(hn::Zero(d)) {}
   HWY_INLINE void look(V low, V high) {
@@ -298,7 +298,7 @@ struct Axes {
   }
 };
 
-// p are a's vertices and q are b's, relative to a's first vertex. of_a and of_b are their edges.
+// p are a's vertices and q are b's, relative to a's first vertex. of_a and of_b are the triangles' edges.
 template <class T>
 struct FromFirst {
   Three<T> p[3], q[3], of_a[3], of_b[3];
@@ -318,7 +318,7 @@ struct FromFirst {
   }
 
   // Calls visit(axis, difference…) for the normals and the cross products of edges. The differences are those of b's
-  // and a's vertices along the axis; equal ones are passed once.
+  // and a's vertices along the axis; equal differences are passed once.
   template <class Visit>
   HWY_INLINE void for_each_axis(const Visit& visit) const {
     const Three<T> normal_a = cross(p[1], p[2]), normal_b = cross(of_b[0], of_b[1]);
@@ -334,7 +334,7 @@ struct FromFirst {
   }
 };
 
-// The axes that decide, as in look and look_flat of core/exact/axes.h.
+// Bit i is set if an axis separates pair i. The axes are those of look and look_flat in core/exact/axes.h.
 template <class T>
 HWY_INLINE unsigned separated(const OnGrid& pair) {
   const FromFirst<T> seen(pair);
@@ -346,7 +346,7 @@ HWY_INLINE unsigned separated(const OnGrid& pair) {
   };
   if (hn::AllFalse(d, all_zero())) return bits(axes.separated);
 
-  // The axes for a flat difference of a and b, in a plane that contains the origin.
+  // If the difference of a and b is flat, its plane contains the origin, and these axes decide.
   using Part = T Three<T>::*;
   constexpr Part kPlanes[3][2] = {
       {&Three<T>::x, &Three<T>::y}, {&Three<T>::y, &Three<T>::z}, {&Three<T>::z, &Three<T>::x}};

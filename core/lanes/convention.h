@@ -9,7 +9,7 @@
 
 namespace graze {
 
-// outside: a sum of Outside.   Requires: finite coordinates; `truth` is the pair's truth.
+// outside: a sum of excluded kinds (Outside).   Requires: finite coordinates; `truth` is the pair's truth.
 template <class Real>
 bool is_outside(unsigned outside, const BasicPair<Real>& pair, const Relation& truth) {
   const Hulls& hulls = truth.hulls;

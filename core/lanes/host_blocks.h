@@ -12,13 +12,13 @@ namespace graze {
 template <class Block>
 using BlockTable = std::array<std::array<Block, 2>, kAlgorithmCount>;
 using HostBlocks = BlockTable<DecideBlock::Function>;
-using HostDoubleBlocks = std::array<DecideFunction<DoublePair>, kAlgorithmCount>;   // in double
-using HostDoubleRecords = std::array<RecordFunction<DoublePair>, kAlgorithmCount>;  // in double
+using HostDoubleBlocks = std::array<DecideFunction<DoublePair>, kAlgorithmCount>;   // for lanes in double
+using HostDoubleRecords = std::array<RecordFunction<DoublePair>, kAlgorithmCount>;  // for lanes in double
 
-// The block functions of each kind of policy; null if the algorithm or the variant does not have it.
+// The block functions of each kind of policy; null if the algorithm or the variant does not have the policy.
 template <class AnyPair>
 struct PolicyFunctions {
-  DecideWithin<AnyPair> absolute = nullptr, relative = nullptr;  // under absolute tolerances only; with relative ones
+  DecideWithin<AnyPair> absolute = nullptr, relative = nullptr;  // `relative` also takes absolute tolerances
   DecideFunction<AnyPair> bound = nullptr;
 };
 using PolicyBlocks = PolicyFunctions<Pair>;

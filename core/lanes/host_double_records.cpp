@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The runs of the host lanes in double that record their values on pairs of doubles, compiled once per variant. They
-// have a file of their own because contraction depends on what else the compiler sees: in the same file, lanes on pairs
-// of float32 could compute other values. Define nothing else here.
+// Recording runs of the host lanes in double on pairs of doubles, compiled once per variant. They have a file of their
+// own because contraction depends on what else the compiler sees: in the same file, lanes on pairs of float32 could
+// compute other values. Define nothing else here.
 #include "core/algorithms/recording.h"
 #include "core/lanes/host_blocks.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled like the host lanes of the variant cpu: in their namespace and with their flags.
+// This file is compiled like the host lanes of the variant cpu: in their namespace and with their flags.
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -72,7 +72,7 @@ void decide_ladder(std::span<const Epsilons> epsilons, const PairOf* pairs, std:
     for (std::size_t at = 0; at < rungs.size();) {
       const Climb<Real> climb(rungs, at);
       const Verdict verdict = Algorithm::decide(p, q, climb);
-      // Marks where a rung's bit differs from that of the rung before; the loop below sums these up.
+      // Marks where a rung's bit differs from that of the rung before; the last loop turns these marks into bits.
       std::uint64_t& yes = intersects[at * words + i / 64];
       std::uint64_t& no_answer = declined[at * words + i / 64];
       if ((verdict == Verdict::intersects) != (before == Verdict::intersects)) yes |= bit;
@@ -92,7 +92,7 @@ constexpr Ladders ladders_in_double() {
   return {decide_ladder<Algorithm, double, Number, Pair>, decide_ladder<Algorithm, double, Number, DoublePair>};
 }
 
-// For each algorithm: f32 absolute and relative, f64 absolute and relative.
+// The ladders of each algorithm, in this order: f32 absolute, f32 relative, f64 absolute, f64 relative.
 template <class... Algorithm>
 constexpr auto ladders(const std::tuple<Algorithm...>*) {
   return std::array{std::array<Ladders, 4>{Ladders{decide_ladder<Algorithm, float, float, Pair>},

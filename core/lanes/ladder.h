@@ -12,19 +12,19 @@ namespace graze {
 
 // Decides the pairs under each tolerance (rung) as the lane under that rung would. Each rung has a row of
 // (count + 63) / 64 words, in the order of the rungs; pair i is bit i % 64 of word i / 64 of a row.
-// Requires: no tolerance is less than in the rung before; all rungs have relative ones, or none has.
+// Requires: no tolerance is less than in the rung before; all rungs have relative tolerances, or none has.
 template <class Real>
 using DecideLadder = void (*)(std::span<const Epsilons> rungs, const BasicPair<Real>* pairs, std::size_t count,
                               std::uint64_t* intersects, std::uint64_t* declined);
 
 struct Ladders {
   DecideLadder<float> floats = nullptr;
-  DecideLadder<double> doubles = nullptr;  // of lanes in double
+  DecideLadder<double> doubles = nullptr;  // only for lanes in double
 
   explicit operator bool() const { return floats; }
 };
 
-// None for lanes of variants other than cpu: a compiler might contract differently here than in the lane.
+// Returns: none if the variant is not cpu, because a compiler might contract differently here than in the lane.
 Ladders ladders_of(const Lane& lane, bool relative);
 
 }  // namespace graze

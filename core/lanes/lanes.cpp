@@ -31,7 +31,7 @@ void decide_exactly(const Pair* pairs, std::size_t count, std::uint64_t* interse
   exact::decide(reinterpret_cast<const float*>(pairs), count, intersects, declined);
 }
 
-#ifdef GRAZE_FLOAT32_ALONE  // graze.wasm; most reports carry its code
+#ifdef GRAZE_FLOAT32_ALONE  // for graze.wasm, which most reports contain
 constexpr DecideFunction<DoublePair> decide_doubles_exactly = nullptr;
 #else
 void decide_doubles_exactly(const DoublePair* pairs, std::size_t count, std::uint64_t* intersects,
@@ -197,8 +197,8 @@ Lane lane_under(const Lane& lane, std::string_view policy) {
 
 namespace {
 
-// A pattern, split into one for lanes without a policy and one for the policy. The policy begins at the fourth part. If
-// a star stands for several parts ("*/cpu/rel:8"), the policy is the last part, if that names one.
+// A pattern, split into a pattern for lanes without a policy, and a policy. The policy begins at the fourth part. If a
+// star stands for several parts ("*/cpu/rel:8"), the policy is the last part, provided that it names a policy.
 struct PolicyPattern {
   std::string zero, policy;
 };

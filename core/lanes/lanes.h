@@ -22,9 +22,9 @@ namespace graze {
 enum class Scalar : std::uint8_t { f32, f64 };
 std::string_view name(Scalar scalar);
 
-// The parts of a lane's name. They may be unknown here: lanes of other builds or machines have names too.
+// The parts of a lane's name. This build may not know them: lanes of other builds or machines have names too.
 struct LaneName {
-  std::string subject, scalar, variant, policy;  // policy empty: zero
+  std::string subject, scalar, variant, policy;  // an empty policy is zero
 
   std::string within_subject() const;  // "f32/cpu", "f32/cpu/abs:1e-6"
   friend bool operator==(const LaneName&, const LaneName&) = default;
@@ -41,10 +41,10 @@ class ForeignCode {
  public:
   virtual ~ForeignCode() = default;
   virtual void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) = 0;
-  // How it failed on a pair: crashed, timed_out or unstable.   Requires: it failed on the pair.
+  // The kind of failure: crashed, timed_out or unstable.   Requires: the code failed on the pair.
   virtual Verdict failure(const Pair& pair) = 0;
 
-  // The same for pairs of doubles, if it takes them.
+  // The same functions for pairs of doubles, if the code takes such pairs.
   virtual bool decides_doubles() const { return false; }
   virtual void decide_doubles(const DoublePair*, std::size_t, std::uint64_t*, std::uint64_t*) { std::terminate(); }
   virtual Verdict failure_on_doubles(const DoublePair&) { std::terminate(); }
@@ -57,12 +57,12 @@ template <class AnyPair>
 using DecideWithin = void (*)(const Epsilons& epsilons, const AnyPair* pairs, std::size_t count,
                               std::uint64_t* intersects, std::uint64_t* declined);
 
-// A lane's functions for pairs of one coordinate type; all null if it does not take them.
+// A lane's functions for pairs of one coordinate type. All are null if the lane does not take such pairs.
 template <class AnyPair>
 struct DecideFunctions {
   DecideFunction<AnyPair> function = nullptr;
   DecideFunction<AnyPair> otherwise = nullptr;  // decides the pairs that `function` declines
-  DecideWithin<AnyPair> within = nullptr;       // in place of `function`
+  DecideWithin<AnyPair> within = nullptr;       // used instead of `function`
 
   void decide(const Epsilons& epsilons, const AnyPair* pairs, std::size_t count, std::uint64_t* intersects,
               std::uint64_t* declined) const;
@@ -74,8 +74,8 @@ constexpr Verdict verdict_of_bits(bool intersects, bool declined) {
   return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
 }
 
-// Decides pairs[0..count). Bit i % 64 of word i / 64: intersects, or declined. Unused bits become zero. Lanes in double
-// take pairs of both coordinate types; others only float32.
+// Decides pairs[0..count) and writes two arrays, `intersects` and `declined`. Pair i is bit i % 64 of word i / 64;
+// unused bits become zero. Lanes in double take pairs of both coordinate types; other lanes take only float32.
 // Requires: room for (count + 63) / 64 words in each of the two arrays.
 class DecideBlock {
  public:
@@ -124,27 +124,27 @@ Verdict decide_one(const DecideBlock& block, const BasicPair<Real>& pair) {
   return block.verdict_of(intersects & 1, declined & 1, pair);
 }
 
-// Pairs that a subject does not promise to decide; see subjects/include/graze/subject.h.
+// Kinds of pairs for which a subject does not promise the truth; see subjects/include/graze/subject.h.
 enum Outside : unsigned { kOutsideTouching = 1, kOutsideCoplanar = 2, kOutsideDegenerate = 4, kOutsideShared = 8 };
 
 struct Lane {
   std::string id;
-  const AlgorithmInfo* info;  // of the subject
+  const AlgorithmInfo* info;  // of the lane's subject
   Scalar scalar;
   Variant variant;
-  std::string policy;           // empty: zero
+  std::string policy;           // empty for the policy zero
   std::optional<Policy> under;  // the parsed policy; nothing for zero
   // Published algorithms: the index in Algorithms, which selects the code that is compiled for the algorithm.
-  // Others: -1.
+  // Other subjects: -1.
   int algorithm;
-  DecideBlock decide;  // on this processor; null for lanes of a device, see cuda/lanes/device.h
-  bool exact;          // right on every finite pair of its scalar, declines the others; see core/exact/exact.h
+  DecideBlock decide;  // decides on this processor; null for lanes of a device, see cuda/lanes/device.h
+  bool exact;          // right on every finite pair of its scalar, declines other pairs; see core/exact/exact.h
   bool explainable;    // runs on numbers that record every step; see core/algorithms/traced.h
   // Foreign code only:
   bool foreign = false;
   unsigned outside = 0;  // the kinds of pairs that its convention excludes: a sum of Outside
   std::string evidence;  // what runs a CUDA lane: "device", "twin, not yet verified"; or why nothing runs the lane
-  std::string toolchain = {};  // for Variant::toolchain: its name, which is the variant in the lane's name
+  std::string toolchain = {};  // for Variant::toolchain: the toolchain's name, the variant in the lane's name
 
   std::string_view variant_name() const { return toolchain.empty() ? name(variant) : toolchain; }
   bool is_cuda() const { return info_of(variant).runs_on == RunsOn::device; }
@@ -152,19 +152,19 @@ struct Lane {
 };
 
 // All lanes, subject by subject: f32 before f64, then in the order of the variants. The exact lanes come after the
-// published algorithms, and lanes of foreign code after these.
+// published algorithms, and lanes of foreign code come last.
 std::span<const Lane> lanes();
 
 // Adds the lanes of a foreign subject permanently.   Requires: no other thread uses lanes meanwhile.
-// Throws: std::runtime_error if there are too many.
+// Throws: std::runtime_error if there are too many lanes.
 void add_lanes(std::vector<Lane> foreign);
 
-// The published lane under another policy. It is not added to the table.
+// Returns the published lane under another policy, without adding it to the table.
 // Throws: UsageError if the lane cannot have the policy.
 Lane lane_under(const Lane& lane, std::string_view policy);
 
 // Adds a lane under the pattern's policy for each published lane that the rest of the pattern matches. Example:
-// "*/f32/cpu/rel:8" for all f32/cpu lanes. Existing lanes stay. It does nothing if the pattern has no policy.
+// "*/f32/cpu/rel:8" for all f32/cpu lanes. A lane is added only once. Nothing is added if the pattern has no policy.
 // Requires: as add_lanes.   Throws: UsageError if no matching lane can have the policy.
 void add_policy_lanes(std::string_view pattern);
 
@@ -174,13 +174,14 @@ std::span<const Lane> published_lanes();
 // The lane of that name; null if there is none.
 const Lane* find_lane(std::string_view id);
 
-// The same subject, scalar and policy in another variant; null if there is none.
+// The lane with the same subject, scalar and policy in another variant; null if there is none.
 const Lane* counterpart(const Lane& lane, Variant variant);
 
 // Whether this processor can run the host lane (cpu-fma needs FMA instructions).
 bool runs_on_this_cpu(const Lane& lane);
 
-// Whether the id matches one of the shell patterns (fnmatch), or there are none, and matches no pattern after a `!`.
+// Whether the id matches a shell pattern (fnmatch) and no pattern after a `!`. If all patterns begin with `!`, or there
+// are none, only the second condition applies.
 bool matches_any(const std::vector<std::string>& globs, std::string_view id);
 
 }  // namespace graze

@@ -21,7 +21,7 @@ namespace {
   throw UsageError("expected a policy (" + forms + "), found " + shown(text) + why);
 }
 
-// Epsilons of published codes.
+// The epsilons of published code.
 struct Shipped {
   std::string_view algorithm;
   Site site;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Policies by name, the last part of a lane's name: what a published algorithm does near zero. Their numbers are read
-// at run time, so a sweep compiles nothing.
+// A policy is the last part of a lane's name: it tells what a published algorithm does near zero. The numbers of a
+// policy are read at run time, so a sweep compiles nothing.
 //   abs:E        values smaller than E count as zero, in the unit of the quantity compared (mostly lengths cubed)
-//   rel:K        likewise, for K times machine epsilon times the quantity's size (core/lanes/with_magnitude.h)
-//   SITE=abs:E,SITE=rel:K   at these sites only; the others compare with zero
+//   rel:K        like abs:E, with E = K times machine epsilon times the quantity's size (core/lanes/with_magnitude.h)
+//   SITE=abs:E,SITE=rel:K   tolerances at these sites only; the other sites compare with zero
 //   paper        the tolerances of the algorithm's published code
 //   bound        decides if certified error bounds suffice (core/lanes/with_error_bound.h); otherwise declines
 //   filtered     like bound, but the exact decision decides the pairs that it declines
@@ -24,10 +24,10 @@ inline constexpr std::string_view kNamedPolicies[] = {"paper", "bound", "filtere
 struct Policy {
   enum class Kind { tolerances, bound, filtered };
   Kind kind = Kind::tolerances;
-  Epsilons epsilons;  // for the kind tolerances
+  Epsilons epsilons;  // only for the kind `tolerances`
 };
 
-// Throws: UsageError for an invalid text, or with the reason why the algorithm has no such policy.
+// Throws: UsageError for an invalid text, or if the algorithm cannot have the policy.
 Policy parse_policy(std::string_view text, const AlgorithmInfo& info);
 
 }  // namespace graze

@@ -40,7 +40,7 @@ Pair apart(float scale) {
   return scaled({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0.5f}, {1, 0, 0.5f}, {0, 1, 0.5f}}}, scale);
 }
 
-// b stands upright above a; its lowest vertex is 2^-k of the size away from a's interior.
+// b is upright above a; its lowest vertex is 2^-k of the size away from a's interior.
 Pair above(int k, float scale) {
   const float gap = std::ldexp(1.0f, -k);
   return scaled({{{0, 0, 0}, {3, 0, 1}, {0, 3, 1}}, {{0.75f, 0.75f, 0.5f + gap}, {1, 2, 4}, {2, 1, 4}}}, scale);
@@ -121,7 +121,7 @@ TEST(Policies, OfOneWordMayFollowAStarForSeveralParts) {
   }
 }
 
-// The tolerance of a site is the sum of both, so each is kept.
+// A site's tolerance is the sum of an absolute and a relative tolerance, so both are kept.
 TEST(Policies, OfOneSiteMayBeAbsoluteAndRelative) {
   const Epsilons& both = lane("moller_1997/f32/cpu/plane_distance=abs:3,plane_distance=rel:5").under->epsilons;
   EXPECT_EQ(both.absolute[static_cast<int>(Site::plane_distance)], 3);
@@ -159,7 +159,7 @@ TEST(LanesInDouble, DecideDoublesAsTheirAlgorithmDoes) {
   }(static_cast<const Algorithms*>(nullptr));
 }
 
-// On doubles that float32 holds, both functions of a lane agree, under every kind of policy.
+// Both functions of a lane agree on doubles that float32 holds, under every kind of policy.
 TEST(LanesInDouble, AgreeWithThemselvesOnFloat32) {
   std::size_t lanes_seen = 0;
   for (const char* policy : {"", "abs:1e-9", "rel:8", "bound", "filtered"}) {
@@ -214,11 +214,11 @@ TEST(WithErrorBound, KnowsWhatIsExact) {
   doubt = false;
   const B tiny(0x1p-149f, &doubt), large(0x1p127f, &doubt);
   EXPECT_EQ((tiny * tiny).value, 0);
-  EXPECT_FALSE(tiny * tiny > B(0));  // the exact product is, but it underflowed
+  EXPECT_FALSE(tiny * tiny > B(0));  // the exact product is positive, but the computed one underflowed
   EXPECT_TRUE(doubt);
   doubt = false;
   EXPECT_TRUE(large * large > B(0));
-  EXPECT_TRUE(doubt);  // infinity decides nothing
+  EXPECT_TRUE(doubt);  // an infinite bound decides nothing
 }
 
 // Random expressions, compared with their values in long double, which is precise enough for them.

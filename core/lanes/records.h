@@ -23,6 +23,6 @@ using RecordBlock = RecordFunction<Pair>;
 
 // Null for CUDA lanes, foreign code, exact lanes and lanes under a policy.
 RecordBlock host_record(const Lane& lane);
-RecordFunction<DoublePair> host_record_of_doubles(const Lane& lane);  // of a lane in double
+RecordFunction<DoublePair> host_record_of_doubles(const Lane& lane);  // for a lane in double
 
 }  // namespace graze

@@ -7,7 +7,7 @@
 
 namespace graze {
 
-// A site's tolerance: absolute, in the quantity's own unit, plus relative times machine epsilon times its size.
+// A site's tolerance is `absolute`, in the quantity's unit, plus `relative` times machine epsilon times its size.
 struct Epsilons {
   double absolute[kSiteCount] = {};
   double relative[kSiteCount] = {};
@@ -37,7 +37,7 @@ struct Tolerances {
     }
   }
 
-  // Strict, like published codes: |x| < epsilon. False for NaN.
+  // The comparison is strict, as in published code: |x| < epsilon. It is false for NaN.
   GRAZE_HD bool near_zero(Site site, const Real& x) const { return magnitude(x) < absolute[static_cast<int>(site)]; }
   GRAZE_HD bool near_zero(Site site, const WithMagnitude<Real>& x) const {
     const int s = static_cast<int>(site);

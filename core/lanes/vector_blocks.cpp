@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Separating axes (core/algorithms/separating_axes.h) on one pair in each lane of a vector. Its verdict does not depend
-// on the order of the axes, so no lane has to branch. Uses Google Highway: compiled for each instruction set; the best
-// one is chosen at run time. No operation is contracted.
+// Separating axes (core/algorithms/separating_axes.h) on one pair in each vector lane. The verdict does not depend
+// on the order of the axes, so no vector lane has to branch. This file is compiled for each instruction set with Google
+// Highway, which chooses the best one at run time. No operation is contracted.
 #ifdef __wasm__
 #include "core/lanes/vector_blocks.h"
 
@@ -57,7 +57,7 @@ struct AtOnce {
     HWY_INLINE Range(const Three& direction, const Three (&v)[3]) : lo(dot(direction, v[0])), hi(lo) {
       for (int i = 1; i < 3; ++i) {
         const V t = dot(direction, v[i]);
-        lo = hn::IfThenElse(hn::Lt(t, lo), t, lo);  // not Min, which treats NaN in its own way
+        lo = hn::IfThenElse(hn::Lt(t, lo), t, lo);  // not Min, which treats NaN differently
         hi = hn::IfThenElse(hn::Gt(t, hi), t, hi);
       }
     }

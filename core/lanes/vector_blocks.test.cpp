@@ -59,7 +59,7 @@ TEST_P(VectorBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
     expect_as_each_alone(drawn(20'000, near_one));
     expect_as_each_alone(drawn(20'000, small_whole));
     expect_as_each_alone(drawn(20'000, any_scale));
-    expect_as_each_alone(drawn(20'000, any_bits));  // NaN and infinity as well
+    expect_as_each_alone(drawn(20'000, any_bits));  // including NaN and infinity
   });
 }
 

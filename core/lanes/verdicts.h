@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lane's verdicts on a block of pairs: as bits, which count many at once, or as a list.
+// A lane's verdicts on a block of pairs: as bits, which allow counting many at once, or as a list.
 #pragma once
 
 #include <optional>
@@ -18,16 +18,16 @@ struct VerdictBits {
   std::vector<std::uint64_t> intersects, declined;
 };
 
-// Decides the pairs. Does not call the block function if there are none.
+// Decides the pairs. Does not call the block function if there are no pairs.
 void decide(const DecideBlock& block, std::span<const Pair> pairs, VerdictBits& to);
 void decide(const DecideBlock& block, std::span<const DoublePair> pairs, VerdictBits& to);
 
 // The verdicts that a lane's bits encode.
 struct LaneVerdicts {
   std::span<const std::uint64_t> intersects, declined;
-  const DecideBlock* foreign = nullptr;  // foreign code only: what decided, and the pairs; both bits set: it failed
+  const DecideBlock* foreign = nullptr;  // only for foreign code, which failed on a pair if both bits are set
   const Pair* pairs = nullptr;
-  const DoublePair* doubles = nullptr;  // in place of `pairs`
+  const DoublePair* doubles = nullptr;  // used instead of `pairs`
 
   Verdict at(std::size_t i) const {
     const bool yes = test_bit(intersects, i), none = test_bit(declined, i);

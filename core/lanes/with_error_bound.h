@@ -123,8 +123,8 @@ struct WithErrorBound {
     return result;
   }
 
-  // Whether the exact quantities have the same order as their values. Equal values do if both are exact. Others do if
-  // they differ by more than their bounds and the rounding here.
+  // Whether the exact quantities have the same order as their values. Equal values have it if both are exact. Other
+  // values have it if they differ by more than their bounds and the rounding here.
   GRAZE_IN_PLACE GRAZE_HD static bool is_settled(const WithErrorBound& x, const WithErrorBound& y) {
     const Real gap = magnitude(x.value - y.value), errors = (x.error + y.error) * kSlack;
     return (gap * (Real(1) - 4 * kUnit) > errors + kTiny && gap <= kLargest) ||
@@ -139,7 +139,7 @@ struct WithErrorBound {
   static constexpr Real kLargest = kIsFloat ? Real(0x1.fffffep127) : Real(0x1.fffffffffffffp1023);
 };
 
-// Any component that is certainly nonzero serves as an axis. A doubt is raised only if the chosen one may be zero.
+// Any component that is certainly nonzero serves as an axis. Only a chosen component that may be zero raises a doubt.
 template <class Real>
 GRAZE_HD int dominant_axis(const Vec3<WithErrorBound<Real>>& v) {
   const int axis = dominant_axis(Vec3<Real>{v.x.value, v.y.value, v.z.value});
@@ -149,7 +149,7 @@ GRAZE_HD int dominant_axis(const Vec3<WithErrorBound<Real>>& v) {
 }
 
 // The exact least and greatest of three quantities lie within the largest bound of the least and the greatest value.
-// Which of the three it is may stay unknown.
+// It does not matter which of the three quantities it is.
 template <class Real>
 GRAZE_HD Range<WithErrorBound<Real>> project(const Vec3<WithErrorBound<Real>>& direction,
                                              const Vec3<WithErrorBound<Real>> (&v)[3]) {

@@ -11,14 +11,14 @@
 
 namespace graze {
 
-// wide_scale: the scale of doubles.
+// wide_scale is the scale axis for pairs of doubles.
 enum class Axis : std::uint8_t { none, scale, offset, wide_scale };
 
 inline std::string_view name(Axis axis) {
   return axis == Axis::none ? "none" : axis == Axis::offset ? "offset" : "scale";
 }
 
-// log2 of the width of a place on a scale axis: on the axis of float32, -152 is 2^-152 to 2^-148.
+// log2 of the width of a place on a scale axis. On the axis of float32, the place at -152 is 2^-152 to 2^-148.
 GRAZE_HD constexpr int width_of_place(Axis axis) { return axis == Axis::scale ? 4 : axis == Axis::wide_scale ? 32 : 1; }
 
 // log2 of the lower end of place `extreme`.

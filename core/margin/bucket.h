@@ -12,7 +12,7 @@
 namespace graze {
 
 // 0: the margin is zero. ±(k - kBucketLowest + 1): 2^k <= |margin| / ulp < 2^(k+1), positive when disjoint.
-// The first and last exponents are open-ended. Fits in [-kBucketMost, kBucketMost].
+// The first and last exponents are open-ended. A bucket is at least -kBucketMost and at most kBucketMost.
 using Bucket = std::int8_t;
 
 inline constexpr int kBucketLowest = -32;

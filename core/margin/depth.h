@@ -34,7 +34,7 @@ GRAZE_HD Interval<Real> overlap(const MarginFrame<Real>& f, int axis, const Vec3
     along[k] = dot(n, seen[k]);
     error[k] = Real(12 * kRoundoff<Real>) * dot(weight, magnitudes(seen[k]));
   }
-  // The feature itself projects to zero. seen[0] belongs to its triangle if own is 1, else to the other one.
+  // The feature itself projects to zero. seen[0] belongs to its triangle if own is 1, else to the other.
   Interval<Real> least = {along[1] - error[1], along[1] + error[1]}, most = least;
   Interval<Real> own_least = {0, 0}, own_most = {0, 0};
   include(least, most, along[2], error[2]);
@@ -53,7 +53,7 @@ GRAZE_HD MarginBounds depth_bounds(const MarginFrame<Real>& f) {
     const double weight_length = sqrt(as_double(dot(weight, weight)));
     lowest[axis] = INFINITY;
     if (weight_length == 0) continue;  // parallel edges, or a flat triangle's normal: not an axis
-    // 12: 5 for n, 3 roundings, and slack. The factors 1 ± 8 kHalfUlp cover the roots, which are only doubles.
+    // The 12 are 5 for n, 3 roundings, and slack. The factors 1 ± 8 kHalfUlp cover the roots, which are only doubles.
     const double length = sqrt(as_double(dot(n, n))), length_error = 12 * kRoundoff<Real> * weight_length;
     const Interval<Real> o = overlap(f, axis, n, weight);
     lowest[axis] = greater(0.0, as_double(o.lo) / (length + length_error) * (1 - 8 * kHalfUlp));

@@ -49,14 +49,14 @@ GRAZE_HD void shorten(Connection<Real>& best, const Vec3<Real>& w, const Vec3<Re
   best = {squared, terms.x + terms.y + terms.z, towards};
 }
 
-// From point `at` (relative to the edge's start) to the foot of its perpendicular, if that lies on the edge.
+// Connects point `at` (relative to the edge's start) to the foot of its perpendicular, if the foot lies on the edge.
 template <class Real>
 GRAZE_HD void connect_to_edge(Connection<Real>& best, const Vec3<Real>& at, const Vec3<Real>& edge, int towards) {
   const Real along = dot(at, edge), length2 = dot(edge, edge);
   if (along > 0 && along < length2) shorten(best, at, edge * (-along / length2), {0, 0, 0}, towards);
 }
 
-// From point `at` (relative to the face's vertex 0) to its projection, if that lies in the face of edges u and v.
+// Connects point `at` (relative to the face's vertex 0) to its projection, if that lies in the face of edges u and v.
 template <class Real>
 GRAZE_HD void connect_to_face(Connection<Real>& best, const Vec3<Real>& at, const Vec3<Real>& u, const Vec3<Real>& v,
                               const Vec3<Real>& n, const Real& n2, int towards) {
@@ -64,7 +64,7 @@ GRAZE_HD void connect_to_face(Connection<Real>& best, const Vec3<Real>& at, cons
   if (s >= 0 && t >= 0 && s + t <= n2 && n2 > 0) shorten(best, at, u * (-s / n2), v * (-t / n2), towards);
 }
 
-// Between the nearest interior points of the edges u and v; w is the start of v relative to the start of u.
+// Connects the nearest interior points of the edges u and v; w is the start of v relative to the start of u.
 template <class Real>
 GRAZE_HD void connect_edges(Connection<Real>& best, const Vec3<Real>& w, const Vec3<Real>& u, const Vec3<Real>& v,
                             int towards) {

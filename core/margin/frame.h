@@ -25,12 +25,12 @@ inline constexpr double kRoundoff = kHalfUlp;
 template <>
 inline constexpr double kRoundoff<DoubleDouble> = 0x1p-102;
 
-// The pair. Every difference of coordinates has a relative error of at most kRoundoff, or no error if `exact`. No
+// Vertices and edges. Each difference of coordinates has a relative error of at most kRoundoff, or none if `exact`. No
 // product of up to six differences over- or underflows (2^-894 to 2^780), nor does the error of such a product.
 template <class Real>
 struct MarginFrame {
   Vec3<Real> a[3], b[3], edge_a[3], edge_b[3];
-  bool exact;  // each difference is a double
+  bool exact;  // no difference is rounded
 };
 
 GRAZE_HD inline double absolute(double x) { return fabs(x); }
@@ -43,7 +43,7 @@ GRAZE_HD Vec3<Real> magnitudes(const Vec3<Real>& v) {
   return {absolute(v.x), absolute(v.y), absolute(v.z)};
 }
 
-// Each is one instruction. fmin and fmax take more, because they handle NaN.
+// lesser and greater are one instruction each. fmin and fmax take more, because they handle NaN.
 template <class Real>
 GRAZE_HD Real lesser(const Real& x, const Real& y) {
   return x < y ? x : y;

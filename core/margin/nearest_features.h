@@ -35,7 +35,7 @@ struct Nearest {
   }
 };
 
-// A guess of the nearest features: subject to rounding and to the error of a reciprocal.
+// A guess of the nearest features, subject to rounding and to the error of a reciprocal.
 template <class Real>
 GRAZE_HD Nearest<Real> seem_nearest(const Corners<Real>& a, const Corners<Real>& b) {
   Corners<Real> edge_a, edge_b;

@@ -15,7 +15,7 @@ namespace graze {
 inline namespace GRAZE_FP {
 namespace first_attempt {
 
-// How much the triangles' projections on an axis overlap, in units of the axis' length, and its squared length.
+// The overlap of the triangles' projections on an axis, in units of the axis's length, and the axis's squared length.
 template <class Real>
 struct Overlap {
   Real along, n2;

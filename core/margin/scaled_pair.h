@@ -22,7 +22,7 @@ struct ScaledPair {
     const exact::detail::Grid grid = exact::detail::grid_of(&pair.a[0].x, &pair.b[0].x);
     fits = grid.bits <= exact::detail::kFloatBits;
     if (!fits) return;
-    const int shift = -149 - grid.exponent, half = shift / 2;  // 2^shift may be beyond what a double holds
+    const int shift = -149 - grid.exponent, half = shift / 2;  // 2^shift may exceed the range of a double
     ulp += shift;
     double* c = &pair.a[0].x;
     for (int i = 0; i < kCoordinates; ++i)

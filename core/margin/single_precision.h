@@ -37,7 +37,7 @@ GRAZE_HD inline bool fits_single(const Vec& extent) {
 
 GRAZE_HD inline bool bucket_of(const MarginBounds& bounds, Verdict verdict, int log2_ulp, Bucket& bucket) {
   // Differences of scaled coordinates may be as small as 2^-277. Squared lengths do not underflow, but larger products
-  // may. Then lo is not a bound, but it is not between 0 and the connection's length either, so this returns false.
+  // may. Then lo is not a bound, but it is not between 0 and the connection's length either, so the result is false.
   return bounds.lo > 0 && bounds.lo <= bounds.hi && bounds.hi < INFINITY &&
          bucket_from_bounds(bounds, verdict, log2_ulp, bucket);
 }
@@ -54,7 +54,7 @@ GRAZE_HD inline bool bucket_by_single(const Pair& pair, Verdict verdict, Bucket&
   if (verdict == Verdict::disjoint) {
     const Nearest<float> nearest = seem_nearest(pair.a, pair.b);
     const auto largest = static_cast<float>(greater(extent.x, greater(extent.y, extent.z)));
-    if (nearest.next < 0x1p-44f * largest * largest) return false;  // rounding may have decided which
+    if (nearest.next < 0x1p-44f * largest * largest) return false;  // rounding may have chosen the features
     bounds = distance_bounds(pair.a, pair.b, nearest.features);
   } else {
     float lo, hi;

@@ -192,7 +192,7 @@ HWY_INLINE Bounds distance_bounds(const Frame& f) {
   return {hn::IfThenElseZero(valid, lo), hi};
 }
 
-// For intersecting triangles whose differences are exact: the squares of bounds.
+// The squares of bounds on the depth of intersecting triangles whose differences are exact.
 struct Depth {
   V lo, hi;
 
@@ -239,7 +239,7 @@ HWY_INLINE Bounds squared_depth_bounds(const Frame& f) {
                  w[i][(j + 2) % 3]);
     }
   }
-  // 2 * 5 for n, 3 for its square, 5 for the later operations, and slack.
+  // The 32 are 2 * 5 for n, 3 for its square, 5 for the later operations, and slack.
   return {hn::Mul(depth.lo, number(1 - 32 * kHalf)), hn::Mul(depth.hi, number(1 + 32 * kHalf))};
 }
 

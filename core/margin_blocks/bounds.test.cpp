@@ -88,8 +88,8 @@ const Unit kUnits[] = {
     {"depth by edges", kMeet, {{{-8, 0, 0}, {8, 0, 0}, {0, 0, -8}}, {{0, -8, -1}, {0, 8, -1}, {0, 0, 7}}}, 1},
 };
 
-// below and above: in units of kHalfUlp from 1. For a depth, both the overlap (or its square) and the axis have an
-// error.
+// below and above: distances from 1 in units of kHalfUlp. For a depth, both the overlap (or its square) and the axis
+// have an error.
 void expect_bounds(double lo, double hi, double below, double above) {
   EXPECT_EQ((1 - lo) / kHalfUlp, below);
   EXPECT_EQ((hi - 1) / kHalfUlp, above);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uses Google Highway like core/exact_blocks/decide.cpp. A bucket that the bounds decide does not depend on how the
-// bounds were rounded.
+// This file uses Google Highway like core/exact_blocks/decide.cpp. A bucket that the bounds decide does not depend on
+// how the bounds were rounded.
 #include "core/margin_blocks/buckets.h"
 
 #undef HWY_TARGET_INCLUDE

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A child of this process for work that may crash or never end. Its output arrives through a pipe.
+// A child process for work that may crash or never end. The child's output arrives through a pipe.
 #pragma once
 
 #include <sys/types.h>
@@ -11,17 +11,17 @@ namespace graze {
 
 class Child {
  public:
-  // Runs work(pipe) in the child, which then exits with 0, or with 1 if the work throws. It ends with this process.
-  // Throws: std::system_error.
+  // Runs work(pipe) in the child, which then exits with 0, or with 1 if the work throws. The child ends when this
+  // process ends.   Throws: std::system_error.
   explicit Child(const std::function<void(int pipe)>& work);
-  ~Child();  // kills it, unless it was waited for
+  ~Child();  // kills the child, unless `succeeded` was called
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
   // The end of the pipe to read from. It reaches end of file when the child closes its own end.
   int pipe() const { return pipe_; }
   void kill() const;
-  // Waits for its end.   Returns: whether it exited with 0.
+  // Waits for the child to end.   Returns: whether it exited with 0.
   bool succeeded();
 
  private:
@@ -29,7 +29,7 @@ class Child {
   pid_t process_ = -1;
 };
 
-// In a child: writes all bytes, or exits with 1.
+// For use in a child: writes all bytes, or exits with 1.
 void write_all(int pipe, const void* data, std::size_t size);
 
 }  // namespace graze

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that are built once and kept. The last line is a checksum of a file's name and content. The loader of a shared
-// object ignores that line.
+// Files that are built once and kept. A kept file's last line is a checksum of its name and content. The loader of
+// shared objects ignores that line.
 #pragma once
 
 #include <filesystem>

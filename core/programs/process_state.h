@@ -9,7 +9,7 @@
 
 namespace graze {
 
-// What the system reports for a process. state: 'R' running, 'D' waiting for a device, 'S' sleeping, 'T' or 't'
+// The system's report on a process. state: 'R' running, 'D' waiting for a device, 'S' sleeping, 'T' or 't'
 // stopped, 'Z' ended; 0 if there is no such process.
 struct ProcessStatus {
   char state = '\0';

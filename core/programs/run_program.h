@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs programs that build something for graze, such as a compiler. None outlives graze, however graze ends: a
+// Runs programs that build something for graze, such as a compiler. No program outlives graze, however graze ends: a
 // supervisor runs each program and all its children, in a process namespace of their own if the system allows one.
 #pragma once
 
@@ -32,13 +32,13 @@ std::filesystem::path on_path(const std::string& program);
 struct Program {
   std::vector<std::string> words;  // run without a shell
   double seconds = 1800;           // time limit
-  bool namespaces = true;          // whether to try a process namespace
-  std::uint64_t mib = 8192;        // memory of all its processes together
+  bool namespaces = true;          // whether to use a process namespace if the system allows one
+  std::uint64_t mib = 8192;        // memory limit of all its processes together
 };
 
 // Runs the program with `scratch` for its temporary files. If graze is killed, the supervisor removes `scratch`.
 // Returns: the exit status, or 128 plus the signal, as a shell does; 127 if there is no such program.
-// output: what it wrote to both streams.   Throws: Stopped; std::runtime_error if it takes too long or too
+// output: the text that it wrote to both streams.   Throws: Stopped; std::runtime_error if it takes too long or too
 // much memory. Each file that it writes may be up to 1 GiB large.
 int run_program(const Program& program, const std::filesystem::path& scratch, std::string& output);
 

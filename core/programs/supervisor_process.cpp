@@ -40,7 +40,7 @@ SupervisorProcess::SupervisorProcess(const std::string& program, const std::vect
   socket_ = sockets[0];
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  // Moves them above the descriptors that the supervisor gets, so that no dup2 overwrites another.
+  // Moves the descriptors above those that the supervisor gets, so that no dup2 overwrites a descriptor.
   std::vector<int> from{output, sockets[1]};
   from.insert(from.end(), shared.begin(), shared.end());
   for (int& fd : from) fd = fd < 0 ? -1 : fcntl(fd, F_DUPFD_CLOEXEC, 16);
@@ -54,7 +54,7 @@ SupervisorProcess::SupervisorProcess(const std::string& program, const std::vect
   }
   for (std::size_t i = 1; i < from.size(); ++i)
     posix_spawn_file_actions_adddup2(&actions, from[i], static_cast<int>(i) + 2);
-  // A session of its own: Ctrl-C and the terminal concern only the calling process.
+  // The supervisor gets its own session, so that Ctrl-C and the terminal affect only the calling process.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
@@ -103,7 +103,7 @@ SupervisorProcess::~SupervisorProcess() {
   close(socket_);
   if (ended || left) return;
   kill(process_, SIGKILL);
-  for (int times = 0; times < 1000 && !has_ended(); ++times) poll(nullptr, 0, 1);  // a frozen one does not end
+  for (int times = 0; times < 1000 && !has_ended(); ++times) poll(nullptr, 0, 1);  // a frozen supervisor does not end
 }
 
 bool SupervisorProcess::send(const void* message, std::size_t size) const {
@@ -121,7 +121,7 @@ ssize_t SupervisorProcess::receive(void* to, std::size_t size) {
       ++looks;
     }
     if (stop_requested) throw Stopped();
-    stopped_ = is_stopped(process_);  // by a subject without a namespace of its own
+    stopped_ = is_stopped(process_);  // a subject without a namespace of its own can stop it
     if (stopped_) return -1;
   }
   silent_ = true;

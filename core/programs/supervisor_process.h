@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Graze's side of graze-subject-host, the supervisor of programs that graze did not write. The supervisor's file lies
+// Graze's side of graze-subject-host, the supervisor of programs that graze did not write. The supervisor's file is
 // in the folder of the running program; subjects/README.md describes the supervisor.
 #pragma once
 
@@ -14,20 +14,20 @@ namespace graze {
 // While graze waits, the supervisor sends this one-byte message at least once a second.
 inline constexpr char kAlive = 1;
 
-// A supervisor of a build tool reports this in place of an exit status.
+// A supervisor of a build tool reports this instead of an exit status.
 inline constexpr int kTookTooMuchMemory = -2;
 
-// The file of a program that lies in the same folder as the running one.
+// The file of a program in the folder of the running program.
 std::filesystem::path beside_this(const std::string& program);
 
 class SupervisorProcess {
  public:
-  // program: its file name, in the folder of the running program. It gets its end of a socket as descriptor 3, and the
-  // descriptors `shared` from 4 on. output: where it writes; -1 for /dev/null.   Throws: std::system_error.
+  // program: the supervisor's file name, in the folder of the running program. The supervisor gets an end of a socket
+  // as descriptor 3, and `shared` from 4 on. output: where it writes; -1 for /dev/null.   Throws: std::system_error.
   SupervisorProcess(const std::string& program, const std::vector<std::string>& arguments,
                     const std::vector<int>& shared, int output);
-  // Closes its end of the socket, after which the supervisor ends everything that it started. Kills a supervisor that
-  // is silent for 10 s. After a request to stop, waits 1 s only and then leaves it to end by itself.
+  // Closes our end of the socket; the supervisor then ends everything that it started. Kills a supervisor that is
+  // silent for 10 s. After a request to stop, waits only 1 s and then lets the supervisor end on its own.
   ~SupervisorProcess();
   SupervisorProcess(const SupervisorProcess&) = delete;
   SupervisorProcess& operator=(const SupervisorProcess&) = delete;
@@ -41,7 +41,7 @@ class SupervisorProcess {
   // Whether `receive` failed because the supervisor was stopped or silent.
   bool stopped() const { return stopped_ || silent_; }
 
-  // Whether `receive` failed because the supervisor was silent for 10 s, as a frozen one is.
+  // Whether `receive` failed because the supervisor was silent for 10 s, perhaps because it is frozen.
   bool silent() const { return silent_; }
 
  private:

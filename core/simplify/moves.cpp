@@ -36,7 +36,7 @@ void append(Pairs<Real>& moved, const BasicPair<Real>& pair) {
   if (is_finite(pair)) moved.push_back(pair);
 }
 
-// Appends the pair whose coordinate i is make(i), rounded. Coordinates that overflow are not finite.
+// Appends the pair whose coordinate i is make(i), rounded, unless a coordinate overflows.
 template <class Real, class Make>
 void append_each(Pairs<Real>& moved, Make make) {
   BasicPair<Real> result;
@@ -57,7 +57,7 @@ double nearest_whole(double x) {
   return std::copysign((x + kWholeFromHere) - kWholeFromHere, x);
 }
 
-// Rounds the pair to lattices. origin: the vertex that is translated to the origin first; -1 for no translation.
+// Appends the pair rounded to each lattice. origin: a vertex to translate to the origin first; -1 for no translation.
 template <class Real>
 void lattices(const BasicPair<Real>& pair, int origin, Pairs<Real>& moved) {
   double seen[kCoordinates], largest = 0;
@@ -88,7 +88,7 @@ Point point(const BasicPair<Real>& pair, int i) {
   return {double{v.x}, double{v.y}, double{v.z}};
 }
 
-// Appends the pair as seen from `origin` with axes u, v and w, rounded to a lattice or not at all.
+// Appends the pair in the frame of `origin` with axes u, v and w: unrounded, and rounded to each lattice.
 template <class Real>
 void in_frame(const BasicPair<Real>& pair, const Point& origin, const Point& u, const Point& v, const Point& w,
               Pairs<Real>& moved) {
@@ -104,7 +104,7 @@ void in_frame(const BasicPair<Real>& pair, const Point& origin, const Point& u, 
   if (!std::isfinite(largest) || largest == 0) return;
   append_each(moved, [&](int i) { return seen[i]; });
   const int top = std::ilogb(largest) + 1;
-  if (top > 1000 || top < -900) return;  // near the ends of the exponents
+  if (top > 1000 || top < -900) return;  // near the limits of a double's exponents
   for (int bits = 1; bits <= kLatticeBits<Real>; ++bits) {
     const double to_whole = power_of_two(bits - top), back = power_of_two(top - bits);
     append_each(moved, [&](int i) { return nearest_whole(seen[i] * to_whole) * back; });
@@ -166,8 +166,8 @@ void replace_two(const BasicPair<Real>& pair, int first, Pairs<Real>& moved) {
   }
 }
 
-// Subtracts a multiple of one axis from another. The multiple makes a vertex's coordinate 0, or is the nearest whole
-// number.
+// Subtracts a multiple of one axis from another. The factor makes a vertex's coordinate 0, or is the whole number
+// nearest to such a factor.
 template <class Real>
 void shear(const BasicPair<Real>& pair, int axis, int other, Pairs<Real>& moved) {
   for (int v = 0; v < 6; ++v) {
@@ -294,7 +294,7 @@ void rearrange(const BasicPair<Real>& pair, Pairs<Real>& moved) {
   }
 }
 
-// The kinds of moves in the order of moves.h: their number, and the function that appends the moves of the i-th kind.
+// Kinds of moves, in the order of moves.h: their number, and the function that appends the moves of the i-th kind.
 template <class Real>
 struct Moves {
   int kinds;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The single moves of the minimiser: the candidates that one step may make from a pair. A move guarantees nothing; the
-// minimiser keeps only results that are simpler and fail in the same way.
+// The single moves of the minimiser: the candidates that one step may make from a pair. The result of a move
+// may be any pair; the minimiser keeps only results that are simpler and fail in the same way.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace graze {
 
-// The moves come in kinds. The number of kinds and their moves, in order:
+// The moves come in kinds. Each entry has a number of kinds and their moves, in order:
 //   7   a vertex moved to the origin (none, then each); all coordinates rounded to a lattice of 1 to 24 bits (51 for
 //       doubles) or not at all; then scaled to whole numbers, or to a size of about one, or not
 //   6   a vertex replaced by another, by one of the 27 points with coordinates in {-1, 0, 1}, or by p + q - r of
@@ -23,9 +23,9 @@ namespace graze {
 //   1   two axes or vertices exchanged, the triangles exchanged, an axis mirrored; a multiple of an axis added to
 //       another: once, twice, or so that a vertex's coordinate becomes 0 or the remainder of a division; all scaled
 //       by a power of two
-//   6   four vertices mapped to the origin and the ends of the unit vectors, rounded to such a lattice or not
-// A value is replaced by 0, a value that occurs, its half or double, or a whole number up to 9, each with either sign;
-// by itself rounded towards or away from zero, to fewer bits or to a whole number; or by its neighbours.
+//   6   four vertices mapped to the origin and the ends of the unit vectors, rounded to a lattice or not
+// A value's replacements are 0, a value that occurs, its half or double, or a whole number up to 9, each with either
+// sign; the value rounded towards or away from zero, to fewer bits or to a whole number; and its neighbours.
 inline constexpr int kMoveKinds = 77;
 
 // Appends the results of the moves of a kind; only finite pairs, some of which may equal the original pair.
@@ -33,8 +33,8 @@ inline constexpr int kMoveKinds = 77;
 template <class Real>
 void append_moves(const BasicPair<Real>& pair, int kind, std::vector<BasicPair<Real>>& moved);
 
-// The pairs that moves of this kind make and that are simpler than the pair: each once, the simplest first. Adds the
-// number of all pairs made to `made`.   Requires: as append_moves.
+// Returns: the results of the moves of this kind that are simpler than the pair, each once, the simplest first. Adds
+// the number of all results to `made`.   Requires: as append_moves.
 template <class Real>
 std::vector<BasicPair<Real>> simpler_moves(const BasicPair<Real>& pair, int kind, std::size_t& made);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The minimiser spends most of its time here: for every pair that a move makes, it asks whether it is simpler.
+// The minimiser spends most of its time here, because it compares every result of a move with the current pair.
 #include "core/simplify/simplicity.h"
 
 #include <algorithm>
@@ -51,7 +51,7 @@ std::uint64_t simplicity_counts(const BasicPair<Real>& pair, std::uint64_t most)
   constexpr Bits kOne = std::bit_cast<Bits>(Real{1}), kHidden = Bits{1} << (kDigits - 1),
                  kMagnitude = static_cast<Bits>(~Bits{0} >> 1);
   const Real* c = coordinates(pair);
-  // The values other than 0, and those other than 0 and 1, packed at the front.
+  // `nonzero` begins with the magnitudes other than 0, and `others` with those other than 0 and 1.
   Bits nonzero[kCoordinates], others[kCoordinates];
   unsigned nonzeros = 0, other = 0, signs = 0, unwieldy = 0;
   for (int i = 0; i < kCoordinates; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A total order of pairs by how simple they are to read. The minimiser only moves down in it, so it always ends.
+// A total order of pairs: simpler pairs are easier to read. The minimiser only moves to simpler pairs, so it must end.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace graze {
 
-// The first count that differs decides; the smaller one is simpler:
+// The first criterion that differs decides: the pair with the smaller value is simpler.
 //   1. different magnitudes other than 0 and 1
 //   2. coordinates that are not zero
 //   3. coordinates that are not whole numbers below 1000
@@ -44,7 +44,7 @@ bool simpler_coordinates(const BasicPair<Real>& l, const BasicPair<Real>& r);
 
 inline Simplicity simplicity(const AnyPair& pair) { return simplicity(pair.doubles); }
 
-// How many different magnitudes other than 0 and 1 the pair has.
+// The number of the pair's different magnitudes other than 0 and 1.
 inline int nontrivial_magnitudes(const AnyPair& pair) { return count_of(simplicity(pair), 1); }
 
 }  // namespace graze

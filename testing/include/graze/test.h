@@ -23,8 +23,8 @@ namespace graze {
 void for_each_pair(std::string_view strata, std::uint64_t seed, std::uint64_t count,
                    const std::function<void(const Pair&)>& f);
 
-// How the closed triangles lie: the verdict, the dimension of their intersection, the sign of the margin, the dimension
-// of each hull, and whether they are coplanar. Declined if a coordinate is not finite. Exact for every other pair.
+// The relation of the closed triangles: verdict, dimension of their intersection, sign of the margin, dimension of each
+// hull, and whether they are coplanar. Declined if a coordinate is not finite. Exact for every other pair.
 Relation truth(const Pair& pair);
 
 // Whether the true answer is required for a kind of pairs, or either answer is accepted.
@@ -45,26 +45,25 @@ struct TestResult {
   bool passed = false;
   std::string message;  // why it failed; empty if it passed
   std::string summary;  // the message without the pair: how many answers are wrong, by stratum
-  std::string
-      fault;  // what is wrong with the answer on the pair: "it says disjoint, but the triangles meet in a point"
+  std::string fault;    // the error on the smallest pair: "it says disjoint, but the triangles meet in a point"
   std::uint64_t pairs = 0;
   Counts counts;                 // an exception counts as crashed
-  std::optional<Pair> smallest;  // if it failed: a wrong pair, shrunk with the same truth and answer
+  std::optional<Pair> smallest;  // if it failed: a wrong pair, shrunk without changing truth and answer
 };
 
-// Decides all pairs. overlap takes each triangle as three vertices x y z; it returns 0 for disjoint, more for
-// intersects, less for declined. name: the function's name, for the message. The test fails if more answers are wrong
-// than `max_wrong` allows, if the function declines every pair, or if an option or environment variable is not valid.
-// The result depends only on the arguments and those two environment variables.
+// Decides all pairs. overlap takes each triangle as three vertices x y z; it returns 0 for disjoint, a positive
+// number for intersects, and a negative one for declined. name: the function's name, for the message. The test fails if
+// more answers are wrong than `max_wrong` allows, if the function declines every pair, or if an option or environment
+// variable is not valid. The result depends only on the arguments and those two environment variables.
 TestResult test_overlap(std::string_view name, const std::function<int(const float*, const float*)>& overlap,
                         const TestOptions& options = {});
 
-// Like test_overlap, for code that decides many pairs per call. It sets the verdict of each of `count` pairs, at most
-// 4096. A value that is no verdict counts as crashed. An exception ends the test.
+// Like test_overlap, for code that decides many pairs per call. `decide` sets the verdict of each of `count` pairs, at
+// most 4096. A value that is no verdict counts as crashed. An exception ends the test.
 using DecidePairs = std::function<void(const Pair* pairs, std::size_t count, Verdict* verdicts)>;
 TestResult test_pairs(std::string_view name, const DecidePairs& decide, const TestOptions& options = {});
 
-// What is wrong with the verdict on the pair, in words; empty if the verdict is accepted.
+// The error in the verdict on the pair, in words; empty if the verdict is accepted.
 std::string fault_of(const Pair& pair, Verdict verdict, const TestOptions& options = {});
 
 // Wraps f for test_overlap. f takes two triangles as arrays of float or double, const T a[9], and returns bool or int.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // GRAZE_TEST for the frameworks that have TEST_CASE, INFO and REQUIRE. <graze/catch2.h> and <graze/doctest.h> include
-// it after their framework.
+// this file after their framework.
 #pragma once
 
 #include <graze/test.h>

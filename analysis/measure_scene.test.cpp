@@ -275,8 +275,7 @@ TEST(SceneStrata, BothVerdictsOccurAndTheOraclesDecisionsAgree) {
       ASSERT_EQ(doubles_intersect, oracle::gmp_contact(doubles) != Contact::none) << row.id << i;
       of_doubles_intersecting += doubles_intersect;
     }
-    const bool shared = strata::kind_of(row.stratum) == strata::Kind::shared_vertex ||
-                        strata::kind_of(row.stratum) == strata::Kind::shared_edge;
+    const bool shared = row.kind == strata::Kind::shared_vertex || row.kind == strata::Kind::shared_edge;
     EXPECT_GT(intersecting, 200) << row.id;
     EXPECT_EQ(intersecting == 10'000, shared) << row.id << intersecting;
     EXPECT_GT(of_doubles_intersecting, 200) << row.id;

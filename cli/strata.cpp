@@ -23,9 +23,8 @@ void add_strata(CLI::App& app, int&) {
     // One line each, for programs that read the list.
     const int columns = isatty(STDOUT_FILENO) ? output_screen().columns : std::numeric_limits<int>::max();
     const auto print = [&](const strata::StratumInfo& row) {
-      const strata::Group group = strata::group_of(row.stratum);
       fmt::print("{}", reports::wrapped(fmt::format("{:<20} {:<11} {}", row.id,
-                                                    strata::kGroups[static_cast<int>(group)].id, row.what),
+                                                    strata::kGroups[static_cast<int>(row.group)].id, row.what),
                                         columns, 0, 33));
     };
     for (const strata::StratumInfo& row : strata::kStrata) print(row);

@@ -19,7 +19,6 @@ struct HalfSpace {
   mpq_class height(const Point& x) const { return dot(normal, Point(x - at)); }
 };
 
-bool is_zero(const Point& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
 bool before(const Point& p, const Point& q) { return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z; }
 Point negative(const Point& v) { return {-v.x, -v.y, -v.z}; }
 
@@ -72,25 +71,19 @@ Polygon clipped(const Polygon& polygon, const HalfSpace& half) {
   return distinct;
 }
 
-struct Hulls {
-  Point a[3], b[3];
-  int exponent;
+struct Hulls : BasicPair<mpq_class> {
+  int exponent = 0;
 };
 
-template <class Real>
-Hulls hulls_of(const BasicPair<Real>& pair) {
-  const Grid grid = grid_of(pair);
-  const LargePair whole = large_integers(pair, grid);
-  Hulls hulls{{}, {}, grid.exponent};
-  for (int i = 0; i < 3; ++i) {
-    hulls.a[i] = {whole.a[i].x, whole.a[i].y, whole.a[i].z};
-    hulls.b[i] = {whole.b[i].x, whole.b[i].y, whole.b[i].z};
-  }
-  return hulls;
-}
-
 Hulls hulls_of(const AnyPair& pair) {
-  return visit(pair, [](const auto& own) { return hulls_of(own); });
+  return visit(pair, [](const auto& own) {
+    const Grid grid = grid_of(own);
+    const LargePair whole = large_integers(own, grid);
+    Hulls hulls;
+    hulls.exponent = grid.exponent;
+    for (int i = 0; i < kCoordinates; ++i) coordinates(hulls)[i] = coordinates(whole)[i];
+    return hulls;
+  });
 }
 
 std::vector<Vec3<double>> rounded(const Polygon& points, int exponent) {

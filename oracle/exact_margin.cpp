@@ -13,8 +13,6 @@ namespace {
 using Int = mpz_class;
 using Vector = Vec3<mpz_class>;
 
-bool is_zero(const Vector& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
-
 // Keeps the lesser of two rationals. An unset one (denominator 0) counts as greater than all.
 void keep_least(SquaredMargin& least, const Int& numerator, const Int& denominator) {
   if (least.denominator != 0 && numerator * least.denominator >= least.numerator * denominator) return;

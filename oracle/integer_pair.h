@@ -30,29 +30,34 @@ struct Grid {
 template <class Real>
 Grid grid_of(const BasicPair<Real>& pair);
 
-struct SmallPair {
-  Vec3<std::int64_t> a[3];
-  Vec3<std::int64_t> b[3];
-};
+using SmallPair = BasicPair<std::int64_t>;
+using WidePair = BasicPair<__int128>;  // the same integers, whose products of three differences do not overflow
+using LargePair = BasicPair<mpz_class>;
 
 // The pair's coordinates divided by 2^grid.exponent.
 // Requires: grid is the pair's, and is_small().   Exact: always.
 template <class Real>
 SmallPair small_integers(const BasicPair<Real>& pair, const Grid& grid);
 
+inline WidePair widened(const SmallPair& small) {
+  WidePair wide;
+  for (int i = 0; i < kCoordinates; ++i) coordinates(wide)[i] = coordinates(small)[i];
+  return wide;
+}
+
 // Like small_integers for one coordinate, of any size, stored in an initialised GMP integer.
 // Requires: grid is that of the coordinate's pair.   Exact: always.
 template <class Real>
 void set_integer(mpz_t out, Real coordinate, const Grid& grid);
 
-struct LargePair {
-  Vec3<mpz_class> a[3];
-  Vec3<mpz_class> b[3];
-};
-
 // The pair's coordinates divided by 2^grid.exponent.
 template <class Real>
 LargePair large_integers(const BasicPair<Real>& pair, const Grid& grid);
+
+template <class Number>
+bool is_zero(const Vec3<Number>& v) {
+  return v.x == 0 && v.y == 0 && v.z == 0;
+}
 
 // The two decisions of truth.h, and the hulls, for a pair of integers of any size.   Exact: always.
 Verdict cgal_verdict(const LargePair& pair);

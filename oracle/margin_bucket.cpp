@@ -12,20 +12,14 @@
 namespace graze::oracle {
 namespace {
 
-using Int128 = __int128;
-
 // Whether the intersecting hulls only touch: some nonzero axis among these has no overlap.
 // Exact: always. An axis n has degree two, and an overlap n . (p - q) of two vertices has degree three (kSmallBits).
 bool touches(const SmallPair& small, std::uint32_t axes) {
-  Vec3<Int128> a[3], b[3];
-  for (int i = 0; i < 3; ++i) {
-    a[i] = {small.a[i].x, small.a[i].y, small.a[i].z};
-    b[i] = {small.b[i].x, small.b[i].y, small.b[i].z};
-  }
+  const auto& [a, b] = widened(small);
   for (int axis = 0; axis < kSeparatingAxes; ++axis) {
     if ((axes >> axis & 1u) == 0) continue;
-    const Vec3<Int128> n = integer_direction(a, b, axis);
-    if ((n.x != 0 || n.y != 0 || n.z != 0) && integer_overlap(a, b, axis, n) == 0) return true;
+    const Vec3<__int128> n = integer_direction(a, b, axis);
+    if (!is_zero(n) && integer_overlap(a, b, axis, n) == 0) return true;
   }
   return false;
 }

@@ -14,12 +14,6 @@ namespace {
 
 using namespace oracle_test;
 
-Verdict decide(const Lane& lane, const Pair& pair) {
-  std::uint64_t intersects = 0, declined = 0;
-  lane.decide(&pair, 1, &intersects, &declined);
-  return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
-}
-
 // Error bounds add up. If one of two numbers is exact, the error of the other must not be lost.
 TEST(Ball, ARadiusHoldsBothErrors) {
   constexpr long kExact = Ball::kExact, kUnknown = Ball::kUnknown;
@@ -97,7 +91,7 @@ TEST(Precise, WithBothLimitsIsTheCpuLane) {
       for (const Lane& lane : published_lanes()) {
         if (lane.variant != Variant::cpu) continue;
         const Limited limited = decide_limited(lane.algorithm, lane.scalar, in_doubles(pair), {true, true});
-        EXPECT_EQ(name(limited.verdict), name(decide(lane, pair))) << lane.id << hex(pair);
+        EXPECT_EQ(name(limited.verdict), name(decide_one(lane.decide, pair))) << lane.id << hex(pair);
         overflows += limited.first == RangeEvent::overflow;
         underflows += limited.first == RangeEvent::underflow;
       }

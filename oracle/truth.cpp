@@ -35,7 +35,6 @@ Truth truth_of_pair(const BasicPair<Real>& pair) {
   }
   const Grid grid = grid_of(pair);
   const LargePair large = large_integers(pair, grid);
-  constexpr std::uint32_t kAllAxes = (1u << kSeparatingAxes) - 1;
   const SquaredMargin squared =
       verdict == Verdict::disjoint ? exact_distance(large, grid.exponent) : exact_depth(large, grid.exponent, kAllAxes);
   return truth_of(verdict, contact, hulls(pair), squared, log2_ulp(pair));

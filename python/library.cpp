@@ -18,6 +18,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "backends/backends.h"
@@ -89,17 +90,17 @@ void visit(const void* pairs, int doubles, F f) {
 }
 
 // Decides up to kBlock pairs. A lane that takes no doubles decides them as float32 stores them.
-void decide_block(const DecideBlock& decide, const Pair* pairs, std::size_t count, std::uint64_t* intersects,
+template <class Real>
+void decide_block(const DecideBlock& decide, const BasicPair<Real>* pairs, std::size_t count, std::uint64_t* intersects,
                   std::uint64_t* declined) {
+  if constexpr (std::is_same_v<Real, double>) {
+    if (!decide.decides_doubles()) {
+      std::vector<Pair> stored(count);
+      std::transform(pairs, pairs + count, stored.begin(), stored_in_float32);
+      return decide(stored.data(), count, intersects, declined);
+    }
+  }
   decide(pairs, count, intersects, declined);
-}
-
-void decide_block(const DecideBlock& decide, const DoublePair* pairs, std::size_t count, std::uint64_t* intersects,
-                  std::uint64_t* declined) {
-  if (decide.decides_doubles()) return decide(pairs, count, intersects, declined);
-  std::vector<Pair> stored(count);
-  std::transform(pairs, pairs + count, stored.begin(), stored_in_float32);
-  decide(stored.data(), count, intersects, declined);
 }
 
 template <class Real>

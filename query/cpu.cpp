@@ -146,16 +146,9 @@ struct Block {
 };
 
 template <class Real>
-void decide_exactly(const std::vector<BasicPair<Real>>& pairs, std::size_t count, std::uint64_t* hits) {
-  std::uint64_t declined[kTogether / 64];
-  exact::decide(coordinates(pairs[0]), count, hits, declined);
-}
-
-template <class Real>
 class Worker {
  public:
-  explicit Worker(const CpuQuestion& question)
-      : question_(question), pairs_(question.lane->exact ? kTogether : kBlock) {
+  explicit Worker(const Question& question) : question_(question), pairs_(question.lane.exact ? kTogether : kBlock) {
     open_.reserve(kTogether);
     for (std::uint64_t r = 0; r < question.reference_count; ++r) {
       finite_.push_back(is_finite(at(r)));
@@ -177,7 +170,7 @@ class Worker {
         hits = 0;
         declined = all;
         if (!finite_[r]) continue;
-        if (question_.lane->exact) {
+        if (question_.lane.exact) {
           if constexpr (std::is_same_v<Real, double>) block_.look_from(at(r));
           const typename Block<Real>::Sights sights = block_.look_past(references_[r]);
           declined = all & sights.large ? all & block_.not_finite() : 0;
@@ -209,8 +202,8 @@ class Worker {
   }
 
   void decide_open() {
-    std::uint64_t hits[kTogether / 64];
-    if (!open_.empty()) decide_exactly(pairs_, open_.size(), hits);
+    std::uint64_t hits[kTogether / 64], declined[kTogether / 64];
+    if (!open_.empty()) exact::decide(coordinates(pairs_[0]), open_.size(), hits, declined);
     for (std::size_t i = 0; i < open_.size(); ++i) {
       if (hits[i / 64] >> i % 64 & 1) *open_[i].word |= open_[i].bit;
     }
@@ -223,12 +216,12 @@ class Worker {
       std::copy_n(at(r), 9, coordinates(pairs_[i]));
       std::copy_n(block_.rows[i], 9, coordinates(pairs_[i]) + 9);
     }
-    question_.lane->decide(pairs_.data(), kBlock, &hits, &declined);
+    question_.lane.decide(pairs_.data(), kBlock, &hits, &declined);
     declined &= wanted;
     hits &= wanted & ~declined;
   }
 
-  const CpuQuestion& question_;
+  const Question& question_;
   std::vector<exact::PreparedTriangle> references_;  // those that are not finite are not used
   std::vector<char> finite_;
   Block<Real> block_;
@@ -241,7 +234,8 @@ class Worker {
 };
 
 template <class Real>
-void run(const CpuQuestion& question, int threads, cuda::QueryWork& work) {
+void run(const Question& question, cuda::QueryWork& work) {
+  const int threads = question.threads;
   const std::uint64_t most = std::max<std::uint64_t>(kBlock, kMostOfRange / question.reference_count / kBlock * kBlock);
   Worker<Real> here(question);
   cuda::QueryRange range;
@@ -277,8 +271,8 @@ void run(const CpuQuestion& question, int threads, cuda::QueryWork& work) {
 
 }  // namespace
 
-void run_on_cpu(const CpuQuestion& question, int threads, cuda::QueryWork& work) {
-  question.in_doubles ? run<double>(question, threads, work) : run<float>(question, threads, work);
+void run_on_cpu(const Question& question, cuda::QueryWork& work) {
+  question.in_doubles ? run<double>(question, work) : run<float>(question, work);
 }
 
 }  // namespace graze::query

@@ -110,38 +110,48 @@ TEST(Query, OutputsTellTheSameOnOneCoreAndOnAll) {
   }
 }
 
+// Triangles in every layout, with coordinates of the given type.
+template <class Real>
+struct EveryLayout {
+  struct Wide {
+    std::array<Real, 9> triangle;
+    Real number;
+  };
+  std::vector<std::array<Real, 9>> rows;
+  std::vector<Wide> wide;
+  std::vector<Real> columns[9];
+  std::vector<std::array<Real, 3>> vertices;
+  std::vector<std::array<std::uint32_t, 3>> faces;
+
+  explicit EveryLayout(const std::vector<Triangle>& triangles) {
+    for (const Triangle& t : triangles) {
+      std::copy(t.begin(), t.end(), rows.emplace_back().begin());
+      wide.push_back({rows.back(), 1});
+      for (std::size_t k = 0; k < 9; ++k) columns[k].push_back(t[k]);
+      const auto v = static_cast<std::uint32_t>(vertices.size());
+      for (std::size_t k = 0; k < 9; k += 3) vertices.push_back({t[k], t[k + 1], t[k + 2]});
+      faces.push_back({v, v + 1, v + 2});
+    }
+  }
+
+  std::vector<graze_triangles> parts() const {
+    std::array<const Real*, 9> at;
+    for (std::size_t k = 0; k < 9; ++k) at[k] = columns[k].data();
+    return {rows_of(std::span<const std::array<Real, 9>>(rows)), rows_of(std::span<const Wide>(wide)),
+            columns_of(at, rows.size()), mesh_of(vertices, faces)};
+  }
+};
+
 TEST(Query, LayoutsTellTheSame) {
   const std::vector<Triangle> triangles = thesis_triangles(kCount);
   const Outputs rows = all_of(query_of(kThesisReference, part_of(triangles)), kCount, 0);
-
-  struct Wide {
-    Triangle triangle;
-    int number;
-  };
-  std::vector<Wide> wide;
-  for (const Triangle& t : triangles) wide.push_back({t, 1});
-  const graze_triangles of_wide = rows_of(std::span<const Wide>(wide));
-  EXPECT_EQ(of_wide.stride, 40u);
-  EXPECT_EQ(all_of(query_of(kThesisReference, of_wide), kCount, 0).bytes, rows.bytes);
-
-  std::vector<float> columns[9];
-  std::array<const float*, 9> at;
-  for (std::size_t k = 0; k < 9; ++k) {
-    for (const Triangle& t : triangles) columns[k].push_back(t[k]);
-    at[k] = columns[k].data();
-  }
-  EXPECT_EQ(all_of(query_of(kThesisReference, columns_of(at, kCount)), kCount, 0).bytes, rows.bytes);
-
-  std::vector<std::array<float, 3>> vertices;
-  std::vector<std::array<std::uint32_t, 3>> faces;
-  for (const Triangle& t : triangles) {
-    const auto v = static_cast<std::uint32_t>(vertices.size());
-    for (std::size_t k = 0; k < 9; k += 3) vertices.push_back({t[k], t[k + 1], t[k + 2]});
-    faces.push_back({v, v + 1, v + 2});
-  }
-  EXPECT_EQ(all_of(query_of(kThesisReference, mesh_of(vertices, faces)), kCount, 0).bytes, rows.bytes);
-  faces[9][1] = static_cast<std::uint32_t>(vertices.size());
-  const Outputs beside = all_of(query_of(kThesisReference, mesh_of(vertices, faces)), kCount, 0);
+  EveryLayout<float> layouts(triangles);
+  EXPECT_EQ(layouts.parts()[1].stride, 40u);
+  for (const graze_triangles& part : layouts.parts())
+    EXPECT_EQ(all_of(query_of(kThesisReference, part), kCount, 0).bytes, rows.bytes);
+  layouts.faces[9][1] = static_cast<std::uint32_t>(layouts.vertices.size());
+  const graze_triangles mesh = layouts.parts()[3];
+  const Outputs beside = all_of(query_of(kThesisReference, mesh), kCount, 0);
   EXPECT_EQ(beside.bytes[9], 2);
   EXPECT_EQ(beside.answer.declined, 1u);
 
@@ -160,36 +170,10 @@ TEST(Query, LayoutsTellTheSame) {
 TEST(Query, DoublesInEveryLayoutTellTheSame) {
   const std::vector<Triangle> floats = thesis_triangles(kCount);
   const std::vector<std::uint8_t> bytes = all_of(query_of(kThesisReference, part_of(floats)), kCount, 0).bytes;
-  const auto doubled = [](const Triangle& t) {
-    DoubleTriangle result;
-    std::copy(t.begin(), t.end(), result.begin());
-    return result;
-  };
-  struct Wide {
-    DoubleTriangle triangle;
-    double number;
-  };
-  const DoubleTriangle reference = doubled(kThesisReference);
-  std::vector<DoubleTriangle> rows;
-  std::vector<Wide> wide;
-  std::vector<double> columns[9];
-  std::array<const double*, 9> at;
-  std::vector<std::array<double, 3>> vertices;
-  std::vector<std::array<std::uint32_t, 3>> faces;
-  for (const Triangle& t : floats) {
-    rows.push_back(doubled(t));
-    wide.push_back({rows.back(), 1});
-    const auto v = static_cast<std::uint32_t>(vertices.size());
-    for (std::size_t k = 0; k < 9; k += 3) vertices.push_back({t[k], t[k + 1], t[k + 2]});
-    faces.push_back({v, v + 1, v + 2});
-  }
-  for (std::size_t k = 0; k < 9; ++k) {
-    for (const Triangle& t : floats) columns[k].push_back(t[k]);
-    at[k] = columns[k].data();
-  }
-  for (const graze_triangles& part :
-       {rows_of(std::span<const DoubleTriangle>(rows)), rows_of(std::span<const Wide>(wide)), columns_of(at, kCount),
-        mesh_of(vertices, faces)}) {
+  DoubleTriangle reference;
+  std::copy(kThesisReference.begin(), kThesisReference.end(), reference.begin());
+  const EveryLayout<double> layouts(floats);
+  for (const graze_triangles& part : layouts.parts()) {
     for (const int executor : {GRAZE_ONE_CORE, GRAZE_ALL_CORES, GRAZE_AUTO}) {
       graze_query query = query_of(reference, part);
       query.executor = executor;

@@ -66,6 +66,14 @@ class QueryDevice : public testing::Test {
   Context context_;
 };
 
+// A copy of the vector in the memory of device 0.
+template <class Element>
+std::unique_ptr<cuda::DeviceMemory> copied(const std::vector<Element>& host) {
+  auto memory = cuda::device_memory(0, host.size() * sizeof host[0]);
+  memory->fill(host.data(), memory->bytes);
+  return memory;
+}
+
 std::vector<Triangle> broken(std::vector<Triangle> triangles) {
   for (std::size_t i = 3; i < triangles.size(); i += 1001) triangles[i][i % 9] = i % 2 ? NAN : -INFINITY;
   return triangles;
@@ -121,7 +129,6 @@ TEST_F(QueryDevice, AllStrataAreTheCores) {
     const auto memory = resident(triangles, on_device);
     const graze_triangles part = part_of(triangles);
     graze_query query = query_of(references[0], part);
-    query.references = references[0].data();
     query.reference_count = references.size();
     query.executor = GRAZE_ALL_CORES;
     const Found cores = all_of(query, triangles.size());
@@ -144,7 +151,6 @@ TEST_F(QueryDevice, ManyReferencesAreTheCores) {
     }
     const graze_triangles part = part_of(triangles);
     graze_query query = query_of(references[0], part);
-    query.references = references[0].data();
     query.reference_count = references.size();
     query.executor = GRAZE_ALL_CORES;
     const Found cores = all_of(query, triangles.size());
@@ -168,13 +174,8 @@ TEST_F(QueryDevice, LayoutsAreTheCores) {
     faces.push_back({v, v + 1, i == 70'000 ? 4'000'000'000u : v + 2});
     wide.push_back({t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8], 1});
   }
-  const auto on_device = [](const auto& host) {
-    auto memory = cuda::device_memory(0, host.size() * sizeof host[0]);
-    memory->fill(host.data(), memory->bytes);
-    return memory;
-  };
-  const auto of_columns = on_device(columns), of_vertices = on_device(vertices), of_faces = on_device(faces),
-             of_wide = on_device(wide), of_rows = on_device(triangles);
+  const auto of_columns = copied(columns), of_vertices = copied(vertices), of_faces = copied(faces),
+             of_wide = copied(wide), of_rows = copied(triangles);
   std::array<const float*, 9> at;
   for (std::size_t k = 0; k < 9; ++k) at[k] = columns.data() + k * triangles.size();
   graze_triangles host[4] = {columns_of(at, triangles.size()), mesh_of(vertices, faces),
@@ -221,7 +222,6 @@ TEST_F(QueryDevice, DoublesOfAllStrataAreTheCores) {
       const auto memory = resident(triangles, on_device);
       const graze_triangles part = rows_of(std::span<const DoubleTriangle>(triangles));
       graze_query query = query_of(references[0], part);
-      query.references = references[0].data();
       query.reference_count = references.size();
       query.executor = GRAZE_ALL_CORES;
       const Found cores = all_of(query, triangles.size());
@@ -253,13 +253,8 @@ TEST_F(QueryDevice, DoublesInEveryLayoutAreTheCores) {
     faces.push_back({v, v + 1, i == 70'000 ? 4'000'000'000u : v + 2});
   }
   const DoubleTriangle reference = triangle(strata::generate_doubles(14, strata::Stratum::uniform, 0).a);
-  const auto on_device = [](const auto& host) {
-    auto memory = cuda::device_memory(0, host.size() * sizeof host[0]);
-    memory->fill(host.data(), memory->bytes);
-    return memory;
-  };
-  const auto of_columns = on_device(columns), of_vertices = on_device(vertices), of_faces = on_device(faces),
-             of_wide = on_device(wide);
+  const auto of_columns = copied(columns), of_vertices = copied(vertices), of_faces = copied(faces),
+             of_wide = copied(wide);
   std::array<const double*, 9> at;
   for (std::size_t k = 0; k < 9; ++k) at[k] = columns.data() + k * kCount;
   graze_triangles host[3] = {columns_of(at, kCount), mesh_of(vertices, faces),

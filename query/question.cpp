@@ -115,8 +115,8 @@ Lane lane_of(const char* id) {
 }
 
 void check_outputs(const graze_query& query, const Question& question) {
-  const bool any = query.mode == GRAZE_ANY;
-  expect(!any || (!query.bytes && !query.bits && !query.list), "GRAZE_ANY: expected no outputs but the answer");
+  expect(!question.any || (!query.bytes && !query.bits && !query.list),
+         "GRAZE_ANY: expected no outputs but the answer");
   if (query.list_room != 0) expect_aligned(query.list, "list", alignof(std::uint64_t));
   expect_fits(query.list, query.list_room, sizeof *query.list, sizeof *query.list, "list");
   if (query.bytes) expect_fits(query.bytes, query.reference_count * question.triangles, 1, 1, "bytes");
@@ -199,6 +199,7 @@ Question question_of(const graze_query& query) {
          "size: expected " + std::to_string(sizeof query) + ", found " + std::to_string(query.size));
   expect(query.mode == GRAZE_ANY || query.mode == GRAZE_ALL,
          "mode: expected 0 or 1, found " + std::to_string(query.mode));
+  question.any = query.mode == GRAZE_ANY;
   expect(query.executor >= GRAZE_AUTO && query.executor <= GRAZE_ALL_GPUS,
          "executor: expected 0 to 4, found " + std::to_string(query.executor));
   expect(query.coordinates == GRAZE_F32 || query.coordinates == GRAZE_F64,

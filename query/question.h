@@ -25,6 +25,7 @@ struct Question {
   std::vector<std::uint64_t> counts;  // of triangles in each part
   std::vector<int> places;            // of each part: a device, or -1
   std::uint64_t triangles = 0;
+  bool any = false;  // stops at the first hit
   graze_executor executor = GRAZE_ONE_CORE;
   int threads = 1;           // if cores do the work
   std::vector<int> devices;  // if devices do the work

@@ -4,8 +4,8 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 
+#include "core/fnv1a.h"
 #include "strata/strata.h"
 
 namespace graze::strata {
@@ -13,18 +13,12 @@ namespace graze::strata {
 inline constexpr std::uint64_t kGoldenSeed = 1;
 inline constexpr std::uint64_t kGoldenPairs = 10'000;
 
-inline constexpr std::uint64_t kHashStart = 0xcbf29ce484222325u;
+inline constexpr std::uint64_t kHashStart = fnv1a("");
 
-// FNV-1a over the coordinates' bits, each number least significant byte first; `hash` chains calls.
+// FNV-1a over the coordinates' bytes, least significant first on a little-endian machine; `hash` chains calls.
 template <class Real>
 std::uint64_t hash_bits(const BasicPair<Real>& pair, std::uint64_t hash = kHashStart) {
-  for (int i = 0; i < kCoordinates; ++i) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, coordinates(pair) + i, sizeof(Real));  // assumes a little-endian machine
-    for (unsigned shift = 0; shift < 8 * sizeof(Real); shift += 8)
-      hash = (hash ^ (bits >> shift & 0xffu)) * 0x100000001b3u;
-  }
-  return hash;
+  return fnv1a({reinterpret_cast<const char*>(&pair), sizeof pair}, hash);
 }
 
 // One hash per stratum, in the order of kStrata; scripts/update_generated writes the rows.

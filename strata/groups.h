@@ -11,8 +11,6 @@
 
 namespace graze::strata {
 
-enum class Group : std::uint8_t { general, coplanar, degenerate, extreme, mesh };
-
 struct GroupInfo {
   Group group;
   std::string_view id;
@@ -31,27 +29,12 @@ inline constexpr GroupInfo kGroups[] = {
     {Group::mesh, "mesh", "pairs of a mesh's triangles whose boxes overlap"},
 };
 
-// The stratum's group.
-constexpr Group group_of(Stratum stratum) {
-  switch (stratum) {
-#define GRAZE_STRATUM(name, group, ...) \
-  case Stratum::name:                   \
-    return Group::group;
-#include "strata/strata.inc"
-
-#include "strata/double_strata.inc"
-#undef GRAZE_STRATUM
-    default:
-      return Group::general;
-  }
-}
-
 // The group of the source with this name: a stratum, or a mesh as it is or moved. Nothing if this build does not know
 // the stratum.
 constexpr std::optional<Group> group_of_name(std::string_view id) {
   const std::string_view stratum = stratum_in_doubles(id).value_or(id);
   for (const StratumInfo& row : kDoubleStrata) {
-    if (row.id == stratum) return group_of(row.stratum);
+    if (row.id == stratum) return row.group;
   }
   return stratum == "mesh" || id.starts_with("mesh_") ? std::optional(Group::mesh) : std::nullopt;
 }

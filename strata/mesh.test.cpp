@@ -2,8 +2,6 @@
 // Meshes as input: every format gives the same triangles, candidates equal those of a brute-force search, and errors
 // give the reason.
 #include "strata/mesh.h"
-#include "core/message_testing.h"
-#include "core/text.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -17,16 +15,21 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/message_testing.h"
+#include "core/text.h"
+#include "strata/testing.h"
+
 namespace graze::strata {
 namespace {
 
 using Index = std::pair<std::uint32_t, std::uint32_t>;
 using Triangle = std::array<Vec3<float>, 3>;
+using testing::boxes_overlap;
 
 // The four faces of a tetrahedron with a corner at the origin.
 const std::string kTetrahedron = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n";
 
-class MeshFile : public testing::Test {
+class MeshFile : public ::testing::Test {
  protected:
   void SetUp() override { std::filesystem::create_directories(folder_); }
   void TearDown() override { std::filesystem::remove_all(folder_); }
@@ -55,7 +58,7 @@ class MeshFile : public testing::Test {
 
  private:
   std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) / ("graze_mesh_test_" + std::to_string(getpid()));
+      std::filesystem::path(::testing::TempDir()) / ("graze_mesh_test_" + std::to_string(getpid()));
 };
 
 std::string off_of(const std::vector<Triangle>& triangles) {
@@ -85,15 +88,6 @@ std::string binary_stl_of(const std::vector<Triangle>& triangles) {
     bytes.append(2, '\0');
   }
   return bytes;
-}
-
-bool boxes_overlap(const Triangle& a, const Triangle& b) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto [a_low, a_high] = std::minmax({component(a[0], axis), component(a[1], axis), component(a[2], axis)});
-    const auto [b_low, b_high] = std::minmax({component(b[0], axis), component(b[1], axis), component(b[2], axis)});
-    if (a_high < b_low || b_high < a_low) return false;
-  }
-  return true;
 }
 
 TEST_F(MeshFile, EveryFormatReadsTheSameTriangles) {

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "strata/testing.h"
+
 namespace graze::strata {
 namespace {
 
@@ -17,21 +19,11 @@ using Triangle = std::array<Vec3<float>, 3>;
 using Triangles = std::vector<Triangle>;
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-bool boxes_overlap(const Triangle& a, const Triangle& b) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto ends = [&](const Triangle& t) {
-      return std::minmax({component(t[0], axis), component(t[1], axis), component(t[2], axis)});
-    };
-    if (!(ends(a).second >= ends(b).first && ends(b).second >= ends(a).first)) return false;
-  }
-  return true;
-}
-
 Pairs by_brute_force(const Triangles& a, const Triangles& b, bool self) {
   Pairs pairs;
   for (std::uint32_t i = 0; i < a.size(); ++i) {
     for (std::uint32_t j = self ? i + 1 : 0; j < b.size(); ++j) {
-      if (boxes_overlap(a[i], b[j])) pairs.emplace_back(i, j);
+      if (testing::boxes_overlap(a[i], b[j])) pairs.emplace_back(i, j);
     }
   }
   return pairs;

@@ -65,8 +65,7 @@ void expect_float32(std::span<const PairSource> sources, const char* verb) {
 
 const StratumInfo* stratum_info(std::string_view source) {
   const std::optional<std::string_view> in_doubles = stratum_in_doubles(source);
-  const std::span<const StratumInfo> rows =
-      in_doubles ? std::span<const StratumInfo>(kDoubleStrata) : std::span<const StratumInfo>(kStrata);
+  const std::span<const StratumInfo> rows = strata_of(in_doubles.has_value());
   const auto row =
       std::find_if(rows.begin(), rows.end(), [&](const StratumInfo& s) { return s.id == in_doubles.value_or(source); });
   return row == rows.end() ? nullptr : &*row;

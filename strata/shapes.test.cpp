@@ -31,12 +31,6 @@ TEST(Sliver, AspectsCoverTheirDecades) {
   EXPECT_LT(decades[9] + decades[10] + decades[11], 100);
 }
 
-int shared_vertices(const Pair& pair) {
-  int shared = 0;
-  for (const Vec3<float>& v : pair.a) shared += std::count(pair.b, pair.b + 3, v) != 0;
-  return shared;
-}
-
 TEST(Degenerate, OneIsASegmentOrPointExactly) {
   int points = 0, segments = 0, both = 0, share_a_vertex = 0;
   for (const Pair& pair : draw(Stratum::degenerate)) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 #include "core/margin/axis.h"
@@ -19,17 +20,27 @@ enum class Stratum : std::uint8_t {
 #undef GRAZE_STRATUM
 };
 
+// The group in which reports count a stratum's results; see strata/groups.h.
+enum class Group : std::uint8_t { general, coplanar, degenerate, extreme, mesh };
+
+// The kind of a scene's pair: the first that matches of degenerate (a triangle has no area), shared_edge (two stored
+// vertices in common), shared_vertex (one in common), coplanar (all six points in one plane), general (anything else).
+enum class Kind : std::uint8_t { general, shared_vertex, shared_edge, coplanar, degenerate };
+
 // A row of strata/strata.inc, which explains the columns, or of strata/double_strata.inc.
 struct StratumInfo {
   Stratum stratum;
   std::string_view id;
   std::string_view what;
   Axis axis;
+  Group group;
+  Kind kind;
 };
 
 // The strata of pairs of float32.
 inline constexpr StratumInfo kStrata[] = {
-#define GRAZE_STRATUM(name, group, kind, axis, draw, what) {Stratum::name, #name, what, Axis::axis},
+#define GRAZE_STRATUM(name, group, kind, axis, draw, what) \
+  {Stratum::name, #name, what, Axis::axis, Group::group, Kind::kind},
 #include "strata/strata.inc"
 #undef GRAZE_STRATUM
 };
@@ -37,13 +48,18 @@ inline constexpr int kStrataCount = sizeof kStrata / sizeof kStrata[0];
 
 // The strata of pairs of doubles.
 inline constexpr StratumInfo kDoubleStrata[] = {
-#define GRAZE_STRATUM(name, group, kind, axis, draw, what) {Stratum::name, #name, what, Axis::axis},
+#define GRAZE_STRATUM(name, group, kind, axis, draw, what) \
+  {Stratum::name, #name, what, Axis::axis, Group::group, Kind::kind},
 #include "strata/strata.inc"
 
 #include "strata/double_strata.inc"
 #undef GRAZE_STRATUM
 };
 inline constexpr int kDoubleStrataCount = sizeof kDoubleStrata / sizeof kDoubleStrata[0];
+
+inline std::span<const StratumInfo> strata_of(bool in_doubles) {
+  return in_doubles ? std::span<const StratumInfo>(kDoubleStrata) : std::span<const StratumInfo>(kStrata);
+}
 
 // Whether device code can draw the stratum. `stored` uses the exact decision, which takes device compilers minutes.
 constexpr bool is_drawn_on_devices(Stratum stratum) { return stratum != Stratum::stored; }

@@ -28,7 +28,7 @@ TEST(Groups, GeneralHasSomeCoplanarAndSomeDegeneratePairs) {
   constexpr std::uint64_t kPairs = 3000;  // of each stratum
   std::uint64_t pairs = 0, coplanar = 0, degenerate = 0;
   for (const StratumInfo& row : kStrata) {
-    if (group_of(row.stratum) != Group::general) continue;
+    if (row.group != Group::general) continue;
     for (std::uint64_t i = 0; i < kPairs; ++i) {
       const Pair pair = generate(1, row.stratum, i);
       const Relation r = relation_of(pair);

@@ -73,10 +73,30 @@ inline bool is_coplanar(const Triangle<Int>& a, const Triangle<Int>& b) {
 
 inline double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
 
-inline double largest(const Pair& pair) {
+template <class Real>
+double largest(const BasicPair<Real>& pair) {
   double largest = 0;
   for (int i = 0; i < kCoordinates; ++i) largest = std::max(largest, std::fabs(double{coordinates(pair)[i]}));
   return largest;
+}
+
+// How many vertices of A are also vertices of B.
+template <class Real>
+int shared_vertices(const BasicPair<Real>& pair) {
+  int shared = 0;
+  for (const Vec3<Real>& v : pair.a) shared += std::count(pair.b, pair.b + 3, v) != 0;
+  return shared;
+}
+
+// Whether the closed boxes of two triangles overlap: never if a coordinate is NaN.
+inline bool boxes_overlap(const Triangle<float>& a, const Triangle<float>& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto ends = [&](const Triangle<float>& t) {
+      return std::minmax({component(t[0], axis), component(t[1], axis), component(t[2], axis)});
+    };
+    if (!(ends(a).second >= ends(b).first && ends(b).second >= ends(a).first)) return false;
+  }
+  return true;
 }
 
 // The longest side of the box around a triangle.
@@ -109,8 +129,8 @@ inline std::vector<Pair> draw(Stratum stratum) {
   return pairs;
 }
 
-template <class Predicate>
-double share(const std::vector<Pair>& pairs, Predicate holds) {
+template <class Real, class Predicate>
+double share(const std::vector<BasicPair<Real>>& pairs, Predicate holds) {
   return static_cast<double>(std::count_if(pairs.begin(), pairs.end(), holds)) / static_cast<double>(pairs.size());
 }
 

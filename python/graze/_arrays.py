@@ -112,35 +112,24 @@ def pairs(strata: str = "*", *, seed: int = 1, count: int = 1000, coordinates: s
     doubles = ctypes.c_int(coordinates == "f64")
     seed, count = _library.count_of(seed, "seed"), _library.count_of(count, "count")
     names = _library.name_of(strata, "strata")
-    _library.call(
-        "pairs",
-        names,
-        ctypes.c_uint64(seed),
-        ctypes.c_uint64(count),
-        ctypes.c_uint64(0),
-        ctypes.c_uint64(0),
-        None,
-        doubles,
-    )
+
+    def draw(first: int, some: int, to: Any = None) -> None:
+        _library.call("pairs", names, *map(ctypes.c_uint64, (seed, count, first, some)), to, doubles)
+
+    draw(0, 0)  # checks the names before memory is allocated
     drawn = np.empty((count, 2, 3, 3), np.float64 if coordinates == "f64" else np.float32)
-
-    def draw(first: int, some: int) -> None:
-        to = _library.pointer(drawn[first:])
-        numbers = (ctypes.c_uint64(n) for n in (seed, count, first, some))
-        _library.call("pairs", names, *numbers, to, doubles)
-
-    _library.in_pieces(count, draw)
+    _library.in_pieces(count, lambda first, some: draw(first, some, _library.pointer(drawn[first:])))
     return drawn
 
 
-def _of_pairs(function: str, pairs: Any, result: np.ndarray, *before: Any, after: tuple = ()) -> np.ndarray:
-    """Calls a function of the library on pieces of the pairs and of the result."""
+def _of_elements(function: str, array: np.ndarray, result: np.ndarray, *before: Any, after: tuple = ()) -> np.ndarray:
+    """Calls a function of the library on pieces of the array and of the result."""
 
     def one(first: int, some: int) -> None:
         arguments = (ctypes.c_uint64(some), _library.pointer(result[first:]))
-        _library.call(function, *before, _library.pointer(pairs[first:]), *after, *arguments)
+        _library.call(function, *before, _library.pointer(array[first:]), *after, *arguments)
 
-    _library.in_pieces(len(pairs), one)
+    _library.in_pieces(len(array), one)
     return result
 
 
@@ -156,7 +145,7 @@ def relation(pairs: Any) -> np.ndarray:
     dimension_b (of the hulls, 0 to 2), coplanar.
     """
     checked = _checked(pairs)
-    return _of_pairs("relations", checked, np.empty(len(checked), _RELATION), after=(_library.in_doubles(checked),))
+    return _of_elements("relations", checked, np.empty(len(checked), _RELATION), after=(_library.in_doubles(checked),))
 
 
 def truth(pairs: Any) -> np.ndarray:
@@ -171,7 +160,7 @@ def margin(pairs: Any) -> np.ndarray:
     Returns: float64, shape (n, 2): at least, at most. NaN where a coordinate is not finite.
     """
     checked = _checked(pairs, doubles=False)
-    return _of_pairs("margins", checked, np.empty((len(checked), 2)))
+    return _of_elements("margins", checked, np.empty((len(checked), 2)))
 
 
 def verdicts(lane: str, pairs: Any) -> np.ndarray:
@@ -181,7 +170,7 @@ def verdicts(lane: str, pairs: Any) -> np.ndarray:
     Raises: ValueError for a lane that does not exist, and for doubles if a float64 lane reads only float32."""
     checked = _checked(pairs)
     doubles, name = _library.in_doubles(checked), _library.name_of(lane, "lane")
-    return _of_pairs("verdicts", checked, np.empty(len(checked), np.int8), name, after=(doubles,))
+    return _of_elements("verdicts", checked, np.empty(len(checked), np.int8), name, after=(doubles,))
 
 
 def _triangles(*arrays: Any) -> list[np.ndarray]:
@@ -197,20 +186,8 @@ def meets(reference: Any, triangles: Any) -> np.ndarray:
     one, many = _triangles(reference, triangles)
     if len(one) != 1:
         raise ValueError(f"reference: one triangle of shape (3, 3) is needed, not {np.shape(reference)}")
-    result = np.empty(len(many), np.int8)
-
-    def some(first: int, count: int) -> None:
-        _library.call(
-            "meets",
-            _library.pointer(one),
-            _library.pointer(many[first:]),
-            _library.in_doubles(many),
-            ctypes.c_uint64(count),
-            _library.pointer(result[first:]),
-        )
-
-    _library.in_pieces(len(many), some)
-    return result
+    result, doubles = np.empty(len(many), np.int8), _library.in_doubles(many)
+    return _of_elements("meets", many, result, _library.pointer(one), after=(doubles,))
 
 
 def _found(a: np.ndarray, b: "np.ndarray | None", touching: bool) -> np.ndarray:

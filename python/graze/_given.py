@@ -37,11 +37,7 @@ class _Tested:
             raise TypeError(
                 f"the function returns {answers.dtype} of shape {answers.shape}, not {len(pairs)} bools or ints"
             )
-        return (
-            np.where(answers < 0, DECLINED, answers != 0).astype(np.uint8)
-            if answers.dtype.kind == "i"
-            else (answers != 0).astype(np.uint8)
-        )
+        return np.where(answers < 0, DECLINED, answers != 0).astype(np.uint8)
 
     def _of_one(self, pair: np.ndarray) -> int:
         try:

@@ -19,22 +19,21 @@ import graze
 import numpy as np
 
 
-def float32(*numbers):
-    return np.array(numbers, np.float32)
+def dumped(stratum):
+    """Returns: the rows that `graze dump` prints for 40 pairs of the stratum, and their coordinates."""
+    words = [os.environ["GRAZE"], "dump", stratum + ":3", "--pairs", "40"]
+    table = csv.DictReader(subprocess.run(words, capture_output=True, text=True, check=True).stdout.splitlines())
+    rows = list(table)
+    columns = [name for name in table.fieldnames if re.fullmatch("[ab][0-2][xyz]", name)]
+    return rows, np.array([[row[name] for name in columns] for row in rows], float)
 
 
 class Arrays(unittest.TestCase):
     def test_pairs_truths_and_contacts_are_those_of_the_program(self):
         for stratum in graze.strata():
-            words = [os.environ["GRAZE"], "dump", stratum + ":3", "--pairs", "40"]
-            table = csv.DictReader(
-                subprocess.run(words, capture_output=True, text=True, check=True).stdout.splitlines()
-            )
-            rows = list(table)
+            rows, known = dumped(stratum)
             self.assertEqual(len(rows), 40)
             drawn = graze.pairs(stratum, seed=3, count=40)
-            columns = [name for name in table.fieldnames if re.fullmatch("[ab][0-2][xyz]", name)]
-            known = np.array([[row[name] for name in columns] for row in rows], float)
             self.assertEqual(known.astype(np.float32).tobytes(), drawn.tobytes(), stratum)
             relation = graze.relation(drawn)
             self.assertEqual([row["truth"] == "intersects" for row in rows], (relation["verdict"] == 1).tolist())
@@ -46,14 +45,8 @@ class Arrays(unittest.TestCase):
 
     def test_doubles_are_those_of_the_program(self):
         for stratum in ("near_edge_edge", "large_offset", "stored", "mixed_scale"):
-            words = [os.environ["GRAZE"], "dump", stratum + "/f64:3", "--pairs", "40"]
-            table = csv.DictReader(
-                subprocess.run(words, capture_output=True, text=True, check=True).stdout.splitlines()
-            )
-            rows = list(table)
+            rows, known = dumped(stratum + "/f64")
             drawn = graze.pairs(stratum, seed=3, count=40, coordinates="f64")
-            columns = [name for name in table.fieldnames if re.fullmatch("[ab][0-2][xyz]", name)]
-            known = np.array([[row[name] for name in columns] for row in rows], float)
             self.assertEqual((drawn.dtype, known.tobytes()), (np.float64, drawn.tobytes()), stratum)
             relation = graze.relation(drawn)
             self.assertEqual([row["truth"] == "intersects" for row in rows], (relation["verdict"] == 1).tolist())

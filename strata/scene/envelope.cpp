@@ -119,20 +119,6 @@ Scene resolved(const SceneFile& file) {
   return scene;
 }
 
-Kind kind_of(Stratum stratum) {
-  switch (stratum) {
-#define GRAZE_STRATUM(name, group, kind, ...) \
-  case Stratum::name:                         \
-    return Kind::kind;
-#include "strata/strata.inc"
-
-#include "strata/double_strata.inc"
-#undef GRAZE_STRATUM
-    default:
-      return Kind::general;
-  }
-}
-
 std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum) {
   const Scene numbers = resolved(scene);
   const double steps = longest_in_steps(scene, numbers.exact);
@@ -184,9 +170,10 @@ std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum) {
     default:
       break;
   }
-  const Kind kind = kind_of(stratum);
-  if (scene.mix[static_cast<std::size_t>(kind)] == 0)
-    return fmt::format("your mix has no pairs of the kind {}", kKindIds[static_cast<std::size_t>(kind)]);
+  const auto row = std::find_if(std::begin(kDoubleStrata), std::end(kDoubleStrata),
+                                [&](const StratumInfo& info) { return info.stratum == stratum; });
+  const auto kind = static_cast<std::size_t>(row->kind);
+  if (scene.mix[kind] == 0) return fmt::format("your mix has no pairs of the kind {}", kKindIds[kind]);
   return std::nullopt;
 }
 

@@ -20,9 +20,6 @@ SceneFile with_type(const SceneFile& scene, bool in_doubles);
 // Why the scene cannot contain the stratum; nothing if it can.
 std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum);
 
-// The kind of pairs that the stratum draws in a scene.
-Kind kind_of(Stratum stratum);
-
 // The coordinate as the scene stores it: rounded to float32, unless its coordinates are doubles.
 inline double as_float32(double x) { return static_cast<double>(static_cast<float>(x)); }
 inline double as_stored(const SceneFile& scene, double x) { return scene.in_doubles ? x : as_float32(x); }

@@ -12,12 +12,11 @@
 #include <vector>
 
 #include "core/margin/bucket.h"
+#include "strata/strata.h"
 
 namespace graze::strata {
 
-// The kind of a scene's pair: the first that matches of degenerate (a triangle has no area), shared_edge (two stored
-// vertices in common), shared_vertex (one in common), coplanar (all six points in one plane), general (anything else).
-enum class Kind : std::uint8_t { general, shared_vertex, shared_edge, coplanar, degenerate };
+// The names of each Kind, in the order of the enumerators.
 inline constexpr int kKinds = 5;
 inline constexpr std::array<std::string_view, kKinds> kKindIds{"general", "shared_vertex", "shared_edge", "coplanar",
                                                                "degenerate"};

@@ -31,6 +31,7 @@ using testing::converted;
 using testing::edge;
 using testing::length;
 using testing::normal;
+using testing::shared_vertices;
 
 // Scenes of several kinds: in millimetres far from the origin, on a grid of thousandths; on a coarse grid; flat; and
 // without a grid.
@@ -163,14 +164,9 @@ TEST(Scene, ExactStrataAreExact) {
 TEST(Scene, NeighboursShareTheirVerticesBitForBit) {
   for (const auto& [name, text] : kScenes) {
     const Scene scene = resolved(parse_scene(name, text));
-    const auto shared = [](const Pair& pair) {
-      int count = 0;
-      for (const auto& u : pair.a) count += std::count(std::begin(pair.b), std::end(pair.b), u) > 0;
-      return count;
-    };
     for (std::uint64_t i = 0; i < 5'000; ++i) {
-      ASSERT_GE(shared(generate(1, Stratum::shared_vertex, scene, i)), 1) << name << ' ' << i;
-      ASSERT_GE(shared(generate(1, Stratum::shared_edge, scene, i)), 2) << name << ' ' << i;
+      ASSERT_GE(shared_vertices(generate(1, Stratum::shared_vertex, scene, i)), 1) << name << ' ' << i;
+      ASSERT_GE(shared_vertices(generate(1, Stratum::shared_edge, scene, i)), 2) << name << ' ' << i;
     }
   }
 }
@@ -314,14 +310,9 @@ TEST(DoubleScene, APointOfADecimalGridIsTheNearestDouble) {
 TEST(DoubleScene, NeighboursShareTheirVerticesBitForBit) {
   for (const auto& [name, file] : double_scenes()) {
     const Scene scene = resolved(file);
-    const auto shared = [](const DoublePair& pair) {
-      int count = 0;
-      for (const auto& u : pair.a) count += std::count(std::begin(pair.b), std::end(pair.b), u) > 0;
-      return count;
-    };
     for (std::uint64_t i = 0; i < 5'000; ++i) {
-      ASSERT_GE(shared(generate_doubles(1, Stratum::shared_vertex, scene, i)), 1) << name << ' ' << i;
-      ASSERT_GE(shared(generate_doubles(1, Stratum::shared_edge, scene, i)), 2) << name << ' ' << i;
+      ASSERT_GE(shared_vertices(generate_doubles(1, Stratum::shared_vertex, scene, i)), 1) << name << ' ' << i;
+      ASSERT_GE(shared_vertices(generate_doubles(1, Stratum::shared_edge, scene, i)), 2) << name << ' ' << i;
     }
   }
 }

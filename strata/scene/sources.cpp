@@ -9,7 +9,6 @@
 #include <functional>
 #include <memory>
 #include <numeric>
-#include <span>
 #include <type_traits>
 
 #include "core/cannot.h"
@@ -22,12 +21,8 @@
 namespace graze::strata {
 namespace {
 
-enum MeshSource { as_it_is, by_ulps, by_motions };
-struct MeshSourceInfo {
-  MeshSource source;
-  std::string_view id;
-};
-constexpr MeshSourceInfo kMeshSources[] = {{as_it_is, "mesh"}, {by_ulps, "mesh_ulps"}, {by_motions, "mesh_moved"}};
+constexpr std::string_view kMesh = "mesh", kMeshUlps = "mesh_ulps", kMeshMoved = "mesh_moved";
+constexpr std::string_view kMeshSources[] = {kMesh, kMeshUlps, kMeshMoved};
 
 // A scene's meshes, and the scene for pairs of one coordinate type.
 struct Meshes {
@@ -168,12 +163,11 @@ PairSource source_of(std::string_view id, const Draw& draw) {
 }
 
 template <class D>
-PairSource source_of(const MeshSourceInfo& row, const std::shared_ptr<const Meshes>& meshes, std::uint64_t seed) {
-  if (row.source == as_it_is)
-    return source_of(row.id, [meshes](std::uint64_t index) { return own_pair<D>(*meshes, index); });
-  if (row.source == by_ulps)
-    return source_of(row.id, [meshes, seed](std::uint64_t index) { return pair_by_ulps<D>(*meshes, seed, index); });
-  return source_of(row.id, [meshes, seed](std::uint64_t index) { return pair_by_motion<D>(*meshes, seed, index); });
+PairSource source_of(std::string_view id, const std::shared_ptr<const Meshes>& meshes, std::uint64_t seed) {
+  if (id == kMesh) return source_of(id, [meshes](std::uint64_t index) { return own_pair<D>(*meshes, index); });
+  if (id == kMeshUlps)
+    return source_of(id, [meshes, seed](std::uint64_t index) { return pair_by_ulps<D>(*meshes, seed, index); });
+  return source_of(id, [meshes, seed](std::uint64_t index) { return pair_by_motion<D>(*meshes, seed, index); });
 }
 
 PairSource source_of(const StratumInfo& row, const std::shared_ptr<const Scene>& scene, bool in_doubles,
@@ -194,10 +188,6 @@ PairSource source_of(const StratumInfo& row, const std::shared_ptr<const Scene>&
   return source;
 }
 
-std::span<const StratumInfo> strata_of(bool in_doubles) {
-  return in_doubles ? std::span<const StratumInfo>(kDoubleStrata) : std::span<const StratumInfo>(kStrata);
-}
-
 std::string name_of(std::string_view id, bool in_doubles) {
   return std::string(id) + std::string(in_doubles ? kInDoubles : "");
 }
@@ -214,7 +204,7 @@ std::vector<std::string> patterns_of(const std::vector<std::string>& globs, cons
   std::vector<std::string> ids, patterns = globs;
   for (const bool in_doubles : types) {
     for (const StratumInfo& row : strata_of(in_doubles)) ids.push_back(name_of(row.id, in_doubles));
-    for (const MeshSourceInfo& row : kMeshSources) ids.push_back(name_of(row.id, in_doubles));
+    for (const std::string_view id : kMeshSources) ids.push_back(name_of(id, in_doubles));
   }
   for (const std::string& glob : globs) {
     patterns.push_back(glob + std::string(kInDoubles));
@@ -261,7 +251,7 @@ SceneSources sources_of(const SceneFile& file, const std::filesystem::path& fold
         continue;
       }
       result.sources.push_back(source_of(row, scene, in_doubles, seed));
-      kinds.push_back(kind_of(row.stratum));
+      kinds.push_back(row.kind);
       ++of_kind[static_cast<std::size_t>(kinds.back())];
     }
   }
@@ -272,8 +262,8 @@ SceneSources sources_of(const SceneFile& file, const std::filesystem::path& fold
   std::shared_ptr<const MeshPairs> mesh;
   for (const bool in_doubles : types) {
     std::shared_ptr<const Meshes> meshes;
-    for (const MeshSourceInfo& row : kMeshSources) {
-      const std::string id = name_of(row.id, in_doubles);
+    for (const std::string_view source : kMeshSources) {
+      const std::string id = name_of(source, in_doubles);
       if (!is_wanted(id)) continue;
       if (file.meshes.files.empty()) {
         if (are_named) result.left_out.push_back({id, "your scene names no mesh"});
@@ -281,8 +271,8 @@ SceneSources sources_of(const SceneFile& file, const std::filesystem::path& fold
       }
       if (!mesh) mesh = read_meshes(file, folder);
       if (!meshes) meshes = meshes_of(with_type(file, in_doubles), folder, mesh);
-      result.sources.push_back(in_doubles ? source_of<DoubleDraws>(row, meshes, seed)
-                                          : source_of<Draws>(row, meshes, seed));
+      result.sources.push_back(in_doubles ? source_of<DoubleDraws>(source, meshes, seed)
+                                          : source_of<Draws>(source, meshes, seed));
       weights.push_back(0);
     }
   }
@@ -298,7 +288,7 @@ SceneSources sources_of(const SceneFile& file, const std::filesystem::path& fold
   share(result.sources, weights, pairs);
   std::uint64_t run = pairs, of_mesh = 0;
   for (PairSource& source : result.sources) {
-    if (stratum_in_doubles(source.id).value_or(source.id) != "mesh" || source.pairs <= mesh->size()) continue;
+    if (stratum_in_doubles(source.id).value_or(source.id) != kMesh || source.pairs <= mesh->size()) continue;
     of_mesh = source.pairs;
     run -= source.pairs - mesh->size();
     source.pairs = mesh->size();

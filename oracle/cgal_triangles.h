@@ -15,7 +15,7 @@ class CgalTriangles {
  public:
   using Triangle = std::array<Vec3<float>, 3>;
 
-  explicit CgalTriangles(std::span<const Triangle> triangles);  // which must stay in place
+  explicit CgalTriangles(std::span<const Triangle> triangles);  // the array must outlive this object
   ~CgalTriangles();
 
   // Calls CGAL::do_intersect on two Triangle_3 of the kernel with exact predicates. CGAL does not allow degenerate

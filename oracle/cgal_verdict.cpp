@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verdict of CGAL's do_intersect. A degenerate triangle is a segment or a point and is tested as one:
+// The verdict of CGAL's do_intersect. A degenerate triangle is tested as a segment or a point, because
 // CGAL's triangle test (Guigue and Devillers 2003) requires triangles that are not flat.
 #include <algorithm>
 
@@ -20,14 +20,14 @@ namespace {
 // orientation, coplanar orientation, collinear, and, for two segments, line points p + v.)
 using SmallKernel = CGAL::Simple_cartesian<boost::int128_type>;
 
-// Filtered double arithmetic for the other pairs, if their coordinates are multiples of 2^-300 below 2^300, as all
-// float32 are. A product of three differences is then zero or lies between 2^-900 and 2^903. So nothing overflows or
-// underflows, and the filters' error bounds hold.
+// Filtered double arithmetic, for pairs with more bits whose coordinates are multiples of 2^-300 and below 2^300, as
+// all float32 are. A product of three differences is then zero or lies between 2^-900 and 2^903. So nothing overflows
+// or underflows, and the filters' error bounds hold.
 using WideKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 constexpr int kWideExponents = 300;
 
-// Rationals, for all others.
+// Rationals, for all other pairs.
 using LargeKernel = CGAL::Simple_cartesian<mpq_class>;
 
 // The closed convex hull of three points: its dimension (0, 1 or 2) and its dimension + 1 vertices.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The oracle on pairs of doubles: both decisions against each other, and truths and margins at a double's limits.
+// The oracle on pairs of doubles: the two decisions agree, and truths and margins are right at a double's limits.
 #include <gtest/gtest.h>
 
 #include <cfloat>
@@ -58,7 +58,7 @@ TEST(DoubleTruth, IgnoresOrderAxesAndSigns) {
   }
 }
 
-// Across the limits of each kernel: small integers, filtered doubles, rationals.
+// Scales pairs across the limits of each kernel: small integers, filtered doubles and rationals.
 TEST(DoubleTruth, ScalesByPowersOfTwo) {
   for (const Kind kind : {Kind::near, Kind::coplanar, Kind::touching, Kind::degenerate}) {
     Source source(kind, kSeed + 2);
@@ -106,7 +106,7 @@ TEST(DoubleTruth, MarginsAreRoundedOnceAtTheLimits) {
   }
   const double most = DBL_MAX;
   const DoublePair far{{{most, 0, 0}, {most, 1, 0}, {most, 0, 1}}, {{-most, 0, 0}, {-most, 1, 0}, {-most, 0, 1}}};
-  EXPECT_EQ(truth(far).margin, most);  // not infinity
+  EXPECT_EQ(truth(far).margin, most);  // the margin is not infinity
   EXPECT_EQ(truth(far).margin_sign, 1);
   EXPECT_EQ(truth(far).margin_ulps, std::ldexp(most, 1 - 971));
   const DoublePair half{{{most / 4, 0, 0}, {most / 4, 1, 0}, {most / 4, 0, 1}},

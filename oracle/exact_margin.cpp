@@ -13,7 +13,7 @@ namespace {
 using Int = mpz_class;
 using Vector = Vec3<mpz_class>;
 
-// Keeps the lesser of two rationals. An unset one (denominator 0) counts as greater than all.
+// Keeps the lesser of two rationals. An unset margin (denominator 0) counts as greater than any rational.
 void keep_least(SquaredMargin& least, const Int& numerator, const Int& denominator) {
   if (least.denominator != 0 && numerator * least.denominator >= least.numerator * denominator) return;
   least.numerator = numerator;
@@ -118,8 +118,8 @@ int floor_log2(const SquaredMargin& margin) {
 
 double rounded(const SquaredMargin& margin) {
   if (margin.numerator == 0) return 0;
-  // root = floor(sqrt(numerator / denominator) * 2^shift) has at least 64 bits. It is doubled, and its lowest bit is
-  // set if anything was cut off. It then rounds to 53 bits exactly like the unrounded root.
+  // root = floor(sqrt(numerator / denominator) * 2^shift) has at least 64 bits. The root is doubled, and its lowest
+  // bit is set if anything was cut off. It then rounds to 53 bits exactly like the unrounded root.
   const int shift = 64 - (floor_log2(margin) - margin.exponent);
   Int numerator = margin.numerator, denominator = margin.denominator;
   if (shift > 0) numerator <<= static_cast<unsigned>(2 * shift);

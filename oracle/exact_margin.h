@@ -23,7 +23,7 @@ struct SquaredMargin {
 // Exact: always.
 SquaredMargin exact_distance(const LargePair& pair, int exponent);
 
-// The least overlap of two intersecting hulls along the nonzero axes among these; zero if there are none.
+// The least overlap of two intersecting hulls along those of the given axes that are not zero; zero if all are.
 // axes: bit i selects separating axis i of core/margin/directions.h.   Exact: always.
 inline constexpr std::uint32_t kAllAxes = (1u << kSeparatingAxes) - 1;
 SquaredMargin exact_depth(const LargePair& pair, int exponent, std::uint32_t axes);
@@ -39,7 +39,7 @@ int floor_log2(const SquaredMargin& margin);
 // [2^-705, 2^130].
 double rounded(const SquaredMargin& margin);
 
-// The truth of a pair with this distance or depth. log2_ulp: log2 of the ulp of its largest coordinate.
+// The truth of a pair with this distance or depth. log2_ulp: log2 of the ulp of the pair's largest coordinate.
 Truth truth_of(Verdict verdict, Contact contact, const Hulls& hulls, const SquaredMargin& size, int log2_ulp);
 
 // Direction d of core/margin/directions.h, exactly, for any integer type.

@@ -130,8 +130,8 @@ Contact pierced(Workspace<Number>& work, const Simplex<Number>& segment, const S
   return locate(side).place == Place::outside ? Contact::none : Contact::point;
 }
 
-// Two simplices in one plane or on one line, without the coordinate `dropped`. No two points of the plane or line
-// coincide without it.
+// Two simplices in one plane or on one line, projected by dropping the coordinate `dropped`. The projection keeps all
+// points of the plane or line distinct.
 template <class Number>
 struct Planar {
   Workspace<Number>& work;

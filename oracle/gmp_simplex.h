@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors of GMP integers in registers that are reused, and the simplices that gmp_contact.cpp compares. A register
-// holds an integer of any size, or one of two limbs.
+// Vectors of GMP integers whose memory is reused, and the simplices that gmp_contact.cpp compares. The integers have
+// any size (Register) or two limbs (TwoLimbs).
 #pragma once
 
 #include <gmp.h>
@@ -126,7 +126,7 @@ Simplex<Number> flat_simplex(const Point<Number> (&p)[3]) {
 enum class Place { outside, face, edge, vertex };
 struct Location {
   Place place;
-  int edge;  // when place == edge
+  int edge;  // valid if place == Place::edge
 };
 
 inline Location locate(const int (&side)[3]) {

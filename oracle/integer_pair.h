@@ -31,7 +31,7 @@ template <class Real>
 Grid grid_of(const BasicPair<Real>& pair);
 
 using SmallPair = BasicPair<std::int64_t>;
-using WidePair = BasicPair<__int128>;  // the same integers, whose products of three differences do not overflow
+using WidePair = BasicPair<__int128>;  // of at most kSmallBits bits, so that products of three differences fit
 using LargePair = BasicPair<mpz_class>;
 
 // The pair's coordinates divided by 2^grid.exponent.
@@ -45,7 +45,7 @@ inline WidePair widened(const SmallPair& small) {
   return wide;
 }
 
-// Like small_integers for one coordinate, of any size, stored in an initialised GMP integer.
+// Like small_integers, for one coordinate of any size. Stores the result in an initialised GMP integer.
 // Requires: grid is that of the coordinate's pair.   Exact: always.
 template <class Real>
 void set_integer(mpz_t out, Real coordinate, const Grid& grid);

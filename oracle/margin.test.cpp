@@ -127,7 +127,7 @@ TEST(DoubleDouble, OperationsKeepTheirErrorBounds) {
   const double bounds[] = {3.001, 3.001, 5, 15.001};
   for (int k = 0; k < 4; ++k) {
     EXPECT_LE(largest[k].get_d(), bounds[k]) << k;
-    EXPECT_GE(largest[k].get_d(), 0.5) << k;  // so results were rounded at all
+    EXPECT_GE(largest[k].get_d(), 0.5) << k;  // otherwise hardly any result was rounded
     EXPECT_LE(largest[k].get_d() * 0x1p-106, kRoundoff<DoubleDouble>) << k;
   }
 }
@@ -145,7 +145,8 @@ TEST(MarginBounds, AreTightOnPairsInGeneralPosition) {
 using Long = Vec3<long double>;
 
 // Computes the distance another way: from the origin to the Minkowski difference, which is the convex hull of the nine
-// points b[j] - a[i]. One, two or three of them span a simplex that attains it. Tries all 129 simplices in long double.
+// points b[j] - a[i]. A simplex of one, two or three of these points attains it. Tries all 129 simplices in long
+// double.
 long double distance_of_difference(const Pair& pair) {
   std::vector<Long> points;
   for (const auto& a : pair.a) {
@@ -311,7 +312,7 @@ TEST(MarginBounds, HoldTheExactMarginOfDoublesOnTheGridOfFloats) {
   }
   EXPECT_GT(tried, 7'000);
   EXPECT_GT(certain, tried / 2);
-  EXPECT_GT(more, 500);  // near contact
+  EXPECT_GT(more, 500);  // pairs near a contact
 }
 
 TEST(MarginBuckets, OfWideStoredMarginsAreTheWidest) {
@@ -372,8 +373,8 @@ TEST(QuickDepth, ErrorsAreThoseDerivedAndNoMoreThanAPercentAbove) {
   EXPECT_LE(errors.length, 1.01 * length);
 }
 
-// All points are relative to a vertex of the feature that gives the axis. A contact there gives an overlap of exactly
-// zero.
+// All points are relative to a vertex of the feature that gives the axis. A contact at that feature gives an
+// overlap of exactly zero.
 TEST(QuickDepth, OverlapsByNothingWhereItTouchesTheAxis) {
   std::mt19937 random(9);
   std::uniform_real_distribution<float> any(-1, 1);

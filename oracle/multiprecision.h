@@ -60,7 +60,7 @@ class Multi {
     result.settle(mpfr_sqrt(result.m_, n.m_, MPFR_RNDN));
     return result;
   }
-  // l m + r, rounded once.
+  // l * m + r, rounded once.
   friend Multi fma(const Multi& l, const Multi& m, const Multi& r) {
     Multi result;
     const bool finite = mpfr_number_p(l.m_) && mpfr_number_p(m.m_) && mpfr_number_p(r.m_);
@@ -126,7 +126,7 @@ struct Ball {
     return r == kExact || by == kExact ? kExact : r >= kUnknown ? kUnknown : r + by;
   }
   // Adds the rounding of mid to the radius. With exponent limits, zero and infinity are results of the limited
-  // arithmetic, and so are exact.
+  // arithmetic, so they count as exact.
   static Ball rounded(Multi mid, long radius) {
     const bool no_rounding = mid.exact() || !mpfr_regular_p(mid.get());
     const long rounding = no_rounding ? kExact : exponent(mid) - static_cast<long>(mpfr_get_prec(mid.get()));

@@ -12,7 +12,8 @@ namespace {
 
 int mantissa_bits(Scalar scalar) { return scalar == Scalar::f32 ? 24 : 53; }
 
-// Sets MPFR's exponent range while it lives. 0.5 2^emin is the least positive number; all are below 2^emax.
+// Sets MPFR's exponent range while it lives. 0.5 * 2^emin is the least positive number, and all numbers are below
+// 2^emax.
 struct ExponentRange {
   mpfr_exp_t emin = mpfr_get_emin(), emax = mpfr_get_emax();
 

@@ -14,7 +14,8 @@
 
 namespace graze::oracle {
 
-// Which exponent limits of a scalar to apply. Beyond them numbers become infinite, or subnormal and then zero.
+// Which exponent limits of a scalar to apply. Beyond the upper limit numbers become infinite; below the lower limit
+// they become subnormal, then zero.
 struct Limits {
   bool upper = false;
   bool lower = false;
@@ -43,12 +44,13 @@ Verdict decide_with_bits(int algorithm, const DoublePair& pair, int bits);
 inline constexpr int kMostBits = 512;
 int bits_needed(int algorithm, const DoublePair& pair, Verdict verdict, int least);
 
-// The algorithm in exact arithmetic, with error bounds: two numbers count as equal if their bounds leave that open.
+// The algorithm in exact arithmetic, with error bounds: two numbers count as equal if their bounds cannot tell them
+// apart.
 struct Exactly {
   Verdict verdict;
   int bits;      // bits of the mantissas
-  bool certain;  // no comparison was left open
-  bool settled;  // certain, or a quarter of the bits left the same comparisons open
+  bool certain;  // the bounds decided every comparison
+  bool settled;  // certain, or a run with a quarter of the bits left as many comparisons open, with the same outcomes
 };
 Exactly decide_exactly(int algorithm, const DoublePair& pair);
 
@@ -70,7 +72,7 @@ struct ExactStep {
   bool held;          // the outcome with the exact numbers
 };
 
-// The exact values of a lane's run, step by step, along the path that the lane took. It uses as many bits as that path
+// The exact values of a lane's run, step by step, along the path that the lane took. Uses as many bits as that path
 // needs.
 // Requires: `run` is a run of that algorithm in that scalar.
 std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const DoublePair& pair, const Trace<double>& run);

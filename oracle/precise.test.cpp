@@ -45,7 +45,7 @@ TEST(Ball, ZeroAndInfinityOfALimitedRangeAreExact) {
 }
 
 TEST(Multi, KnowsWhetherItWasRoundedWhereverItIsMovedTo) {
-  EXPECT_TRUE(Multi(0.1).exact());  // no operation made it
+  EXPECT_TRUE(Multi(0.1).exact());  // no operation computed it
   EXPECT_TRUE((Multi(1) / Multi(4)).exact());
   const Multi third = Multi(1) / Multi(3);
   EXPECT_FALSE(third.exact());
@@ -101,7 +101,8 @@ TEST(Precise, WithBothLimitsIsTheCpuLane) {
   EXPECT_GT(underflows, 100);
 }
 
-// The three algorithms without quotients and roots, on GMP's rationals: another library, without error bounds.
+// Compares with GMP's rationals, which need no error bounds, on the three algorithms that neither divide nor take
+// roots.
 TEST(Precise, ExactlyIsWhatRationalsSay) {
   using Rational = boost::multiprecision::number<boost::multiprecision::gmp_rational, boost::multiprecision::et_off>;
   using Decide = Verdict (*)(const Pair&);
@@ -156,7 +157,7 @@ TEST(Precise, BitsNeededIsTheLeastFromWhichAllAreRight) {
   EXPECT_GT(more, 0);
 }
 
-// A distance of 2^-180, which float32 rounds to 0: all 2^23 ulps of it are lost.
+// A distance of 2^-180, which float32 rounds to 0: the error is the whole distance, 2^23 ulps.
 TEST(Precise, ErrorsAreInUlpsOfTheExactNumberWithoutLimits) {
   const Pair pair{{{0, 0, 0}, {0x1p-60f, 0, 0}, {0, 0x1p-60f, 0}}, {{0, 0, 0x1p-60f}, {1, 0, 1}, {0, 1, 2}}};
   const Trace<double> run = run_traced<float>(2, pair);

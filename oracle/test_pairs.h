@@ -28,7 +28,7 @@ class BasicPairSource {
     BasicPair<Real> pair;
     for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = coordinate();
     if (kind_ == Kind::near || kind_ == Kind::touching) {
-      // b[0] near or on a point of A: its centre, the middle of an edge, or a vertex.
+      // Puts b[0] on or near a point of A: its centre, the middle of an edge, or a vertex.
       const int i = below(3), j = below(2) ? (i + 1) % 3 : i, k = below(3);
       for (int axis = 0; axis < 3; ++axis) {
         const Real sum = component(pair.a[i], axis) + component(pair.a[j], axis) + component(pair.a[k], axis);
@@ -100,7 +100,7 @@ inline Pair pair_of(const float (&c)[kCoordinates]) {
   return pair;
 }
 
-// The same two sets in another of the 72 orders: of the triangles, and of each triangle's vertices.
+// The same pair in another of its 72 orders, of the two triangles and of each triangle's vertices.
 template <class Real>
 BasicPair<Real> reordered(const BasicPair<Real>& pair, int order) {
   static constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
@@ -113,7 +113,7 @@ BasicPair<Real> reordered(const BasicPair<Real>& pair, int order) {
   return result;
 }
 
-// Permutes the axes (6 ways, way % 6) and negates those whose bit in way / 6 is set. The image is congruent and exact.
+// Permutes the axes (6 ways, way % 6) and negates the axes whose bit in way / 6 is set. Nothing is rounded.
 template <class Real>
 BasicPair<Real> turned(const BasicPair<Real>& pair, int way) {
   static constexpr int kAxes[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};

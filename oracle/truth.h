@@ -49,10 +49,10 @@ Contact gmp_contact(const DoublePair& pair);
 Hulls hulls(const Pair& pair);
 Hulls hulls(const DoublePair& pair);
 
-// The bucket of the exact margin. A certified double-precision estimate nearly always decides it, otherwise GMP.
+// The bucket of the exact margin. A certified double-precision estimate nearly always decides it; otherwise GMP does.
 // Requires: finite coordinates; verdict is the pair's true verdict.   Exact: always.
 Bucket margin_bucket(const Pair& pair, Verdict verdict);
-// In ulps of the largest coordinate as a double.
+// Likewise for doubles, in ulps of the largest coordinate as a double.
 Bucket margin_bucket(const DoublePair& pair, Verdict verdict);
 
 }  // namespace graze::oracle

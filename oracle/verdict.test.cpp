@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CGAL's verdict and the GMP contact: on hand-made pairs, against each other, and against CGAL's exact intersection.
+// Compares CGAL's verdict and the GMP contact with each other, in all orders, and with CGAL's exact intersection.
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/intersections.h>
 #include <gtest/gtest.h>
@@ -122,7 +122,7 @@ TEST(IntegerPair, GridIsTheCoarsestThatHoldsAllCoordinates) {
   const Pair pair = oracle_test::pair_of({0.5f, 3, 0, -24, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -0.0f});
   const Grid grid = grid_of(pair);
   EXPECT_EQ(grid.exponent, -1);
-  EXPECT_EQ(grid.bits, 6);  // -48
+  EXPECT_EQ(grid.bits, 6);  // 48 has 6 bits
   EXPECT_EQ(small_integers(pair, grid).a[0], (Vec3<std::int64_t>{1, 6, 0}));
   EXPECT_EQ(small_integers(pair, grid).a[1].x, -48);
 }

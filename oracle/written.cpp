@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers as GMP rationals. Multiplied by their common denominator, all 18 are integers, on which the oracle decides as
-// usual. Only lengths are divided by it at the end.
+// Numbers as GMP rationals. Multiplied by their common denominator, all 18 become integers, and the oracle decides
+// these integers as usual. The margin is divided by the denominator at the end.
 #include "oracle/written.h"
 
 #include <algorithm>

@@ -12,13 +12,13 @@
 
 namespace graze::oracle {
 
-// Which of a pair's numbers float32 cannot hold as written. It can hold infinities and NaN.
+// Which of a pair's numbers float32 cannot hold as written. Float32 can hold infinities and NaN.
 // Requires: 18 texts; the pair's coordinates are their nearest float32 (core/text.h).
 // Throws: std::runtime_error for an exponent of more than five digits.
 std::vector<std::size_t> rounded(std::span<const std::string> numbers, const Pair& stored);
 
 // Verdict, contact and margin of the numbers as rationals, decided like truth(). Ulps are those of the stored pair.
-// Nothing if every number is stored as written, or if one is not finite.
+// Nothing if every number is stored as written, or if a number is not finite.
 // Exact: always.   Throws: OracleMismatch; what rounded throws.
 std::optional<Truth> truth_as_written(std::span<const std::string> numbers, const Pair& stored);
 

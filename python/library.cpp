@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The functions that the Python package calls through ctypes (python/graze/_library.py). An array of pairs has the
-// shape (n, 2, 3, 3): Pair, or with `doubles` DoublePair; one of triangles has the shape (n, 3, 3), likewise. Each
-// function returns 0; 1 after a failure, which graze_py_error describes; or 2 if it was asked to stop. No exception
-// leaves this file.
+// shape (n, 2, 3, 3), and an array of triangles has the shape (n, 3, 3). Numbers are float32, or doubles if `doubles`
+// is set. A function returns 0; 1 after a failure, which graze_py_error describes; or 2 if it was asked to stop. No
+// exception leaves this file.
 #include <fmt/format.h>
 #include <graze/test.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -36,7 +36,7 @@
 namespace graze {
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // pairs decided together: whole words of verdict bits
+constexpr std::size_t kBlock = 1024;  // pairs decided together; their verdict bits fill whole words
 
 thread_local std::string error, text;
 thread_local std::vector<std::array<std::uint32_t, 2>> found;
@@ -65,7 +65,7 @@ void in_blocks(std::size_t count, F f) {
 
 std::int8_t code(Verdict verdict) { return verdict == Verdict::intersects ? 1 : verdict == Verdict::disjoint ? 0 : -1; }
 
-// The function that runs the lane, or its twin, on this processor.   Throws: std::invalid_argument.
+// Returns the function that runs the lane, or the lane's twin, on this processor.   Throws: std::invalid_argument.
 DecideBlock decider_of(const std::string& id) {
   const std::optional<LaneName> name = parse_lane_name(id);
   const Lane* lane = find_lane(id);
@@ -114,8 +114,8 @@ Triangles<Real> triangles_of(const void* numbers, std::uint64_t count) {
   return {static_cast<const Triangle<Real>*>(numbers), count};
 }
 
-// For boxes. Rounding, even to the largest float32, keeps the order of coordinates, so the boxes of rounded triangles
-// miss no pair.
+// The triangles in float32, for their boxes. Rounding, even to the largest float32, keeps the order of coordinates, so
+// the boxes of rounded triangles miss no pair.
 std::vector<Triangle<float>> rounded(Triangles<double> triangles) {
   static constexpr double kMost = std::numeric_limits<float>::max();
   const auto round = [](double x) { return static_cast<float>(std::isfinite(x) ? std::clamp(x, -kMost, kMost) : x); };
@@ -141,7 +141,7 @@ std::vector<std::string> parts_of(std::string_view names) {
   return parts;
 }
 
-// Finds the pairs of triangles that intersect within a mesh, or between two, sorted. boxes: those of the triangles.
+// Finds the pairs of triangles that intersect within a mesh, or between two, sorted. boxes: the boxes of the triangles.
 template <class Real>
 void find_intersections(Triangles<Real> first, Triangles<Real> second, const strata::BoxSlabs& boxes,
                         bool only_piercing, const int& stop) {
@@ -167,13 +167,14 @@ extern "C" {
 // The failure of this thread's last call.
 const char* graze_py_error() { return error.c_str(); }
 
-// The names of all strata, or of all lanes that run here, one per line.
+// The names of all strata, one per line.
 const char* graze_py_strata() {
   text.clear();
   for (const auto& stratum : strata::kStrata) text += std::string(stratum.id) + '\n';
   return text.c_str();
 }
 
+// The names of all lanes that run on this processor, one per line.
 const char* graze_py_lanes() {
   text.clear();
   for (const Lane& lane : lanes()) {
@@ -206,7 +207,7 @@ int graze_py_pairs(const char* names, std::uint64_t seed, std::uint64_t all, std
 }
 
 // The exact relation of each pair: verdict (1, 0, -1 declined), contact (0 none, 1 point, 2 segment, 3 area, 4
-// unknown), sign of the margin, dimension of both hulls, whether one plane holds all.
+// unknown), sign of the margin, dimension of both hulls, and whether all vertices lie in one plane.
 int graze_py_relations(const void* numbers, int doubles, std::uint64_t count, std::int8_t (*relations)[6]) {
   return guarded([&] {
     visit(numbers, doubles, [&](const auto* pairs) {
@@ -226,7 +227,8 @@ int graze_py_relations(const void* numbers, int doubles, std::uint64_t count, st
   });
 }
 
-// Certified bounds of each margin: least, most. Both are 0 where it is exactly 0, and NaN where the pair is not finite.
+// Certified bounds of each margin: least, most. Both are 0 if the margin is exactly 0, and NaN if the pair is not
+// finite.
 int graze_py_margins(const Pair* pairs, std::uint64_t count, double (*margins)[2]) {
   return guarded([&] {
     in_blocks(count, [&](std::size_t first, std::size_t some) {
@@ -285,9 +287,9 @@ int graze_py_meets(const void* reference, const void* triangles, int doubles, st
   });
 }
 
-// The pairs of triangles that intersect within a mesh (b null), or between two; only_piercing: without those that only
-// touch. Sets their number; graze_py_take copies them, sorted, for the same thread. Ends soon after another thread
-// makes `stop` nonzero.
+// Finds the pairs of triangles that intersect within a mesh (b null), or between two meshes; with only_piercing,
+// without the pairs that only touch. Sets the number of pairs; graze_py_take then copies the sorted pairs in the same
+// thread. Ends soon after another thread makes `stop` nonzero.
 int graze_py_intersections(const void* a, std::uint64_t count_a, const void* b, std::uint64_t count_b, int doubles,
                            int only_piercing, std::uint64_t* count, const int* stop) {
   return guarded([&] {
@@ -311,7 +313,7 @@ struct graze_py_options {
   const char* strata;
   std::uint64_t pairs, seed;
   double max_wrong;
-  int touching, coplanar, degenerate, shared;  // 1: either answer is accepted
+  int touching, coplanar, degenerate, shared;  // 1: both answers are accepted on such pairs
 };
 
 struct graze_py_result {
@@ -340,10 +342,10 @@ TestOptions options_of(const graze_py_options& o) {
 
 extern "C" {
 
-// Decides `count` pairs; verdicts as the enum Verdict.   Returns: nonzero to end the test.
+// Decides `count` pairs; verdicts are numbers of the enum Verdict.   Returns: nonzero to end the test.
 typedef int (*graze_py_decide)(const Pair* pairs, std::uint64_t count, std::uint8_t* verdicts);
 
-// Tests the function on the strata (graze/test.h). This thread's text is the summary, an empty line and the fault.
+// Tests the function on the strata (graze/test.h). graze_py_text then gives the summary, an empty line and the fault.
 int graze_py_test(const char* name, graze_py_decide decide, const graze_py_options* options, graze_py_result* result) {
   static_assert(sizeof(Verdict) == 1);
   return guarded([&] {
@@ -358,7 +360,7 @@ int graze_py_test(const char* name, graze_py_decide decide, const graze_py_optio
   });
 }
 
-// What is wrong with the verdict on the pair; the text is empty if it is accepted.
+// Says in graze_py_text what is wrong with the verdict on the pair. The text is empty if the verdict is accepted.
 int graze_py_fault(const Pair* pair, std::uint8_t verdict, const graze_py_options* options) {
   return guarded([&] { text = fault_of(*pair, static_cast<Verdict>(verdict), options_of(*options)); });
 }

@@ -25,7 +25,7 @@ using Progress = std::function<bool(std::uint64_t done)>;
 
 class Collector final : public cuda::QueryWork {
  public:
-  // Requires: outputs are given only if all triangles are asked for.
+  // Requires: no outputs if `any`, because the search then stops at a hit.
   Collector(std::vector<std::uint64_t> counts, std::vector<int> places, std::size_t references, bool any,
             const Outputs& outputs, Progress progress);
 
@@ -65,7 +65,7 @@ class Collector final : public cuda::QueryWork {
 
   mutable std::mutex mutex_;
   std::condition_variable in_order_;
-  std::map<std::uint64_t, Chunk> ahead_;  // by first triangle: chunks that are done before earlier ones
+  std::map<std::uint64_t, Chunk> ahead_;  // by first triangle: chunks that are done before an earlier chunk
   Found found_;
   bool stopped_ = false;
   std::uint64_t listed_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results are combined in the order of the triangles, whichever comes first and even if one never comes.
+// Results are combined in the order of the triangles, in whichever order they arrive, and even if one never arrives.
 #include "query/collector.h"
 
 #include <gtest/gtest.h>

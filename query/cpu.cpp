@@ -121,7 +121,7 @@ struct Block {
     std::uint64_t beyond = 0, large = 0;  // large: the sum of the magnitudes is not finite
   };
 
-  // exact::is_beyond for four triangles at a time.
+  // Computes exact::is_beyond for four triangles at a time.
   Sights look_past(const exact::PreparedTriangle& reference) const {
     Sights sights;
     for (std::size_t i = 0; i < kBlock; i += 4) {
@@ -190,7 +190,7 @@ class Worker {
   // A reference's coordinates.
   const Real* at(std::size_t r) const { return static_cast<const Real*>(question_.references) + 9 * r; }
 
-  // Adds the pairs that the slabs leave open. Their bits are set when they are decided.
+  // Adds the pairs that the slabs leave open. Each pair's bit is set when the pair is decided.
   void gather(std::size_t r, std::uint64_t open, std::uint64_t& hits) {
     for (std::uint64_t left = open; left != 0; left &= left - 1) {
       Real* pair = coordinates(pairs_[open_.size()]);
@@ -222,12 +222,12 @@ class Worker {
   }
 
   const Question& question_;
-  std::vector<exact::PreparedTriangle> references_;  // those that are not finite are not used
+  std::vector<exact::PreparedTriangle> references_;  // a reference that is not finite is never used
   std::vector<char> finite_;
   Block<Real> block_;
   std::vector<BasicPair<Real>> pairs_;
   struct Open {
-    std::uint64_t *word, bit;  // where its hit belongs in hits_
+    std::uint64_t *word, bit;  // the pair's bit in hits_
   };
   std::vector<Open> open_;
   std::vector<std::uint64_t> hits_, declined_;

@@ -16,7 +16,8 @@
 
 namespace {
 
-std::atomic<long> allocations_left = -1;  // the allocation that makes it 0 fails, and all later ones; -1: none fails
+// The allocation that makes it 0 fails, and so do all later ones. At -1 none fails.
+std::atomic<long> allocations_left = -1;
 
 bool allocation_fails() {
   long left = allocations_left;
@@ -311,7 +312,7 @@ TEST(Query, WrongArgumentsAreNamed) {
   graze_close(context);
 }
 
-// Ten triangles in each layout; one of them meets the thesis's reference.
+// Ten triangles in a layout. At least one of them meets the thesis's reference.
 struct InLayout {
   std::vector<Triangle> triangles = thesis_triangles(10);
   std::vector<std::array<std::uint32_t, 3>> faces;
@@ -358,7 +359,7 @@ TEST(Query, StridesThatNoArrayHasAreRefusedInEveryLayout) {
       for (const std::size_t stride :
            {std::size_t{1} << 62, std::size_t{1} << 60, (SIZE_MAX / 9 + 1) / 4 * 4, SIZE_MAX / 2 / 9 / 4 * 4 + 4})
         EXPECT_EQ(status(10, stride), GRAZE_BAD_ARGUMENT) << stride;
-      // An empty array has no pointers, but a stride.
+      // An empty array needs no pointers, but its stride is checked.
       EXPECT_EQ(status(0, size + 1), GRAZE_BAD_ARGUMENT);
       EXPECT_EQ(status(GRAZE_MOST_TRIANGLES, std::size_t{1} << 16), GRAZE_BAD_ARGUMENT);
       EXPECT_EQ(status(GRAZE_MOST_TRIANGLES + 1, 0), GRAZE_BAD_ARGUMENT);
@@ -414,7 +415,7 @@ TEST(Query, CountsWhoseProductsOverflowAreRefused) {
 }
 
 TEST(Query, WithoutADeviceItSaysSo) {
-  if (graze_devices() > 0) GTEST_SKIP() << "there is one";
+  if (graze_devices() > 0) GTEST_SKIP() << "there is a device";
   const std::vector<Triangle> triangles = thesis_triangles(10);
   const graze_triangles part = part_of(triangles);
   for (const int executor : {GRAZE_ONE_GPU, GRAZE_ALL_GPUS}) {
@@ -467,8 +468,8 @@ TEST(Query, ThreadsShareAContext) {
   EXPECT_EQ(right, 8);
 }
 
-// From each allocation on, all allocations fail in turn. The result must be an error status, or the right answer if
-// memory was not needed.
+// For each allocation in turn, this allocation and all later ones fail. The result must be an error status, or the
+// right answer if memory was not needed.
 TEST(Query, LackOfMemoryIsAValueWhereverItBegins) {
   std::vector<Triangle> triangles = thesis_triangles(100'000);
   const graze_triangles part = part_of(triangles);

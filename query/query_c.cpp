@@ -39,13 +39,13 @@ void set(graze_answer& answer, graze_status status, const char* message) {
 // The type that query_c.h only declares.
 struct graze_context {
  public:
-  // Fills in the answer in any case; its status tells whether something is wrong.
+  // Always fills in the answer. Its status tells whether the query failed.
   void run(const graze_query& query, graze_answer& answer) noexcept;
 
  private:
   struct Device {
     std::mutex turn;
-    std::unique_ptr<graze::cuda::QueryDevice> open;  // null until it is first used, and after it failed
+    std::unique_ptr<graze::cuda::QueryDevice> open;  // null before the first use and after a failure
   };
   void answer(const graze_query& query, graze_answer& answer);
   Device& device(int number);
@@ -153,7 +153,7 @@ void graze_context::run(const graze_query& query, graze_answer& result) noexcept
   } catch (const std::exception& error) {
     set(result, GRAZE_FAILED, error.what());
   } catch (...) {
-    set(result, GRAZE_FAILED, "the progress callback threw something");
+    set(result, GRAZE_FAILED, "the progress callback threw an exception of an unknown type");
   }
   result.seconds = now() - start;
 }

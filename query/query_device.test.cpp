@@ -115,7 +115,7 @@ TEST_F(QueryDevice, StreamedAndResidentAreTheCores) {
   }
 }
 
-// The second triangles of a stratum's pairs against a few of its first triangles.
+// Queries the second triangles of a stratum's pairs with a few of the first triangles as references.
 TEST_F(QueryDevice, AllStrataAreTheCores) {
   for (const strata::StratumInfo& row : strata::kStrata) {
     std::vector<Triangle> references, triangles;
@@ -140,7 +140,7 @@ TEST_F(QueryDevice, AllStrataAreTheCores) {
   }
 }
 
-// The first triangle of each of a stratum's pairs as a reference for the second one.
+// Queries the second triangles of a stratum's pairs with all first triangles as references.
 TEST_F(QueryDevice, ManyReferencesAreTheCores) {
   for (const strata::StratumInfo& row : strata::kStrata) {
     std::vector<Triangle> references, triangles;
@@ -202,8 +202,8 @@ TEST_F(QueryDevice, LayoutsAreTheCores) {
   }
 }
 
-// Doubles of all strata, some not finite, streamed and resident: a few references against many triangles, and the first
-// triangle of each pair against the second one.
+// Queries doubles of all strata, streamed and resident, with few and with many references. Some coordinates are not
+// finite.
 TEST_F(QueryDevice, DoublesOfAllStrataAreTheCores) {
   for (const strata::StratumInfo& row : strata::kDoubleStrata) {
     SCOPED_TRACE(row.id);
@@ -323,7 +323,7 @@ TEST_F(QueryDevice, AnyFindsTheFirst) {
   }
 }
 
-// Parts on each device in turn, and on all devices in one query.
+// Queries the same triangles in host memory, and in parts in the memory of every device.
 TEST_F(QueryDevice, PartsOnAllDevices) {
   const std::vector<Triangle> triangles = broken(thesis_triangles(500'032));
   const graze_triangles part = part_of(triangles);

@@ -10,7 +10,7 @@
 namespace graze::query {
 namespace {
 
-constexpr std::size_t kPairs = 6'000;  // in each stratum
+constexpr std::size_t kPairs = 6'000;  // pairs in each stratum
 
 std::vector<std::uint8_t> bytes_of(graze_query query, std::size_t count) {
   std::vector<std::uint8_t> bytes(count, 9);
@@ -25,7 +25,7 @@ template <class Real>
 struct Eight {
   static constexpr std::size_t kTogether = 8;
   std::vector<std::array<Real, 9>> references, triangles;
-  std::vector<std::uint8_t> bytes;  // of each pair
+  std::vector<std::uint8_t> bytes;  // the answer for each pair
 
   template <class Draw>
   Eight(const Draw& draw, std::size_t begin) {
@@ -81,7 +81,7 @@ TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
   EXPECT_GT(filtered, 300'000u);
 }
 
-// The same for doubles. Rounded slabs must not lose a hit either, and must reject most disjoint triangles.
+// On doubles, exact verdicts are the oracle's too. Rounded slabs must lose no hit and reject most disjoint triangles.
 TEST(QueryVerdicts, OfDoublesAreTheOraclesOverAllStrata) {
   constexpr std::size_t kTogether = Eight<double>::kTogether, kPairsOfDoubles = 1'200;
   std::size_t looked_past = 0, hits = 0, apart = 0;
@@ -171,7 +171,7 @@ TEST(QueryVerdicts, AreTheOraclesOnTheThesissTriangles) {
         !parted && exact::detail::filter_in_floats(prepared, triangles[i].data()) == exact::detail::Finding::unsure;
   }
   EXPECT_GT(beyond, triangles.size() * 4 / 5);  // otherwise the slabs are not worth their time
-  EXPECT_LT(unsure, triangles.size() / 50);     // nor is the filter
+  EXPECT_LT(unsure, triangles.size() / 50);     // otherwise the filter is not worth its time
 }
 
 TEST(QueryVerdicts, AreThoseOfTheLane) {
@@ -268,7 +268,7 @@ TEST(PreparedTriangle, SlabsAreSquareToTheNormalAndTheLongestEdge) {
 
 TEST(PreparedTriangle, LooksAtNineNumbersAndDecidesWithinItsExtents) {
   const Triangle reference = {0, 0, 0, 4, 0, 0, 0, 4, 0};
-  std::vector<float> behind = {0, 0, 9, 1, 0, 9, 0, 1, 9, 3e38f};  // a triangle, and what may follow it in memory
+  std::vector<float> behind = {0, 0, 9, 1, 0, 9, 0, 1, 9, 3e38f};  // a triangle, and the next number in memory
   EXPECT_TRUE(exact::is_beyond(exact::prepare(reference.data()), behind.data()));
   using exact::detail::Finding;
   for (const auto& [extent, decided] :

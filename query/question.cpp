@@ -19,8 +19,9 @@ namespace {
 constexpr std::uint64_t kMostTriangles = GRAZE_MOST_TRIANGLES, kMostReferences = 1 << 16, kMostParts = 1 << 16,
                         kMostPairs = std::uint64_t{1} << 62;
 
-// Nanoseconds, for GRAZE_AUTO only: one verdict on one core, and the transfer of a triangle of floats to a device,
-// measured on an H200 and its host (docs/measurements.md). The time to start CUDA is assumed, not measured.
+// Times in nanoseconds, for GRAZE_AUTO only: one verdict on one core, and the transfer of a triangle of floats to a
+// device. Both are measured on an H200 and its host (docs/measurements.md). The time to start CUDA is assumed, not
+// measured.
 constexpr double kOnCore = 11, kToDevice = 0.7, kStart = 3e8;
 constexpr std::uint64_t kWorthThreads = 1 << 14;
 
@@ -97,7 +98,7 @@ cuda::TriangleArray array_of(const graze_triangles& part, std::size_t real, cons
 // A user's CUDA code runs in a process of its own, on a device or not; to a query it is a lane of the host.
 bool is_of_device(const Lane& lane) { return lane.is_cuda() && !lane.foreign; }
 
-// The exact host lane stands for the exact lane of both host and device.
+// Returns the exact host lane for `exact`, whether the host or a device will run it.
 Lane lane_of(const char* id) {
   const std::string name = id ? id : "exact";
   if (name == "exact") return *find_lane("exact/f32/cpu");
@@ -142,7 +143,7 @@ bool has_device() {
   return cuda::count_query_devices(why_not) > 0;
 }
 
-// Whether a device would answer sooner, including its start-up time.
+// Whether a device would answer sooner than the cores, including its start-up time.
 bool device_is_faster(const Question& question, int threads) {
   const double triangles = static_cast<double>(question.triangles),
                to_device = kToDevice * (question.in_doubles ? 2 : 1);

@@ -18,21 +18,21 @@ struct QueryError : std::runtime_error {
 };
 
 struct Question {
-  bool in_doubles = false;           // the coordinates of references and triangles; otherwise in floats
+  bool in_doubles = false;           // whether coordinates are doubles instead of floats
   const void* references = nullptr;  // nine coordinates each
   std::uint64_t reference_count = 0;
   std::vector<cuda::TriangleArray> parts;
-  std::vector<std::uint64_t> counts;  // of triangles in each part
-  std::vector<int> places;            // of each part: a device, or -1
+  std::vector<std::uint64_t> counts;  // the number of triangles in each part
+  std::vector<int> places;            // where each part is: a device, or -1 for the host
   std::uint64_t triangles = 0;
   bool any = false;  // stops at the first hit
   graze_executor executor = GRAZE_ONE_CORE;
-  int threads = 1;           // if cores do the work
-  std::vector<int> devices;  // if devices do the work
+  int threads = 1;           // used if cores do the work
+  std::vector<int> devices;  // used if devices do the work
   Lane lane;
 };
 
-// The function that runs a lane on cores: the lane's own code, or none for CUDA lanes, because the library has no
+// Returns the function that runs a lane on cores: the lane's own code. CUDA lanes have none, because the library has no
 // twins. A program with twins sets another function before its first query.
 extern DecideBlock (*on_cores)(const Lane& lane);
 

@@ -20,7 +20,7 @@ std::int8_t detect(const triangle_t& ref, const triangle_t* triangles, int count
     if (config & VERBOSE_MODE) std::fprintf(stderr, "tri2tris_intersection_detect: %s\n", what);
     return -1;
   };
-  if (count < 0) return fail("expected a size of at least 0, found less");
+  if (count < 0) return fail("expected an array size of at least 0, found a negative size");
   if (!bytes && count > 0) return fail("expected an array for the results, found NULL");
   graze_triangles part = {};
   part.count = static_cast<std::uint64_t>(count);
@@ -43,7 +43,7 @@ std::int8_t detect(const triangle_t& ref, const triangle_t* triangles, int count
     if (answer.hits) bytes[answer.first] = 1;
   }
   if (answer.hits) return 1;
-  return answer.declined ? fail("expected finite coordinates, found others") : std::int8_t{0};
+  return answer.declined ? fail("expected finite coordinates, found infinity or NaN") : std::int8_t{0};
 }
 
 }  // namespace

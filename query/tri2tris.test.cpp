@@ -50,7 +50,7 @@ class Tri2Tris : public testing::TestWithParam<Function> {
     if (GetParam() == tri2tris_intersection_detect_gpu && graze_devices() == 0) {
       uint8_t results[kCases];
       EXPECT_EQ(GetParam()(kReference, special_cases, kCases, results), -1);
-      GTEST_SKIP() << "no device: it said -1";
+      GTEST_SKIP() << "no device: the function returned -1";
     }
   }
   void TearDown() override { config_reset(); }
@@ -119,7 +119,7 @@ TEST_P(Tri2Tris, NoneAndErrors) {
   testing::internal::CaptureStderr();
   EXPECT_EQ(GetParam()(kReference, far, -1, results), -1);
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
-            "tri2tris_intersection_detect: expected a size of at least 0, found less\n");
+            "tri2tris_intersection_detect: expected an array size of at least 0, found a negative size\n");
 }
 
 INSTANTIATE_TEST_SUITE_P(, Tri2Tris,

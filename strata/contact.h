@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs built around a point of contact. A feature (vertex, edge or face) of each triangle passes through it, and the
-// rest of each triangle lies on its own side. Rounding turns a contact in real numbers into a near contact; contacts in
-// integers stay exact.
+// Pairs built around a point of contact. A feature (vertex, edge or face) of each triangle passes through the point.
+// The rest of A lies on one side, and the rest of B on the other. Rounding turns a contact in real numbers into a near
+// contact; contacts in integers stay exact.
 #pragma once
 
 #include "strata/draws.h"
@@ -13,12 +13,12 @@ inline namespace GRAZE_FP {
 // place + 2 * weight * step <= 2^bits, where bits is wide_bits() of the draws.
 template <class D>
 struct Grain {
-  typename D::Integer place;  // integers: the contact lies within ±place; reals: place is 0, the contact within ±1/2
+  typename D::Integer place;  // integers: the contact lies within ±place; reals: place is 0, and it lies within ±1/2
   typename D::Integer step;   // steps (the vectors that weights multiply) lie within ±step; reals: ±1
   int weight;                 // weights are 1 … weight; reals: (0, 1]
 };
 
-// These are functions, because device code cannot refer to constants of class type.
+// Grains are functions, because device code cannot refer to constants of class type.
 template <class D>
 GRAZE_INLINE Grain<D> real_grain(const D&) {
   return {0, 0, 0};
@@ -28,7 +28,8 @@ GRAZE_INLINE Grain<D> small_grain(const D&) {
   return {4, 2, 3};
 }
 
-// Coordinates use all 24 bits of a float; products of three differences need 60 to 75 bits. Doubles: 16 to 53 bits.
+// Coordinates of float32 use all 24 bits, so products of three differences need 60 to 75 bits. Coordinates of doubles
+// use 16 to 53 bits.
 template <class D>
 GRAZE_INLINE Grain<D> wide_grain(D& draws) {
   using Integer = typename D::Integer;
@@ -49,16 +50,16 @@ GRAZE_INLINE double draw_weight(auto& draws, const auto& grain) {
   return grain.place > 0 ? 1.0 + draws.below(static_cast<std::uint32_t>(grain.weight)) : draws.positive();
 }
 
-// How flat a triangle is. A sliver's height is a small fraction of its length. Its third vertex lies near an end of the
-// longest edge (needle) or anywhere along that edge (cap).
+// How flat a triangle is. A sliver's height is a small fraction of its length. A sliver's third vertex lies near
+// an end of the longest edge (needle) or anywhere along that edge (cap).
 struct Shape {
   double height = 1;
   bool sliver = false;
   bool needle = false;
 };
 
-// The third vertex, relative to p. It lies anywhere on the given side. A sliver's lies close to the edge, which runs
-// from e * low to e * high.
+// The third vertex, relative to p, on the given side. A sliver's third vertex lies close to the edge, which runs from
+// e * low to e * high.
 GRAZE_INLINE Vec draw_third(auto& draws, const auto& grain, const Shape& shape, const Vec& side, const Vec& e,
                             double low, double high) {
   const Vec arm = toward(side, draw_arm(draws, grain));
@@ -99,7 +100,7 @@ GRAZE_INLINE void put_face(auto& draws, const auto& grain, const Vec& p, const V
 
 enum class Touch { vertex_face, edge_edge, vertex_edge, vertex_vertex };
 
-// Two triangles that meet only at p before rounding. The feature of B that touches includes b[0].
+// Two triangles that meet only at p before rounding. The touching feature of B includes b[0].
 struct Contact {
   Draft draft;
   Vec p;
@@ -117,8 +118,8 @@ GRAZE_INLINE Contact draw_contact(auto& draws, Touch touch, const auto& grain, c
     const double ratio = shape_a.needle ? -1 : draws.positive();
     v = u * ratio + v * shape_a.height;
   }
-  // u is A's edge and v is B's, or both span A's face. A vertex may leave an edge in any direction of a half-plane, and
-  // another vertex in any direction of a half-space.
+  // u is along A's edge and v along B's edge, or both span A's face. If a vertex touches an edge, any direction
+  // perpendicular to the edge may separate the triangles. If two vertices touch, any direction may.
   const Vec away = normalised(touch == Touch::vertex_vertex ? v : cross(u, v));
   const Vec back = away * -1.0;
   if (touch == Touch::vertex_face) {
@@ -172,9 +173,9 @@ GRAZE_INLINE auto near_contact(auto& draws, Touch touch, const Shape& shape_a = 
 
 GRAZE_INLINE Touch draw_touch(auto& draws) { return static_cast<Touch>(draws.below(4)); }
 
-// Half of the pairs touch exactly. In a quarter, one coordinate of b[0] is one unit larger, and in a quarter smaller.
+// Half of the pairs touch exactly. In the other half, one coordinate of b[0] is one unit larger or one unit smaller.
 GRAZE_INLINE auto exact_contact(auto& draws) {
-  const Touch touch = static_cast<Touch>(draws.below(3));  // two equal vertices are left to shared_vertex
+  const Touch touch = static_cast<Touch>(draws.below(3));  // the stratum shared_vertex draws equal vertices
   const auto grain = wide_grain(draws);
   Contact contact = draw_contact(draws, touch, grain);
   if (draws.coin()) {

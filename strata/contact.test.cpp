@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests of near, exact, coplanar and parallel contacts. Properties that hold exactly are tested in 128-bit integers,
-// the others by the share of pairs that have them.
+// other properties by the share of pairs that have them.
 #include <gtest/gtest.h>
 
 #include <algorithm>

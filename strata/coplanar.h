@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coplanar and parallel pairs: two triangles on a square grid, and a chart that maps the grid into space. With an
-// integer chart nothing rounds and the pair is exactly coplanar. With a real chart it is coplanar before rounding.
+// Coplanar and parallel pairs: two triangles on a square grid, and a chart that maps the grid into space. An
+// integer chart rounds nothing, so the pair is exactly coplanar. With a real chart, the pair is coplanar before
+// rounding.
 #pragma once
 
 #include "strata/draws.h"
@@ -21,8 +22,8 @@ GRAZE_HD inline GridPoint draw_point(auto& draws, int reach) { return {draws.int
 
 GRAZE_HD inline GridPoint along(GridPoint p, GridPoint d, int times) { return {p.i + d.i * times, p.j + d.j * times}; }
 
-// p + w or p - w, whichever lies to the left of d (side 1) or to the right (side -1). If w is parallel to d: p plus d
-// turned to that side.
+// The one of p + w and p - w that lies to the left of d (side 1) or to the right of d (side -1). If w is parallel to d:
+// p plus d, turned by 90 degrees to that side.
 GRAZE_HD inline GridPoint beside(GridPoint p, GridPoint d, int side, GridPoint w) {
   const std::int64_t turn = static_cast<std::int64_t>(d.i) * w.j - static_cast<std::int64_t>(d.j) * w.i;
   if (turn == 0) return along(p, {-d.j, d.i}, side);
@@ -30,7 +31,7 @@ GRAZE_HD inline GridPoint beside(GridPoint p, GridPoint d, int side, GridPoint w
 }
 
 // Two triangles on the grid, within ±(reach + 1). In half of the pairs the triangles are independent. In the other half
-// a vertex of B is on an edge of A or one grid step from it.
+// a vertex of B is on an edge of A or one grid step from that edge.
 // Requires: reach >= 8.
 GRAZE_HD inline GridPair draw_grid_pair(auto& draws, int reach) {
   GridPair pair;
@@ -55,7 +56,7 @@ GRAZE_HD inline GridPair draw_grid_pair(auto& draws, int reach) {
   pair.a[2] = beside(start, d, 1, draw_point(draws, quarter));
   pair.b[0] = touching;
   pair.b[1] = beside(touching, d, -1, draw_point(draws, quarter));
-  if (draws.below(4) == 0) pair.b[1] = along(touching, d, draws.coin() ? 1 : -1);  // edge along edge
+  if (draws.below(4) == 0) pair.b[1] = along(touching, d, draws.coin() ? 1 : -1);  // along an edge of A
   pair.b[2] = beside(touching, d, -1, draw_point(draws, quarter));
   return pair;
 }
@@ -91,8 +92,8 @@ GRAZE_HD inline auto coplanar_lattice(auto& draws) {
   return shuffled(draws, rounded(draws, draft));
 }
 
-// An integer chart and a grid pair on it, within ±(2^place + 2^(bits - 1)). Each product has bits - 2 bits, which are
-// split at random between grid and chart.
+// An integer chart and a grid pair on it, within ±(2^place + 2^(bits - 1)). A product of a
+// grid point and the chart has bits - 2 bits, split at random between the two.
 template <class D>
 GRAZE_HD Draft draw_wide_coplanar(D& draws, int bits, int place) {
   using Integer = typename D::Integer;
@@ -128,14 +129,14 @@ GRAZE_HD inline auto coplanar_rounded(auto& draws) {
 template <class D>
 GRAZE_HD auto parallel(D& draws) {
   switch (draws.below(3)) {
-    case 0: {  // tilted; parallel until rounding, at a distance of 1 … 2^-40 (doubles: 2^-100) of the size
+    case 0: {  // tilted planes, parallel before rounding, 1 … 2^-40 of the size apart (doubles: 2^-100)
       const Chart chart = draw_real_chart(draws);
       Draft draft = draw_real_coplanar(draws, chart);
       const double gap = draws.sign();
       move(draft.b, normalised(cross(chart.u, chart.v)) * (gap * power_of_two(-draws.between(0, draws.kGap))));
       return shuffled(draws, rounded(draws, draft));
     }
-    case 1: {  // tilted; exactly parallel, moved by up to one unit in a coordinate or by any vector
+    case 1: {  // tilted planes, exactly parallel, moved by up to one unit in a coordinate or by any vector
       const int bits = draws.wide_bits();
       Draft draft = draw_wide_coplanar(draws, bits, bits - 2);
       Vec by = draws.integers(typename D::Integer{1} << draws.between(0, bits - 2));
@@ -144,7 +145,7 @@ GRAZE_HD auto parallel(D& draws) {
       move(draft.b, by);
       return shuffled(draws, rounded(draws, draft));
     }
-    default: {  // axis-aligned; exactly parallel, moved by up to 4 ulps
+    default: {  // axis-aligned planes, exactly parallel, moved by up to 4 ulps
       const int normal = draws.between(0, 2);
       const Vec origin = draws.reals();
       auto pair = rounded(draws, draw_real_coplanar(draws, axis_chart(origin, normal, 1.0 / kRealReach)));

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bits that every stratum of doubles must have, like strata/golden.h.
+// Golden hashes of the strata of doubles, like those of float32 in strata/golden.h.
 #pragma once
 
 #include "strata/golden.h"
 
 namespace graze::strata {
 
-// In the order of kDoubleStrata; scripts/update_generated writes the rows.
+// One hash per stratum, in the order of kDoubleStrata; scripts/update_generated writes the rows.
 inline constexpr std::uint64_t kDoubleGoldenHashes[kDoubleStrataCount] = {
     0x853c94276727cc61u,  // uniform
     0x4312f08de0a5f780u,  // thesis

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strata that exist only in doubles: numbers as maps, drawings and constructions produce them, and pairs that
-// float32 cannot store. The table is strata/double_strata.inc.
+// The strata that exist only in doubles. They draw numbers like those of maps, drawings and constructions, and pairs
+// that float32 cannot store. strata/double_strata.inc lists them.
 #pragma once
 
 #include "core/exact/exact.h"
@@ -20,7 +20,8 @@ GRAZE_INLINE void move_all(Draft& draft, const Vec& by) {
   move(draft.b, by);
 }
 
-// Like exact_contact, in integers of this many bits: half of the contacts are exact, the others one unit off in b[0].
+// Like exact_contact, but in integers of `bits` bits. Half of the contacts are exact; in the other half, a coordinate
+// of b[0] is one unit off.
 // Requires: 7 <= bits.
 GRAZE_HD inline Draft draw_integer_contact(DoubleDraws& draws, int bits) {
   const Touch touch = static_cast<Touch>(draws.below(3));
@@ -119,7 +120,7 @@ GRAZE_HD inline DoublePair construction_born(DoubleDraws& draws) {
       first = p + (q - p) * (s * 0.5) + (r - p) * (t * 0.5);
       second = p * (1 - s * 0.5 - t * 0.5) + q * (s * 0.5) + r * (t * 0.5);
       break;
-    default: {  // where a line crosses the plane
+    default: {  // the point where a line crosses the plane
       const Vec n = cross(q - p, r - p), from = draws.reals(), to = draws.reals();
       const double above = dot(n, from - p), below = dot(n, to - p);
       const double share = above == below ? 0.5 : above / (above - below);
@@ -137,8 +138,8 @@ GRAZE_HD inline DoublePair construction_born(DoubleDraws& draws) {
   return shuffled(draws, rounded(draws, draft));
 }
 
-// A near contact whose gap is about the spacing of float32 numbers there. Makes up to 32 attempts and takes the first
-// whose verdict changes in float32, or else the last. Nearly every pair has one that changes.
+// A near contact whose gap is about the spacing of float32 numbers at its place. Draws up to 32 contacts and takes the
+// first one whose verdict changes in float32, or else the last one. Nearly always, the verdict of one of them changes.
 GRAZE_HD inline DoublePair stored(DoubleDraws& draws) {
   DoublePair pair{};
 #ifndef __CUDA_ARCH__
@@ -162,7 +163,7 @@ GRAZE_HD inline DoublePair stored(DoubleDraws& draws) {
   return shuffled(draws, pair);
 }
 
-// Coordinates are longitude, latitude and height, the height in Earth radii.
+// Coordinates are longitude and latitude in radians, and height in Earth radii.
 GRAZE_HD inline DoublePair radians(DoubleDraws& draws) {
   Contact contact = draw_contact(draws, draw_touch(draws), real_grain(draws));
   const Push push = draw_push(draws);

@@ -147,7 +147,7 @@ TEST(DoubleStrata, NeighboursStoreTheSameVertices) {
   for (const DoublePair& pair : drawn(Stratum::shared_edge)) ASSERT_GE(shared_vertices(pair), 2);
 }
 
-// A push by ulps of a double is far smaller than one by ulps of float32.
+// A push by ulps of a double is far smaller than a push by ulps of float32.
 TEST(DoubleStrata, NearContactsDifferFromTheContactByUlpsOfADouble) {
   for (const Stratum stratum : {Stratum::near_vertex_face, Stratum::near_edge_edge, Stratum::near_vertex_edge}) {
     const std::vector<DoublePair> pairs = drawn(stratum);
@@ -157,7 +157,7 @@ TEST(DoubleStrata, NearContactsDifferFromTheContactByUlpsOfADouble) {
 }
 
 TEST(DoubleStrata, ExtremeScalesReachTheLimitsOfADouble) {
-  std::array<int, 15> bins{};  // each spans 2^140, starting at 2^-1075
+  std::array<int, 15> bins{};  // each bin spans 2^140; the first starts at 2^-1075
   for (const DoublePair& pair : drawn(Stratum::extreme_scale)) {
     const int exponent = largest(pair) == 0 ? -1075 : std::ilogb(largest(pair));
     ++bins[static_cast<std::size_t>((exponent + 1075) / 140)];

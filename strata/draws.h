@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the strata draw from: the random words of one pair, and numbers and vectors made of them. A draft is a pair
-// before it is rounded, once, to the type of its coordinates. The bits are the same on every machine, because no
-// library function that may round is used.
+// The random words of one pair, and the numbers and vectors that strata make of them. A draft is a pair before its
+// coordinates are rounded, once, to their type. The bits are the same on every machine, because the code calls no
+// library function that may round.
 #pragma once
 
 #include <Random123/philox.h>
@@ -11,7 +11,7 @@
 
 #include "core/pair.h"
 
-// Inlined on a device, so that the state of a pair's draws stays in registers and the compiler knows their number.
+// Inlined on a device: the state of a pair's draws stays in registers, and the compiler knows the number of draws.
 #ifdef __CUDACC__
 #define GRAZE_INLINE __host__ __device__ __forceinline__
 #else
@@ -46,32 +46,32 @@ struct Draws {
     return block.v[used++];
   }
 
-  // 0 … n-1. The bias, n / 2^32, does not matter here.
+  // A whole number from 0 to n - 1. Its bias, n / 2^32, is negligible here.
   GRAZE_INLINE std::uint32_t below(std::uint32_t n) {
     return static_cast<std::uint32_t>(static_cast<std::uint64_t>(word()) * n >> 32);
   }
 
   GRAZE_INLINE bool coin() { return below(2) != 0; }
 
-  // -reach … reach.
+  // A whole number from -reach to reach.
   GRAZE_INLINE int integer(int reach) {
     return static_cast<int>(below(2 * static_cast<std::uint32_t>(reach) + 1)) - reach;
   }
 
-  // low … high.
+  // A whole number from low to high.
   GRAZE_INLINE int between(int low, int high) {
     return low + static_cast<int>(below(static_cast<std::uint32_t>(high - low + 1)));
   }
 
   GRAZE_INLINE double sign() { return coin() ? 1.0 : -1.0; }
 
-  // [-1, 1) in steps of 2^-31.
+  // A multiple of 2^-31 in [-1, 1).
   GRAZE_INLINE double real() { return static_cast<std::int32_t>(word()) * 0x1p-31; }
 
-  // (0, 1] in steps of 2^-32.
+  // A multiple of 2^-32 in (0, 1].
   GRAZE_INLINE double positive() { return (word() + 1.0) * 0x1p-32; }
 
-  // [-1, 1) in steps of 2^-23: every value is a float.
+  // A multiple of 2^-23 in [-1, 1): every value is a float.
   GRAZE_INLINE float real_float() { return static_cast<float>(static_cast<std::int32_t>(word()) >> 8) * 0x1p-23f; }
 
   GRAZE_INLINE Vec reals() { return {real(), real(), real()}; }
@@ -81,8 +81,8 @@ struct Draws {
             static_cast<double>(integer(reach))};
   }
 
-  // Constants of the coordinates' type: its significant bits; as powers of two the smallest gap, the greatest offset,
-  // the flattest sliver and the largest ratio of axes; the range of scales; and the bits of wide integers.
+  // Constants of the coordinates' type. Exponents of powers of two: the smallest gap, the largest offset, the flattest
+  // sliver, the largest ratio of axes, and the range of scales. kBits is the number of significant bits.
   using Real = float;
   using Integer = int;
   static constexpr int kBits = 24, kGap = 40, kOffset = 22, kSliver = 22, kRatio = 20, kLeastScale = -149,
@@ -90,7 +90,7 @@ struct Draws {
   GRAZE_INLINE int wide_bits() { return kBits; }
 };
 
-// The same for pairs of doubles. Reals have 53 bits, wide integers 16 to 53.
+// The draws of a pair of doubles. Reals have 53 bits, and wide integers have 16 to 53 bits.
 struct DoubleDraws : Draws {
   using Draws::Draws;
   using Draws::integer;
@@ -101,17 +101,17 @@ struct DoubleDraws : Draws {
     return high << 32 | word();
   }
 
-  // -reach … reach.
+  // A whole number from -reach to reach.
   GRAZE_INLINE std::int64_t integer(std::int64_t reach) {
     const std::uint64_t count = 2 * static_cast<std::uint64_t>(reach) + 1;
     const auto drawn = static_cast<unsigned __int128>(long_word()) * count >> 64;
     return static_cast<std::int64_t>(drawn) - reach;
   }
 
-  // [-1, 1) in steps of 2^-52.
+  // A multiple of 2^-52 in [-1, 1).
   GRAZE_INLINE double real() { return static_cast<double>(static_cast<std::int64_t>(long_word()) >> 11) * 0x1p-52; }
 
-  // (0, 1] in steps of 2^-52.
+  // A multiple of 2^-52 in (0, 1].
   GRAZE_INLINE double positive() { return static_cast<double>((long_word() >> 12) + 1) * 0x1p-52; }
 
   GRAZE_INLINE double real_float() { return real(); }
@@ -138,8 +138,8 @@ GRAZE_INLINE double power_of_two(int exponent) {
   return power;
 }
 
-// The float or double that is `ulps` steps above x, or below if negative; steps cross zero and the subnormals.
-// Requires: no step goes past the largest number.
+// The float or double that is `ulps` steps above x, or below x if `ulps` is negative. Steps may cross zero and the
+// subnormals.   Requires: no step exceeds the largest number.
 GRAZE_INLINE float nudged(float x, int ulps) {
   constexpr std::uint32_t kSign = 0x80000000u;
   std::uint32_t bits;
@@ -205,7 +205,7 @@ GRAZE_INLINE DoublePair rounded(const DoubleDraws&, const Draft& draft) {
   return {{draft.a[0], draft.a[1], draft.a[2]}, {draft.b[0], draft.b[1], draft.b[2]}};
 }
 
-// The pair in a random one of its 72 vertex orders, so that algorithms do not see a stratum's contacts in only one.
+// The pair in a random one of its 72 vertex orders, so that a stratum's contacts do not all have one order.
 template <class Real>
 GRAZE_INLINE BasicPair<Real> shuffled(Draws& draws, const BasicPair<Real>& pair) {
   const std::uint32_t order = draws.below(72);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bits that every stratum must have: a hash of its first 10,000 pairs at seed 1, for tests on host and device. If a
-// value here changes, every stored (seed, stratum, index) means another pair.
+// Golden hashes: one of each stratum's first 10,000 pairs at seed 1, for tests on host and device. If a hash changes, a
+// stored (seed, stratum, index) gives a different pair.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Groups of strata whose results are reported together. A lane's results on general pairs say nothing about coplanar
-// ones.
+// Groups of strata whose results are reported together. A lane's results on general pairs say nothing about its results
+// on coplanar pairs.
 #pragma once
 
 #include <optional>
@@ -29,8 +29,8 @@ inline constexpr GroupInfo kGroups[] = {
     {Group::mesh, "mesh", "pairs of a mesh's triangles whose boxes overlap"},
 };
 
-// The group of the source with this name: a stratum, or a mesh as it is or moved. Nothing if this build does not know
-// the stratum.
+// The group of a campaign's source with this name: a stratum, or one of a mesh's sources. Nothing if this build does
+// not know the name.
 constexpr std::optional<Group> group_of_name(std::string_view id) {
   const std::string_view stratum = stratum_in_doubles(id).value_or(id);
   for (const StratumInfo& row : kDoubleStrata) {

@@ -26,7 +26,7 @@ namespace {
 
 using Triangle = std::array<Vec3<float>, 3>;
 
-// A limit, so that a soup in which all triangles overlap is an error instead of filling the memory.
+// A limit for the candidate pairs. Without it, a mesh whose triangles all overlap would fill the memory.
 constexpr std::size_t kMostCandidates = std::size_t{1} << 28;  // 2 GiB of indices
 
 std::string read_bytes(const std::filesystem::path& file) {
@@ -72,7 +72,7 @@ Soup read_soup(const std::filesystem::path& file, std::string_view bytes, Coordi
   const MeshBytes mesh{file.string(), bytes, coordinates};
   if (const MeshFormat* format = format_of(file)) return format->read(mesh);
   const std::string extension = file.extension().string();
-  fail(mesh.name, "a file of extension " + listed(&MeshFormat::extension),
+  fail(mesh.name, "a file with the extension " + listed(&MeshFormat::extension),
        extension.empty() ? "no extension" : extension);
 }
 
@@ -87,8 +87,8 @@ std::array<Vec3<double>, 3> in_doubles(const Triangle& t) {
   return {wide(t[0]), wide(t[1]), wide(t[2])};
 }
 
-// How many fans fold back over themselves, so that they do not cover their face: some triangle is turned against the
-// sum of all. Such a face is not convex. In double precision; a fold that rounding hides is narrower than that.
+// How many fans fold over themselves: some triangle's normal points against the sum of the fan's normals. The face of
+// such a fan is not convex. The test rounds to double, so it may miss a fold that is narrower than this rounding.
 std::size_t folded_fans(const Soup& soup) {
   const auto normal = [&](const std::array<std::uint32_t, 3>& triangle) {
     const Vec3<double>& corner = soup.in_doubles[triangle[0]];
@@ -117,7 +117,7 @@ void add_mesh(MeshPairs& pairs, const std::filesystem::path& file, Coordinates c
   for (const auto& [i, j, k] : soup.triangles)
     pairs.triangles.push_back({soup.vertices[i], soup.vertices[j], soup.vertices[k]});
   if (soup.rounding.rounded > 0 || !pairs.in_doubles.empty()) {
-    for (std::size_t t = pairs.in_doubles.size(); t < before; ++t)  // of the files before it, which float32 holds
+    for (std::size_t t = pairs.in_doubles.size(); t < before; ++t)  // float32 holds the coordinates of earlier files
       pairs.in_doubles.push_back(in_doubles(pairs.triangles[t]));
     for (const auto& [i, j, k] : soup.triangles)
       pairs.in_doubles.push_back({soup.in_doubles[i], soup.in_doubles[j], soup.in_doubles[k]});
@@ -139,7 +139,7 @@ void add_mesh(MeshPairs& pairs, const std::filesystem::path& file, Coordinates c
 
 using Pose = std::array<double, 12>;
 
-constexpr std::size_t kMostTriangles = std::size_t{1} << 26;  // in all poses together; they take 2.25 GiB
+constexpr std::size_t kMostTriangles = std::size_t{1} << 26;  // limit for all poses together; they take 2.25 GiB
 
 // Reads the poses, and hashes the file's bytes.
 std::vector<Pose> read_poses(const std::filesystem::path& file, std::uint64_t& hash) {
@@ -176,7 +176,7 @@ Vec3<float> moved(const Pose& m, const Vec3<float>& v, Rounding& rounding) {
   return {to[0], to[1], to[2]};
 }
 
-// Replaces the mesh by one body for each pose.   Returns: where each body ends in the triangles.
+// Replaces the mesh by one body for each pose.   Returns: for each body, the index after its last triangle.
 std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path& file,
                                    const std::vector<Pose>& poses) {
   const std::vector<Triangle> mesh = std::move(pairs.triangles);

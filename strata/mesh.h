@@ -20,15 +20,15 @@
 namespace graze::strata {
 
 struct MeshPairs {
-  std::vector<std::array<Vec3<float>, 3>> triangles;  // of the first file, then of the second, in file order
+  std::vector<std::array<Vec3<float>, 3>> triangles;  // first of the first file, then of the second
   // The same triangles in doubles. Empty if float32 rounded no coordinate.
   std::vector<std::array<Vec3<double>, 3>> in_doubles;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> candidates;  // indices into triangles, sorted, first < second
   std::uint64_t content_hash = 0;  // FNV-1a of the bytes of the first file, then of the second
-  // One line for each file with unused content, such as normals, and for each whose coordinates float32 rounded.
+  // One line for each file with unused content, such as normals, and one for each file that float32 rounded.
   std::vector<std::string> notes;
   std::vector<std::string> notes_of_doubles;  // the same for callers that use the doubles
-  Rounding rounding;                          // of the coordinates in all files
+  Rounding rounding;                          // how float32 rounded the coordinates of all files
 
   std::size_t size() const { return candidates.size(); }
 
@@ -37,7 +37,7 @@ struct MeshPairs {
   DoublePair double_pair(std::size_t index) const;
 };
 
-// The candidate pairs as sources: "mesh", and "mesh/f64" for their doubles.
+// The candidate pairs as a campaign's sources: "mesh" in float32, and "mesh/f64" in doubles.
 std::vector<PairSource> mesh_sources(const std::shared_ptr<const MeshPairs>& mesh, PairTypes types);
 
 // Whether the file has the extension of a mesh format.
@@ -47,15 +47,15 @@ bool is_mesh(const std::filesystem::path& file);
 std::string mesh_formats();
 
 // The candidate pairs of a mesh against itself, or against the other mesh. A face with more than three vertices is cut
-// into a fan from its first vertex. Each coordinate is rounded once to float32; those that change are counted.
-// Triangles that become degenerate are kept. The boxes are those of the rounded triangles, so no touching pair is
+// into a fan from its first vertex. Each coordinate is rounded once to float32; coordinates that change are counted.
+// Triangles that become degenerate are kept. The boxes enclose the rounded triangles, so no touching pair is
 // missed. The extension determines the format.
 // Throws: std::runtime_error with one line: the file, its line or byte, and what was expected and found.
 MeshPairs read_mesh_pairs(const std::filesystem::path& file,
                           const std::optional<std::filesystem::path>& other = std::nullopt);
 
-// The candidate pairs of bodies: one body against itself, or several against each other. `poses` makes each pose of a
-// single mesh a body. It is a CSV file with twelve numbers per row: the three rows of a pose's matrix (R | t).
+// The candidate pairs of bodies: one body against itself, or several against each other. `poses` is a CSV
+// file with twelve numbers per row: the three rows of a pose's matrix (R | t). Each pose of a single mesh is a body.
 // Requires: at least one file; exactly one if there are poses.
 MeshPairs read_bodies(const std::vector<std::filesystem::path>& files, const std::filesystem::path& poses = {});
 

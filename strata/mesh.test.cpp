@@ -116,7 +116,7 @@ TEST_F(MeshFile, EveryFormatReadsTheSameTriangles) {
   EXPECT_EQ(read_mesh_pairs(write("binary.stl", binary_stl_of(expected))).triangles, expected);
 }
 
-// In every format, campaigns refuse a vertex that is not finite and queries read it.
+// Campaigns refuse a vertex that is not finite, and queries read it: in OFF, OBJ and STL files.
 TEST_F(MeshFile, VerticesThatAreNotFiniteAreReadOnRequest) {
   const float nan = std::nanf(""), infinity = HUGE_VALF;
   const Triangle bad{{{0, nan, 0}, {1, 0, -infinity}, {0, 1, 0}}}, good{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
@@ -153,7 +153,7 @@ TEST_F(MeshFile, HasTheDoublesOfDecimals) {
   EXPECT_EQ(read_mesh_pairs(file, far).double_pair(0).b[0].x, 0.1000000001);
 }
 
-// Decimals that a program prints for a float32 do not count as beyond float32; those with more digits do.
+// Decimals that a program prints for a float32 do not count as beyond float32; decimals with more digits do.
 TEST_F(MeshFile, KeepsDoublesBeyondFloat32) {
   const auto read = [&](const std::string& x) {
     const auto file = write("m.obj", "v " + x + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -186,7 +186,8 @@ TEST_F(MeshFile, CountsWhatDoublesRoundToo) {
 }
 
 TEST_F(MeshFile, TwoMeshesPairAcrossOnly) {
-  const std::string touching = "OFF\n3 1 0\n1 1 1\n2 1 1\n1 2 1\n3 0 1 2\n";  // its box touches theirs at one point
+  const std::string touching =
+      "OFF\n3 1 0\n1 1 1\n2 1 1\n1 2 1\n3 0 1 2\n";  // its box touches the tetrahedron's box at one point
   const MeshPairs pairs = read_mesh_pairs(write("t.off", kTetrahedron), write("u.off", touching));
   EXPECT_EQ(pairs.triangles.size(), 5u);
   EXPECT_EQ(pairs.candidates, (std::vector<Index>{{3, 4}}));
@@ -324,7 +325,7 @@ TEST_F(MeshFile, BoundsHowFarFloat32Moves) {
         "property double z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n";
     std::string text = "OFF\n3 2 0\n";
     double numbers[9];
-    std::uint64_t moved = 0, moved_in_text = 0;  // 17 digits identify a double, but most do not equal it
+    std::uint64_t moved = 0, moved_in_text = 0;  // 17 digits identify a double, but seldom equal it
     double most = 0;
     for (double& x : numbers) {
       x = std::ldexp(static_cast<double>(static_cast<std::int64_t>(random())), static_cast<int>(random() % 100) - 113);

@@ -14,7 +14,7 @@
 
 namespace graze::strata {
 
-using Box = CGAL::Box_intersection_d::Box_with_info_d<float, 3, std::uint32_t>;  // info: index of the triangle
+using Box = CGAL::Box_intersection_d::Box_with_info_d<float, 3, std::uint32_t>;  // info() is the triangle's index
 
 // The boxes of triangles [begin, end).
 inline std::vector<Box> boxes_of(std::span<const std::array<Vec3<float>, 3>> triangles, std::size_t begin,

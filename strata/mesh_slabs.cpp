@@ -13,8 +13,8 @@
 namespace graze::strata {
 namespace {
 
-// With fewer boxes than this, CGAL sweeps instead of dividing further. On a terrain of a million triangles this takes
-// less than half the time of CGAL's default of 10.
+// With fewer boxes than this, CGAL sweeps instead of dividing further. On a terrain of a million triangles, this limit
+// takes less than half the time of CGAL's default of 10.
 constexpr std::ptrdiff_t kSwept = 1000;
 
 // How many other boxes CGAL gets per call. With long boxes a call takes quadratic time and cannot be stopped.

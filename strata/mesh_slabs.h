@@ -18,7 +18,7 @@ namespace graze::strata {
 class BoxSlabs {
  public:
   using Triangles = std::span<const std::array<Vec3<float>, 3>>;
-  static constexpr std::size_t kTriangles = std::size_t{1} << 14;  // of the first mesh, per slab
+  static constexpr std::size_t kTriangles = std::size_t{1} << 14;  // triangles of the first mesh in a slab
 
   // Pairs the triangles of `a` with those of `b`, or with each other if there is no `b`. Triangles that are not finite
   // are in no pair.   Requires: at most 2^32 - 1 triangles in each.
@@ -26,12 +26,12 @@ class BoxSlabs {
   ~BoxSlabs();
 
   std::size_t size() const;
-  // How many triangles of `a` lie in the slabs before this one. For slab size(): all finite ones.
+  // How many triangles of `a` lie in the slabs before this one. For slab size(): the finite triangles of `a`.
   std::size_t triangles_before(std::size_t slab) const;
   std::uint64_t not_finite() const;  // how many triangles of both meshes are not finite
 
   // Calls found(i, j) once for each pair of the slab, in any order: i of `a` and j of `b`, or i < j of `a`. Each pair
-  // is in one slab. Several threads may call it at once. An exception from `found` ends the call.
+  // is in one slab. Several threads may call `pairs` at once. An exception from `found` ends the call.
   // Throws: Stopped, soon after a request to stop.
   void pairs(std::size_t slab, const std::function<void(std::uint32_t, std::uint32_t)>& found) const;
 

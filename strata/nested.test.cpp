@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of nested triangles: containment and piercing on the grid in exact integers, the rest by share of pairs.
+// Tests of nested triangles: containment and piercing on the grid in exact integers, other properties by the share of
+// pairs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +27,7 @@ int side_of(const Vec3<Int>& p, const Triangle<Int>& t) {
   return least;
 }
 
-// 1: strictly inside; 0: inside, with contact at the boundary; -1: not contained.
+// How `inner` lies in `outer`. 1: strictly inside; 0: inside, touching the boundary; -1: not contained.
 int contained(const Triangle<Int>& inner, const Triangle<Int>& outer) {
   return std::min({side_of(inner[0], outer), side_of(inner[1], outer), side_of(inner[2], outer)});
 }
@@ -105,11 +106,11 @@ TEST(Nested, OffTheGridTrianglesAreCoplanarUntilRounding) {
   EXPECT_GT(pairs.size(), 4700u);
   EXPECT_GT(flat, 3300);
   EXPECT_GT(disjoint, 800);
-  EXPECT_GT(contained, 300);  // in axis-aligned planes they remain coplanar after rounding
+  EXPECT_GT(contained, 300);  // pairs in axis-aligned planes remain coplanar after rounding
 }
 
 TEST(Nested, SizesDifferByUpTo2To20) {
-  std::array<int, 6> bins{};  // each spans 2^4
+  std::array<int, 6> bins{};  // each bin spans 2^4
   for (const Pair& pair : draw(Stratum::nested)) {
     const double ratio = std::fabs(std::log2(extent(pair.a) / extent(pair.b)));
     ASSERT_LT(ratio, 24);

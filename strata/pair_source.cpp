@@ -85,7 +85,7 @@ std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs,
   if (types != PairTypes::f32) {
     for (const StratumInfo& row : kDoubleStrata) all.push_back(double_source_of(seed, row));
   }
-  // With "/f64" appended, a pattern matches the doubles of the strata that it matches without it.
+  // A pattern with "/f64" appended matches the doubles of the strata that the pattern itself matches.
   std::vector<std::string> patterns = globs;
   for (const std::string& glob : globs) {
     patterns.push_back(glob + std::string(kInDoubles));
@@ -106,7 +106,7 @@ std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs,
   if (sources.empty()) {
     std::string names;
     for (const std::string& glob : globs) names += (names.empty() ? "" : ",") + glob;
-    throw UsageError("strata \"" + printable(names) + "\" leave no stratum");
+    throw UsageError("the patterns \"" + printable(names) + "\" leave no stratum; `graze strata` lists all strata");
   }
   share_evenly(sources, pairs);
   return sources;

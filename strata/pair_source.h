@@ -25,10 +25,10 @@ struct PairSource {
   std::function<Pair(std::uint64_t index)> pair;  // null if the coordinates are doubles
   // The stratum from which a device can draw the same pairs; -1 if only `pair` or `double_pair` can draw them.
   int stratum = -1;
-  Axis axis = Axis::none;  // of the stratum
+  Axis axis = Axis::none;  // what the stratum varies besides the margin
   std::uint64_t seed = 0;
-  std::shared_ptr<const Scene> scene = nullptr;  // the scene in which the stratum is drawn; null: none
-  std::function<DoublePair(std::uint64_t index)> double_pair = nullptr;  // in place of `pair`
+  std::shared_ptr<const Scene> scene = nullptr;  // the scene in which the stratum is drawn, or null
+  std::function<DoublePair(std::uint64_t index)> double_pair = nullptr;  // for doubles, in place of `pair`
 
   bool in_doubles() const { return bool(double_pair); }
   AnyPair any_pair(std::uint64_t index) const { return in_doubles() ? AnyPair(double_pair(index)) : pair(index); }
@@ -61,13 +61,13 @@ void expect_float32(std::span<const PairSource> sources, const char* verb);
 const StratumInfo* stratum_info(std::string_view source);
 Axis axis_of(std::string_view source);
 
-// The strata whose names match (all for an empty list). They share `pairs` evenly; the first ones take the remainder.
+// The strata whose names match (all for an empty list). They share `pairs` evenly; the first strata take the rest.
 // Throws: UsageError if a pattern matches no stratum, or if the patterns together leave none.
 // Patterns match a stratum of doubles with or without its "/f64".
 std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs,
                                         PairTypes types = PairTypes::f32);
 
-// Likewise for strata of exactly these names, of both types.
+// Like stratum_sources, for the strata with exactly these names, of both types.
 std::vector<PairSource> named_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& names);
 
 }  // namespace graze::strata

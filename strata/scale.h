@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contacts at scales that strain the type of the coordinates: far from the origin, near overflow and underflow, and
-// with very different scales in one pair. Each function transforms a contact before it is rounded, once.
+// with very different scales in one pair. Each function transforms a contact first, and then rounds it once.
 #pragma once
 
 #include "strata/contact.h"
@@ -12,7 +12,7 @@ GRAZE_HD inline auto far_from_origin(auto& draws) {
   Contact contact = draw_contact(draws, draw_touch(draws), real_grain(draws));
   const Push push = draw_push(draws);
   move(contact.draft.b, contact.away * push.gap);
-  // Log-uniform in 2^7 … 2^23, which is 1.3e2 … 8.4e6; doubles: up to 2^51.
+  // The offset is log-uniform in 2^7 … 2^23, which is 1.3e2 … 8.4e6; for doubles in 2^7 … 2^51.
   const Vec direction = normalised(draws.reals());
   const double fraction = 1 + draws.positive();
   const Vec offset = direction * (fraction * power_of_two(draws.between(7, draws.kOffset)));
@@ -60,8 +60,8 @@ GRAZE_HD inline auto mixed_scale(auto& draws) {
   move(draft.b, to_origin);
   scale(shrink_a ? draft.a : draft.b, {size, size, size});
   move(draft.b, contact.away * (push.gap * size));
-  // A contact at the origin keeps the small triangle's digits. Elsewhere the small triangle rounds to the large one's
-  // grid.
+  // If the contact is at the origin, the small triangle keeps its digits. Elsewhere its coordinates are rounded to the
+  // spacing of the large triangle's coordinates.
   if (draws.below(4) == 0) {
     move(draft.a, contact.p);
     move(draft.b, contact.p);

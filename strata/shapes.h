@@ -16,11 +16,11 @@ GRAZE_HD inline Shape draw_sliver_shape(auto& draws) {
 GRAZE_HD inline auto sliver(auto& draws) {
   const Touch touch = draw_touch(draws);
   const Shape shape = draw_sliver_shape(draws);
-  const std::uint32_t which = draws.below(3);  // A, B or both
+  const std::uint32_t which = draws.below(3);  // the sliver is A, B or both
   return near_contact(draws, touch, which != 1 ? shape : Shape{}, which != 0 ? shape : Shape{});
 }
 
-// A segment along e that contains p or starts there. The third vertex is an end or lies exactly on the segment's line.
+// A segment along e that contains p or starts at p. The third vertex is an end or lies exactly on the segment's line.
 GRAZE_HD inline void put_segment(auto& draws, const auto& grain, const Vec& p, const Vec& e, Vec (&triangle)[3]) {
   const double back = draws.coin() ? draw_weight(draws, grain) : 0;
   const double forth = draw_weight(draws, grain);
@@ -33,8 +33,8 @@ GRAZE_HD inline void put_segment(auto& draws, const auto& grain, const Vec& p, c
 GRAZE_HD inline void put_point(const Vec& p, Vec (&triangle)[3]) { triangle[0] = triangle[1] = triangle[2] = p; }
 
 // B is a segment or a point, and A is anything. Both contain a point p; in half of the pairs B is then moved by one
-// unit. Coordinates are integers, small or wide, so that points are exactly collinear. A power of two then scales the
-// pair.
+// unit. Coordinates are integers, small or wide, so the vertices of a segment are exactly collinear. A power of two
+// then scales the pair.
 GRAZE_HD inline auto degenerate(auto& draws) {
   const auto grain = draws.coin() ? small_grain(draws) : wide_grain(draws);
   const Vec p = draw_place(draws, grain);
@@ -62,7 +62,7 @@ GRAZE_HD inline auto degenerate(auto& draws) {
     put_point(p, draft.b);
   } else {
     const Vec fresh = draw_step(draws, grain);
-    // Along u there are collinear segments, and segments along an edge or in the plane of a face.
+    // A segment along u is collinear with A's segment, along A's edge, or in the plane of A's face.
     put_segment(draws, grain, p, draws.below(3) == 0 ? u : fresh, draft.b);
   }
   if (draws.coin()) {

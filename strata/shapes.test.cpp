@@ -86,7 +86,7 @@ TEST(FarFromOrigin, OffsetsAreLogUniform) {
 }
 
 TEST(ExtremeScale, CoversAllExponents) {
-  std::array<int, 10> bins{};  // each spans 2^28, starting at 2^-150
+  std::array<int, 10> bins{};  // each bin spans 2^28; the first starts at 2^-150
   for (const Pair& pair : draw(Stratum::extreme_scale)) {
     const int exponent = largest(pair) == 0 ? -150 : std::ilogb(largest(pair));
     ++bins[static_cast<std::size_t>((exponent + 150) / 28)];

@@ -15,7 +15,7 @@ namespace graze::strata {
 enum class Stratum : std::uint8_t {
 #define GRAZE_STRATUM(name, ...) name,
 #include "strata/strata.inc"
-  last_of_both = 63,  // no stratum
+  last_of_both = 63,  // not a stratum; the next number is 64
 #include "strata/double_strata.inc"
 #undef GRAZE_STRATUM
 };
@@ -23,8 +23,9 @@ enum class Stratum : std::uint8_t {
 // The group in which reports count a stratum's results; see strata/groups.h.
 enum class Group : std::uint8_t { general, coplanar, degenerate, extreme, mesh };
 
-// The kind of a scene's pair: the first that matches of degenerate (a triangle has no area), shared_edge (two stored
-// vertices in common), shared_vertex (one in common), coplanar (all six points in one plane), general (anything else).
+// The kind of a scene's pair: the first of the following that matches. degenerate: a triangle has no area. shared_edge:
+// two stored vertices are the same. shared_vertex: one stored vertex is the same. coplanar: all six points lie in one
+// plane. general: any other pair.
 enum class Kind : std::uint8_t { general, shared_vertex, shared_edge, coplanar, degenerate };
 
 // A row of strata/strata.inc, which explains the columns, or of strata/double_strata.inc.
@@ -61,7 +62,8 @@ inline std::span<const StratumInfo> strata_of(bool in_doubles) {
   return in_doubles ? std::span<const StratumInfo>(kDoubleStrata) : std::span<const StratumInfo>(kStrata);
 }
 
-// Whether device code can draw the stratum. `stored` uses the exact decision, which takes device compilers minutes.
+// Whether device code can draw the stratum. `stored` uses the exact decision, which device compilers take minutes to
+// compile.
 constexpr bool is_drawn_on_devices(Stratum stratum) { return stratum != Stratum::stored; }
 
 inline namespace GRAZE_FP {
@@ -70,7 +72,7 @@ inline namespace GRAZE_FP {
 // Requires: a stratum of kStrata; compiled without contraction, on host and device alike.
 GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, std::uint64_t index);
 
-// Likewise in doubles, with their bits, gaps and scales, for the strata of kDoubleStrata.
+// Like generate, but in doubles, with the bits, gaps and scales of doubles, for the strata of kDoubleStrata.
 GRAZE_HD inline DoublePair generate_doubles(std::uint64_t seed, Stratum stratum, std::uint64_t index);
 
 }  // namespace GRAZE_FP

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strata that need no construction, and the switch that selects one. The others are in contact.h, coplanar.h,
-// doubles.h, nested.h, shapes.h and scale.h.
+// The strata that are plain draws of numbers, and the switch that selects a stratum. The others are in contact.h,
+// coplanar.h, doubles.h, nested.h, shapes.h and scale.h.
 #include "strata/contact.h"
 #include "strata/coplanar.h"
 #include "strata/doubles.h"
@@ -24,7 +24,7 @@ GRAZE_HD BasicPair<typename D::Real> uniform(D& draws) {
 }
 
 // The thesis's listing: `(rand()%80 - 40)/10.0f` for each axis, and `x + rand()%5` for each coordinate. The listing
-// computes in float, this function in the type of the coordinates.
+// computes in float; this function computes in the type of the coordinates.
 template <class D>
 GRAZE_HD auto thesis_against(D& draws, BasicPair<typename D::Real> pair) {
   using Real = typename D::Real;
@@ -55,7 +55,7 @@ GRAZE_HD BasicPair<typename D::Real> lattice(D& draws) {
           {draw_lattice(draws), draw_lattice(draws), draw_lattice(draws)}};
 }
 
-// Compiles the code of one stratum.
+// Draws a pair of one stratum. Only the code of that stratum is compiled.
 template <Stratum stratum, class D>
 GRAZE_HD BasicPair<typename D::Real> draw_stratum(D draws) {
   using strata::Touch;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests of the strata's bits: golden hashes, purity, finiteness, and the strata that are plain draws of numbers.
-// The geometric promises of the others are tested in contact.test.cpp and shapes.test.cpp.
+// The geometric promises of the other strata are tested in contact.test.cpp and shapes.test.cpp.
 #include "strata/strata.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(Strata, RowsAreInTheOrderOfTheEnumeration) {
 
 // Checks the description of the group `general`: usual shapes, but some pairs are coplanar or degenerate.
 TEST(Groups, GeneralHasSomeCoplanarAndSomeDegeneratePairs) {
-  constexpr std::uint64_t kPairs = 3000;  // of each stratum
+  constexpr std::uint64_t kPairs = 3000;  // pairs of each stratum
   std::uint64_t pairs = 0, coplanar = 0, degenerate = 0;
   for (const StratumInfo& row : kStrata) {
     if (row.group != Group::general) continue;

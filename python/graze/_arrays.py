@@ -19,8 +19,8 @@ _RELATION = np.dtype(
 
 
 class Pair:
-    """Two triangles, made from 18 numbers in a text or an array: `array`, float32 of shape (2, 3, 3). A notebook shows
-    the pair in 3-D if the program `graze` is installed.
+    """Two triangles, made from 18 numbers in a text or an array. `array` holds them as float32, of shape (2, 3, 3). A
+    notebook shows the pair in 3-D if the program `graze` is installed.
 
     >>> touching = Pair("0 0 0  1 0 0  0 1 0   0 0 0  0 0 1  0 1 1")
     >>> touching.relation["contact"] == CONTACTS.index("point")
@@ -100,11 +100,11 @@ def lanes() -> list[str]:
 
 
 def pairs(strata: str = "*", *, seed: int = 1, count: int = 1000, coordinates: str = "f32") -> np.ndarray:
-    """Draws pairs of the strata, in order of their names; the strata share them evenly.
+    """Draws pairs of the strata, one stratum after another in the order of strata(); the strata share them evenly.
 
-    strata: names with * and ?, separated by commas; "!x" leaves out x. A pair depends only on seed, stratum and
-    place, and is the same on every machine. coordinates: "f32", or "f64" for pairs of doubles, which have more
-    strata.
+    strata: names with * and ?, separated by commas; "!x" leaves out x. A pair depends only on the seed, its stratum
+    and its index in the stratum, and is the same on every machine. coordinates: "f32", or "f64" for pairs of
+    doubles, which have more strata.
     Returns: float32 or float64, shape (count, 2, 3, 3).   Raises: ValueError.
     """
     if coordinates not in ("f32", "f64"):
@@ -123,7 +123,7 @@ def pairs(strata: str = "*", *, seed: int = 1, count: int = 1000, coordinates: s
 
 
 def _of_elements(function: str, array: np.ndarray, result: np.ndarray, *before: Any, after: tuple = ()) -> np.ndarray:
-    """Calls a function of the library on pieces of the array and of the result."""
+    """Calls a function of the library on each piece of the array and of the result."""
 
     def one(first: int, some: int) -> None:
         arguments = (ctypes.c_uint64(some), _library.pointer(result[first:]))
@@ -138,7 +138,7 @@ def _checked(pairs: Any, doubles: bool = True) -> np.ndarray:
 
 
 def relation(pairs: Any) -> np.ndarray:
-    """How the triangles of each pair lie, float32 or float64. Exact: nothing is rounded.
+    """The exact relation of the triangles of each pair, float32 or float64. Nothing is rounded.
 
     Returns: a structured array of int8: verdict (1 intersects, 0 disjoint, -1 a coordinate is not finite), contact (an
     index of CONTACTS), margin_sign (1: disjoint; -1: no tiny translation separates them; else 0), dimension_a and
@@ -154,8 +154,8 @@ def truth(pairs: Any) -> np.ndarray:
 
 
 def margin(pairs: Any) -> np.ndarray:
-    """Certified bounds of each pair's margin: its distance, or minus the shortest translation that separates it. Pairs
-    are float32 here.
+    """Certified bounds of each pair's margin: its distance, or minus the shortest translation that separates it.
+    The pairs must be float32.
 
     Returns: float64, shape (n, 2): at least, at most. NaN where a coordinate is not finite.
     """
@@ -174,7 +174,7 @@ def verdicts(lane: str, pairs: Any) -> np.ndarray:
 
 
 def _triangles(*arrays: Any) -> list[np.ndarray]:
-    """The arrays of triangles, all as doubles if one of them has doubles: that changes no number."""
+    """The arrays of triangles. If one of them has doubles, all become doubles, which changes no number."""
     found = [_library.floats(array, (3, 3), "triangles") for array in arrays]
     doubles = any(array.dtype == np.float64 for array in found)
     return [np.ascontiguousarray(array, np.float64) if doubles else array for array in found]
@@ -206,12 +206,12 @@ def _found(a: np.ndarray, b: "np.ndarray | None", touching: bool) -> np.ndarray:
 
 
 def self_intersections(triangles: Any, *, touching: bool = False) -> np.ndarray:
-    """The pairs of triangles of one mesh that pierce each other. Exact. touching: also those that only touch, such as
+    """The pairs of triangles of one mesh that pierce each other. Exact. touching: also pairs that only touch, such as
     neighbours.   Returns: uint32, shape (k, 2), sorted; i < j."""
     return _found(*_triangles(triangles), None, touching)
 
 
 def intersections(a: Any, b: Any, *, touching: bool = True) -> np.ndarray:
-    """The pairs of a triangle of `a` and one of `b` that intersect. Exact. touching=False: only those that pierce
-    each other.   Returns: uint32, shape (k, 2), sorted."""
+    """The pairs of a triangle of `a` and one of `b` that intersect. Exact. touching=False: only the pairs that
+    pierce each other.   Returns: uint32, shape (k, 2), sorted."""
     return _found(*_triangles(a, b), touching)

@@ -27,7 +27,7 @@ class _Tested:
             return np.fromiter((self._of_one(pair) for pair in pairs), np.uint8, len(pairs))
         try:
             answers = np.asanyarray(self.function(pairs[:, 0], pairs[:, 1]))
-        except Exception as raised:  # of one of the pairs, or of all
+        except Exception as raised:  # raised for one of the pairs, or for all
             self.raised = self.raised or raised
             if len(pairs) == 1:
                 return np.array([_RAISED], np.uint8)
@@ -58,7 +58,7 @@ class _Tested:
             pairs.flags.writeable = False
             np.ctypeslib.as_array(verdicts, (count,))[:] = self.of_pairs(pairs)
             return 0
-        except BaseException as failure:  # it cannot pass through the library; raised again after the call
+        except BaseException as failure:  # it cannot pass through the library, and is raised again after the call
             self.ended_by = failure
             return 1
 
@@ -103,14 +103,14 @@ def given(
     either: "str | tuple[str, ...]" = (),
     vectorized: bool = False,
 ) -> Callable[[Callable[..., Any]], Callable[..., None]]:
-    """Makes a test of a function, or a method, of two triangles, float32 arrays of shape (3, 3), that returns whether
-    they intersect; an int below 0 declines. The test draws pairs of the strata, compares with the exact answers, and
-    fails with the smallest wrong pair.
+    """Makes a test of a function or a method. This takes two triangles, float32 arrays of shape (3, 3), and returns if
+    they intersect; an int below 0 declines. The test draws pairs of the strata and compares the function's answers with
+    the exact ones. If too many are wrong, it fails and shows the smallest wrong pair.
 
     max_wrong: the share of wrong answers that is accepted.
     either: kinds of pairs on which both answers are accepted: "touching", "coplanar", "degenerate", "shared".
     vectorized: the function takes arrays of shape (n, 3, 3) and returns n answers.
-    The environment's GRAZE_PAIRS and GRAZE_SEED, or pytest's --graze-pairs and --graze-seed, replace the numbers.
+    The environment's GRAZE_PAIRS and GRAZE_SEED, or pytest's --graze-pairs and --graze-seed, replace pairs and seed.
 
     >>> @given("uniform", pairs=100)
     ... def test_boxes(a, b):
@@ -135,7 +135,7 @@ def given(
         examples: list[Pair] = list(getattr(function, "_graze_examples", ()))
         name = getattr(function, "__name__", "the function")
 
-        def test(*self: Any) -> None:  # self: for a method, its object
+        def test(*self: Any) -> None:  # self: a method's object
             __tracebackhide__ = True
             tested = _Tested(functools.partial(function, *self), name, vectorized)
             why = _check(tested, name, options, test._graze_examples)  # type: ignore[attr-defined]
@@ -153,7 +153,7 @@ def given(
 
 
 def example(pair: Any) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Adds a pair, as 18 numbers in a text or an array, that a test made with `given` checks first."""
+    """Adds a pair that a test made with `given` checks first. The pair is 18 numbers in a text or an array."""
     added = pair if isinstance(pair, Pair) else Pair(pair)
 
     def decorate(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -11,7 +11,7 @@ from typing import Any, Callable, Iterator
 
 import numpy as np
 
-_PIECE = 1 << 18  # elements of a call, between which Ctrl+C is noticed
+_PIECE = 1 << 18  # elements in a call; Python notices Ctrl+C between calls
 
 _library = ctypes.CDLL(str(pathlib.Path(__file__).with_name("libgraze_python.so")))
 for _name in ("error", "strata", "lanes", "text"):
@@ -72,8 +72,9 @@ def failures_on_entering(callback: Callable[..., Any], end: Callable[[BaseExcept
 
 
 def call_in_thread(function: str, *arguments: Any, then: Callable[[], None]) -> None:
-    """Like call, for one long call whose last argument asks it to stop. Ctrl+C stops it, and is then raised.
-    `then` runs in the same thread after it, because the library keeps the result for that thread."""
+    """Like call, but for a long call, in a thread of its own. Its last argument is a flag that asks it to stop. Ctrl+C
+    stops the call, and is then raised. `then` runs in the same thread after the call, because the library keeps the
+    result for that thread."""
     stop = ctypes.c_int(0)
     failures: list[BaseException] = []
 
@@ -90,7 +91,7 @@ def call_in_thread(function: str, *arguments: Any, then: Callable[[], None]) -> 
         while thread.is_alive():
             thread.join(0.1)
     except BaseException:
-        while thread in threading.enumerate():  # even one that is only about to start
+        while thread in threading.enumerate():  # also a thread that is only about to start
             stop.value = 1
             time.sleep(0.01)
         raise
@@ -120,7 +121,7 @@ def in_doubles(array: np.ndarray) -> ctypes.c_int:
 
 
 def in_pieces(count: int, f: Callable[[int, int], None]) -> None:
-    """Calls f(first, count) for consecutive pieces, between which Python handles signals."""
+    """Calls f(first, count) for consecutive pieces. Python handles signals between two calls."""
     for first in range(0, count, _PIECE):
         f(first, min(_PIECE, count - first))
 
@@ -133,7 +134,7 @@ def _masked(array: Any) -> int:
 
 
 def unmasked(array: Any, what: str) -> np.ndarray:
-    """The array without a mask. Raises ValueError for masked values, because NumPy would use what the mask hides."""
+    """The array without a mask. Raises ValueError for masked values, because NumPy would use the hidden values."""
     if masked := _masked(array):
         raise ValueError(
             f"{what}: masked values ({masked}) are refused; fill them (x.filled) or leave out what they belong to"
@@ -142,9 +143,9 @@ def unmasked(array: Any, what: str) -> np.ndarray:
 
 
 def floats(array: Any, shape: tuple[int, ...], what: str, doubles: bool = True) -> np.ndarray:
-    """The array as contiguous float32, or float64 if it is that and `doubles`, of shape (n, *shape); one element may
-    lack the first axis. Makes no copy if it is that already. Raises TypeError for other numbers, which would have to
-    be rounded, and ValueError for another shape or masked values."""
+    """The array as a contiguous one of shape (n, *shape); a single element may lack the first axis. The type is
+    float32, or with `doubles` also float64. Makes no copy of an array that is contiguous already. Raises TypeError for
+    other types, whose numbers would have to be rounded, and ValueError for another shape or masked values."""
     found = unmasked(array, what)
     if found.dtype != np.float32 and not (doubles and found.dtype == np.float64):
         raise TypeError(
@@ -159,7 +160,7 @@ def floats(array: Any, shape: tuple[int, ...], what: str, doubles: bool = True) 
 
 
 def count_of(number: Any, what: str) -> int:
-    """The number as a whole number of 64 bits. Raises ValueError."""
+    """The number as a whole number of 64 bits. Raises ValueError if it is none."""
     try:
         whole = int(number)
         if whole == number and not isinstance(number, (bool, str)) and 0 <= whole < 1 << 64:
@@ -170,7 +171,7 @@ def count_of(number: Any, what: str) -> int:
 
 
 def name_of(name: Any, what: str) -> bytes:
-    """The name as the library takes it. Raises TypeError."""
+    """The name as bytes for the library. Raises TypeError if it is not a text."""
     if not isinstance(name, str) or "\0" in name:
         raise TypeError(f"{what}: a text is needed, not {name!r}")
     return name.encode()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Calls the program `graze` for what it does better than the library: campaigns and drawings."""
+"""Calls the program `graze` for campaigns and drawings, which the library does not have."""
 import json
 import os
 import pathlib
@@ -13,7 +13,7 @@ def program() -> str:
     """The program's path: the environment's GRAZE, or `graze` on the PATH. Raises FileNotFoundError."""
     found = os.environ.get("GRAZE") or shutil.which("graze")
     if not found:
-        raise FileNotFoundError("there is no program `graze` on the PATH; install Graze, or name it in GRAZE")
+        raise FileNotFoundError("there is no program `graze` on the PATH; install Graze, or set GRAZE to its path")
     return found
 
 
@@ -31,7 +31,7 @@ def campaign(out: "str | os.PathLike[str]", **options: Any) -> dict[str, Any]:
     A list gives an option several times; True gives it without a value.
 
     Returns: the campaign's summary.json, whose keys docs/formats.md lists.
-    Raises: FileNotFoundError without the program; RuntimeError with its words if it fails.
+    Raises: FileNotFoundError if there is no program; RuntimeError with the program's message if it fails.
     """
     arguments = ["fuzz", "--out", os.fspath(out)]
     for name, value in options.items():
@@ -42,7 +42,7 @@ def campaign(out: "str | os.PathLike[str]", **options: Any) -> dict[str, Any]:
 
 
 def viewer_page(numbers: str) -> str:
-    """The page that `graze view` writes for a pair, 18 numbers.   Raises: as campaign."""
+    """The page that `graze view` writes for a pair, 18 numbers.   Raises: like campaign."""
     with tempfile.TemporaryDirectory() as folder:
         file, page = os.path.join(folder, "pair.txt"), os.path.join(folder, "view.html")
         pathlib.Path(file).write_text(numbers + "\n", encoding="utf-8")

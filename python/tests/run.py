@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests the package as it will be installed: its doctests, test_*.py here, and, where Debian's python3-pytest is
-installed, the plug-in; where python3-build, -setuptools and -wheel are, the wheel.
+"""Tests the package as it will be installed: its doctests and test_*.py here. Tests the plug-in if Debian's
+python3-pytest is installed, and the wheel if python3-build, python3-setuptools and python3-wheel are installed.
   run.py FOLDER GRAZE     FOLDER: has the package; GRAZE: the program
 """
 import doctest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arrays against the program `graze`, against integers, and with arguments that are wrong."""
+"""Compares arrays with the program `graze` and with fractions, and tests wrong arguments."""
 import csv
 import os
 import pathlib
@@ -38,7 +38,7 @@ class Arrays(unittest.TestCase):
             relation = graze.relation(drawn)
             self.assertEqual([row["truth"] == "intersects" for row in rows], (relation["verdict"] == 1).tolist())
             self.assertEqual([row["contact"] for row in rows], [graze.CONTACTS[c] for c in relation["contact"]])
-            said = np.array([float(row["margin"]) for row in rows])  # rounded once more
+            said = np.array([float(row["margin"]) for row in rows])  # read as a double, which rounds once more
             least, most = graze.margin(drawn).T
             slack = 1e-14 * np.abs(said)
             self.assertTrue(((least <= said + slack) & (said - slack <= most)).all(), stratum)
@@ -107,7 +107,7 @@ class Arrays(unittest.TestCase):
             graze._library._PIECE = piece
 
     def test_truth_is_that_of_fractions(self):
-        """Triangles with small integers: a separating axis test in whole numbers."""
+        """The triangles have small integers. Compares the truth with linear programming in fractions."""
         drawn = graze.pairs("lattice,coplanar_lattice,degenerate", count=600)
         said = graze.truth(drawn)
         self.assertTrue(0 < said.sum() < 600)
@@ -335,8 +335,8 @@ def intersect(pair):
 
 
 def holds_origin(points):
-    """Whether the hull of the points holds 0: no plane through 0, spanned by them, has all of them on one open side.
-    Reduces the dimension where all lie on one side and some in the plane."""
+    """Whether the hull of the points holds 0. It does not if all points lie strictly on one side of a plane through 0.
+    If all lie on one side and some in the plane, the points in the plane decide, in one dimension less."""
     points = list(dict.fromkeys(points))
     if any(all(x == 0 for x in p) for p in points):
         return True
@@ -353,7 +353,7 @@ def holds_origin(points):
 
 
 def normals(points):
-    """Normals of planes through 0 that are spanned by points and axes: among them every plane that supports the hull."""
+    """Normals of the planes through 0 that points and axes span. They include every plane that supports the hull."""
     size = len(points[0])
     axes = [tuple(Fraction(int(i == k)) for i in range(size)) for k in range(size)]
     spanning = points + axes
@@ -369,7 +369,7 @@ def normals(points):
 
 
 def flattened(points, normal):
-    """The points of the plane, without a coordinate in which its normal is not 0."""
+    """The points of a plane without one of their coordinates, in which the plane's normal is not 0."""
     drop = next(k for k, n in enumerate(normal) if n)
     return [p[:drop] + p[drop + 1 :] for p in points]
 

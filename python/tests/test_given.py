@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tests by graze.given, the plug-in of pytest, and the wheel."""
+"""Tests graze.given, the plug-in for pytest, and the wheel."""
 import importlib.util
 import os
 import pathlib

@@ -46,7 +46,7 @@ Lines::Lines(const MeshBytes& file, char comment, Continuation continuation)
   if (file.bytes.starts_with("\xef\xbb\xbf")) byte_ = 3;
 }
 
-// Appends the words of the next line.   Returns: whether there is one.
+// Appends the words of the next line.   Returns: whether there is a next line.
 bool Lines::read_line() {
   if (byte_ == file_.bytes.size()) return false;
   ++line_;

@@ -28,7 +28,7 @@ std::string error_of(Reader read, const std::string& bytes) {
 
 struct Misfit {
   std::string bytes;
-  std::vector<std::string> named;  // what the error must name: the place, what was expected, what was found
+  std::vector<std::string> named;  // words of the error: the place, the expectation, the finding
 };
 
 void expect_errors(Reader read, const std::vector<Misfit>& misfits) {

@@ -26,7 +26,7 @@ bool take_keyword(std::string_view word, Header& header) {
   return word == "OFF";
 }
 
-// The counts may follow the keyword on the same line. If the keyword is missing, they come first.
+// The counts may follow the keyword on the same line. If the keyword is missing, the counts come first.
 Header take_header(Lines& lines) {
   Header header;
   lines.expect_next("OFF");
@@ -44,7 +44,7 @@ Header take_header(Lines& lines) {
   header.faces = lines.whole(at + 1, "the number of faces");
   if (lines.words().size() > at + 2) lines.whole(at + 2, "the number of edges");
   if (lines.words().size() > at + 3) lines.fail_at(at + 3, "the end of the line after the number of edges");
-  // A vertex takes at least six bytes ("0 0 0" and the line's end), a face two.
+  // A vertex takes at least six bytes ("0 0 0" and the line's end), and a face at least two.
   const std::size_t bytes = lines.bytes_left();
   if (header.vertices > (bytes + 1) / 6 || header.faces > (bytes + 1) / 2)
     lines.fail("at most " + std::to_string((bytes + 1) / 6) + " vertices and " + std::to_string((bytes + 1) / 2) +
@@ -55,7 +55,7 @@ Header take_header(Lines& lines) {
   return header;
 }
 
-// Checks and counts what follows a vertex's coordinates.
+// Checks and counts the numbers after a vertex's coordinates.
 void skip_attributes(const Lines& lines, const Header& header, Soup& soup) {
   const std::size_t count = lines.words().size(), more = count - 3;
   for (std::size_t i = 3; i < count; ++i) lines.number(i, "a number or the end of the line");

@@ -24,7 +24,7 @@ constexpr Type kTypes[] = {{"char", "int8", 1, false, true},    {"uchar", "uint8
 struct Property {
   std::string name;
   const Type* type = nullptr;
-  const Type* count_type = nullptr;  // for a list; else null
+  const Type* count_type = nullptr;  // null if the property is no list
 };
 
 bool is_coordinate(const Property& p) { return p.name == "x" || p.name == "y" || p.name == "z"; }
@@ -146,7 +146,7 @@ Header take_header(Lines& lines) {
   return header;
 }
 
-// The numbers of a file's body, one after another. The count before a list is one of them.
+// Reads the numbers of a file's body in order. The count before a list is also such a number.
 class Body {
  public:
   Body(const MeshBytes& file, Lines& lines, Header::Format format)

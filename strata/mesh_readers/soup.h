@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the mesh readers return; each format has a reader. They are strict: text that does not parse completely, and
-// numbers that contradict each other, are errors that name the place. Content that pairs do not need is counted and
+// The result of the mesh readers; each format has a reader. The readers are strict: text that does not parse completely
+// and numbers that contradict each other are errors that name the place. Content that pairs do not need is counted and
 // skipped. Nothing else is skipped.
 #pragma once
 
@@ -18,13 +18,13 @@
 
 namespace graze::strata {
 
-// How many coordinates float32 cannot hold, and by how much rounding moved them. `beyond` counts those that no program
-// would print for a float32, such as 1000000.01. It does not count 0.1, the shortest decimal of the nearest float32.
+// How many coordinates float32 cannot hold, and by how much rounding moved them. `beyond` counts coordinates that no
+// program would print for a float32, such as 1000000.01. It does not count 0.1, the shortest decimal of a float32.
 struct Rounding {
   std::uint64_t coordinates = 0, rounded = 0, beyond = 0;
-  double most = 0;  // no coordinate moved by more
+  double most = 0;  // no coordinate moved by more than this
 
-  // written: the double nearest to the number in the file; is_it: they are equal; slack: how far apart they can be.
+  // written: the double nearest to the number in the file; is_it: the two are equal; slack: their largest distance.
   void add(double written, float stored, double slack = 0, bool is_it = true) {
     ++coordinates;
     if (!std::isfinite(written) || (is_it && written == static_cast<double>(stored))) return;
@@ -44,7 +44,7 @@ struct Rounding {
 std::vector<std::string> rounding_note(const std::string& file, const Rounding& rounding);
 
 // The same for callers that use the doubles: "FILE: decided in doubles, because 6 of 18 coordinates have more digits
-// than float32 holds". Empty if none has.
+// than float32 holds". Empty if no coordinate has more digits.
 std::vector<std::string> doubles_note(const std::string& file, const Rounding& rounding);
 
 // The float32 and the double nearest to a number in a file.
@@ -58,8 +58,8 @@ struct Soup {
   std::vector<Vec3<double>> in_doubles;                 // the same vertices before rounding to float32
   std::vector<std::array<std::uint32_t, 3>> triangles;  // indices of existing vertices, in file order
   std::map<std::string, std::uint64_t> skipped;         // how many items were skipped, by kind: "normals"
-  std::vector<std::array<std::size_t, 2>> fans;         // of faces with more vertices than three: begin, end
-  Rounding rounding;                                    // of the coordinates of vertices
+  std::vector<std::array<std::size_t, 2>> fans;  // triangles of each face with more than three vertices: begin, end
+  Rounding rounding;                             // how float32 rounded the vertices
 
   void add_vertex(const Coordinate (&v)[3]) {
     vertices.push_back({v[0].stored, v[1].stored, v[2].stored});
@@ -67,7 +67,7 @@ struct Soup {
   }
 };
 
-// Whether a vertex that is not finite is an error (finite) or is read as it is (any).
+// Whether a vertex that is not finite is an error (finite) or is read unchanged (any).
 enum class Coordinates { finite, any };
 
 // The bytes of a file, and its name for error messages.

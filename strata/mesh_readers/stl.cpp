@@ -111,8 +111,8 @@ Soup read_stl(const MeshBytes& file) {
   // A text file has no zero byte.
   if (size >= kHeader && file.bytes.find('\0') != file.bytes.npos)
     fail(at_byte(file, 80),
-         std::to_string(count) + " facets, with which the file would have " + std::to_string(kHeader + kFacet * count) +
-             " bytes",
+         std::to_string(kHeader + kFacet * count) + " bytes for the " + std::to_string(count) +
+             " facets that the header counts",
          std::to_string(size) + " bytes");
   return read_text(file);
 }

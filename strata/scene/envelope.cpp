@@ -37,8 +37,9 @@ double largest_of(const SceneFile& scene) {
   return largest;
 }
 
-// In steps of the exact grid: the smallest longest edge of an exact stratum, and the largest longest edge of `lattice`.
-// For mixed_scale and nested: the smallest ratio of longest edges.
+// Limits for a scene's longest edges, in steps of the exact grid: at least kLeastSteps for an exact stratum, and at
+// most kMostLatticeSteps for `lattice`. For mixed_scale and nested, edges must differ by a factor of at least
+// kLeastFactor.
 constexpr double kLeastSteps = 64, kMostLatticeSteps = 64, kLeastFactor = 16;
 
 double longest_in_steps(const SceneFile& scene, const Grid& grid) {
@@ -54,7 +55,7 @@ std::string coordinates_stay_within(const SceneFile& scene) {
   return fmt::format("your coordinates stay within {} … {} {}", low, high, scene.units);
 }
 
-// The number of the grid point nearest to x. It may be off if the grid has 2^51 points or more.
+// The number of the grid point nearest to x. It may be off by one if it is 2^51 or more.
 double number_at(const Grid& grid, double x) {
   const double steps = grid.decimal ? x * grid.scale : x / grid.scale;
   return std::fabs(steps) < 0x1p51 ? in_scene::number_of(grid, x) : std::trunc(steps);
@@ -75,7 +76,7 @@ SceneFile with_type(const SceneFile& scene, bool in_doubles) {
     parse_scene("", scene_text(other));
   } catch (const std::runtime_error& error) {
     const std::string what = error.what();
-    throw UsageError(fmt::format("cannot draw pairs of {} in a scene of {}{}; draw pairs of its own type",
+    throw UsageError(fmt::format("cannot draw pairs of {} in a scene of {}{}; draw pairs of the scene's own type",
                                  in_doubles ? "doubles" : "float32", in_doubles ? "float32" : "doubles",
                                  what.substr(what.find(": "))));
   }

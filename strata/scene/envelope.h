@@ -24,7 +24,7 @@ std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum);
 inline double as_float32(double x) { return static_cast<double>(static_cast<float>(x)); }
 inline double as_stored(const SceneFile& scene, double x) { return scene.in_doubles ? x : as_float32(x); }
 
-// An ulp of the largest of these coordinates.
+// An ulp of `largest`, the largest coordinate of the scene.
 double ulp_of(const SceneFile& scene, double largest);
 
 }  // namespace graze::strata

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact contacts and exactly coplanar pairs. They lie on the scene's grid, or on the ulps of its largest coordinate. On
-// a decimal grid they are exact for the decimal numbers, before rounding.
+// Exact contacts and exactly coplanar pairs. Their coordinates lie on the scene's grid, or are multiples of an ulp of
+// its largest coordinate. On a decimal grid the pairs are exact in the decimal numbers, before rounding.
 #pragma once
 
 #include "strata/coplanar.h"
@@ -15,7 +15,7 @@ struct Reach {
   Integer axis[3];
 };
 
-// `most` on each axis, or less if the extent would not hold `widths` times that.
+// `most` on each axis, or less if `widths` times that would not fit into the extent.
 template <class Integer>
 GRAZE_HD Reach<Integer> reach_within(const Scene& scene, Integer most, double widths) {
   Reach<Integer> reach{{most, most, most}};
@@ -45,7 +45,7 @@ GRAZE_INLINE double whole(const DoubleDraws&, double x) { return static_cast<dou
 // Moves integer coordinates to a random place in the extent.
 template <class D>
 GRAZE_HD BasicPair<typename D::Real> finished_on_grid(D& draws, const Scene& scene, Draft draft) {
-  if constexpr (D::kBits == 53) {  // begins at 0, so that no sum below needs a 54th bit
+  if constexpr (D::kBits == 53) {  // coordinates then begin at 0, so that no sum below needs a 54th bit
     const Vec least{span_of(draft, 0).low, span_of(draft, 1).low, span_of(draft, 2).low};
     move(draft.a, least * -1.0);
     move(draft.b, least * -1.0);
@@ -86,12 +86,12 @@ GRAZE_HD inline void put_exact_vertex(auto& draws, const auto& reach, const Vec&
   triangle[2] = toward(side, draw_whole(draws, reach, kWeight));
 }
 
-// Half of the pairs touch exactly. In a quarter, one coordinate of b[0] is one step larger, and in a quarter smaller.
+// Half of the pairs touch exactly. In the other half, one coordinate of b[0] is one step larger or one step smaller.
 template <class D>
 GRAZE_HD BasicPair<typename D::Real> exact_contact(D& draws, const Scene& scene) {
   const Touch touch = static_cast<Touch>(draws.below(3));
-  // At most 2^14, so that the products that determine sides are exact. Edges of doubles may have more steps: their
-  // products are rounded, but that hardly ever changes a sign.
+  // At most 2^14 steps, so that the products that determine sides are exact. With doubles, edges may have more steps:
+  // their products are rounded, but the rounding hardly ever changes a sign.
   const double most = clamped(draw_edge_in_steps(draws, scene) / kEdgeSteps, 1, D::kBits == 53 ? 0x1p46 : 0x1p14);
   const auto reach = reach_within(scene, static_cast<typename D::Integer>(most), 4 * kWeight + 2);
   const Vec u = draw_whole(draws, reach);
@@ -121,7 +121,7 @@ GRAZE_HD BasicPair<typename D::Real> exact_contact(D& draws, const Scene& scene)
   return finished_on_grid(draws, scene, draft);
 }
 
-// Tilted planes. The bits of an edge are split at random between the chart and the grid pair.
+// Two triangles in a tilted plane. The bits of an edge are split at random between the chart and the grid pair.
 template <class D>
 GRAZE_HD BasicPair<typename D::Real> coplanar_wide(D& draws, const Scene& scene) {
   constexpr bool kWide = D::kBits == 53;
@@ -135,7 +135,7 @@ GRAZE_HD BasicPair<typename D::Real> coplanar_wide(D& draws, const Scene& scene)
   return finished_on_grid(draws, scene, laid(chart, draw_grid_pair(draws, 1 << bits)));
 }
 
-// Six grid points in a cube.
+// Two triangles whose six vertices are grid points in a cube.
 GRAZE_HD inline auto lattice(auto& draws, const Scene& scene) {
   const double edge = scene.edges.at[kQuantiles - 1] * 0.57735;  // a cube's edge divided by its diagonal
   const double steps = scene.exact.decimal ? edge * scene.exact.scale : edge / scene.exact.scale;

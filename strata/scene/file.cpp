@@ -245,7 +245,7 @@ class Reader {
 
   const std::string& name_;
   const toml::table& root_;
-  double diagonal_ = 0, largest_ = 0;  // of the extent; its largest coordinate in magnitude
+  double diagonal_ = 0, largest_ = 0;  // diagonal of the extent; largest magnitude of its coordinates
 };
 
 std::string list_of(const std::vector<double>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }

@@ -16,7 +16,7 @@
 
 namespace graze::strata {
 
-// The names of each Kind, in the order of the enumerators.
+// The names of the kinds, in the order of the enumerators.
 inline constexpr int kKinds = 5;
 inline constexpr std::array<std::string_view, kKinds> kKindIds{"general", "shared_vertex", "shared_edge", "coplanar",
                                                                "degenerate"};
@@ -31,7 +31,7 @@ struct GridSpec {
 struct SceneMeshes {
   std::vector<std::string> files;  // relative to the folder of the scene's file
   std::string poses;               // path of a CSV file; may be empty
-  std::uint64_t content = 0;       // FNV-1a of all these files
+  std::uint64_t content = 0;       // FNV-1a of the bytes of all these files
   friend bool operator==(const SceneMeshes&, const SceneMeshes&) = default;
 };
 
@@ -40,8 +40,8 @@ struct SceneFile {
   std::string units = "units";
   bool in_doubles = false;                        // the coordinates are doubles, not float32
   std::array<std::array<double, 2>, 3> extent{};  // least and greatest coordinate on each axis
-  std::vector<double> edges;                      // of triangles' longest edges: 1, 2, 3, 5, 9, 17 or 33 quantiles
-  std::vector<double> aspect{1.2, 2, 10};         // longest edge divided by the height on it, as quantiles too
+  std::vector<double> edges;                      // 1, 2, 3, 5, 9, 17 or 33 quantiles of the longest edges
+  std::vector<double> aspect{1.2, 2, 10};         // quantiles of the longest edge divided by its height
   std::optional<GridSpec> grid;
   std::array<double, kKinds> mix{0.6, 0.1, 0.1, 0.15, 0.05};  // share of each Kind among pairs whose boxes overlap
   std::map<Bucket, double> margins;  // shares of these pairs by margin; for information, not used to draw

@@ -148,7 +148,7 @@ TEST(SceneFile, HostileTextsAreOneLine) {
   }
 }
 
-// Found by fuzzing: outside quotes and comments, such characters made toml++ reach code that it declares unreachable.
+// Fuzzing found that characters beyond ASCII outside quotes made toml++ reach code that it declares unreachable.
 TEST(SceneFile, CharactersBeyondAsciiStandInQuotesAndCommentsAlone) {
   const std::string rest = "extent = [[-4, 4], [0, 8], [1, 2]]\nedges = [0.5, 2]\n";
   EXPECT_EQ(parse_scene("s", "\xef\xbb\xbfunits = \"\u00b5m \\\" \u00e9\" # \u00e9\n" + rest).units,

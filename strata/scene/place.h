@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A pair's place in a scene. A draft around the origin is moved into the extent, then rounded to the grid, then pushed
-// by ulps or grid steps. In this order, near contacts are near in ulps of the scene's coordinates.
+// by ulps or grid steps. This order keeps near contacts near in ulps of the scene's coordinates.
 #pragma once
 
 #include "strata/contact.h"

@@ -9,7 +9,7 @@
 
 namespace graze::strata {
 
-// Nondecreasing numbers at the fractions 0, 1/32 … 1; linear in between.
+// Nondecreasing numbers at the fractions 0, 1/32 … 1; linear interpolation in between.
 inline constexpr int kQuantiles = 33;
 struct Quantiles {
   double at[kQuantiles];
@@ -21,7 +21,7 @@ struct Grid {
   bool decimal = false;
 };
 
-// resolved() in strata/scene/envelope.h makes it from a scene file, for pairs of float32 or of doubles.
+// The numbers of a scene, for pairs of float32 or of doubles. resolved() in strata/scene/envelope.h makes them.
 struct Scene {
   Vec3<double> low, high;  // least and greatest coordinate on each axis: representable, and on the grid
   Quantiles edges;         // longest edge of a triangle
@@ -35,11 +35,11 @@ struct Scene {
 inline namespace GRAZE_FP {
 
 // The pair with this index. It lies within the extent and on the grid. Up to rounding, no edge is longer than the
-// scene's longest edge. A pair that does not fit into the extent along an axis is flattened along it.
+// scene's longest edge. A pair that does not fit into the extent along an axis is flattened along that axis.
 // Requires: a scene of float32 that can contain the stratum, see left_out(); compiled without contraction.
 GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, const Scene& scene, std::uint64_t index);
 
-// Likewise in doubles, in a scene of doubles.
+// Like generate, but in doubles, in a scene of doubles.
 GRAZE_HD inline DoublePair generate_doubles(std::uint64_t seed, Stratum stratum, const Scene& scene,
                                             std::uint64_t index);
 

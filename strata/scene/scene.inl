@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strata in a scene, and the switch that selects one. The exact strata are in exact.h.
+// The strata in a scene, and the switch that selects a stratum. The exact strata are in exact.h.
 #include "strata/scene/triangles.h"
 
 #include "strata/scene/exact.h"
@@ -35,7 +35,8 @@ GRAZE_HD inline auto uniform(auto& draws, const Scene& scene) {
   return finished(draws, scene, draft, {});
 }
 
-// Two triangles in a plane. In half of the pairs they touch or nearly touch; the other half overlap or lie apart.
+// Two triangles in a plane. In half of the pairs they touch or nearly touch; in the other half they overlap or lie
+// apart.
 GRAZE_HD inline auto coplanar(auto& draws, const Scene& scene, const Space& plane) {
   if (draws.coin()) {
     const Touch touch = draws.coin() ? Touch::vertex_edge : draws.coin() ? Touch::edge_edge : Touch::vertex_vertex;
@@ -60,9 +61,9 @@ GRAZE_HD inline auto coplanar(auto& draws, const Scene& scene, const Space& plan
   return finished(draws, scene, draft, {});
 }
 
-// A large triangle and a small one. In half of the pairs they share an inner point of the large one: in a quarter of
-// these the small one pierces the face, otherwise it lies in the same plane, usually inside. In the other half it lies
-// in the plane and touches an edge of the large one, or nearly, from inside or outside.
+// A large triangle and a small one. In half of the pairs they share an inner point of the large triangle. In a quarter
+// of these pairs the small triangle pierces the large one; in the rest it lies in the same plane, usually inside. In
+// the other half it lies in that plane and touches or nearly touches an edge of the large one, from inside or outside.
 GRAZE_HD inline auto nested(auto& draws, const Scene& scene) {
   const bool tilted = draws.coin();
   const int normal = draws.between(0, 2);
@@ -90,8 +91,8 @@ GRAZE_HD inline auto nested(auto& draws, const Scene& scene) {
   return finished(draws, scene, draft, {});
 }
 
-// Parallel planes. Half are tilted, parallel before rounding, and 1 … 2^-40 of the size apart (doubles: 2^-100). Half
-// are axis-aligned, at most 4 grid steps or ulps apart.
+// Two triangles in parallel planes. Half of the planes are tilted, parallel before rounding, and 1 … 2^-40 of the size
+// apart (doubles: 2^-100). The other half are axis-aligned and at most 4 grid steps or ulps apart.
 template <class D>
 GRAZE_HD BasicPair<typename D::Real> parallel(D& draws, const Scene& scene) {
   const bool tilted = draws.coin();
@@ -115,8 +116,8 @@ GRAZE_HD BasicPair<typename D::Real> parallel(D& draws, const Scene& scene) {
   return shuffled(draws, pair);
 }
 
-// A segment that contains the origin or starts there. The third vertex is an end. Along an axis it is any point of the
-// segment, because rounding cannot move it off the line there.
+// A segment that contains the origin or starts at it. The third vertex is an end of the segment. On a segment along an
+// axis it is any point of the segment, because rounding cannot move a point off such a line.
 GRAZE_HD inline void put_segment(auto& draws, const Vec& e, bool along_axis, double length, Vec (&triangle)[3]) {
   const double back = draws.coin() ? length * draws.positive() : 0;
   const double third = length * draws.positive();
@@ -126,8 +127,8 @@ GRAZE_HD inline void put_segment(auto& draws, const Vec& e, bool along_axis, dou
   triangle[2] = along_axis ? e * (third - back) : end ? triangle[0] : triangle[1];
 }
 
-// B is a segment or a point, and A is anything. Both contain a common point; half of the time B is then moved by a few
-// grid steps or ulps.
+// B is a segment or a point, and A is anything. Both contain a common point. In half of the pairs B is then moved by a
+// few grid steps or ulps.
 template <class D>
 GRAZE_HD BasicPair<typename D::Real> degenerate(D& draws, const Scene& scene) {
   const Form a = draw_form(draws, scene);
@@ -144,7 +145,7 @@ GRAZE_HD BasicPair<typename D::Real> degenerate(D& draws, const Scene& scene) {
   if (kind == 3) put_edge(draws, {}, a, e, across, draft.a);
   if (kind == 4) put_face(draws, {true, e, across}, a, draft.a);
   if (draws.below(4) != 0) {
-    const bool same = draws.below(3) == 0;  // collinear segments, a segment along an edge or in the plane of a face
+    const bool same = draws.below(3) == 0;  // along A's segment, along A's edge, or in the plane of A's face
     const int other = draws.between(0, 2);
     put_segment(draws, same ? e : unit_axis(other), same ? along_axis : true, b.length, draft.b);
   }
@@ -156,8 +157,8 @@ GRAZE_HD BasicPair<typename D::Real> degenerate(D& draws, const Scene& scene) {
   return shuffled(draws, pair);
 }
 
-// How far the neighbour's plane is tilted out of the first triangle's: half not at all, half by 2^0 … 2^-30 (doubles:
-// 2^-90).
+// How far the neighbour's plane is tilted out of the first triangle's plane. Half of the tilts are 0; the other half
+// are ±2^0 … ±2^-30 (doubles: 2^-90).
 GRAZE_HD inline double draw_lift(auto& draws) {
   const double sign = draws.sign();
   const double lift = sign * power_of_two(-draws.between(0, draws.kGap - 10));
@@ -176,7 +177,7 @@ GRAZE_HD inline auto shared_vertex(auto& draws, const Scene& scene) {
   return finished(draws, scene, draft, {});
 }
 
-// The neighbour is the mirrored triangle itself, so that its edges have the same lengths.
+// The neighbour is the first triangle's mirror image, so that its edges have the same lengths.
 GRAZE_HD inline auto shared_edge(auto& draws, const Scene& scene) {
   const Space plane = draw_plane(draws);
   const double lift = draw_lift(draws);
@@ -196,7 +197,7 @@ GRAZE_HD inline auto shared_edge(auto& draws, const Scene& scene) {
 
 inline namespace GRAZE_FP {
 
-// Compiles the code of one stratum.
+// Draws a pair of one stratum. Only the code of that stratum is compiled.
 template <Stratum stratum, class D>
 GRAZE_HD BasicPair<typename D::Real> draw_stratum(D draws, const Scene& scene) {
   switch (stratum) {
@@ -226,7 +227,7 @@ GRAZE_HD BasicPair<typename D::Real> draw_stratum(D draws, const Scene& scene) {
       return in_scene::parallel(draws, scene);
     case Stratum::sliver: {
       const Touch touch = draw_touch(draws);
-      const std::uint32_t which = draws.below(3);  // A, B or both
+      const std::uint32_t which = draws.below(3);  // the sliver is A, B or both
       const in_scene::Sizes sliver{{}, {in_scene::sliver_from(scene), 1}};
       return in_scene::near_contact(draws, scene, touch, {}, which != 1 ? sliver : in_scene::Sizes{},
                                     which != 0 ? sliver : in_scene::Sizes{});
@@ -250,14 +251,14 @@ GRAZE_HD BasicPair<typename D::Real> draw_stratum(D draws, const Scene& scene) {
     case Stratum::far_from_origin:
     case Stratum::extreme_scale:
     default:
-      break;  // never in a scene
+      break;  // no scene contains these strata
   }
   return {};
 }
 
 template <Stratum stratum, class D>
 GRAZE_HD BasicPair<typename D::Real> generate_one(std::uint64_t seed, const Scene& scene, std::uint64_t index) {
-  // Other random words than those of the stratum without a scene.
+  // The random words differ from those of the same stratum without a scene.
   return draw_stratum<stratum>(D(seed, 0x100u + static_cast<std::uint32_t>(stratum), index), scene);
 }
 

@@ -71,7 +71,7 @@ TEST(Scene, EveryPairIsWithinTheExtentOnTheGridAndOfTheSizes) {
           ulp, std::ldexp(1.0, log2_ulp(Pair{{{static_cast<float>(low), static_cast<float>(high), 0}, {}, {}}, {}})));
     const double step =
         std::max(ulp, scene.on_grid ? (scene.grid.decimal ? 1 / scene.grid.scale : scene.grid.scale) : 0);
-    const double most = scene.edges.at[kQuantiles - 1] * 1.00001 + 20 * step;  // rounding, and pushes by 8 steps
+    const double most = scene.edges.at[kQuantiles - 1] * 1.00001 + 20 * step;  // for rounding, and pushes by 8 steps
     int drawn = 0;
     for (const StratumInfo& row : kStrata) {
       if (left_out(file, row.stratum)) continue;
@@ -90,7 +90,7 @@ TEST(Scene, EveryPairIsWithinTheExtentOnTheGridAndOfTheSizes) {
         ASSERT_LE(longest(pair.b), most) << name << ' ' << row.id << ':' << i;
         if (i < 1000) kinds.insert(hash_bits(pair));
       }
-      EXPECT_GT(kinds.size(), 900u) << name << ' ' << row.id;  // not one pair repeated
+      EXPECT_GT(kinds.size(), 900u) << name << ' ' << row.id;  // nearly all pairs differ
     }
     EXPECT_GE(drawn, 11) << name;
   }
@@ -158,7 +158,7 @@ TEST(Scene, ExactStrataAreExact) {
   EXPECT_EQ(coplanar, 10'000);
   EXPECT_GT(tilted, 7'000);
   EXPECT_EQ(axis_plane, 10'000);
-  testing::expect_between(5'000, 9'000, touching);  // the exact half, and some of the pairs pushed by a step
+  testing::expect_between(5'000, 9'000, touching);  // exact contacts, and some of the pairs pushed by a step
 }
 
 TEST(Scene, NeighboursShareTheirVerticesBitForBit) {
@@ -230,7 +230,7 @@ TEST(DoubleScene, EveryPairIsWithinTheExtentOnTheGridAndOfTheSizes) {
         if (i < 1000) kinds.insert(hash_bits(pair));
         finer += hash_bits(in_doubles(stored_in_float32(pair))) != hash_bits(pair);
       }
-      EXPECT_GT(kinds.size(), 900u) << name << ' ' << row.id;  // not one pair repeated
+      EXPECT_GT(kinds.size(), 900u) << name << ' ' << row.id;  // nearly all pairs differ
       if (!file.grid || name == "survey") {
         EXPECT_GT(finer, 0.99 * kPairs) << name << ' ' << row.id;
       }
@@ -282,8 +282,8 @@ TEST(DoubleScene, ExactStrataAreExact) {
       tilted += spread == 3;
     }
     EXPECT_LE(inexact, file.grid ? 20 : 0) << name;  // edges of a few steps may be parallel
-    EXPECT_GT(touching, 4'850) << name;              // about half of the pairs
-    if (name != "plane") {                           // there all pairs are coplanar
+    EXPECT_GT(touching, 4'850) << name;              // about half of the pairs touch
+    if (name != "plane") {                           // all pairs of that scene are coplanar
       EXPECT_LT(touching, 7'000) << name;
       EXPECT_GT(tilted, 7'000) << name;
     }
@@ -375,7 +375,7 @@ TEST(SceneSources, AreThoseOfTheType) {
     EXPECT_TRUE(source.in_doubles() && source.id.ends_with("/f64") && source.stratum >= 0 && source.scene) << source.id;
     EXPECT_EQ(group_of_name(source.id), group_of_name(source.id.substr(0, source.id.size() - 4)));
   }
-  // The spacing of float32 numbers is 1/32 there.
+  // At 500000 the spacing of float32 numbers is 1/32.
   try {
     scene_sources(fine, "", 1, 100, {}, PairTypes::f32);
     FAIL();

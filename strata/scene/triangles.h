@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of a scene's sizes, and two of them that touch at the origin. Unlike in strata/contact.h, a triangle's edge
-// and aspect are drawn first, and the triangle is then rotated into place.
+// Triangles of a scene's sizes, and pairs of triangles that touch at the origin. Unlike in strata/contact.h, a
+// triangle's edge and aspect are drawn first, and the triangle is then rotated into place.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@ struct Sizes {
   Part edges, aspect;
 };
 
-// These are functions, because device code cannot refer to constants of class type.
+// Sizes are functions, because device code cannot refer to constants of class type.
 GRAZE_HD inline Sizes largest_eighth() { return {{0.875, 1}, {}}; }
 GRAZE_HD inline Sizes smallest_eighth() { return {{0, 0.125}, {}}; }
 
@@ -70,7 +70,7 @@ GRAZE_HD inline Vec unit(const Vec& v) {
   return squared > 0x1p-200 ? v * (1 / sqrt(squared)) : unit_axis(0);
 }
 
-// The directions to draw from: all, or (flat) those in the plane of x and y, which are perpendicular unit vectors.
+// The directions to draw from: all, or if `flat` those in the plane of x and y, two perpendicular unit vectors.
 struct Space {
   bool flat = false;
   Vec x{1, 0, 0}, y{0, 1, 0};
@@ -91,7 +91,7 @@ GRAZE_HD inline Vec draw_across(auto& draws, const Space& space, const Vec& f) {
   return unit(dot(w, w) > 0x1p-40 ? w : cross(f, unit_axis((dominant_axis(f) + 1) % 3)));
 }
 
-// draw_plane: a random plane through the origin. axis_plane: one that two coordinate axes span.
+// draw_plane: a random plane through the origin. axis_plane: the plane that two coordinate axes span.
 GRAZE_HD inline Space draw_plane(auto& draws) {
   const Vec x = draw_direction(draws, {});
   return {true, x, draw_across(draws, {}, x)};

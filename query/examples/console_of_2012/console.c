@@ -39,7 +39,7 @@ static int start_benchmark(uint32_t size) {
   if (on_gpu)
     print_ends("GPU", gpu_ticks, gpu_results, count);
   else
-    printf("GPU: failed\n"); /* there may be none */
+    printf("GPU: failed\n"); /* there may be no GPU */
   chrono();
   const int on_cpu = tri2tris_intersection_detect_cpu(ref, tri_array, count, tri_result_array) != -1;
   const int cpu_ticks = chrono();

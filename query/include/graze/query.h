@@ -43,7 +43,7 @@ graze_triangles columns_of(const std::array<const Real*, 9>& columns, std::uint6
   return part;
 }
 
-// The faces of a mesh, each with the indices of three vertices, an array of std::array<float, 3> or <double, 3>.
+// The faces of a mesh, each with the indices of three vertices. Vertices are std::array<float, 3> or <double, 3>.
 template <std::ranges::contiguous_range Vertices>
 graze_triangles mesh_of(const Vertices& vertices, std::span<const std::array<std::uint32_t, 3>> faces) {
   using Vertex = std::ranges::range_value_t<Vertices>;
@@ -113,7 +113,7 @@ class Context {
   Answer all(const std::array<Real, 9>& reference, const graze_triangles& part,
              std::vector<std::uint8_t>& bytes) const {
     graze_query query = query_of(reference, part);
-    if (part.count > GRAZE_MOST_TRIANGLES) return run(query);  // which rejects it
+    if (part.count > GRAZE_MOST_TRIANGLES) return run(query);  // the query rejects the count
     bytes.resize(part.count);
     query.bytes = bytes.data();
     return run(query);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0
-   Tests reference triangles against an array of triangles: whether any triangle meets one, and which ones do. The
-   decision is exact, or made by a lane of your choice, on one core, all cores, one GPU or all GPUs. For C and, through
-   C, for every language; C++ has <graze/query.h>. docs/query.md has examples.
+   Tests reference triangles against an array of triangles: whether any triangle meets a reference, and which triangles
+   do. The decision is exact, or made by a lane of your choice, on one core, all cores, one GPU or all GPUs. For C and,
+   through C, for every language; C++ has <graze/query.h>. docs/query.md has examples.
 
    A triangle is nine floats, or nine doubles, x y z of each vertex. Nothing rounds them. It is the closed hull of its
    vertices: touching counts as meeting, and a degenerate triangle is a segment or a point. A triangle that is not
-   finite is declined and counted as such. */
+   finite is declined and counted in `declined`. */
 #ifndef GRAZE_QUERY_C_H
 #define GRAZE_QUERY_C_H
 
@@ -16,12 +16,12 @@
 extern "C" {
 #endif
 
-/* The result of a call. For all but GRAZE_OK the answer has a message of one line. */
+/* The result of a call. For every status but GRAZE_OK, the answer has a message of one line. */
 enum graze_status {
   GRAZE_OK = 0,
   GRAZE_BAD_ARGUMENT = 1,
   GRAZE_NO_DEVICE = 2,
-  GRAZE_NO_MEMORY = 3, /* of the host or of a device */
+  GRAZE_NO_MEMORY = 3, /* on the host or on a device */
   GRAZE_DEVICE_FAILED = 4,
   GRAZE_CANCELLED = 5,
   GRAZE_FAILED = 6
@@ -30,7 +30,7 @@ enum graze_status {
 /* The type of coordinates. */
 enum graze_coordinates {
   GRAZE_F32 = 0, /* float */
-  GRAZE_F64 = 1  /* double: only exact */
+  GRAZE_F64 = 1  /* double: only for the exact decision */
 };
 
 enum graze_layout {
@@ -43,10 +43,10 @@ enum graze_layout {
 #define GRAZE_MOST_TRIANGLES ((uint64_t)1 << 48)
 
 /* An array of triangles. rows, columns and vertices point to coordinates of the query's type, and are aligned like it.
-   Strides are in bytes; 0 means that elements are contiguous. The following is checked, and GRAZE_BAD_ARGUMENT results
-   if it fails. A stride is a multiple of the alignment, at least an element's size, and not negative. An array takes at
-   most PTRDIFF_MAX bytes from its first element to its last, and does not wrap around the end of the address space. Not
-   checked: the caller guarantees that the pointers refer to such memory. */
+   Strides are in bytes; 0 means that elements are contiguous. The following rules
+   are checked; breaking one gives GRAZE_BAD_ARGUMENT. A stride is a multiple of the alignment, at least an element's
+   size, and not negative. An array takes at most PTRDIFF_MAX bytes from its first element to its last, and does not
+   wrap around the end of the address space. The caller guarantees that the pointers refer to such memory. */
 typedef struct graze_triangles {
   uint64_t count;
   int layout;
@@ -82,7 +82,7 @@ typedef struct graze_query {
   int mode;
   int executor;
   const char* lane; /* NULL: exact. Else a name from `graze lanes`: moller_1997/f32/cpu, or a CUDA lane for a GPU */
-  /* For GRAZE_ALL; each may be NULL. They have a row for each reference. bytes: one byte for each triangle, 1 meets the
+  /* For GRAZE_ALL; each may be NULL, and has a row for each reference. bytes: one byte for each triangle, 1 meets the
      reference, 0 does not, 2 declined. bits: (triangles + 7) / 8 bytes; triangle i is bit i % 8 of byte i / 8. With
      bits, each part but the last has a multiple of 64 triangles. */
   unsigned char* bytes;
@@ -91,7 +91,7 @@ typedef struct graze_query {
      list_room of them. */
   uint64_t* list;
   uint64_t list_room;
-  int outputs_on_device; /* bytes and bits are in the device memory of the triangles, which are one part */
+  int outputs_on_device; /* bytes and bits are in the memory of the triangles' device; the triangles are one part */
   int coordinates;       /* the type of the coordinates of all triangles and references */
   void* stream; /* a cudaStream_t that orders the work on triangles in device memory; NULL: our own stream, after
                    the work that was given to the default stream */
@@ -109,10 +109,10 @@ typedef struct graze_answer {
   uint64_t declined;        /* pairs declined; for GRAZE_ANY only with the first reference, before the hit */
   uint64_t first;           /* the first triangle that meets a reference; UINT64_MAX: none. With parts in the memory
                                of several devices, GRAZE_ANY may find a later one. */
-  uint64_t first_reference; /* the first reference that it meets */
-  int executor;             /* the executor that was used; GRAZE_AUTO: the query was refused, and none was */
+  uint64_t first_reference; /* the first reference that this triangle meets */
+  int executor;             /* the executor that was used; GRAZE_AUTO: none, because the query was refused */
   double seconds;
-  double longest_launch; /* seconds of device time */
+  double longest_launch; /* of the longest kernel launch, in seconds of device time */
 } graze_answer;
 
 /* Holds a device's resources from the first query on that device until graze_close. Threads may share a context; they

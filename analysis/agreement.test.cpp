@@ -10,17 +10,15 @@
 namespace graze::analysis {
 namespace {
 
-std::vector<strata::PairSource> drawn(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs) {
-  return strata::stratum_sources(seed, pairs, globs);
-}
+using strata::stratum_sources;
 
 const Lane& lane(const char* id) { return *find_lane(id); }
 
 AgreeSpec spec_of(const Lane& first, const Lane& second, std::uint64_t pairs, const std::vector<std::string>& globs) {
   AgreeSpec spec;
   spec.sweep = agreement_sweep(first, second);
-  spec.sources = drawn(5, pairs / 10, globs);
-  spec.others = drawn(6, pairs, globs);
+  spec.sources = stratum_sources(5, pairs / 10, globs);
+  spec.others = stratum_sources(6, pairs, globs);
   spec.sites = sites_asked(first, spec.sources);
   return spec;
 }
@@ -29,7 +27,7 @@ TEST(Tolerance, MayBeSubnormal) { EXPECT_EQ(tolerance_of("plane_distance=abs:1e-
 
 // Compares every count with a recount by decide_one: without a policy, on ladders, and for twins.
 TEST(AgreementSweep, CountsWhatARecountCounts) {
-  const auto sources = drawn(3, 3001, {"near_vertex_face", "shared_edge", "extreme_scale"});
+  const auto sources = stratum_sources(3, 3001, {"near_vertex_face", "shared_edge", "extreme_scale"});
   const std::vector<std::string> policies = {"", "abs:1e-9", "abs:1e-6", "rel:1", "rel:100", "plane_distance=rel:8"};
   const Lane &first = lane("moller_1997/f32/cpu"), &second = lane("moller_1997/f32/cuda-fma");
   const std::vector<Agreement> found = agreement_sweep(first, second)(policies, sources);
@@ -122,7 +120,8 @@ void expect_true(const AgreeSpec& spec, const Agreed& agreed, const std::vector<
     }
   }
   EXPECT_EQ(clearly(chosen), any);
-  const Agreement fresh = spec.sweep(std::vector<std::string>{agreed.chosen}, drawn(77, 20'000, globs)).front();
+  const Agreement fresh =
+      spec.sweep(std::vector<std::string>{agreed.chosen}, stratum_sources(77, 20'000, globs)).front();
   EXPECT_LE(lower_bound(fresh.differing, fresh.pairs), agreed.high) << agreed.chosen;
   EXPECT_GE(upper_bound(fresh.differing, fresh.pairs), agreed.low) << agreed.chosen;
 }
@@ -176,8 +175,8 @@ TEST(Agree, ABluntToleranceIsNotChosen) {
 // If only a blunt tolerance makes the lanes agree, it is reported, and the best of the other tolerances is chosen.
 TEST(Agree, NamesABluntToleranceThatAloneWouldDo) {
   AgreeSpec spec;
-  spec.sources = drawn(5, 1000, {"uniform"});
-  spec.others = drawn(6, 1000, {"uniform"});
+  spec.sources = stratum_sources(5, 1000, {"uniform"});
+  spec.others = stratum_sources(6, 1000, {"uniform"});
   spec.sites = {"plane_distance"};
   spec.max_rate = 1e-2;
   spec.sweep = [](Policies policies, Sources) {

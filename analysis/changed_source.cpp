@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "subjects/rebuilt.h"
 #include "subjects/subjects.h"
 
 namespace graze::analysis {
@@ -71,7 +72,5 @@ std::optional<InitialValues> by_initial_values(const Lane& lane, Verdict truth,
   if (!right[true] || subjects::changed(lane, {.flags = warnings_are_errors})) return std::nullopt;
   return InitialValues{words + ", and the compiler warns of one", false};
 }
-
-subjects::ChangedCode in_doubles(const Lane& lane) { return subjects::changed(lane, {.doubles = true}); }
 
 }  // namespace graze::analysis

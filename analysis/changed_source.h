@@ -7,7 +7,6 @@
 #include <string>
 
 #include "core/lanes/lanes.h"
-#include "subjects/rebuilt.h"
 
 namespace graze::analysis {
 
@@ -37,8 +36,5 @@ struct InitialValues {
 // verdict_of: the verdict of the changed code.   Requires: the lane is wrong on the pair.
 std::optional<InitialValues> by_initial_values(const Lane& lane, Verdict truth,
                                                const std::function<Verdict(const DecideBlock& block)>& verdict_of);
-
-// The source with double in place of float. Null if that does not compile, or if there is no source.
-subjects::ChangedCode in_doubles(const Lane& lane);
 
 }  // namespace graze::analysis

@@ -8,7 +8,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 
 #include "analysis/sweep.h"
@@ -78,8 +77,10 @@ void for_lane(const Lane& lane, const F& f) {
 void record(const Lane& lane, std::span<const Pair> pairs, const Records& to) {
   record_on_host(lane)(pairs.data(), pairs.size(), to);
 }
+// Requires: a lane in double.
 void record(const Lane& lane, std::span<const DoublePair> pairs, const Records& to) {
-  record_doubles_on_host(lane)(pairs.data(), pairs.size(), to);
+  const RecordFunction<DoublePair> own = host_record_of_doubles(lane);
+  (own ? own : cuda::twin_record_of_doubles(lane))(pairs.data(), pairs.size(), to);
 }
 
 // The records of one lane on a block of pairs.
@@ -212,11 +213,6 @@ DiscrepancyCounts& DiscrepancyCounts::operator+=(const DiscrepancyCounts& other)
 RecordBlock record_on_host(const Lane& lane) {
   const RecordBlock own = host_record(lane);
   return own ? own : cuda::twin_record(lane);
-}
-
-RecordFunction<DoublePair> record_doubles_on_host(const Lane& lane) {
-  const RecordFunction<DoublePair> own = host_record_of_doubles(lane);
-  return own ? own : cuda::twin_record_of_doubles(lane);
 }
 
 std::string why_not_compared(const Lane& l, const Lane& r) {

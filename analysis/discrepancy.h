@@ -31,7 +31,6 @@ struct DiscrepancyCounts {
 
 // Records of a lane on the host: its own, or those of its twin. Null if there is none.
 RecordBlock record_on_host(const Lane& lane);
-RecordFunction<DoublePair> record_doubles_on_host(const Lane& lane);  // null for lanes in float as well
 
 // Why the values of two lanes cannot be compared on the host; empty if they can: they are lanes of one algorithm and
 // scalar that record their values.

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/discrepancy_origins.h"
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <bit>
 #include <functional>
 #include <type_traits>
 
+#include "analysis/over_threads.h"
 #include "analysis/sweep.h"
 #include "core/discrepancy/count.h"
 
@@ -185,8 +181,6 @@ Origins origins(const Lane& lane, const std::vector<strata::PairSource>& sources
   std::vector<strata::PairSource> first = sources;
   for (strata::PairSource& source : first) source.pairs = std::min(source.pairs, pairs);
   const std::vector<SourceBlock> blocks = blocks_of(first, kPairsTraced);
-  const auto most = static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency());
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, most);
   // Equally simple pairs are ordered by their coordinates and type, so that the simplest does not depend on the
   // threads.
   const Simpler before = [&](const AnyPair& l, const AnyPair& r) {
@@ -200,21 +194,19 @@ Origins origins(const Lane& lane, const std::vector<strata::PairSource>& sources
     nothing.lines = lines_of(lane, first);
     return nothing;
   };
-  tbb::enumerable_thread_specific<Origins> results(nothing_yet);
-  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+  const auto examine_block = [&](std::size_t b, Origins& to) {
     const strata::PairSource& source = first[static_cast<std::size_t>(blocks[b].source)];
     const strata::PairBlock block = strata::pairs_of(source, blocks[b].first, blocks[b].count);
     if (block.in_doubles()) {
-      examine<double>(lane, block.doubles, before, results.local());
+      examine<double>(lane, block.doubles, before, to);
     } else if (lane.scalar == Scalar::f32) {
-      examine<float>(lane, block.floats, before, results.local());
+      examine<float>(lane, block.floats, before, to);
     } else {
-      examine<double>(lane, block.floats, before, results.local());
+      examine<double>(lane, block.floats, before, to);
     }
-  });
-  Origins all = nothing_yet();
-  for (const Origins& some : results) add(all, some, before);
-  return all;
+  };
+  return sum_over_threads(blocks.size(), threads, nothing_yet, examine_block,
+                          [&](Origins& all, const Origins& some) { add(all, some, before); });
 }
 
 }  // namespace graze::analysis

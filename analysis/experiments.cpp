@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
+#include <map>
+#include <mutex>
 #include <optional>
 #include <sstream>
+#include <tuple>
 
 #include "analysis/changed_source.h"
 #include "analysis/image_experiments.h"
@@ -399,5 +402,24 @@ Experiment experiment(const Lane& lane, Verdict verdict, const BasicPair<Real>& 
 
 template Experiment experiment(const Lane&, Verdict, const Pair&, Verdict);
 template Experiment experiment(const Lane&, Verdict, const DoublePair&, Verdict);
+
+Experiment known_experiment(const Lane& lane, Verdict verdict, const AnyPair& pair, Verdict truth) {
+  using Key = std::tuple<std::string, Verdict, Verdict, std::string>;
+  constexpr std::size_t kMostKnown = 20'000;  // about 20 MB
+  static std::map<Key, Experiment> known;
+  static std::mutex mutex;
+  const auto made_on = [&](const auto& own) { return experiment(lane, verdict, own, truth); };
+  if (find_lane(lane.id) != &lane) return visit(pair, made_on);
+  const auto bytes = [](const auto& own) { return std::string(reinterpret_cast<const char*>(&own), sizeof own); };
+  const Key key{lane.id, verdict, truth, visit(pair, bytes)};
+  {
+    const std::lock_guard lock(mutex);
+    if (const auto found = known.find(key); found != known.end()) return found->second;
+  }
+  Experiment made = visit(pair, made_on);
+  const std::lock_guard lock(mutex);
+  if (known.size() >= kMostKnown) known.clear();
+  return known.insert_or_assign(key, std::move(made)).first->second;
+}
 
 }  // namespace graze::analysis

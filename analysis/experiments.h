@@ -68,4 +68,8 @@ struct Experiment {
 template <class Real>
 Experiment experiment(const Lane& lane, Verdict verdict, const BasicPair<Real>& pair, Verdict truth);
 
+// The same, but for a lane in the lane table it returns the result that this process already has for the pair. An
+// experiment takes hundreds of verdicts, and a program may need a millisecond for each.   Thread-safe.
+Experiment known_experiment(const Lane& lane, Verdict verdict, const AnyPair& pair, Verdict truth);
+
 }  // namespace graze::analysis

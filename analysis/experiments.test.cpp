@@ -12,7 +12,6 @@
 #include <map>
 
 #include "analysis/convention.h"
-#include "analysis/known_experiments.h"
 #include "analysis/neighbours.h"
 #include "analysis/scales.h"
 #include "analysis/signature.h"

@@ -14,29 +14,12 @@
 
 #include "analysis/audit.h"
 #include "analysis/convention.h"
-#include "analysis/known_experiments.h"
+#include "analysis/experiments.h"
 #include "core/lanes/verdicts.h"
 #include "core/relation_of.h"
 
 namespace graze::analysis {
 namespace {
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic error "-Wswitch"  // a new site needs its name here
-std::string_view name_of(Site site) {
-  switch (site) {
-    case Site::plane_distance:
-      return "plane_distance";
-    case Site::parallel:
-      return "parallel";
-    case Site::orientation:
-      return "orientation";
-    case Site::separation:
-      return "separation";
-  }
-  return "";
-}
-#pragma GCC diagnostic pop
 
 constexpr std::string_view kComparisons[] = {"<", "<=", "==", ">", ">="};
 
@@ -113,7 +96,7 @@ Cause refined(const LaneExplanation& lane, const AnyPair& pair) {
 
 Step step_of(const Seen<double>& seen, const oracle::ExactStep& exact) {
   return {line_of(seen.where),
-          seen.site ? name_of(*seen.site) : "",
+          seen.site ? name(*seen.site) : "",
           seen.compared ? kComparisons[static_cast<int>(seen.comparison)] : "",
           exact.left,
           exact.right,
@@ -170,15 +153,21 @@ LaneExplanation account_of(const Lane& lane, Verdict verdict, const AnyPair& pai
   return result;
 }
 
-LaneExplanation account_of_foreign(const Lane& lane, Verdict verdict, const AnyPair& pair, Verdict truth) {
-  Experiment found = known_experiment(lane, verdict, pair, truth);
+// The account of a lane whose steps are not known.
+LaneExplanation without_steps(const Lane& lane, Verdict verdict, Cause cause, bool settled) {
   LaneExplanation result{};
   result.lane = &lane;
   result.verdict = verdict;
-  result.cause = found.cause;
+  result.cause = cause;
   result.exactly.verdict = Verdict::declined;
   result.evidence = Evidence::none;
-  result.settled = found.settled ? Settled::yes : Settled::unknown;
+  result.settled = settled ? Settled::yes : Settled::unknown;
+  return result;
+}
+
+LaneExplanation account_of_foreign(const Lane& lane, Verdict verdict, const AnyPair& pair, Verdict truth) {
+  Experiment found = known_experiment(lane, verdict, pair, truth);
+  LaneExplanation result = without_steps(lane, verdict, found.cause, found.settled);
   result.experiment = std::move(found.evidence);
   result.line = std::move(found.line);
   if (result.cause == Cause::contraction && !cuda::contraction_sites(lane).empty()) {
@@ -200,13 +189,7 @@ const Lane& without_policy(const Lane& lane) {
 
 LaneExplanation account_of_policy(const Lane& lane, Verdict verdict, const AnyPair& pair, Verdict truth) {
   const Lane& zero = without_policy(lane);
-  LaneExplanation result{};
-  result.lane = &lane;
-  result.verdict = verdict;
-  result.exactly.verdict = Verdict::declined;
-  result.evidence = Evidence::none;
-  result.settled = Settled::yes;
-  result.cause = Cause::policy;
+  LaneExplanation result = without_steps(lane, verdict, Cause::policy, true);
   if (verdict == Verdict::declined) {
     result.experiment = "its error bounds leave a comparison open, so it may decline";
   } else if (decide_lane(zero, pair) == truth) {
@@ -247,13 +230,7 @@ std::string what_rounding_decides(const DoublePair& pair, const Pair& stored, Ve
 // Explains a float32 lane that is right on the pair as float32 stores it, or whose pair float32 cannot store.
 LaneExplanation account_of_stored(const Lane& lane, Verdict verdict, const DoublePair& pair, const Pair& stored,
                                   Verdict truth) {
-  LaneExplanation result{};
-  result.lane = &lane;
-  result.verdict = verdict;
-  result.cause = Cause::stored;
-  result.exactly.verdict = Verdict::declined;
-  result.evidence = Evidence::none;
-  result.settled = Settled::yes;
+  LaneExplanation result = without_steps(lane, verdict, Cause::stored, true);
   result.experiment = what_rounding_decides(pair, stored, truth);
   result.beyond = !is_finite(stored);
   result.slow = true;  // neighbours of a pair that the lane did not get would show nothing

@@ -14,7 +14,6 @@
 
 #include "analysis/changed_source.h"
 #include "analysis/experiments.h"
-#include "analysis/image_experiments.h"
 #include "analysis/scales.h"
 #include "backends/backends.h"
 #include "core/lanes/verdicts.h"
@@ -151,7 +150,7 @@ class ImageVerdicts {
   DecideBlock in_float64() const {
     if (const Lane* f64 = analysis::in_float64(lane_)) return block_of(*f64);
     if (lane_.scalar == Scalar::f64) return nullptr;
-    if (!doubles_) doubles_ = in_doubles(*source);
+    if (!doubles_) doubles_ = subjects::changed(*source, {.doubles = true});
     return *doubles_ ? DecideBlock(**doubles_) : nullptr;
   }
 

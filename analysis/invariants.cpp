@@ -2,16 +2,13 @@
 #include "analysis/invariants.h"
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <mutex>
 
 #include "analysis/explain.h"
 #include "analysis/neighbours.h"
+#include "analysis/over_threads.h"
 #include "analysis/scales.h"
 #include "core/lanes/convention.h"
 #include "core/lanes/verdicts.h"
@@ -44,16 +41,7 @@ const Claims kClaims[] = {
     {"separating_axes", {Invariant::swap, Invariant::mirror, Invariant::scale}},
 };
 
-template <class Real>
-std::vector<BasicPair<Real>> scaled_images(const BasicPair<Real>& pair) {
-  std::vector<BasicPair<Real>> result;
-  for (const int k : kScales) {
-    if (const std::optional<BasicPair<Real>> image = exactly_scaled(pair, k)) result.push_back(*image);
-  }
-  return result;
-}
-
-// The indices in kScales of the images that scaled_images returns, in the same order.
+// The indices in kScales of the scales at which the pair loses no bit: those of its images under `scale`, in order.
 template <class Real>
 std::vector<std::size_t> used_scales(const BasicPair<Real>& pair) {
   std::vector<std::size_t> places;
@@ -242,7 +230,8 @@ std::vector<BasicPair<Real>> images(Invariant invariant, const BasicPair<Real>& 
       result = axes(pair);
       break;
     case Invariant::scale:
-      return scaled_images(pair);
+      for (const std::size_t s : used_scales(pair)) result.push_back(scaled(pair, kScales[s]));
+      return result;
     case Invariant::translate:
       result = translated(pair);
       break;
@@ -288,29 +277,24 @@ bool oracle_intersects(const AnyPair& pair) {
 
 Invariants invariants(const InvariantSpec& spec) {
   const std::vector<SourceBlock> blocks = blocks_of(spec.sources, kBlock);
-  const auto threads = static_cast<std::size_t>(spec.threads > 0 ? spec.threads : tbb::info::default_concurrency());
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-  tbb::enumerable_thread_specific<Invariants> results([&] { return nothing_yet(spec); });
   const Run run{spec};
   // Reports a broken invariant in the first block that has one, whichever thread finds one first.
   std::mutex mutex;
   std::size_t first_broken = blocks.size();
   std::string what;
-  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+  const auto run_block = [&](std::size_t b, Invariants& result) {
     {
       const std::lock_guard lock(mutex);
       if (b > first_broken) return;
     }
     try {
-      run.ask(blocks[b], results.local());
+      run.ask(blocks[b], result);
     } catch (const InvariantBroken& error) {
       const std::lock_guard lock(mutex);
       if (b < first_broken) first_broken = b, what = error.what();
     }
-  });
-  if (first_broken < blocks.size()) throw InvariantBroken(what);
-  Invariants all = nothing_yet(spec);
-  for (const Invariants& some : results) {
+  };
+  const auto add = [&](Invariants& all, const Invariants& some) {
     all.pairs += some.pairs;
     all.images += some.images;
     all.by_oracle += some.by_oracle;
@@ -324,7 +308,10 @@ Invariants invariants(const InvariantSpec& spec) {
       }
       for (std::size_t s = 0; s < kScales.size(); ++s) all.lanes[l].by_scale[s] += some.lanes[l].by_scale[s];
     }
-  }
+  };
+  Invariants all = sum_over_threads(
+      blocks.size(), spec.threads, [&] { return nothing_yet(spec); }, run_block, add);
+  if (first_broken < blocks.size()) throw InvariantBroken(what);
   return all;
 }
 

@@ -5,10 +5,8 @@
 
 #include <array>
 #include <functional>
-#include <map>
 #include <optional>
 #include <stdexcept>
-#include <string>
 #include <string_view>
 #include <vector>
 

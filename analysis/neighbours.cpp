@@ -12,6 +12,9 @@
 namespace graze::analysis {
 namespace {
 
+// The six orders of three things.
+constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+
 // x + y if the sum is exact.   Reference: Knuth, two-sum.
 template <class Real>
 std::optional<Real> exact_sum(Real x, Real y) {
@@ -25,6 +28,13 @@ std::optional<Real> exact_middle(Real x, Real y) {
   if (const std::optional<Real> sum = exact_sum(x, y))
     return *sum / 2 * 2 == *sum ? std::optional(*sum / 2) : std::nullopt;
   return x / 2 * 2 == x && y / 2 * 2 == y ? exact_sum(x / 2, y / 2) : std::nullopt;  // the sum may overflow
+}
+
+template <class Real>
+Real largest_of(const BasicPair<Real>& pair) {
+  Real largest = 0;
+  for (int i = 0; i < kCoordinates; ++i) largest = std::max(largest, std::abs(coordinates(pair)[i]));
+  return largest;
 }
 
 template <class Real>
@@ -55,7 +65,6 @@ bool exact_middles(const Vec3<Real> (&v)[3], Vec3<Real> (&middles)[3]) {
 
 template <class Real>
 std::vector<BasicPair<Real>> orders(const BasicPair<Real>& pair) {
-  constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
   std::vector<BasicPair<Real>> result;
   for (int order = 0; order < 72; ++order) {
     BasicPair<Real> reordered;
@@ -91,9 +100,8 @@ std::vector<BasicPair<Real>> scalings(const BasicPair<Real>& pair) {
 
 template <class Real>
 std::vector<BasicPair<Real>> axes(const BasicPair<Real>& pair) {
-  constexpr int kAxes[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
   std::vector<BasicPair<Real>> result;
-  for (const auto& order : kAxes) {
+  for (const auto& order : kOrders) {
     BasicPair<Real> turned;
     for (int i = 0; i < kCoordinates; ++i) coordinates(turned)[i] = coordinates(pair)[i - i % 3 + order[i % 3]];
     result.push_back(turned);
@@ -104,8 +112,7 @@ std::vector<BasicPair<Real>> axes(const BasicPair<Real>& pair) {
 template <class Real>
 std::vector<BasicPair<Real>> translated(const BasicPair<Real>& pair) {
   std::vector<BasicPair<Real>> result{pair};
-  Real largest = 0;
-  for (int i = 0; i < kCoordinates; ++i) largest = std::max(largest, std::abs(coordinates(pair)[i]));
+  const Real largest = largest_of(pair);
   std::vector<Vec3<Real>> steps;
   for (const auto& triangle : {pair.a, pair.b}) {
     for (int i = 0; i < 3; ++i) steps.push_back({-triangle[i].x, -triangle[i].y, -triangle[i].z});
@@ -141,9 +148,7 @@ std::vector<BasicPair<Real>> parts(const BasicPair<Real>& pair) {
 
 template <class Real>
 std::vector<BasicPair<Real>> nudged(const BasicPair<Real>& pair, int coordinate) {
-  Real largest = 0;
-  for (int i = 0; i < kCoordinates; ++i) largest = std::max(largest, std::abs(coordinates(pair)[i]));
-  const Real c = coordinates(pair)[coordinate], size = c == 0 ? largest : std::abs(c);
+  const Real c = coordinates(pair)[coordinate], size = c == 0 ? largest_of(pair) : std::abs(c);
   const Real ulp = std::nextafter(size, std::numeric_limits<Real>::infinity()) - size, more = size * Real{0x1p-10};
   std::vector<BasicPair<Real>> result;
   for (const Real step : {ulp, -ulp, more, -more}) {

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/sweep.h"
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <iterator>
 
 #include "analysis/convention.h"
+#include "analysis/over_threads.h"
 #include "backends/backends.h"
 #include "core/exact/exact.h"
 #include "core/judged_bits.h"
@@ -172,10 +167,7 @@ std::vector<Result> run(const std::vector<std::vector<Together>>& lanes, std::si
                         const std::vector<Result>& empty, Sources sources, int threads, const Add& add) {
   const DecideBlock exact = find_lane("exact/f32/cpu")->decide, in_doubles = find_lane("exact/f64/cpu")->decide;
   const std::vector<SourceBlock> blocks = blocks_of(sources, kBlock);
-  const auto count = static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency());
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, count);
-  tbb::enumerable_thread_specific<std::vector<Result>> results(empty);
-  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+  const auto run_block = [&](std::size_t b, std::vector<Result>& result) {
     const SourceBlock& block = blocks[b];
     const strata::PairBlock pairs =
         strata::pairs_of(sources[static_cast<std::size_t>(block.source)], block.first, block.count);
@@ -189,14 +181,13 @@ std::vector<Result> run(const std::vector<std::vector<Together>>& lanes, std::si
     for (std::size_t l = 0; l < lanes.size(); ++l) {
       for (const Together& part : lanes[l]) part.decide(pairs, truth, rows[l]);
     }
-    std::vector<Result>& result = results.local();
     for (std::size_t p = 0; p < result.size(); ++p) add(block, truth, rows, p, result[p]);
-  });
-  std::vector<Result> sums = empty;
-  for (const std::vector<Result>& some : results) {
-    for (std::size_t p = 0; p < some.size(); ++p) sums[p] += some[p];
-  }
-  return sums;
+  };
+  return sum_over_threads(
+      blocks.size(), threads, [&] { return empty; }, run_block,
+      [](std::vector<Result>& sums, const std::vector<Result>& some) {
+        for (std::size_t p = 0; p < some.size(); ++p) sums[p] += some[p];
+      });
 }
 
 template <class Result>

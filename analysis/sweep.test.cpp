@@ -15,10 +15,7 @@
 namespace graze::analysis {
 namespace {
 
-std::vector<strata::PairSource> drawn(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs,
-                                      PairTypes types = PairTypes::f32) {
-  return strata::stratum_sources(seed, pairs, globs, types);
-}
+using strata::stratum_sources;
 
 const Lane& moller() { return *find_lane("moller_1997/f32/cpu"); }
 
@@ -33,7 +30,7 @@ void count(PolicyErrors& to, Verdict truth, Verdict with, Verdict without, const
 }
 
 TEST(Sweep, CountsWhatEachPolicyGetsWrong) {
-  const auto sources = drawn(3, 3001, {"near_vertex_face", "shared_edge", "extreme_scale"});
+  const auto sources = stratum_sources(3, 3001, {"near_vertex_face", "shared_edge", "extreme_scale"});
   const std::vector<std::string> policies = {"", "abs:1e-6", "rel:100", "bound"};
   const std::vector<PolicyErrors> found = host_sweep(moller())(policies, sources);
   for (std::size_t p = 0; p < policies.size(); ++p) {
@@ -73,7 +70,7 @@ TEST(Sweep, CountsWhatEachPolicyGetsWrong) {
 
 // For doubles the truth is CGAL's, and a lane in float decides what float32 stores.
 TEST(Sweep, CountsPairsOfDoublesByTheirOwnTruth) {
-  const auto sources = drawn(3, 400, {"near_vertex_face", "stored"}, PairTypes::f64);
+  const auto sources = stratum_sources(3, 400, {"near_vertex_face", "stored"}, PairTypes::f64);
   const std::vector<std::string> policies = {"abs:1e-6", "rel:100", "bound"};
   for (const char* id : {"moller_1997/f32/cpu", "moller_1997/f64/cpu", "moller_1997/f32/cpu-fma"}) {
     const Lane& lane = *find_lane(id);
@@ -96,7 +93,7 @@ TEST(Sweep, CountsPairsOfDoublesByTheirOwnTruth) {
 }
 
 TEST(Sweep, ListsEachPairOnWhichSomePolicyIsNotRight) {
-  const auto sources = drawn(3, 3001, {"near_vertex_face", "extreme_scale"});
+  const auto sources = stratum_sources(3, 3001, {"near_vertex_face", "extreme_scale"});
   const std::vector<std::string> policies = {"", "abs:1e-6", "rel:100", "bound"};
   std::vector<DecideBlock> lanes = {moller().decide};
   for (std::size_t p = 1; p < policies.size(); ++p) lanes.push_back(lane_under(moller(), policies[p]).decide);
@@ -129,7 +126,7 @@ TEST(Sweep, ListsEachPairOnWhichSomePolicyIsNotRight) {
 // A sweep of many tolerances at once counts the same as one sweep for each: absolute and relative, at all sites and at
 // one.
 TEST(Sweep, ManyTolerancesAtOnceAreEachAlone) {
-  const auto sources = drawn(8, 2 * strata::kStrataCount * 300, {}, PairTypes::both);
+  const auto sources = stratum_sources(8, 2 * strata::kStrataCount * 300, {}, PairTypes::both);
   std::vector<std::string> policies;
   for (const std::string_view form : {"abs", "rel", "plane_distance=abs", "separation=rel"}) {
     for (int k = -60; k <= 20; k += 5) policies.push_back(fmt::format("{}:{}", form, std::exp2(k)));

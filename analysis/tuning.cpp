@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/tuning.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <boost/math/distributions/binomial.hpp>
-#include <cmath>
 
 #include "analysis/lane_trace.h"
 #include "analysis/scales.h"

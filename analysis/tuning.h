@@ -3,7 +3,6 @@
 // reports problems with epsilons that an error count alone does not show.
 #pragma once
 
-#include <algorithm>
 #include <compare>
 #include <cstdint>
 #include <string>

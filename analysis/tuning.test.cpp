@@ -10,14 +10,11 @@
 #include <set>
 
 #include "core/exact/exact.h"
-#include "strata/strata.h"
 
 namespace graze::analysis {
 namespace {
 
-std::vector<strata::PairSource> drawn(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs) {
-  return strata::stratum_sources(seed, pairs, globs);
-}
+using strata::stratum_sources;
 
 const Lane& moller() { return *find_lane("moller_1997/f32/cpu"); }
 
@@ -61,7 +58,7 @@ TEST(LowerBound, IsRoundedOutward) {
 }
 
 TEST(Scaled, IsExactOrLeftAlone) {
-  const auto sources = drawn(1, 200, {"extreme_scale"});
+  const auto sources = stratum_sources(1, 200, {"extreme_scale"});
   const auto moved = scaled(sources, 3);
   int changed = 0;
   for (std::uint64_t i = 0; i < 200; ++i) {
@@ -98,8 +95,8 @@ TEST(Tune, BothRatesNeedABound) {
 TEST(Tune, ChoosesForWhatIsForbidden) {
   TuneSpec spec;
   spec.sweep = host_sweep(moller());
-  spec.sources = drawn(5, 6000, {"near_*"});
-  spec.others = drawn(6, 20'000, {"near_*"});
+  spec.sources = stratum_sources(5, 6000, {"near_*"});
+  spec.others = stratum_sources(6, 20'000, {"near_*"});
   spec.sites = sites_asked(moller(), spec.sources);
   EXPECT_EQ(spec.sites, (std::vector<std::string>{"plane_distance", "separation"}));
   spec.max_rate = 1e-3;
@@ -129,8 +126,8 @@ TEST(Tune, NoPolicyIsGoodEnoughOnlyWhereNoneOfTheCurvesIs) {
       for (const std::uint64_t seed : {1u, 2u, 3u}) {
         TuneSpec spec;
         spec.sweep = host_sweep(moller());
-        spec.sources = drawn(seed, pairs, {"near_*"});
-        spec.others = drawn(seed + 100, pairs * 10, {"near_*"});
+        spec.sources = stratum_sources(seed, pairs, {"near_*"});
+        spec.others = stratum_sources(seed + 100, pairs * 10, {"near_*"});
         spec.sites = {"plane_distance"};
         spec.forbid = seed == 3 ? Forbid::any : Forbid::false_negative;
         spec.max_rate = rate;
@@ -162,8 +159,8 @@ TEST(Tune, NoPolicyIsGoodEnoughOnlyWhereNoneOfTheCurvesIs) {
 TEST(Tune, SaysWhenPairsAreTooFew) {
   TuneSpec spec;
   spec.sweep = host_sweep(*find_lane("guigue_devillers_2003/f64/cpu"));
-  spec.sources = drawn(5, 500, {"uniform"});
-  spec.others = drawn(6, 2000, {"uniform"});
+  spec.sources = stratum_sources(5, 500, {"uniform"});
+  spec.others = stratum_sources(6, 2000, {"uniform"});
   spec.max_rate = 1e-4;
   const Tuned tuned = tune(spec);
   EXPECT_EQ(tuned.result, TuneResult::too_few_pairs);
@@ -182,8 +179,8 @@ TEST(Tune, FindsDeadKnobs) {
            : policy.find(",orientation=") != policy.npos ? real(policy.substr(0, policy.find(',')))
                                                          : real(policy);
   });
-  spec.sources = drawn(5, 3000, {"near_vertex_face"});
-  spec.others = drawn(6, 3000, {"near_vertex_face"});
+  spec.sources = stratum_sources(5, 3000, {"near_vertex_face"});
+  spec.others = stratum_sources(6, 3000, {"near_vertex_face"});
   spec.sites = {"plane_distance", "orientation"};
   EXPECT_EQ(tune(spec).dead, std::vector<std::string>{"orientation"});
 }
@@ -213,8 +210,8 @@ TEST(Tune, FindsWhereTheForbiddenErrorsDouble) {
   const DecideBlock policy(small);
   spec.sweep = host_sweep([&](const std::string& of) { return of.empty() ? moller().decide : policy; });
   spec.forbid = Forbid::false_positive;
-  spec.sources = drawn(5, 4000, {"near_vertex_face"});
-  spec.others = drawn(6, 4000, {"near_vertex_face"});
+  spec.sources = stratum_sources(5, 4000, {"near_vertex_face"});
+  spec.others = stratum_sources(6, 4000, {"near_vertex_face"});
   const Tuned tuned = tune(spec);
   ASSERT_NE(tuned.chosen, "");
   EXPECT_EQ(tuned.confirmed.false_positive, 0u);
@@ -230,8 +227,8 @@ TEST(Tune, FindsWhereTheScaleBreaksAPolicy) {
   WrongWhenSmall small;
   const DecideBlock policy(small);
   spec.sweep = host_sweep([&](const std::string& of) { return of.empty() ? moller().decide : policy; });
-  spec.sources = drawn(5, 4000, {"near_vertex_face"});  // coordinates of about 1
-  spec.others = drawn(6, 4000, {"near_vertex_face"});
+  spec.sources = stratum_sources(5, 4000, {"near_vertex_face"});  // coordinates of about 1
+  spec.others = stratum_sources(6, 4000, {"near_vertex_face"});
   const Tuned tuned = tune(spec);
   ASSERT_NE(tuned.chosen, "");
   EXPECT_EQ(tuned.confirmed.wrong(), 0u);

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/verdicts_apart.h"
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-
 #include "analysis/convention.h"
+#include "analysis/over_threads.h"
 #include "core/lanes/verdicts.h"
 #include "core/relation_of.h"
 
@@ -17,8 +13,6 @@ std::vector<VerdictsApart> verdicts_apart(const TwoDeciders& deciders, const std
                                           const std::function<bool(const AnyPair&, const AnyPair&)>& simpler) {
   constexpr std::uint64_t kPairsDecided = 64;
   const std::vector<SourceBlock> blocks = blocks_of(sources, kPairsDecided);
-  const auto most = static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency());
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, most);
   const auto pair_at = [&](const PairPlace& place) {
     return sources[static_cast<std::size_t>(place.source)].any_pair(place.index);
   };
@@ -31,8 +25,7 @@ std::vector<VerdictsApart> verdicts_apart(const TwoDeciders& deciders, const std
     const AnyPair old_pair = pair_at(*kept), pair = pair_at(found);
     if (simpler(pair, old_pair) || (!simpler(old_pair, pair) && found < *kept)) kept = found;
   };
-  tbb::enumerable_thread_specific<std::vector<VerdictsApart>> results(std::vector<VerdictsApart>(sources.size()));
-  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+  const auto count_block = [&](std::size_t b, std::vector<VerdictsApart>& result) {
     const SourceBlock& block = blocks[b];
     const auto source = static_cast<std::size_t>(block.source);
     const strata::PairBlock pairs = strata::pairs_of(sources[source], block.first, block.count);
@@ -41,7 +34,7 @@ std::vector<VerdictsApart> verdicts_apart(const TwoDeciders& deciders, const std
                                                             : verdicts_of(decide, pairs.floats);
     };
     const std::vector<Verdict> verdicts[2] = {verdicts_by(deciders.decide[0]), verdicts_by(deciders.decide[1])};
-    VerdictsApart& to = results.local()[source];
+    VerdictsApart& to = result[source];
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const AnyPair pair = pairs[i];
       const Relation truth = visit(pair, [](const auto& own) { return relation_or_declined(own); });
@@ -68,17 +61,17 @@ std::vector<VerdictsApart> verdicts_apart(const TwoDeciders& deciders, const std
         keep_simplest(to.simplest_mended, place);
       }
     }
-  });
-  std::vector<VerdictsApart> all(sources.size());
-  for (const std::vector<VerdictsApart>& some : results) {
+  };
+  const auto add = [&](std::vector<VerdictsApart>& all, const std::vector<VerdictsApart>& some) {
     for (std::size_t s = 0; s < all.size(); ++s) {
       all[s] += some[s];
       for (const auto simplest :
            {&VerdictsApart::simplest, &VerdictsApart::simplest_broken, &VerdictsApart::simplest_mended})
         if (some[s].*simplest) keep_simplest(all[s].*simplest, *(some[s].*simplest));
     }
-  }
-  return all;
+  };
+  return sum_over_threads(
+      blocks.size(), threads, [&] { return std::vector<VerdictsApart>(sources.size()); }, count_block, add);
 }
 
 }  // namespace graze::analysis

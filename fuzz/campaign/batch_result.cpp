@@ -34,16 +34,20 @@ void VerdictDigests::add(const VerdictDigests& other) {
   pairs += other.pairs;
 }
 
-void BatchResult::add(const BatchResult& other) {
+void PairCounts::add(const PairCounts& other) {
   tally.add(other.tally);
   extremes.add(other.extremes);
-  for (const auto& [signature, found] : other.signatures) signatures[signature].add(found);
-  for (const auto& [lane, found] : other.executor_mismatches) executor_mismatches[lane].add(found);
   digests.add(other.digests);
   disagreements += other.disagreements;
   cgal += other.cgal;
   gmp += other.gmp;
   exact += other.exact;
+}
+
+void BatchResult::add(const BatchResult& other) {
+  PairCounts::add(other);
+  for (const auto& [signature, found] : other.signatures) signatures[signature].add(found);
+  for (const auto& [lane, found] : other.executor_mismatches) executor_mismatches[lane].add(found);
 }
 
 }  // namespace graze::fuzz

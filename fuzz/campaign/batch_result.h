@@ -45,22 +45,28 @@ struct VerdictDigests {
   void add(const VerdictDigests& other);
 };
 
-struct BatchResult {
-  explicit BatchResult(const analysis::Tally& empty) : tally(empty), extremes(empty) {
+// The counts of some pairs, without their signatures.
+struct PairCounts {
+  explicit PairCounts(const analysis::Tally& empty) : tally(empty), extremes(empty) {
     digests.of_lane.resize(static_cast<std::size_t>(empty.lane_count()));
   }
+  void add(const PairCounts& other);
 
   analysis::Tally tally;
   analysis::Tally extremes;  // by place_on_axis; empty without an axis
-  std::map<analysis::Signature, SignatureCount> signatures;
-  std::map<std::string, SignatureCount> executor_mismatches;  // by lane: device and twin differ
   VerdictDigests digests;
   std::uint64_t disagreements = 0;  // pairs on which some lane is wrong
   std::uint64_t cgal = 0;           // pairs decided by CGAL
   std::uint64_t gmp = 0;            // pairs confirmed by GMP
   std::uint64_t exact = 0;          // pairs decided by the exact lane, here or on a device
+};
 
+struct BatchResult : PairCounts {
+  using PairCounts::PairCounts;
   void add(const BatchResult& other);
+
+  std::map<analysis::Signature, SignatureCount> signatures;
+  std::map<std::string, SignatureCount> executor_mismatches;  // by lane: device and twin differ
 };
 
 }  // namespace graze::fuzz

@@ -8,7 +8,6 @@
 
 #include "core/cannot.h"
 #include "core/error.h"
-#include "core/text.h"
 #include "fuzz/campaign/checked_summary.h"
 
 namespace graze::fuzz {

@@ -68,7 +68,7 @@ BatchResult GpuEngine::judge(int source, std::uint64_t first, std::uint64_t coun
     }));
   }
   const std::vector<const Lane*>& lanes = campaign_.under_test->lanes;
-  BatchResult result{analysis::Tally(analysis::cpu_twins(lanes))};
+  BatchResult result = no_counts(campaign_);
   std::vector<std::uint64_t> undecided;
   for (auto& run : runs) {
     for (const cuda::EngineResult& found : run.get()) {

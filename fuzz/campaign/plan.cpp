@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "analysis/sweep.h"
 #include "fuzz/campaign/cpu_engine.h"
 #include "fuzz/campaign/gpu_engine.h"
 #include "fuzz/campaign/result_files.h"
@@ -43,8 +44,7 @@ Sample measure(const Campaign& campaign) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
   GpuEngine device(campaign);
   Sample sample;
-  const bool of_doubles = std::any_of(campaign.sources.begin(), campaign.sources.end(),
-                                      [](const strata::PairSource& source) { return source.in_doubles(); });
+  const bool of_doubles = analysis::any_in_doubles(campaign.sources);
   sample.pairs_of_row = campaign.engines.empty() ? kSample : of_doubles ? kSampleOfDoubles : kSampleOfDevice;
   for (std::size_t s = 0; s < campaign.sources.size(); ++s) {
     const auto source = static_cast<int>(s);

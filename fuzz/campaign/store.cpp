@@ -85,14 +85,7 @@ Store::Store(StoreSpec spec)
 }
 
 void Store::add(const PairRange& range, const StoredCounts& counts) {
-  StoredCounts& total = of_source_[static_cast<std::size_t>(range.source)];
-  total.tally.add(counts.tally);
-  total.extremes.add(counts.extremes);
-  total.digests.add(counts.digests);
-  total.disagreements += counts.disagreements;
-  total.cgal += counts.cgal;
-  total.gmp += counts.gmp;
-  total.exact += counts.exact;
+  of_source_[static_cast<std::size_t>(range.source)].PairCounts::add(counts);
   for (const auto& [key, found] : counts.signatures) signatures_[key].add(found);
   for (const auto& [lane, found] : counts.executor_mismatches) executor_mismatches_[lane].add(found);
 }

@@ -5,9 +5,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
-#include <optional>
-
 #include "core/error.h"
 #include "core/fuzz_target.h"
 #include "fuzz/campaign/campaign.h"

@@ -6,11 +6,9 @@
 #include <sqlite3.h>
 #include <sys/stat.h>
 
-#include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <iterator>
-#include <limits>
 #include <memory>
 #include <new>
 #include <string_view>
@@ -139,6 +137,14 @@ std::string recorded_text(SQLite::Database& database) {
 }
 
 }  // namespace
+
+std::string file_bytes(SQLite::Database& database) {
+  sqlite3_int64 size = 0;
+  const std::unique_ptr<unsigned char, void (*)(void*)> bytes(sqlite3_serialize(database.getHandle(), "main", &size, 0),
+                                                              sqlite3_free);
+  if (!bytes) throw std::bad_alloc();
+  return {bytes.get(), bytes.get() + size};
+}
 
 std::string first_difference(const Json& expected, const Json& found) {
   const Json ours = expected.flatten(), theirs = found.flatten();  // "/lanes/0": "exact/f32/cpu"
@@ -359,11 +365,7 @@ std::string bytes_of_store(const std::string& text, const std::vector<KeptRow>& 
   SQLite::Transaction transaction(database);
   for (const KeptRow& row : rows) insert(database, fnv1a(text), row.range, row.bytes);
   transaction.commit();
-  sqlite3_int64 size = 0;
-  const std::unique_ptr<unsigned char, void (*)(void*)> bytes(sqlite3_serialize(database.getHandle(), "main", &size, 0),
-                                                              sqlite3_free);
-  if (!bytes) throw std::bad_alloc();
-  return {bytes.get(), bytes.get() + size};
+  return file_bytes(database);
 }
 
 // A row's checksum starts from the campaign's. So a row with a correct checksum belongs to this campaign, even if the

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -69,6 +68,9 @@ class StoreFile {
   std::optional<SQLite::Database> database_;
   std::uint64_t campaign_;  // checksum of the campaign's identity
 };
+
+// The bytes of the database's file.
+std::string file_bytes(SQLite::Database& database);
 
 // The first place in which two specs differ, with both values: `seed is 1, not 2`.
 std::string first_difference(const Json& expected, const Json& found);

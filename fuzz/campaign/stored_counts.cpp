@@ -137,32 +137,17 @@ Json parsed(const std::string& bytes) {
 }  // namespace
 
 StoredCounts::StoredCounts(int lanes)
-    : tally(std::vector<int>(static_cast<std::size_t>(lanes), -1)),
-      extremes(tally),
-      digests{std::vector<std::uint64_t>(static_cast<std::size_t>(lanes)), 0} {}
+    : PairCounts(analysis::Tally(std::vector<int>(static_cast<std::size_t>(lanes), -1))) {}
 
 StoredCounts::StoredCounts(const BatchResult& result)
-    : tally(result.tally),
-      extremes(result.extremes),
-      executor_mismatches(result.executor_mismatches),
-      digests(result.digests),
-      disagreements(result.disagreements),
-      cgal(result.cgal),
-      gmp(result.gmp),
-      exact(result.exact) {
+    : PairCounts(result), executor_mismatches(result.executor_mismatches) {
   for (const auto& [signature, found] : result.signatures) signatures[analysis::key(signature)].add(found);
 }
 
 void StoredCounts::add(const StoredCounts& other) {
-  tally.add(other.tally);
-  extremes.add(other.extremes);
+  PairCounts::add(other);
   for (const auto& [key, found] : other.signatures) signatures[key].add(found);
   for (const auto& [lane, found] : other.executor_mismatches) executor_mismatches[lane].add(found);
-  digests.add(other.digests);
-  disagreements += other.disagreements;
-  cgal += other.cgal;
-  gmp += other.gmp;
-  exact += other.exact;
 }
 
 std::string to_bytes(const StoredCounts& counts) {

@@ -25,16 +25,13 @@ struct PairRange {
 };
 
 // Counts can be added in any order.
-struct StoredCounts {
+struct StoredCounts : PairCounts {
   explicit StoredCounts(int lanes);
   StoredCounts(const BatchResult& result);
   void add(const StoredCounts& other);
 
-  analysis::Tally tally, extremes;
   std::map<std::string, SignatureCount> signatures;           // by key
   std::map<std::string, SignatureCount> executor_mismatches;  // by lane: device and twin differ
-  VerdictDigests digests;
-  std::uint64_t disagreements = 0, cgal = 0, gmp = 0, exact = 0;  // see BatchResult
 };
 
 std::string to_bytes(const StoredCounts& counts);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fuzz/hunt/hunt.h"
 
-#include <fmt/format.h>
 #include <sys/wait.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -11,7 +10,6 @@
 #include <bitset>
 #include <chrono>
 #include <csignal>
-#include <deque>
 #include <set>
 
 #include "core/cannot.h"
@@ -34,27 +32,22 @@ using Clock = std::chrono::steady_clock;
 class Processes {
  public:
   ~Processes() {
-    for (const auto& [pid, place] : running_) {
+    for (const pid_t pid : running_) {
       kill(pid, SIGKILL);
       waitpid(pid, nullptr, 0);
     }
   }
   std::size_t size() const { return running_.size(); }
-  void add(pid_t pid) { running_.emplace(pid, 0); }
-  // Waits for a short time.   Returns: whether a process has ended.
-  bool wait_for_one() {
-    for (auto it = running_.begin(); it != running_.end(); ++it) {
-      if (waitpid(it->first, nullptr, WNOHANG) == 0) continue;
-      running_.erase(it);
-      return true;
-    }
+  void add(pid_t pid) { running_.push_back(pid); }
+  // Removes processes that have ended; if there are none, waits for a short time.
+  void wait_for_one() {
+    if (std::erase_if(running_, [](pid_t pid) { return waitpid(pid, nullptr, WNOHANG) != 0; }) > 0) return;
     const timespec pause{0, 2'000'000};
     nanosleep(&pause, nullptr);
-    return false;
   }
 
  private:
-  std::map<pid_t, int> running_;
+  std::vector<pid_t> running_;
 };
 
 // Whether a killed process left the file: a round's unread result, such as "000012.result", or a partial file.

@@ -6,7 +6,6 @@
 
 #include <atomic>
 #include <functional>
-#include <optional>
 
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/hunt/mutations.h"

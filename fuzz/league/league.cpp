@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
-#include <numeric>
 #include <span>
 
 #include "analysis/convention.h"

@@ -375,7 +375,7 @@ std::size_t most_moved(const Failure& failure) {
 
 Minimised minimise(const Failure& failure, const AnyPair& pair, std::span<const Minimised> known,
                    std::optional<std::size_t> most) {
-  Minimised result = visit(pair, [&](const auto& own) {
+  return visit(pair, [&](const auto& own) {
     Walk walk(failure, own, known, most.value_or(most_moved(failure)));
     walk.result.one_minimal = false;
     if (!can_shrink(failure)) return walk.result;
@@ -386,7 +386,6 @@ Minimised minimise(const Failure& failure, const AnyPair& pair, std::span<const 
       walk.result.reason.cause = analysis::cause_of(lane, walk.result.pair, failure.truth.verdict);
     return walk.result;
   });
-  return result;
 }
 
 void confirm(const SelectedLanes& under_test, const Failure& failure, const AnyPair& pair) {

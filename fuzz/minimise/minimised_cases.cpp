@@ -14,12 +14,7 @@
 namespace graze::fuzz {
 namespace {
 
-bool has_kind(const corpus::Entry& entry, std::string_view kind) {
-  const std::string* value = corpus::field(entry, "kind");
-  return value && *value == kind;
-}
-
-bool is_result(const corpus::Entry& entry) { return is_minimised(entry) || has_kind(entry, "worst"); }
+bool is_result(const corpus::Entry& entry) { return is_minimised(entry) || corpus::text_of(entry, "kind") == "worst"; }
 
 // The cases to minimise, in order.
 std::vector<const corpus::Entry*> originals(const std::vector<corpus::Entry>& entries) {
@@ -51,7 +46,7 @@ corpus::Entry result_entry(const MinimisedCase& result, const AnyPair& pair, con
 
 }  // namespace
 
-bool is_minimised(const corpus::Entry& entry) { return has_kind(entry, "minimised"); }
+bool is_minimised(const corpus::Entry& entry) { return corpus::text_of(entry, "kind") == "minimised"; }
 
 std::vector<corpus::Entry> checked_cases(const SelectedLanes& under_test, const Json& spec,
                                          const std::filesystem::path& directory, const Json& row) {

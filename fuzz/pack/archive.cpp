@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fuzz/pack/archive.h"
 
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 #include <sqlite3.h>
 #include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
-#include <memory>
 
 #include "core/cannot.h"
 #include "core/error.h"
 #include "core/plain_file.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
+#include "fuzz/campaign/store_file.h"
 #include "fuzz/files.h"
 
 namespace graze::fuzz {
@@ -120,11 +118,7 @@ std::string archive_of(std::vector<PackedFile> files) {
     put.reset();
   }
   transaction.commit();
-  sqlite3_int64 size = 0;
-  const std::unique_ptr<unsigned char, void (*)(void*)> bytes(sqlite3_serialize(database.getHandle(), "main", &size, 0),
-                                                              sqlite3_free);
-  if (!bytes) throw std::bad_alloc();
-  return {reinterpret_cast<const char*>(bytes.get()), static_cast<std::size_t>(size)};
+  return file_bytes(database);
 }
 
 bool is_archive(const fs::path& file) {

@@ -18,7 +18,6 @@
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
-#include "fuzz/files.h"
 #include "fuzz/minimise/minimised_cases.h"
 
 namespace graze::fuzz {

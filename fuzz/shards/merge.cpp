@@ -18,6 +18,7 @@
 #include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/campaign/run_status.h"
+#include "fuzz/campaign/sums.h"
 #include "fuzz/hunt/hunt_rounds.h"
 #include "fuzz/own_files.h"
 #include "fuzz/sealed.h"
@@ -261,6 +262,16 @@ Outcome write_results(const Campaign& campaign, Store& store, bool complete) {
   return outcome;
 }
 
+// Writes a complete campaign from the sums of all its pairs.   Requires: no gaps; a directory without a store.
+Outcome write_merged(const Campaign& campaign, const Sums& sums) {
+  Store store(store_spec(campaign));
+  for (std::size_t s = 0; s < campaign.sources.size(); ++s) {
+    const PairRange all{static_cast<int>(s), 0, campaign.sources[s].pairs};
+    if (all.pairs > 0) store.commit(all, sums.of_source(all.source));
+  }
+  return write_results(campaign, store, true);
+}
+
 }  // namespace
 
 Json common_build(const Json& one, const Json& other, const fs::path& directory) {
@@ -280,15 +291,6 @@ Json common_build(const Json& one, const Json& other, const fs::path& directory)
   merge_words(common["device"], other["device"]);
   for (const auto& [lane, evidence] : other["executors"].items()) merge_words(common["executors"][lane], evidence);
   return common;
-}
-
-Outcome write_merged(const Campaign& campaign, const Sums& sums) {
-  Store store(store_spec(campaign));
-  for (std::size_t s = 0; s < campaign.sources.size(); ++s) {
-    const PairRange all{static_cast<int>(s), 0, campaign.sources[s].pairs};
-    if (all.pairs > 0) store.commit(all, sums.of_source(all.source));
-  }
-  return write_results(campaign, store, true);
 }
 
 Outcome merge(const MergeOptions& options) {

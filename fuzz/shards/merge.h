@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "fuzz/campaign/campaign.h"
-#include "fuzz/campaign/sums.h"
 
 namespace graze::fuzz {
 
@@ -27,9 +26,5 @@ Outcome merge(const MergeOptions& options);
 // Combines the executors of two builds that are otherwise equal: "device; twin, verified on …".
 // Throws: std::runtime_error that names the second directory if the builds differ otherwise.
 Json common_build(const Json& one, const Json& other, const std::filesystem::path& directory);
-
-// Writes a complete campaign from the sums of all its pairs: its store, summary and cases.
-// Requires: no gaps; a directory without a store.
-Outcome write_merged(const Campaign& campaign, const Sums& sums);
 
 }  // namespace graze::fuzz

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Adds up the results of tasks that run on several threads.
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+
+#include <cstddef>
+#include <type_traits>
+
+namespace graze::analysis {
+
+// Calls work(task, result) for each task below `tasks`, on this many threads (0: one for each core). Each thread has
+// its own result, which starts as empty(). Results must give the same sum in any order. Returns: the sum of these
+// results, to which add(sum, result) adds each.
+template <class Empty, class Work, class Add>
+auto sum_over_threads(std::size_t tasks, int threads, const Empty& empty, const Work& work, const Add& add) {
+  const auto most = static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency());
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, most);
+  tbb::enumerable_thread_specific<std::invoke_result_t<const Empty&>> results(empty);
+  tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) { work(task, results.local()); });
+  auto sum = empty();
+  for (const auto& result : results) add(sum, result);
+  return sum;
+}
+
+}  // namespace graze::analysis

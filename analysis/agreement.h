@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the smallest tolerance under which two lanes give the same verdicts, and what it costs in wrong ones.
+// Finds the smallest tolerance under which two lanes give the same verdicts, and counts the wrong verdicts under it.
 #pragma once
 
 #include <optional>
@@ -13,16 +13,16 @@ namespace graze::analysis {
 
 struct AgreeSpec {
   AgreementSweep sweep;
-  AgreementSweep rounded;          // the same lanes, every operation rounded as written; null if they already are
-  std::vector<std::string> sites;  // sites that the algorithm asks about
+  AgreementSweep rounded;          // the same lanes, but each operation rounds as written; null if they do so already
+  std::vector<std::string> sites;  // sites at which the algorithm compares
   bool relative = true;            // whether both lanes run here under relative tolerances
-  std::vector<strata::PairSource> sources;  // pairs to choose on
+  std::vector<strata::PairSource> sources;  // pairs used to choose
   std::vector<strata::PairSource> others;   // pairs to verify the choice on
-  double max_rate = 1e-6;                   // of differing verdicts
+  double max_rate = 1e-6;                   // the highest accepted rate of differing verdicts
 };
 
 struct Agreed {
-  Agreement zero;  // on the pairs of the choice
+  Agreement zero;  // without a tolerance, on the pairs used to choose
   std::vector<CurveOf<Agreement>> curves;
   std::vector<Agreement> picks;  // the best of each curve, on the other pairs
   // If only blunt tolerances make the lanes agree: the best of them, on the pairs used to choose.
@@ -31,23 +31,24 @@ struct Agreed {
   TuneResult result = TuneResult::not_satisfiable;
   Agreement confirmed, zero_confirmed;  // on the other pairs
   double low = 0, high = 1;          // bounds of the rate of differing verdicts, one-sided, computed from `confirmed`
-  std::optional<Agreement> rounded;  // of the lanes whose operations all round as written, on the other pairs
+  std::optional<Agreement> rounded;  // of AgreeSpec::rounded, on the other pairs
 };
 
-// Whether the tolerance is blunt: under it a lane has more wrong verdicts than without one, and at least as many as if
-// it gave the same answer for all pairs.
+// Whether the tolerance is blunt: it makes a lane wrong more often than no tolerance does, and at least as often as one
+// fixed answer for all pairs would be.
 bool is_blunt(const Agreement& under, const Agreement& zero);
 
-// satisfied: differing verdicts are rarer than max_rate; not_confirmed or not_satisfiable: they are more frequent; each
-// at 95 % confidence. too_few_pairs: the pairs show neither.
+// satisfied: the rate of differing verdicts is below max_rate, at 95 % confidence. not_confirmed, not_satisfiable: the
+// rate is above max_rate, at 95 % confidence. too_few_pairs: there are too few pairs to show either.
 TuneResult agreement_result(const Agreement& chosen_on, const Agreement& confirmed, double max_rate);
 
-// Chooses a policy on some pairs and verifies it on others. If the lanes agree without a policy, it chooses none.
-// Otherwise it takes the smallest tolerance of each curve under which they agree, and among these the one with the
-// fewest wrong verdicts of both lanes. It prefers tolerances under which no verdict differs, or whose upper bound is at
-// most half of max_rate: fresh pairs often do not confirm a rate near max_rate. If no tolerance makes the lanes agree,
-// it takes the policy with the fewest differing verdicts. Blunt tolerances are left out. Ties prefer no tolerance, then
-// the order of the curves as in tune(), then the smallest tolerance. Requires: pairs in both lists.
+// Chooses a policy on some pairs and verifies it on other pairs. If the lanes agree without a policy, none is chosen.
+// Otherwise the function finds the smallest tolerance of each curve under which the lanes agree. Among these tolerances
+// it chooses the one with the fewest wrong verdicts of both lanes. It prefers tolerances under which no verdict
+// differs, or whose upper bound is at most half of max_rate, because fresh pairs often do not confirm a rate near
+// max_rate. If no tolerance makes the lanes agree, the choice is the policy with the fewest differing verdicts. Blunt
+// tolerances are never chosen. Ties prefer no tolerance, then the order of the curves as in tune(), then the smallest
+// tolerance. Requires: pairs in both lists.
 Agreed agree(const AgreeSpec& spec);
 
 }  // namespace graze::analysis

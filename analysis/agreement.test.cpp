@@ -131,7 +131,7 @@ TEST(Agree, AToleranceMakesTwoLanesAgree) {
   spec.max_rate = 5e-3;
   const Agreed agreed = agree(spec);
   EXPECT_EQ(agreed.result, TuneResult::satisfied) << agreed.chosen << " " << agreed.confirmed.differing;
-  EXPECT_GT(tolerance_of(agreed.chosen), 0x1p-10);  // not one that is too small to matter
+  EXPECT_GT(tolerance_of(agreed.chosen), 0x1p-10);  // the tolerance is not too small to matter
   EXPECT_GT(agreed.zero_confirmed.differing, 1000u);
   EXPECT_GT(agreed.confirmed.differing, 0u);
   EXPECT_LE(agreed.high, 5e-3);
@@ -168,7 +168,7 @@ TEST(Agree, ABluntToleranceIsNotChosen) {
   EXPECT_FALSE(is_blunt(under, zero));
   under.of[1].false_positive = 30;
   EXPECT_TRUE(is_blunt(under, zero));
-  zero.of[1].false_negative = 30;  // not worse than without it
+  zero.of[1].false_negative = 30;  // not worse than without the tolerance
   EXPECT_FALSE(is_blunt(under, zero));
 }
 

@@ -53,7 +53,7 @@ TEST(Tally, SumsAreTheTallyOfTheUnion) {
   }
 }
 
-// Blocks of different lengths, whose last words are full, partly used, or absent.
+// Tests blocks of different lengths: their last words are full, partly used, or absent.
 TEST(Tally, CountsEveryPairOfABlockOfAnyLength) {
   for (const std::size_t count :
        {std::size_t{1}, std::size_t{63}, std::size_t{64}, std::size_t{65}, std::size_t{128}, std::size_t{130}}) {
@@ -178,7 +178,7 @@ TEST(Tally, StoredCountsGoToTheirBucketAndLane) {
   EXPECT_EQ(sum.pairs(make_bucket(-1, 2)), 0u);
 }
 
-// Proper triangles that touch in a point, are coplanar, share a vertex, or are degenerate: each has its own bit.
+// Pairs that touch in a point, are coplanar, share a vertex, or are degenerate: each kind has its own bit.
 TEST(Convention, LeavesOpenWhatItNames) {
   const Pair touching{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {1, 2, 4}, {2, 1, 4}}};
   const Pair coplanar{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{5, 5, 0}, {9, 5, 0}, {5, 9, 0}}};

@@ -21,8 +21,8 @@ namespace {
 // The child's messages: kAlive before each step; at the end kDone, then the result.
 constexpr char kAlive = 0, kDone = 1;
 
-// Reads what the child writes, until it closes the pipe or stays silent for `seconds`.   Returns: whether it closed the
-// pipe.
+// Reads the child's output until the child closes the pipe or writes nothing for `seconds`.   Returns: whether it
+// closed the pipe.
 bool read_to_end(int pipe, double seconds, std::string& tail) {
   for (;;) {
     pollfd waits{pipe, POLLIN, 0};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs work on foreign code in a child process, which is killed if it stays silent. The code may crash or hang.
+// Runs work on foreign code in a child process, which is killed if it writes nothing for too long. The code may crash
+// or hang.
 #pragma once
 
 #include <cstddef>
@@ -10,12 +11,12 @@
 
 namespace graze::analysis {
 
-// What the work in the child may call.
+// The functions that the work in the child may call.
 class ApartFrom {
  public:
   explicit ApartFrom(int pipe) : pipe_(pipe) {}
   void alive() const;                                       // restarts the time limit for the next step
-  void finish(const void* result, std::size_t size) const;  // once, at the end
+  void finish(const void* result, std::size_t size) const;  // call it once, at the end
 
  private:
   int pipe_;

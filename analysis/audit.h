@@ -18,9 +18,9 @@ namespace graze::analysis {
 // underflow     both limits
 // rounding      the wrong outcomes of the deciding             rounding to the scalar's mantissa, without
 //               comparisons are corrected                      contraction and without exponent limits
-// If comparisons are known but no small set of them decides, the audit confirms no cause except logic and fast math.
-// The audit runs the lane's source in other arithmetic. A contracted lane uses the contraction rule that reproduces the
-// lane's own run.
+// If comparisons are known but no small set of them decides, the audit confirms no cause except logic. The audit runs
+// the lane's source in other arithmetic. A contracted lane uses the contraction rule that reproduces the lane's own
+// run.
 // Requires: an explanation's lane for this pair, and the pair's truth. The function does not read `lane.settled`.
 Settled audit(const LaneExplanation& lane, const AnyPair& pair, Verdict truth);
 

@@ -87,7 +87,7 @@ TEST(Deciding, CorrectedTheLaneIsRight) {
   EXPECT_LT(none, single / 100);
 }
 
-// A run with the comparisons at these indices corrected: its path and its verdict.
+// The path and the verdict of a run in which the comparisons at these indices are corrected.
 struct Corrected {
   Path path;
   Verdict verdict;
@@ -103,8 +103,9 @@ Corrected corrected(const Wrong& wrong, const std::vector<std::size_t>& comparis
   return {path_of(run), run.verdict};
 }
 
-// Tries every smaller set, and every earlier set of the same size. The four pairs come from reports: when values were
-// corrected instead of outcomes, two comparisons were named where one is enough, or a later one than the first.
+// Tries every smaller set, and every earlier set of the same size. The four pairs come from reports about a version
+// that corrected values instead of outcomes. It named two comparisons where one is enough, or a later comparison than
+// the first.
 TEST(Deciding, IsTheSmallestSetAndOfEqualOnesTheFirst) {
   std::vector<Wrong> some;
   for (std::size_t i = 0; i < all_wrong().size(); i += 7) some.push_back(all_wrong()[i]);
@@ -144,8 +145,7 @@ TEST(Deciding, IsTheSmallestSetAndOfEqualOnesTheFirst) {
   EXPECT_GT(earlier, 10);
 }
 
-// If the cause is overflow or underflow, the reported value results from it. A value that rounding alone gives is not
-// reported.
+// If the cause is overflow or underflow, the reported value results from this cause, not from rounding alone.
 TEST(Deciding, WhatIsToldOfARangeComesFromIt) {
   int told = 0;
   for (const Wrong& wrong : all_wrong()) {
@@ -186,7 +186,7 @@ TEST(Audit, AFalseCauseDoesNotPass) {
   for (const Wrong& wrong : all_wrong()) {
     if (wrong.lane.settled != Settled::yes) continue;
     for (const Cause other : {Cause::rounding, Cause::contraction, Cause::overflow, Cause::underflow, Cause::logic}) {
-      if (other == wrong.lane.cause || other == Cause::rounding) continue;  // exact values cure ranges too
+      if (other == wrong.lane.cause || other == Cause::rounding) continue;  // exactness removes range errors too
       LaneExplanation lied = wrong.lane;
       lied.cause = other;
       lied.contractions = {};

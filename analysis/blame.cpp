@@ -69,7 +69,8 @@ class Fusing {
 };
 
 // Finds a set of one or two sites. Prefers the first set that is sufficient (fused alone, it gives the verdict) and
-// necessary (with all others fused, the verdict changes). Otherwise the first smallest sufficient set, or nothing.
+// necessary (with all others fused, the verdict changes). Otherwise returns the first of the smallest sufficient sets,
+// or nothing.
 std::optional<Set> one_or_two(const Fusing& kernel, Verdict verdict) {
   std::vector<Set> enough;
   Set set = kernel.none();
@@ -112,7 +113,7 @@ Blame blame(const Lane& lane, const AnyPair& pair, const std::function<void()>& 
   if (verdict == kernel.verdict(kernel.none())) return {};
   const std::optional<Set> few = one_or_two(kernel, verdict);
   const Set set = few ? *few : reduced(kernel, kernel.all(), verdict);
-  // While the sites outside `needed` are sufficient too, add a sufficient set of them.
+  // While the sites outside `needed` are sufficient too, adds a sufficient set of these sites.
   Set needed = set;
   while (kernel.verdict(others(needed)) == verdict) {
     const Set more = reduced(kernel, others(needed), verdict);

@@ -12,8 +12,8 @@
 namespace graze::analysis {
 
 struct Blame {
-  std::vector<cuda::ContractionSite> sites;  // with only these fused, the lane gives its verdict; in program order
-  bool smallest = true;                      // no smaller set does so
+  std::vector<cuda::ContractionSite> sites;  // if only these are fused, the lane gives its verdict; in program order
+  bool smallest = true;                      // no smaller set gives the verdict
   bool lines_decide = false;                 // with the products of these lines rounded and all others fused, the
                                              // verdict is that of the source without contraction
   std::string why_not;                       // why the search did not finish; empty if it did
@@ -27,8 +27,8 @@ struct Blame {
 // asked: called before each verdict.
 Blame blame(const Lane& lane, const AnyPair& pair, const std::function<void()>& asked = {});
 
-// The same for foreign code, which may crash or hang when some of its operations are fused. The search runs in a
-// separate process, and each verdict may take `seconds`. Deterministic if the code never takes longer.
+// Like `blame`, for foreign code, which may crash or hang when some of its operations are fused. The search runs in a
+// separate process, and each verdict may take `seconds`. Deterministic if no verdict takes longer.
 Blame blame_apart(const Lane& lane, const AnyPair& pair, double seconds);
 
 }  // namespace graze::analysis

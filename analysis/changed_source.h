@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a foreign lane's source says about a pair when it is built with a change (subjects/rebuilt.h).
+// Finds causes by building a foreign lane's source with a change (subjects/rebuilt.h).
 #pragma once
 
 #include <functional>
@@ -11,15 +11,16 @@
 namespace graze::analysis {
 
 struct DecidingNumber {
-  std::string line;   // "mine.cpp:9", of the first number
+  std::string line;   // the line of the first number, such as "mine.cpp:9"
   std::string words;  // "with 1e-36 in place of 1e-6f at mine.cpp:9 it is right"
-  bool on_images;     // it is right on the pair's images too
+  bool on_images;     // whether the changed code is right on the pair's images too
 };
 
-// A small number of the source that decides: the code is right with a negligible number in its place, and also with
-// 1e-9 times the number, because a negligible conversion factor can make products underflow. Prefers numbers that also
-// decide on the pair's images: on one pair any change may be right by luck. If no number decides alone, tries all
-// together. is_right, is_right_on_images: called with the changed code; the second only if the first holds.
+// Finds a small number in the source that decides the verdict. The code must be right with a negligible number in its
+// place. It must also be right with 1e-9 times the number, because a negligible conversion factor can make products
+// underflow. Prefers numbers that also decide on the pair's images: on one pair any change may make the code right by
+// luck. If no number decides alone, the function changes all numbers together. is_right, is_right_on_images: called
+// with the changed code; the second is called only if the first returns true.
 // doubles: double also replaces float, and all numbers change together.
 using IsRight = std::function<bool(const DecideBlock& block)>;
 std::optional<DecidingNumber> deciding_number(const Lane& lane, const IsRight& is_right,
@@ -27,12 +28,12 @@ std::optional<DecidingNumber> deciding_number(const Lane& lane, const IsRight& i
 
 struct InitialValues {
   std::string words;
-  bool differ;  // the verdict depends on the value; otherwise any value makes it right, and the compiler warns
+  bool differ;  // the verdict depends on the value; otherwise any value makes the verdict right, and the compiler warns
 };
 
-// Whether the verdict depends on uninitialised variables: it becomes right if the compiler sets them to zero, or to a
-// pattern. If both make it right, the reason may be the different machine code, which on an x87 rounds in other places.
-// Then the compiler must also warn of such a variable.
+// Finds whether the verdict depends on uninitialised variables: whether it becomes right if the compiler sets them to
+// zero, or to a pattern. If both values make it right, the reason may be the different machine code, which on an x87
+// rounds in other places. In that case the compiler must also warn of an uninitialised variable.
 // verdict_of: the verdict of the changed code.   Requires: the lane is wrong on the pair.
 std::optional<InitialValues> by_initial_values(const Lane& lane, Verdict truth,
                                                const std::function<Verdict(const DecideBlock& block)>& verdict_of);

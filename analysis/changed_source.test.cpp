@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Causes found by building a user's source again with a change.
+// Tests causes that are found by building a user's source again with a change.
 #include "analysis/changed_source.h"
 
 #include <fmt/format.h>
@@ -52,7 +52,7 @@ class ExperimentsOnSources : public testing::Test {
 
 bool has(const std::string& text, std::string_view part) { return text.find(part) != text.npos; }
 
-// They intersect, with coordinates of more bits than small integers have.
+// These triangles intersect, and their coordinates have more bits than small integers.
 const Pair kFine{{{0.0117f, 0.0231f, 0.0119f}, {4.0177f, 0.0313f, 0.0171f}, {0.0239f, 4.0191f, 0.0113f}},
                  {{1.0133f, 1.0171f, -1.0193f}, {1.0271f, 1.0131f, 1.0119f}, {3.0117f, 3.0213f, 1.0157f}}};
 
@@ -84,7 +84,7 @@ TEST_F(ExperimentsOnSources, AUnitIsNoEpsilon) {
   EXPECT_NE(one.cause, Cause::absolute_epsilon);
 }
 
-// Another weight makes it right on some pairs, by luck.
+// Another weight makes the code right on some pairs, by luck.
 TEST_F(ExperimentsOnSources, AWeightIsNoEpsilon) {
   const Lane& lane =
       opened("weighs", std::string(kHead) + "  return a[0] + 0.05f * 20 * a[4] < b[0] + 0.05f * 20 * b[7];\n}\n");
@@ -115,7 +115,7 @@ TEST_F(ExperimentsOnSources, ANumberThatDecidesAtEveryScaleIsARelativeEpsilon) {
   EXPECT_TRUE(
       has(one.evidence, "with 1e-36 in place of 1e-2f at relative.cpp:2 it is right; it is wrong at all larger"))
       << one.evidence;
-  // At larger scales products overflow: the one pair is too large, and the other spans too many exponents.
+  // At larger scales products overflow, because the first pair is too large and the second spans too many exponents.
   Pair wide = analysis::scaled(kFine, 18);
   wide.a[0].x = 0x1p-40f;
   for (const Pair& pair : {analysis::scaled(kFine, 30), wide}) {
@@ -201,7 +201,8 @@ TEST_F(ExperimentsOnSources, AnEditedSourceIsNamedAsAnExperimentThatWasNotMade) 
   EXPECT_TRUE(has(found(lane, kFine).evidence, kNotMade));
 }
 
-// Six numbers. With any of them changed, the code is right on the pair, but not on all of its images.
+// The source has six numbers. If any of them is changed, the code is right on the pair, but not on all images of the
+// pair.
 TEST_F(ExperimentsOnSources, VerdictsOfChangedBuildsCountToo) {
   std::string text = std::string(kHead) + "  if (a[0] > 0 && a[2] < 0) return false;\n  float least = 1;\n";
   for (int i = 1; i <= 6; ++i)

@@ -17,7 +17,8 @@ namespace graze::analysis {
 template <class Real>
 bool by_convention(const Lane& lane, Verdict verdict, const BasicPair<Real>& pair, const Relation& truth);
 
-// Returns the verdicts, with the truth in place of those that differ by convention. Those that still differ are wrong.
+// Returns the verdicts, with the truth in place of those that differ by convention. Verdicts that still differ from the
+// truth are wrong or declined.
 template <class Real>
 std::vector<Verdict> excused(std::span<const Lane* const> lanes, std::vector<Verdict> verdicts,
                              const BasicPair<Real>& pair, const oracle::Truth& truth);

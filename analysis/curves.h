@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tolerances swept over their range, at all sites or at one: the curves of `graze tune`.
+// The curves of `graze tune`: tolerances swept over their range, at all sites or at one site.
 #pragma once
 
 #include <algorithm>
@@ -30,12 +30,12 @@ std::vector<double> steps(double low, double high, double step);
 // A tolerance swept over its range. Point: PolicyErrors or Agreement.
 template <class Point>
 struct CurveOf {
-  std::string site;  // empty: all
+  std::string site;  // empty: all sites
   bool relative = false;
-  std::vector<Point> points;  // by tolerance
+  std::vector<Point> points;  // ordered by tolerance
 };
 
-// Adds to each curve the points at the powers of two steps_of(curve), all in one sweep.
+// Adds a point to each curve for each exponent of two in steps_of(curve). One sweep computes all points.
 // cube: log2 of the unit of absolute tolerances.
 template <class Point, class SweepPolicies, class StepsOf>
 void add_points(std::vector<CurveOf<Point>>& curves, int cube, const SweepPolicies& sweep, const StepsOf& steps_of) {
@@ -71,8 +71,9 @@ void sweep_curves(std::vector<CurveOf<Point>>& curves, int cube, const SweepPoli
   });
 }
 
-// The same for an absolute curve whose every point takes a build. It has fewer points: 0, every fourth power of two,
-// and smaller steps around the best point. The constant may bound a length, an area or a volume, so the range is wide.
+// Like sweep_curves, for an absolute curve each of whose points takes a build. The curve has fewer points: 0, every
+// fourth power of two, and smaller steps around the best point. The constant may bound a length, an area or a volume,
+// so the range is wide.
 template <class Point, class SweepPolicies, class Best>
 void sweep_values(std::vector<CurveOf<Point>>& curves, int cube, const SweepPolicies& sweep, const Best& best) {
   const int size = cube / 3;  // log2 of a typical length
@@ -85,7 +86,7 @@ void sweep_values(std::vector<CurveOf<Point>>& curves, int cube, const SweepPoli
   for (const double step : {1.0, 0.25}) {
     add_points(curves, 0, sweep, [&](const CurveOf<Point>& curve) {
       const double value = tolerance_of(curve.points[static_cast<std::size_t>(best(curve))].policy);
-      const double at = std::round(4 * std::log2(value)) / 4;  // its name is rounded
+      const double at = std::round(4 * std::log2(value)) / 4;  // the value in its name is rounded
       return std::isfinite(at) ? steps(at - 3 * step, at + 3 * step, step) : std::vector<double>();
     });
   }

@@ -18,7 +18,7 @@ class Search {
   Search(const Lane& lane, const AnyPair& pair, Verdict truth, Contraction rule)
       : lane_(lane), pair_(pair), truth_(truth), rule_(rule) {}
 
-  // Tries sets of one comparison first, then larger ones; sets of equal size in order of execution.
+  // Tries sets of one comparison first, then larger sets. Sets of equal size are tried in order of execution.
   std::optional<Corrected> smallest(const Path& lane_path) const {
     std::vector<Corrected> sets{{{}, lane_path}};
     for (int size = 1; size <= kMostDeciding; ++size) {

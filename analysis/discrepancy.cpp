@@ -21,7 +21,7 @@
 namespace graze::analysis {
 namespace {
 
-constexpr std::uint64_t kPairsCompared = 256;  // pairs
+constexpr std::uint64_t kPairsCompared = 256;  // pairs in a block
 
 struct CountingSink {
   DiscrepancyCounts& to;
@@ -98,7 +98,7 @@ struct Kept {
   }
 };
 
-// Pairs on which the lane's own verdict is not the recorded one.
+// The number of pairs on which the lane's own verdict differs from the recorded one.
 template <class Coordinate>
 std::uint64_t unlike(const Lane& lane, std::span<const BasicPair<Coordinate>> pairs, const Kept& kept) {
   const std::vector<Verdict> verdicts = verdicts_of(backends::on_host(lane), pairs);
@@ -121,7 +121,7 @@ void count_block(const LanesCompared& lanes, std::span<const BasicPair<Coordinat
   to.unlike[1] += unlike(*lanes.second, pairs, second);
 }
 
-// Collects the values of both runs with the certified ones.
+// Collects the values of both runs, and the certified values.
 template <class Real>
 struct Beside {
   const Run<Real>& first;
@@ -175,7 +175,7 @@ RunsBeside runs_of_both(const LanesCompared& lanes, const BasicPair<Coordinate>&
 RunsBeside runs_beside(const LanesCompared& lanes, const AnyPair& pair) {
   RunsBeside runs = visit(pair, [&](const auto& own) { return runs_of_both(lanes, own); });
   const std::vector<Question>& questions = questions_of(lanes.first->algorithm);
-  std::erase_if(runs.values, [&](const ValueBeside& value) {  // questions about one value have no second
+  std::erase_if(runs.values, [&](const ValueBeside& value) {  // a question about one value has no second value
     return static_cast<std::size_t>(value.which) >= questions[static_cast<std::size_t>(value.question)].of.size();
   });
   return runs;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares the values of two lanes of one algorithm and scalar: by how much they differ, which is nearer to the exact
-// value, and whether a sign, a comparison or the verdict differs. core/discrepancy/count.h says what is counted.
+// value, and whether a sign, a comparison or the verdict differs. core/discrepancy/count.h describes the counts.
 #pragma once
 
 #include <cstdint>
@@ -32,8 +32,8 @@ struct DiscrepancyCounts {
 // Records of a lane on the host: its own, or those of its twin. Null if there is none.
 RecordBlock record_on_host(const Lane& lane);
 
-// Why the values of two lanes cannot be compared on the host; empty if they can: they are lanes of one algorithm and
-// scalar that record their values.
+// Why the values of two lanes cannot be compared on the host. Empty if they can be compared: both lanes have the same
+// algorithm and scalar, and record their values.
 std::string why_not_compared(const Lane& l, const Lane& r);
 
 // Two lanes to compare. Their values are recorded on the host. Lanes in float are compared only on pairs of float32,
@@ -45,16 +45,16 @@ struct LanesCompared {
   LanesCompared(const Lane& l, const Lane& r);
 };
 
-// The contracted CUDA lane, if only its contractions make the two differ, because the other rounds every operation.
-// Null otherwise.
+// If one of the lanes is a contracted CUDA lane and the other rounds every operation, returns the contracted lane.
+// Otherwise returns null.
 const Lane* fused_of(const Lane& l, const Lane& r);
 
 // A value that at least one of two lanes compares. Values are in the order of the first lane's run; those that only the
 // second lane compares come last.
 struct ValueBeside {
-  int question, which;                  // which: of Question::of
-  std::optional<double> first, second;  // nothing if the lane was not asked
-  bool compared = false;                // both were asked about the same quantity
+  int question, which;                  // which: index in Question::of
+  std::optional<double> first, second;  // nothing if the lane did not compute it
+  bool compared = false;                // both lanes computed the same quantity
   std::optional<Unrounded> unrounded;   // along the first lane's path; nothing for values that only the second lane has
 };
 
@@ -81,14 +81,14 @@ struct DiscrepancySpec {
   bool on_device = false;  // comparisons whose lanes a device can record run there
 };
 
-// counts[comparison][source]. The same counts on host and device, for any number of threads. On a device, the kernels
-// of cuda-nofma compute a host lane's values. If the host lane is compared with cuda-nofma itself, the host records its
-// own values too; if any bit differs, the comparison runs on the host.
+// counts[comparison][source]. The counts are the same on host and device, and for any number of threads. On a device,
+// the kernels of cuda-nofma compute a host lane's values. If the host lane is compared with cuda-nofma itself, the host
+// records its own values too. If any bit differs, the comparison runs on the host.
 // Requires: no source of doubles if a lane is in float.
 using Discrepancies = std::vector<std::vector<DiscrepancyCounts>>;
 Discrepancies discrepancies(const DiscrepancySpec& spec);
 
-// Counts one block of pairs, for tests and for engines. axis: that of their stratum.
+// Counts one block of pairs.   axis: the axis of the pairs' stratum.
 void count_discrepancies(const LanesCompared& lanes, std::span<const Pair> pairs, Axis axis, DiscrepancyCounts& to);
 // Requires: lanes in double.
 void count_discrepancies(const LanesCompared& lanes, std::span<const DoublePair> pairs, Axis axis,

@@ -37,7 +37,7 @@ Discrepancies counted(const std::vector<LanesCompared>& lanes, std::uint64_t see
   return discrepancies({lanes, strata::stratum_sources(seed, pairs, strata), threads, false});
 }
 
-// Sources of all strata of float32, and for lanes in double also of all strata of doubles.
+// The sources of all strata of float32, and for lanes in double also those of all strata of doubles.
 std::vector<strata::PairSource> sources_for(const Lane& of, std::uint64_t seed, std::uint64_t pairs_of_each) {
   std::vector<strata::PairSource> sources = strata::stratum_sources(seed, strata::kStrataCount * pairs_of_each, {});
   if (of.scalar == Scalar::f32) return sources;
@@ -47,7 +47,7 @@ std::vector<strata::PairSource> sources_for(const Lane& of, std::uint64_t seed, 
   return sources;
 }
 
-// Those of the lanes that are in double.
+// Returns the lanes that compute in double.
 std::vector<LanesCompared> in_double(std::vector<LanesCompared> lanes) {
   std::erase_if(lanes, [](const LanesCompared& both) { return both.first->scalar == Scalar::f32; });
   return lanes;
@@ -170,7 +170,7 @@ TEST(Discrepancy, WithoutContractionNoBitDiffersOnDoubles) {
   }
 }
 
-// The same pairs as doubles.
+// The same pairs, stored as doubles.
 strata::PairSource widened(const strata::PairSource& source) {
   strata::PairSource result = source;
   result.stratum = -1;
@@ -360,7 +360,7 @@ struct Places {
   bool has(int at) const { return std::find(added.begin(), added.end(), at) != added.end(); }
 };
 
-// Each error's bucket is that of MPFR's error, where it is known.
+// Each error is in the bucket of the error that MPFR computes, if the bucket is known.
 TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
   std::uint64_t checked = 0, unknown = 0, others = 0;
   for (const auto& [first, second] : published(Variant::cpu, Variant::cuda_nofma)) {
@@ -389,8 +389,8 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
               return value.question == question && value.which == which;
             });
             ASSERT_NE(certified, runs.values.end());
-            // Among several values, MPFR follows the one that the lane chose as the least; the counts take the true
-            // least.
+            // If a lane chooses the least of several values, MPFR computes the chosen value, but the counts take the
+            // true least.
             const bool other =
                 std::fabs(certified->unrounded->exact.hi - beside.exact) > 1e-12 * std::fabs(beside.exact);
             const bool subnormal = std::fabs(beside.exact) < (first->scalar == Scalar::f32 ? 0x1p-126 : 0x1p-1022);
@@ -426,8 +426,8 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
   EXPECT_LT(others * 10, checked);
 }
 
-// Each lane's value is as near to the exact one as its bound of the rounding error says, with and without contraction,
-// even where numbers underflow. So no sign can differ beyond two bounds.
+// Each lane's value differs from the exact value by at most its bound of the rounding error, with and without
+// contraction, even if numbers underflow. So no sign can differ beyond two bounds.
 TEST(Discrepancy, BoundsOfTheRoundingErrorHold) {
   std::uint64_t bounded = 0, near = 0, unbounded = 0;
   for (const LanesCompared& lanes : published(Variant::cpu, Variant::cuda_fma)) {
@@ -452,7 +452,7 @@ TEST(Discrepancy, BoundsOfTheRoundingErrorHold) {
     }
   }
   EXPECT_GT(bounded, 80'000u);
-  EXPECT_GT(near, 8'000u);  // they are not much too wide
+  EXPECT_GT(near, 8'000u);  // the bounds are not much too wide
   EXPECT_LT(unbounded * 5, bounded);
 }
 
@@ -497,7 +497,7 @@ Pair scaled(const Pair& pair, float by) {
   return result;
 }
 
-// Where numbers overflow, no bound says how near to zero the values are: the band is unknown. Where they underflow, the
+// If numbers overflow, no bound shows how near to zero the values are, so the band is unknown. If they underflow, the
 // bound of the smallest number applies.
 TEST(Discrepancy, TheBandIsUnknownWhereNothingIsSettled) {
   const Pair crossing{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, -1}, {1, 1, 2}, {2, 1, 2}}};

@@ -13,7 +13,7 @@
 namespace graze::analysis {
 namespace {
 
-constexpr std::uint64_t kPairsTraced = 64;  // pairs
+constexpr std::uint64_t kPairsTraced = 64;  // pairs in a block
 
 using Mask = std::vector<std::uint64_t> FusedLine::*;
 
@@ -41,14 +41,14 @@ std::vector<FusedLine> lines_of(const Lane& lane, Sources sources) {
   if (!std::all_of(sources.begin(), sources.end(), std::mem_fn(&strata::PairSource::in_doubles)))
     add_lines(of_floats, &FusedLine::mask, lines);
   if (any_in_doubles(sources)) add_lines(of_doubles, &FusedLine::mask_of_doubles, lines);
-  for (FusedLine& line : lines) {  // a line may have no site in one of them
+  for (FusedLine& line : lines) {  // a line may have no site in one of the two kernels
     line.mask.resize(words_of(of_floats));
     line.mask_of_doubles.resize(words_of(of_doubles));
   }
   return lines;
 }
 
-// The records of a block of pairs with some contractions.
+// The lane's values on a block of pairs, recorded with only some products fused.
 template <class Real>
 class FusedRun {
  public:

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the values of a contracted CUDA lane begin to differ from those of the same source without contraction, how
-// much a difference grows until a comparison sees it, and which source line decides verdicts. Everything is counted by
-// running the lane's twin with the products of one line fused, or with all others.
+// Finds the source lines at which the values of a contracted CUDA lane begin to differ from those of the same source
+// without contraction. Also finds how much such a difference grows until it reaches a comparison, and which lines
+// decide verdicts. The counts come from runs of the lane's twin, with the products of one line fused, or of all other
+// lines.
 #pragma once
 
 #include <functional>
@@ -18,15 +19,15 @@ struct FusedLine {
   cuda::SourceLine at, from;                         // as in cuda::ContractionSite
   std::vector<std::uint64_t> mask, mask_of_doubles;  // its sites in the kernel of each coordinate type
   std::uint64_t values = 0;                          // fusing it alone changes this many values
-  std::uint64_t verdicts_alone = 0;                  // …and this many verdicts
-  std::uint64_t verdicts_fixed = 0;  // of the verdicts that all contractions together change, how many change back if
+  std::uint64_t verdicts_alone = 0;                  // fusing it alone changes this many verdicts
+  std::uint64_t verdicts_fixed = 0;  // how many verdicts that all contractions together change are changed back if
                                      // this line's products are rounded
-  std::optional<AnyPair> simplest;   // of the pairs in the two counts above
+  std::optional<AnyPair> simplest;   // the simplest pair in the two counts above
 };
 
-// For a value that differs: the first line that makes it differ when only that line is fused.
+// For values that differ: counts of the first line that makes a value differ when only that line is fused.
 struct Start {
-  std::vector<std::uint64_t> by_line;  // [line]; the last one counts values that no line alone makes differ
+  std::vector<std::uint64_t> by_line;  // by line; the last entry counts values that no line alone makes differ
   // growth[k]: fusing the line, which changes its result by at most an ulp, moves the value by 2^k to 2^(k+1) ulps.
   // Products, quotients and roots pass a relative error on; only sums whose terms cancel make it grow.
   std::array<std::uint64_t, 64> growth = {};
@@ -37,7 +38,7 @@ using Simpler = std::function<bool(const AnyPair&, const AnyPair&)>;
 
 struct Origins {
   std::vector<FusedLine> lines;                 // in program order; those only in the kernel for doubles come last
-  std::map<std::pair<int, int>, Start> starts;  // by value: its question, and 0 or 1
+  std::map<std::pair<int, int>, Start> starts;  // by value: the number of its question, and 0 or 1
   std::uint64_t pairs = 0, verdicts = 0;        // pairs examined; those on which contraction changes the verdict
 };
 

@@ -10,7 +10,7 @@
 namespace graze::analysis {
 namespace {
 
-constexpr std::size_t kTogether = 4;  // values whose processes run at once
+constexpr std::size_t kTogether = 4;  // epsilon values whose processes run at once
 
 }  // namespace
 

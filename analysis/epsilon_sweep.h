@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A user's code with different values of its epsilon; its source is rebuilt for each.
+// Runs a user's code with different values of its epsilon. The source is rebuilt for each value.
 #pragma once
 
 #include <map>
@@ -18,7 +18,7 @@ class UnderEpsilon {
   // Requires: a lane and a source that outlive this.
   UnderEpsilon(const Lane& lane, const subjects::TunableSource& source) : lane_(lane), source_(source) {}
 
-  // Processes that nothing else uses.   Throws: as subjects::rebuilt.   Requires: a policy that is not empty.
+  // Returns: processes that nothing else uses.   Throws: as subjects::rebuilt.   Requires: a policy that is not empty.
   std::unique_ptr<subjects::ForeignProcesses> operator()(const std::string& policy);
 
   const Lane& lane() const { return lane_; }
@@ -26,7 +26,7 @@ class UnderEpsilon {
  private:
   const Lane& lane_;
   const subjects::TunableSource& source_;
-  std::map<std::string, std::unique_ptr<subjects::ForeignProcesses>> built_;  // by policy; none of them runs
+  std::map<std::string, std::unique_ptr<subjects::ForeignProcesses>> built_;  // by policy; these processes do not run
 };
 
 // Decides under each policy, in processes that run as long as this object lives. The empty policy is the lane itself.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A user's source with different values of its epsilon.
+// Tests a user's source with different values of its epsilon.
 #include "analysis/epsilon_sweep.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Finds boxes that overlap by more than kEps: too many with a negative value, too few with a large one.
+// Finds boxes that overlap by more than kEps: too many if kEps is negative, and too few if it is large.
 constexpr const char* kBoxes = R"(#include "own.h"
 const float kEps = 0.75f;
 int intersects(const float a[9], const float b[9]) {
@@ -97,7 +97,7 @@ TEST_F(EpsilonSweep, TuneFindsAValueThatIsBetterOnOtherPairs) {
   const Tuned tuned = tune(spec);
   ASSERT_EQ(tuned.curves.size(), 1u);
   EXPECT_EQ(tolerance_of(tuned.curves[0].points.front().policy), 0);
-  EXPECT_LT(tuned.curves[0].points.size(), 45u);  // each takes a build
+  EXPECT_LT(tuned.curves[0].points.size(), 45u);  // each point takes a build
   ASSERT_FALSE(tuned.chosen.empty());
   EXPECT_LT(tolerance_of(tuned.chosen), 0.75);
   EXPECT_NE(tuned.result, TuneResult::not_satisfiable);

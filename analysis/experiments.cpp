@@ -46,10 +46,9 @@ class Trial {
  private:
   Experiment cause_of_unstable() const {
     if (auto found = by_values(); found && found->settled) return *found;
-    return {
-        Cause::unstable, true,
-        "it gives another answer when it is asked about the same pair again, or changes how the processor rounds, or "
-        "what it does with subnormal numbers"};
+    return {Cause::unstable, true,
+            "it gives different answers for the same pair, or changes how the processor rounds or treats subnormal "
+            "numbers"};
   }
 
   Experiment cause() {
@@ -96,7 +95,7 @@ class Trial {
       if (images.cause == Cause::rounding && holds_determinants(pair_, Scalar::f64)) images.cause = Cause::logic;
     }
     if (images.cause == Cause::logic && !ask_.in_float64() && !holds_determinants(pair_, lane_.scalar))
-      images.cause = Cause::rounding;  // nothing speaks for either, and determinants of these numbers round
+      images.cause = Cause::rounding;  // there is no evidence for either, and determinants of these numbers round
     return open(std::move(images));
   }
 
@@ -111,7 +110,7 @@ class Trial {
                       number->words + ", with either alone wrong", number->line};
   }
 
-  // Nothing if no larger scale can be tried.
+  // Returns nothing if no larger scale can be tried.
   std::optional<LargerScales> at_larger_scales() const {
     if (wrong_at_.last >= 1) return LargerScales{true, wrong_at_.last};
     return at_larger_scales(block_of(lane_));
@@ -122,14 +121,14 @@ class Trial {
     return ask_.until(block, usual.last);
   }
 
-  // The same, but products may leave the exponent range.
+  // Like at_larger_scales, but products may leave the exponent range.
   std::optional<LargerScales> at_any_larger_scales() const {
     const Scales all = exact_scales(size_);
     if (size_.is_zero() || all.last < 1) return std::nullopt;
     return ask_.until(block_of(lane_), all.last);
   }
 
-  // Adds the number of the source that decides, if it is known.
+  // Adds the number in the source that decides the verdict, if it is known.
   Experiment named(Experiment found) const {
     if (found.cause != Cause::absolute_epsilon) return found;
     if (auto number = number_that_decides(); number && number->on_images) {
@@ -174,13 +173,14 @@ class Trial {
   }
 
   // Whether products of differences stay within the exponents, as far as that can be known. Overflow is checked for the
-  // longest products; underflow only for the usual ones, whose factors may all be small.
+  // longest products; underflow is checked only for the usual products, whose factors may all be small.
   bool has_usual_exponents() const {
     return kUsualFactors * size_.smallest_difference >= limits().least &&
            kMostFactors * (size_.largest_difference + 1) < limits().most;
   }
 
-  // The lane of the same code and compiler in which every operation is rounded. OpenCL has one; null if there is none.
+  // The lane of the same code and compiler in which every operation is rounded. OpenCL has such a lane; null if there
+  // is none.
   const Lane* rounded_sibling(const subjects::Toolchain& toolchain) const {
     for (const Lane& lane : lanes()) {
       if (lane.info != lane_.info || lane.scalar != lane_.scalar || !lane.decide) continue;
@@ -190,7 +190,7 @@ class Trial {
     return nullptr;
   }
 
-  // The toolchain's build with its strict flags; nothing if there is none, or if that is wrong too.
+  // Tries the toolchain's build with strict flags. Returns nothing if there is none, or if it is wrong too.
   std::optional<Experiment> by_strict_build(const subjects::Toolchain& toolchain) const {
     constexpr Cause kCauses[] = {Cause::contraction, Cause::contraction, Cause::excess_precision, Cause::fast_math};
     const Cause cause = kCauses[static_cast<int>(toolchain.rounding)];
@@ -302,7 +302,8 @@ class Trial {
   // The lane is right at all scales in range, so the pair is out of range. The lane turns wrong between the range and
   // the pair.
   Experiment outside(Turn turn) const {
-    // Code that adds lengths and areas may be wrong here even without limits. For doubles no wider type rules it out.
+    // Code that adds lengths and areas may be wrong here even without limits. For doubles no wider type can rule this
+    // out.
     constexpr bool kIsNarrow = sizeof(Real) == sizeof(float);
     const bool by_float64 = ask_.right_in_float64_at_every_scale();
     const std::string text = turn.text(),
@@ -345,7 +346,7 @@ class Trial {
                       turn.text()};
   }
 
-  // The lane is wrong at all scales in range. It may turn right some way above, where only longer products can
+  // The lane is wrong at all scales in range. It may be right at larger scales at which only longer products can
   // overflow.
   std::optional<Experiment> beyond(Scales in_range) const {
     const Scales more{in_range.last + 1, scales_in_range(size_, lane_.scalar, kUsualFactors / 2).last};
@@ -357,7 +358,7 @@ class Trial {
 
   std::optional<Experiment> by_precision() const {
     if (!ask_.right_in_float64()) return std::nullopt;
-    // If sums and products are exact here, it may be right by luck.
+    // If sums and products are exact here, the code may be right by luck.
     const Lane* f64 = analysis::in_float64(lane_);
     const Lane* rounded = f64 ? counterpart(*f64, rounded_variant(f64->variant)) : nullptr;
     const bool as_written = !rounded || !backends::on_host(*rounded) || ask_.asked(*rounded, {pair_})[0];
@@ -376,11 +377,11 @@ class Trial {
   Verdict truth_;
   const Size size_;
   ImageVerdicts<Real> ask_;
-  mutable std::optional<std::vector<PairOf>> wrong_images_;  // once asked for
+  mutable std::optional<std::vector<PairOf>> wrong_images_;  // computed when first needed
   Scales strictly_{1, 0};        // scales at which even the longest products stay within the exponents
-  bool turns_in_range_ = false;  // the verdict turns between two of these
-  Scales wrong_at_{1, 0};        // the tried scales at which the usual products stay within the exponents, if the lane
-                                 // is wrong at all of them; otherwise none
+  bool turns_in_range_ = false;  // the verdict changes between two of these scales
+  Scales wrong_at_{1, 0};        // the tried scales at which usual products stay within the exponents; empty unless the
+                                 // lane is wrong at all of them
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Causes found by experiment. Compares those of the published algorithms, run as foreign code, with those found from
-// their steps; and tests code with known planted faults.
+// Tests causes that experiments find. Published algorithms run as foreign code, and their causes are compared with
+// those found from their steps. Other code has planted faults.
 #include "analysis/experiments.h"
 
 #include <fmt/format.h>
@@ -90,7 +90,7 @@ const Lane& add_lane(const std::string& subject, Scalar scalar, Variant variant,
   return lanes().back();
 }
 
-// The same for a function that takes pairs of both types.
+// Like the function above, for a function that takes pairs of both types.
 template <class Decide>
 const Lane& add_lane_of_both(const std::string& subject, Scalar scalar, Variant variant, Decide decide) {
   return scalar == Scalar::f32 ? add_lane(subject, scalar, variant, decide)
@@ -129,7 +129,7 @@ bool agree(Cause by_steps, Cause by_experiment) {
   return by_steps == by_experiment;
 }
 
-// How the causes of published algorithms, run as foreign code, compare with those from their steps.
+// Compares the causes of published algorithms that run as foreign code with the causes from their steps.
 struct Compared {
   std::map<std::pair<Cause, Cause>, int> settled;  // by steps, by experiment
   std::map<Cause, int> by_steps, open;
@@ -167,7 +167,7 @@ Compared compared(std::span<const strata::PairSource> sources) {
   const auto compare = [&](const AnyPair& pair, const std::string& place) {
     const Verdict truth = visit(pair, [](const auto& own) { return truth_of(own); });
     for (const auto& [own, foreign] : both) {
-      if (!pair.floats && own->scalar == Scalar::f32) continue;  // it decides what float32 stores
+      if (!pair.floats && own->scalar == Scalar::f32) continue;  // the lane decides what float32 stores
       const std::vector<LaneExplanation> steps = accounts(pair, truth, {&own, 1});
       if (steps.empty() || (steps[0].settled != Settled::yes && steps[0].cause != Cause::fast_math)) continue;
       const std::vector<LaneExplanation> found = accounts(pair, truth, {&foreign, 1});
@@ -219,7 +219,7 @@ TEST(Experiments, AgreeWithTheStepsOnDoubles) {
   }
 }
 
-// Small integers, with zeros and repeated coordinates, so that many touch or are coplanar.
+// Draws small integers, with zeros and repeated coordinates, so that many pairs touch or are coplanar.
 Pair integers(std::uint32_t& state, int largest) {
   Pair pair;
   for (int i = 0; i < kCoordinates; ++i) {
@@ -231,8 +231,8 @@ Pair integers(std::uint32_t& state, int largest) {
   return pair;
 }
 
-// Where small integers show logic, the steps show logic too, except in interval_overlap: its quotients, rounded in
-// either scalar, separate intervals that touch, in all orders and at all multiples.
+// If small integers show logic as the cause, the steps show logic too, except in interval_overlap. Its quotients,
+// rounded in either scalar, separate intervals that touch, in all orders and at all multiples.
 TEST(Experiments, SmallIntegersShowNoRoundingAsLogic) {
   for (const bool with_doubles : {true, false}) {
     std::vector<std::pair<const Lane*, const Lane*>> both;
@@ -422,7 +422,7 @@ TEST(Experiments, FindLogicOnSmallIntegers) {
 }
 
 TEST(Experiments, FindOverflowAndUnderflow) {
-  // Right, unless the product of four large differences overflows or underflows.
+  // This code is right, unless the product of four large differences overflows or underflows.
   const auto product = [](const Pair& pair) {
     float most = 0;
     for (int i = 0; i < 18; ++i) most = std::max(most, std::fabs((&pair.a[0].x)[i] - (&pair.a[0].x)[i % 3]));
@@ -436,7 +436,7 @@ TEST(Experiments, FindOverflowAndUnderflow) {
     return product(pair) >= 0x1p-126f ? truth_of(pair) : opposite(truth_of(pair));
   });
   add_lane("underflows", Scalar::f64, Variant::cpu, truth_of<float>);
-  // The same in doubles, where nothing wider can settle it.
+  // The same code in doubles, where no wider type can settle the cause.
   const auto product_of_doubles = [](const DoublePair& pair) {
     double most = 0;
     for (int i = 0; i < 18; ++i) most = std::max(most, std::fabs((&pair.a[0].x)[i] - (&pair.a[0].x)[i % 3]));

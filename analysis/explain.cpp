@@ -38,7 +38,7 @@ int bits_needed(int algorithm, const oracle::Exactly& exactly, const AnyPair& pa
   return !exactly.certain && bits > oracle::kMostBits / 2 ? 0 : bits;
 }
 
-// The pair's neighbours. Nudged pairs may have another truth than the pair, so it is computed for each.
+// The pair's neighbours. Nudged pairs may have another truth than the pair, so the truth of each is computed.
 template <class Real>
 struct Neighbours {
   using Pairs = std::vector<BasicPair<Real>>;
@@ -208,7 +208,8 @@ bool is_by_convention(const Lane& lane, Verdict verdict, const AnyPair& pair) {
          visit(pair, [&](const auto& own) { return by_convention(lane, verdict, own, relation_of(own)); });
 }
 
-// Says which number is beyond float32's range, or which one, kept as a double, would make the verdict right.
+// Says which number is beyond float32's range, or which number would make the verdict right if it were kept as a
+// double.
 std::string what_rounding_decides(const DoublePair& pair, const Pair& stored, Verdict truth) {
   const float* c = coordinates(stored);
   if (const auto beyond = std::find_if(c, c + kCoordinates, [](float x) { return std::isinf(x); });
@@ -295,7 +296,7 @@ Cause cause_of(const Lane& lane, const AnyPair& given, Verdict truth_of_given) {
 }
 
 bool leaves_exponents(const Lane& lane, const AnyPair& pair) {
-  if (lane.foreign || lane.under || lane.exact) return false;  // not known, or without effect
+  if (lane.foreign || lane.under || lane.exact) return false;  // it is not known, or exponents have no effect
   const DecideBlock block = block_of(rounded_counterpart(lane));
   std::uint64_t intersects, declined;
   std::feclearexcept(FE_OVERFLOW | FE_UNDERFLOW);

@@ -21,18 +21,18 @@
 
 namespace graze::analysis {
 
-// The first cause whose condition holds:
+// The cause is the first of these whose condition holds:
 //   stored       for a pair of doubles and a lane in float32: the pair as float32 stores it has another truth, and the
-//                lane gives that truth; or float32 cannot hold one of the numbers. All other causes of such a lane
-//                refer to the stored pair
+//                lane gives that truth; or float32 cannot hold one of the numbers. All other causes of a lane in
+//                float32 refer to the stored pair
 //   logic        the algorithm gives the wrong verdict in exact arithmetic too
 //   contraction  the same source without contraction, on the same kind of processor, is right
-//   fast math    the same, for a lane whose operations the compiler may rewrite or approximate
+//   fast math    the same condition, for a lane whose operations the compiler may rewrite or approximate
 //   overflow, underflow   without contraction, the scalar's mantissa with unlimited exponents is right. Overflow if the
 //                upper limit alone makes it wrong, underflow if the lower limit alone does. If both or neither do, the
 //                cause is the limit that is exceeded first. This also covers pairs that need a longer mantissa as well,
-//                if the limit made the comparison go wrong.
-//   rounding     otherwise
+//                if the limit made the comparison go wrong
+//   rounding     no other condition holds
 // Experiments find the cause for foreign code (experiments.h). The causes from absolute_epsilon on apply only to
 // foreign code, except policy:
 //   policy       the lane uses a policy, and the same lane without the policy is right, or the policy declined. If
@@ -68,20 +68,20 @@ enum class Settled {
 };
 std::string_view name(Settled settled);
 
-// A value that the algorithm asked its policy about, or a comparison.
+// A value that the algorithm passed to its policy, or a comparison.
 struct Step {
   std::string line;                        // "core/algorithms/moller_1997.h:96"
-  std::string_view site;                   // what the policy was asked about; empty for the algorithm's own comparison
+  std::string_view site;                   // of the value or comparison; empty for the algorithm's own comparison
   std::string_view relation;               // empty for a value
   oracle::Beside left, right, difference;  // a single value is in `left`
   bool held = true;                        // in the lane's arithmetic
   bool holds = true;                       // in exact arithmetic
   bool wrong() const { return held != holds; }
-  // Whether exact arithmetic has no such numbers to compare, because it divides by zero on the way to them.
+  // Whether exact arithmetic cannot compute these numbers, because it divides by zero earlier.
   bool is_undefined() const { return std::isnan(left.exact) || std::isnan(right.exact); }
 };
 
-// The number of pairs with the same truth on which the lane is wrong, out of how many.
+// The lane is wrong on `wrong` out of `of` pairs with the same truth.
 struct WrongOf {
   int wrong, of;
 };
@@ -90,13 +90,13 @@ struct LaneExplanation {
   const Lane* lane;
   Verdict verdict;
   Cause cause;
-  oracle::Exactly exactly;        // what the algorithm says in exact arithmetic
-  Evidence evidence;              // how sure it is that the steps are the lane's own
+  oracle::Exactly exactly;        // the algorithm's verdict in exact arithmetic
+  Evidence evidence;              // how well the steps are known to be the lane's own
   std::vector<Step> steps;        // in order: values and comparisons passed to the policy, and wrong comparisons
   Contraction rule;               // the contraction rule of the replay
   std::vector<Decider> deciding;  // the comparisons that decide, see deciding.h; empty for logic
   int decisive = -1;              // index in `steps` of the first deciding comparison; -1 if none is known
-  std::vector<Step> then;         // the others: each goes wrong once those before it are corrected
+  std::vector<Step> then;         // the other deciding comparisons; each is wrong once the earlier ones are corrected
   Blame contractions;             // only for a cuda-fma lane whose verdict contraction changes
   bool cpu_is_right = false;      // for users' CUDA code with contractions: the cpu lane of the same source is right
   Settled settled;
@@ -127,11 +127,11 @@ struct Explanation {
 // Requires: lanes that run here or have a twin. For a pair with a non-finite coordinate, no lane is wrong.
 Explanation explain(const AnyPair& pair, std::span<const Lane* const> lanes);
 
-// The same for each wrong lane, but without the pair's neighbours: bits_needed, matters, orders, mirrored and scalings
-// are not set. Much faster than `explain`. Lanes that differ only by their convention (convention.h) are not wrong.
+// Explains each wrong lane, but without the pair's neighbours: bits_needed, matters, orders, mirrored and scalings are
+// not set. Much faster than `explain`. Lanes that differ only by their convention (convention.h) are not wrong.
 std::vector<LaneExplanation> accounts(const AnyPair& pair, Verdict truth, std::span<const Lane* const> lanes);
 
-// The cause that `explain` gives, without the rest. Takes 1/20 of the time of `explain`, or 1/3 for rounding.
+// Returns only the cause that `explain` gives. Takes 1/20 of the time of `explain`, or 1/3 for rounding.
 // Requires: the lane runs here or has a twin, and is wrong on the pair; truth is the pair's.
 Cause cause_of(const Lane& lane, const AnyPair& pair, Verdict truth);
 
@@ -145,11 +145,12 @@ bool leaves_exponents(const Lane& lane, const AnyPair& pair);
 // the lanes that are wrong in the same way, with the numbers of one of them.
 std::string sentence(const Explanation& explanation, const AlgorithmInfo* subject);
 
-// Returns one sentence for each wrong algorithm. For a user's CUDA code, a second one names the lines that make it
-// differ from cpu, if rounding only the products of these lines gives the verdict of cpu.
+// Returns one sentence for each wrong algorithm. For a user's CUDA code, a second sentence may name the lines that make
+// its verdict differ from that of cpu. It is added if rounding only the products of these lines gives the verdict of
+// cpu.
 std::vector<std::string> sentences(const Explanation& explanation);
 
-// Whether this is such a second sentence.
+// Whether the sentence names lines that make CUDA code differ from cpu.
 bool tells_difference_from_cpu(std::string_view sentence);
 
 nlohmann::ordered_json to_json(const LaneExplanation& lane);

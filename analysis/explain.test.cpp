@@ -57,7 +57,7 @@ TEST(Replay, IsTheLanesOwnRun) {
   }
 }
 
-// A run repeats itself if it is led along its own path, but not along another one.
+// A run that is led along its own path repeats itself. A run that is led along another path does not.
 TEST(Replay, CanBeLed) {
   const Lane& lane = *find_lane("projected_sat/f32/cpu");
   const Pair pair = strata::generate(7, strata::Stratum::near_edge_edge, 3);
@@ -82,7 +82,7 @@ Pair scaled(Pair pair, float factor) {
   return pair;
 }
 
-// A vertex 2^-12 above the face.
+// A vertex is 2^-12 above the face.
 const Pair kNearContact{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0x1p-12f}, {1, 2, 4}, {2, 1, 4}}};
 
 TEST(Explain, AlgorithmsThatAreWrongExactlyAreSoByLogic) {
@@ -170,8 +170,8 @@ TEST(Explain, WhatMoreBitsWouldHelpIsRounding) {
             std::string::npos);
 }
 
-// Near-coplanar pairs on which cuda-fma and cuda-nofma differ. The blamed sites cause the difference, and no smaller
-// set does.
+// Tests near-coplanar pairs on which cuda-fma and cuda-nofma differ. The blamed sites cause the difference, and no
+// smaller set of sites does.
 TEST(Explain, FlipsByContractionAreBlamedOnSourceLines) {
   int flips = 0;
   for (std::uint64_t i = 0; i < 60; ++i) {
@@ -196,7 +196,7 @@ TEST(Explain, FlipsByContractionAreBlamedOnSourceLines) {
         return cuda::decide_fusing(*lane.lane, pair, fused);
       };
       EXPECT_EQ(verdict_without(all.size()), lane.verdict);
-      // Either every site is necessary, or it takes all of them to undo the effect of each.
+      // Either each site is necessary, or the effect is undone only if all sites are rounded.
       const bool needed =
           std::all_of(blamed.begin(), blamed.end(), [&](std::size_t s) { return verdict_without(s) != lane.verdict; });
       EXPECT_TRUE(needed || lane.settled == Settled::yes || lane.cause == Cause::logic) << lane.lane->id << i;
@@ -308,7 +308,7 @@ TEST(Neighbours, NudgesMoveOneCoordinateBothWays) {
   }
 }
 
-// The minimiser asks only for the cause. If no flag was raised, MPFR finds no overflow or underflow either.
+// The minimiser needs only the cause. If the processor raised no flag, MPFR finds no overflow or underflow either.
 TEST(CauseOf, IsWhatExplainSays) {
   int wrong = 0, in_range = 0;
   std::set<Cause> seen;
@@ -333,8 +333,8 @@ TEST(CauseOf, IsWhatExplainSays) {
   EXPECT_LT(in_range, wrong);
 }
 
-// The lanes that decide pairs of doubles: those in float32, which decide what it stores, and those in double that take
-// such pairs.
+// The lanes that decide pairs of doubles: lanes in float32, which decide the stored pairs, and lanes in double that
+// take pairs of doubles.
 std::vector<const Lane*> lanes_of_doubles() {
   std::vector<const Lane*> result = lanes_here();
   std::erase_if(result, [](const Lane* lane) {
@@ -343,7 +343,7 @@ std::vector<const Lane*> lanes_of_doubles() {
   return result;
 }
 
-// Over all strata of doubles: each cause says what another computation confirms.
+// Another computation confirms each cause, over all strata of doubles.
 TEST(ExplainDoubles, CausesAreTrue) {
   std::map<Cause, int> seen;
   int settled = 0, wrong = 0;
@@ -368,7 +368,7 @@ TEST(ExplainDoubles, CausesAreTrue) {
         EXPECT_EQ(lane.cause == Cause::stored, f32 && of_stored != truth && is_right_about_stored);
         if (lane.cause == Cause::stored) continue;
         EXPECT_EQ(lane.cause == Cause::logic, lane.exactly.verdict != (f32 ? of_stored : truth)) << lane.lane->id;
-        if (f32) {  // as the stored pair is explained
+        if (f32) {  // the explanation is that of the stored pair
           EXPECT_EQ(cause_of(*lane.lane, stored, of_stored), lane.cause)
               << lane.lane->id << ' ' << name(lane.verdict) << ' ' << name(truth) << ' ' << name(of_stored);
         } else if (lane.cause == Cause::rounding && lane.bits_needed > 0) {
@@ -384,7 +384,7 @@ TEST(ExplainDoubles, CausesAreTrue) {
   EXPECT_GT(settled, wrong / 2);
 }
 
-// A number that decides alone is named, and so is one that float32 cannot hold.
+// The explanation names a number that decides alone, and a number that float32 cannot hold.
 TEST(ExplainDoubles, TheNumberThatDecidesIsNamed) {
   DoublePair pair{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{0, 0, 1}, {1, 0, 2}, {0, 1, 2}}};
   pair.b[0].z = 1 + 0x1p-40;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An explanation in words, and as JSON.
+// Writes explanations in words, and as JSON.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ std::string phrase(const AnyPair& pair, const oracle::Truth& truth) {
 }
 
 std::string words(const cuda::ContractionSite& site) {
-  // For the user's own files, only the file name.
+  // The user's own files are shown without their folders.
   const auto text = [](const cuda::SourceLine& line) {
     const std::string_view file = line.file;
     return fmt::format("{}:{}", file.starts_with('/') ? file.substr(file.rfind('/') + 1) : file, line.line);
@@ -45,7 +45,8 @@ std::string words(const cuda::ContractionSite& site) {
   return inlined ? fmt::format("{} (inlined at {})", text(site.at), text(site.from)) : text(site.at);
 }
 
-// Names the compared value by its own site, or else by that of the last value passed to the policy that equals it.
+// Names the compared value by its own site. If it has none and is compared with 0, uses the site of the first equal
+// value that was passed to the policy.
 std::string_view what(const LaneExplanation& lane, const Step& told) {
   const auto in_words = [](std::string_view site) -> std::string_view {
     return site == "plane_distance" ? "a signed distance"
@@ -138,7 +139,7 @@ std::string fused(const LaneExplanation& lane) {
   return fmt::format("nvcc fuses the product{} into the addition{} at {}", plural, plural, list(sites));
 }
 
-// Explains why the cause is not settled; empty if it is settled or if the reason already says so.
+// Explains why the cause is not settled; empty if it is settled, or if the reason already includes this.
 std::string doubt(const LaneExplanation& lane) {
   switch (lane.settled) {
     case Settled::not_without:
@@ -193,7 +194,7 @@ std::string variant_of(const Lane& lane) {
   return std::string(lane.variant_name()) + (lane.policy.empty() ? "" : "/" + lane.policy);
 }
 
-// The result of the experiments, and which experiments these were.
+// The cause that experiments found, with these experiments.
 std::string reason_by_experiment(const LaneExplanation& lane) {
   const auto words = [&]() -> std::string {
     switch (lane.cause) {
@@ -238,7 +239,7 @@ std::string reason_by_experiment(const LaneExplanation& lane) {
                      lane.experiment);
 }
 
-// Lanes that share one account.
+// Whether one sentence can describe both lanes.
 bool alike(const LaneExplanation& l, const LaneExplanation& r) {
   const auto line = [](const LaneExplanation& lane) { return lane.told() ? lane.told()->line : ""; };
   return l.lane->scalar == r.lane->scalar && l.lane->policy == r.lane->policy && l.verdict == r.verdict &&
@@ -246,8 +247,8 @@ bool alike(const LaneExplanation& l, const LaneExplanation& r) {
          l.contractions.sites.empty() == r.contractions.sites.empty();
 }
 
-// The lane that the sentence about a subject is about: preferably one whose values are known to be its own, else one of
-// a toolchain whose contraction is at a known line. Null if no lane of the subject is wrong.
+// The lane that the sentence about a subject describes. Prefers a lane whose values are known to be its own, and then a
+// toolchain's lane whose contraction is at a known line. Null if no lane of the subject is wrong.
 const LaneExplanation* representative(const Explanation& explanation, const AlgorithmInfo* subject) {
   const auto rank = [](const LaneExplanation& lane) {
     return lane.evidence <= Evidence::hash ? 2 : lane.line.empty() ? 0 : 1;
@@ -317,15 +318,15 @@ std::string sentence(const Explanation& explanation, const AlgorithmInfo* subjec
 
 namespace {
 
-// What the sentence about a subject leaves out: other lines that toolchains fuse at, and other flags that undo it. One
-// sentence for each scalar, line and flag.
+// Tells what the sentence about a subject omits: other lines at which toolchains fuse, and other flags that prevent
+// this. Returns one sentence for each scalar, line and flag.
 std::vector<std::string> by_toolchain(const Explanation& explanation, const AlgorithmInfo* subject) {
   using Account = std::tuple<Scalar, std::string, std::string>;
   const auto account = [](const LaneExplanation& lane) {
     return Account(lane.lane->scalar, lane.line, lane.experiment);
   };
   const LaneExplanation* first = representative(explanation, subject);
-  std::vector<std::pair<const LaneExplanation*, std::string>> accounts;  // the first lane, and the names of all
+  std::vector<std::pair<const LaneExplanation*, std::string>> accounts;  // a first lane and all names
   for (const LaneExplanation& lane : explanation.lanes) {
     if (lane.lane->info != subject || lane.lane->toolchain.empty() || lane.cause != Cause::contraction ||
         account(lane) == account(*first))

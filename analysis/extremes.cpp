@@ -11,7 +11,7 @@ namespace graze::analysis {
 namespace {
 
 struct Limits {
-  double least, most;  // bounds of the share up to which a lane is as right, from the bounds of the origin's share
+  double least, most;  // the lane is as right up to this share of errors: bounds, from those of the origin's share
 };
 
 Limits limits_of(const ErrorsAt& origin) {
@@ -48,7 +48,7 @@ std::optional<RightRange> right_range(std::span<const ErrorsAt> points) {
   RightRange range{*origin, is_right(*origin, limits),
                    side_of(std::vector(std::make_reverse_iterator(origin + 1), enough.rend()), limits),
                    side_of(std::vector(origin, enough.end()), limits)};
-  for (const ErrorsAt& at : points) {  // including points with too few pairs to say anything
+  for (const ErrorsAt& at : points) {  // including points with too few pairs to show anything
     if (at.pairs == 0) continue;
     range.down.last = std::min(range.down.last, at.exponent);
     range.up.last = std::max(range.up.last, at.exponent);

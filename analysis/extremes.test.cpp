@@ -11,7 +11,8 @@ namespace {
 using Points = std::vector<ErrorsAt>;
 
 TEST(RightRange, EndsBeforeTheFirstExponentThatIsNotShownToBeAsRight) {
-  // At 2^0 10 %, with bounds of about 9.5 and 10.5 %. So up to 18 % is as right, and more than 21 % is not.
+  // At 2^0 the share of errors is 10 %, with bounds of about 9.5 and 10.5 %. So a share up to 18 % is as right, and a
+  // share above 21 % is not.
   const auto range = right_range(Points{{-16, 9'000, 10'000},
                                         {-8, 1'500, 10'000},
                                         {0, 1'000, 10'000},
@@ -31,7 +32,7 @@ TEST(RightRange, EndsBeforeTheFirstExponentThatIsNotShownToBeAsRight) {
   EXPECT_EQ(range->up.last, 40);
 }
 
-// Few errors are as right as none: up to 0.1 %, if there are enough pairs to show it.
+// A lane with errors on up to 0.1 % of the pairs is as right as one without errors, if enough pairs show it.
 TEST(RightRange, TakesALaneThatHardlyErrsForRight) {
   EXPECT_TRUE(right_range(Points{{0, 0, 4'000}, {8, 0, 4'000}})->settled);
   EXPECT_FALSE(right_range(Points{{0, 0, 3'500}, {8, 0, 4'000}})->settled);

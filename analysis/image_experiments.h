@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Experiments on foreign code with images of the pair, which have the same truth: one kind for pairs on which nothing
-// rounds, one for pairs on which something may.
+// Experiments on foreign code with images of the pair, which have the pair's truth. One experiment is for pairs on
+// which nothing rounds, and one for pairs on which something may round.
 #pragma once
 
 #include <functional>
@@ -16,8 +16,8 @@ namespace graze::analysis {
 template <class Real>
 using Ask = std::function<std::vector<bool>(const std::vector<BasicPair<Real>>&)>;
 
-// Whether the coordinates are integers times a power of two, small enough that no sum of 32 products of up to
-// kUsualFactors coordinates or differences rounds: up to 8 in float32, up to 256 in float64.
+// Whether the coordinates are small integers times a power of two: up to 8 in float32, and up to 256 in float64. Then
+// no sum of 32 products of up to kUsualFactors coordinates or differences rounds.
 template <class Real>
 bool has_small_integers(const BasicPair<Real>& pair, Scalar scalar);
 
@@ -25,11 +25,12 @@ bool has_small_integers(const BasicPair<Real>& pair, Scalar scalar);
 template <class Real>
 bool holds_determinants(const BasicPair<Real>& pair, Scalar scalar);
 
-// The cause, if such products do not round in the widest arithmetic in which the code is known to be wrong. Nothing if
-// scaling the pair by 3 or 5 changes the orders in which the lane is wrong, because then quotients or roots may decide.
-// Unless products of kMostFactors do not round either, adding one axis to another must not change these orders. Rounded
-// quotients may remain: they were behind 18 of 18,237 causes of published algorithms on such pairs, all of
-// interval_overlap.   Requires: has_small_integers; the lane is wrong on the pair at all larger scales.
+// The cause, if the products of has_small_integers do not round in the widest arithmetic in which the code is known to
+// be wrong. Returns nothing if scaling the pair by 3 or 5 changes the orders in which the lane is wrong, because then
+// quotients or roots may decide. Unless products of kMostFactors do not round either, adding one axis to another must
+// not change these orders. Rounded quotients may remain the real cause: on such pairs, they were so for 18 of 18,237
+// causes of published algorithms, all of interval_overlap.   Requires: has_small_integers; the lane is wrong on the
+// pair at all larger scales.
 template <class Real>
 std::optional<Experiment> without_rounding(const BasicPair<Real>& pair, Scalar widest, const Ask<Real>& ask);
 
@@ -37,7 +38,7 @@ std::optional<Experiment> without_rounding(const BasicPair<Real>& pair, Scalar w
 template <class Real>
 std::vector<BasicPair<Real>> wrong_images(const BasicPair<Real>& pair, const Ask<Real>& ask);
 
-// A cause that is not settled.
+// Guesses a cause from verdicts on images. The result is not settled.
 template <class Real>
 Experiment by_images(const BasicPair<Real>& pair, const Ask<Real>& ask);
 

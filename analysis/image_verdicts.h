@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Verdicts of foreign code, and of changed builds of its source, on images of one pair: what experiments ask for.
+// Verdicts of foreign code, and of changed builds of its source, on images of one pair. Experiments use them.
 #pragma once
 
 #include <fmt/format.h>
@@ -27,11 +27,12 @@ struct Turn {
   std::string text() const { return fmt::format("scaled by 2^{} it is right, by 2^{} wrong", right, wrong); }
 };
 
-// What the scales in range show. right: whether the lane is right at the first one; without a turn, it is so at all.
+// The result of trying scales in range. right: whether the lane is right at the first scale; without a turn, this holds
+// at all scales.
 struct ScaleSearch {
   std::optional<Turn> turn;
   bool right;
-  Scales tried;  // the least and the greatest
+  Scales tried;  // from the least to the greatest scale tried
 };
 
 // Whether the code is wrong at all larger scales that were tried, up to 2^most.
@@ -65,8 +66,8 @@ class ImageVerdicts {
     return verdicts;
   }
 
-  // For each pair, whether the block is right. It is false for pairs that were not tried because too many others timed
-  // out, and with until_wrong for those after the call with the first wrong one.
+  // For each pair, whether the block is right. False for pairs that were not tried because too many others timed out.
+  // With until_wrong, no pairs are tried after the call that finds the first wrong verdict.
   std::vector<bool> asked(const DecideBlock& block, const std::vector<PairOf>& pairs, bool until_wrong = false) const {
     std::vector<bool> right(pairs.size());
     for (std::size_t begin = 0, size; begin < pairs.size() && late_ < kMostLate; begin += size) {
@@ -111,7 +112,7 @@ class ImageVerdicts {
     return last_turn_ = {wrong, right};
   }
 
-  // Whether the same code in float64 is right wherever no product leaves its exponents.
+  // Whether the same code in float64 is right at all tried scales at which no product leaves its exponents.
   bool right_in_float64_at_every_scale() const {
     const DecideBlock f64 = in_float64();
     if (!f64) return false;
@@ -138,7 +139,7 @@ class ImageVerdicts {
     return search;
   }
 
-  // Tries some scales from 1 to the last: whether the block is wrong at all of them.   Requires: last > 0
+  // Tries some scales from 1 to `last`, and tells whether the block is wrong at all of them.   Requires: last > 0
   LargerScales until(const DecideBlock& block, int last) const {
     const auto larger = tried(block, {1, last}, 12);
     return {std::none_of(larger.begin(), larger.end(), [](const auto& one) { return one.second; }),
@@ -167,7 +168,7 @@ class ImageVerdicts {
   bool gave_up() const { return late_ >= kMostLate; }
   Turn last_turn() const { return last_turn_; }
 
-  const Lane* source;  // whose source is changed: the lane, or the same code rounded as written if that is wrong too
+  const Lane* source;  // its source is changed: the lane, or its counterpart rounded as written if that is wrong too
 
  private:
   static constexpr int kMostLate = 3;  // after this many time-outs no more verdicts are requested

@@ -17,14 +17,14 @@
 namespace graze::analysis {
 namespace {
 
-constexpr std::uint64_t kBlock = 32;  // pairs; with their images some 2,300
+constexpr std::uint64_t kBlock = 32;  // pairs, which have some 2,300 images
 
-// Why rounding cannot break them: changing signs, scaling by a power of two, and exchanging the operands of an
-// operation all leave its rounding as it is.
-//   scale      all sums and comparisons have terms of one degree in the coordinates. Not so in the thesis's two
+// Why rounding cannot break the claimed invariants: changing signs, scaling by a power of two, and exchanging the
+// operands of an operation do not change how it rounds.
+//   scale      all sums and comparisons have terms of one degree in the coordinates. This is not so in the thesis's two
 //              algorithms, which add a distance to one that is multiplied by the normal's length.
-//   mirror     both sides of a comparison keep their values, or both change sign. Not so in guigue_devillers_2003,
-//              which chooses its determinants by the triangles' orientation.
+//   mirror     both sides of a comparison keep their values, or both change sign. This is not so in
+//              guigue_devillers_2003, which chooses its determinants by the triangles' orientation.
 //   translate  coordinates are used only in differences, which do not change.
 //   swap       the axes of both triangles are tried; those of two edges change sign.
 // No algorithm keeps its verdicts when vertices or axes are reordered, because the rounding of a sum of three terms
@@ -120,7 +120,7 @@ struct Run {
           throw broken("the oracle", group.invariant, source, first + group.pair, of_pair[group.pair], of_image);
       }
     }
-    counts.pairs += asked.groups.size() / kInvariantCount;  // the finite ones
+    counts.pairs += asked.groups.size() / kInvariantCount;  // the finite pairs
     counts.images += asked.all.size() - asked.pairs;
   }
 

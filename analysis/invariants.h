@@ -47,8 +47,8 @@ std::vector<BasicPair<Real>> images(Invariant invariant, const BasicPair<Real>& 
 bool breaks(Invariant invariant, Verdict of_pair, Verdict of_image);
 
 // Whether the lane's algorithm claims the invariant: the code is written so that rounding cannot break it. Claims apply
-// to lanes without a policy that round each operation as written, if nothing overflows or underflows on the pair or its
-// image. invariants.test.cpp checks them.
+// to lanes without a policy that round each operation as written. Nothing may overflow or underflow on the pair or its
+// image. invariants.test.cpp checks the claims.
 bool claims(const Lane& lane, Invariant invariant);
 
 // Whether InvariantCount::in_range can be computed for the lane.
@@ -63,10 +63,10 @@ struct InvariantBroken : std::runtime_error {
 };
 
 struct InvariantCount {
-  std::uint64_t pairs = 0;    // that have an image, and that the lane's convention does not leave open
-  std::uint64_t changed = 0;  // on which the verdict on some image breaks the invariant
-  // How many of these have no overflow or underflow, on the pair or on the image that breaks the invariant, if the
-  // lane's source runs without contraction. Known for published lanes without a policy; 0 for others.
+  std::uint64_t pairs = 0;    // pairs with an image, without those that the lane's convention leaves open
+  std::uint64_t changed = 0;  // pairs on which the verdict on some image breaks the invariant
+  // How many of the changed pairs have no overflow or underflow if the lane's source runs without contraction. This
+  // includes the image that breaks the invariant. Known for published lanes without a policy; 0 for others.
   std::uint64_t in_range = 0;
   InvariantCount& operator+=(const InvariantCount& other);
 };
@@ -92,24 +92,24 @@ bool oracle_intersects(const AnyPair& pair);
 struct InvariantSpec {
   std::vector<const Lane*> lanes;
   std::vector<DecideBlock> on_host;         // for each: the host lane or its twin
-  std::vector<strata::PairSource> sources;  // for doubles, lanes in float take what float32 stores of a pair
+  std::vector<strata::PairSource> sources;  // lanes in float decide pairs of doubles as float32 stores them
   int threads = 0;                          // 0: one on each core
   // Whether l is simpler than r. The simplest case is kept; among equally simple ones, the first.
   std::function<bool(const AnyPair& l, const AnyPair& r)> simpler;
   DecideBlock exact = find_lane("exact/f64/cpu")->decide;              // decides every image
-  std::function<bool(const AnyPair&)> intersects = oracle_intersects;  // decides every image of some pairs:
-  std::uint64_t oracle_every = 8;                                      // the first of every oracle_every
+  std::function<bool(const AnyPair&)> intersects = oracle_intersects;  // decides all images of some pairs
+  std::uint64_t oracle_every = 8;                                      // one pair in this many is such a pair
 };
 
 struct Invariants {
   std::vector<InvariantsOfLane> lanes;
-  // All are decided by the exact decision. A pair of doubles and what float32 stores of it count as two.
+  // Pairs and images that the exact decision decides. A pair of doubles and the pair that float32 stores count as two.
   std::uint64_t pairs = 0, images = 0;
-  std::uint64_t by_oracle = 0, its_images = 0;  // and these by CGAL and GMP
+  std::uint64_t by_oracle = 0, its_images = 0;  // those that CGAL and GMP decide too
 };
 
 // Runs every lane on every pair and all its images. The result does not depend on the number of threads.
-// Throws: InvariantBroken for the first pair that shows it.
+// Throws: InvariantBroken for the first pair on which an invariant is broken that must hold.
 Invariants invariants(const InvariantSpec& spec);
 
 }  // namespace graze::analysis

@@ -91,7 +91,7 @@ TEST(Invariants, NoImageThatWouldLoseBits) {
   Pair pair{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {1, 0, 1}, {0, 1, 0x1p-149f}}};
   // Scaling down would lose 2^-149, so only the four factors above 1 remain.
   EXPECT_EQ(images(Invariant::scale, pair).size(), 4u);
-  // Only translations that keep z remain, because float32 cannot represent 1 ± 2^-149.
+  // Only translations that do not change z remain, because float32 cannot represent 1 ± 2^-149.
   EXPECT_EQ(images(Invariant::translate, pair).size(), 3u);
   EXPECT_EQ(images(Invariant::part, pair).size(), 4u);
   EXPECT_EQ(images(Invariant::part, images(Invariant::swap, pair).front()).size(), 4u);
@@ -101,12 +101,12 @@ TEST(Invariants, NoImageThatWouldLoseBits) {
   EXPECT_EQ(images(Invariant::part, pair).size(), 8u);
   pair.a[1].x = 0x1p127f;
   EXPECT_EQ(images(Invariant::scale, pair).size(), 4u);
-  // The sum of two coordinates overflows, half of it does not.
+  // The sum of two coordinates overflows, but half of the sum does not.
   pair.a[0].x = 0x1.8p127f;
   EXPECT_EQ(images(Invariant::part, pair).size(), 8u);
 }
 
-// A double holds what a float32 loses, and has limits of its own.
+// A double can hold numbers that a float32 cannot, but it has limits too.
 TEST(Invariants, ImagesOfDoublesLoseNoBitOfADouble) {
   const Pair floats{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {1, 0, 1}, {0, 1, 0x1p-52f}}};
   DoublePair pair = in_doubles(floats);
@@ -219,7 +219,8 @@ TEST(Invariants, ClaimsHoldAndNothingElseDoes) {
   }
 }
 
-// On doubles, lanes in float take what float32 stores, and images of that. So the claims hold here too.
+// Lanes in float decide pairs of doubles as float32 stores them, and images of the stored pairs. So the claims hold
+// here too.
 TEST(Invariants, ClaimsHoldOnDoubles) {
   std::vector<std::string> ids = lanes_of({Variant::cpu});
   ids.insert(ids.end(), {"exact/f32/cpu", "exact/f64/cpu"});
@@ -256,7 +257,7 @@ TEST(Invariants, CountsAreThoseOfAPlainLoop) {
               {"near_edge_edge", "lattice"}, PairTypes::both);
   ASSERT_EQ(spec.sources.size(), 4u);
   const Invariants found = invariants(spec);
-  // The source's pair as the lane takes it.
+  // The source's pair in the type that the lane decides.
   const auto taken = [&](std::size_t l, const strata::PairSource& source, std::uint64_t i) {
     const AnyPair pair = source.any_pair(i);
     return spec.lanes[l]->scalar == Scalar::f64 || pair.floats ? pair : stored_in_float32(pair.doubles);
@@ -313,7 +314,7 @@ TEST(Invariants, CountsAreThoseOfAPlainLoop) {
   EXPECT_LT(found.its_images, all);
 }
 
-// Each power of two is also counted alone: all together change more pairs than any single one.
+// Each power of two is also counted alone. All powers together change more pairs than any single power.
 TEST(Invariants, EachScaleIsCountedAlone) {
   const InvariantSpec spec =
       spec_of({"projected_sat/f32/cpu", "moller_1997/f32/cpu"}, 1000, {"near_edge_edge", "extreme_scale"});
@@ -406,7 +407,7 @@ TEST(Invariants, AreTheSameWhateverTheThreads) {
   const Invariants three = invariants(spec);
   EXPECT_EQ(one.images, three.images);
   EXPECT_EQ(one.its_images, three.its_images);
-  EXPECT_EQ(one.by_oracle, 4u * 19);  // of each stratum's 150
+  EXPECT_EQ(one.by_oracle, 4u * 19);  // 19 of the 150 pairs of each stratum
   for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
     for (const InvariantInfo& invariant : kInvariants) {
       EXPECT_EQ(one.lanes[l].total(invariant.invariant).changed, three.lanes[l].total(invariant.invariant).changed);
@@ -456,7 +457,7 @@ TEST(Invariants, StopWhereTheTruthBreaksOne) {
 TEST(Invariants, StopWhereAClaimIsBroken) {
   InvariantSpec spec = spec_of({"separating_axes/f64/cpu"}, 2000, {"near_*"});
   EXPECT_EQ(refusal(spec), "nothing broken");
-  spec.on_host[0] = find_lane("moller_1997/f64/cpu")->decide;  // does not keep what separating_axes claims
+  spec.on_host[0] = find_lane("moller_1997/f64/cpu")->decide;  // breaks the invariants that separating_axes claims
   EXPECT_TRUE(
       refusal(spec).starts_with("separating_axes/f64/cpu, which claims it, breaks the invariant \"swap\" on pair "))
       << refusal(spec);

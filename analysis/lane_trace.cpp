@@ -93,7 +93,7 @@ Replay replay(const Lane& lane, const AnyPair& pair) {
 
 DecideBlock block_of(const Lane& lane) {
   const DecideBlock block = backends::on_host(lane);
-  if (!block) throw std::invalid_argument(lane.id + ": expected a host lane or a twin");
+  if (!block) throw std::invalid_argument("cannot run " + lane.id + " here: it has neither a host lane nor a twin");
   return block;
 }
 

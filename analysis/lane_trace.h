@@ -29,19 +29,19 @@ inline bool decides_stored(const Lane& lane, const AnyPair& pair) { return lane.
 // The pair that the lane decides.
 AnyPair seen_by(const Lane& lane, const AnyPair& pair);
 
-// Whether it is an exact lane that decides the pair itself, not what float32 stores of it.
+// Whether the lane is an exact lane that decides the pair itself, not the pair as float32 stores it.
 inline bool is_never_wrong(const Lane& lane, const AnyPair& pair) { return lane.exact && !decides_stored(lane, pair); }
 
 // The lane's verdicts on the pairs as it sees them, from its own block or its twin's.
 std::vector<Verdict> verdicts_seen_by(const Lane& lane, const DecideBlock& block, std::span<const Pair> pairs);
 std::vector<Verdict> verdicts_seen_by(const Lane& lane, const DecideBlock& block, std::span<const DoublePair> pairs);
 
-// How many pairs to ask foreign code about at once. Each may time out, so they are few until it has answered some in
-// time.
+// The number of pairs that foreign code gets at once. Each pair may time out, so the number is small until the code has
+// answered some pairs in time.
 constexpr std::size_t foreign_at_once(bool prompt) { return prompt ? 64 : 8; }
 
-// Replays the lane on the pair. A lane whose operations the compiler rewrites has no evidence.
-// Requires here and below: the pair is seen_by(lane, pair).
+// Replays the lane on the pair. A lane whose operations the compiler may rewrite gets Evidence::none.
+// Requires, also for run_led: the pair is seen_by(lane, pair).
 Replay replay(const Lane& lane, const AnyPair& pair);
 
 // Runs the algorithm in the lane's scalar with the given contraction rule, and forces the outcomes of the path `lead`.

@@ -15,14 +15,14 @@ namespace graze::analysis {
 
 template <class Real>
 struct BasicSceneSample {
-  std::vector<std::array<Vec3<Real>, 3>> triangles;  // finite
+  std::vector<std::array<Vec3<Real>, 3>> triangles;  // all finite
   std::uint64_t pairs = 0;                           // number of pairs whose boxes overlap
   std::function<BasicPair<Real>(std::uint64_t index)> pair;
 };
 using SceneSample = BasicSceneSample<float>;
 using DoubleSceneSample = BasicSceneSample<double>;
 
-// The pairs whose closed boxes overlap, and the triangles of all pairs.
+// A sample with the pairs whose closed boxes overlap, and with the triangles of all pairs.
 template <class Real>
 BasicSceneSample<Real> sample_of(const std::vector<BasicPair<Real>>& pairs);
 

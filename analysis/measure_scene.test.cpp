@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes of real triangles. Pairs drawn in a scene resemble its triangles, grids are found only if they exist, and near
-// contacts are near in the scene's own ulps.
+// Tests scenes of real triangles. Pairs drawn in a scene resemble its triangles, grids are found only if they exist,
+// and near contacts are near in the scene's own ulps.
 #include "analysis/measure_scene.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ Vec3<double> wide(const Vec3<float>& v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
 
-// A hilly sheet of n * n squares, each cut into two triangles; neighbours share vertices.
+// A hilly sheet of n * n squares. Each square is cut into two triangles, and neighbouring triangles share vertices.
 std::vector<Triangle> sheet(int n, double step, Vec3<double> place) {
   const auto at = [&](int i, int j) -> Vec3<float> {
     const double x = i * (1 + i * 0.05), y = j * (1 + j * 0.03), z = 1.5 * std::sin(0.7 * i) + std::cos(0.9 * j);
@@ -105,7 +105,7 @@ TEST(MeasureScene, WhatIsDrawnIsLikeTheMesh) {
 TEST(MeasureScene, KindsAndMarginsAreThoseOfThePairs) {
   const Vec3<float> o{0, 0, 0}, x{1, 0, 0}, y{0, 1, 0}, xy{1, 1, 0}, z{0.3f, 0.3f, 1}, w{0.3f, 0.3f, 0.25f};
   const Vec3<float> far{9, 9, 9};
-  const std::vector<Pair> pairs = {{{o, x, y}, {o, x, y}},                 // the same: coplanar
+  const std::vector<Pair> pairs = {{{o, x, y}, {o, x, y}},                 // the same triangle twice: coplanar
                                    {{o, x, y}, {x, y, xy}},                // shared edge
                                    {{o, x, y}, {o, z, {-1, 0.5f, 0.5f}}},  // shared vertex
                                    {{o, x, y}, {w, z, {0.3f, 0.4f, -1}}},  // general
@@ -123,7 +123,7 @@ TEST(MeasureScene, KindsAndMarginsAreThoseOfThePairs) {
   EXPECT_NEAR(file.margins.at(0), 4.0 / 6, 1e-5);  // the neighbours and the coplanar pairs
 }
 
-// A survey in metres to the centimetre, at coordinates where float32 has steps of half a metre.
+// A survey in metres, measured to the centimetre, at coordinates at which float32 has steps of half a metre.
 TEST(MeasureScene, DoublesAreMeasuredAsTheyAre) {
   const auto at = [](int i, int j) -> Vec3<double> {
     const auto centimetres = [](double x) { return std::round(x * 100) / 100; };
@@ -164,7 +164,7 @@ TEST(MeasureScene, DoublesAreMeasuredAsTheyAre) {
   EXPECT_NEAR(file.edges.back(), edges.back(), 1e-5);
   EXPECT_EQ(file.mix[static_cast<std::size_t>(strata::Kind::degenerate)], 0);
   EXPECT_EQ(strata::parse_scene("s", strata::scene_text(file)), file);
-  // As float32 stores it, it is another scene.
+  // The scene as float32 stores it is another scene.
   const strata::SceneFile other = measure_scene(sample_of(stored), "survey");
   EXPECT_FALSE(other.in_doubles);
   EXPECT_EQ(other.extent[1], (std::array<double, 2>{5400000, 5400003.5}));
@@ -235,7 +235,7 @@ TEST(SceneStrata, NearContactsAreNearInTheScenesUlps) {
       const double within = near_share([&](std::uint64_t i) { return strata::generate(1, stratum, scene, i); });
       EXPECT_GT(without, 0.6);
       EXPECT_GT(within, 0.9 * without) << text << ' ' << static_cast<int>(stratum);
-      EXPECT_LT(within, 0.999);  // and some are not
+      EXPECT_LT(within, 0.999);  // some pairs have larger margins
     }
   }
 }
@@ -251,12 +251,12 @@ TEST(SceneStrata, NearContactsOfDoublesAreNearInTheScenesUlps) {
       const double within = near_share([&](std::uint64_t i) { return strata::generate_doubles(1, stratum, scene, i); });
       EXPECT_GT(without, 0.6);
       EXPECT_GT(within, 0.9 * without) << text << ' ' << static_cast<int>(stratum);
-      EXPECT_LT(within, 0.999);  // and some are not
+      EXPECT_LT(within, 0.999);  // some pairs have larger margins
     }
   }
 }
 
-// Both decisions of the oracle agree, and both verdicts occur, in scene strata as in others.
+// Both decisions of the oracle agree in scene strata, and both verdicts occur there, as in other strata.
 TEST(SceneStrata, BothVerdictsOccurAndTheOraclesDecisionsAgree) {
   const strata::SceneFile file = strata::parse_scene("s",
                                                      "extent = [[1000, 1800], [-540, -500], [3, 900]]\nedges = [0.5, "

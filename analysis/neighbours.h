@@ -10,10 +10,10 @@ namespace graze::analysis {
 
 // All images are exact in the coordinate type, so their truth is the pair's own (except for `parts`). The first one is
 // the pair itself.
-// The 72: which triangle is first, and the order of each one's vertices.
+// The 72 orders: which triangle is first, and in which order the vertices of each triangle are.
 template <class Real>
 std::vector<BasicPair<Real>> orders(const BasicPair<Real>& pair);
-// The 8: each axis negated or not.
+// The 8 mirror images: each axis is negated or not.
 template <class Real>
 std::vector<BasicPair<Real>> mirrored(const BasicPair<Real>& pair);
 // Scaled by 2^k, for each k from -kMostScaling to kMostScaling at which no coordinate overflows or loses bits.
@@ -22,8 +22,8 @@ template <class Real>
 std::vector<BasicPair<Real>> scalings(const BasicPair<Real>& pair);
 template <class Real>
 std::vector<BasicPair<Real>> axes(const BasicPair<Real>& pair);  // the 6 orders of the axes
-// Translated so that a vertex is at the origin, and by plus and minus the power of two of the largest coordinate along
-// (1, 1, 1). Translations that would round a coordinate are left out.
+// Translations that move a vertex to the origin, and two along (1, 1, 1), by plus and minus the power of two of the
+// largest coordinate. Translations that would round a coordinate are left out.
 template <class Real>
 std::vector<BasicPair<Real>> translated(const BasicPair<Real>& pair);
 

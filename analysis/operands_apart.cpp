@@ -14,7 +14,7 @@
 namespace graze::analysis {
 namespace {
 
-constexpr std::size_t kMostComparisons = 1 << 14;  // per run; later ones are not compared
+constexpr std::size_t kMostComparisons = 1 << 14;  // per run; later comparisons are not counted
 
 // Counts are passed between processes as raw memory.
 static_assert(std::is_trivially_copyable_v<LineApart>);

@@ -14,23 +14,23 @@
 
 namespace graze::analysis {
 
-// The comparisons of one source line. Two runs are compared comparison by comparison, up to the first that goes the
-// other way, because what they compare later may not be the same.
+// The comparisons of one source line. Two runs are compared up to the first comparison with different outcomes, because
+// later comparisons may have other operands.
 struct LineApart {
   cuda::SourceLine at, from;    // as in cuda::ComparisonSite
-  std::uint64_t compared = 0;   // comparisons
-  std::uint64_t differs = 0;    // an operand's bits differ; the sum of the next four
-  std::uint64_t zero_sign = 0;  // only signs of zeros
+  std::uint64_t compared = 0;   // comparisons that both runs made
+  std::uint64_t differs = 0;    // comparisons with an operand whose bits differ; the sum of the next four
+  std::uint64_t zero_sign = 0;  // only signs of zeros differ
   std::uint64_t not_finite = 0;
   // The operand that differs by more ulps is lower, or higher, with contraction, by 2^k to 2^(k+1) ulps.
   std::array<std::uint64_t, 64> below = {}, above = {};
   std::uint64_t sign = 0;     // the sign of left minus right differs
-  std::uint64_t outcome = 0;  // goes the other way
-  std::uint64_t verdict = 0;  // …and the verdict differs
+  std::uint64_t outcome = 0;  // the outcomes differ
+  std::uint64_t verdict = 0;  // the outcomes and the verdicts differ
 };
 
 struct OperandsApart {
-  std::uint64_t pairs = 0, verdict = 0;  // finite ones; those whose verdicts differ
+  std::uint64_t pairs = 0, verdict = 0;  // finite pairs, and those with different verdicts
   std::vector<LineApart> lines;          // in program order
   std::string why_not;                   // why the runs did not end in order; then there are no counts
 };

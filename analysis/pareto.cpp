@@ -41,7 +41,7 @@ BasicPair<Real> moved(const BasicPair<Real>& pair, Extreme extreme, int k) {
   return is_finite(result) ? result : pair;
 }
 
-// What reading the clock adds to a time: some nanoseconds per pair, if few pairs are timed.
+// The nanoseconds that reading the clock adds to a time. They matter if few pairs are timed.
 double nanoseconds_of_the_clock() {
   static const double least = [] {
     double found = HUGE_VAL;
@@ -118,7 +118,7 @@ std::string why_not_timed(const Lane& lane) {
 std::vector<std::optional<Cost>> costs_of(std::span<const Lane* const> lanes, const strata::PairBlock& pairs,
                                           int passes, Calls calls) {
   std::vector<std::vector<double>> taken(lanes.size());
-  std::vector<bool> failed(lanes.size());  // a lane that failed may take seconds per pair, and is not asked again
+  std::vector<bool> failed(lanes.size());  // a lane that failed may take seconds per pair, and is not run again
   for (int pass = 0; pass < passes; ++pass) {
     for (std::size_t l = 0; l < lanes.size(); ++l) {
       const Lane& lane = *lanes[l];

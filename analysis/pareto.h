@@ -18,29 +18,30 @@ struct Cost {
   double low = 0, middle = 0, high = 0;
 };
 
-// How many pairs a call decides: as many as there are, or one, as most programs call such a test.
+// How many pairs one call decides: all pairs, or one pair, as in most programs that call such a test.
 enum class Calls { of_blocks, of_one };
 
-// Processor time of this thread, without the time in which other programs run. They still slow it, through cache and
-// clock.
+// The processor time of this thread, without the time in which other programs run. Other programs still slow the
+// thread, because they share its cache and its clock.
 double processor_nanoseconds();
 
 // Nanoseconds per pair of one run of the lane over the pairs, of the type that it takes.   Requires: pairs.
 double nanoseconds_a_pair(const DecideBlock& lane, const strata::PairBlock& pairs, Calls calls = Calls::of_blocks);
 
-// Requires: some.
+// Requires: at least one.
 Cost quartiles(std::vector<double> nanoseconds);
 
 // Requires: pairs.
 std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const strata::PairBlock& pairs, int passes,
                            Calls calls = Calls::of_blocks);
 
-// Why the time of this lane is not that of its code: twins, programs that answer by lines, … Empty if it is measured.
+// Why the lane's time would not be the time of its code, as for twins and for programs that answer by lines. Empty if
+// the time can be measured.
 std::string why_not_timed(const Lane& lane);
 
-// The same for lanes. A user's code is timed by the processor time of its own process, without communication; there
-// each call decides one pair, unless the code takes blocks. Nothing for a lane that is not timed, or that failed on a
-// pair.
+// The costs of lanes. The time of a user's code is the processor time of its own process, without communication. In
+// that process each call decides one pair, unless the code takes blocks. A lane that is not timed, or that failed on a
+// pair, has no cost.
 std::vector<std::optional<Cost>> costs_of(std::span<const Lane* const> lanes, const strata::PairBlock& pairs,
                                           int passes, Calls calls = Calls::of_blocks);
 
@@ -54,15 +55,15 @@ struct Offer {
   std::optional<Cost>
       near = std::nullopt,
       far = std::nullopt;  // near: pairs in a core's cache, or on the device. far: from memory, or with copies
-  bool dominated = false;  // by `near`
+  bool dominated = false;  // by another lane, compared by `near`
   std::optional<cuda::KernelNeeds> needs = std::nullopt;  // on a device
   std::optional<AnyPair> failure = std::nullopt;          // a small pair on which the lane is wrong
   std::optional<Cost> alone = std::nullopt;               // on a core, with calls that decide one pair each
-  std::string why_not_timed = {};                         // if there are no costs
+  std::string why_not_timed = {};                         // the reason if there are no costs
 };
 
 // Whether another lane costs no more and errs no more, and costs less or errs less. A declined pair counts as an error,
-// because it has no verdict. Lanes without this cost take no part.
+// because it has no verdict. Lanes without this cost are ignored.
 bool is_dominated(const Offer& offer, const std::vector<Offer>& offers, std::optional<Cost> Offer::*by);
 void mark_dominated(std::vector<Offer>& offers);
 

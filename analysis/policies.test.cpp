@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lanes under policies over the strata: certified verdicts equal the truth, and explanations of policies hold.
+// Tests lanes under policies over the strata. Certified verdicts equal the truth, and explanations of policies are
+// right.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -31,7 +32,7 @@ std::vector<Pair> drawn(strata::Stratum stratum, std::uint64_t count) {
 
 class PolicyOverStratum : public testing::TestWithParam<strata::StratumInfo> {};
 
-// 10,000 pairs of each stratum, for every algorithm, scalar and host variant that has the policy.
+// Tests 10,000 pairs of each stratum, for every algorithm, scalar and host variant that has the policy.
 TEST_P(PolicyOverStratum, WhatABoundDecidesIsTheTruth) {
   const std::vector<Pair> pairs = drawn(GetParam().stratum, 10'000);
   std::vector<bool> truth;

@@ -77,7 +77,7 @@ inline Scales common(Scales l, Scales r) { return {std::max(l.first, r.first), s
 inline Scales exact_scales(const Size& size) { return {size.least - size.low, size.most - size.high}; }
 
 // The scales at which no product of this many coordinates, and no sum of four such products, can leave the scalar's
-// exponents. However it rounds, such a product is a multiple of 2^(factors * low), or 0.
+// exponents. Such a product is, however it is rounded, a multiple of 2^(factors * low), or 0.
 inline Scales scales_in_range(const Size& size, Scalar scalar, int factors) {
   const ScalarLimits& limits = limits_of(scalar);
   // Both divisions round towards the inside of the range.

@@ -30,7 +30,7 @@ struct WrongLane {
 };
 
 // One subject's failure on a pair. If several subjects fail on a pair, it has several signatures. Lanes that are right
-// or did not run are not in it.
+// or did not run are not in the signature.
 struct Signature {
   Contact contact = Contact::none;
   Hulls hulls;
@@ -60,8 +60,8 @@ Signature signature(const Relation& truth, Nesting nesting, Bucket bucket, std::
                     std::span<const Verdict> verdicts);
 
 // "point/22/skew/-2^-3/moller_1997:+f32/cpu;-f64/cuda-fma": contact, dimensions of the two hulls, coplanar or skew,
-// margin bucket, subject, and the wrong lanes, each after its mark. If one triangle lies in the other, that follows:
-// "coplanar_b_in_a".
+// margin bucket, subject, and the wrong lanes, each after its mark. If one triangle lies in the other, the nesting is
+// added: "coplanar_b_in_a".
 std::string key(const Signature& signature);
 
 // The key with margin bucket 0. Signatures that differ only in their margin bucket share it.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long a sweep of 64 tolerances takes on one core, by algorithm.
+// Measures how long a sweep of 64 tolerances takes on one core, for each algorithm.
 #include "analysis/sweep.h"
 
 #include <benchmark/benchmark.h>

@@ -72,7 +72,7 @@ void keep_first(std::optional<PairPlace>& kept, const std::optional<PairPlace>& 
   if (found && (!kept || *found < *kept)) kept = found;
 }
 
-// Counts the bits, and keeps the first one's place.
+// Counts the bits, and keeps the place of the first bit.
 void add(std::uint64_t bits, const PairPlace& word, std::uint64_t& count, std::optional<PairPlace>& first) {
   if (bits == 0) return;
   count += static_cast<std::uint64_t>(std::popcount(bits));
@@ -85,7 +85,7 @@ void add(const JudgedBits<std::uint64_t>& bits, Counts& counts) {
   counts.declined += static_cast<std::uint64_t>(std::popcount(bits.declined));
 }
 
-// Adds the errors of row `p`; row 0 is that of no policy.
+// Adds the errors of row `p`; row 0 belongs to the lane without a policy.
 void add(const SourceBlock& block, const Rows& truth, const Rows& lane, std::size_t p, PolicyErrors& errors) {
   for (std::size_t w = 0; w < truth.words; ++w) {
     const JudgedBits now = lane.judged(p, w, truth), before = lane.judged(0, w, truth);
@@ -139,11 +139,11 @@ void add(const SourceBlock& block, const Rows& truth, const Rows& lane, NotRight
   if (found.first.size() > 2 * NotRightPairs::kMostListed) keep_first(found.first);
 }
 
-// Policies that are decided together, one after the other in the list of policies.
+// Policies that are adjacent in the list of policies and are decided together.
 struct Together {
   std::size_t first;
   LaneDecider one;  // for a single policy
-  Ladders ladders;  // for several
+  Ladders ladders;  // for several policies
   std::vector<Epsilons> rungs;
 
   // For pairs of doubles, a lane that takes only float32 decides what float32 stores.
@@ -197,7 +197,7 @@ std::vector<Result> without_counts(Policies policies) {
   return results;
 }
 
-// No policy, then these.
+// Returns the empty policy, followed by these policies.
 std::vector<std::string> with_zero(Policies policies) {
   std::vector<std::string> all = {""};
   all.insert(all.end(), policies.begin(), policies.end());

@@ -23,9 +23,9 @@ struct PairPlace {
 };
 
 struct PolicyErrors : Counts {
-  std::string policy;  // empty: zero
+  std::string policy;  // empty: comparison with zero
   std::uint64_t pairs = 0;
-  std::uint64_t fixed = 0, broken = 0;  // right where the lane under no policy is not; not right where that lane is
+  std::uint64_t fixed = 0, broken = 0;  // pairs that are right only under the policy, and only without it
   std::optional<PairPlace> first_fixed, first_broken;
 
   double share_not_right() const {
@@ -36,9 +36,9 @@ struct PolicyErrors : Counts {
   bool operator==(const PolicyErrors&) const = default;
 };
 
-// How two lanes compare under one policy, which both have, on the same pairs.
+// The verdicts of two lanes on the same pairs, under one policy that both lanes have.
 struct Agreement {
-  std::string policy;                         // empty: zero
+  std::string policy;                         // empty: comparison with zero
   std::uint64_t pairs = 0, intersecting = 0;  // all pairs, and those that intersect
   std::uint64_t differing = 0;                // pairs on which the two verdicts differ
   std::uint64_t mended = 0, added = 0;        // pairs on which they differ under no policy only, or under this one only
@@ -50,7 +50,7 @@ struct Agreement {
 };
 
 using Sources = std::span<const strata::PairSource>;
-using Policies = std::span<const std::string>;  // the empty one is zero
+using Policies = std::span<const std::string>;  // an empty one compares with zero
 
 // The pairs [first, first + count) of a source.
 struct SourceBlock {
@@ -61,7 +61,7 @@ struct SourceBlock {
 // All pairs of the sources, in blocks of at most `most` pairs.
 std::vector<SourceBlock> blocks_of(Sources sources, std::uint64_t most);
 
-std::uint64_t pairs_in(Sources sources);  // in all
+std::uint64_t pairs_in(Sources sources);  // of all sources
 
 bool any_in_doubles(Sources sources);
 
@@ -83,8 +83,8 @@ strata::PairSource changed(strata::PairSource source, const Change& change) {
 // The errors under each policy, on all pairs of the sources.
 using Sweep = std::function<std::vector<PolicyErrors>(Policies policies, Sources sources)>;
 
-// What decides under a policy. foreign: the lane of a user's code that it belongs to, whose failures and convention are
-// counted; null for our own lanes.
+// The code that decides under a policy. foreign: the lane of a user's code, whose failures and convention are counted;
+// null for our own lanes.
 struct LaneDecider {
   DecideBlock block;
   const Lane* foreign;
@@ -111,7 +111,7 @@ struct NotRightPair {
 };
 
 struct NotRightPairs {
-  std::uint64_t count = 0;          // of all of them
+  std::uint64_t count = 0;          // the number of such pairs
   std::vector<NotRightPair> first;  // by place, at most kMostListed
   static constexpr std::size_t kMostListed = 1'000'000;
 
@@ -121,7 +121,7 @@ struct NotRightPairs {
 // Runs on the host; a CUDA lane runs as its twin. The result does not depend on the number of threads.
 // Requires: a lane with a host lane or a twin under each policy.
 NotRightPairs not_right_pairs(const Lane& lane, Policies policies, Sources sources, int threads = 0);
-// The same for any lane.   decide: as for host_sweep.
+// Like the function above, for any lane.   decide: as for host_sweep.
 NotRightPairs not_right_pairs(const DecideUnder& decide, Policies policies, Sources sources, int threads = 0);
 
 // How two published lanes compare under each policy, on all pairs of the sources.

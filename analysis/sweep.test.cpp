@@ -19,7 +19,7 @@ using strata::stratum_sources;
 
 const Lane& moller() { return *find_lane("moller_1997/f32/cpu"); }
 
-// Adds a pair's verdict under a policy, and without one.
+// Adds a pair's verdicts under a policy and without a policy.
 void count(PolicyErrors& to, Verdict truth, Verdict with, Verdict without, const PairPlace& place) {
   ++to.pairs;
   to.declined += with == Verdict::declined;
@@ -55,7 +55,7 @@ TEST(Sweep, CountsWhatEachPolicyGetsWrong) {
     EXPECT_EQ(found[p].first_broken, expected.first_broken) << policies[p];
   }
   EXPECT_TRUE(found[0].changes_nothing());
-  EXPECT_GT(found[1].fixed, 0u);  // relocation: an epsilon fixes some and breaks others
+  EXPECT_GT(found[1].fixed, 0u);  // relocation: an epsilon fixes some pairs and breaks others
   EXPECT_GT(found[1].broken, 0u);
   EXPECT_EQ(found[3].wrong(), 0u);
   EXPECT_GT(found[3].declined, 0u);
@@ -68,7 +68,7 @@ TEST(Sweep, CountsWhatEachPolicyGetsWrong) {
   }
 }
 
-// For doubles the truth is CGAL's, and a lane in float decides what float32 stores.
+// For doubles, CGAL gives the truth, and a lane in float decides the pairs that float32 stores.
 TEST(Sweep, CountsPairsOfDoublesByTheirOwnTruth) {
   const auto sources = stratum_sources(3, 400, {"near_vertex_face", "stored"}, PairTypes::f64);
   const std::vector<std::string> policies = {"abs:1e-6", "rel:100", "bound"};
@@ -123,8 +123,8 @@ TEST(Sweep, ListsEachPairOnWhichSomePolicyIsNotRight) {
   }
 }
 
-// A sweep of many tolerances at once counts the same as one sweep for each: absolute and relative, at all sites and at
-// one.
+// One sweep of many tolerances gives the same counts as a sweep for each tolerance. The tolerances are absolute and
+// relative, at all sites and at one site.
 TEST(Sweep, ManyTolerancesAtOnceAreEachAlone) {
   const auto sources = stratum_sources(8, 2 * strata::kStrataCount * 300, {}, PairTypes::both);
   std::vector<std::string> policies;

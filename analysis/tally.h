@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counting: a block of pairs with the truth's and every lane's verdicts as bits, and the tallies they add up to.
+// Blocks of pairs with the verdicts of the truth and of every lane as bits, and tallies of such blocks.
 #pragma once
 
 #include <cstdint>
@@ -17,17 +17,17 @@ using Bits = std::vector<std::uint64_t>;
 
 struct JudgedBlock {
   std::size_t count = 0;
-  std::span<const std::uint64_t> truth;    // intersects
+  std::span<const std::uint64_t> truth;    // of each pair: whether it intersects
   std::span<const Bucket> buckets;         // of each pair's margin
   std::span<const LaneVerdicts> verdicts;  // of each lane under test
-  // For pairs of doubles: those whose truth differs once float32 stores them, as lanes in float32 decide them, and
-  // those that float32 cannot store. Otherwise empty.
+  // For pairs of doubles: the pairs whose truth differs once float32 stores them, and those that float32 cannot store.
+  // Lanes in float32 decide the stored pairs. For pairs of float32, this is empty.
   std::span<const std::uint64_t> changed_by_storing = {};
 };
 
 struct LaneCounts : Counts {
   std::uint64_t differs_from_cpu = 0;  // another verdict than the cpu lane of the same algorithm and scalar
-  std::uint64_t stored = 0;  // of the wrong ones: right on the pair as float32 stores it, or float32 cannot store it
+  std::uint64_t stored = 0;  // wrong verdicts that are right on the stored pair, or whose pair float32 cannot store
 
   bool any() const { return *this != LaneCounts{}; }
   LaneCounts& operator+=(const LaneCounts& other) {
@@ -40,7 +40,7 @@ struct LaneCounts : Counts {
 };
 
 // Counts of pairs and of each lane's errors, by margin bucket. Tallies can be added in any order.
-// Another small integer of a pair (core/margin/axis.h) can stand in the bucket's place.
+// Another small integer of a pair (core/margin/axis.h) can take the bucket's place.
 class Tally {
  public:
   // cpu_twin[l]: the index of the cpu lane with the algorithm and scalar of lane l; -1 for none.

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 20261127;
 
-// Pairs of each stratum. GRAZE_PAIRS sets another number: 3,600,000 makes 10^8 pairs in all.
+// The number of pairs of each stratum. GRAZE_PAIRS sets another number: 3,600,000 makes 10^8 pairs in all.
 std::uint64_t pairs_wanted() {
   const char* text = std::getenv("GRAZE_PAIRS");
   return text ? std::stoull(text) : 100'000;
@@ -89,7 +89,7 @@ TEST(Doubles, OfFloat32HaveItsTruth) {
   }
 }
 
-// A user's question: float32 stores both triangles in one plane.
+// This pair is from a user. Once float32 stores it, both triangles are in one plane.
 TEST(Doubles, ParallelTrianglesAHundredthApartAtAMillionAreDisjoint) {
   const DoublePair pair{{{1000000.01, 0, 0}, {1000000.01, 1, 0}, {1000000.01, 0, 1}},
                         {{1000000.02, 0, 0}, {1000000.02, 1, 0}, {1000000.02, 0, 1}}};

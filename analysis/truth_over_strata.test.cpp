@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The oracle and the lanes over the strata. Two exact decisions must always agree, and subjects must fail where they
-// are known to fail.
+// Tests the oracle and the lanes over the strata. Two exact decisions must always agree, and subjects must fail where
+// they are known to fail.
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
 
@@ -66,7 +66,7 @@ Decided drawn_and_decided(std::uint64_t seed, strata::Stratum stratum, std::size
   return all;
 }
 
-// The exact decision on machine numbers has the oracle's verdict, contact, shape and sign of the margin.
+// The exact decision on machine numbers gives the oracle's verdict, contact, shape and sign of the margin.
 TEST_P(EveryStratum, TheExactLaneAgreesWithTheOracle) {
   constexpr std::size_t kPairs = 100'000;
   const auto [pairs, side_by_side, declined] = drawn_and_decided(kSeed + 1, GetParam().stratum, kPairs);
@@ -87,8 +87,8 @@ TEST_P(EveryStratum, TheExactLaneAgreesWithTheOracle) {
   }
 }
 
-// For 20,000 pairs of each stratum: how many the shortcuts in single and in double precision decide, and how many
-// distances are proven in integers.
+// Counts, for 20,000 pairs of each stratum: pairs that the shortcuts in single and in double precision decide, and
+// distances that are proven in integers.
 constexpr std::array<int, 3> kDecided[strata::kStrataCount] = {
     {20000, 20000, 0},   {19934, 19942, 9},  {19963, 19999, 0},  {19999, 19999, 0},    {11842, 19999, 0},
     {6504, 16511, 775},  {5584, 5590, 855},  {0, 6310, 0},       {0, 9936, 0},         {6985, 16380, 1},
@@ -141,13 +141,13 @@ TEST_P(EveryStratum, ShortcutsToTheBucketAreRightWhereTheyDecide) {
   EXPECT_LT(left, mixed ? 150 : 1) << left;
 }
 
-// For 100,003 pairs of each stratum: how many the vector code leaves undecided.
+// Counts how many of 100,003 pairs of each stratum the vector code leaves undecided.
 constexpr std::size_t kOpen[strata::kStrataCount] = {
     0, 91, 1, 1, 1, 3830, 4121, 1, 0, 94, 14811, 1640, 7856, 183, 116, 988, 917, 28142, 7605, 2978, 4572,
 };
 
-// Runs every instruction set of this processor. Those without fused multiply-adds decide none; all others decide the
-// same pairs.
+// Runs every instruction set of this processor. Instruction sets without fused multiply-adds decide no pairs; all
+// others decide the same pairs.
 TEST_P(EveryStratum, BucketsSideBySideAreRightWhereTheyAreSettled) {
   constexpr std::size_t kPairs = 100'003;
   const auto [pairs, truth, declined] = drawn_and_decided(kSeed + 3, GetParam().stratum, kPairs);
@@ -178,7 +178,8 @@ TEST_P(EveryStratum, BucketsSideBySideAreRightWhereTheyAreSettled) {
   EXPECT_EQ(fewest, least);
 }
 
-// A block decides each pair as a call for that pair alone does, even if the block's code works on several at a time.
+// A block gives each pair the same verdict as a call with only that pair, even if the block's code works on several
+// pairs at once.
 TEST_P(EveryStratum, BlocksOfHostLanesAreDecidedAsEachPairAlone) {
   constexpr std::size_t kPairs = 20'003;
   const std::vector<Pair> pairs = drawn_and_decided(kSeed + 4, GetParam().stratum, kPairs).pairs;
@@ -228,8 +229,8 @@ TEST(Lanes, FailInEveryHardStratum) {
   }
 }
 
-// On {-1,0,1} algorithms that neither divide nor take roots do not round. So each error is an error of logic, and on
-// proper triangles there are none.
+// On {-1,0,1} algorithms that neither divide nor take roots do not round. So each error is an error of logic, and no
+// error occurs on proper triangles.
 TEST(Lanes, OnTheLatticeDivisionFreeAlgorithmsFailOnDegeneratePairsOnly) {
   std::uint64_t proper = 0, wrong_on_degenerate = 0;
   for (std::uint64_t index = 0; index < 200'000; ++index) {

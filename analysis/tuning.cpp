@@ -54,7 +54,7 @@ class Tuner {
   PolicyRank rank(const PolicyErrors& errors) const { return analysis::rank(errors, spec_.forbid, spec_.max_rate); }
 
   void choose() {
-    const PolicyErrors* best = &result_.zero;  // curves are in the order of preference among equals
+    const PolicyErrors* best = &result_.zero;  // of equal policies, that of the earlier curve is kept
     for (const Curve& curve : result_.curves) {
       for (const PolicyErrors& point : curve.points) {
         if (rank(point) < rank(*best)) best = &point;

@@ -14,7 +14,7 @@
 
 namespace graze::analysis {
 
-// The pairs times 2^k; pairs that cannot be scaled exactly stay as they are.
+// The pairs times 2^k; pairs that cannot be scaled exactly do not change.
 std::vector<strata::PairSource> scaled(Sources sources, int k);
 
 // Upper 95 % confidence bound of the rate of `count` in `of` cases: at this rate, a count this low has a chance of 5 %.
@@ -41,22 +41,22 @@ PolicyRank rank(const PolicyErrors& errors, Forbid forbid, double max_rate);
 struct TuneSpec {
   Sweep sweep;
   bool by_value = false;                    // the tolerance is the value of an epsilon in a user's source
-  std::vector<std::string> sites;           // sites that the lane asks about; none by value
-  std::vector<strata::PairSource> sources;  // pairs to choose on
+  std::vector<std::string> sites;           // sites at which the lane compares; none if by_value
+  std::vector<strata::PairSource> sources;  // pairs used to choose
   std::vector<strata::PairSource> others;   // pairs to verify the choice on
   Forbid forbid = Forbid::any;
-  double max_rate = 1e-6, max_other = 0.1;  // of forbidden errors, and of others
+  double max_rate = 1e-6, max_other = 0.1;  // of forbidden errors, and of other errors
 };
 
 using Curve = CurveOf<PolicyErrors>;
 
-// How far pairs may grow or shrink before the errors under a policy, or the forbidden ones alone, double. 0: they do
-// not double within kMostScale. Measured on pairs other than those that the policy was chosen on.
+// How far pairs may grow or shrink before the errors under a policy double, or its forbidden errors alone. 0: they do
+// not double within kMostScale. Measured on pairs that were not used to choose the policy.
 struct ScaleBreak {
   int up = 0, down = 0;  // exponents of two
   PolicyErrors here, at_up, at_down;
 };
-// Whether the rate of errors more than doubled: both bounds at 95 % confidence say so.
+// Whether the rate of errors more than doubled, proved by bounds of both rates at 95 % confidence.
 inline bool doubles(std::uint64_t before, std::uint64_t after, std::uint64_t pairs) {
   return share_of(after, pairs).low > 2 * share_of(before, pairs).high;
 }
@@ -71,9 +71,9 @@ struct Interaction {
 enum class TuneResult {
   satisfied,        // the upper bounds of both rates are at most max_rate and max_other
   too_few_pairs,    // few enough errors, but on too few pairs to prove it
-  not_confirmed,    // few enough forbidden errors on the pairs of the choice, too many on the others
-  not_satisfiable,  // every policy has too many of them on the pairs of the choice; the chosen one has the fewest
-  not_useful        // few enough of them, but more others than max_other
+  not_confirmed,    // few enough forbidden errors on the pairs used to choose, but too many on the other pairs
+  not_satisfiable,  // every policy has too many forbidden errors on the pairs of the choice; the chosen has fewest
+  not_useful        // few enough forbidden errors, but a higher rate of other errors than max_other
 };
 
 struct Tuned {
@@ -91,7 +91,7 @@ struct Tuned {
 // The upper bound of the rate of errors that are not forbidden; 0 if all are.
 double other_bound(const PolicyErrors& errors, Forbid forbid);
 
-// Judges the choice by its errors on the pairs of the choice and on the other pairs.
+// Judges the choice by its errors on the pairs used to choose and on the other pairs.
 TuneResult result_of(const PolicyErrors& chosen_on, const PolicyErrors& confirmed, Forbid forbid, double max_rate,
                      double max_other);
 
@@ -104,7 +104,7 @@ std::vector<const PolicyErrors*> best_of_curves(const std::vector<Curve>& curves
 // Requires: pairs in both lists.
 Tuned tune(const TuneSpec& spec);
 
-// The names of the sites that the algorithm asks about on the first 500 pairs of each source.
+// The names of the sites at which the algorithm compares on the first 500 pairs of each source.
 std::vector<std::string> sites_asked(const Lane& lane, Sources sources);
 
 }  // namespace graze::analysis

@@ -41,7 +41,7 @@ TEST(UpperBound, IsRoundedOutward) {
   }
 }
 
-// At the lower bound, at least `count` cases have a chance of at most 5 %. It mirrors the upper bound.
+// At the lower bound, at least `count` cases have a chance of at most 5 %. This test mirrors that of the upper bound.
 TEST(LowerBound, IsRoundedOutward) {
   using Precise = boost::multiprecision::cpp_bin_float_50;
   EXPECT_EQ(lower_bound(0, 100), 0);
@@ -71,7 +71,7 @@ TEST(Scaled, IsExactOrLeftAlone) {
   EXPECT_LT(changed, 200);
 }
 
-// The bounds of both rates decide; whether a rate is low enough is settled at 95 % confidence, or not at all.
+// The bounds of both rates decide. A rate is called low enough only at 95 % confidence.
 TEST(Tune, BothRatesNeedABound) {
   const auto with = [](std::uint64_t negative, std::uint64_t positive, std::uint64_t pairs) {
     PolicyErrors errors;
@@ -106,13 +106,13 @@ TEST(Tune, ChoosesForWhatIsForbidden) {
   EXPECT_EQ(no_negative.result, TuneResult::satisfied) << no_negative.chosen << " " << no_negative.bound;
   EXPECT_GT(no_negative.zero_confirmed.false_negative, 100u);
   EXPECT_LE(no_negative.bound, 1e-3);
-  EXPECT_LT(no_negative.confirmed.false_positive, 20'000u * 3 / 4);  // but not all of them
+  EXPECT_LT(no_negative.confirmed.false_positive, 20'000u * 3 / 4);  // not every pair is a false positive
   spec.forbid = Forbid::false_positive;
   const Tuned no_positive = tune(spec);
   EXPECT_EQ(no_positive.result, TuneResult::not_satisfiable);  // a tolerance removes no false positives
   spec.forbid = Forbid::any;
   spec.max_rate = 1e-6;
-  const Tuned neither = tune(spec);  // no epsilon can satisfy it
+  const Tuned neither = tune(spec);  // no epsilon can satisfy this limit
   EXPECT_EQ(neither.result, TuneResult::not_satisfiable);
   EXPECT_LE(neither.confirmed.wrong(), neither.zero_confirmed.wrong());
   EXPECT_EQ(tune(spec).chosen, neither.chosen);
@@ -168,7 +168,7 @@ TEST(Tune, SaysWhenPairsAreTooFew) {
   EXPECT_NEAR(tuned.bound, 1.5e-3, 1e-4);
 }
 
-// A site whose tolerance has no effect is called dead; one that decides is not.
+// A site whose tolerance has no effect is called dead. A site that decides is not.
 TEST(Tune, FindsDeadKnobs) {
   TuneSpec spec;
   const auto real = [](const std::string& policy) {
@@ -185,7 +185,7 @@ TEST(Tune, FindsDeadKnobs) {
   EXPECT_EQ(tune(spec).dead, std::vector<std::string>{"orientation"});
 }
 
-// Exact, except for pairs whose coordinates are all smaller than 1/1000: it says that those intersect.
+// This code is exact, except that it says "intersects" on all pairs whose coordinates are all smaller than 1/1000.
 class WrongWhenSmall : public ForeignCode {
  public:
   bool misses = false;  // also says that pairs with a first coordinate above 0 do not intersect

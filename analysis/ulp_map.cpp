@@ -31,7 +31,7 @@ class Panels {
     failed_.resize(blocks_.size());
   }
 
-  const std::vector<const Lane*>& lanes() const { return lanes_; }  // first the one that gives the truth
+  const std::vector<const Lane*>& lanes() const { return lanes_; }  // the first lane gives the truth
 
   // Foreign code that fails on this many pairs gets no panel, because each failure takes a new process or the full time
   // limit.
@@ -74,7 +74,7 @@ class Panels {
     return Cell::unstable;
   }
 
-  // Asks the panel's lane about the pairs.
+  // Runs the panel's lane on the pairs.
   // Returns: false if the panel is given up.
   bool ask(std::size_t p, std::span<const PairOf> pairs) {
     said_.clear();

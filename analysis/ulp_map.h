@@ -67,8 +67,8 @@ BasicPair<Real> pair_at(const BasicPair<Real>& pair, MovedCoordinates moved, int
 // Chooses the two coordinates of one vertex along which verdicts change most. The function samples some cells, near and
 // far, and counts those that differ from the cell before, in the truth and in each lane. It compares the smaller count
 // of the two directions first, then the sum, then the order of the coordinates. An ulp is one of the pair's coordinate
-// type. Around zero it is the least number, which tells little. So a zero moves only if no other choice changes
-// verdicts in both directions. Requires: finite coordinates; lanes that run here or have a twin.
+// type. Around zero an ulp is the least number, and a move by it shows little. So a zero moves only if no other choice
+// changes verdicts in both directions. Requires: finite coordinates; lanes that run here or have a twin.
 MovedCoordinates liveliest_coordinates(const AnyPair& pair, std::span<const Lane* const> lanes);
 
 // CUDA lanes run as twins. Exact lanes are left out, because their verdict is the truth. Foreign code is left out if it

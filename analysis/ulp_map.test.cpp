@@ -28,7 +28,7 @@ Cell cell_at(const UlpPanel& panel, int column, int row) {
   return panel.cells[static_cast<std::size_t>(row * kMapSize + column)];
 }
 
-// b stands on a's plane with b[0], at the middle of a's edge x = y.
+// The vertex b[0] lies on a's plane, at the middle of a's edge x = y.
 const Pair kOnTheDiagonal{{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}}, {{0.75f, 0.75f, 0}, {0.75f, 0.75f, 1}, {0.5f, 0.75f, 1}}};
 
 TEST(UlpMap, OfAVertexOnAnEdgeIsCutAlongTheDiagonal) {
@@ -91,7 +91,7 @@ TEST(UlpMap, EachCellIsWhatItsPairGets) {
   EXPECT_GT(wrong, 1000);
 }
 
-// Foreign code that fails on two columns and two cells.
+// Foreign code fails on two columns and two cells.
 class Fails : public ForeignCode {
  public:
   void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) override {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares only the verdicts of two lanes: for code whose values are not seen.
+// Compares only the verdicts of two lanes: for code whose values are not recorded.
 #pragma once
 
 #include <functional>
@@ -13,16 +13,16 @@
 namespace graze::analysis {
 
 struct VerdictsApart {
-  std::uint64_t pairs = 0;               // finite ones
-  std::uint64_t differs = 0;             // the two verdicts
+  std::uint64_t pairs = 0;               // finite pairs
+  std::uint64_t differs = 0;             // pairs on which the two verdicts differ
   Counts of[2];                          // each lane's errors
-  std::optional<PairPlace> simplest;     // of the pairs on which they differ
-  std::uint64_t broken = 0, mended = 0;  // of these, only the first lane's verdict is right, or only the second's
+  std::optional<PairPlace> simplest;     // the simplest pair on which they differ
+  std::uint64_t broken = 0, mended = 0;  // differing pairs on which only the first lane is right; only the second
   std::optional<PairPlace> simplest_broken, simplest_mended;
 
   bool operator==(const VerdictsApart&) const = default;
 
-  // Adds the counts; the simplest pairs stay.
+  // Adds the counts, but does not change the simplest pairs.
   VerdictsApart& operator+=(const VerdictsApart& other) {
     pairs += other.pairs;
     differs += other.differs;

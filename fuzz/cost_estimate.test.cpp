@@ -26,7 +26,7 @@ TEST(CostEstimate, IsRightOnceAFewOfEachKindAreDone) {
     run(k, kPairs - kFew);
     ASSERT_NEAR(*estimate.seconds_left(), left, 1e-6 * left) << k;
   }
-  // Extrapolating the average rate assumes that the rest costs the same, which is far off here.
+  // Extrapolating the average rate assumes that the remaining pairs cost the same, which is wrong here.
   const double done = static_cast<double>(kCosts.size() - 1) * kPairs + kFew;
   const double all = std::accumulate(kCosts.begin(), kCosts.end(), 0.0) * kPairs;
   EXPECT_GT(left, 4 * (all - left) / done * (kPairs - kFew));

@@ -22,7 +22,7 @@ void expect_file(const std::filesystem::path& file);
 std::string read_whole(const std::filesystem::path& file, NamedBy named_by = NamedBy::graze);
 
 // Writes the file, following symbolic links, or writes to a device or a pipe that the user named. Leaves no partial
-// file if it fails. If two processes write the same file at once, each writes a whole file, and the last one stays.
+// file if it fails. If two processes write the same file at once, each writes a whole file, and the later file remains.
 // Throws: std::runtime_error if it is a folder, or if there is no space.
 void write_whole(const std::filesystem::path& file, const std::string& text, NamedBy named_by = NamedBy::graze);
 
@@ -33,7 +33,7 @@ void copy_whole(const std::filesystem::path& from, const std::filesystem::path& 
 std::filesystem::path behind_links(std::filesystem::path file);
 
 // Holds the folder's lock as long as the object lives. No other process, and no other part of this one, can take the
-// lock. A shared lock excludes only exclusive ones.
+// lock. A shared lock excludes only exclusive locks.
 class FolderLock {
  public:
   enum class WhenTaken { wait, refuse, share };  // share: takes a shared lock; fails if an exclusive one is held

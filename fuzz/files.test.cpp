@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Links, devices, pipes and folders stay what they are when they are written to.
+// Links, devices, pipes and folders are not replaced by files when they are written to.
 #include "fuzz/files.h"
 #include "core/error.h"
 #include "core/message_testing.h"
@@ -38,7 +38,7 @@ class Files : public testing::Test {
 
   void TearDown() override { may_replace_foreign = false; }
 
-  // What write_whole throws.
+  // The message of the error that write_whole throws.
   static std::string refusal(const fs::path& file) {
     try {
       write_whole(file, "text");
@@ -108,7 +108,7 @@ TEST_F(Files, APartThatIsAHardLinkIsReplaced) {
   EXPECT_EQ(fs::hard_link_count(folder_ / "theirs"), 1u);
   EXPECT_EQ(read_whole(folder_ / "a"), "new");
   EXPECT_EQ(count(), 2u);
-  // Nothing may remain of a longer file that a killed writer left.
+  // A killed writer may have left a longer file. Nothing of it may remain.
   write_whole(folder_ / "a.graze.part", std::string(100'000, 'x'));
   write_whole(folder_ / "a", "newer");
   EXPECT_EQ(read_whole(folder_ / "a"), "newer");

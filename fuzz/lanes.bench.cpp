@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The time per pair of every host lane on every stratum, in float32 and, for lanes in double, in doubles. For
-// comparison, the times of CGAL's do_intersect on ready-made triangles and of the oracle's two decisions.
-// GRAZE_MESH=FILE adds a mesh's candidate pairs as a stratum. Exact lanes must first agree with the oracle everywhere.
+// Measures the time per pair of every host lane on every stratum of float32, and of lanes in double on every stratum of
+// doubles. Also measures CGAL's do_intersect on ready-made triangles, and the oracle's two decisions. GRAZE_MESH=FILE
+// adds a mesh's candidate pairs as a stratum. Exact lanes must first agree with the oracle everywhere.
 #include <algorithm>
 #include <cstdlib>
 #include <exception>

@@ -24,8 +24,9 @@ std::vector<std::string> first_keys(const nlohmann::ordered_json& object) {
   return keys;
 }
 
-// The mark that all files of this text's kind share: a JSON object up to the end of its first key, the start of a
-// page's title or of a picture's palette, or else the first line up to `>`; what follows differs between pictures.
+// The mark that all files of this text's kind share. It is a JSON object up to the end of its first key, or the start
+// of a page's title or of a picture's palette. For other files it is the first line up to `>`, because the rest differs
+// between pictures.
 std::string mark_of(const std::string& text) {
   constexpr std::string_view kTitle = "<title>Graze: ", kPalette = "PLTE";
   constexpr std::size_t kColours = 24;  // bytes: the first eight colours, which all ulp maps share

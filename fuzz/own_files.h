@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recognises Graze's own files and folders. Results only go where there is nothing, or replace Graze's own results.
+// Recognises Graze's own files and folders. Results are written only where there is nothing, or over Graze's own
+// results.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +10,8 @@
 namespace graze::fuzz {
 
 // Whether a result with this text may replace the file; symbolic links are followed. The file must be missing, empty, a
-// device, a pipe, or written by Graze. Graze recognises its files by what all files of a kind share: the first line or
-// tag, the first two keys of a JSON object, the start of a page's title, or the start of an ulp map's palette.
+// device, a pipe, or written by Graze. Graze recognises its files by their beginning: the first line or tag, the first
+// two keys of a JSON object, the start of a page's title, or the start of an ulp map's palette.
 // Throws: std::runtime_error if the file cannot be read.
 bool may_replace(const std::filesystem::path& file, const std::string& text);
 
@@ -28,8 +29,8 @@ void expect_own(const std::filesystem::path& file, const std::string& text);
 // Whether a killed write left the file: a file whose name ends in kPart.
 bool is_left_over(const std::filesystem::path& file);
 
-// Whether results may be written to the folder: it is missing, holds nothing but empty folders and leftovers of killed
-// writes, or holds one of the files `own`.
+// Whether results may be written to the folder. It must be missing, hold one of the files `own`, or hold only empty
+// folders and leftovers of killed writes.
 bool may_fill(const std::filesystem::path& folder, std::initializer_list<const char*> own);
 
 }  // namespace graze::fuzz

@@ -54,7 +54,7 @@ void sort_by_subject(SelectedLanes& under_test) {
 
 bool wants_lanes(const std::string& pattern) { return !pattern.starts_with(kLeaveOut); }
 
-// What would run a lane, given the reason why it does not run.
+// Names what would run a lane, from the reason why it does not run.
 std::string_view remedy(std::string_view why) {
   return why.find("no twin") != why.npos  ? "; a CUDA device runs it"
          : why.ends_with(" instructions") ? "; a processor with them runs it"
@@ -191,7 +191,8 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
   std::string why_not;
   if (executor != Executor::twin) under_test.device = cuda::open_device(why_not);
   const bool needs_device = require_device || executor == Executor::device || executor == Executor::both;
-  if (needs_device && !under_test.device) throw std::runtime_error("expected a CUDA device, found: " + why_not);
+  if (needs_device && !under_test.device)
+    throw std::runtime_error("a CUDA device is required, but none can be used: " + why_not);
   for (const Lane& lane : lanes()) {
     if (!matches_any(globs, lane.id)) continue;
     const auto names_it = [&](const std::string& glob) {

@@ -68,8 +68,8 @@ void expect_each_matches(const std::vector<std::string>& globs, const std::vecto
 // Adds those exact lanes of pairs of doubles that the patterns select.
 void add_exact_on_doubles(SelectedLanes& under_test);
 
-// Changes the selection for pairs of doubles: adds the exact lane for them if the patterns select it, and leaves out
-// the lanes in double that take only pairs of float32.
+// Changes the selection for pairs of doubles. Adds the exact lane of doubles if the patterns select it, and leaves out
+// lanes in double that take only pairs of float32.
 // Returns: the lanes left out.   Throws: what expect_each_runs throws.
 std::vector<LaneLeftOut> select_for_doubles(SelectedLanes& under_test);
 
@@ -79,7 +79,8 @@ void put_own_code_first(SelectedLanes& under_test);
 // Whether the lane decides pairs of this type. Lanes in float decide the pairs that float32 stores.
 bool takes(const Lane& lane, const AnyPair& pair);
 
-// Throws: UsageError, with the reasons, if none of a pattern's lanes runs here; without patterns, none of a subject's.
+// Throws: UsageError, with the reasons, if no lane of a pattern runs here. Without patterns, each subject needs a lane
+// that runs here.
 void expect_each_runs(const SelectedLanes& under_test);
 
 // Removes the lanes for which `why` returns a reason.   Returns: these lanes.   Throws: what expect_each_runs throws.
@@ -89,7 +90,8 @@ std::vector<LaneLeftOut> leave_out(SelectedLanes& under_test, const std::functio
 // moller_1997/f32/cuda-fast".
 std::vector<std::string> left_out_in_words(const std::vector<LaneLeftOut>& left_out);
 
-// {"patterns": the requested ones, "why": {lane: reason}}, as a campaign's spec records it. Null if none was left out.
+// {"patterns": the requested ones, "why": {lane: reason}}, as a campaign's spec records it. Null if no lane was left
+// out.
 nlohmann::ordered_json left_out_json(const SelectedLanes& under_test);
 // Adds the same to the object as "lanes_left_out", unless it is null.
 void add_left_out(nlohmann::ordered_json& object, const SelectedLanes& under_test);
@@ -106,8 +108,8 @@ class BlockVerdicts {
   explicit BlockVerdicts(const SelectedLanes& under_test);
 
   // on_device: the device's verdicts, by lane; `begin`: the first pair's position in them, a multiple of 64.
-  // doubles: the pairs before they were stored in float32, which lanes in double decide; empty for pairs of float32.
-  // apart(l, i): called for each pair i on which the device and the twin of lane l differ.
+  // doubles: the pairs before float32 stored them; lanes in double decide these. Empty for pairs of float32. apart(l,
+  // i): called for each pair i on which the device and the twin of lane l differ.
   // Returns: the verdicts of each lane, valid until the next call.
   std::span<const LaneVerdicts> decide(std::span<const Pair> pairs, std::span<const VerdictBits> on_device,
                                        std::size_t begin,

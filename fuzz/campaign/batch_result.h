@@ -13,7 +13,7 @@
 
 namespace graze::fuzz {
 
-// How many cases each signature keeps: those with the smallest keys, in whatever order they are found.
+// The number of cases that each signature keeps: the cases with the smallest keys, in whatever order they are found.
 inline constexpr std::size_t kKeptCases = 4;
 
 // Identifies a pair: its source in the campaign, and its index in that source.
@@ -39,7 +39,7 @@ struct SignatureCount {
 // Different verdicts have equal sums with a probability of 2^-64.
 struct VerdictDigests {
   std::vector<std::uint64_t> of_lane;
-  std::uint64_t pairs = 0;  // pairs covered by the digests; pairs that a device's engine judged are not
+  std::uint64_t pairs = 0;  // pairs that the digests cover, without those that a device's engine judged
 
   void add(std::size_t lane, std::uint64_t index, Verdict verdict);
   void add(const VerdictDigests& other);
@@ -66,7 +66,7 @@ struct BatchResult : PairCounts {
   void add(const BatchResult& other);
 
   std::map<analysis::Signature, SignatureCount> signatures;
-  std::map<std::string, SignatureCount> executor_mismatches;  // by lane: device and twin differ
+  std::map<std::string, SignatureCount> executor_mismatches;  // by lane: pairs on which device and twin differ
 };
 
 }  // namespace graze::fuzz

@@ -27,13 +27,14 @@ namespace graze::fuzz {
 namespace {
 
 constexpr std::uint64_t kBatchPairs = 65536;  // pairs per transaction of the CPU engine
-// Batch limit for pairs that the cores draw for a device, and for doubles, because a device leaves many to the cores.
+// Batch limit for pairs that the cores draw for a device, and for doubles, because a device leaves many pairs of
+// doubles to the cores.
 constexpr std::uint64_t kOfCores = std::uint64_t{1} << 25;
 
 // Chooses the next batch. It comes from the source with the fewest pairs done, so that an interrupted campaign has seen
-// all sources. A large source of unknown cost first gets a small batch, so that the remaining time is known early. When
-// a source already has pairs, its small batch waits until a whole batch is done here; otherwise a campaign that keeps
-// being interrupted would never end.
+// all sources. A large source of unknown cost first gets a small batch, so that the remaining time is known early. If a
+// source already has pairs, its small batch waits until this process has done a whole batch. Otherwise a campaign that
+// is interrupted again and again would never end.
 std::optional<PairRange> next_batch(const Campaign& campaign, const Store& store,
                                     const std::vector<std::uint64_t>& done, const CostEstimate& costs,
                                     std::uint64_t done_here, int threads) {
@@ -203,8 +204,8 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
               {"machine", machine_name()},
               {"engine", campaign.engines.empty() ? "cpu" : "gpu"}};
   try {
-    if (complete && campaign.shard.number == 1) run["costs"] = measure_costs(campaign);  // once is enough
-  } catch (const Stopped&) {                                                             // the costs stay unknown
+    if (complete && campaign.shard.number == 1) run["costs"] = measure_costs(campaign);  // one shard measures them
+  } catch (const Stopped&) {                                                             // the costs are not recorded
   }
   append_timing(campaign.directory, run, outcome.oracle);
   return outcome;

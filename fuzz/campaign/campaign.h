@@ -40,7 +40,7 @@ struct Campaign {
 
 struct Progress {
   std::uint64_t done = 0, total = 0;                // pairs
-  std::uint64_t done_here = 0;                      // by this process
+  std::uint64_t done_here = 0;                      // pairs done by this process
   double seconds = 0;                               // of this process
   std::optional<double> seconds_left;               // estimated from the cost of each source's pairs; see CostEstimate
   std::uint64_t disagreements = 0, signatures = 0;  // so far; disagreements of this process only
@@ -60,7 +60,7 @@ Json build_info(const SelectedLanes& under_test);
 // The processor's name and the architecture, for timings.
 std::string machine_name();
 
-// The engine that judges the pairs. automatic: the devices if all lanes run only there, otherwise the CPU.
+// The engine that judges the pairs. automatic: the devices if all lanes run only on devices, otherwise the CPU.
 enum class EngineChoice { automatic, cpu, gpu };
 
 // Returns the engines that run the campaign; an empty list means the CPU engine.
@@ -71,14 +71,14 @@ std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& 
 StoreSpec store_spec(const Campaign& campaign);
 
 struct Outcome {
-  bool complete;  // all of this run's work is done
+  bool complete;  // whether all of this run's work is done
   Json summary;   // a shard's is {"shard", "complete", "pairs", "disagreements", "signatures"}
-  Json oracle;    // {"cgal", "gmp", "exact", "apart"}: pairs that each exact decision saw; depends on the engine
+  Json oracle;    // {"cgal", "gmp", "exact", "apart"}: pairs that each exact decision judged; depends on the engine
 };
 
 // Runs or resumes the campaign until it is done or `stop` is set. Updates status.json as it runs. At the end it writes
 // timings.json and, for a whole campaign, summary.json and cases/.
-// Throws: OracleMismatch, UsageError, std::runtime_error. Even then, committed batches are kept.
+// Throws: OracleMismatch, UsageError, std::runtime_error. After an error, committed batches are kept.
 Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
                      const std::function<void(const Progress&)>& report);
 

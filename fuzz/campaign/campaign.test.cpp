@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What campaigns guarantee: the same bytes for any number of threads and interruptions, and no loss.
+// Tests what campaigns guarantee: the same bytes for any number of threads and interruptions, and no lost results.
 #include "fuzz/campaign/campaign.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ TEST_F(CampaignTest, SameBytesForOneThreadAndMany) {
 }
 
 // A lane's code changes between two campaigns on the same pairs. Exactly the strata on which a verdict changed are
-// reported as changed. The bounds hold for any number of threads and any judge.
+// reported as changed. The bounds are right for any number of threads and any judge.
 TEST_F(CampaignTest, ChangedVerdictsShowInDigests) {
   const SelectedLanes one = select_lanes({"moller_1997/f32/cpu", "exact/f32/cpu"}),
                       other = select_lanes({"guigue_devillers_2003/f32/cpu"});
@@ -107,8 +107,8 @@ TEST_F(CampaignTest, CountsEveryPairAndStoresCasesThatAreDisagreements) {
     EXPECT_EQ(*field(cases[0], "signature"), row["key"].get<std::string>());
   }
   const std::uint64_t disagreements = summary["disagreements"];
-  EXPECT_GE(failures, disagreements);  // one for each failing algorithm
-  std::uint64_t sampled = 0;           // right in every lane, but in GMP's sample
+  EXPECT_GE(failures, disagreements);  // one signature for each failing algorithm
+  std::uint64_t sampled = 0;           // every lane is right, but the pair is in GMP's sample
   for (const strata::PairSource& source : campaign("counts", 2).sources) {
     for (std::uint64_t index = 0; index < source.pairs; index += 1024) {
       const Pair pair = source.pair(index);
@@ -153,7 +153,8 @@ TEST_F(CampaignTest, CountsExtremesWhereAStratumVariesThem) {
   }
 }
 
-// In each margin bucket, as many verdicts differ from the cpu lane's as when each pair is decided again.
+// In each margin bucket, the number of verdicts that differ from the cpu lane's is the number found by deciding each
+// pair again.
 TEST_F(CampaignTest, CountsDifferencesFromCpuByMargin) {
   Campaign c = campaign("differ", 2);
   c.sources = strata::stratum_sources(c.seed, 4000, {"near_edge_edge", "thesis"});
@@ -302,7 +303,7 @@ TEST_F(CampaignTest, ReportsEachDifferenceOfDeviceAndTwin) {
   ASSERT_EQ(summary["executor_mismatches"].size(), 1u);
   const Json& apart = summary["executor_mismatches"][0];
   EXPECT_EQ(apart["lane"], "moller_1997/f32/cuda-fma");
-  EXPECT_EQ(apart["count"], 3);  // one in each stratum
+  EXPECT_EQ(apart["count"], 3);  // one pair in each stratum
   const auto cases = corpus::read_pairs(root_ / "apart" / apart["case"].get<std::string>());
   EXPECT_TRUE(std::any_of(flipped.begin(), flipped.end(),
                           [&](const Pair& pair) { return std::memcmp(&pair, &cases.at(0).pair, sizeof pair) == 0; }));

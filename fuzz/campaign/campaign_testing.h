@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests that compare results: runs campaigns in their own folders.
+// Runs campaigns in their own folders, for tests that compare results.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 
 namespace graze::fuzz {
 
-// The campaign's files that must not depend on how it ran.
+// The files of a campaign that must not depend on how the campaign ran.
 inline std::map<std::string, std::string> lasting_files(const std::filesystem::path& directory) {
   std::map<std::string, std::string> files{{"summary.json", read_whole(directory / "summary.json")}};
   for (const auto& file : std::filesystem::directory_iterator(directory / "cases"))
@@ -95,8 +95,8 @@ class CampaignFiles : public testing::Test {
   std::filesystem::path root_;
 };
 
-// Makes `copies` adjacent copies of each lane under test, with policy names that have no effect, so that there are more
-// lanes than a subject has.
+// Makes `copies` adjacent copies of each lane under test, so that there are more lanes than a subject has. The copies
+// have policy names without effect.
 class ManyLanes {
  public:
   ManyLanes(const SelectedLanes& of, int copies) {

@@ -221,8 +221,8 @@ DatabaseCounts counts_of_database(const fs::path& directory) {
   DatabaseCounts found{recorded_store(directory), {}};
   StoreSpec& store = found.store;
   for (const std::string id : store.spec.at("strata")) {
-    // Only the mesh itself says how many pairs it has. So this only checks that no source has more pairs than the
-    // campaign.
+    // The number of a mesh's pairs is known only from the mesh. So this checks only that no source has more pairs than
+    // the campaign.
     strata::PairSource source{id, store.spec.at("pairs"), nullptr};
     if (!store.spec.contains("scene")) source.axis = strata::axis_of(id);
     store.sources.push_back(std::move(source));

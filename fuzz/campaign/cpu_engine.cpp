@@ -176,7 +176,7 @@ class BlockJudge {
       changed_by_storing_[w] = (changed_by_storing_[w] ^ truth_[w]) | none_[w];
   }
 
-  // Finds the buckets of those pairs of doubles whose margin is wide in float32 too; the others stay open.
+  // Finds the buckets of those pairs of doubles whose margin is wide in float32 too; the other buckets remain open.
   void find_wide_margins(std::span<const Pair> stored) {
     std::vector<Pair> unchanged;
     std::vector<std::size_t> places;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A campaign leaves the same bytes whether the exact lane or the oracle judges it, and the oracle finds an exact lane
-// that is wrong.
+// A campaign gives the same bytes whether the exact lane or the oracle judges it. The oracle detects an exact lane that
+// is wrong.
 #include "fuzz/campaign/cpu_engine.h"
 
 #include "fuzz/campaign/campaign_testing.h"
@@ -79,7 +79,7 @@ TEST_F(ExactJudge, TheSampleFindsWhatNoLaneShows) {
   c.exact = &sometimes_wrong<20>;
   EXPECT_THROW(run(c), oracle::OracleMismatch);
   c = campaign("right", 20'000, 3, {"uniform"});
-  c.exact = &sometimes_wrong<1u << 25>;  // never wrong
+  c.exact = &sometimes_wrong<1u << 25>;  // this lane is never wrong
   lanes_.on_host[0] = exact_lane();
   EXPECT_NO_THROW(run(c));
 }

@@ -36,7 +36,7 @@ class DeviceTest : public CampaignFiles {
     }
   }
 
-  // engines: how many devices share the campaign; 0: the CPU engine.
+  // engines: the number of devices that share the campaign; 0 means the CPU engine.
   Campaign campaign(const SelectedLanes& under_test, const std::string& name, std::uint64_t pairs, std::size_t engines,
                     std::uint64_t seed = 3, const std::vector<std::string>& strata = {}) const {
     Campaign c = campaign_of(under_test, strata::stratum_sources(seed, pairs, strata), seed, name);
@@ -48,7 +48,7 @@ class DeviceTest : public CampaignFiles {
     return c;
   }
 
-  // Likewise on all strata of doubles, or of both types.
+  // The same kind of campaign on all strata of doubles, or of both types.
   Campaign campaign_of_doubles(const SelectedLanes& under_test, const std::string& name, std::uint64_t pairs,
                                std::size_t engines = 0, PairTypes types = PairTypes::f64) const {
     Campaign c = campaign(under_test, name, 0, engines);
@@ -62,7 +62,7 @@ class DeviceTest : public CampaignFiles {
 };
 
 #ifdef GRAZE_HAS_NVCC
-// The bits of every stratum of both types, without a scene and in a scene of each type.
+// Compares the bits of every stratum of both types, without a scene and in a scene of each type.
 TEST_F(DeviceTest, StrataHaveTheBitsOfTheHost) {
   constexpr std::uint32_t kPairs = 20'000;
   const std::vector<std::string> scenes = {
@@ -168,7 +168,7 @@ TEST_F(DeviceTest, DoublesAreDecidedAsByTheTwins) {
   run(campaign_of_doubles(on_device_, "engine", kPairs, 1));
   expect_same_bytes("twins", "engine");
   const Json timings = Json::parse(read_whole(root_ / "engine" / "timings.json"));
-  EXPECT_GT(timings["oracle"]["exact"].get<std::uint64_t>(), kPairs * 95 / 100);  // the host judged few
+  EXPECT_GT(timings["oracle"]["exact"].get<std::uint64_t>(), kPairs * 95 / 100);  // the host judged few pairs
   // Lanes with fast math have no twin, so they decide doubles only on a device.
   SelectedLanes fast = select_lanes({"*/f64/cuda-fast", "moller_1997/f64/cpu-fma"}, Executor::device);
   EXPECT_TRUE(select_for_doubles(fast).empty());
@@ -252,7 +252,7 @@ TEST_F(DeviceTest, SweepsCountAsTheTwinsDo) {
   EXPECT_GT(found[1].declined, 1000u);
 }
 
-// No bound is wrong on doubles whose determinants stay within a double's range.
+// No lane with certified bounds is wrong on doubles whose determinants stay within a double's range.
 TEST_F(DeviceTest, BoundsAndFiltersHoldOnDoubles) {
   const std::vector<strata::PairSource> sources =
       strata::stratum_sources(5, 400'000, {"near_*", "uniform", "large_offset", "lattice*"}, PairTypes::f64);
@@ -344,12 +344,13 @@ TEST_F(DeviceTest, OddCountsLeaveTheSameBytes) {
 TEST_F(DeviceTest, InterruptionsInTheMiddleOfAStratumChangeNothing) {
   run(campaign(twins_, "twins", 30'011, 0));
   Campaign parts = campaign(on_device_, "parts", 30'011, 1);
-  parts.engine_batch = 701;  // of a stratum's 1429 or 1430 pairs
+  parts.engine_batch = 701;  // out of the 1429 or 1430 pairs of a stratum
   EXPECT_EQ(run_in_parts(parts), strata::kStrataCount * 3);
   expect_same_bytes("twins", "parts");
 }
 
-// More pairs than memory holds at once: seven blocks, compared with runs that end at other pairs.
+// Tests seven blocks, which are more pairs than memory holds at once, and compares them with runs that end at other
+// pairs.
 TEST_F(DeviceTest, ManyBlocksCountAsManyRuns) {
   constexpr std::uint64_t kPairs = (std::uint64_t{7} << 22) - 12'345;
   for (const char* stratum : {"near_edge_edge", "extreme_scale"}) {
@@ -375,7 +376,7 @@ TEST_F(DeviceTest, TwoDevicesLeaveTheBytesOfOne) {
 }
 
 TEST_F(DeviceTest, TakesAnyNumberOfLanes) {
-  ManyLanes on_host(twins_, 9), on_device(on_device_, 9);  // 36 lanes of each algorithm: five chunks of the tally
+  ManyLanes on_host(twins_, 9), on_device(on_device_, 9);  // 36 lanes of each algorithm need five chunks of the tally
   std::string why_not;
   on_device.under_test.device = cuda::open_device(why_not);
   run(campaign(on_host.under_test, "twins", 4'001, 0));

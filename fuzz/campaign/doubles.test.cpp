@@ -28,7 +28,7 @@ class CampaignOfDoubles : public CampaignFiles {
   SelectedLanes lanes_ = select_lanes({}, Executor::twin);
 };
 
-// The summary's margins are those of GMP, although float32 decides most of the wide ones.
+// The summary's margins are those that GMP computes, although float32 decides most wide margins.
 TEST_F(CampaignOfDoubles, MarginsAreTheOracles) {
   const Campaign c = campaign("margins", 28 * 200);
   const Json strata = run(c)["strata"];
@@ -160,16 +160,17 @@ TEST_F(CampaignOfDoubles, RecordsAreReadBackAndChecked) {
   EXPECT_TRUE(std::equal(coordinates(one), coordinates(one) + kCoordinates, coordinates(other)));
   const std::vector<std::string> words = command_words(summary["spec"], {}, "o", summary);
   EXPECT_NE(std::find(words.begin(), words.end(), "--coordinates"), words.end());
-  // A coordinate changed by one bit is not the one that the stratum draws.
+  // A case with one changed bit is not the pair that the stratum draws.
   const std::filesystem::path file = directory / summary["signatures"][0]["case"].get<std::string>();
   std::string text = read_whole(file);
   const std::size_t at = text.find("p", text.find("0x1.")) - 1;
   text[at] = text[at] == '4' ? '5' : '4';
   write_whole(file, text);
   EXPECT_THROW(read_cases(directory, summary["spec"], summary["signatures"][0]), corpus::FormatError);
-  // Rejects an exact lane with errors not caused by storing, and more errors of storing than errors.
+  // A summary is rejected if an exact lane has errors that storing does not cause, or if storing causes more errors
+  // than there are.
   std::filesystem::remove(directory / kDatabase);
-  EXPECT_EQ(checked_summary(directory), summary);  // even without its database
+  EXPECT_EQ(checked_summary(directory), summary);  // even if the campaign has no database
   for (const char* lane : {"exact/f32/cpu", "exact/f64/cpu"}) {
     Json wrong = summary;
     Json& row = wrong["strata"]["near_vertex_face/f64"];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GPU engine without a GPU: its steps run on this processor, and the campaign must leave the same bytes as with the
-// CPU engine. device.test.cpp tests the same on devices.
+// Tests the GPU engine without a GPU. Its steps run on this processor, and the campaign must give the same bytes as
+// with the CPU engine. device.test.cpp tests this on devices.
 #include "fuzz/campaign/gpu_engine.h"
 
 #include "cuda/engine/host_engine.h"
@@ -37,7 +37,8 @@ TEST_F(GpuEngineTest, LeavesTheBytesOfTheCpuEngineOverAllStrata) {
   }
 }
 
-// A device's engine keeps no digests, so equal counts do not prove that its verdicts are those of the CPU engine.
+// A device's engine computes no digests, and equal counts alone do not prove that its verdicts equal those of the CPU
+// engine.
 TEST_F(GpuEngineTest, ItsVerdictsAreNotProvedToBeTheSame) {
   run(campaign(twins_, "cpu", 3'000, 0, 3, {"degenerate"}));
   run(campaign(twins_, "again", 3'000, 0, 3, {"degenerate"}));
@@ -72,13 +73,13 @@ TEST_F(GpuEngineTest, TwoEnginesAndInterruptionsChangeNothing) {
   limits.block_pairs = 100;
   limits.undecided = 101;  // so that runs end early
   Campaign parts = campaign(twins_, "parts", 3'001, 2, 3, strata, limits);
-  parts.engine_batch = 77;  // 154 out of a stratum's 1000 or 1001 pairs
+  parts.engine_batch = 77;  // 154 of the 1000 or 1001 pairs of a stratum
   EXPECT_EQ(run_in_parts(parts), 3 * 7);
   expect_same_bytes("cpu", "parts");
 }
 
 TEST_F(GpuEngineTest, TakesAnyNumberOfLanes) {
-  const ManyLanes many(twins_, 9);  // 36 of each algorithm
+  const ManyLanes many(twins_, 9);  // 36 lanes of each algorithm
   ASSERT_GT(many.under_test.lanes.size(), 128u);
   run(campaign(many.under_test, "cpu", 2'003, 0));
   run(campaign(many.under_test, "engine", 2'003, 1));
@@ -103,7 +104,7 @@ TEST_F(GpuEngineTest, SaysWhenItsMemoryIsNotEnough) {
   EXPECT_EQ(error("enough", {}), "");
 }
 
-// An engine that counts one right verdict of a lane as wrong.
+// This engine counts one right verdict of a lane as wrong.
 class WrongEngine final : public cuda::DeviceEngine {
  public:
   explicit WrongEngine(std::unique_ptr<cuda::DeviceEngine> engine) : engine_(std::move(engine)) {}
@@ -167,7 +168,7 @@ TEST_F(GpuEngineOnDoubles, BothTypesTwoEnginesAndInterruptionsChangeNothing) {
   limits.undecided = 31;  // so that runs end early
   Campaign parts = of_doubles("parts", 9 * 200, 2, strata, PairTypes::both, limits);
   ASSERT_EQ(parts.sources.size(), 9u);
-  parts.engine_batch = 77;  // 154 of a stratum's 200 pairs
+  parts.engine_batch = 77;  // 154 of the 200 pairs of a stratum
   EXPECT_EQ(run_in_parts(parts), 9 * 2);
   expect_same_bytes("cpu", "parts");
 }

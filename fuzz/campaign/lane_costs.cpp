@@ -22,7 +22,7 @@ Json quartiles(std::vector<double> passes) {
 }
 
 constexpr std::uint64_t kMostPasses = 1'000'000;
-constexpr double kLeastCost = 1e-6, kMostCost = 1e15;  // nanoseconds for a pair; the latter are eleven days
+constexpr double kLeastCost = 1e-6, kMostCost = 1e15;  // nanoseconds for a pair; 1e15 ns are eleven days
 
 }  // namespace
 

@@ -18,8 +18,8 @@ inline constexpr int kPassesTimed = 9;
 // Returns: {"passes", "lanes": {lane: {source: {"pairs", "low", "middle", "high"}}}}, with the quartiles of the passes.
 Json measure_costs(const Campaign& campaign);
 
-// Checks costs from a file: lanes and sources (by id, with their pairs) must be the campaign's, and times possible.
-// Throws: std::runtime_error that says what is wrong; Json::exception for JSON of another shape.
+// Checks costs from a file: lanes and sources (by id, with their pairs) must be the campaign's, and times must be
+// possible. Throws: std::runtime_error that describes the error; Json::exception for JSON of another shape.
 void expect_possible_costs(const Json& costs, const std::vector<std::string>& lanes,
                            const std::map<std::string, std::uint64_t>& sources);
 

@@ -15,7 +15,7 @@ struct Growing {
 
 // Measurements of each source on one core or one device.
 struct Sample {
-  std::vector<double> seconds_a_pair;  // by source
+  std::vector<double> seconds_a_pair;  // of each source
   std::vector<Growing> row, summary;   // a row of the store, and its pairs' part of summary.json, by source
   std::uint64_t pairs = 0;             // in all samples
   std::uint64_t pairs_of_row = 1;      // pairs in each source's row

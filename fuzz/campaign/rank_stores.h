@@ -10,7 +10,7 @@ namespace graze::fuzz {
 
 std::filesystem::path rank_directory(const std::filesystem::path& campaign, int rank);
 
-// All rank directories, sorted by name. They hold a store or nothing; other folders are not Graze's.
+// All rank directories, sorted by name. Each holds a store or is empty. Folders with other files are not Graze's.
 std::vector<std::filesystem::path> rank_directories(const std::filesystem::path& campaign);
 
 // Commits the rows that a killed run left in rank stores, then removes these stores.

@@ -72,7 +72,7 @@ bool is_of_mesh(std::string_view source) { return strata::stratum_in_doubles(sou
 
 namespace {
 
-// The mesh's number of pairs: from the summary if it has it, otherwise from the mesh itself.
+// The mesh's number of pairs: from the summary if that has it, otherwise from the mesh itself.
 std::uint64_t mesh_pairs(const Json& spec, const Json& summary) {
   std::uint64_t found = 0;
   const Json strata = summary.value("strata", Json::object());
@@ -144,7 +144,7 @@ std::vector<std::string> command_words(const Json& spec, const Shard& shard, con
   for (const Json& row : spec.value("subjects", Json::array())) {
     const std::string what = row.at("what");
     if (what != "published") add("--subject", row.at("name").get<std::string>() + '=' + what);
-    if (what.ends_with(".cl") || what.find(".cl:") != what.npos) continue;  // their lanes need no list
+    if (what.ends_with(".cl") || what.find(".cl:") != what.npos) continue;  // the lanes of such code need no list
     for (const Json& toolchain : row.value("toolchains", Json::array()))
       toolchains.push_back(subjects::toolchain_of_json(toolchain));
   }

@@ -17,7 +17,7 @@ namespace graze::fuzz {
 // Throws: std::runtime_error if a mesh has changed; nlohmann's exceptions for JSON of another shape.
 std::vector<strata::PairSource> recorded_sources(const Json& spec);
 
-bool is_of_mesh(std::string_view source);  // whether the source with this name draws from a mesh as it is
+bool is_of_mesh(std::string_view source);  // whether the source of this name takes its pairs from a mesh, unchanged
 
 bool has_doubles(const Json& spec);  // whether some of the campaign's pairs are pairs of doubles
 
@@ -30,7 +30,7 @@ SelectedLanes recorded_lanes(const Json& spec);
 std::vector<std::string> command_words(const Json& spec, const Shard& shard, const std::filesystem::path& out,
                                        const Json& summary = Json::object());
 
-// The same command for a shell, preceded by the variables that chose a subject's compiler.
+// The words as a command for a shell, preceded by the variables that chose a subject's compiler.
 std::string command_of(const Json& spec, const Shard& shard, const std::filesystem::path& out,
                        const Json& summary = Json::object());
 

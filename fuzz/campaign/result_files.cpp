@@ -225,7 +225,7 @@ bool is_run(const Json& run) {
   if (!run.is_object()) return false;
   for (const auto& [name, value] : run.items()) {
     const bool is_text = name == "machine" || name == "engine", is_time = name.find("seconds") != name.npos;
-    const bool checked_later = name == "pairs" || name == "seconds";  // by expect_possible_run
+    const bool checked_later = name == "pairs" || name == "seconds";  // expect_possible_run checks it
     const bool fits = checked_later      ? true
                       : name == "costs"  ? value.is_object()
                       : is_text          ? value.is_string()

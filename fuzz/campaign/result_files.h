@@ -15,7 +15,8 @@ namespace graze::fuzz {
 // The truth as fields of a case: truth, contact, margin, margin_ulps.
 std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Truth& truth);
 
-// Whether the lane's differences from its cpu lane are counted: it is not that cpu lane, and `lanes` has the cpu lane.
+// Whether the lane's differences from a cpu lane are counted: the cpu lane of its algorithm and scalar is another lane,
+// and is in `lanes`.
 bool is_compared_with_cpu(const std::string& lane, const std::vector<std::string>& lanes);
 
 // Writes summary.json and cases/ from the store. A case file whose cases have not changed keeps the minimiser's
@@ -36,9 +37,9 @@ Json shard_summary(const Shard& shard, const Store& store, bool complete, std::u
 std::filesystem::path case_file(const std::filesystem::path& directory, const Json& row);
 
 // Reads a signature's cases, preceded by the minimiser's results, from the file named in its row of the summary. Checks
-// that the file's name, second line and cases belong to the signature, that no case is missing, that all cases have
-// different origins in the campaign's strata, and that the recorded truth of each pair is right. spec: the campaign's.
-// Throws: FormatError, in one line, with the command that writes the file again.
+// that the file's name, second line and cases belong to the signature, and that no case is missing. Also checks that
+// all cases have different origins in the campaign's strata, and that the recorded truth of each pair is right. spec:
+// the campaign's. Throws: FormatError, in one line, with the command that writes the file again.
 std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, const Json& spec, const Json& row);
 
 // Whether the pair is the one that its stratum, seed and index name. Also true if this cannot be known: for scenes,
@@ -48,11 +49,11 @@ bool is_drawn(const corpus::Entry& entry);
 // Whether the file's text is `fresh`, which a campaign would write, with or without the minimiser's results.
 bool is_minimised_from(const std::string& text, const std::string& fresh);
 
-// The error for a case file that fails a check.   found: what is wrong with it, such as "it is missing or empty".
+// The error for a case file that fails a check.   found: the defect, such as "it is missing or empty".
 corpus::FormatError wrong_cases(const std::filesystem::path& directory, const Json& row, const std::string& found);
 
-// Whether results may be written to the folder (see may_fill): it must be empty, or hold the results of `graze fuzz`,
-// `hunt` or `merge` for a campaign or a shard.
+// Whether results may be written to the folder (see may_fill). It must be empty, or hold a campaign or shard from
+// `graze fuzz`, `hunt` or `merge`.
 bool may_hold_campaign(const std::filesystem::path& folder);
 
 // Returns the runs in timings.json, each an object; none if there is no file.   Throws: FormatError if it is damaged.

@@ -39,7 +39,7 @@ std::set<std::string> ways_of(const std::map<std::string, SignatureCount>& signa
   return ways;
 }
 
-// Throws: std::runtime_error that says what is wrong; Json::exception for JSON of another shape.
+// Throws: std::runtime_error that describes the error; Json::exception for JSON of another shape.
 void expect_possible_status(const Json& status) {
   const std::string state = status.at("state"), shard = status.at("shard");
   if (state != "running" && state != "done" && state != "stopped" && state != "failed")
@@ -111,7 +111,7 @@ void RunStatus::tell(const Progress& progress, const std::map<std::string, Signa
   last = last || progress.done == progress.total;
   if (written_ >= 0 && progress.seconds - written_ < kSecondsBetween && !last) return;
   written_ = progress.seconds;
-  status_["signatures"] = signatures.size();  // together with their ways
+  status_["signatures"] = signatures.size();  // written together with the ways
   status_["ways"] = ways_of(signatures);
   write();
 }

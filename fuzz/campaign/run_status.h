@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// status.json: a run's progress, updated every few seconds for `graze status` and `graze merge`. No count of a campaign
-// is taken from it.
+// status.json: a run's progress, updated every few seconds for `graze status` and `graze merge`. Graze takes no count
+// of a campaign from this file.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +17,7 @@ class RunStatus {
   explicit RunStatus(const Campaign& campaign);
 
   // Records the progress and the signatures so far, at most once every few seconds unless `last`. Write errors are
-  // ignored, because the file only serves observers.
+  // ignored, because only observers use the file.
   void tell(const Progress& progress, const std::map<std::string, SignatureCount>& signatures, bool last = false);
 
   // Records how the run ended: "done", "stopped" or "failed", and why it failed. Does nothing if `tell` was never
@@ -39,8 +39,8 @@ std::string file_hash(const std::filesystem::path& file);
 // more.
 void seal(const std::filesystem::path& directory);
 
-// Removes a status that is damaged or has impossible counts. In a campaign's folder the name status.json is Graze's.
-// Throws: std::runtime_error if it is not a file; UsageError if it is a link.
+// Removes a status that is damaged or has impossible counts. In a campaign's folder, a file named status.json belongs
+// to Graze. Throws: std::runtime_error if it is not a file; UsageError if it is a link.
 void remove_damaged_status(const std::filesystem::path& directory);
 
 // Returns the directory's status; null if there is none.

@@ -47,10 +47,10 @@ class Store {
 
   void finish() { file_.finish(); }
 
-  // How many committed pairs each exact decision saw.
+  // The number of committed pairs that each exact decision judged.
   Json oracle() const;
 
-  // How many pairs some lane is wrong on.
+  // The number of pairs on which some lane is wrong.
   std::uint64_t disagreements() const;
 
   // The results of all committed pairs; see results_of.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A damaged store is never accepted: changes are detected, and batches with correct checksums can be kept.
+// Tests that a damaged store is never accepted: changes are detected, and batches with correct checksums can be kept.
 #include "fuzz/campaign/store.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,8 @@ class StoreTest : public testing::Test {
   StoreTest() {
     std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
     std::replace(name.begin(), name.end(), '/', '-');
-    // In memory if possible, because a file system on disk takes milliseconds for each of 100,000 databases.
+    // The folder is in memory if possible, because a file system on disk takes milliseconds for each of 100,000
+    // databases.
     const fs::path folder = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : fs::temp_directory_path();
     root_ = folder / ("graze-store-" + name + std::to_string(getpid()));
     fs::remove_all(root_);
@@ -141,7 +142,7 @@ TEST_F(StoreTest, OnePairOfASourceIsEnough) {
   EXPECT_EQ(run(c), whole);
 }
 
-// Lost rows leave a gap, which is judged again.
+// The pairs of lost rows are judged again.
 TEST_F(StoreTest, GapsAreFilled) {
   const std::string whole = run(campaign("whole"));
   for (const char* sql :
@@ -153,7 +154,7 @@ TEST_F(StoreTest, GapsAreFilled) {
   }
 }
 
-// Rows with correct checksums that are outside the source's 400 pairs, or outside the shard's share.
+// These rows have correct checksums, but are outside the source's 400 pairs, or outside the shard's share.
 TEST_F(StoreTest, RangesThatTheStoreDoesNotHoldAreFoundOut) {
   int number = 0;
   const auto refused = [&](const Shard& shard, const PairRange& range) {
@@ -233,7 +234,7 @@ TEST_F(StoreTest, DiscardingDamageReplacesAndRemovesNothing) {
   EXPECT_FALSE(fs::exists(root_ / "nothing"));
 }
 
-// SQLite would read the log beside the file that the link points to.
+// SQLite would read the log that is beside the target of the link.
 TEST_F(StoreTest, ADamagedDatabaseBehindALinkIsMendedThere) {
   const std::string whole = run(campaign("whole"));
   const Campaign c = in_seven_rows("linked");
@@ -249,7 +250,7 @@ TEST_F(StoreTest, ADamagedDatabaseBehindALinkIsMendedThere) {
   EXPECT_TRUE(fs::is_symlink(file(c)));
 }
 
-// Otherwise cases would be written to, and removed from, a user's folder.
+// If this link were followed, cases would be written to and removed from a user's folder.
 TEST_F(StoreTest, ALinkInPlaceOfTheFolderOfCasesIsRefused) {
   const Campaign c = campaign("cases_elsewhere");
   fs::create_directories(root_ / "theirs_too");
@@ -293,7 +294,7 @@ TEST_F(StoreTest, RemovingAStoreLeavesWhatOthersPutBesideIt) {
   EXPECT_EQ(read_whole(file(c).string() + ".part"), "precious");
 }
 
-// Writing the log back fails as it would on a full disk; the rows stay in the log.
+// Writing the log back fails as on a full disk. The rows remain in the log.
 TEST_F(StoreTest, AStoreThatCannotBeFinishedSaysSo) {
   const Campaign c = campaign("full");
   Store store(store_spec(c));
@@ -428,7 +429,7 @@ TEST_F(StoreTest, RowsMergeAndResultsStayTheSame) {
   }
 }
 
-// Rows that have the right checksum but are impossible.
+// These rows have the right checksum, but are impossible.
 TEST_F(StoreTest, SumsThatDoNotAgreeAndIndicesOutOfRangeAreFoundOut) {
   const Campaign c = campaign("sums");
   const PairRange range{2, 100, 200};
@@ -477,7 +478,8 @@ TEST_F(StoreTest, SumsThatDoNotAgreeAndIndicesOutOfRangeAreFoundOut) {
   EXPECT_THROW(from_bytes(bytes, range, Axis::none, 2), Damaged);
 }
 
-// Flips each bit of a small campaign's database, in parts: the results are the same, or there is a one-line error.
+// Flips each bit of a small campaign's database. The results are the same, or opening fails with an error of one line.
+// The test has several parts, each with some of the bits.
 class EveryBit : public StoreTest, public testing::WithParamInterface<int> {
  protected:
   static constexpr int kParts = 8;

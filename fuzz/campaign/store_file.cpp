@@ -151,7 +151,7 @@ std::string first_difference(const Json& expected, const Json& found) {
   const auto value = [](const Json& of, const std::string& place) {
     return of.contains(place) ? of[place].dump(-1, ' ', false, Json::error_handler_t::replace) : "none";
   };
-  for (const bool empty : {false, true}) {  // an empty list is null there; the other side's elements say more
+  for (const bool empty : {false, true}) {  // flatten() makes an empty list null; the other side tells more
     for (const Json& side : {ours, theirs}) {
       for (const auto& [place, one] : side.items()) {
         if (one.is_null() != empty || (ours.contains(place) && theirs.contains(place) && ours[place] == theirs[place]))
@@ -245,7 +245,7 @@ std::int64_t insert(SQLite::Database& database, std::uint64_t campaign, const Pa
   return database.getLastInsertRowid();
 }
 
-// Whether the database is unchanged since a run ended and sealed it. Then no log belongs to it.
+// Whether the database is unchanged since a run ended and sealed it. In that case no log belongs to the database.
 bool is_closed(const fs::path& database) {
   try {
     const Json status = read_status(database.parent_path());
@@ -255,8 +255,8 @@ bool is_closed(const fs::path& database) {
   }
 }
 
-// The files beside the database that SQLite would read although it did not write them for this database: damaged files,
-// files of other programs or databases, and links. Throws: std::runtime_error for a pipe or a device.
+// The files beside the database that SQLite would read but did not write for this database. They are damaged, links, or
+// from other programs or databases. Throws: std::runtime_error for a pipe or a device.
 std::vector<fs::path> unusable_files_of(const fs::path& database) {
   constexpr std::string_view kJournal = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", kLog = "\x37\x7f\x06",
                              kIndex = "\x18\xe2\x2d";
@@ -388,7 +388,7 @@ Salvage salvage(const StoreSpec& spec) {
     kept = rows_that_check(database, spec, fnv1a(text), seen);
     if (!known && kept.empty() && seen > 0)
       throw std::runtime_error(cannot("recover", file, "no batch of this campaign can be read; choose another --out"));
-  } catch (const SQLite::Exception&) {  // nothing is readable
+  } catch (const SQLite::Exception&) {  // no row is readable
   }
   Salvage result{kept.size(), 0, place_of_damaged(file)};
   for (const KeptRow& row : kept) result.pairs += row.range.pairs;

@@ -75,7 +75,7 @@ std::string file_bytes(SQLite::Database& database);
 // The first place in which two specs differ, with both values: `seed is 1, not 2`.
 std::string first_difference(const Json& expected, const Json& found);
 
-// Reads the spec of an existing store; its `sources` stay empty.
+// Reads the spec of an existing store; its `sources` are empty.
 // Throws: std::runtime_error as StoreFile does; DamagedStore.
 StoreSpec recorded_store(const std::filesystem::path& directory);
 

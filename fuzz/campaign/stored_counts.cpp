@@ -16,8 +16,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // [[bucket, pairs, intersects, [[lane, false positive, false negative, declined, differs from cpu], …]], …]. The counts
-// crashed, timed out, unstable and by convention follow if foreign code has any of them, or if the lane has errors of
-// storing doubles in float32; in that case the count of these errors is last.
+// crashed, timed out, unstable and by convention follow if one of them is not 0. They also follow if storing doubles in
+// float32 caused errors; the count of these errors is then last.
 Json to_json(const analysis::Tally& tally) {
   Json rows = Json::array();
   for (int b = -kBucketMost; b <= kBucketMost; ++b) {

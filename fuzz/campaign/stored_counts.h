@@ -13,7 +13,7 @@
 
 namespace graze::fuzz {
 
-// Thrown for stored bytes that are damaged or contradict each other; what() says which.
+// Thrown for stored bytes that are damaged or contradict each other; what() names the inconsistent counts.
 struct Damaged : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -31,7 +31,7 @@ struct StoredCounts : PairCounts {
   void add(const StoredCounts& other);
 
   std::map<std::string, SignatureCount> signatures;           // by key
-  std::map<std::string, SignatureCount> executor_mismatches;  // by lane: device and twin differ
+  std::map<std::string, SignatureCount> executor_mismatches;  // by lane: pairs on which device and twin differ
 };
 
 std::string to_bytes(const StoredCounts& counts);

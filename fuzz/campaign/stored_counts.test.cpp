@@ -14,7 +14,8 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kKey = "none/22/skew/+2^3/moller_1997:+f32/cpu";
 const PairRange kRange{1, 100, 10};
 
-// Ten pairs: bucket 5 has six, of which two intersect. Lane 0 is wrong on three; lane 1, of foreign code, on two.
+// Ten pairs. Bucket 5 has six of them, and two of these intersect. Lane 0 is wrong on three pairs. Lane 1, which is
+// foreign code, is wrong on two.
 Json good() {
   return {{{-4, 4, 1, Json::array()}, {5, 6, 2, {{0, 2, 1, 0, 3}, {1, 0, 0, 0, 0, 1, 0, 1, 1}}}},
           Json::array(),
@@ -62,17 +63,17 @@ TEST(StoredCounts, ThatDoNotAgreeAreDamage) {
     std::string said;
   };
   for (const auto& [place, value, said] : {
-           Edit{"/0/0/0", 5, margins},  // a bucket twice
-           {"/0/1/0", -5, margins},     // out of order
+           Edit{"/0/0/0", 5, margins},  // a bucket occurs twice
+           {"/0/1/0", -5, margins},     // the buckets are out of order
            {"/0/1/0", kBucketMost, ""},
            {"/0/1/0", kBucketMost + 1, margins},
            {"/0/0/0", -kBucketMost, ""},
            {"/0/0/0", -kBucketMost - 1, margins},
-           {"/0/1/1", 5, all},          // fewer pairs than the range has
-           {"/0/1/1", 7, margins},      // more pairs
+           {"/0/1/1", 5, all},          // the tally has fewer pairs than the range
+           {"/0/1/1", 7, margins},      // the tally has more pairs than the range
            {"/0/1/2", 7, margins},      // more pairs that intersect than pairs
-           {"/0/1/3/0/0", 1, margins},  // a lane twice
-           {"/0/1/3/1/0", 2, margins},  // no such lane
+           {"/0/1/3/0/0", 1, margins},  // a lane occurs twice
+           {"/0/1/3/1/0", 2, margins},  // there is no such lane
            {"/0/1/3/0/1", 4, ""},       // all disjoint pairs
            {"/0/1/3/0/1", 5, margins},
            {"/0/1/3/0/2", 2, ""},  // all pairs that intersect
@@ -95,7 +96,7 @@ TEST(StoredCounts, ThatDoNotAgreeAreDamage) {
            {"/2/0/2", Json{99}, signatures},
            {"/2/0/2", Json{110}, signatures},
            {"/2/0/2", Json{100, 101, 102, 103, 104}, signatures},
-           {"/2/1", Json{kKey, 1, {102}}, signatures},  // the same key again
+           {"/2/1", Json{kKey, 1, {102}}, signatures},  // the same key occurs again
            {"/3/0/0", "moller_1997", signatures},
            {"/4", 10, ""},
            {"/4", 11, "the disagreements and the batch's pairs are inconsistent"},
@@ -104,7 +105,7 @@ TEST(StoredCounts, ThatDoNotAgreeAreDamage) {
            {"/7", 11, "the exact lane's pairs and the batch's pairs are inconsistent"},
            {"/8/0", 10, ""},
            {"/8/0", 11, digests},
-           {"/8/1", Json{1}, digests},  // not one for each lane
+           {"/8/1", Json{1}, digests},  // there is not one digest for each lane
            {"/8/1/1", -1, digests},
            {"/8", 0, digests},
            {"/9", 0, "a batch's parts are inconsistent"},

@@ -28,12 +28,12 @@ class Sums {
 
   // The ranges that are missing within `within`, in order.
   std::vector<PairRange> gaps(const PairRange& within) const;
-  // The same for all sources.
+  // The missing ranges of all sources.
   std::vector<PairRange> gaps() const;
 
   const StoredCounts& of_source(int source) const { return of_source_[static_cast<std::size_t>(source)]; }
 
-  // Converts to bytes, and adds the bytes of another rank of the same campaign.   Throws: Damaged.
+  // `bytes` encodes the sums; `add` adds such bytes from another rank of the same campaign.   Throws: Damaged.
   std::string bytes() const;
   void add(const std::string& bytes);
 

@@ -194,7 +194,7 @@ class Hunter {
     fs::remove(result_file);
   }
 
-  // One pair represents all that are wrong in the same way, at any margin.
+  // One pair represents all pairs that are wrong in the same way, at any margin.
   void find_kinds_of(const RoundResult& result, KeptRound& kept) const {
     struct New {
       analysis::Signature signature;

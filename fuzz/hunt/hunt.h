@@ -23,21 +23,22 @@ struct Hunt {
 
 struct HuntProgress {
   std::uint64_t done = 0, total = 0;  // pairs
-  std::uint64_t done_here = 0;        // by this process
+  std::uint64_t done_here = 0;        // pairs done by this process
   double seconds = 0;                 // of this process
   std::size_t units = 0, signatures = 0, kinds = 0;
-  std::size_t new_kinds = 0;      // found by this process
+  std::size_t new_kinds = 0;      // kinds found by this process
   double seconds_since_kind = 0;  // since the last new kind, or the start
 };
 
-// The store's record of a hunt: like campaign_spec, with that one source; the strata that it draws from are in "hunt".
+// The spec that a hunt's store records: as from campaign_spec, with the single source `hunt`. Its field "hunt" has the
+// strata from which the hunt draws.
 Json hunt_spec(const Hunt& hunt);
 
 // Runs or resumes the hunt, or a shard of it, until it is done, its time is up, or `stop` is set. Updates status.json
 // as it runs. At the end it writes hunt.json and timings.json and, for a whole hunt, summary.json and cases/. A shard
 // is an independent search with its share of the hunt's pairs.
 // Requires: has_libfuzzer(); no lane runs on a device.
-// Throws: OracleMismatch, UsageError, std::runtime_error. Even then, committed rounds are kept.
+// Throws: OracleMismatch, UsageError, std::runtime_error. After an error, committed rounds are kept.
 Outcome run_hunt(Hunt& hunt, const std::atomic<bool>& stop, const std::function<void(const HuntProgress&)>& report);
 
 }  // namespace graze::fuzz

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Guided search: the same bytes for any number of threads and interruptions, kept pairs that match their records, and
-// mutations that do what their names say.
+// Tests guided search. The bytes are the same for any number of threads and interruptions, kept pairs match their
+// records, and mutations do what their names say.
 #include "fuzz/hunt/hunt.h"
 
 #include <fmt/format.h>
@@ -214,7 +214,7 @@ class HuntFiles : public CampaignFiles {
         .summary;
   }
 
-  // Checks that every pair of every case fails as its signature says.   Returns: the number of pairs.
+  // Checks that every pair of every case fails as its signature describes.   Returns: the number of pairs.
   std::size_t expect_cases_are_true(const std::string& name, const Json& summary) const {
     Campaign campaign;
     campaign.under_test = &under_test_;
@@ -251,7 +251,7 @@ TEST_F(HuntFiles, GivesTheSameBytesOnAnyThreadsAfterInterruptionsAndDamage) {
   expect_same_hunt("whole", "one");
   for (int part = 0; !run("parts", 2, 3)["complete"].get<bool>(); ++part) {
     ASSERT_LT(part, 10);
-    std::ofstream(root_ / "parts/hunt/000000.round", std::ios::app) << "x";  // detected: the round is run again
+    std::ofstream(root_ / "parts/hunt/000000.round", std::ios::app) << "x";  // the damaged round runs again
   }
   expect_same_hunt("whole", "parts");
   EXPECT_EQ(read_whole(root_ / "whole/hunt/000000.round"), read_whole(root_ / "one/hunt/000000.round"));

@@ -32,7 +32,7 @@ std::filesystem::path rounds_folder(const std::filesystem::path& hunt);
 // The number of pairs per round of a hunt, or of a shard, with this many pairs.
 std::uint64_t round_pairs(std::uint64_t pairs);
 
-// The file of the round whose first pair this is.   share: the pairs of the hunt or of its shard.
+// The file of the round that begins with the pair `first`.   share: the pairs of the hunt or of its shard.
 std::filesystem::path round_file(const std::filesystem::path& hunt, const PairRange& share, std::uint64_t first);
 // The only file in that folder if the hunt was merged from shards.
 std::filesystem::path merged_rounds_file(const std::filesystem::path& hunt);

@@ -17,12 +17,12 @@ namespace graze::fuzz {
 enum class Mutation : std::uint8_t {
   fresh,        // draws another pair from the strata or the scene
   ulps,         // moves one coordinate, or one vertex, by a few ulps
-  onto_vertex,  // moves a vertex onto one of the other triangle, alone or with its triangle
+  onto_vertex,  // moves a vertex onto a vertex of the other triangle, alone or with its triangle
   onto_edge,    // moves a vertex, or a point on an edge, onto an edge of the other triangle
   onto_plane,   // moves a vertex onto the other triangle's plane
   coplanar,     // moves a triangle into the other's plane
   collinear,    // moves a vertex onto the line through the two others
-  shared_edge,  // makes an edge equal to one of the other triangle's
+  shared_edge,  // makes an edge equal to an edge of the other triangle
   scaled,       // scales both triangles, one of them, or one axis by a power of two
   moved,        // moves both triangles away from the origin, or back
   on_grid,      // rounds all coordinates to a coarser grid
@@ -35,8 +35,8 @@ inline constexpr std::array<std::string_view, 14> kMutationIds{
     "shared_edge", "scaled", "moved",       "on_grid",   "mirrored",   "reordered", "crossed"};
 inline constexpr int kMutationCount = static_cast<int>(kMutationIds.size());
 
-// The sources from which pairs are drawn, all of one coordinate type. In a scene, also the envelope for that type:
-// pairs must stay within it.
+// The sources from which pairs are drawn, all of one coordinate type. scene: in a scene, its envelope for that type,
+// within which pairs must stay; otherwise null.
 struct Drawn {
   std::vector<strata::PairSource> sources;
   const strata::Scene* scene = nullptr;
@@ -58,7 +58,7 @@ template <class Draws>
 DrawnPair<Draws> fresh_pair(const Drawn& drawn, Draws& draws);
 
 // Rounds the pair into the scene: to its grid, and into its extent.
-// Returns: false if a triangle is larger than the scene allows, or thinner without being degenerate.
+// Returns: false if a triangle is larger than the scene allows, or if it is too thin but not degenerate.
 template <class Real>
 bool fit(const strata::Scene& scene, BasicPair<Real>& pair);
 

@@ -36,7 +36,7 @@ constexpr std::uint32_t kMutations = 0x301;  // used in draws instead of a strat
 // Ends this process without running exit handlers, because it is a copy of a process that continues.
 [[noreturn]] void leave(int status) { _exit(status); }
 
-// Closes all descriptors except the standard streams and those of the code that new processes load. An open
+// Closes all descriptors except the standard streams and the descriptors of code that new processes load. An open
 // descriptor would keep the folder locked after the parent process has ended.
 void close_all_but_code(const SelectedLanes& under_test) {
   std::vector<int> kept;
@@ -172,7 +172,7 @@ class Round {
   std::uint64_t turn_ = 0;
 };
 
-Round* current = nullptr;  // a global, because libFuzzer calls functions
+Round* current = nullptr;  // a global variable, because libFuzzer's callbacks have no context
 
 // An exception must not pass through libFuzzer, which is built without exceptions.
 template <class Act>
@@ -194,7 +194,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   return guarded([&] { return current->next(data, size, nullptr, seed); });
 }
 
-// Returns 0 to skip the crossing. One mutation in fourteen is a crossing, as for every other kind.
+// Returns 0 to skip the crossing. So one mutation in fourteen is a crossing, and each other kind is as frequent.
 extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* data, std::size_t size, const std::uint8_t* other,
                                                  std::size_t other_size, std::uint8_t* out, std::size_t,
                                                  unsigned seed) {

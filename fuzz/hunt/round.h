@@ -24,8 +24,8 @@ struct Unit {
 
 struct MutationCounts {
   std::uint64_t pairs = 0;          // pairs made with this mutation as the last of up to five in a row
-  std::uint64_t disagreements = 0;  // how many of them are disagreements
-  std::uint64_t units = 0;          // how many of them became units: new within their round
+  std::uint64_t disagreements = 0;  // how many of these pairs are disagreements
+  std::uint64_t units = 0;          // how many of these pairs became units: they were new in their round
 };
 
 struct FoundPair {

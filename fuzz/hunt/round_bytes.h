@@ -30,7 +30,7 @@ struct NewKind {
 struct KeptRound {
   std::uint64_t first = 0, pairs = 0;
   std::vector<Unit> units;                  // pairs that still showed something new when rounds were combined
-  std::map<std::uint64_t, FoundPair> kept;  // cases
+  std::map<std::uint64_t, FoundPair> kept;  // the cases, by pair index
   std::array<MutationCounts, kMutationCount> mutations{};
   std::vector<std::string> coarse;  // signatures without margins that no earlier round had
   std::vector<NewKind> kinds;

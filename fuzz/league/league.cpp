@@ -44,7 +44,7 @@ struct Counting {
   LeagueRow row;
   const Lane* fused;  // its cpu-fma counterpart; null for none
   const DecideBlock* decide;
-  std::uint64_t of_source;  // how many pairs of each source the lane gets: the first ones
+  std::uint64_t of_source;  // the lane gets the first pairs of each source, at most this many
   Smallest smallest;
 
   // Confirms with GMP the truth of a pair on which the lane is wrong.

@@ -50,7 +50,7 @@ struct LeagueFailure {
   Verdict verdict;  // the wrong verdict, as given by a fresh process
   AnyPair pair = Pair{};
   oracle::Truth truth;  // by CGAL and GMP
-  bool minimised;       // if not, the original pair: minimising would cost too much, or the failure comes and goes
+  bool minimised;       // false: the original pair, as minimising costs too much or the failure is not repeatable
 };
 
 // One row for each lane built as `cpu`.
@@ -59,7 +59,7 @@ struct LeagueRow {
   std::array<LeagueCounts, kLeagueGroupCount> groups;
   std::uint64_t order_dependent = 0, order_sample = 0;  // of pairs within its contract, decided in their 72 orders
   std::uint64_t breaks_invariant =
-      0;  // of the same pairs: breaks one of analysis::kInvariants other than orders (mirrored, moved and so on)
+      0;  // of the same pairs: an invariant of analysis::kInvariants other than the orders is broken
   std::optional<std::uint64_t> flips;  // verdicts that `cpu-fma` changes; nothing if no `cpu-fma` lane runs here
 };
 

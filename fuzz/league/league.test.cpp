@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A league of planted subjects. Every number in it is known, because it is counted again here with only the oracle.
+// Tests a league of planted subjects. The test knows every number of the league, because it counts again with only the
+// oracle.
 #include "fuzz/league/league.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Each of these functions is right, except for the defect that its name describes.
+// Each of these functions has only the defect that its name describes.
 constexpr const char* kPlanted = R"(
 #include <cstdlib>
 #include <graze/subject.h>
@@ -43,7 +44,7 @@ PLANT(narrow, GRAZE_OUTSIDE_DEGENERATE);
 PLANT(one_sided, 0);
 )";
 
-constexpr std::uint64_t kSeed = 3, kPairs = 3000, kOrders = 50;  // one in 20 of each source's 1,000 pairs in all orders
+constexpr std::uint64_t kSeed = 3, kPairs = 3000, kOrders = 50;  // kOrders: 1 in 20 of each source
 constexpr const char* kNames[] = {"truth", "blind", "dies", "narrow", "one_sided"};
 
 std::vector<strata::PairSource> sources(PairTypes types = PairTypes::f32) {

@@ -52,7 +52,7 @@ LeagueFailure minimised(const Candidate& candidate) {
     result.minimised = true;
   } catch (const oracle::OracleMismatch&) {
     throw;
-  } catch (const std::runtime_error&) {  // the failure comes and goes, so the original pair is kept
+  } catch (const std::runtime_error&) {  // the failure does not always occur, so the original pair is kept
   }
   return result;
 }

@@ -21,7 +21,7 @@ std::vector<Verdict> verdicts_in_fresh_process(const Lane& lane, const std::vect
 struct Candidate {
   const Lane* lane;
   std::string shape;
-  Verdict says;  // wrong
+  Verdict says;  // the wrong verdict
   AnyPair pair;
   bool lane_dies;  // the lane crashed or did not return on some pair of the league
 };
@@ -38,7 +38,8 @@ class Smallest {
 
 // Minimises the first candidate of each subject, shape and verdict. If another subject's pair is simpler and this lane
 // fails on it in the same way, that pair is used instead. Candidates are in the order of lanes. Returns: the failures
-// that a fresh process repeats. not_repeated: receives the number of the others. Throws: OracleMismatch.
+// that a fresh process repeats. not_repeated: receives the number of failures that it does not repeat. Throws:
+// OracleMismatch.
 std::vector<LeagueFailure> smallest_failures(const std::vector<Candidate>& candidates, std::uint64_t& not_repeated);
 
 }  // namespace graze::fuzz

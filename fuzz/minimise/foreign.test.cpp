@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The minimiser on foreign code, whose causes are found with experiments.
+// Tests the minimiser on foreign code, whose causes are found with experiments.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace graze::fuzz {
 namespace {
 
-// Always wrong; counts the pairs that it gets.
+// This code is always wrong. It counts the pairs that it gets.
 class Wrong : public ForeignCode {
  public:
   void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) override {
@@ -25,7 +25,7 @@ class Wrong : public ForeignCode {
   int asked = 0;
 };
 
-// An experiment is expensive: if the search ends at once, only one is made.
+// An experiment is expensive. If the search ends at once, only one experiment is made.
 TEST(MinimiseForeignCode, FindsTheFirstCauseOnce) {
   static Wrong code;
   static const AlgorithmInfo info{"always_wrong", "test", "", "", "", false};

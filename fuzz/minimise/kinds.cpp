@@ -45,7 +45,7 @@ Case read_case(const SelectedLanes& under_test, const Json& spec, const std::fil
                               row.at("key").dump());
   Case c{*signature, row.at("case"), row.at("count"), {}, {}};
   c.entries = checked_cases(under_test, spec, directory, row);
-  for (corpus::Entry& entry : c.entries) entry.written.clear();  // saves memory
+  for (corpus::Entry& entry : c.entries) entry.written.clear();  // to save memory
   c.reasons = reasons_of(under_test, c.signature.subject, c.shown_pair(), truth_of(c.shown()));
   return c;
 }
@@ -91,9 +91,9 @@ bool is_of(const Kind& kind, const Case& c, const LaneReason& reason) {
   return kind_key(c.signature.subject, reason, shape_name(c.signature)) == kind.key;
 }
 
-// The index of the case whose pair shows the kind best. In order, it prefers a pair on which no lane is wrong for
-// another reason, one with the kind's commoner error, one with settled reasons, one that no earlier kind shows, and the
-// simplest pair.
+// The index of the case whose pair shows the kind best. It prefers a pair on which no lane is wrong for another reason.
+// Then it prefers, in this order, a pair with the kind's commoner error, with settled reasons, that no earlier kind
+// shows, and that is simplest.
 std::size_t simplest_of(const Kind& kind, const std::vector<Case>& cases, std::set<std::string>& shown) {
   const auto rank = [&](std::size_t place) {
     const Case& c = cases[place];
@@ -160,8 +160,8 @@ Json worst_pair(const SelectedLanes& under_test, const Kind& kind, const std::ve
                    [](const Candidate& l, const Candidate& r) { return l.ulps > r.ulps; });
   candidates.resize(std::min(candidates.size(), kMostLookedAt));
   candidates.push_back({&simplest, &simplest.shown(), ulps_of(simplest.shown())});
-  // The last candidate, the simplest pair, was of the kind before. If verdicts change, it may no longer be, so it is
-  // not examined again.
+  // The last candidate is the simplest pair, which was found to be of the kind. It is not examined again, because
+  // verdicts that change could contradict this.
   const auto worst = std::find_if(candidates.begin(), candidates.end() - 1, [&](const Candidate& candidate) {
     const std::vector<LaneReason> reasons =
         reasons_of(under_test, kind.subject, corpus::pair_of(*candidate.entry), truth_of(*candidate.entry));

@@ -27,11 +27,12 @@ struct LaneReason {
 };
 
 // Returns the reasons of those of the subject's lanes under test that are wrong on the pair. If a lane's computation is
-// not known, its source with every operation rounded as written gives the reason, if that is wrong in the same way.
+// not known, its reason may come from the lane of the same source that rounds every operation as written. That lane
+// must be wrong in the same way.
 std::vector<LaneReason> reasons_of(const SelectedLanes& under_test, std::string_view subject, const AnyPair& pair,
                                    Verdict truth);
 
-// The most kinds that are listed, shown on cards, or mapped. There may be hundreds, most of them with a few pairs.
+// The most kinds that are listed, shown on cards, or mapped. There may be hundreds of kinds, and most have a few pairs.
 inline constexpr std::size_t kMostShown = 40;
 
 // The truth that a campaign's case records.
@@ -48,16 +49,16 @@ std::string_view shape_name(const analysis::Signature& signature);
 // "moller_1997/rounding/moller_1997.h:117/general"; an empty line becomes "-".
 std::string kind_key(std::string_view subject, const LaneReason& reason, std::string_view shape);
 
-// What a kind is, where it was seen, and its pairs:
+// Finds the kinds. Each is an object with its definition, its places and its pairs:
 // {"key", "subject", "cause", "line", "shape", "pairs", "intersecting", "signatures", "lanes": [id],
 //  "settled": [yes, of], "strata": {id: kept pairs}, "margins": {bucket: pairs}, "places": [in summary["signatures"]],
 //  "simplest": {"case", "pair", "from", "lanes": [id], "verdicts": {id: verdict}, "sentences": [text]},
 //  "worst": {"case", "pair", "from", "margin_ulps"}}
-// `pairs` counts the pairs of its signatures. One pair represents each signature: the minimised one, or else the first
-// kept one. `intersecting` counts the pairs that intersect; their wrong verdicts are false negatives. The simplest pair
-// shows the commoner error if possible, and every lane that is wrong on it belongs to the kind if possible. The worst
-// pair has the largest margin among the examined kept pairs of the kind (at most kMostLookedAt). Returns: the kinds,
-// most frequent first, ties by key; nothing once `stop`, which is called from time to time, returns true.
+// `pairs` counts the pairs of its signatures. One pair represents each signature: the minimised pair, or else the first
+// kept pair. `intersecting` counts the pairs that intersect; their wrong verdicts are false negatives. The simplest
+// pair shows the commoner error if possible, and every lane that is wrong on it belongs to the kind if possible. The
+// worst pair has the largest margin among the examined kept pairs of the kind (at most kMostLookedAt). Returns: the
+// kinds, most frequent first, ties by key; nothing once `stop`, which is called from time to time, returns true.
 // Deterministic for any number of threads. Throws: FormatError; std::runtime_error if a device and its twin differ.
 inline constexpr std::size_t kMostLookedAt = 40;
 Json find_kinds(
@@ -76,7 +77,7 @@ Json kinds_of(
     const std::function<bool()>& stop = [] { return false; });
 void write_kinds(const std::filesystem::path& directory, const SelectedLanes& under_test, const Json& kinds);
 
-// How many of the summary's signatures belong to no kind, because their lanes were not examined, run only on a device,
+// The number of the summary's signatures that belong to no kind. Their lanes were not examined, run only on a device,
 // or are foreign code that did not fail again.
 std::size_t signatures_without_kind(const Json& summary, const Json& kinds);
 

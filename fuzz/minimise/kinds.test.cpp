@@ -76,7 +76,7 @@ TEST_F(Kinds, EverySignatureHasOneAndPairsAddUp) {
   EXPECT_EQ(places.size(), summary_["signatures"].size());
 }
 
-// A kind's key is true of its pairs: each named lane is wrong on them, for that cause and at that line.
+// A kind's key describes its pairs: each named lane is wrong on them, for the key's cause and at the key's line.
 TEST_F(Kinds, TheirPairsAreOfTheKind) {
   for (const Json& kind : kinds_) {
     for (const char* which : {"simplest", "worst"}) {
@@ -134,7 +134,7 @@ TEST_F(Kinds, StoredOnesAreWhole) {
   fs::remove(directory_ / "failures.json");
 }
 
-// Everything that follows from the summary and the cases is compared with them.
+// All fields that follow from the summary and the cases are compared with them.
 TEST_F(Kinds, StoredOnesAgreeWithTheCampaign) {
   const fs::path file = directory_ / "failures.json";
   write_kinds(directory_, under_test_, kinds_);

@@ -53,7 +53,7 @@ Case read_case(const fs::path& directory, const Json& row) {
          {},
          corpus::read_pairs(case_file(directory, row), PairTypes::both)};
   if (c.entries.empty()) throw wrong_cases(directory, row, "it has no case");
-  for (corpus::Entry& entry : c.entries) entry.written.clear();  // saves memory
+  for (corpus::Entry& entry : c.entries) entry.written.clear();  // to save memory
   const auto signature = analysis::parse_signature(c.key),
              of_first = analysis::parse_signature(corpus::text_of(c.entries.front(), "signature"));
   if (!signature || !of_first) throw wrong_cases(directory, row, "its first line has another signature");
@@ -66,7 +66,7 @@ Case read_case(const fs::path& directory, const Json& row) {
 struct Known {
   std::vector<Case> cases;          // by index in the summary
   std::set<std::string> lanes;      // lanes that were examined
-  std::map<std::string, bool> own;  // lanes that always have a reason when they are wrong; whether it is audited
+  std::map<std::string, bool> own;  // lanes that have a reason whenever they are wrong; true if it is audited
 };
 
 Known known_of(const fs::path& directory, const Json& summary, const Json& lanes) {

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kBlockPairs = 64;  // one word of verdicts
 
-constexpr int kMostLate = 3;  // timeouts after which a case ends
+constexpr int kMostLate = 3;  // after this many timeouts a case ends
 
 // Returns those of the pairs (at most 64) that get the failure's verdict from every lane. Wrong lanes decide first,
 // because they leave the fewest pairs to the others. late: increased by the number of timeouts of foreign code.
@@ -93,7 +93,7 @@ std::optional<BasicPair<Real>> repeated(const BasicPair<Real>& before, const Bas
     if (!exponent) exponent = apart;
   }
   const bool scaled = exponent && *exponent != 0;
-  if (scaled && times > (std::is_same_v<Real, float> ? 300 : 2200)) return {};  // no exponent goes further
+  if (scaled && times > (std::is_same_v<Real, float> ? 300 : 2200)) return {};  // no exponent is larger
   BasicPair<Real> result = before;
   for (int i = 0; i < kCoordinates; ++i) {
     if (to[i] == from[i]) continue;
@@ -281,9 +281,9 @@ struct Walk {
     result.reason.in_range = in_range(failure, way.back());
   }
 
-  // Goes down without computing causes, which are expensive. If the end lacks the cause, goes back, goes down through
-  // pairs that have it, and then goes down without causes again. Repeats this until nothing changes, so that minimising
-  // the result again would change nothing.
+  // First simplifies the pair without computing causes, because they are expensive. If the result lacks the cause, goes
+  // back to a pair with the cause and simplifies it, checking the cause of each step. Then simplifies without computing
+  // causes again. Repeats this until nothing changes, so that minimising the result again would change nothing.
   void run() {
     go_down();
     while (!ends_with_cause()) {

@@ -18,8 +18,8 @@ namespace graze::fuzz {
 // One algorithm's failure on a pair: the truth, the nesting, and the verdict of each lane. Another pair fails alike if
 // all these are the same.
 struct Failure {
-  // From the exact decision in core/exact/exact.h; the oracle confirms the results (see confirm). Of the margin it has
-  // only the sign, because keeping the size would force the coordinates to keep many digits.
+  // It comes from the exact decision in core/exact/exact.h; the oracle confirms the results (see confirm). It has only
+  // the sign of the margin, because keeping the margin's size would force the coordinates to keep many digits.
   Relation truth;
   Nesting nesting;
   std::vector<const Lane*> lanes;    // the algorithm's lanes among the lanes under test
@@ -32,12 +32,12 @@ struct Failure {
   bool has_shape_of(const BasicPair<Real>& pair) const;
 
   // The first lane that is wrong on the pair; lanes that their convention excuses do not count.   Requires: there is
-  // one.
+  // such a lane.
   const Lane& first_wrong(const AnyPair& pair) const;
 };
 
 // The failures of a pair, one for each algorithm under test that is wrong on it. A pair with a coordinate that is not
-// finite has none.   Throws: OracleMismatch; std::runtime_error if a lane's device and twin differ.
+// finite has no failures.   Throws: OracleMismatch; std::runtime_error if a lane's device and twin differ.
 std::vector<Failure> failures_of(const SelectedLanes& under_test, const AnyPair& pair);
 
 bool fails_alike(const Failure& failure, const AnyPair& pair);
@@ -46,10 +46,11 @@ bool fails_alike(const Failure& failure, const AnyPair& pair);
 analysis::Signature signature_of(const Failure& failure, const AnyPair& pair);
 
 // Why a failure happens. Its lanes may be wrong for different reasons; only the reason of the first wrong lane in table
-// order counts. A pair fails for the same reason if the cause is the same. If all results of the lane's run were within
-// the exponents' range, they must stay so; otherwise a rounding error would shrink to numbers of 1e-30. For foreign
-// code the first pair's cause may be a guess (rounding or logic, not settled). Then a simpler pair may settle the
-// cause, or show that the order matters instead of rounding, settled or not. What it shows becomes the cause.
+// order counts. A pair fails for the same reason if the cause is the same. If all results of the lane's run are within
+// the exponents' range, those of the minimised pair must be too. Otherwise a rounding error would shrink to numbers of
+// 1e-30. For foreign code the first pair's cause may be a guess (rounding or logic, not settled). Then a simpler pair
+// may settle the cause, or show that the order matters and not rounding, even if that is not settled. The cause that
+// the simpler pair shows replaces the guess.
 struct Reason {
   analysis::Cause cause;
   bool in_range;  // no result of the lane's source, run without contraction, leaves the exponents' range
@@ -68,15 +69,15 @@ inline constexpr std::size_t kLeastMoved = 40 * kMovedPerCause;  // reserved for
 // Each crash of foreign code costs a new process.
 inline constexpr std::size_t kMostMovedCrashing = 100'000;
 
-// Whether the failure can be shrunk. Timeouts cannot, because each verdict takes the whole time limit, and neither can
-// unstable verdicts.
+// Whether the failure can be shrunk. A timeout cannot be shrunk, because each verdict takes the whole time limit. An
+// unstable verdict cannot be shrunk either.
 bool can_shrink(const Failure& failure);
 
 struct Minimised {
   AnyPair pair;                  // fails alike and for the same reason
-  bool one_minimal = false;      // no single move makes it simpler and keeps these; else the limit ended the search
-  std::size_t single_moves = 0;  // if minimal: how many moves to a simpler pair were tried on it in vain
-  std::size_t moved = 0;         // pairs that moves tried on the way, causes included
+  bool one_minimal = false;      // no single move makes it simpler and keeps these; false: the limit came first
+  std::size_t single_moves = 0;  // if one_minimal: the number of moves from the pair that were tried in vain
+  std::size_t moved = 0;         // pairs that moves tried; each search for a cause adds kMovedPerCause
   Reason reason;                 // the pair's reason; its cause is that of the first pair
   AnyPair worst;                 // the pair with the largest margin in ulps on the way, including the first pair
   double worst_ulps = 0;         // that margin, of either sign; the worst pair's cause may be different
@@ -84,11 +85,11 @@ struct Minimised {
 
 // Repeats rounds over all kinds of moves until a round changes nothing. From each kind it takes the simplest pair that
 // fails alike. A move that helped is repeated 2, 4, 8, … times as far while the pair gets simpler, and then bisected.
-// The cause is expensive, so it is checked at the end. If it was lost, a bisection finds the step that lost it; from
-// there on every pair's cause is checked. known: earlier results for this failure; if the search meets one, it returns
-// that result. most: replaces most_moved.
+// The cause is expensive, so it is checked at the end. If the cause was lost, a bisection finds the step that lost it.
+// From there on, every pair's cause is checked. known: earlier results for this failure; if the search meets one, it
+// returns that result. most: replaces most_moved.
 // Requires: fails_alike(failure, pair), most > kLeastMoved.   Throws: OracleMismatch.
-std::size_t most_moved(const Failure& failure);  // kMostMoved, or kMostMovedCrashing
+std::size_t most_moved(const Failure& failure);  // returns kMostMoved or kMostMovedCrashing
 Minimised minimise(const Failure& failure, const AnyPair& pair, std::span<const Minimised> known = {},
                    std::optional<std::size_t> most = {});
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the minimiser promises: a total order, the same failure, nothing simpler one move away, the same bytes again.
+// Tests what the minimiser promises: a total order, the same failure, no simpler pair one move away, and the same bytes
+// each time.
 #include "fuzz/minimise/minimise.h"
 
 #include <gtest/gtest.h>
@@ -184,14 +185,14 @@ TEST(Simplicity, IsThatOfTheSameNumbersInDoubles) {
       of_floats += moved_floats.size();
     }
   }
-  EXPECT_GT(reached, of_floats / 2);  // the other moves round to float32
+  EXPECT_GT(reached, of_floats / 2);  // the other moves of floats round to float32
   EXPECT_LT(reached, of_floats);
 }
 
 class MinimiseStratum : public testing::TestWithParam<strata::StratumInfo> {};
 
-// The oracle confirms the same failure, the pair is at least as simple, no move of any kind improves it, and minimising
-// it again changes nothing.
+// The oracle confirms the same failure, and the pair is at least as simple. No move of any kind improves it, and
+// minimising it again changes nothing.
 TEST_P(MinimiseStratum, MinimisesToAOneMinimalPairThatFailsAlike) {
   const std::vector<Case> cases = cases_of(GetParam().stratum, 4);
   ASSERT_FALSE(cases.empty());
@@ -254,7 +255,7 @@ const SelectedLanes& under_test_of_doubles() {
   return all;
 }
 
-// The same promises for pairs of doubles of every stratum, which stay pairs of doubles.
+// Tests the same promises on pairs of doubles of every stratum. The results are pairs of doubles too.
 TEST(MinimiseDoubles, MinimisesToAOneMinimalPairThatFailsAlike) {
   std::map<analysis::Cause, int> causes;
   int minimal = 0, all = 0;
@@ -298,7 +299,7 @@ TEST(MinimiseDoubles, MinimisesToAOneMinimalPairThatFailsAlike) {
 }
 
 TEST(Minimise, ShrinksWhatFailsOnlyAtTheEndsOfTheRange) {
-  // A crossing pair at very small and very large scales, where products underflow or overflow in float32.
+  // Scales a crossing pair to very small and very large sizes, at which products underflow or overflow in float32.
   for (const float scale : {0x1p-149f, 1e-30f, 1e37f}) {
     Pair pair = pair_of({-1, -1, 0, 3, -1, 0, -1, 3, 0, 0, 0, -1, 0, 0, 1, 1, 1, 2});
     for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] *= scale;
@@ -334,7 +335,7 @@ TEST(Minimise, EndsWithinItsLimit) {
       const Minimised whole = minimise(c.failure, c.pair);
       for (std::size_t most = kLeastMoved + 1; most < kLeastMoved + 60'000; most = most + 15'000) {
         const Minimised part = minimise(c.failure, c.pair, {}, most);
-        EXPECT_LE(part.moved, most + 2'000);  // one kind of moves may go beyond the limit
+        EXPECT_LE(part.moved, most + 2'000);  // the moves of one kind may exceed the limit
         EXPECT_LE(simplicity(part.pair), simplicity(c.pair));
         EXPECT_LE(simplicity(whole.pair), simplicity(part.pair));
         EXPECT_TRUE(fails_for_reason(c.failure, before, part.pair));

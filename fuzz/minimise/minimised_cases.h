@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Minimised cases in files. A file's cases stay unchanged. Before them come their minimised result (kind=minimised) and
-// the worst pair found on the way (kind=worst).
+// Minimised cases in files. The cases in a file are not changed. Before them come their minimised result
+// (kind=minimised) and the worst pair found on the way (kind=worst).
 #pragma once
 
 #include <filesystem>
@@ -22,8 +22,8 @@ struct MinimisedCase {
   AnyPair original;
 };
 
-// Like read_cases. Also checks that the lanes under test that ran in the campaign, except foreign code, give the
-// verdicts that each pair's signature records. spec: the campaign's.   Throws: what read_cases throws.
+// Like read_cases. Also checks verdicts: each lane under test that ran in the campaign must give the verdict that the
+// pair's signature records. Foreign code is not checked. spec: the campaign's.   Throws: what read_cases throws.
 std::vector<corpus::Entry> checked_cases(const SelectedLanes& under_test, const Json& spec,
                                          const std::filesystem::path& directory, const Json& row);
 
@@ -33,7 +33,7 @@ bool is_minimised(const corpus::Entry& entry);
 // All cases that share a recorded signature, its algorithm, and the first case's cause get one result: the simplest and
 // the worst of their pairs. Cases with another cause are skipped. Cases without a recorded signature get one result for
 // each algorithm that is wrong. Minimised entries count as cases only if there are no others. Each result is confirmed.
-// Returns: the results; none for cases on which no lane under test is wrong, and none at all once `stop`, which is
+// Returns: the results; cases on which no lane under test is wrong have none. Returns no results if `stop`, which is
 // called before each case, returns true.
 // Throws: OracleMismatch, std::runtime_error.
 std::vector<MinimisedCase> minimise_cases(

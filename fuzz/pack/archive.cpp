@@ -28,7 +28,7 @@ constexpr std::size_t kMostFiles = 100'000, kLongestName = 1000, kLongestPart = 
 constexpr std::string_view kMagic{"SQLite format 3\0", 16};
 constexpr std::size_t kApplicationAt = 68;  // in the file's first 100 bytes; big-endian
 
-// What is wrong with an archive, without the archive's name.
+// A defect of an archive. The message does not name the archive.
 struct BadArchive : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -107,7 +107,7 @@ std::string archive_of(std::vector<PackedFile> files) {
   for (const PackedFile& file : files) {
     if (!may_be_packed(file.name))
       throw std::runtime_error(cannot("pack", file.name, "a file in a pack cannot have this name; rename it"));
-    constexpr std::size_t kMostBytes = 1'000'000'000;  // SQLite's limit of a value
+    constexpr std::size_t kMostBytes = 1'000'000'000;  // SQLite's limit for one value
     if (file.bytes.size() > kMostBytes)
       throw std::runtime_error(cannot("pack", file.name, "it has more than 10^9 bytes"));
     put.bind(1, file.name);

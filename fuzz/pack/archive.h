@@ -10,12 +10,12 @@ namespace graze::fuzz {
 
 struct PackedFile {
   std::string name;         // "campaign/summary.json": relative, without "." and ".."
-  bool is_program = false;  // is executable
+  bool is_program = false;  // whether the file is executable
   std::string bytes;
 };
 
-// Whether an archive may hold a file of this name: the name is printable, and stays within the folder to which the
-// archive is unpacked, whatever that folder holds.
+// Whether an archive may hold a file of this name. The name must be printable and lead to a place in the folder to
+// which the archive is unpacked, whatever that folder holds.
 bool may_be_packed(std::string_view name);
 
 // The archive of the files; the same files give the same bytes.   Requires: names that may be packed, each once.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One file with a campaign and everything needed to run it again: pack.json, the results in campaign/, and the
-// subjects' sources, the meshes and the scene in files/. docs/formats.md describes pack.json.
+// One file with a campaign and everything needed to run it again. It has pack.json, the results in campaign/, and the
+// subjects' sources, meshes and the scene in files/. docs/formats.md describes pack.json.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Damaged and hostile archives: each is refused in one line, and nothing is written outside a new folder.
+// Tests damaged and hostile archives. Each is refused with an error of one line, and nothing is written outside a new
+// folder.
 #include "fuzz/pack/pack.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -46,7 +47,7 @@ class PackTest : public testing::Test {
     }
   }
 
-  // The archive after these SQL statements.
+  // The archive's bytes after these SQL statements ran on it.
   std::string edited(const std::string& bytes, const std::string& sql) const {
     const fs::path file = root_ / "edited.sqlar";
     write_whole(file, bytes);
@@ -113,7 +114,7 @@ TEST_F(PackTest, WhatIsNoPlainFileIsRefused) {
       "UPDATE sqlar SET data = 7 WHERE name = 'files/empty'",
       "UPDATE sqlar SET name = NULL WHERE name = 'files/empty'",
       "UPDATE sqlar SET name = x'66696c6573' WHERE name = 'files/empty'",
-      "INSERT INTO sqlar VALUES('files/run.sh/inside', 33188, 0, 0, x'')",  // a file that is a folder
+      "INSERT INTO sqlar VALUES('files/run.sh/inside', 33188, 0, 0, x'')",  // a file that is also a folder
       "CREATE TABLE more(x)",
       "CREATE TRIGGER t AFTER INSERT ON sqlar BEGIN DELETE FROM sqlar; END",
       "CREATE VIEW v AS SELECT * FROM sqlar",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The processes that `mpirun` started together, as the rest of Graze sees them. Only mpi.cpp includes MPI. It is a
-// separate library beside the program, and is loaded only under mpirun, so nothing changes without MPI.
+// The interface to the processes that `mpirun` started together. Only mpi.cpp includes MPI. It is a separate library
+// beside the program, and is loaded only under mpirun, so nothing changes without MPI.
 #pragma once
 
 #include <cstdint>

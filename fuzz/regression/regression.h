@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The regression corpus: known failures with their current states, one case for each signature, in one file of pairs.
-// Nothing in it depends on the time. The same failures in the same order give the same bytes.
+// The corpus does not depend on the time. The same failures in the same order give the same bytes.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@
 namespace graze::fuzz {
 
 // failing: a lane of the signature's algorithm is wrong. fixed: all lanes that were wrong are right. flaky: a verdict
-// differed between replays, or between a device and its twin. A flaky case stays flaky, because later replays that
+// differed between replays, or between a device and its twin. A flaky case remains flaky, because later replays that
 // agree prove nothing.
 enum class CaseState { failing, fixed, flaky };
 std::string_view name(CaseState state);
@@ -30,7 +30,7 @@ std::string_view name(CaseState state);
 using Marks = std::map<std::string, char>;
 
 struct RegressionCase {
-  std::string name;  // a unique word
+  std::string name;  // a word that no other case has
   AnyPair pair;
   std::string truth, contact;
   CaseState state = CaseState::failing;
@@ -40,7 +40,7 @@ struct RegressionCase {
   std::vector<std::pair<std::string, std::string>> other = {};  // other fields of the original entry
 };
 
-// Those fields of an entry that a case has no members for.
+// The fields of an entry for which a case has no members.
 std::vector<std::pair<std::string, std::string>> other_fields(const corpus::Entry& entry);
 
 // Cases by the signature with which they were first seen.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The regression corpus, with lanes that are wrong on request: the changes that verify reports, and a case's states.
+// Tests the regression corpus with lanes that are wrong on request: the changes that verify reports, and the states of
+// a case.
 #include "fuzz/regression/regression.h"
 
 #include <gtest/gtest.h>
@@ -20,11 +21,11 @@ constexpr Pair kTouching{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {1, 2, 4
 constexpr Pair kShifted{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{2, 1, 0}, {2, 2, 4}, {3, 1, 4}}};
 const std::string kSignature = "point/22/skew/0/moller_1997:-f32/cpu";
 
-// All lanes. Those in `wrong` say disjoint, which is wrong on these pairs; the others are right.
+// All lanes. The lanes in `wrong` give the verdict disjoint, which is wrong on these pairs. The other lanes are right.
 struct Liars {
   std::vector<const Lane*> lanes;
   std::set<std::string> wrong{"moller_1997/f32/cpu"};
-  std::set<std::string> alternating;  // wrong every other time
+  std::set<std::string> alternating;  // lanes that are wrong every other time
   std::set<std::string> apart;
   int calls = 0;
 
@@ -130,7 +131,7 @@ TEST_F(Regression, ASignatureIsStoredOnceAndCounted) {
   EXPECT_EQ(only().count, 12u);
   EXPECT_EQ(only().first, "here; campaign 1");
   EXPECT_EQ(only().last, "there; campaign 2");
-  EXPECT_EQ(only().pair.floats->b[0].x, 1);  // the first pair stays
+  EXPECT_EQ(only().pair.floats->b[0].x, 1);  // the first pair is kept
   EXPECT_EQ(add({kSignature, {kShifted}, 5, "there; campaign 2"}), Added::known);
   EXPECT_EQ(only().count, 12u);
 }
@@ -153,7 +154,7 @@ TEST_F(Regression, EveryLaneIsCompared) {
 TEST_F(Regression, AFailingCaseIsFixedAndFailsAgain) {
   liars.wrong.clear();
   EXPECT_EQ(changes(), (Texts{"moller_1997/f32/cpu: was disjoint (wrong), is intersects (right)", "failing -> fixed"}));
-  liars.wrong = {"moller_1997/f64/cuda-fma"};  // any lane of its algorithm
+  liars.wrong = {"moller_1997/f64/cuda-fma"};  // any lane of the case's algorithm may be wrong
   EXPECT_EQ(changes(),
             (Texts{"moller_1997/f64/cuda-fma: was intersects (right), is disjoint (wrong)", "fixed -> failing"}));
 }

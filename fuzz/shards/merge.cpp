@@ -57,7 +57,7 @@ std::string named(const StoreSpec& store) {
   return store.directory.string() + (store.shard.whole() ? "" : ", shard " + store.shard.name());
 }
 
-// A folder for a missing shard, beside the others: a new one, or one where that shard was started.
+// The folder for a missing shard, beside the others. It is new, or that shard was started in it.
 fs::path place_for(const Shard& shard, const StoreSpec& beside, const fs::path& out) {
   const auto fits = [&](const fs::path& place) {
     if (place.lexically_normal() == out.lexically_normal()) return false;
@@ -122,7 +122,7 @@ void expect_no_gaps(const std::vector<StoreSpec>& stores, const Sums& sums, cons
                         command));
 }
 
-// Throws: DamagedStore if the database differs from the one that the finished run sealed.
+// Throws: DamagedStore if the database has changed since the finished run sealed it.
 void expect_sealed(const StoreSpec& store) {
   const Json status = read_status(store.directory);
   if (status.is_null() || status["state"] != "done" || !status.contains("hash")) return;

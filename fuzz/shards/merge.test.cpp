@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Merging gives the bytes of one run, for any number of shards, executors and order.
+// Tests that merging gives the bytes of one run, for any number, executors and order of the shards.
 #include "fuzz/shards/merge.h"
 
 #include <fmt/format.h>
@@ -72,7 +72,7 @@ TEST_F(MergeTest, AnyNumberOfShardsInAnyOrderLeavesTheBytesOfTheWhole) {
   const Json whole = run(campaign("whole"));
   EXPECT_GT(whole["signatures"].size(), 20u);
   std::mt19937 random(1);
-  // A shard leaves one row for each source, however many batches it ran.
+  // A shard's store has one row for each source, however many batches the shard ran.
   const Campaign rows = campaign("rows", {2, 3});
   EXPECT_GT(run_in_parts(rows), 1);
   EXPECT_EQ(SQLite::Database(database("rows").string()).execAndGet("SELECT count(*) FROM batch").getInt64(), 3);
@@ -84,7 +84,7 @@ TEST_F(MergeTest, AnyNumberOfShardsInAnyOrderLeavesTheBytesOfTheWhole) {
     EXPECT_TRUE(outcome.complete);
     EXPECT_EQ(outcome.summary.dump(), whole.dump()) << of;
     expect_same_bytes("whole", name);
-    // The store is a finished campaign's, so nothing is judged again.
+    // The store belongs to a finished campaign, so nothing is judged again.
     Campaign again = campaign(name);
     std::atomic<bool> stop{false};
     EXPECT_TRUE(run_campaign(again, stop, [](const Progress&) { ADD_FAILURE() << "a batch"; }).complete);
@@ -99,7 +99,7 @@ TEST_F(MergeTest, MergesOfMergesAreTheSame) {
   merge({{of7[6], root_ / "odd"}, root_ / "more", true});
   merge({{of7[2], root_ / "more", of7[0], of7[4]}, root_ / "all", false});
   expect_same_bytes("whole", "all");
-  // Half from one division, half from another: 1/2 ends where 3/4 begins.
+  // One half comes from a division into two shards, the other from a division into four: 1/2 ends where 3/4 begins.
   std::vector<fs::path> mixed{of2[0]};
   for (const Shard& shard : {Shard{3, 4}, Shard{4, 4}}) {
     const Campaign c = campaign("quarter" + std::to_string(shard.number), shard);
@@ -220,8 +220,8 @@ TEST_F(MergeTest, WhatIsWrongGetsOneLineAndLeavesNothing) {
   EXPECT_EQ(refusal(parts), "");
 }
 
-// The command that runs a part of a campaign again requests the pairs that the user requested, not counting those of
-// the mesh.
+// The command that runs a part of a campaign again requests as many pairs as the user did. The mesh's pairs do not
+// count.
 TEST_F(MergeTest, CommandsNameTheMeshAndThePairsBesideIt) {
   fs::create_directories(root_);
   const std::string file = (root_ / "mesh.off").string();
@@ -252,7 +252,7 @@ TEST_F(MergeTest, CommandsAskForTheLanesThatWereLeftOutToo) {
   EXPECT_EQ(command_of(spec, {}, "o"),
             "graze fuzz --pairs 9 --seed 3 --strata thesis --lanes "
             "'moller_1997/f32/cuda-*,exact/f32/cpu' --executor twin --out o");
-  // Without patterns, all lanes that run here are requested, and no others.
+  // Without patterns, the user requested exactly the lanes that run here.
   EXPECT_TRUE(select_lanes({}, Executor::twin).left_out.empty());
   EXPECT_TRUE(left_out_json(select_lanes({"moller_1997/f32/cuda-*fma"}, Executor::twin)).is_null());
 }

@@ -20,7 +20,6 @@
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/sealed.h"
 #include "reports/discrepancy.h"
-#include "reports/discrepancy_answer.h"
 #include "reports/discrepancy_page.h"
 #include "reports/recorded_code.h"
 #include "reports/verdicts_apart.h"

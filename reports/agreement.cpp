@@ -26,9 +26,8 @@ std::string under(const std::string& policy) { return policy.empty() ? "without 
 
 // "302 of {} (1.51 %)"
 std::string differing(const Agreement& a, const std::string& pairs) {
-  const double rate = a.pairs == 0 ? 0 : static_cast<double>(a.differing) / static_cast<double>(a.pairs);
   return fmt::format("{} of {}{}", grouped(a.differing), pairs,
-                     a.differing == 0 ? "" : fmt::format(" ({})", rate_words(rate)));
+                     a.differing == 0 ? "" : fmt::format(" ({})", rate_words(a.differing, a.pairs)));
 }
 
 const std::string kSamePairs = "the same pairs";

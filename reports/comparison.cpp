@@ -224,15 +224,11 @@ std::string list(const std::set<std::string>& l, const std::set<std::string>& r)
 // "Not compared: …" for lanes that only one campaign has; empty if there are none.
 std::string one_sided_lanes(const Json& before, const Json& after) {
   const std::set<std::string> l = ids_of(before.at("lanes")), r = ids_of(after.at("lanes"));
+  std::vector<std::string> lanes;
+  std::set_symmetric_difference(l.begin(), l.end(), r.begin(), r.end(), std::back_inserter(lanes));
+  if (lanes.empty()) return "";
   std::set<std::string> subjects;
-  const auto add = [&](const std::set<std::string>& some, const std::set<std::string>& others) {
-    for (const std::string& id : some) {
-      if (!others.contains(id)) subjects.insert(id.substr(0, id.find('/')));
-    }
-  };
-  add(l, r);
-  add(r, l);
-  if (subjects.empty()) return "";
+  for (const std::string& id : lanes) subjects.insert(id.substr(0, id.find('/')));
   return fmt::format(
       "Not compared: lanes of {}, which only one campaign has; two versions of one code are compared if "
       "they have the same name.",

@@ -24,6 +24,8 @@ constexpr const char* kAgain = "measure again on an idle machine";
 
 bool is_noisy(const analysis::Cost& cost) { return cost.high - cost.low > kNoisy * cost.middle; }
 
+bool is_cheaper(const analysis::Cost& cost, const analysis::Cost& other) { return cost.high < other.low; }
+
 std::string cost_words(const analysis::Cost& cost) {
   return fmt::format("{} ns ({} to {}{})", nanoseconds(cost.middle), nanoseconds(cost.low), nanoseconds(cost.high),
                      is_noisy(cost) ? "; noisy" : "");

@@ -15,6 +15,9 @@ namespace graze::reports {
 // its clock changed. Two measurements of one lane may then differ by more than their quartiles.
 bool is_noisy(const analysis::Cost& cost);
 
+// Whether the cost is lower and the spreads do not overlap.
+bool is_cheaper(const analysis::Cost& cost, const analysis::Cost& other);
+
 // "8.5 ns (8.4 to 8.9)", "284 ns (205 to 1,289; noisy)", "0.0204 ns (0.0203 to 0.0204)"
 std::string cost_words(const analysis::Cost& cost);
 

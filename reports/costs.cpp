@@ -5,7 +5,6 @@
 
 #include "core/text.h"
 #include "fuzz/campaign/lane_costs.h"
-#include "fuzz/campaign/result_files.h"
 #include "reports/cost_words.h"
 #include "reports/findings.h"
 #include "reports/terminal.h"
@@ -20,12 +19,12 @@ std::optional<Cost> Costs::of(std::size_t lane, const std::vector<std::size_t>& 
     const std::optional<Cost>& one = of_stratum[lane][s];
     if (!one) return std::nullopt;
     const auto pairs = static_cast<double>(one->pairs);
-    sum = {sum.pairs + one->pairs, sum.low + pairs * one->low, sum.middle + pairs * one->middle,
-           sum.high + pairs * one->high};
+    sum = {{sum.low + pairs * one->low, sum.middle + pairs * one->middle, sum.high + pairs * one->high},
+           sum.pairs + one->pairs};
   }
   if (sum.pairs == 0) return std::nullopt;
   const auto pairs = static_cast<double>(sum.pairs);
-  return Cost{sum.pairs, sum.low / pairs, sum.middle / pairs, sum.high / pairs};
+  return Cost{{sum.low / pairs, sum.middle / pairs, sum.high / pairs}, sum.pairs};
 }
 
 std::optional<Costs> costs_of(const Json& runs, const CampaignCounts& counts) {
@@ -47,15 +46,11 @@ std::optional<Costs> costs_of(const Json& runs, const CampaignCounts& counts) {
       for (std::size_t s = 0; s < counts.strata.size(); ++s) {
         if (!strata.contains(counts.strata[s].id)) continue;
         const Json& cost = strata[counts.strata[s].id];
-        row[s] = Cost{cost.at("pairs"), cost.at("low"), cost.at("middle"), cost.at("high")};
+        row[s] = Cost{{cost.at("low"), cost.at("middle"), cost.at("high")}, cost.at("pairs")};
       }
     }
   }
   return costs;
-}
-
-std::optional<Costs> read_costs(const std::filesystem::path& directory, const CampaignCounts& counts) {
-  return costs_of(fuzz::read_timings(directory), counts);
 }
 
 Json to_json(const Costs& costs, const CampaignCounts& counts, const Json& kinds) {

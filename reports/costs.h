@@ -3,18 +3,16 @@
 // report does not depend on the machine.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 
+#include "analysis/pareto.h"
 #include "reports/counts.h"
 
 namespace graze::reports {
 
-// Nanoseconds a pair on one core: the median of the passes, and the quartiles as their spread.
-struct Cost {
+// The cost of a lane on some pairs.
+struct Cost : analysis::Cost {
   std::uint64_t pairs = 0;
-  double low = 0, middle = 0, high = 0;
-  bool below(const Cost& other) const { return high < other.low; }  // cheaper beyond the spread
 };
 
 struct Costs {
@@ -26,9 +24,7 @@ struct Costs {
   std::optional<Cost> of(std::size_t lane, const std::vector<std::size_t>& strata) const;
 };
 
-// Returns nothing if the campaign has no timings of its lanes.   Throws: like costs_of.
-std::optional<Costs> read_costs(const std::filesystem::path& directory, const CampaignCounts& counts);
-
+// Returns nothing if the campaign has no timings of its lanes.   runs: as fuzz::read_timings returns them.
 // Throws: std::runtime_error for impossible costs; Json::exception for JSON of another shape.
 std::optional<Costs> costs_of(const nlohmann::ordered_json& runs, const CampaignCounts& counts);
 

@@ -31,12 +31,6 @@ void add(WrongCounts& counts, const Json& row, const std::map<std::string, std::
 }
 
 void add(StratumCounts& counts, const Json& row, bool in_doubles, const std::map<std::string, std::size_t>& place) {
-  static const std::map<std::string, Bucket> buckets = [] {
-    std::map<std::string, Bucket> all;
-    for (int b = -kBucketMost; b <= kBucketMost; ++b)
-      all[name_of_bucket(static_cast<Bucket>(b))] = static_cast<Bucket>(b);
-    return all;
-  }();
   counts.lanes.resize(place.size());
   counts.pairs += row.at("pairs").get<std::uint64_t>();
   counts.intersects += row.at("intersects").get<std::uint64_t>();
@@ -45,7 +39,8 @@ void add(StratumCounts& counts, const Json& row, bool in_doubles, const std::map
     counts.lanes[place.at(lane)] += {fuzz::counts_of(found), differs.is_null() ? 0 : differs.get<std::uint64_t>(),
                                      found.value("stored", std::uint64_t{0})};
   }
-  for (const auto& [bucket, found] : row.at("margins").items()) add(counts.margins[buckets.at(bucket)], found, place);
+  for (const auto& [bucket, found] : row.at("margins").items())
+    add(counts.margins[buckets_by_name().at(bucket)], found, place);
   if (!row.contains("extremes")) return;
   for (const auto& [axis, cells] : row["extremes"].items()) {
     std::map<int, WrongCounts>& counted = counts.extremes[axis + (in_doubles ? std::string(strata::kInDoubles) : "")];
@@ -54,6 +49,16 @@ void add(StratumCounts& counts, const Json& row, bool in_doubles, const std::map
 }
 
 }  // namespace
+
+const std::map<std::string, Bucket>& buckets_by_name() {
+  static const std::map<std::string, Bucket> buckets = [] {
+    std::map<std::string, Bucket> all;
+    for (int b = -kBucketMost; b <= kBucketMost; ++b)
+      all[name_of_bucket(static_cast<Bucket>(b))] = static_cast<Bucket>(b);
+    return all;
+  }();
+  return buckets;
+}
 
 int CampaignCounts::find(const LaneName& name) const {
   for (std::size_t l = 0; l < lanes.size(); ++l) {

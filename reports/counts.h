@@ -62,6 +62,9 @@ struct CampaignCounts {
   std::vector<std::size_t> drawn() const;  // indices of the strata that have pairs
 };
 
+// All margin buckets by their names in summary.json.
+const std::map<std::string, Bucket>& buckets_by_name();
+
 // Requires: the contents of summary.json.   Throws: Json::exception otherwise.
 CampaignCounts counts_of(const nlohmann::ordered_json& summary);
 

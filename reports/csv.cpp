@@ -42,7 +42,12 @@ void append(std::vector<Json>& cells, const Json& share) {
     cells.push_back(share.is_null() ? Json() : share[key]);
 }
 
-Json lane_id(const Json& report, const Json& row) { return report["lanes"][row["lane"].get<std::size_t>()]["id"]; }
+// The id of the row at this place of a list of the report; null if the place is null.
+Json id_in(const Json& report, const char* list, const Json& place) {
+  return place.is_null() ? place : report[list][place.get<std::size_t>()]["id"];
+}
+
+Json lane_id(const Json& report, const Json& row) { return id_in(report, "lanes", row["lane"]); }
 
 // The group of a stratum; empty for a stratum that this build does not know.
 Json group_id(const Json& report, const Json& stratum) {
@@ -56,7 +61,7 @@ Json group_id(const Json& report, const Json& stratum) {
 std::string rates_csv(const Json& report) {
   Table table("lane,group,stratum,kind,count,of,share,low,high");  // empty group and stratum: all strata together
   for (const Json& row : report["rates"]) {
-    const Json stratum = row["stratum"].is_null() ? Json() : report["strata"][row["stratum"].get<std::size_t>()]["id"];
+    const Json stratum = id_in(report, "strata", row["stratum"]);
     const Json group = stratum.is_null() ? Json() : group_id(report, row["stratum"]);
     for (const char* kind : {"false_positive", "false_negative", "wrong", "differs_from_cpu"}) {
       if (row[kind].is_null()) continue;
@@ -71,8 +76,7 @@ std::string rates_csv(const Json& report) {
   for (const Json& row : report["group_rates"]) {
     for (const char* kind : {"false_positive", "false_negative", "wrong"}) {
       if (!row.contains(kind)) continue;
-      std::vector<Json> cells{lane_id(report, row), report["groups"][row["group"].get<std::size_t>()]["id"], nullptr,
-                              kind};
+      std::vector<Json> cells{lane_id(report, row), id_in(report, "groups", row["group"]), nullptr, kind};
       append(cells, row[kind]);
       table.row(cells);
     }
@@ -99,13 +103,10 @@ std::string margins_csv(const CampaignCounts& counts, bool differs) {
 
 std::string thresholds_csv(const Json& report) {
   Table table("lane,group,stratum,side,exponent,above,bound");  // empty group and stratum: all strata together
-  const auto id_in = [&](const char* list, const Json& place) {
-    return place.is_null() ? place : report[list][place.get<std::size_t>()]["id"];
-  };
   for (const Json& row : report["thresholds"]) {
     for (const char* side : {"disjoint", "intersects"}) {
-      table.row({lane_id(report, row), id_in("groups", row["group"]), id_in("strata", row["stratum"]), side,
-                 row[side]["exponent"], row[side]["above"], row[side]["bound"]});
+      table.row({lane_id(report, row), id_in(report, "groups", row["group"]), id_in(report, "strata", row["stratum"]),
+                 side, row[side]["exponent"], row[side]["above"], row[side]["bound"]});
     }
   }
   return table.text;

@@ -129,8 +129,6 @@ DiscrepancyCounts total(const LanesCompared& lanes, const std::vector<Discrepanc
   return sum;
 }
 
-std::string share_words(std::uint64_t part, std::uint64_t whole) { return rate_words(part_of(part, whole)); }
-
 // The number of differing values in each octave of their distance in ulps, over both values of the question.
 Octaves octaves_of(const DiscrepancyCounts& of, int question, std::size_t values) {
   using namespace value_counts;
@@ -245,12 +243,11 @@ std::string discrepancy_tables(const DiscrepancyResults& results, const Screen& 
       const Octaves octaves = octaves_of(sum, question, values);
       const std::uint64_t second = sum_of(sum, question, values, value_counts::nearer_second),
                           first = sum_of(sum, question, values, value_counts::nearer_first);
-      table.add({questions[q].name, grouped(of(asked)), share_words(of(differs), of(asked)), ulps_of(octaves, 0.5),
+      table.add({questions[q].name, grouped(of(asked)), rate_words(of(differs), of(asked)), ulps_of(octaves, 0.5),
                  ulps_of(octaves, 0.99), ulps_of(octaves, 1),
                  first + second == 0 ? "-" : bare_percent(second, first + second) + " %",
-                 Cell(share_words(of(sign), of(asked)), of(sign) > 0),
-                 Cell(share_words(of(outcome), of(asked)), of(outcome) > 0),
-                 Cell(grouped(of(verdict)), of(verdict) > 0),
+                 Cell(rate_words(of(sign), of(asked)), of(sign) > 0),
+                 Cell(rate_words(of(outcome), of(asked)), of(outcome) > 0), Cell(grouped(of(verdict)), of(verdict) > 0),
                  of(sign) == 0 ? "-" : fmt::format("{:.3g}", largest(sum, q, band_maxima::in_bounds))});
     }
     text += wrapped(
@@ -278,7 +275,7 @@ std::string comparisons_table(const DiscrepancyResults& results, const Screen& s
     std::vector<Cell> row = {lanes.first->id, lanes.second->id, grouped(pairs)};
     for (const int field : {pair_counts::differs, pair_counts::sign, pair_counts::outcome, pair_counts::verdict}) {
       const std::uint64_t count = sum.counts[static_cast<std::size_t>(field)];
-      row.emplace_back(share_words(count, pairs), count > 0);
+      row.emplace_back(rate_words(count, pairs), count > 0);
     }
     table.add(std::move(row));
   }

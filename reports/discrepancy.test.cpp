@@ -7,7 +7,6 @@
 #include <regex>
 
 #include "analysis/tuning.h"
-#include "reports/discrepancy_answer.h"
 #include "reports/discrepancy_page.h"
 #include "reports/possible_counts.h"
 #include "strata/strata.h"

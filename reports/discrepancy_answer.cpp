@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reports/discrepancy_answer.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "analysis/tuning.h"
 #include "core/text.h"
+#include "reports/discrepancy_page.h"
 #include "reports/discrepancy_reading.h"
 #include "reports/findings.h"
 #include "reports/terminal.h"
@@ -46,7 +45,7 @@ std::string shares_sentence(const std::vector<const Json*>& lanes, std::uint64_t
   if (lanes.size() == 1 && same == 0) {
     const Json &total = lanes[0]->at("total"), &distances = total.at("sites").at("plane_distance");
     const std::uint64_t pairs = number_at(total, "pairs");
-    const auto rate = [&](const Json& of, const char* key) { return rate_words(part_of(number_at(of, key), pairs)); };
+    const auto rate = [&](const Json& of, const char* key) { return rate_words(number_at(of, key), pairs); };
     return fmt::format("Some value differs on {} of the pairs, some sign on {}, and the verdict on {}.{}",
                        rate(total, "differs"), rate(total, "sign"), rate(total, "verdict"),
                        number_at(distances, "differs") == 0
@@ -96,8 +95,8 @@ std::string start_sentence(const std::vector<const Json*>& lanes) {
   if (all == 0) return "Where differences start is not known: no pair of lanes has contractions that can be traced.";
   const auto top =
       std::max_element(starts.begin(), starts.end(), [](const auto& l, const auto& r) { return l.second < r.second; });
-  return fmt::format("{} of the {} traced values that differ start to differ at {}.{}",
-                     rate_words(part_of(top->second, all)), grouped(all), top->first,
+  return fmt::format("{} of the {} traced values that differ start to differ at {}.{}", rate_words(top->second, all),
+                     grouped(all), top->first,
                      changed == 0
                          ? " No traced verdict changes."
                          : fmt::format(" Leaving only the products of {} unfused restores {} of the verdicts that "
@@ -117,8 +116,7 @@ std::string nearer_sentence(const std::vector<const Json*>& lanes) {
   return fmt::format(
       "Of {} differing values, the second lane's is nearer to the exact one in {}, the first lane's in {}; {} are "
       "equally near, and for {} the certified bounds cannot decide.",
-      grouped(all), rate_words(part_of(second, all)), rate_words(part_of(first, all)), grouped(equal),
-      grouped(unknown));
+      grouped(all), rate_words(second, all), rate_words(first, all), grouped(equal), grouped(unknown));
 }
 
 // A pair of triangles has up to dozens of comparisons, which are not independent. So the bound counts pairs.

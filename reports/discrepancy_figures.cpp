@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reports/discrepancy_figures.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "reports/discrepancy_page.h"
 #include "reports/discrepancy_reading.h"
 #include "reports/plain_figures.h"
 #include "reports/svg.h"
@@ -135,28 +134,19 @@ constexpr ShareLine kShareLines[] = {
 // Shares of pairs by their place on an axis, on a logarithmic scale. places: counts by log2 of each place's lower end.
 std::string extremes_figure(const std::string& title, const std::string& unit,
                             const std::map<int, const Json*>& places) {
-  constexpr double kLeft = 64, kRight = 880, kTop = 70, kBottom = 350;
-  constexpr int kLeast = -6;  // power of ten at which zero and smaller shares are drawn
+  constexpr double kLeft = 64, kRight = 880;
+  constexpr RateAxis kShares{70, 350, -6};
   const int low = places.begin()->first, high = places.rbegin()->first;
   const auto x_of = [&](int power) { return kLeft + (kRight - kLeft) * (power - low) / std::max(high - low, 1); };
-  const auto y_of = [&](double share) {
-    return kBottom + (kTop - kBottom) * (std::log10(std::max(share, std::pow(10.0, kLeast))) - kLeast) / -kLeast;
-  };
-  std::string svg = svg_begin(html(title)) + svg_text(kLeft, 24, "start", html(title), " font-size=\"15\"");
-  for (int power = kLeast; power <= 0; ++power) {
-    const double y = y_of(std::pow(10.0, power));
-    svg += svg_level(kLeft, kRight, y) + svg_text(kLeft - 8, y + 4, "end",
-                                                  power == 0        ? "all"
-                                                  : power == kLeast ? "none"
-                                                                    : fmt::format("1e{}", power));
-  }
+  std::string svg = svg_begin(html(title)) + svg_text(kLeft, 24, "start", html(title), " font-size=\"15\"") +
+                    kShares.levels(kLeft, kRight, "none");
   double x = kLeft;
   for (std::size_t l = 0; l < std::size(kShareLines); ++l) {
     const auto& [count, label] = kShareLines[l];
     std::string points, marks;
     for (const auto& [power, counts] : places) {
       const std::uint64_t pairs = number_at(*counts, "pairs"), part = number_at(*counts, count);
-      const double y = y_of(part_of(part, pairs));
+      const double y = kShares.y(part_of(part, pairs));
       points += fmt::format("{:.1f},{:.1f} ", x_of(power), y);
       marks += fmt::format(
           "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"><title>2^{}: {} of {}</title></circle>\n",

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 
-#include "reports/discrepancy_answer.h"
-#include "reports/discrepancy_figures.h"
 #include "reports/discrepancy_reading.h"
 #include "reports/findings.h"
 #include "reports/plain_figures.h"
@@ -55,7 +53,7 @@ std::string questions_table(const Json& of) {
     if (number_at(question, "differs") == 0) continue;
     text += "<tr>" + cell(text_at(question, "question"), "name") + cell(grouped(asked));
     for (const char* count : {"differs", "sign", "zero_on_one_side", "outcome"})
-      text += cell(rate_words(part_of(number_at(question, count), asked)));
+      text += cell(rate_words(number_at(question, count), asked));
     text += cell(grouped(number_at(question, "verdict")));
     for (const char* largest : {"largest_in_bounds", "largest_length"}) {
       const double size = question.at(largest);
@@ -77,7 +75,7 @@ std::string shares_row(const std::string& name, const Json& counts) {
   const std::uint64_t pairs = number_at(counts, "pairs");
   std::string row = "<tr>" + cell(name, "name") + cell(grouped(pairs));
   for (const char* count : {"differs", "sign", "outcome", "verdict"})
-    row += cell(rate_words(part_of(number_at(counts, count), pairs)));
+    row += cell(rate_words(number_at(counts, count), pairs));
   return row + "</tr>\n";
 }
 

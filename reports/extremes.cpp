@@ -79,8 +79,7 @@ std::string right_words(std::span<const ErrorsAt> points, int step) {
     return fmt::format("{}not settled: errs on {} of {} at {}, too few to compare with", text, grouped(origin.errors),
                        counted(origin.pairs, "pair"), power(origin.exponent));
   return fmt::format("{}as right as at {} (errs on {}) {}{}", text, power(origin.exponent),
-                     rate_words(share_of(origin.errors, origin.pairs).share), range_words(*range, step),
-                     rest_words(*range, step));
+                     rate_words(origin.errors, origin.pairs), range_words(*range, step), rest_words(*range, step));
 }
 
 void add_right_range(Json& row) {

@@ -18,6 +18,7 @@
 #include "fuzz/sealed.h"
 #include "reports/plain_figures.h"
 #include "reports/snippet.h"
+#include "reports/tables.h"
 #include "reports/ulp_map_picture.h"
 #include "subjects/subjects.h"
 
@@ -26,16 +27,12 @@ namespace graze::reports {
 using fuzz::Json;
 namespace {
 
-// Throws: std::invalid_argument.
-analysis::Signature signature_of(const std::string& key) {
-  const std::optional<analysis::Signature> signature = analysis::parse_signature(key);
-  if (!signature) throw std::invalid_argument("expected the key of a signature, found '" + key + "'");
-  return *signature;
-}
-
+// Throws: std::invalid_argument if the key is not that of a signature.
 Json signature_row(const CampaignCounts& counts, const Json& found) {
   const std::string key = found.at("key");
-  const analysis::Signature signature = signature_of(key);
+  const std::optional<analysis::Signature> parsed = analysis::parse_signature(key);
+  if (!parsed) throw std::invalid_argument("expected the key of a signature, found '" + key + "'");
+  const analysis::Signature& signature = *parsed;
   std::string marks;
   for (const ReportLane& lane : counts.lanes) {
     if (lane.name.subject == signature.subject) marks += signature.mark_of(lane.name.within_subject());
@@ -43,7 +40,7 @@ Json signature_row(const CampaignCounts& counts, const Json& found) {
   Json row = {{"key", key},
               {"algorithm", signature.subject},
               {"count", found.at("count")},
-              {"share", rounded_share(found.at("count"), counts.total.pairs)},
+              {"share", to_json(share_of(found.at("count"), counts.total.pairs)).at("share")},
               {"contact", name(signature.contact)},
               {"dimensions", fmt::format("{}{}", signature.hulls.dimension_a, signature.hulls.dimension_b)},
               {"coplanar", signature.hulls.coplanar},
@@ -116,12 +113,10 @@ Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const
       const SnippetCase found{name, corpus::pair_of(entry), truth, lane.row,
                               verdict_of(row["verdict"].get<std::string>())};
       std::string text = snippet(language, found);
-      if (lane.row->foreign) {
-        rows.push_back({{"label", kSnippetKinds[static_cast<int>(language)]}, {"text", text}});
-        return;
+      if (!lane.row->foreign) {
+        const std::string source = amalgamated_source(kind.at("subject").get<std::string>());
+        if (const std::size_t at = text.find(source); at != text.npos) text.replace(at, source.size(), kSourceMark);
       }
-      const std::string source = amalgamated_source(kind.at("subject").get<std::string>());
-      if (const std::size_t at = text.find(source); at != text.npos) text.replace(at, source.size(), kSourceMark);
       rows.push_back({{"label", kSnippetKinds[static_cast<int>(language)]}, {"text", text}});
       return;
     }
@@ -230,10 +225,6 @@ void say_what_is_missing(Json& missing, const Lacking& lacking, std::size_t card
 }
 
 }  // namespace
-
-double rounded_share(std::uint64_t count, std::uint64_t of) {
-  return std::stod(fmt::format("{:.5g}", static_cast<double>(count) / static_cast<double>(of)));
-}
 
 Json signature_rows(const CampaignCounts& counts, const Json& summary) {
   Json rows = Json::array();

@@ -19,9 +19,6 @@ inline constexpr std::size_t kMostMapBytes = 7 << 18;
 // Placeholder in a card's program for the source of its algorithm, which the report stores once, in `sources`.
 inline constexpr std::string_view kSourceMark = "@SOURCE@";
 
-// The share count / of, rounded as in a signature's row.
-double rounded_share(std::uint64_t count, std::uint64_t of);
-
 // Returns one row for each signature, the most frequent first.
 nlohmann::ordered_json signature_rows(const CampaignCounts& counts, const nlohmann::ordered_json& summary);
 

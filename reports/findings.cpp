@@ -195,6 +195,8 @@ std::string rate_words(double rate, Bound bound) {
   return fmt::format("1 in {}", grouped(static_cast<std::uint64_t>(std::stod(text))));
 }
 
+std::string rate_words(std::uint64_t count, std::uint64_t of) { return rate_words(share_of(count, of).share); }
+
 std::vector<std::string> answer(const CampaignCounts& counts, const Costs* costs, const nlohmann::ordered_json& kinds) {
   if (counts.total.pairs == 0) return {"No pair has been decided yet."};
   const LaneIndices lanes = published(counts);

@@ -24,4 +24,7 @@ enum class Bound { none, lower, upper };
 // lower one.
 std::string rate_words(double rate, Bound bound = Bound::none);
 
+// The rate count / of in words; "0" if `of` is 0.
+std::string rate_words(std::uint64_t count, std::uint64_t of);
+
 }  // namespace graze::reports

@@ -9,6 +9,12 @@ namespace {
 
 std::vector<std::string> answer_of(const Json& summary) { return answer(counts_of(summary), nullptr); }
 
+// Whether some sentence of the answer contains the text.
+bool says(const Json& summary, const std::string& text) {
+  const std::vector<std::string> said = answer_of(summary);
+  return std::any_of(said.begin(), said.end(), [&](const std::string& sentence) { return contains(sentence, text); });
+}
+
 TEST(Answer, OfOneLaneComparesNothing) {
   const auto said = answer_of(summary_of({"moller_1997/f32/cpu"}, {"uniform"}, {3, 2, 0, 0}));
   ASSERT_EQ(said.size(), 6u);
@@ -27,10 +33,7 @@ TEST(Answer, OfOneLaneComparesNothing) {
 TEST(Answer, NamesTheLanesOfAStratumsShare) {
   Json summary = summary_of({"moller_1997/f32/cpu", "exact/f32/cpu"}, {"uniform"}, {});
   summary["strata"]["uniform"]["lanes"]["moller_1997/f32/cpu"]["false_positive"] = 5;
-  bool named = false;
-  for (const std::string& sentence : answer_of(summary))
-    named = named || contains(sentence, "uniform (0.5 % of the published lanes' verdicts wrong");
-  EXPECT_TRUE(named);
+  EXPECT_TRUE(says(summary, "uniform (0.5 % of the published lanes' verdicts wrong"));
 }
 
 TEST(Answer, CallsAPersonsOwnCodeNotPublished) {
@@ -92,23 +95,14 @@ TEST(Answer, WithoutCpuLanesCountsWrongVerdicts) {
 }
 
 TEST(Answer, NamesWhatItLeavesOut) {
-  const auto of_toolchains =
-      answer_of(summary_of({"moller_1997/f32/cpu", "moller_1997/f32/x86-gcc-v3"}, {"near_edge_edge"}, {1, 0, 0, 0}));
-  EXPECT_TRUE(std::any_of(of_toolchains.begin(), of_toolchains.end(), [](const std::string& text) {
-    return contains(text, "the map of the toolchains shows where their verdicts differ");
-  }));
-  const auto of_doubles =
-      answer_of(summary_of({"interval_overlap/f64/cpu", "interval_overlap/f64/cuda-fma"}, {"thesis/f64"}, {}));
-  EXPECT_TRUE(std::any_of(of_doubles.begin(), of_doubles.end(), [](const std::string& text) {
-    return contains(text, "On the 2012 thesis's triangles, in doubles, CPU and GPU agree: none of 1 CUDA lanes");
-  }));
+  EXPECT_TRUE(says(summary_of({"moller_1997/f32/cpu", "moller_1997/f32/x86-gcc-v3"}, {"near_edge_edge"}, {1, 0, 0, 0}),
+                   "the map of the toolchains shows where their verdicts differ"));
+  EXPECT_TRUE(says(summary_of({"interval_overlap/f64/cpu", "interval_overlap/f64/cuda-fma"}, {"thesis/f64"}, {}),
+                   "On the 2012 thesis's triangles, in doubles, CPU and GPU agree: none of 1 CUDA lanes"));
   Json summary = summary_of({"moller_1997/f32/cpu/bound", "separating_axes/f64/cpu"}, {"degenerate"}, {3, 0, 0, 0});
   summary["strata"]["degenerate"]["lanes"]["moller_1997/f32/cpu/bound"] = {
       {"false_positive", 1}, {"false_negative", 0}, {"declined", 1}, {"differs_from_cpu", 0}};
-  const auto declining = answer_of(summary);
-  EXPECT_TRUE(std::any_of(declining.begin(), declining.end(), [](const std::string& text) {
-    return contains(text, "its best lane, moller_1997/f32/cpu/bound, which declines 1)");
-  }));
+  EXPECT_TRUE(says(summary, "its best lane, moller_1997/f32/cpu/bound, which declines 1)"));
 }
 
 TEST(Answer, OfExactLanesOnlyAndOfNothing) {

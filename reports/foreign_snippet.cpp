@@ -11,6 +11,7 @@
 #include "core/plain_file.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
+#include "fuzz/minimise/kinds.h"
 #include "subjects/source_build.h"
 #include "subjects/subjects.h"
 
@@ -99,8 +100,7 @@ std::string hex_line(const AnyPair& pair) {
 // A call through the graze command. A CUDA lane needs it because the test also runs without a device, where only Graze
 // can replay the lane; a toolchain's lane needs it because Graze compiles the source with the toolchain.
 std::string by_graze(const Lane& lane, const AnyPair& pair, const subjects::Opened& opened, std::string_view real) {
-  std::string command = fmt::format("echo '{}{}' | graze check - --json --lanes {}", hex_line(pair),
-                                    pair.floats ? "" : " | coordinates=f64", lane.id);
+  std::string command = fmt::format("echo '{}' | graze check - --json --lanes {}", fuzz::pair_text(pair), lane.id);
   if (opened.kind != "published")
     command += fmt::format(" --subject {} --subject-timeout {}",
                            shell_word(opened.wanted.name + '=' + opened.wanted.what), opened.wanted.timeout);
@@ -136,8 +136,6 @@ std::string by_graze(const Lane& lane, const AnyPair& pair, const subjects::Open
 }
 
 }  // namespace
-
-bool shows_foreign(const Lane& lane) { return lane.foreign; }
 
 ForeignCall kernel_call(const Lane& lane) {
   const subjects::Opened& opened = *subjects::opened(lane.info->id);
@@ -213,7 +211,7 @@ static int decide(const {}*, const {}*) {{
   const std::string function = function_of(opened);
   if (opened.file.extension() == ".c") {
     call.command = fmt::format("cc -std=gnu11 -O2{} -c {} -o subject.o && {} -I{} subject.o{}", flags, shell_word(file),
-                               plain, shell_word((subjects::cache_folder() / "include").string()), end);
+                               plain, shell_word(headers), end);
     if (describes_itself) {
       call.decide = "#include <graze/subject.h>\nextern \"C\" const struct graze_subject graze_subject;\n" +
                     by_description(real, scalar, "&::graze_subject");

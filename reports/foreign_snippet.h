@@ -10,9 +10,6 @@
 
 namespace graze::reports {
 
-// Whether the foreign lane can be shown, which requires that this process opened its subject.
-bool shows_foreign(const Lane& lane);
-
 struct ForeignCall {
   std::string command;   // compiles and runs case.cpp, or case.cu
   std::string decide;    // int decide(const Real* a, const Real* b): above 0 intersects, below 0 declined
@@ -20,11 +17,11 @@ struct ForeignCall {
   std::string function;  // the user's __device__ function for a kernel; then `decide` includes its source
 };
 
-// For a program that nvcc compiles for a device.   Requires: shows_foreign(lane), a CUDA lane.
+// For a program that nvcc compiles for a device.   Requires: a foreign CUDA lane.
 ForeignCall kernel_call(const Lane& lane);
 
 // For a program on the host. A CUDA lane is called through the graze command, which asks a device or the lane's twin.
-// Requires: shows_foreign(lane).
+// Requires: a foreign lane.
 ForeignCall foreign_call(const Lane& lane, const AnyPair& pair, std::string_view compiler, std::string_view libraries);
 
 }  // namespace graze::reports

@@ -15,6 +15,7 @@
 #include "fuzz/files.h"
 #include "fuzz/minimise/kinds.h"
 #include "reports/counts.h"
+#include "reports/plain_figures.h"
 #include "reports/terminal.h"
 
 namespace graze::reports {
@@ -26,20 +27,7 @@ namespace fs = std::filesystem;
 
 std::string in_xml(std::string_view text) {
   std::string escaped;
-  for (const char c : text) {
-    if (c == '\n')
-      escaped += "&#10;";
-    else if (c == '<')
-      escaped += "&lt;";
-    else if (c == '>')
-      escaped += "&gt;";
-    else if (c == '&')
-      escaped += "&amp;";
-    else if (c == '"')
-      escaped += "&quot;";
-    else
-      escaped += printable(std::string_view(&c, 1));
-  }
+  for (const char c : text) escaped += c == '\n' ? "&#10;" : html(printable(std::string_view(&c, 1)));
   return escaped;
 }
 
@@ -58,7 +46,6 @@ struct Kept {
   Simplicity simplicity;  // the same for all pairs of doubles, so the first of these is shown
   std::string pair;
   fs::path file;
-  std::string why;  // the command that explains it; empty if none does
 };
 
 // By lane and stratum; an empty stratum stands for all strata.
@@ -68,16 +55,13 @@ std::map<std::pair<std::string, std::string>, Kept> simplest_of(const fs::path& 
     const auto signature = analysis::parse_signature(row["key"].get<std::string>());
     if (!signature) continue;
     for (const corpus::Entry& entry : fuzz::read_cases(directory, summary["spec"], row)) {
-      const auto stratum = std::find_if(entry.fields.begin(), entry.fields.end(),
-                                        [](const auto& field) { return field.first == "stratum"; });
-      if (stratum == entry.fields.end()) continue;  // a minimised pair, which no stratum drew
-      const fs::path file = fuzz::case_file(directory, row);
+      const std::string* stratum = corpus::field(entry, "stratum");
+      if (!stratum) continue;  // a minimised pair, which no stratum drew
       const AnyPair pair = corpus::pair_of(entry);
-      const Kept kept{simplicity(pair), fuzz::pair_text(pair), file,
-                      "\nWhy: graze explain " + path_word(file.string())};
+      const Kept kept{simplicity(pair), fuzz::pair_text(pair), fuzz::case_file(directory, row)};
       for (const analysis::WrongLane& lane : signature->wrong_lanes) {
         if (lane.mark == '?') continue;  // declined, which is not wrong
-        for (const std::string& of : {stratum->second, std::string()}) {
+        for (const std::string& of : {*stratum, std::string()}) {
           const auto [place, is_new] = simplest.try_emplace({signature->subject + '/' + lane.lane, of}, kept);
           if (!is_new && kept.simplicity < place->second.simplicity) place->second = kept;
         }
@@ -119,8 +103,8 @@ std::vector<JunitCase> junit_of_campaign(const fs::path& directory, const Json& 
       if (kept == simplest.end()) kept = simplest.find({lane, ""});
       test.failure = fmt::format("wrong on {} of {}", grouped(stratum.wrong(l)), counted(stratum.pairs, "pair"));
       if (kept == simplest.end()) continue;
-      test.failure += fmt::format(", such as {}\nAgain: graze repro {}{}", kept->second.pair,
-                                  path_word(kept->second.file.string()), kept->second.why);
+      test.failure += fmt::format(", such as {0}\nAgain: graze repro {1}\nWhy: graze explain {1}", kept->second.pair,
+                                  path_word(kept->second.file.string()));
     }
   }
   for (const fuzz::LaneLeftOut& lane : left_out) cases.push_back({lane.id, "all strata", "", lane.why});

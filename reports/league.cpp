@@ -65,10 +65,16 @@ Json row_json(const fuzz::LeagueRow& row) {
           {"flips", row.flips ? Json(*row.flips) : Json()}};
 }
 
+// Null for a subject that states no facts about itself.
+const LeagueSubject* find_subject(const std::vector<LeagueSubject>& subjects, std::string_view name) {
+  const auto found = std::find_if(subjects.begin(), subjects.end(), [&](const auto& s) { return s.name == name; });
+  return found == subjects.end() ? nullptr : &*found;
+}
+
 Json subject_json(const AlgorithmInfo& info, const Lane& lane, const std::vector<LeagueSubject>& subjects) {
-  const auto found = std::find_if(subjects.begin(), subjects.end(), [&](const auto& s) { return s.name == info.id; });
+  const LeagueSubject* found = find_subject(subjects, info.id);
   Json row{{"name", info.id}, {"foreign", lane.foreign}};
-  if (found == subjects.end()) {
+  if (!found) {
     row["source"] = info.paper;
     row["convention"] = fmt::format("coplanar: {}; degenerate: {}", info.coplanar, info.degenerate);
     return row;
@@ -97,9 +103,8 @@ std::string written(const AnyPair& pair) {
 
 Json failure_json(const fuzz::LeagueFailure& failure, const std::vector<LeagueSubject>& subjects) {
   const std::string_view subject = failure.lane->info->id;
-  const auto found = std::find_if(subjects.begin(), subjects.end(), [&](const auto& s) { return s.name == subject; });
-  const std::string of_subject =
-      found == subjects.end() ? "" : fmt::format(" --subject {}", shell_word(found->name + '=' + found->what));
+  const LeagueSubject* found = find_subject(subjects, subject);
+  const std::string of_subject = found ? fmt::format(" --subject {}", shell_word(found->name + '=' + found->what)) : "";
   return {{"subject", subject},
           {"lane", failure.lane->id},
           {"shape", failure.shape},
@@ -196,13 +201,19 @@ std::string table_line(const std::vector<std::string>& cells) {
   return fmt::format("| {} |\n", fmt::join(cells, " | "));
 }
 
+// The head of a table with a column of text and columns of numbers.
+std::string table_head(const std::vector<std::string>& titles) {
+  std::vector<std::string> rule(titles.size(), "---:");
+  rule[0] = "---";
+  return table_line(titles) + table_line(rule);
+}
+
 std::string page_counts(const Json& league) {
-  std::vector<std::string> head{"lane"}, rule{"---"};
+  std::vector<std::string> head{"lane"};
   for (const auto& [group, pairs] : league.at("groups").items())
     head.push_back(fmt::format("{}, {} pairs", group, count_text(pairs)));
   for (const Extra& extra : kExtras) head.push_back(extra.title);
-  rule.resize(head.size(), "---:");
-  std::string text = table_line(head) + table_line(rule);
+  std::string text = table_head(head);
   for (const Json& row : league.at("rows")) {
     std::vector<std::string> cells{fmt::format("`{}`", row.at("lane").get<std::string>())};
     for (const auto& [group, pairs] : league.at("groups").items()) {
@@ -218,11 +229,10 @@ std::string page_counts(const Json& league) {
 }
 
 std::string page_shares(const Json& league) {
-  std::vector<std::string> head{"lane"}, rule{"---"};
+  std::vector<std::string> head{"lane"};
   for (const auto& [group, pairs] : league.at("groups").items()) head.push_back(group);
   head.push_back("order-dependent");
-  rule.resize(head.size(), "---:");
-  std::string text = table_line(head) + table_line(rule);
+  std::string text = table_head(head);
   for (const Json& row : league.at("rows")) {
     std::vector<std::string> cells{fmt::format("`{}`", row.at("lane").get<std::string>())};
     for (const auto& [group, pairs] : league.at("groups").items())

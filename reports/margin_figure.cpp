@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <map>
 
 #include "core/margin/bucket.h"
+#include "reports/counts.h"
 #include "reports/svg.h"
 
 namespace graze::reports {
@@ -17,8 +17,7 @@ using Json = nlohmann::ordered_json;
 constexpr int kWidth = 900, kHeight = 420, kLeft = 64, kRight = 20, kTop = 64, kBottom = 66;
 constexpr int kSpan = 26;                   // buckets from 2^(-kSpan/2) to 2^kSpan ulps are drawn on both sides of 0
 constexpr std::uint64_t kFewestPairs = 30;  // a share of fewer pairs is not drawn
-constexpr std::array<const char*, 6> kColours = {"#d55e00", "#0072b2", "#009e73",
-                                                 "#cc79a7", "#e69f00", "#56b4e9"};  // Okabe and Ito 2008
+constexpr std::size_t kColours = 6;         // the first of kSvgColours
 
 struct Bar {
   std::uint64_t pairs = 0;
@@ -65,12 +64,10 @@ std::string axes() {
 constexpr std::size_t kInLegendRow = 5;
 
 std::string margin_figure(const Json& summary) {
-  std::map<std::string, int> place_of;
-  for (int b = -kBucketMost; b <= kBucketMost; ++b) place_of[name_of_bucket(static_cast<Bucket>(b))] = place(b);
   std::map<int, Bar> by_place;
   for (const auto& [stratum, row] : summary["strata"].items()) {
     for (const auto& [bucket, counts] : row["margins"].items()) {
-      Bar& bar = by_place[place_of.at(bucket)];
+      Bar& bar = by_place[place(buckets_by_name().at(bucket))];
       bar.pairs += counts["pairs"].get<std::uint64_t>();
       for (const auto& [lane, wrong] : counts["wrong"].items()) bar.wrong[lane] += wrong.get<std::uint64_t>();
     }
@@ -82,7 +79,7 @@ std::string margin_figure(const Json& summary) {
   for (const auto& lane : summary["spec"]["lanes"]) {
     const std::string id = lane;
     if (!id.ends_with("/f32/cpu")) continue;
-    const char* colour = kColours[row % kColours.size()];
+    const char* colour = kSvgColours[row % kColours];
     std::string points;
     for (auto& [p, counts] : by_place) {
       if (counts.pairs < kFewestPairs) continue;

@@ -39,7 +39,7 @@ std::string not_counted(const analysis::LaneCounts& found) {
 
 // " (2.4 %)"; empty if the count is 0.
 std::string share_words(std::uint64_t count, std::uint64_t of) {
-  return count == 0 ? "" : fmt::format(" ({})", rate_words(share_of(count, of).share));
+  return count == 0 ? "" : fmt::format(" ({})", rate_words(count, of));
 }
 
 // Whether the sentence about the kind's simplest pair says that the cause is not settled.

@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 
 #include "core/text.h"
-#include "corpus/pair_format.h"
 #include "fuzz/counts_json.h"
+#include "fuzz/minimise/kinds.h"
 #include "reports/cost_words.h"
 #include "reports/extremes.h"
 #include "reports/findings.h"
@@ -29,31 +28,11 @@ using analysis::Pareto;
 using analysis::PolicyErrors;
 using Json = nlohmann::ordered_json;
 
-constexpr double kLeft = 76, kRight = 880, kTop = 52, kBottom = 350, kLeast = -7, kLegend = 240;
-double y_of(double rate) {
-  return kBottom + (kTop - kBottom) * (std::log10(std::max(rate, std::pow(10.0, kLeast))) - kLeast) / -kLeast;
-}
+constexpr double kLeft = 76, kRight = 880, kLegend = 240;
+constexpr RateAxis kRates{52, 350, -7};
 
 std::string begin(const std::string& title, double right = kRight) {
-  std::string svg = svg_begin(title);
-  for (int power = -7; power <= 0; ++power) {
-    const double y = y_of(std::pow(10.0, power));
-    svg += svg_level(kLeft, right, y);
-    svg += svg_text(kLeft - 8, y + 4, "end",
-                    power == -7  ? "none seen"
-                    : power == 0 ? "all"
-                                 : fmt::format("1e{}", power));
-  }
-  return svg + svg_text(kLeft, 18, "start", title);
-}
-
-// The pair as input of `graze check`.
-std::string line_of(const AnyPair& pair) {
-  std::ostringstream text;
-  corpus::write_entry(text, corpus::entry_of(pair, {}));
-  std::string line = text.str();
-  line.pop_back();  // its end of line
-  return line;
+  return svg_begin(title) + kRates.levels(kLeft, right, "none seen") + svg_text(kLeft, 18, "start", title);
 }
 
 Json cost_json(const Cost& cost) {
@@ -109,7 +88,7 @@ Json offer_json(const Offer& offer) {
   return {{"lane", offer.lane},
           {"errors", errors_json(offer.errors)},
           {"bound", analysis::upper_bound(offer.errors.not_right(), offer.errors.pairs)},
-          {"failure", offer.failure ? Json(line_of(*offer.failure)) : Json()}};
+          {"failure", offer.failure ? Json(fuzz::pair_text(*offer.failure)) : Json()}};
 }
 
 // Explains the cost columns.
@@ -269,7 +248,7 @@ std::string pareto_figure(const Pareto& pareto) {
                   fmt::format("nanoseconds a pair, pairs {}", pareto.on_device ? "on the device" : "in cache"));
   std::string front;
   for (const Offer& offer : cheapest_first(timed(pareto.offers))) {
-    const double x = x_of(offer.near->middle), y = y_of(offer.errors.share_not_right());
+    const double x = x_of(offer.near->middle), y = kRates.y(offer.errors.share_not_right());
     const char* colour = offer.dominated ? "#999" : "#d55e00";
     svg += fmt::format(
         "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"><title>{}: {} ns, {} of {} "
@@ -298,14 +277,14 @@ std::string extreme_figure(const std::vector<ExtremeCurve>& curves, Extreme extr
     if (curve.extreme != extreme) continue;
     std::string points;
     for (const auto& [k, errors] : curve.points)
-      points += fmt::format("{:.1f},{:.1f} ", x_of(k), y_of(errors.share_not_right()));
+      points += fmt::format("{:.1f},{:.1f} ", x_of(k), kRates.y(errors.share_not_right()));
     const char* colour = kSvgColours[row % kSvgColours.size()];
     const char* dashes = row < kSvgColours.size()       ? ""
                          : row < 2 * kSvgColours.size() ? " stroke-dasharray=\"6 3\""
                                                         : " stroke-dasharray=\"2 2\"";
     svg += fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"{} points=\"{}\"/>\n", colour, dashes,
                        points);
-    const double y = kTop + 6 + 15.0 * static_cast<double>(row);
+    const double y = kRates.top + 6 + 15.0 * static_cast<double>(row);
     svg += fmt::format(
         "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"{3}\" stroke-width=\"3\"{4}/>\n",
         kRight - kLegend + 14, kRight - kLegend + 34, y, colour, dashes);

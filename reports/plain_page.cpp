@@ -29,6 +29,11 @@ figure { display: inline-block; vertical-align: top; width: 20rem; margin: 0.5re
 
 std::string paragraph(const std::string& text) { return "<p>" + html(text) + "</p>\n"; }
 
+// The id of the lane of a row.
+std::string lane_of(const Json& report, const Json& row) {
+  return report.at("lanes").at(row.at("lane").get<std::size_t>()).at("id");
+}
+
 // A cell that is darker for larger shares; readable on light and dark backgrounds.
 std::string share_cell(const Json& share) {
   const double value = share.at("share");
@@ -89,7 +94,7 @@ std::string league(const Json& report) {
 }
 
 // "general: from 2^3 ulps (rate below 0.1 %)" for each group of strata.
-std::string threshold_words(const Json& report, std::size_t lane, const char* side) {
+std::string threshold_words(const Json& report, const Json& lane, const char* side) {
   std::string text;
   for (const Json& row : report.at("thresholds")) {
     if (row.at("lane") != lane || row.at("group").is_null()) continue;
@@ -107,11 +112,10 @@ std::string threshold_words(const Json& report, std::size_t lane, const char* si
 std::string margin_section(const Json& report) {
   std::string text = "<h2>Share wrong against the exact margin</h2>\n";
   for (const Json& row : report.at("margins")) {
-    const auto lane = row.at("lane").get<std::size_t>();
     text += fmt::format(
         "<figure>{}<figcaption>{}<br/>no error seen, disjoint: {}<br/>intersecting: {}</figcaption></figure>\n",
-        margin_chart(row, "wrong"), html(report.at("lanes").at(lane).at("id")),
-        threshold_words(report, lane, "disjoint"), threshold_words(report, lane, "intersects"));
+        margin_chart(row, "wrong"), html(lane_of(report, row)), threshold_words(report, row.at("lane"), "disjoint"),
+        threshold_words(report, row.at("lane"), "intersects"));
   }
   return text;
 }
@@ -129,7 +133,7 @@ std::string farthest_words(const Json& row, const char* side, const char* words)
 std::string differs_section(const Json& report) {
   std::string figures, equal;
   for (const Json& row : report.at("margins")) {
-    const std::string lane = html(report.at("lanes").at(row.at("lane").get<std::size_t>()).at("id"));
+    const std::string lane = html(lane_of(report, row));
     std::uint64_t differs = 0, compared = 0;
     for (const Json& point : row.at("points")) {
       if (!point.contains("differs")) continue;
@@ -214,7 +218,7 @@ std::string extremes_section(const Json& report, const Json& pareto) {
       for (const Json& cell : row.at("cells")) text += "<th>2^" + cell.at("exponent").dump() + "</th>";
       text += "</tr>\n";
     }
-    text += "<tr><th>" + html(report.at("lanes").at(row.at("lane").get<std::size_t>()).at("id")) + "</th>";
+    text += "<tr><th>" + html(lane_of(report, row)) + "</th>";
     text += "<td>" + html(row.at("says")) + "</td>";
     for (const Json& cell : row.at("cells")) text += times_cell(cell);
     text += "</tr>\n";
@@ -237,9 +241,7 @@ std::string card(const Json& report, const Json& found) {
                                 found.at("truth").at("margin_ulps").dump()));
   std::string wrong;
   for (const Json& row : found.at("verdicts")) {
-    if (row.at("wrong"))
-      wrong += (wrong.empty() ? "" : ", ") +
-               report.at("lanes").at(row.at("lane").get<std::size_t>()).at("id").get<std::string>();
+    if (row.at("wrong")) wrong += (wrong.empty() ? "" : ", ") + lane_of(report, row);
   }
   text += paragraph("Wrong: " + wrong);
   for (const Json& sentence : found.at("sentences")) text += paragraph(sentence);

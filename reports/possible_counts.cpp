@@ -24,7 +24,6 @@
 #include "reports/changed_verdicts.h"
 #include "reports/extremes.h"
 #include "reports/failure_cards.h"
-#include "reports/shapes.h"
 #include "reports/tables.h"
 #include "reports/tuning.h"
 
@@ -211,12 +210,11 @@ void expect_possible_failures(const Json& report) {
          "as many signatures as are listed", report["signature_count"]);
   for (const Json& row : report["signatures"]) {
     const std::uint64_t count = row.at("count");
-    expect(count > 0 && count <= pairs && row.at("share") == rounded_share(count, pairs),
+    expect(count > 0 && count <= pairs && row.at("share") == to_json(share_of(count, pairs)).at("share"),
            fmt::format("a share of {} pairs", pairs), row);
     for (const Json& card : row.at("cards")) report.at("cards").at(card.get<std::size_t>());
   }
-  std::set<std::string> buckets, strata;
-  for (int b = -kBucketMost; b <= kBucketMost; ++b) buckets.insert(name_of_bucket(static_cast<Bucket>(b)));
+  std::set<std::string> strata;
   for (const Json& row : report.at("strata")) strata.insert(row.at("id"));
   std::set<std::pair<std::string, std::string>> lanes;  // subject and id
   for (const Json& row : report.at("lanes")) lanes.emplace(row.at("algorithm"), row.at("id"));
@@ -228,7 +226,7 @@ void expect_possible_failures(const Json& report) {
                     kind.at("settled").size() == 2 && kind["settled"][0] <= kind["settled"][1] &&
                     kind["settled"][1] <= kind["signatures"].get<std::uint64_t>() * kind.at("lanes").size();
     for (const Json& count : kind.at("margins")) by_margin += count.get<std::uint64_t>();
-    for (const auto& [name, count] : kind["margins"].items()) possible = possible && buckets.contains(name);
+    for (const auto& [name, count] : kind["margins"].items()) possible = possible && buckets_by_name().contains(name);
     for (const auto& [name, count] : kind.at("strata").items()) possible = possible && strata.contains(name);
     for (const Json& lane : kind.at("lanes")) possible = possible && lanes.contains({kind.at("subject"), lane});
     for (const char* by : {"margins", "strata"}) {

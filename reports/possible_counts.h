@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks the JSON files that reports read: their shapes (shapes.h), and that counts are within their limits and add up,
-// because files written by people or other programs may be inconsistent.
+// Checks the JSON files that reports read: their shapes, and that counts are within their limits and add up. Files
+// written by people or other programs may be inconsistent.
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 namespace graze::reports {
+
+// Checks that each field exists and has its type, by a table in shapes.cpp. Fields that the table does not name are
+// allowed. shape: "report", "costs", "tuned" or "pareto".
+// Throws: std::runtime_error: "expected a count at /lanes/0/errors/declined, found -1".
+void expect_shape(const nlohmann::ordered_json& value, const std::string& shape);
 
 // Throw: std::runtime_error, which names the expectation; nlohmann's exceptions for a missing field.
 void expect_possible_report(const nlohmann::ordered_json& report);

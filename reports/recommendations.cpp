@@ -44,8 +44,6 @@ std::optional<Cost> cost_of(const Costs* costs, std::size_t lane, const std::vec
   return costs ? costs->of(lane, strata) : std::nullopt;
 }
 
-std::string words(const Cost& cost) { return cost_words({cost.low, cost.middle, cost.high}); }
-
 // The cheapest lane on these strata; -1 if none was timed.
 int cheapest(const Costs* costs, const LaneIndices& among, const std::vector<std::size_t>& strata) {
   int best = -1;
@@ -71,7 +69,7 @@ std::string over_all_strata(const CampaignCounts& counts, const Costs* costs, co
   const std::vector<std::size_t> all = counts.drawn();
   const std::optional<Cost> own = cost_of(costs, exact, all), others = cost_of(costs, other, all);
   if (ground.strata == all || !own || !others) return "";
-  return fmt::format("; over all strata {} against {}", words(*own), words(*others));
+  return fmt::format("; over all strata {} against {}", cost_words(*own), cost_words(*others));
 }
 
 // The cost of exactness, as the end of a sentence.
@@ -84,23 +82,23 @@ std::string price(const CampaignCounts& counts, const Costs* costs, const LaneIn
   const Cost cost = *costs->of(lane, ground.strata);
   const int fastest = cheapest(costs, published(counts), ground.strata);
   const std::string which = exact.size() > 1 ? counts.lanes[lane].id + " at" : "at";
-  if (fastest < 0) return fmt::format(", {} {} {}.", which, words(cost), ground.pair);
+  if (fastest < 0) return fmt::format(", {} {} {}.", which, cost_words(cost), ground.pair);
   const auto other = static_cast<std::size_t>(fastest);
   const Cost others = *costs->of(other, ground.strata);
   const std::string& id = counts.lanes[other].id;
   const std::string everywhere = over_all_strata(counts, costs, ground, lane, other);
-  if (cost.below(others)) {
-    return fmt::format(", {} {} {} against {} for the fastest published lane, {}{}.", which, words(cost), ground.pair,
-                       words(others), id, everywhere);
+  if (is_cheaper(cost, others)) {
+    return fmt::format(", {} {} {} against {} for the fastest published lane, {}{}.", which, cost_words(cost),
+                       ground.pair, cost_words(others), id, everywhere);
   }
-  if (!others.below(cost)) {
+  if (!is_cheaper(others, cost)) {
     return fmt::format(
         ", {} {} {}. Whether the fastest published lane, {} at {}, is cheaper is not settled: their spreads "
         "overlap{}.",
-        which, words(cost), ground.pair, id, words(others), everywhere);
+        which, cost_words(cost), ground.pair, id, cost_words(others), everywhere);
   }
   return fmt::format(", {} {} {}. The fastest published lane, {}, takes {}{}; it is wrong on {} of all pairs.", which,
-                     words(cost), ground.pair, id, words(others), everywhere,
+                     cost_words(cost), ground.pair, id, cost_words(others), everywhere,
                      rate_words(wrong_share(counts, other).share));
 }
 
@@ -134,7 +132,7 @@ std::string at_cost(const CampaignCounts& counts, const Costs* costs, const Lane
   if (lane < 0) return "";
   const auto place = static_cast<std::size_t>(lane);
   return fmt::format(", {}at {} {}", lanes.size() == 1 ? "" : counts.lanes[place].id + " ",
-                     words(*costs->of(place, ground.strata)), ground.pair);
+                     cost_words(*costs->of(place, ground.strata)), ground.pair);
 }
 
 // "; bound declines 1,200 pairs", for each lane that declines some pairs.
@@ -196,15 +194,15 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
     wrong_general += group->counts.wrong(worst);
   }
   if (general > 0 && general != counts.total.pairs)
-    text += fmt::format("; on {} of the general pairs", rate_words(share_of(wrong_general, general).share));
+    text += fmt::format("; on {} of the general pairs", rate_words(wrong_general, general));
   const Ground ground = ground_of(counts);
   const std::optional<Cost> own = cost_of(costs, worst, ground.strata);
   const std::size_t least = *std::min_element(
       lanes.begin(), lanes.end(), [&](auto l, auto r) { return not_right(counts, l) < not_right(counts, r); });
   const std::optional<Cost> better = cost_of(costs, least, ground.strata);
-  if (own && better && better->below(*own)) {
+  if (own && better && is_cheaper(*better, *own)) {
     text += fmt::format(". {} is both less often wrong and cheaper, {} {} against {}", counts.lanes[least].id,
-                        words(*better), ground.pair, words(*own));
+                        cost_words(*better), ground.pair, cost_words(*own));
   }
   return {text + "."};
 }

@@ -39,7 +39,7 @@ Costs costs_with(const std::vector<std::pair<double, double>>& of_lanes) {
   for (const auto& [uniform, degenerate] : of_lanes) {
     auto& row = costs.of_stratum.emplace_back();
     for (const double ns : {uniform, degenerate})
-      row.push_back(ns == 0 ? std::nullopt : std::optional(Cost{100, ns - 1, ns, ns + 1}));
+      row.push_back(ns == 0 ? std::nullopt : std::optional(Cost{{ns - 1, ns, ns + 1}, 100}));
   }
   return costs;
 }

@@ -18,7 +18,7 @@
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/sealed.h"
 #include "reports/costs.h"
-#include "reports/discrepancy_answer.h"
+#include "reports/discrepancy_page.h"
 #include "reports/failure_cards.h"
 #include "reports/findings.h"
 #include "reports/possible_counts.h"
@@ -186,7 +186,7 @@ Json make_costs(const std::filesystem::path& directory) {
   const CampaignCounts counts = counts_of(fuzz::checked_summary(directory));
   Json made;
   checked(directory / "timings.json", "a campaign's timings", [&] {
-    if (const std::optional<Costs> costs = read_costs(directory, counts))
+    if (const std::optional<Costs> costs = costs_of(fuzz::read_timings(directory), counts))
       made = to_json(*costs, counts, fuzz::read_kinds(directory));
   });
   return made;

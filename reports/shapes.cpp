@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reports/shapes.h"
-
 #include <fmt/format.h>
 
 #include "core/text.h"
+#include "reports/possible_counts.h"
 
 namespace graze::reports {
 

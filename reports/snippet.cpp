@@ -185,10 +185,7 @@ bool shows_lanes(SnippetKind kind) {
 
 bool shows(SnippetKind kind, const Lane& lane) {
   const bool is_cuda = backends::language_of(lane) == backends::Language::cuda;
-  if (lane.foreign) {
-    return shows_foreign(lane) &&
-           (kind == SnippetKind::gtest || kind == (is_cuda ? SnippetKind::cuda : SnippetKind::cpp));
-  }
+  if (lane.foreign) return kind == SnippetKind::gtest || kind == (is_cuda ? SnippetKind::cuda : SnippetKind::cpp);
   if (lane.under && lane.under->kind != Policy::Kind::tolerances) return false;  // such a lane is never wrong
   if (lane.exact) return false;  // its verdict is right for the pair as float32 stores it
   return shows_lanes(kind) && is_cuda == (kind == SnippetKind::cuda);

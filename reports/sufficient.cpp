@@ -12,8 +12,6 @@
 namespace graze::reports {
 namespace {
 
-bool cheaper(const analysis::Cost& one, const analysis::Cost& other) { return one.high < other.low; }
-
 // "at 95 % confidence wrong on under 0.0004 of the pairs (3 of 100,000 fresh ones)"
 std::string errors_words(const Candidate& c) {
   return fmt::format("at 95 % confidence wrong on under {} of the pairs ({} of {} fresh ones)", rounded_up(c.bound, 2),
@@ -57,13 +55,13 @@ std::vector<std::string> sufficient_sentences(double rate, std::span<const Candi
   const Candidate& c = candidates[static_cast<std::size_t>(best)];
   const std::string lane_words = fmt::format("{}, {}, {}", c.lane, errors_words(c), cost_words(c.cost));
   std::vector<std::string> sentences;
-  if (cheaper(c.cost, exact_cost)) {
+  if (is_cheaper(c.cost, exact_cost)) {
     sentences = {fmt::format("{}use {} a pair.", asked, lane_words),
                  fmt::format("{} is never wrong and takes {}.", exact, cost_words(exact_cost))};
   } else {
     sentences = {fmt::format("{}use {}.", asked, exact_words),
                  fmt::format("The cheapest published lane that suffices is {}: {}{}.", c.lane, errors_words(c),
-                             cheaper(exact_cost, c.cost)
+                             is_cheaper(exact_cost, c.cost)
                                  ? fmt::format(", and more expensive at {}", cost_words(c.cost))
                                  : fmt::format(", at {} not cheaper beyond the spread of the measurements",
                                                cost_words(c.cost)))};

@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -33,5 +35,29 @@ inline std::string svg_text(double x, double y, std::string_view anchor, std::st
                             std::string_view more = "") {
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more, what);
 }
+
+// A logarithmic axis of rates: 1 at `top`, 10^least and all smaller rates at `bottom`.
+struct RateAxis {
+  double top, bottom;
+  int least;
+
+  double y(double rate) const {
+    return bottom + (top - bottom) * (std::log10(std::max(rate, std::pow(10.0, least))) - least) / -least;
+  }
+
+  // A grid line for each power of ten, with its label to the left. none: the label of the least.
+  std::string levels(double left, double right, std::string_view none) const {
+    std::string svg;
+    for (int power = least; power <= 0; ++power) {
+      const double at = y(std::pow(10.0, power));
+      svg += svg_level(left, right, at);
+      svg += svg_text(left - 8, at + 4, "end",
+                      power == least ? std::string(none)
+                      : power == 0   ? "all"
+                                     : fmt::format("1e{}", power));
+    }
+    return svg;
+  }
+};
 
 }  // namespace graze::reports

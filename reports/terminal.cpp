@@ -140,7 +140,6 @@ namespace {
 // Prints a row for each subject, scalar and policy, and a column for each variant among the lanes. '-' means that the
 // lane did not run, '!' that it is wrong. The exact CUDA lane appears under all device variants, because it is the same
 // for all of them.
-template <class AnyPair>
 void print_verdicts(std::ostream& out, const AnyPair& pair, const oracle::Truth& true_of_pair,
                     std::span<const Lane* const> lanes, std::span<const Verdict> verdicts, const Screen& screen) {
   const Verdict truth = true_of_pair.verdict;
@@ -182,7 +181,9 @@ void print_verdicts(std::ostream& out, const AnyPair& pair, const oracle::Truth&
       for (std::size_t l = first; l < lanes.size() && cell.text == "-"; ++l) {
         if (is_another(*lanes[l], lane) || !belongs(*lanes[l], variant)) continue;
         const bool wrong = truth != Verdict::declined && is_wrong(verdicts[l], truth);
-        const bool convention = wrong && analysis::by_convention(*lanes[l], verdicts[l], pair, true_of_pair);
+        const bool convention = wrong && visit(pair, [&](const auto& own) {
+                                  return analysis::by_convention(*lanes[l], verdicts[l], own, true_of_pair);
+                                });
         cell = {fmt::format("{}{}", name(verdicts[l]),
                             convention ? " (convention)"
                             : wrong    ? " !"
@@ -226,27 +227,16 @@ void print_coordinates(std::ostream& out, const BasicPair<Real>& pair, const Scr
   }
 }
 
-template <class AnyPair>
-void print_any_pair(std::ostream& out, const AnyPair& pair, const oracle::Truth& truth,
-                    std::span<const Lane* const> lanes, std::span<const Verdict> verdicts, const Screen& screen) {
-  print_coordinates(out, pair, screen);
+}  // namespace
+
+void print_pair(std::ostream& out, const AnyPair& pair, const oracle::Truth& truth, std::span<const Lane* const> lanes,
+                std::span<const Verdict> verdicts, const Screen& screen) {
+  visit(pair, [&](const auto& own) { print_coordinates(out, own, screen); });
   out << "  "
       << bold(screen, fmt::format("truth: {}, contact {}, margin {:.7g} ({:.7g} ulps)", name(truth.verdict),
                                   name(truth.contact), truth.margin, truth.margin_ulps))
       << '\n';
   print_verdicts(out, pair, truth, lanes, verdicts, screen);
-}
-
-}  // namespace
-
-void print_pair(std::ostream& out, const Pair& pair, const oracle::Truth& truth, std::span<const Lane* const> lanes,
-                std::span<const Verdict> verdicts, const Screen& screen) {
-  print_any_pair(out, pair, truth, lanes, verdicts, screen);
-}
-
-void print_pair(std::ostream& out, const DoublePair& pair, const oracle::Truth& truth,
-                std::span<const Lane* const> lanes, std::span<const Verdict> verdicts, const Screen& screen) {
-  print_any_pair(out, pair, truth, lanes, verdicts, screen);
 }
 
 }  // namespace graze::reports

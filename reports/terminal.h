@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "core/any_pair.h"
 #include "core/lanes/lanes.h"
-#include "core/pair.h"
 #include "oracle/truth.h"
 #include "reports/screen.h"
 
@@ -21,10 +21,8 @@ void print_summary(std::ostream& out, const nlohmann::ordered_json& summary, con
 // Prints one pair: its coordinates in decimals and hex floats, the truth, and a verdict for each lane; wrong verdicts
 // are marked.
 // Requires: verdicts[i] is that of lanes[i].
-void print_pair(std::ostream& out, const Pair& pair, const oracle::Truth& truth, std::span<const Lane* const> lanes,
+void print_pair(std::ostream& out, const AnyPair& pair, const oracle::Truth& truth, std::span<const Lane* const> lanes,
                 std::span<const Verdict> verdicts, const Screen& screen = {});
-void print_pair(std::ostream& out, const DoublePair& pair, const oracle::Truth& truth,
-                std::span<const Lane* const> lanes, std::span<const Verdict> verdicts, const Screen& screen = {});
 
 // A percentage without the sign, formatted as on the report's page: "47.8", "9.56", "0.156", "<0.001", "0".
 std::string bare_percent(std::uint64_t part, std::uint64_t whole);

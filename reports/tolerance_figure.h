@@ -23,28 +23,19 @@ struct ToleranceLine {
   std::function<std::uint64_t(const Point&)> count;
 };
 
-// Maps points to the picture: x by log2 of the tolerance between low and high, y by log10 of the rate.
+// Maps log2 of the tolerance, between low and high, to the picture's x.
 struct ToleranceFrame {
   double left, right, low, high;
-  static constexpr double kTop = 64, kBottom = 350, kLeast = -7;
 
   double x(double tolerance) const { return left + (right - left) * (std::log2(tolerance) - low) / (high - low); }
-  static double y(double rate) {
-    return kBottom + (kTop - kBottom) * (std::log10(std::max(rate, std::pow(10.0, kLeast))) - kLeast) / -kLeast;
-  }
 };
 
 template <class Point>
 std::string tolerance_figure(std::string_view title, std::string_view heading,
                              const std::vector<analysis::CurveOf<Point>>& curves, const std::string& chosen,
                              const std::vector<ToleranceLine<Point>>& lines) {
-  using Frame = ToleranceFrame;
-  std::string svg = svg_begin(title);
-  for (int power = -7; power <= 0; ++power) {
-    const double y = Frame::y(std::pow(10.0, power));
-    svg += svg_level(64, 880, y);
-    svg += svg_text(56, y + 4, "end", power == -7 ? "none" : power == 0 ? "all" : fmt::format("1e{}", power));
-  }
+  constexpr RateAxis kRates{64, 350, -7};
+  std::string svg = svg_begin(title) + kRates.levels(64, 880, "none");
   const auto of_all = [&](bool relative) {
     return std::any_of(curves.begin(), curves.end(), [&](const analysis::CurveOf<Point>& curve) {
       return curve.site.empty() && curve.relative == relative && !curve.points.empty();
@@ -56,12 +47,13 @@ std::string tolerance_figure(std::string_view title, std::string_view heading,
     if (!curve.site.empty() || curve.points.empty()) continue;
     const double low = std::log2(analysis::tolerance_of(curve.points.front().policy)),
                  high = std::log2(analysis::tolerance_of(curve.points.back().policy));
-    const Frame frame{both && !curve.relative ? 484.0 : 64.0, both && curve.relative ? 460.0 : 880.0, low, high};
+    const ToleranceFrame frame{both && !curve.relative ? 484.0 : 64.0, both && curve.relative ? 460.0 : 880.0, low,
+                               high};
     for (const ToleranceLine<Point>& line : lines) {
       std::string points;
       for (const Point& point : curve.points)
         points += fmt::format("{:.1f},{:.1f} ", frame.x(analysis::tolerance_of(point.policy)),
-                              Frame::y(static_cast<double>(line.count(point)) /
+                              kRates.y(static_cast<double>(line.count(point)) /
                                        static_cast<double>(std::max<std::uint64_t>(point.pairs, 1))));
       svg += fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"2\" points=\"{}\"/>\n", line.colour,
                          points);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "core/text.h"
 #include "fuzz/counts_json.h"
@@ -58,14 +59,11 @@ std::string_view setting(const TuneQuestion& q) { return q.source ? "value" : "t
 // "value of kEps from 0 up": a sweep has no values below 0, which mean something else.
 std::string value_of(const TuneQuestion& q) { return "value of " + printable(q.source->epsilon.name) + " from 0 up"; }
 
-std::string rate(std::uint64_t count, std::uint64_t of) {
-  return rate_words(of == 0 ? 0 : static_cast<double>(count) / static_cast<double>(of));
-}
-
 // "12 false negatives (0.012 %) and 0 false positives of 100,000 pairs"
 std::string errors(const PolicyErrors& e) {
   const auto part = [&](std::uint64_t count, std::string_view what) {
-    return fmt::format("{} {}{}", grouped(count), what, count == 0 ? "" : fmt::format(" ({})", rate(count, e.pairs)));
+    return fmt::format("{} {}{}", grouped(count), what,
+                       count == 0 ? "" : fmt::format(" ({})", rate_words(count, e.pairs)));
   };
   const std::string failed = e.failed() == 0 ? "" : ", " + part(e.failed(), "crashed, timed out or unstable");
   return fmt::format("{}{} and {} of {} pairs", part(e.false_negative, "false negatives"), failed,
@@ -248,13 +246,11 @@ Json tuning_json(const TuneQuestion& question, const Tuned& tuned) {
                {"curves", Json::array()},
                {"sentences", tuning_sentences(question, tuned)}};
   if (question.source) json["epsilon"] = epsilon_json(question, tuned);
-  if (tuned.scale.up)
-    json["scale_break"]["up"] = {
-        {"log2", tuned.scale.up}, {"from", errors_json(tuned.scale.here)}, {"errors", errors_json(tuned.scale.at_up)}};
-  if (tuned.scale.down)
-    json["scale_break"]["down"] = {{"log2", tuned.scale.down},
-                                   {"from", errors_json(tuned.scale.here)},
-                                   {"errors", errors_json(tuned.scale.at_down)}};
+  const analysis::ScaleBreak& scale = tuned.scale;
+  for (const auto& [side, k, at] : {std::tuple{"up", scale.up, &scale.at_up}, {"down", scale.down, &scale.at_down}}) {
+    if (k != 0)
+      json["scale_break"][side] = {{"log2", k}, {"from", errors_json(scale.here)}, {"errors", errors_json(*at)}};
+  }
   for (const analysis::Interaction& i : tuned.interactions)
     json["interactions"].push_back({{"first", errors_json(i.of_first)},
                                     {"second", errors_json(i.of_second)},

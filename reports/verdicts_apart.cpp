@@ -104,8 +104,7 @@ std::string operands_sentence(const Json& operands) {
   }
   std::string text = fmt::format(
       "On the first {} of these pairs, an operand differs in {} of {} comparisons; {} comparisons go the other way.",
-      grouped(number_at(operands, "pairs")), rate_words(part_of(differs, compared)), grouped(compared),
-      grouped(outcome));
+      grouped(number_at(operands, "pairs")), rate_words(differs, compared), grouped(compared), grouped(outcome));
   const std::uint64_t verdicts = number_at(operands, "verdict");
   if (most > 0)
     text += fmt::format(" The comparison at {} is the first to go the other way for {} of {} differing verdicts.",
@@ -115,15 +114,15 @@ std::string operands_sentence(const Json& operands) {
   return text;
 }
 
-struct VerdictsRow {
-  std::string stratum;
-  const Json& counts;
-};
-
-std::vector<VerdictsRow> rows_of(const Json& of) {
-  std::vector<VerdictsRow> rows;
-  for (const auto& [stratum, counts] : of.at("strata").items()) rows.push_back({stratum, counts});
-  return rows;
+// The cells of a line in both tables, after its place.
+std::vector<std::string> line_cells(const Json& line) {
+  const Octaves sizes = sizes_of(line);
+  return {grouped(number_at(line, "compared")),
+          rate_words(number_at(line, "differs"), number_at(line, "compared")),
+          ulps_words(sizes, 0.5),
+          ulps_words(sizes, 1),
+          grouped(number_at(line, "outcome")),
+          grouped(number_at(line, "verdict"))};
 }
 
 }  // namespace
@@ -155,7 +154,7 @@ Json verdicts_json(const analysis::TwoDeciders& deciders, const std::vector<stra
 std::string verdicts_sentence(const Json& of) {
   const Json& total = of.at("total");
   const std::uint64_t pairs = number_at(total, "pairs");
-  const auto rate = [&](std::uint64_t count) { return rate_words(part_of(count, pairs)); };
+  const auto rate = [&](std::uint64_t count) { return rate_words(count, pairs); };
   std::string verdicts =
       fmt::format("{0} and {1} give different verdicts on {2} of {3} pairs; {0} is wrong on {4}, {1} on {5}. ",
                   text_at(of, "first"), text_at(of, "second"), rate(number_at(total, "differs")), grouped(pairs),
@@ -181,7 +180,7 @@ std::string verdicts_table(const Json& of, const Screen& screen) {
                    {"first wrong"},
                    {"second wrong"},
                    {"simplest pair", Align::left}});
-  for (const auto& [stratum, counts] : rows_of(of)) {
+  for (const auto& [stratum, counts] : of.at("strata").items()) {
     const auto number = [](std::uint64_t count) { return Cell(grouped(count), count > 0); };
     const std::string simplest = simplest_in(counts);
     table.add({stratum, grouped(number_at(counts, "pairs")), number(number_at(counts, "differs")),
@@ -199,10 +198,9 @@ std::string verdicts_table(const Json& of, const Screen& screen) {
                      {"goes the other way"},
                      {"decides the verdict"}});
     for (const Json* line : differing) {
-      const Octaves sizes = sizes_of(*line);
-      lines.add({place_of(*line), grouped(number_at(*line, "compared")),
-                 rate_words(part_of(number_at(*line, "differs"), number_at(*line, "compared"))), ulps_words(sizes, 0.5),
-                 ulps_words(sizes, 1), grouped(number_at(*line, "outcome")), grouped(number_at(*line, "verdict"))});
+      std::vector<Cell> row = {place_of(*line)};
+      for (const std::string& cell : line_cells(*line)) row.emplace_back(cell);
+      lines.add(std::move(row));
     }
     text += lines.text(screen);
   }
@@ -215,7 +213,7 @@ std::string verdicts_section(const Json& of) {
   text +=
       "<div class=\"wide\"><table><tr><th>stratum</th><th>pairs</th><th>verdict differs</th><th>first wrong</th>"
       "<th>second wrong</th><th>simplest pair</th></tr>\n";
-  for (const auto& [stratum, counts] : rows_of(of)) {
+  for (const auto& [stratum, counts] : of.at("strata").items()) {
     text += "<tr><td>" + html(stratum) + "</td>";
     for (const std::uint64_t count :
          {number_at(counts, "pairs"), number_at(counts, "differs"), wrong(counts, 0), wrong(counts, 1)})
@@ -229,13 +227,8 @@ std::string verdicts_section(const Json& of) {
         "operand differs</th>"
         "<th>median, ulps</th><th>largest, ulps</th><th>goes the other way</th><th>decides the verdict</th></tr>\n";
     for (const Json* line : differing) {
-      const Octaves sizes = sizes_of(*line);
       text += "<tr><td>" + html(place_of(*line)) + "</td>";
-      for (const std::string& cell :
-           {grouped(number_at(*line, "compared")),
-            rate_words(part_of(number_at(*line, "differs"), number_at(*line, "compared"))), ulps_words(sizes, 0.5),
-            ulps_words(sizes, 1), grouped(number_at(*line, "outcome")), grouped(number_at(*line, "verdict"))})
-        text += "<td class=\"number\">" + html(cell) + "</td>";
+      for (const std::string& cell : line_cells(*line)) text += "<td class=\"number\">" + html(cell) + "</td>";
       text += "</tr>\n";
     }
     text += "</table></div>\n";
@@ -245,7 +238,7 @@ std::string verdicts_section(const Json& of) {
 
 std::string verdicts_csv(const Json& of) {
   std::string text;
-  for (const auto& [stratum, counts] : rows_of(of)) {
+  for (const auto& [stratum, counts] : of.at("strata").items()) {
     const std::string start = fmt::format("{},{},{},\"\",", text_at(of, "first"), text_at(of, "second"), stratum);
     const auto add = [&](const char* value, const std::string& count, const Json& number) {
       if (number != 0) text += fmt::format("{}\"{}\",{},,{}\n", start, value, count, number.get<std::uint64_t>());

@@ -503,7 +503,7 @@ TEST_F(Doubles, APolicyIsTunedOnThem) {
   expect_done("graze tune --agree moller_1997/f64/cpu moller_1997/f64/cpu-fma --max-rate 0.1 " + strata +
               "--out v > told");
   EXPECT_NE(contents(shell.folder / "told").find("exact/f64/cpu and exact/f64/cuda"), std::string::npos);
-  EXPECT_NE(contents(shell.folder / "told").find("both are moller_1997/f64/cpu."), std::string::npos);
+  EXPECT_NE(contents(shell.folder / "told").find("both lanes are moller_1997/f64/cpu."), std::string::npos);
   const Json agreed = Json::parse(contents(shell.folder / "v/agree.json"));
   EXPECT_EQ(agreed["zero_confirmed"]["pairs"], 2000);
   EXPECT_EQ(agreed["zero_confirmed"]["intersecting"], agreed["confirmed"]["intersecting"]);

@@ -350,7 +350,7 @@ TEST_F(Report, ComparesTwoCampaigns) {
       "under ",
       report["rates"].size())))
       << said.out;
-  EXPECT_NE(said.out.find("\nThey differ in seed: 1 before, 2 after.\nWrote "), std::string::npos) << said.out;
+  EXPECT_NE(said.out.find("\nThe seed differs: 1 before, 2 after.\nWrote "), std::string::npos) << said.out;
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "seed2/report.json"));
   EXPECT_EQ(report["run"]["seed"], 2);
   EXPECT_EQ(report["compare"]["other"]["seed"], 1);
@@ -377,7 +377,7 @@ TEST_F(Report, ComparesCodeBeforeAndAfterAnEdit) {
     ASSERT_EQ(said.status, 0) << said.err;
     EXPECT_EQ(said.err, "");
     EXPECT_TRUE(said.out.starts_with("Changed: 200 verdicts of 1 of 2 lanes: ")) << said.out;
-    EXPECT_NE(said.out.find("They differ in the code of mine: "), std::string::npos) << said.out;
+    EXPECT_NE(said.out.find("The code of mine differs: "), std::string::npos) << said.out;
   }
   EXPECT_EQ(json("c1/compare.json")["run"]["subjects"], json("c0/compare.json")["compare"]["other"]["subjects"]);
   const auto shows_code = [&](const char* file) {

@@ -54,15 +54,16 @@ std::string answer(const AgreeQuestion& q, const Agreed& a) {
           "Not settled: {}; {}, and {} was asked for. {}", found, high, q.max_rate,
           a.confirmed.differing > 0
               ? "More pairs (--pairs) may settle it."
-              : fmt::format("To show such a rate, use at least {} pairs (--pairs), none of which may differ.",
-                            grouped(static_cast<std::uint64_t>(std::ceil(std::log(0.05) / std::log1p(-q.max_rate))))));
+              : fmt::format(
+                    "To show such a rate, use at least {} pairs (--pairs), on all of which the lanes must agree.",
+                    grouped(static_cast<std::uint64_t>(std::ceil(std::log(0.05) / std::log1p(-q.max_rate))))));
     case TuneResult::not_confirmed:
       return fmt::format(
           "Not settled: {}; {}. The rate was at most {} on the pairs that the tolerance was chosen on, but not on "
           "these. More pairs (--pairs) or a stricter --max-rate may find a tolerance that keeps it.",
           found, low, q.max_rate);
     case TuneResult::not_satisfiable:
-    case TuneResult::not_useful:  // two lanes have no other kind of difference
+    case TuneResult::not_useful:  // never happens: differing verdicts are of one kind
       break;
   }
   return fmt::format("No tolerance keeps the rate of differing verdicts at or under {}. {}: {}; {}.", q.max_rate,
@@ -101,10 +102,10 @@ std::vector<std::string> agreement_sentences(const AgreeQuestion& q, const Agree
     const Agreement& now = a.confirmed;
     result.push_back(
         fmt::format("Without a policy the verdicts differ on {}.", differing(a.zero_confirmed, kSamePairs)));
-    result.push_back(
-        fmt::format("{}: under {} they agree on {} of these pairs, still differ on {}, and differ on {} others.",
-                    2 * now.added > now.mended ? "It mostly moves the differences" : "What it changes", a.chosen,
-                    grouped(now.mended), grouped(now.differing - now.added), grouped(now.added)));
+    result.push_back(fmt::format(
+        "{}: under {} the lanes now agree on {} of these pairs, still differ on {}, and newly differ on {} others.",
+        2 * now.added > now.mended ? "The tolerance mostly moves the differences" : "Effect of the tolerance", a.chosen,
+        grouped(now.mended), grouped(now.differing - now.added), grouped(now.added)));
   }
   for (std::size_t l = 0; l < 2; ++l) {
     const Counts &before = a.zero_confirmed.of[l], &now = a.confirmed.of[l];
@@ -115,13 +116,13 @@ std::vector<std::string> agreement_sentences(const AgreeQuestion& q, const Agree
   }
   if (a.blunt)
     result.push_back(fmt::format(
-        "Blunt: under {} they agree on the {} pairs that it was chosen on, but are wrong on {} and {} of them. Giving "
-        "all pairs the same answer would be as good.",
+        "Blunt: under {} the lanes agree on the {} pairs that it was chosen on, but are wrong on {} and {} of these "
+        "pairs. Giving all pairs the same answer would be as good.",
         a.blunt->policy, grouped(a.blunt->pairs), grouped(a.blunt->of[0].wrong()), grouped(a.blunt->of[1].wrong())));
   if (!q.without_relative.empty())
     result.push_back(fmt::format("Relative tolerances are left out: {} has no twin under them.", q.without_relative));
   if (a.rounded && q.rounded[0] == q.rounded[1])
-    result.push_back(fmt::format("Without a tolerance: built with {}, both are {}.", q.flag, q.rounded[0]));
+    result.push_back(fmt::format("Without a tolerance: built with {}, both lanes are {}.", q.flag, q.rounded[0]));
   else if (a.rounded)
     result.push_back(fmt::format(
         "Without a tolerance: built with {}, {} and {} differ on {}; at 95 % confidence the rate is under {}.", q.flag,

@@ -11,26 +11,26 @@
 
 namespace graze::reports {
 
-// The two compared lanes, and the goal.
+// The question of `graze tune --agree`: the two lanes to compare, and the goal.
 struct AgreeQuestion {
-  std::vector<std::string> lanes;    // two
-  std::vector<std::string> rounded;  // the same lanes with every operation rounded as written; empty if `lanes` are
-  std::string flag;                  // the compiler flag that gives `rounded`
-  std::string without_relative;      // the lane that has no twin under relative tolerances; empty if both have one
+  std::vector<std::string> lanes;    // exactly two
+  std::vector<std::string> rounded;  // the same lanes built to round as written; empty if `lanes` do
+  std::string flag;                  // the compiler flag that builds `rounded`
+  std::string without_relative;      // the lane without a twin under relative tolerances; empty if both have one
   double max_rate = 0;
-  std::string exact_scalar = "f32";  // the scalar of the lanes that decide the pairs exactly
+  std::string exact_scalar = "f32";  // the scalar of the exact lanes
 };
 
-// The answer first. Every number in it belongs to the pairs that the sentence names.
+// Returns the results as sentences, the answer first. Each sentence names the pairs that its numbers describe.
 std::vector<std::string> agreement_sentences(const AgreeQuestion& question, const analysis::Agreed& agreed);
 
-// The best tolerance of each curve on the fresh pairs: differing verdicts, and each lane's errors. Tolerances that
-// change nothing there are left out.
+// Returns a table of the best tolerance of each curve: how many verdicts differ on the fresh pairs, and how often each
+// lane is wrong there. Tolerances that change no verdict are left out.
 std::string agreement_table(const AgreeQuestion& question, const analysis::Agreed& agreed, const Screen& screen);
 
 nlohmann::ordered_json agreement_json(const AgreeQuestion& question, const analysis::Agreed& agreed);
 
-// Returns an SVG of 900 x 420 like tuning_figure: differing verdicts, and each lane's wrong ones.
+// Returns an SVG of 900 x 420 like tuning_figure. It shows the shares of differing verdicts and of each lane's errors.
 std::string agreement_figure(const AgreeQuestion& question, const analysis::Agreed& agreed);
 
 }  // namespace graze::reports

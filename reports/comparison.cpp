@@ -27,7 +27,7 @@ namespace {
 
 using Name = std::pair<std::string, std::string>;  // lane and stratum
 
-// A report's rates by lane and stratum, in its order.
+// A report's rates with their lane and stratum, in the report's order.
 std::vector<std::pair<Name, Json>> rates_by_name(const Json& report) {
   std::vector<std::pair<Name, Json>> rates;
   for (const Json& row : report.at("rates")) {
@@ -39,7 +39,7 @@ std::vector<std::pair<Name, Json>> rates_by_name(const Json& report) {
   return rates;
 }
 
-// The strata of a report, with the descriptions of their pairs; a mesh or a hunt of the same name may have other pairs.
+// The strata of a report by name. A mesh or a hunt of the same name may have other pairs, and then another description.
 std::map<std::string, Json> strata_of(const Json& report) {
   std::map<std::string, Json> rows;
   for (const Json& row : report.at("strata")) rows[row.at("id")] = row;
@@ -57,7 +57,7 @@ bool is_common(const std::string& id, const std::map<std::string, Json>& l, cons
   return l.contains(id) && r.contains(id) && l.at(id).at("describes") == r.at(id).at("describes");
 }
 
-// Whether both have the same strata in the same shares, so that rates over all strata and kinds can be compared.
+// Whether both reports have the same strata in the same shares. Only then are kinds and rates over all strata compared.
 bool mixed_alike(const Json& l, const Json& r) {
   const auto of_l = strata_of(l), of_r = strata_of(r);
   const double all_l = pairs_of(l), all_r = pairs_of(r);
@@ -78,8 +78,8 @@ std::set<std::string> lanes_of(const Json& report, const Json& subject) {
   return lanes;
 }
 
-// The chance that at most `count` of the `all` errors of both campaigns fall into the first one, if every pair is
-// equally likely to err. pairs: the number of each campaign.
+// The chance that at most `count` of the `all` errors of both campaigns fall into the first campaign, if every pair is
+// equally likely to err. pairs: the number of pairs of each campaign.
 double chance_of_at_most(double count, double all, const double (&pairs)[2]) {
   const auto log_choose = [](double n, double k) {
     return std::lgamma(n + 1) - std::lgamma(k + 1) - std::lgamma(n - k + 1);
@@ -94,7 +94,7 @@ double chance_of_at_most(double count, double all, const double (&pairs)[2]) {
   return sum;
 }
 
-// Tests whether two rates differ: whether chance alone would distribute the errors of both campaigns so unevenly, or
+// Whether two rates differ: chance alone would hardly ever distribute the errors of both campaigns this unevenly, or
 // more unevenly.
 // Reference: Fisher 1935, the exact test; twice the smaller of the two tails.
 bool apart(const Json& l, const Json& r) {
@@ -105,20 +105,20 @@ bool apart(const Json& l, const Json& r) {
   }
   if (of[0] == 0 || of[1] == 0) return false;
   const double all = count[0] + count[1], other_way[2] = {of[1], of[0]};
-  const bool fewer = count[0] * of[1] <= count[1] * of[0];  // in the first campaign
+  const bool fewer = count[0] * of[1] <= count[1] * of[0];  // whether the first campaign has the lower rate
   return 2 * (fewer ? chance_of_at_most(count[0], all, of) : chance_of_at_most(count[1], all, other_way)) <
          kLeastChance;
 }
 
-// The smallest difference from the rate before that counts as a change; a true but smaller one may pass for chance.
-// Nothing if so few pairs cannot show any difference.
+// The smallest difference from the rate before that counts as a change. A smaller true difference may pass for chance.
+// Nothing if there are too few pairs to show any difference.
 std::optional<double> unseen_of(const Json& before, const Json& after) {
   const std::uint64_t of = after.at("of");
   const double share = before.at("share");
   if (of == 0 || before.at("of") == 0) return {};
   const auto differs = [&](std::uint64_t count) { return apart(before, to_json(share_of(count, of))); };
   const auto expected = std::min(of, static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(of))));
-  std::uint64_t low = expected, high = of;  // the smallest count above the expected one that differs
+  std::uint64_t low = expected, high = of;  // find the smallest count above the expected one that differs
   if (differs(high)) {
     while (low < high) {
       const std::uint64_t middle = low + (high - low) / 2;
@@ -126,7 +126,7 @@ std::optional<double> unseen_of(const Json& before, const Json& after) {
     }
     return static_cast<double>(high) / static_cast<double>(of) - share;
   }
-  low = 0, high = expected;  // the largest count below
+  low = 0, high = expected;  // find the largest count below it that differs
   if (!differs(low)) return {};
   while (low + 1 < high) {
     const std::uint64_t middle = low + (high - low) / 2;
@@ -191,8 +191,8 @@ Json only_in(const Json& kinds, const Json& others, const Json& report, const Js
   return rows;
 }
 
-// The kinds whose subject changed a verdict. The cause of a failure is found on one pair of a signature, and running
-// `graze minimize` may replace that pair within the same campaign.   verdicts: null if unknown.
+// The kinds whose subject changed a verdict. Other kinds may differ without a change, because `graze minimize` finds a
+// cause on one pair of a signature and may replace that pair.   verdicts: null if unknown.
 Json of_changed(const Json& kinds, const Json& verdicts) {
   if (verdicts.is_null()) return kinds;
   std::set<std::string> subjects;
@@ -239,12 +239,12 @@ std::string scene_of(const Json& run) {
   return run.contains("scene") && !run["scene"].is_null() ? run["scene"].get<std::string>() : "none";
 }
 
-// The hash in a scene's name, which does not change with the file's place: arm.toml#0123456789abcdef.
+// The hash in a scene's name, such as arm.toml#0123456789abcdef. It does not depend on the file's folder.
 std::string content_of(const std::string& scene) { return scene.substr(scene.rfind('#') + 1); }
 
 // How many verdicts of the lane changed, in words.   verdicts: null if unknown.
 std::string changes_of(const std::string& lane, const Json& verdicts) {
-  if (verdicts.is_null()) return "how many verdicts it changed is not known";
+  if (verdicts.is_null()) return "the number of changed verdicts is not known";
   std::uint64_t least = 0, most = 0;
   for (const Json& row : verdicts) {
     if (row.at("lane") != lane) continue;
@@ -289,24 +289,24 @@ bool has_contracted_lane(const Json& report) {
 Json differences_of(const Json& after, const Json& before, const Json& verdicts) {
   Json rows = Json::array();
   const Json &now = after.at("run"), &then = before.at("run");
-  for (const char* what : {"seed", "pairs"}) {
+  for (const auto& [what, words] : {std::pair("seed", "seed differs"), {"pairs", "number of pairs differs"}}) {
     if (now.at(what) != then.at(what))
-      rows.push_back(
-          fmt::format("They differ in {}: {} before, {} after.", what, grouped(then.at(what)), grouped(now.at(what))));
+      rows.push_back(fmt::format("The {}: {} before, {} after.", words, grouped(then.at(what)), grouped(now.at(what))));
   }
   if (content_of(scene_of(now)) != content_of(scene_of(then)))
-    rows.push_back(fmt::format("They differ in scene, so the same stratum draws other pairs: {} before, {} after.",
+    rows.push_back(fmt::format("The scene differs, so the same stratum draws other pairs: {} before, {} after.",
                                scene_of(then), scene_of(now)));
   for (const char* what : {"strata", "lanes"}) {
     const std::set<std::string> l = ids_of(before.at(what)), r = ids_of(after.at(what));
     if (l != r)
-      rows.push_back(fmt::format("They differ in {}; only those in both are compared. Only before: {}; only after: {}.",
-                                 what, list(l, r), list(r, l)));
+      rows.push_back(
+          fmt::format("The {0} differ; only {0} of both campaigns are compared. Only before: {1}; only after: {2}.",
+                      what, list(l, r), list(r, l)));
   }
   const auto now_drawn = strata_of(after), then_drawn = strata_of(before);
   for (const auto& [id, row] : now_drawn) {
     if (then_drawn.contains(id) && !is_common(id, now_drawn, then_drawn))
-      rows.push_back(fmt::format("They differ in the stratum {}, which is not compared: {} before, {} after.", id,
+      rows.push_back(fmt::format("The stratum {} differs and is not compared: {} before, {} after.", id,
                                  then_drawn.at(id).at("describes").get<std::string>(),
                                  row.at("describes").get<std::string>()));
   }
@@ -314,12 +314,12 @@ Json differences_of(const Json& after, const Json& before, const Json& verdicts)
   for (const std::string& sentence : plan_differences(then, now, verdicts)) rows.push_back(sentence);
   const auto compiler = [](const Json& run) { return printable(run.at("build").value("compiler", "")); };
   if (compiler(now) != compiler(then) && has_contracted_lane(before) && has_contracted_lane(after))
-    rows.push_back(fmt::format(
-        "They differ in the compiler of Graze, so lanes of cpu-fma may fuse other products: {} before, {} after.",
-        compiler(then), compiler(now)));
+    rows.push_back(
+        fmt::format("The compiler of Graze differs, so lanes of cpu-fma may fuse other products: {} before, {} after.",
+                    compiler(then), compiler(now)));
   const auto commit = [](const Json& run) { return run.at("build").at("commit").get<std::string>(); };
   if (commit(now) != commit(then))
-    rows.push_back(fmt::format("They differ in build: {} before, {} after.", commit(then), commit(now)));
+    rows.push_back(fmt::format("The build differs: {} before, {} after.", commit(then), commit(now)));
   return rows;
 }
 

@@ -66,7 +66,7 @@ TEST(Comparison, SeedAndSizeAloneChangeNothing) {
   EXPECT_LE(changed, 1);
 }
 
-// 290 and 205 of 500: the exact test gives 1.0e-7, twice the smaller tail. 290 and 212: 1.0e-6.
+// Twice the smaller tail is 1.0e-7 for 290 and 205 of 500 pairs, and 1.0e-6 for 290 and 212.
 TEST(Comparison, TheTestIsExact) {
   const auto changed = [](std::uint64_t l, std::uint64_t r, std::uint64_t of_l, std::uint64_t of_r) {
     Json before = report_of(1, of_l, 1), after = report_of(2, of_r, 1);
@@ -87,7 +87,7 @@ TEST(Comparison, TheTestIsExact) {
 TEST(Comparison, WhatIsSmallButSureIsAChange) {
   const Json before = report_of(1, 1'000'000);
   Json after = report_of(2, 1'000'000);
-  after["rates"][0]["wrong"] = to_json(share_of(40, 1'000'000));  // never wrong before
+  after["rates"][0]["wrong"] = to_json(share_of(40, 1'000'000));  // this lane was never wrong before
   EXPECT_TRUE(
       headline(after, before, Json::array(), Json::array())
           .starts_with("Changed: 1 of 1,000 rates; no kind of failure with at least 14 expected signatures came "
@@ -117,7 +117,7 @@ TEST(Comparison, OnTheSamePairsEveryOtherCountIsAChange) {
   after["rates"][3]["declined"] = 1;
   EXPECT_EQ(headline(after, before, Json::array(), Json::array()),
             "Changed: 1 of 10 rates (declined in 1); no kind of failure came or went.");
-  // Equal counts alone do not show that nothing changed.
+  // Equal counts alone do not show that no verdict changed.
   EXPECT_EQ(headline(before, before, Json::array(), Json::array()),
             "None of 10 rates changed, and no kind of failure came or went; single verdicts are not compared, because "
             "a campaign's database is missing.");
@@ -164,7 +164,7 @@ TEST(Comparison, TheHeadlineOnTheSamePairsIsAboutVerdicts) {
   EXPECT_TRUE(names(said(many).substr(said(many).rfind('\n') + 1), {"7", "compare.json"}));
 }
 
-// The smallest difference that would be seen: a rate counts as changed at it, but not below it.
+// A rate counts as changed at the smallest difference that would be seen, but not below it.
 TEST(Comparison, TheBlindSpotIsThatOfTheTest) {
   const Json before = report_of(1, 50'000, 21);
   Json after = report_of(2, 20'000, 21);
@@ -190,7 +190,7 @@ TEST(Comparison, OtherCodeOfOneNameIsSaid) {
   after["run"]["subjects"] = {{{"name", "mine"}, {"what", "Q/m.cpp"}, {"hash", "0b"}}};
   add_comparison(after, before, Json::array(), Json::array());
   EXPECT_EQ(after["compare"]["differences"],
-            Json::array({"They differ in the code of mine: P/m.cpp (hash 0a) before, Q/m.cpp (hash 0b) after."}));
+            Json::array({"The code of mine differs: P/m.cpp (hash 0a) before, Q/m.cpp (hash 0b) after."}));
   after["run"]["subjects"][0]["hash"] = "0a";  // a file that was moved
   add_comparison(after, before, Json::array(), Json::array());
   EXPECT_TRUE(after["compare"]["differences"].empty());
@@ -209,11 +209,11 @@ TEST(Comparison, OtherFusedProductsAreSaid) {
   EXPECT_TRUE(after["compare"]["differences"].empty());
   Json& plans = after["run"]["subjects"][0]["contraction"];
   plans["x86-gcc-v3"]["f32"] = plan("9b1c", 14);
-  plans["arm64-gcc"] = plans["x86-gcc-v3"];  // no lane of the first campaign
+  plans["arm64-gcc"] = plans["x86-gcc-v3"];  // the first campaign has no lane of this toolchain
   add_comparison(after, before, Json::array(), Json::array());
   EXPECT_EQ(after["compare"]["differences"],
             Json::array({"moller_1997/f32 (x86-gcc-v3): the compiler fuses other products (plan 3f2a before, 9b1c "
-                         "after); how many verdicts it changed is not known."}));
+                         "after); the number of changed verdicts is not known."}));
   const auto row = [](const char* lane, const char* known, int changed) {
     return Json{{"lane", lane},   {"stratum", "uniform"}, {"pairs", 50'000},
                 {"known", known}, {"least", changed},     {"most", changed}};
@@ -225,7 +225,8 @@ TEST(Comparison, OtherFusedProductsAreSaid) {
   EXPECT_TRUE(names(after["compare"]["differences"][0], {"3f2a", "9b1c", "1,234 verdicts differ"}));
 }
 
-// The plans of cpu-fma are not recorded, so the report says that the compiler differs if both have such lanes.
+// The plans of cpu-fma are not recorded, so the report says that the compiler differs if both campaigns have such
+// lanes.
 TEST(Comparison, AnotherCompilerOfContractedLanesIsSaid) {
   Json before = report_of(1, 50'000, 10), after = before;
   before["run"]["build"]["compiler"] = "GNU 12.2.0";
@@ -253,7 +254,7 @@ TEST(Comparison, AKindThatWasToBeExpectedHasGone) {
   EXPECT_TRUE(smaller["compare"]["lost"].empty());
 }
 
-// On the same pairs one signature shows a change, unless every verdict of its subject is unchanged.
+// On the same pairs, one signature shows a change, unless no verdict of its subject changed.
 TEST(Comparison, OnTheSamePairsEveryOtherKindIsAChange) {
   const Json few = {kind("lane/rounding/x.h:1/general", 1)}, none = Json::array();
   const Json before = report_of(1, 50'000, 10);
@@ -295,7 +296,7 @@ TEST(Comparison, OnlyWhatBothHaveIsCompared) {
   EXPECT_EQ(same["rates"].size(), 30u);
   EXPECT_EQ(same["gained"].size(), 1u);
   EXPECT_TRUE(same["differences"].empty());
-  // Other strata, the same name with other pairs, and other shares: the totals would differ without any change.
+  // If strata, the pairs of a stratum or the shares differ, totals would differ without any change.
   const Json others[] = {with_stratum(one, "thesis", "random", 50'000),
                          with_stratum(one, "hunt", "made from thesis", 50'000),
                          with_stratum(one, "hunt", "made from near", 5'000)};
@@ -308,8 +309,8 @@ TEST(Comparison, OnlyWhatBothHaveIsCompared) {
     EXPECT_NE(said["differences"].back().get<std::string>().find("not compared"), std::string::npos);
   }
   EXPECT_EQ(compared(others[1], hunt)["differences"][0],
-            "They differ in the stratum hunt, which is not compared: made from near before, made from thesis after.");
-  // With other lanes of its subject, a kind may have fewer signatures.
+            "The stratum hunt differs and is not compared: made from near before, made from thesis after.");
+  // A kind may have fewer signatures if its subject has other lanes.
   const Json fewer = compared(report_of(1, 50'000, 8), one);
   EXPECT_TRUE(fewer["kinds_compared"]);
   EXPECT_TRUE(fewer["gained"].empty());
@@ -322,18 +323,18 @@ TEST(Comparison, HowTheyDifferIsSaid) {
   add_comparison(after, before, nullptr, Json::array());
   const Json& said = after["compare"]["differences"];
   ASSERT_EQ(said.size(), 4u);
-  EXPECT_EQ(said[0], "They differ in seed: 1 before, 2 after.");
-  EXPECT_EQ(said[1], "They differ in pairs: 950,000 before, 95,000 after.");
-  EXPECT_EQ(said[2],
-            "They differ in lanes; only those in both are compared. Only before: lane/8, lane/9; only after: none.");
+  EXPECT_EQ(said[0], "The seed differs: 1 before, 2 after.");
+  EXPECT_EQ(said[1], "The number of pairs differs: 950,000 before, 95,000 after.");
+  EXPECT_EQ(
+      said[2],
+      "The lanes differ; only lanes of both campaigns are compared. Only before: lane/8, lane/9; only after: none.");
   EXPECT_NE(said[3].get<std::string>().find("not compared"), std::string::npos);
   EXPECT_FALSE(after["compare"]["kinds_compared"]);
   Json in_scene = report_of(1, 50'000, 10);
   in_scene["run"]["scene"] = "arm.toml#1";
   add_comparison(in_scene, before, Json::array(), Json::array());
-  EXPECT_EQ(
-      in_scene["compare"]["differences"],
-      Json::array({"They differ in scene, so the same stratum draws other pairs: none before, arm.toml#1 after."}));
+  EXPECT_EQ(in_scene["compare"]["differences"],
+            Json::array({"The scene differs, so the same stratum draws other pairs: none before, arm.toml#1 after."}));
   Json same = before;
   add_comparison(same, before, Json::array(), Json::array());
   EXPECT_TRUE(same["compare"]["differences"].empty());

@@ -11,7 +11,7 @@
 namespace graze::reports {
 namespace {
 
-constexpr double kNoisy = 0.25;  // of the median
+constexpr double kNoisy = 0.25;  // share of the median
 
 std::string nanoseconds(double value) {
   if (value >= 1000) return grouped(static_cast<std::uint64_t>(std::llround(value)));

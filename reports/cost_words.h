@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gives all costs that a person reads the same form: nanoseconds per pair with the quartiles of the passes, and one
-// sentence that says what was timed.
+// Writes all costs for people in one form: nanoseconds per pair with the quartiles of the passes. One sentence says
+// what was timed.
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@
 
 namespace graze::reports {
 
-// Whether the quartiles are further apart than a quarter of the median, because something else ran on the machine or
-// its clock changed. Two measurements of one lane may then differ by more than their quartiles.
+// Whether the quartiles are further apart than a quarter of the median. The cause is another program or a
+// changing clock rate. Two measurements of such a lane may differ by more than their quartiles.
 bool is_noisy(const analysis::Cost& cost);
 
 // Whether the cost is lower and the spreads do not overlap.
@@ -22,15 +22,16 @@ bool is_cheaper(const analysis::Cost& cost, const analysis::Cost& other);
 std::string cost_words(const analysis::Cost& cost);
 
 // "Costs are times per pair on one core of MACHINE, with the quartiles of 9 passes: calls of many pairs, on PAIRS. …"
-// pairs: which pairs, such as "the first 1,024 pairs of each stratum".
+// pairs: the name of the timed pairs, such as "the first 1,024 pairs of each stratum".
 std::string costs_sentence(analysis::Calls calls, const std::string& pairs, const std::string& machine, int passes);
 
 // "A call of one pair takes 41 ns (40 to 43) in mine/f32/cpu, 73 ns (72 to 75) in exact/f32/cpu: median and
-// quartiles of 101 passes over PAIRS, on one core of MACHINE." Short, for a screen with other things on it.
+// quartiles of 101 passes over PAIRS, on one core of MACHINE." This form is short because the screen shows other
+// results too.
 std::string one_call_sentence(std::span<const std::string> lanes, std::span<const analysis::Cost> costs,
                               const std::string& pairs, const std::string& machine, int passes);
 
-// "Noisy measurements: A, B; …"; empty if none is noisy. For tables, which show only the median.
+// "Noisy measurements: A, B; …"; empty if no cost is noisy. Tables that show only medians need it.
 std::string noisy_sentence(std::span<const std::string> lanes, std::span<const analysis::Cost> costs);
 
 }  // namespace graze::reports

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lane costs from a campaign's timings.json (fuzz/campaign/lane_costs.h). They are not part of the report, because the
-// report does not depend on the machine.
+// Reads the costs of lanes from a campaign's timings.json (fuzz/campaign/lane_costs.h). The report leaves costs out,
+// because it must not depend on the machine.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace graze::reports {
 
-// The cost of a lane on some pairs.
+// The cost of a lane, and the number of pairs that were timed.
 struct Cost : analysis::Cost {
   std::uint64_t pairs = 0;
 };
@@ -20,7 +20,7 @@ struct Costs {
   int passes = 0;
   std::vector<std::vector<std::optional<Cost>>> of_stratum;  // [lane][stratum]
 
-  // The cost of a lane on some strata, weighted by their pairs. Nothing unless the lane was timed on all these strata.
+  // The mean cost of a lane over the strata, weighted by their pairs. Nothing unless the lane was timed on all of them.
   std::optional<Cost> of(std::size_t lane, const std::vector<std::size_t>& strata) const;
 };
 
@@ -29,7 +29,7 @@ struct Costs {
 std::optional<Costs> costs_of(const nlohmann::ordered_json& runs, const CampaignCounts& counts);
 
 // The contents of costs.json: {"machine", "passes", "rows": [{"lane", "group", "pairs", "low", "middle", "high"}],
-// "answer"}, as reports/web/src/report.ts describes it. A null group means all strata together. kinds: as in answer().
+// "answer"}, as reports/web/src/report.ts describes it. A null group means all strata together. kinds: as for answer().
 nlohmann::ordered_json to_json(const Costs& costs, const CampaignCounts& counts, const nlohmann::ordered_json& kinds);
 
 }  // namespace graze::reports

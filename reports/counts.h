@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The counts of summary.json, by stratum and in total. A report's rates, margins and findings come from them.
+// The counts of summary.json, by stratum and in total. A report's rates, margins and findings follow from them.
 #pragma once
 
 #include <map>
@@ -17,14 +17,14 @@ namespace graze::reports {
 struct ReportLane {
   std::string id;
   LaneName name;
-  const Lane* row = nullptr;  // in this build's table; null if the build has no such lane
+  const Lane* row = nullptr;  // the lane in this build's table; null if it has no such lane
   bool exact = false;
-  int cpu = -1;  // index of the cpu lane of the same algorithm and scalar; -1 if there is none or it is this lane
+  int cpu = -1;  // index of the cpu lane of the same algorithm and scalar; -1 if there is none, or if it is this lane
 };
 
 struct WrongCounts {
   std::uint64_t pairs = 0;
-  std::vector<std::uint64_t> wrong, differs_from_cpu;  // by lane: wrong verdicts, and those that differ from cpu's
+  std::vector<std::uint64_t> wrong, differs_from_cpu;  // by lane: wrong verdicts; verdicts that differ from cpu's
 };
 
 struct StratumCounts {
@@ -54,7 +54,7 @@ struct CampaignCounts {
   std::vector<GroupCounts> groups;  // groups that have pairs
   StratumCounts total;              // id empty
 
-  // Index of a lane; -1 if absent. counterpart: the same lane in another variant.
+  // Both return the index of a lane, or -1 if it is absent. counterpart: the same lane in another variant.
   int find(const LaneName& name) const;
   int counterpart(std::size_t lane, std::string_view variant) const;
   const StratumCounts* stratum(std::string_view id) const;

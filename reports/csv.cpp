@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Formats a value as a cell: numbers and text as they are, null as an empty cell.
+// Formats a value as a cell. Null gives an empty cell, and text is quoted if necessary.
 std::string cell(const Json& value) {
   if (value.is_null()) return "";
   if (!value.is_string()) return value.dump();
@@ -49,7 +49,7 @@ Json id_in(const Json& report, const char* list, const Json& place) {
 
 Json lane_id(const Json& report, const Json& row) { return id_in(report, "lanes", row["lane"]); }
 
-// The group of a stratum; empty for a stratum that this build does not know.
+// The id of a stratum's group; null for a stratum that this build does not know.
 Json group_id(const Json& report, const Json& stratum) {
   for (const Json& group : report["groups"]) {
     const Json& strata = group["strata"];
@@ -84,7 +84,8 @@ std::string rates_csv(const Json& report) {
   return table.text;
 }
 
-// A row for each lane, stratum and bucket. differs: count verdicts that differ from the cpu lane, if one ran.
+// Returns a row for each lane, stratum and bucket. differs: if true, counts verdicts that differ from the cpu lane's,
+// for lanes that have a cpu lane; otherwise counts wrong verdicts.
 std::string margins_csv(const CampaignCounts& counts, bool differs) {
   Table table("lane,stratum,side,exponent,count,of,share,low,high");
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {

@@ -96,7 +96,7 @@ Json extremes_json(const DiscrepancyCounts& of, Axis axis) {
   return places;
 }
 
-// axis: the stratum's; nothing for a sum of strata, because strata vary different quantities.
+// axis: that of the stratum. A sum of strata has none, because strata vary different quantities.
 Json counts_json(const DiscrepancyCounts& of, const std::vector<Question>& questions, std::optional<Axis> axis) {
   static const std::vector<Field> kQuestion = question_fields(), kValue = value_fields();
   Json json = object_of(kPairFields, of, 0);
@@ -129,7 +129,7 @@ DiscrepancyCounts total(const LanesCompared& lanes, const std::vector<Discrepanc
   return sum;
 }
 
-// The number of differing values in each octave of their distance in ulps, over both values of the question.
+// The number of differing values by the octave of their distance in ulps, summed over the question's values.
 Octaves octaves_of(const DiscrepancyCounts& of, int question, std::size_t values) {
   using namespace value_counts;
   Octaves octaves;
@@ -156,7 +156,7 @@ std::uint64_t sum_of(const DiscrepancyCounts& of, int question, std::size_t valu
   return sum;
 }
 
-// The lines sorted by how many verdicts they change, then by how many values.
+// The lines, sorted by the number of verdicts that they change, then by the number of values.
 std::vector<const analysis::FusedLine*> by_weight(const analysis::Origins& origins) {
   std::vector<const analysis::FusedLine*> lines;
   for (const analysis::FusedLine& line : origins.lines) lines.push_back(&line);

@@ -47,7 +47,7 @@ TEST_F(DiscrepancyResult, EveryCountThatIsEditedIsRefused) {
   for (const auto& [place, value] : flat.items()) {
     const bool origins = place.find("/origins/") != std::string::npos;
     if (!value.is_number_unsigned() || !(origins || place.find("/strata/") != std::string::npos)) continue;
-    if (++edited % 7 != 0) continue;  // some of them
+    if (++edited % 7 != 0) continue;  // test only some counts
     for (const Json& count : {Json(origins ? std::uint64_t{1} << 39 : value.get<std::uint64_t>() + 1),
                               Json(std::uint64_t{1} << 40), Json(-5)}) {
       Json other = json_;
@@ -104,7 +104,7 @@ TEST_F(DiscrepancyResult, TheTableHasEveryCount) {
   EXPECT_GT(in_table, 100'000u);
 }
 
-// Bounds are rounded outward.
+// The bounds in the answer are rounded outward.
 TEST_F(DiscrepancyResult, TheAnswersBoundsHold) {
   const std::vector<std::string> answer = discrepancy_answer(json_);
   ASSERT_EQ(answer.size(), 5u);
@@ -152,7 +152,7 @@ TEST_F(DiscrepancyResult, EveryNumberIsCompared) {
   std::reverse(questions.begin(), questions.end());
   EXPECT_EQ(discrepancy_changes(json_, other, wide), same);
   Json changed = other;
-  changed["lanes"][0]["total"]["questions"][0]["largest_in_bounds"] = 7.5;  // in no table
+  changed["lanes"][0]["total"]["questions"][0]["largest_in_bounds"] = 7.5;  // a number that is in no table
   EXPECT_EQ(discrepancy_changes(json_, changed, wide).find("1 numbers differ, "), 0u)
       << discrepancy_changes(json_, changed, wide);
   questions[0]["question"] = "another";
@@ -167,7 +167,8 @@ TEST_F(DiscrepancyResult, ThePageNamesEveryQuestionThatDiffers) {
     name = std::regex_replace(name, std::regex("<"), "&lt;");
     EXPECT_NE(page.find(name), std::string::npos) << name;
   }
-  EXPECT_NE(page.find("return u.x * v.x + u.y * v.y + u.z * v.z;"), std::string::npos);  // the source of a fused line
+  // The source text of a fused line.
+  EXPECT_NE(page.find("return u.x * v.x + u.y * v.y + u.z * v.z;"), std::string::npos);
   EXPECT_EQ(page.find("<script"), std::string::npos);
 }
 

@@ -27,7 +27,7 @@ std::string extreme(const std::vector<const Json*>& lanes, const char* count, bo
   return fmt::format("{} ({})", rate_words(rate(of)), text_at(*of, "second"));
 }
 
-// On how many pairs a lane's verdict differs from that of its recorded run; empty if on none.
+// Says on how many pairs a lane's verdict differs from that of its recorded run. Empty if there is no such pair.
 std::string unlike_words(const Json& json) {
   std::string text;
   for (const Json& of : json.at("lanes")) {
@@ -92,7 +92,7 @@ std::string start_sentence(const std::vector<const Json*>& lanes) {
     }
   }
   if (all == 0 && traced) return "Contraction changes no value on the traced pairs.";
-  if (all == 0) return "Where differences start is not known: no pair of lanes has contractions that can be traced.";
+  if (all == 0) return "It is not known where differences start: no pair of lanes has contractions that can be traced.";
   const auto top =
       std::max_element(starts.begin(), starts.end(), [](const auto& l, const auto& r) { return l.second < r.second; });
   return fmt::format("{} of the {} traced values that differ start to differ at {}.{}", rate_words(top->second, all),
@@ -119,7 +119,7 @@ std::string nearer_sentence(const std::vector<const Json*>& lanes) {
       grouped(all), rate_words(second, all), rate_words(first, all), grouped(equal), grouped(unknown));
 }
 
-// A pair of triangles has up to dozens of comparisons, which are not independent. So the bound counts pairs.
+// The bound counts pairs of triangles, because the dozens of comparisons on one pair are not independent.
 std::string band_sentence(const std::vector<const Json*>& lanes, std::uint64_t pairs) {
   double widest = 0;
   std::uint64_t asked = 0, beyond_range = 0;
@@ -137,11 +137,12 @@ std::string band_sentence(const std::vector<const Json*>& lanes, std::uint64_t p
   }
   if (widest == 0) return "No sign differs.";
   return fmt::format(
-      "Signs differ only where both values are at most {} bounds of their rounding error away from zero ({}). In {} "
-      "comparisons on {} none with differing signs was farther away{}. At 95 % confidence, one occurs on fewer than "
-      "{} of the pairs.",
+      "Signs differ only where both values are at most {} bounds of their rounding error away from zero ({}). "
+      "Among {} comparisons on {}, no sign differs farther from zero{}. At 95 % confidence, such a difference "
+      "occurs on fewer than {} of the pairs.",
       rounded_up(widest, 2), where, grouped(asked), counted(pairs, "pair"),
-      beyond_range == 0 ? "" : fmt::format(", except {} whose error has no bound", grouped(beyond_range)),
+      beyond_range == 0 ? ""
+                        : fmt::format(", except in {} comparisons whose error has no bound", grouped(beyond_range)),
       rounded_up(analysis::upper_bound(0, pairs), 2));
 }
 

@@ -15,7 +15,7 @@ namespace graze::reports {
 namespace {
 using Json = nlohmann::ordered_json;
 
-// Collects all numbers in the value by their paths; rows of lists are addressed by name.
+// Collects all numbers in the value by their paths. In a path, the rows of a list have names instead of indices.
 void add_numbers(const Json& of, const std::string& place, std::map<std::string, Json>& to) {
   if (of.is_number()) {
     to.emplace(place, of);
@@ -41,7 +41,7 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
   const auto lanes_of = [](const Json& of) { return text_at(of, "first") + " against " + text_at(of, "second"); };
   std::string text;
   for (const std::string& sentence : code_differences(before, after)) text += wrapped(sentence, screen.columns);
-  std::size_t differ = 0, same = 0, alone = 0;  // alone: numbers that only one result has
+  std::size_t differ = 0, same = 0, alone = 0;  // alone: numbers that only one of the results has
   TextTable table({{"lanes", Align::left}, {"question", Align::left}, {"count", Align::left}, {"before"}, {"after"}});
   // Calls with_both(old, now) for each comparison that is in both results.
   const auto match = [&](const char* kind, const auto& with_both) {

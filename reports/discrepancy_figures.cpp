@@ -15,9 +15,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kFewBars = 6;  // so many bars have room for their counts
+constexpr std::size_t kFewBars = 6;  // up to this number, bars have room for their counts
 
-// A bar chart of counts on a logarithmic scale: one series upwards and, if given, one downwards.
+// A bar chart of counts on a logarithmic scale: one series upwards and, if given, another downwards.
 std::string mirrored_bars(const std::string& title, const std::vector<std::string>& labels,
                           const std::vector<std::uint64_t>& up_counts, const std::vector<std::uint64_t>& down_counts,
                           const std::string& up_name, const std::string& down_name) {
@@ -61,7 +61,6 @@ std::string mirrored_bars(const std::string& title, const std::vector<std::strin
 
 }  // namespace
 
-// Errors of both lanes, mirrored.
 std::string errors_figure(const Json& of) {
   const auto first = sum_by_bucket(of.at("total"), "first_error"),
              second = sum_by_bucket(of.at("total"), "second_error");
@@ -122,7 +121,7 @@ std::string band_figure(const Json& of) {
 
 namespace {
 
-constexpr std::uint64_t kFewestPairs = 30;  // a share of fewer pairs is not drawn
+constexpr std::uint64_t kFewestPairs = 30;  // shares of fewer pairs are not drawn
 
 // A line in the picture of shares by scale or offset.
 struct ShareLine {
@@ -131,7 +130,8 @@ struct ShareLine {
 constexpr ShareLine kShareLines[] = {
     {"differs", "a value differs"}, {"sign", "a sign"}, {"outcome", "a comparison"}, {"verdict", "the verdict"}};
 
-// Shares of pairs by their place on an axis, on a logarithmic scale. places: counts by log2 of each place's lower end.
+// Draws shares of pairs by their place on an axis, on a logarithmic scale. places: counts by log2 of each place's lower
+// end.
 std::string extremes_figure(const std::string& title, const std::string& unit,
                             const std::map<int, const Json*>& places) {
   constexpr double kLeft = 64, kRight = 880;

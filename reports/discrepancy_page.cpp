@@ -149,7 +149,7 @@ std::string lines_table(const Json& origins) {
   return text + "</table></div>\n";
 }
 
-// The coordinate types of the pairs, where some are doubles.
+// The coordinate types of the pairs; empty if all are float32.
 std::string coordinates_words(const Json& json) {
   if (!json.contains("coordinates")) return "";
   return text_at(json, "coordinates") == "f64" ? ", with coordinates in double"

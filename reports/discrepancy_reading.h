@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads discrepancy.json (docs/formats.md) for its page, sentences and pictures; the names of its buckets.
+// Reads discrepancy.json (docs/formats.md) for its page, sentences and pictures. Names its buckets.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,8 @@
 
 namespace graze::reports {
 
-// Throws: nlohmann::json::exception if there is no such key; std::runtime_error if its value is not a count.
+// The count at the key.   Throws: nlohmann::json::exception if there is no such key; std::runtime_error if its value is
+// not a count.
 std::uint64_t number_at(const nlohmann::ordered_json& json, const std::string& key);
 inline std::string text_at(const nlohmann::ordered_json& json, const char* key) {
   return json.at(key).get<std::string>();
@@ -26,7 +27,7 @@ double part_of(std::uint64_t part, std::uint64_t whole);
 // The questions of an algorithm as discrepancy.json lists them: name, site, degree and values.
 nlohmann::ordered_json questions_json(const std::vector<Question>& questions);
 
-// The name of the bucket with an exponent, and a histogram of the buckets that are not zero.
+// octave: the name of the bucket from 2^k to 2^(k+1). octaves_json: a histogram of the nonzero counts by bucket.
 std::string octave(int k);
 nlohmann::ordered_json octaves_json(std::span<const std::uint64_t> counts);
 
@@ -36,17 +37,17 @@ inline int power_of(const std::string& bucket) { return std::stoi(bucket.substr(
 // Counts by the exponent of their bucket.
 using Octaves = std::map<int, std::uint64_t>;
 
-// The first octave at which the counts so far reach this share of all counts; nothing without counts.
+// The lowest octave such that it and all lower ones have at least this share of the counts. Nothing without counts.
 std::optional<int> quantile(const Octaves& octaves, double share);
 
-// A histogram whose buckets are all powers of 2.
+// Reads a histogram whose buckets are all powers of 2.
 Octaves octaves_at(const nlohmann::ordered_json& histogram);
 
-// Adds up a histogram, or a count, over all values of all questions.
+// Both sum over all values of all questions. sum_by_bucket adds up a histogram, and sum_at a count.
 std::map<std::string, std::uint64_t> sum_by_bucket(const nlohmann::ordered_json& counts, const char* histogram);
 std::uint64_t sum_at(const nlohmann::ordered_json& counts, const char* key);
 
-// The pairs of lanes in which some value differs.
+// The entries of "lanes" in which some value differs.
 std::vector<const nlohmann::ordered_json*> differing_lanes(const nlohmann::ordered_json& discrepancy);
 
 }  // namespace graze::reports

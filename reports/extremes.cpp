@@ -30,7 +30,7 @@ std::string range_words(const RightRange& range, int step) {
   return down.last == origin.exponent ? "up to " + end : fmt::format("from {} to {}", power(down.right), end);
 }
 
-// Where the lane is less often right, and where that is not settled.
+// Says where the lane is less often right, and where this is not settled.
 std::string rest_words(const RightRange& range, int step) {
   std::vector<std::string> worse, open;
   const auto add = [&](const RightSide& side, const std::string& beyond) {
@@ -46,7 +46,7 @@ std::string rest_words(const RightRange& range, int step) {
          (open.empty() ? "" : fmt::format("; not settled {}", fmt::join(open, " and ")));
 }
 
-// The ratio of a share to the origin's share. Its bounds use the worst ends of both 95 % intervals.
+// The ratio of a share to the origin's share, with bounds that use the worst ends of both 95 % intervals.
 Json times_json(const Share& share, const Share& origin) {
   constexpr int kDigits = 3;
   const auto ratio = [](double left, double right) { return right > 0 ? left / right : 0; };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a lane stays right on extreme pairs, in words and ratios, for a campaign's counts and for `graze pareto`.
+// Says up to which extremes a lane is as right as on ordinary pairs, for a campaign's counts and for `graze pareto`.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,7 +10,7 @@
 
 namespace graze::reports {
 
-// What the sentences mean by "as right".
+// Defines "as right" for readers of the sentences.
 inline constexpr const char* kAsRightMeans =
     "As right: errors on at most twice the share of pairs, or on at most 0.1 %, with 95 % confidence.";
 
@@ -18,9 +18,9 @@ inline constexpr const char* kAsRightMeans =
 // exponents [exponent, exponent + step), or for one exponent if the step is 0.   Requires: rising exponents.
 std::string right_words(std::span<const analysis::ErrorsAt> points, int step);
 
-// Adds to a row of a report's extremes what follows from its cells: "origin", the exponent of the cell to compare with;
-// "says", the words above; and for each cell with errors "times": the ratio of its share to the origin's, with a lower
-// and an upper bound. A value is null if the origin has no errors to divide by.
+// Adds to a row of a report's extremes the fields that follow from its cells. "origin" is the exponent of the cell with
+// which the others are compared. "says" has the words above. Each cell with errors gets "times": the ratio of its share
+// to the origin's, a lower bound and an upper bound. A value of "times" is null if the origin has no errors.
 void add_right_range(nlohmann::ordered_json& row);
 
 }  // namespace graze::reports

@@ -60,7 +60,7 @@ double number_in(const std::filesystem::path& file, const corpus::Entry& entry, 
 
 Verdict verdict_of(std::string_view word) { return verdict_named(word).value_or(Verdict::declined); }
 
-// The verdicts of the lanes that the minimiser ran on the pair.
+// The minimiser's verdicts on the pair, for each lane that it ran.
 Json verdicts_of(const CampaignCounts& counts, Verdict truth, const Json& stored) {
   Json rows = Json::array();
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
@@ -95,7 +95,7 @@ Json commands_of(const corpus::Entry& entry, const std::string& subject, const s
   return rows;
 }
 
-// Programs that show the kind's first lane on the host and on the device, and short programs for the truth.
+// Programs that show a lane of the kind on the host and on the device, a program for the truth, and an OBJ file.
 Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const Json& kind, Verdict truth,
                  const Json& verdicts, const std::string& from) {
   Json rows = Json::array();
@@ -130,7 +130,7 @@ Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const
   return rows;
 }
 
-// How many cards lack something.
+// The numbers of cards that lack a part.
 struct Lacking {
   std::size_t minimised = 0, mapped = 0, room = 0;
 };

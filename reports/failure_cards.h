@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The parts of a report that describe single failures: a card for each kind, and a row for each signature.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace graze::reports {
 
-// Limits on the size of the page: rows in its table, and bytes of all its maps.
+// Limits on the size of the page: the rows of its table of signatures, and the bytes of all its ulp maps.
 inline constexpr std::size_t kMostSignatures = 5'000;
 inline constexpr std::size_t kMostMapBytes = 7 << 18;
 
@@ -22,8 +23,9 @@ inline constexpr std::string_view kSourceMark = "@SOURCE@";
 // Returns one row for each signature, the most frequent first.
 nlohmann::ordered_json signature_rows(const CampaignCounts& counts, const nlohmann::ordered_json& summary);
 
-// Adds the signatures' rows, the most frequent first, and a card for each kind of failure (fuzz/minimise/kinds.h). Uses
-// the case files and the minimiser's results beside them; `missing` lists the missing parts.   Throws: FormatError.
+// Adds the signatures' rows, the most frequent first, and a card for each kind of failure (fuzz/minimise/kinds.h).
+// Reads the case files and the minimiser's results beside them. Lists missing parts in `missing`.
+// Throws: FormatError.
 void add_signatures(nlohmann::ordered_json& report, const std::filesystem::path& directory,
                     const nlohmann::ordered_json& summary, const CampaignCounts& counts);
 

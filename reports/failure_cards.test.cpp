@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cards of a small campaign: what they say about kind, pair and lanes is consistent and true.
+// Tests that the cards of a small campaign are consistent, and true of their kinds, pairs and lanes.
 #include "reports/failure_cards.h"
 
 #include <fmt/format.h>
@@ -72,7 +72,7 @@ TEST_F(FailureCards, AreTheCommonestKinds) {
   }
 }
 
-// Title, verdicts, sentence and drawing.
+// Compares each card's title, verdicts, sentence and drawing.
 TEST_F(FailureCards, DoNotContradictThemselves) {
   const fuzz::SelectedLanes under_test = lanes();
   std::size_t with_line = 0;
@@ -183,7 +183,7 @@ TEST_F(FailureCards, HaveTheirProgramsAndTheStoredMaps) {
       EXPECT_TRUE(contains(error.what(), "graze minimize")) << error.what();
     }
   }
-  // Even if it is sealed again, its contents must be possible: a lane that did not run is refused.
+  // Even a sealed file must have possible contents: a lane that did not run is refused.
   Json other = Json::parse(maps);
   other.erase("checksum");
   other["panels"].push_back({{"name", "never_ran/f32/cpu"}, {"shows", "right everywhere"}, {"png", ""}});

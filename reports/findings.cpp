@@ -16,7 +16,7 @@
 namespace graze::reports {
 namespace {
 
-// A lane with contraction, and the same lane without.
+// A lane with contraction, and the same lane without it.
 struct Contracted {
   std::size_t without, with;
   std::optional<std::uint64_t> differs;
@@ -69,15 +69,16 @@ std::string contraction(const CampaignCounts& counts, const LaneIndices& lanes) 
                                           grouped(total.wrong(most->with)));
   const std::string how_many = fmt::format("{} of {} lanes that ran with and without it change", changed, all.size());
   if (!most->differs) {
-    return fmt::format("Contraction changes most in {}: beside {} {} of {} pairs; {}{}.", counts.lanes[most->with].id,
-                       counts.lanes[most->without].id, from_to, grouped(total.pairs), how_many, uncounted);
+    return fmt::format("Contraction changes most in {}: compared with {}, {} of {} pairs; {}{}.",
+                       counts.lanes[most->with].id, counts.lanes[most->without].id, from_to, grouped(total.pairs),
+                       how_many, uncounted);
   }
   return fmt::format("Contraction changes most in {}: a different verdict from {} on {}, and {}; {}{}.",
                      counts.lanes[most->with].id, counts.lanes[most->without].id,
                      with_interval(share_of(*most->differs, total.pairs), " pairs"), from_to, how_many, uncounted);
 }
 
-// Measured on 20,000,000 pairs of each reference.
+// The rates were measured on 20,000,000 pairs of each reference triangle.
 constexpr const char* kRateOf2012 =
     " The thesis saw about 1 in 1,000. In its own algorithm contraction explains 1 in 3,270. The rest is unexplained: "
     "built for the x87, with the reference triangle of the thesis's special cases, it differs on 1 in 1,300. The "
@@ -218,7 +219,7 @@ std::vector<std::string> answer(const CampaignCounts& counts, const Costs* costs
   add(lane_to_use(counts, costs));
   const bool compares =
       std::any_of(lanes.begin(), lanes.end(), [&](std::size_t l) { return !same_family(counts, l, lanes.front()); });
-  if (ours || compares) {  // for one own code alone, the first sentences say this already
+  if (ours || compares) {  // if only one own code ran, the first sentences say this
     add(lane_to_avoid(counts, costs));
     add(least_wrong_lane(counts, costs));
   }

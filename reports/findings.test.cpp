@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The answer's sentences for artificial summaries.
+// Tests the answer's sentences on artificial summaries.
 #include "reports/findings.h"
 
 #include "reports/test_campaign.h"

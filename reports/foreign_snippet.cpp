@@ -31,7 +31,7 @@ std::string cpp_string(std::string_view text) {
   return result + '"';
 }
 
-// Calls the code through the graze_subject to which `subject` points; that has a function for one pair or for blocks.
+// Calls the code through the graze_subject to which `subject` points. It has a function for one pair or for blocks.
 std::string by_description(std::string_view real, std::string_view scalar, std::string_view subject) {
   return fmt::format(R"(static int decide(const {0}* a, const {0}* b) {{
   const struct graze_subject* subject = {2};
@@ -47,7 +47,7 @@ std::string by_description(std::string_view real, std::string_view scalar, std::
                      real, scalar, subject);
 }
 
-// As graze/subject.h has it.
+// The layout of graze_subject, as in graze/subject.h.
 constexpr std::string_view kLayout = R"(#include <dlfcn.h>
 #include <cstdint>
 struct graze_subject {  // as in graze/subject.h
@@ -74,7 +74,7 @@ std::string calling(std::string_view real, std::string_view function) {
                      function);
 }
 
-// Whether the C function returns bool; then its caller must declare it so.
+// Whether the C function returns bool. If so, its caller must declare this.
 bool returns_bool(const std::filesystem::path& source, const std::string& function) {
   std::string why;
   const std::string text = plain_file(source, why).value_or("");
@@ -97,8 +97,8 @@ std::string hex_line(const AnyPair& pair) {
   return line;
 }
 
-// A call through the graze command. A CUDA lane needs it because the test also runs without a device, where only Graze
-// can replay the lane; a toolchain's lane needs it because Graze compiles the source with the toolchain.
+// Calls the lane through the graze command. A CUDA lane needs this because without a device only Graze can replay the
+// lane. A lane of a toolchain needs this because Graze compiles the source with the toolchain.
 std::string by_graze(const Lane& lane, const AnyPair& pair, const subjects::Opened& opened, std::string_view real) {
   std::string command = fmt::format("echo '{}' | graze check - --json --lanes {}", fuzz::pair_text(pair), lane.id);
   if (opened.kind != "published")
@@ -120,7 +120,7 @@ std::string by_graze(const Lane& lane, const AnyPair& pair, const subjects::Open
   const std::string lane = {2};
   const std::size_t at = said.find(lane);
   if (at == said.npos) {{
-    std::puts("expected an answer from graze, which must be on the PATH, found none");
+    std::puts("graze gave no answer; it must be on the PATH");
     std::exit(1);
   }}
   const std::string verdict = said.substr(at + lane.size());
@@ -164,12 +164,12 @@ ForeignCall foreign_call(const Lane& lane, const AnyPair& pair, std::string_view
   if (opened.kind == "command") {
     call.command = plain + end;
     call.decide = fmt::format(
-        R"(// Asks the program about this pair alone, through a line of text, in the folder in which it was tested.
+        R"(// Gives the program this pair as a line of text, in the folder in which it was tested.
 static int decide(const {}*, const {}*) {{
   FILE* program = popen({},
                         "r");
   int said = program ? std::fgetc(program) : EOF;
-  while (program && std::fgetc(program) != EOF) {{  // to its end
+  while (program && std::fgetc(program) != EOF) {{  // reads its output to the end
   }}
   if (program) pclose(program);
   if (said != '0' && said != '1' && said != '?') {{

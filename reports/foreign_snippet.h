@@ -13,14 +13,15 @@ namespace graze::reports {
 struct ForeignCall {
   std::string command;   // compiles and runs case.cpp, or case.cu
   std::string decide;    // int decide(const Real* a, const Real* b): above 0 intersects, below 0 declined
-  int seconds;           // time limit of the call
-  std::string function;  // the user's __device__ function for a kernel; then `decide` includes its source
+  int seconds;           // time limit of the call, in seconds
+  std::string function;  // for a kernel: the user's __device__ function, whose source `decide` includes
 };
 
-// For a program that nvcc compiles for a device.   Requires: a foreign CUDA lane.
+// Returns the parts for a program that nvcc compiles for a device.   Requires: a foreign CUDA lane.
 ForeignCall kernel_call(const Lane& lane);
 
-// For a program on the host. A CUDA lane is called through the graze command, which asks a device or the lane's twin.
+// Returns the parts for a program on the host. The program calls a CUDA lane through the graze command, which runs the
+// lane on a device or replays it on its twin.
 // Requires: a foreign lane.
 ForeignCall foreign_call(const Lane& lane, const AnyPair& pair, std::string_view compiler, std::string_view libraries);
 

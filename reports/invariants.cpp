@@ -38,7 +38,7 @@ Json case_json(const analysis::InvariantSpec& spec, const std::optional<Invarian
           {"says_of_image", name(found->of_image)}};
 }
 
-// The two entries of a case: the pair with the wrong verdict first.
+// The two entries of a case. The pair with the wrong verdict comes first.
 std::vector<corpus::Entry> entries_of(const analysis::InvariantSpec& spec, const Lane& lane,
                                       const InvariantInfo& invariant, const InvariantCase& found) {
   const auto entry = [&](const AnyPair& pair, Verdict says, const std::string& from) {
@@ -56,7 +56,7 @@ std::vector<corpus::Entry> entries_of(const analysis::InvariantSpec& spec, const
   return entries;
 }
 
-// What each power of two contributes to the column "scale, in range". Empty if that is unknown, or if nothing changes.
+// Shows what each power of two adds to the column "scale, in range". Empty if this is unknown or no verdict changes.
 std::string scales_table(const analysis::InvariantSpec& spec, const analysis::Invariants& invariants,
                          const Screen& screen) {
   std::vector<Column> columns{{"lane", Align::left}};
@@ -128,11 +128,11 @@ std::vector<std::string> invariants_sentences(const analysis::InvariantSpec& spe
         "every pair on which nothing over- or underflows: " +
         text + ".");
   }
-  sentences.push_back(
-      fmt::format("exact breaks no invariant on {} pairs and their {} images; CGAL and GMP none on {} of the pairs and "
-                  "their {} images.",
-                  grouped(invariants.pairs), grouped(invariants.images), grouped(invariants.by_oracle),
-                  grouped(invariants.its_images)));
+  sentences.push_back(fmt::format(
+      "exact breaks no invariant on {} pairs and their {} images; CGAL and GMP break none on {} of the pairs and "
+      "their {} images.",
+      grouped(invariants.pairs), grouped(invariants.images), grouped(invariants.by_oracle),
+      grouped(invariants.its_images)));
   return sentences;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presents invariants as a table, sentences, invariants.json, and files of pairs with the simplest cases.
+// Presents the results of `graze invariants` as a table, sentences, invariants.json, and files of the simplest cases.
 #pragma once
 
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace graze::reports {
 
-// Returns a row for each lane: the percentage of pairs on which each invariant is broken.
+// Returns a table with a row for each lane: the percentage of pairs on which the lane breaks each invariant.
 std::string invariants_table(const analysis::InvariantSpec& spec, const analysis::Invariants& invariants,
                              const Screen& screen);
 
@@ -24,8 +24,8 @@ std::vector<std::string> invariants_sentences(const analysis::InvariantSpec& spe
 // "case"}}}]}
 nlohmann::ordered_json invariants_json(const analysis::InvariantSpec& spec, const analysis::Invariants& invariants);
 
-// For each invariant that some lane breaks, a file name and the file's text. For each such lane the file has the
-// simplest pair on which the lane breaks the invariant, and the pair's image, the one that the lane gets wrong first.
+// Returns a file's text by the file's name, for each invariant that some lane breaks. For each lane that breaks the
+// invariant, the file has the simplest such pair and its image, the wrongly decided pair first.
 std::map<std::string, std::string> invariants_cases(const analysis::InvariantSpec& spec,
                                                     const analysis::Invariants& invariants);
 

@@ -43,12 +43,12 @@ std::string case_in_xml(const JunitCase& test) {
 
 // The simplest kept pair on which a lane is wrong, and the file that holds it.
 struct Kept {
-  Simplicity simplicity;  // the same for all pairs of doubles, so the first of these is shown
+  Simplicity simplicity;  // equal for all pairs of doubles, so the first one is kept
   std::string pair;
   fs::path file;
 };
 
-// By lane and stratum; an empty stratum stands for all strata.
+// The kept pairs by lane and stratum. An empty stratum stands for all strata.
 std::map<std::pair<std::string, std::string>, Kept> simplest_of(const fs::path& directory, const Json& summary) {
   std::map<std::pair<std::string, std::string>, Kept> simplest;
   for (const Json& row : summary["signatures"]) {
@@ -74,7 +74,7 @@ std::map<std::pair<std::string, std::string>, Kept> simplest_of(const fs::path& 
 }  // namespace
 
 std::string junit(std::span<const JunitCase> cases) {
-  std::string text = "<testsuites name=\"graze\">\n";  // no other program's file begins so, see fuzz/own_files.h
+  std::string text = "<testsuites name=\"graze\">\n";  // no other program's file begins like this (fuzz/own_files.h)
   for (auto first = cases.begin(); first != cases.end();) {
     const auto last =
         std::find_if(first, cases.end(), [&](const JunitCase& test) { return test.suite != first->suite; });

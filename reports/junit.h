@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results as JUnit XML, which continuous-integration services show as tests.
+// Writes results as JUnit XML, which continuous-integration services show as tests.
 #pragma once
 
 #include <filesystem>
@@ -21,9 +21,10 @@ struct JunitCase {
 // Consecutive cases with the same suite form one suite. Characters that XML forbids are written as \xHH.
 std::string junit(std::span<const JunitCase> cases);
 
-// One test for each lane and each stratum that has pairs, and a skipped test for each lane that was asked for and did
-// not run. A test fails if the lane is wrong on a pair. Its message then has the simplest pair that the campaign kept
-// for that stratum, or for all strata if it kept none there.   Throws: like fuzz::read_cases.
+// Returns a test for each lane and each stratum that has pairs, and a skipped test for each requested lane that did not
+// run. A test fails if the lane is wrong on a pair. Its message then has the simplest pair that the campaign kept for
+// that stratum. If the campaign kept none there, it is the simplest pair of all strata.
+// Throws: like fuzz::read_cases.
 std::vector<JunitCase> junit_of_campaign(const std::filesystem::path& directory, const nlohmann::ordered_json& summary,
                                          std::span<const fuzz::LaneLeftOut> left_out);
 

@@ -25,7 +25,7 @@ inline LaneIndices published(const CampaignCounts& counts) {
   return places;
 }
 
-// Whether the subject is a published algorithm, and not a user's own code.
+// Whether the subject is a published algorithm and not a user's own code.
 inline bool is_published(const std::string& subject) {
   return std::any_of(graze::published_lanes().begin(), graze::published_lanes().end(),
                      [&](const Lane& lane) { return lane.info->id == subject; });
@@ -36,7 +36,7 @@ inline bool all_published(const CampaignCounts& counts) {
                      [&](std::size_t l) { return is_published(counts.lanes[l].name.subject); });
 }
 
-// Whether two lanes belong to one family: one algorithm in one precision. Variants do not count here.
+// Whether two lanes are variants of one algorithm in one precision.
 inline bool same_family(const CampaignCounts& counts, std::size_t l, std::size_t r) {
   return counts.lanes[l].name.subject == counts.lanes[r].name.subject &&
          counts.lanes[l].name.scalar == counts.lanes[r].name.scalar;

@@ -87,7 +87,7 @@ Json subject_json(const AlgorithmInfo& info, const Lane& lane, const std::vector
   return row;
 }
 
-// Writes a number such that it reads back as the same bits, as a short decimal if that is exact.
+// Writes a number so that it reads back as the same bits: as a decimal if a short one is exact, else as a hex float.
 std::string written(double value) {
   const double scaled = std::fabs(value) * 64;
   if (scaled < 1e7 && scaled == std::floor(scaled)) return fmt::format("{}", value);
@@ -354,7 +354,7 @@ std::map<std::string, std::string> league_drawings(const Json& league) {
 std::string league_table(const Json& league, const Screen& screen) {
   std::vector<Column> columns{{"lane", Align::left}};
   for (const auto& [group, pairs] : league.at("groups").items()) columns.push_back({group});
-  std::vector<const Extra*> extras;  // only columns with some value
+  std::vector<const Extra*> extras;  // only columns in which some row has a value
   for (const Extra& extra : kExtras) {
     const bool any = std::any_of(league.at("rows").begin(), league.at("rows").end(), [&](const Json& row) {
       const std::string text = extra.text(league, row);
@@ -389,7 +389,7 @@ std::string league_page(const Json& league, const std::string& command) {
   return fmt::format(
       R"(# League: triangle-triangle tests of libraries, side by side
 
-Made by `{command}`; do not edit. All lanes were asked about the same {pairs} pairs, drawn in equal shares from the strata with seed {seed}{doubles}. Lanes with the fewest clearly wrong verdicts come first.
+Made by `{command}`; do not edit. All lanes were given the same {pairs} pairs, drawn in equal shares from the strata with seed {seed}{doubles}. Lanes with the fewest clearly wrong verdicts come first.
 
 CGAL's exact decision and `core/exact` give the truth of every pair; GMP confirms it where a lane is wrong. Touching triangles intersect, and a degenerate triangle is a segment or a point. If a library's documentation says nothing about such pairs, every difference counts as an error. Columns:
 

@@ -19,24 +19,24 @@ struct LeagueSubject {
   std::string version, source, convention;
 };
 
-// The limit on drawings beside a page: libraries' clear failures come first, then those on general pairs.
+// The limit on drawings beside a page. Libraries' failures are drawn first, and of these the clear failures.
 inline constexpr std::size_t kMostDrawings = 40;
 
 // {"seed", "pairs", "strata", "groups": {group: pairs}, "subjects": [...], "rows": [...], "failures": [...],
 //  "failures_not_repeated", "timings"}
-// Rows are sorted by clearly wrong verdicts, then by wrong ones, fewest first. Everything except the timings depends
-// only on the pairs and the code.
+// Rows are sorted by the number of clearly wrong verdicts, then by the share of wrong verdicts, lowest first.
+// Everything except the timings depends only on the pairs and the code.
 // Requires: nanoseconds of each row of the league.
 nlohmann::ordered_json league_json(const fuzz::League& league, const std::vector<LeagueSubject>& subjects,
                                    const std::vector<std::optional<double>>& nanoseconds, const std::string& machine,
                                    const std::string& date);
 
-// The drawings named in the JSON's failures: file name and SVG.
+// Returns the drawings that the JSON's failures name, as SVG by file name.
 std::map<std::string, std::string> league_drawings(const nlohmann::ordered_json& league);
 
 std::string league_table(const nlohmann::ordered_json& league, const Screen& screen = {});
 
-// Markdown. command: the command that made the league.
+// Returns a page in Markdown.   command: the command that made the league.
 std::string league_page(const nlohmann::ordered_json& league, const std::string& command);
 
 }  // namespace graze::reports

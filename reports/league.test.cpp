@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// docs/league.md takes hours to make, so no test makes it. It must have the form that the generator produces now.
+// docs/league.md takes hours to make, so no test makes it. The page must have the form that the generator produces now.
 #include "reports/league.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ std::string first_match(const std::string& text, const char* pattern) {
   return std::regex_search(text, found, std::regex(pattern)) ? found[1].str() : "";
 }
 
-// The lines with text, with # for each number.
+// The lines that are not empty, with # for each number.
 std::vector<std::string> form_of(const std::string& page) {
   std::vector<std::string> lines;
   std::istringstream in(std::regex_replace(page, std::regex("[0-9][0-9,]*"), "#"));

@@ -57,7 +57,7 @@ bool has_no_verdict(const std::string& cause) {
   return cause == "crash" || cause == "no answer in time" || cause == "unstable";
 }
 
-// How much the kind matters; smaller is more.   all: pairs of all kinds of the subject.
+// The rank of a kind; the most important kinds have rank 0.   all: pairs of all kinds of the subject.
 int rank_of(const Json& kind, const std::string& lane, std::uint64_t all) {
   if (!is_of_lane(kind, lane)) return 4;
   const std::string cause = kind.at("cause"), shape = kind.at("shape");
@@ -71,7 +71,7 @@ int rank_of(const Json& kind, const std::string& lane, std::uint64_t all) {
 // "2^3 ulps"
 std::string in_ulps(int exponent) { return fmt::format("2^{} ulps", exponent); }
 
-// From which margin upwards the lane is right on these pairs.
+// Says from which margin upwards the lane is right on these pairs.
 std::string trusted_from(const StratumCounts& pairs, std::size_t lane, const std::string& which) {
   const Threshold apart = threshold(pairs, lane, 1), deep = threshold(pairs, lane, -1);
   std::vector<std::string> right, wrong;
@@ -136,7 +136,7 @@ std::string wrong_words(const CampaignCounts& counts, std::size_t lane) {
 std::string wrong_by_kind(const CampaignCounts& counts, std::size_t lane) {
   std::vector<std::string> parts;
   for (const GroupCounts& group : counts.groups) {
-    if (group.id == "mesh") {  // the mesh's own pairs are counted apart from moved ones
+    if (group.id == "mesh") {  // the mesh's own pairs are listed apart from moved pairs
       for (const std::size_t s : group.strata) {
         const StratumCounts& stratum = counts.strata[s];
         parts.push_back(fmt::format("{} {} of {}{}", stratum.id, grouped(stratum.wrong(lane)), grouped(stratum.pairs),
@@ -169,7 +169,7 @@ std::vector<Json> first_kinds(const Json& kinds, const ReportLane& lane, std::si
   }
   std::uint64_t all = 0;
   for (const Json& kind : found) all += kind.at("pairs").get<std::uint64_t>();
-  // They are already sorted by their numbers of pairs.
+  // The kinds are already sorted by their numbers of pairs.
   std::stable_sort(found.begin(), found.end(),
                    [&](const Json& l, const Json& r) { return rank_of(l, lane.id, all) < rank_of(r, lane.id, all); });
   if (found.size() > most) found.resize(most);
@@ -179,7 +179,7 @@ std::vector<Json> first_kinds(const Json& kinds, const ReportLane& lane, std::si
 std::string kind_sentence(const Json& kind, const std::string& lane) {
   constexpr std::string_view kSays = ") says ";
   std::string text = kind.at("simplest").at("sentences").at(0);
-  constexpr std::string_view kUnit = " of the largest coordinate";  // the glossary says so too
+  constexpr std::string_view kUnit = " of the largest coordinate";  // the glossary defines ulps like this
   if (const std::size_t unit = text.find(kUnit); unit != text.npos) text.erase(unit, kUnit.size());
   const std::size_t at = text.find(kSays);
   return at == text.npos || !is_of_lane(kind.at("simplest"), lane) ? text : "It " + text.substr(at + 2);
@@ -266,7 +266,8 @@ std::string epsilon_words(const CampaignCounts& counts, std::size_t lane, const 
                                    : "decides");
   }
   if (!in_source.empty()) text += fmt::format(" ({} your {})", pairs > 0 ? "perhaps" : "such as", in_source);
-  if (settled > 0) return text + "; make it relative to the triangles' size.";  // other sizes fail at other distances
+  // At other sizes the code fails at other distances, so no margin is named.
+  if (settled > 0) return text + "; make it relative to the triangles' size.";
   std::string trusted;
   for (const auto& [id, which] :
        {std::pair("general", "the general pairs"), {"general/f64", "the general pairs of doubles"}}) {

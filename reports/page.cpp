@@ -27,7 +27,7 @@ std::string with_data(std::string_view text, const char* id, const Json& data) {
   if (element == text.npos || end == text.npos)
     throw std::logic_error(fmt::format("expected a page with an element for the {}, found none", id));
   std::string filled(text.substr(0, begin));
-  for (const char c : data.dump()) {  // no "</script>" or "<!--" inside
+  for (const char c : data.dump()) {  // the data must not contain "</script>" or "<!--"
     if (c == '<') {
       filled += "\\u003c";
     } else {

@@ -10,8 +10,8 @@ namespace graze::reports {
 // Whether this build has the page of reports/web, which is built with Node.
 bool has_interactive_page();
 
-// Returns the report in the page of reports/web if this build has it, otherwise in a plain page; includes the viewer's
-// data. costs: the result of make_costs. choices: the result of make_choices.
+// Returns the report as the page of reports/web with the viewer's data, or as a plain page if this build lacks it.
+// costs: the result of make_costs.   choices: the result of make_choices.
 std::string page(const nlohmann::ordered_json& report, const nlohmann::ordered_json& costs,
                  const nlohmann::ordered_json& choices);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The interactive page and the plain page.
+// Tests the interactive page and the plain page.
 #include "reports/page.h"
 
 #include <fmt/format.h>
@@ -47,7 +47,7 @@ TEST(Page, HoldsTheReportInItsElement) {
   EXPECT_THROW(filled("<p>", report, nullptr, kNone), std::logic_error);
 }
 
-// `graze report --from` accepts any file, so a report without some part must be refused, whichever part it is.
+// `graze report --from` accepts any file, so a report must be refused if any of its parts is missing.
 TEST_F(PageTest, APlainPageOfARestOfAReportIsRefused) {
   const Json report = make_report(root_ / "one");
   std::vector<std::string> places;
@@ -72,7 +72,7 @@ TEST_F(PageTest, APlainPageOfARestOfAReportIsRefused) {
   EXPECT_GT(refused, 100u);
 }
 
-// Checks that opened elements are closed, in order; sufficient for the output of plain_page.
+// Checks that opened elements are closed in order. This is sufficient for the output of plain_page.
 void expect_well_formed(const std::string& text) {
   const std::set<std::string> empty{"meta", "!DOCTYPE"};
   std::vector<std::string> open;
@@ -117,7 +117,7 @@ TEST(Page, OfManySignaturesIsUnderTenMebibytes) {
   static_assert(kWrong % kSignatures == 0);
   Json summary = summary_of({"moller_1997/f32/cpu"}, {"uniform"}, {1, 1, 0, 0});
   std::vector<std::string> ids, wrong_ids;
-  std::string wrong;  // as in a signature
+  std::string wrong;  // the wrong lanes, as in a signature
   for (const Lane& lane : lanes()) {
     if (fuzz::is_exact_on_doubles(lane)) continue;  // a campaign of float32 does not run it
     ids.push_back(lane.id);

@@ -63,7 +63,7 @@ const char* changed_words(Extreme extreme) {
 std::string nanoseconds(double ns) { return fmt::format("{:.{}f}", ns, ns < 1 ? 4 : 1); }
 std::string nanoseconds(const std::optional<Cost>& cost) { return cost ? nanoseconds(cost->middle) : "-"; }
 
-// Lanes without this cost come last.
+// Sorts offers by a cost. Offers without this cost come last.
 std::vector<Offer> cheapest_first(std::vector<Offer> offers, std::optional<Cost> Offer::*by = &Offer::near) {
   const auto cost = [by](const Offer& offer) { return (offer.*by) ? (offer.*by)->middle : HUGE_VAL; };
   std::stable_sort(offers.begin(), offers.end(), [&](const Offer& l, const Offer& r) { return cost(l) < cost(r); });

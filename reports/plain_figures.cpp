@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Point2 = std::array<double, 2>;
 
-// Projects the report's points along the space diagonal: x to the lower right, y to the lower left, z up.
+// Projects points along the space diagonal. The x axis points to the lower right, y to the lower left, and z up.
 class Isometric {
  public:
   Isometric(const std::vector<std::array<double, 3>>& points, double size) : size_(size) {

@@ -16,8 +16,8 @@ std::string html(const std::string& text);
 // "</body>\n</html>\n". title: plain text. style: further CSS rules, each with its newline.
 std::string page_head(const std::string& title, const std::string& style);
 
-// A card's "pair" has the coordinates as decimals, hex floats and values. Its "drawing" has the contact and the line
-// where the planes meet.   Requires: finite coordinates.
+// The fields "pair" and "drawing" of a card. "pair" has the coordinates as decimals, hex floats and values. "drawing"
+// has the contact and the line in which the planes meet.   Requires: finite coordinates.
 nlohmann::ordered_json coordinates_of(const AnyPair& pair);
 nlohmann::ordered_json drawing_of(const AnyPair& pair);
 
@@ -25,7 +25,7 @@ nlohmann::ordered_json drawing_of(const AnyPair& pair);
 // "differs" for verdicts that differ from the cpu lane's.
 std::string margin_chart(const nlohmann::ordered_json& row, const char* share);
 
-// An isometric drawing of one of the report's cards: both triangles, the contact and the line where the planes meet.
+// Draws the pair of a card in isometric projection: both triangles, the contact, and the line in which the planes meet.
 std::string pair_drawing(const nlohmann::ordered_json& card);
 
 }  // namespace graze::reports

@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostRows = 500;  // of the table of signatures; signatures.csv has all
+constexpr std::size_t kMostRows = 500;  // rows of the table of signatures; signatures.csv has all
 
 constexpr const char* kStyle = R"(pre { overflow-x: auto; border: 1px solid #8886; padding: 0.5rem; }
 svg { max-width: 100%; } svg text { font-size: 9px; fill: currentColor; }
@@ -179,7 +179,7 @@ std::string toolchains_section(const Json& map) {
   return text;
 }
 
-// A cell that is darker the more often the lane errs there than at the origin.
+// A cell that is darker if the lane errs more often there than at the origin.
 std::string times_cell(const Json& cell) {
   const Json& share = cell.at("wrong");
   if (!cell.contains("times")) return fmt::format("<td class=\"number\">0</td>");
@@ -194,7 +194,7 @@ std::string times_cell(const Json& cell) {
       times.at(2).is_null() ? "?" : times.at(2).dump(), fmt::format("{}{:.3g}", at_least ? "≥ " : "", shown));
 }
 
-// How far lanes stay right on flat triangles and needles, from pareto.json.
+// Says up to which extremes lanes are as right as on ordinary pairs, from pareto.json.
 std::string shapes_section(const Json& pareto) {
   if (pareto.is_null())
     return "<p>To see how far lanes stay right on flat triangles and needles, run <code>graze pareto --out DIR</code> "
@@ -294,7 +294,7 @@ std::string compare_section(const Json& compare) {
   return text;
 }
 
-// The results of graze tune and graze pareto. Their pictures are SVG files beside the report.
+// The sentences of graze tune, graze pareto and graze discrepancy. Their pictures are in files beside the report.
 std::string choices_section(const Json& choices) {
   std::string text;
   for (const auto& [name, title] : {std::pair{"tuned", "Which tolerance"}, {"pareto", "Errors against cost"}}) {
@@ -313,7 +313,7 @@ std::string choices_section(const Json& choices) {
 constexpr const char* kDefinitions = R"(<h2>Definitions</h2>
 <p>A triangle is the closed convex hull of its three stored points; touching counts as intersecting. Two exact methods decide
 the truth. A lane is an algorithm in one precision on one target. cpu and cuda-nofma round every operation; in cpu-fma and
-cuda-fma the compiler may fuse products into additions. The margin of a disjoint pair is its distance. That of an intersecting
+cuda-fma the compiler may fuse products into additions. The margin of a disjoint pair is its distance. The margin of an intersecting
 pair is minus the length of the smallest translation that separates it, or 0 if an arbitrarily small one does. Its unit is the
 float32 ulp of the largest coordinate. Intervals are Wilson's, with 95 % confidence. A signature is a way to fail: contact,
 dimensions of both hulls, skew or coplanar, margin, algorithm, and a mark for each of the algorithm's lanes: + false positive,

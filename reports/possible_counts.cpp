@@ -78,7 +78,8 @@ Drawn drawn_of(const Json& report, const Json& stratum, const Json& group = {}) 
 }
 
 void expect_possible_rates(const Json& report) {
-  std::map<std::string, std::pair<Counts, Counts>> of_lanes;  // over all strata together, and the sum over the strata
+  // For each lane, the counts over all strata together, and the sum of its counts over the strata.
+  std::map<std::string, std::pair<Counts, Counts>> of_lanes;
   for (const Json& row : report.at("rates")) {
     const Drawn of = drawn_of(report, row.at("stratum"));
     Counts counts{row.at("false_positive").at("count"), row.at("false_negative").at("count")};
@@ -145,7 +146,7 @@ void expect_extremes(const Json& row) {
   expect(again == row, "the ratios and words that follow from its cells", row);
 }
 
-// The counts at a lane's margins.   Throws: std::runtime_error if a margin is invalid or occurs twice.
+// Reads the counts at a lane's margins.   Throws: std::runtime_error if a margin is invalid or occurs twice.
 StratumCounts counts_at(const Json& points) {
   StratumCounts counts;
   for (const Json& point : points) {

@@ -8,12 +8,12 @@
 
 namespace graze::reports {
 
-// Checks that each field exists and has its type, by a table in shapes.cpp. Fields that the table does not name are
-// allowed. shape: "report", "costs", "tuned" or "pareto".
+// Checks that each field in the table of shapes.cpp exists and has its type. Other fields are allowed. shape: "report",
+// "costs", "tuned" or "pareto".
 // Throws: std::runtime_error: "expected a count at /lanes/0/errors/declined, found -1".
 void expect_shape(const nlohmann::ordered_json& value, const std::string& shape);
 
-// Throw: std::runtime_error, which names the expectation; nlohmann's exceptions for a missing field.
+// All of these throw std::runtime_error, which says what was expected, or nlohmann's exceptions for a missing field.
 void expect_possible_report(const nlohmann::ordered_json& report);
 void expect_possible_costs(const nlohmann::ordered_json& costs,
                            const nlohmann::ordered_json& report);  // costs of that report

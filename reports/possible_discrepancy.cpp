@@ -107,7 +107,7 @@ void add(Json& to, const Json& some, const std::string& key = "") {
   }
 }
 
-// The traced pairs are some of the compared ones, so no count may exceed that of the comparison.
+// The traced pairs are a part of the compared pairs, so no count may exceed that of the comparison.
 void expect_possible_origins(const Json& of, const std::vector<Question>& questions, const std::string& what) {
   const Json &origins = of.at("origins"), &total = of.at("total"), &lines = origins.at("lines");
   expect(number_at(origins, "pairs") <= number_at(total, "pairs"), what + ": more pairs are traced than compared");

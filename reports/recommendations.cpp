@@ -27,8 +27,8 @@ Share share_not_right(const CampaignCounts& counts, std::size_t lane) {
   return share_of(not_right(counts, lane), counts.total.pairs);
 }
 
-// The strata on which costs are compared: general pairs if there are any, because exact decisions are known to be slow
-// on others. If there are general pairs of both coordinate types, those of float32.
+// The strata on which costs are compared. These are the general pairs if there are any, because exact decisions are
+// known to be slow on other pairs. If there are general pairs of both coordinate types, only those of float32 count.
 struct Ground {
   std::vector<std::size_t> strata;
   std::string pair;  // "a general pair"
@@ -63,7 +63,7 @@ LaneIndices exact_lanes(const CampaignCounts& counts) {
   return places;
 }
 
-// "; over all strata 210 ns against 61", unless the comparison already covers all strata.
+// "; over all strata 210 ns against 61". Empty if the comparison already covers all strata.
 std::string over_all_strata(const CampaignCounts& counts, const Costs* costs, const Ground& ground, std::size_t exact,
                             std::size_t other) {
   const std::vector<std::size_t> all = counts.drawn();
@@ -72,7 +72,7 @@ std::string over_all_strata(const CampaignCounts& counts, const Costs* costs, co
   return fmt::format("; over all strata {} against {}", cost_words(*own), cost_words(*others));
 }
 
-// The cost of exactness, as the end of a sentence.
+// The end of a sentence, which names the cost of the exact lane.
 std::string price(const CampaignCounts& counts, const Costs* costs, const LaneIndices& exact) {
   if (!costs) return ". Its cost depends on the machine; costs.json has it if the campaign was timed.";
   const Ground ground = ground_of(counts);
@@ -102,7 +102,7 @@ std::string price(const CampaignCounts& counts, const Costs* costs, const LaneIn
                      rate_words(wrong_share(counts, other).share));
 }
 
-// The best lane, by `better`, of the other families; -1 for none.
+// The best lane of the other families according to `better`; -1 if there is none.
 template <class Better>
 int first_of_others(const CampaignCounts& counts, const LaneIndices& lanes, std::size_t than, Better better) {
   int best = -1;
@@ -207,7 +207,8 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
   return {text + "."};
 }
 
-// If lanes decline pairs, it names the lane that is most often right, so never one that declines everything.
+// If some lanes decline pairs, the sentence names the lane that is most often right. This is never a lane that declines
+// everything.
 Sentence least_wrong_lane(const CampaignCounts& counts, const Costs* costs) {
   const LaneIndices lanes = published(counts);
   const StratumCounts& total = counts.total;

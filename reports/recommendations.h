@@ -13,10 +13,10 @@ struct Sentence {
   bool known = true;  // false if the sentence says that the campaign cannot tell
 };
 
-// The exact lane, and its cost compared with the fastest published lane.
+// Recommends the exact lane, and compares its cost with that of the fastest published lane.
 Sentence lane_to_use(const CampaignCounts& counts, const Costs* costs);
 
-// Both require a published lane, and pairs.
+// Requires for both: pairs, and a published lane.
 Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs);
 Sentence least_wrong_lane(const CampaignCounts& counts, const Costs* costs);
 

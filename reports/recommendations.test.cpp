@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recommendations on artificial data for which a recommendation could easily be wrong.
+// Tests recommendations on artificial data for which they could easily be wrong.
 #include "reports/recommendations.h"
 
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@ using Json = nlohmann::ordered_json;
 
 struct MadeLane {
   std::string id;
-  std::uint64_t wrong;         // out of 10,000 pairs of uniform and 10,000 of degenerate; false negatives
-  std::uint64_t declined = 0;  // likewise
+  std::uint64_t wrong;         // false negatives on the 10,000 pairs of each stratum
+  std::uint64_t declined = 0;  // declined pairs of each stratum
 };
 
 CampaignCounts counts_with(const std::vector<MadeLane>& lanes,
@@ -33,7 +33,7 @@ CampaignCounts counts_with(const std::vector<MadeLane>& lanes,
   return counts_of(summary);
 }
 
-// Costs of each lane in nanoseconds on uniform and on degenerate, with a spread of one; 0 means that it has no timing.
+// Costs of each lane on uniform and on degenerate, with a spread of 1 ns. A cost of 0 means that there is no timing.
 Costs costs_with(const std::vector<std::pair<double, double>>& of_lanes) {
   Costs costs{"a machine", 9, {}};
   for (const auto& [uniform, degenerate] : of_lanes) {
@@ -149,7 +149,7 @@ TEST(Recommendations, TheLeastWrongLaneIsNamedWithItsCost) {
               "Which published lane is least wrong is not settled: the 95 % intervals of separating_axes/f64/cpu"));
 }
 
-// A lane that declines all pairs is wrong on none, but of no use.
+// A lane that declines all pairs is never wrong, but of no use.
 TEST(Recommendations, ALaneThatDeclinesIsNotTheBest) {
   const MadeLane silent{"moller_1997/f32/cpu/bound", 0, 10'000}, cautious{"moller_1997/f32/cpu/bound", 0, 40};
   const MadeLane other{"separating_axes/f64/cpu", 100};
@@ -213,7 +213,7 @@ TEST(Costs, AreThoseOfTheLastTimedRunAndCountPairs) {
   EXPECT_TRUE(costs_of(runs, fewer));
   fewer.strata[0].pairs = 99;
   EXPECT_THROW(costs_of(runs, fewer), std::runtime_error);
-  fewer.complete = false;  // then costs may include pairs that it has not judged
+  fewer.complete = false;  // costs of an unfinished campaign may include pairs that it has not judged
   EXPECT_TRUE(costs_of(runs, fewer));
   EXPECT_FALSE(costs_of(Json::array({{{"machine", "untimed"}}}), counts));
   EXPECT_FALSE(costs_of(Json::array(), counts));

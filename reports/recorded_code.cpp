@@ -40,7 +40,7 @@ std::vector<std::string> code_differences(const Json& before, const Json& after)
   for (const Json& old : before.value("subjects", Json::array())) {
     for (const Json& now : after.value("subjects", Json::array())) {
       if (old.at("name") == now.at("name") && old.at("hash") != now.at("hash"))
-        sentences.push_back(fmt::format("They differ in the code of {}: {} before, {} after.", text_at(old, "name"),
+        sentences.push_back(fmt::format("The code of {} differs: {} before, {} after.", text_at(old, "name"),
                                         code_words(old), code_words(now)));
     }
   }

@@ -8,14 +8,14 @@
 
 namespace graze::reports {
 
-// [{"name", "what", "hash", "source_hash", "compiler", "flags", "environment", "contraction"}], made from what
-// subjects::record returns, without empty fields; null without subjects. "contraction" has the plans by toolchain.
+// Returns [{"name", "what", "hash", "source_hash", "compiler", "flags", "environment", "contraction"}] without empty
+// fields; null without subjects. "contraction" has the plans by toolchain.   recorded: the result of subjects::record.
 nlohmann::ordered_json code_json(const nlohmann::ordered_json& recorded);
 
 // "P/m.cpp (hash 0a…, by g++ … -O3, CXX=g++)" for a row of code_json.
 std::string code_words(const nlohmann::ordered_json& of);
 
-// A sentence for each subject whose code differs between two results; each result may have "subjects" from code_json.
+// Returns a sentence for each subject whose code differs between two results. A result may have "subjects" (code_json).
 std::vector<std::string> code_differences(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after);
 
 }  // namespace graze::reports

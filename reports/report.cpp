@@ -34,8 +34,8 @@ namespace graze::reports {
 using fuzz::Json;
 namespace {
 
-// The machines that the campaign ran on, if their names are known. Only runs that recorded pairs count. If there are
-// none, because the run that decided the pairs was killed before it recorded them, all recorded runs count.
+// The machines that the campaign ran on, if their names are known. Only runs that recorded pairs count. If no run did,
+// because it was killed after it decided the pairs, all recorded runs count.
 Json machines(const std::filesystem::path& directory) {
   std::set<std::string> names, without_pairs;
   for (const Json& run : fuzz::read_timings(directory)) {
@@ -194,14 +194,14 @@ Json make_costs(const std::filesystem::path& directory) {
 
 namespace {
 
-// Returns: null if there is no such file.
+// Reads a file and checks what it holds. Returns null if there is no such file.
 Json read_checked(const std::filesystem::path& file, void (*expect_possible)(const Json&)) {
   Json found = fuzz::read_sealed(file, "remove it, or make it again");
   if (!found.is_null()) checked(file, "what graze writes into it", [&] { expect_possible(found); });
   return found;
 }
 
-// A sentence if `graze discrepancy` wrote counts of other pairs into the campaign's folder; otherwise empty.
+// Says whether `graze discrepancy` wrote counts of other pairs into the campaign's folder; empty if it did not.
 std::string other_pairs(const std::filesystem::path& directory, const Json& discrepancy) {
   const Json spec = fuzz::recorded_spec(directory);
   if (!spec.is_object()) return "";
@@ -219,7 +219,7 @@ std::string other_pairs(const std::filesystem::path& directory, const Json& disc
     }
   }
   if (!other) return "";
-  return fmt::format("These are {} that the campaign did not draw (seed {}).",
+  return fmt::format("The sentences on CPU and GPU are about {} that the campaign did not draw (seed {}).",
                      counted(discrepancy.at("pairs").get<std::uint64_t>(), "pair"), discrepancy["seed"].dump());
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report of a campaign: all data of the page, as reports/web/src/report.ts describes it, from the files of the
-// campaign and the minimiser. No lane runs here. The same campaign always gives the same bytes.
+// Makes the report of a campaign from the files of the campaign and the minimiser. The report has all data of the page,
+// as reports/web/src/report.ts describes it. No lane runs here. The same campaign always gives the same bytes.
 #pragma once
 
 #include <filesystem>
@@ -9,15 +9,15 @@
 
 namespace graze::reports {
 
-// Throws: like fuzz::checked_summary; FormatError for other damaged files too.
+// Throws: like fuzz::checked_summary, and FormatError for other damaged files.
 nlohmann::ordered_json make_report(const std::filesystem::path& directory);
 
-// The costs of the campaign's lanes, and the answer that includes them (costs.h). They are not in the report, because
-// they depend on the machine. Returns null if the campaign has no timings of its lanes.   Throws: as make_report.
+// Returns the costs of the campaign's lanes, and the answer that includes them (costs.h). The report leaves costs out,
+// because they depend on the machine. Null if the campaign has no timings of its lanes.   Throws: as make_report.
 nlohmann::ordered_json make_costs(const std::filesystem::path& directory);
 
-// {"tuned", "pareto", "discrepancy"}: the contents of tune.json and pareto.json, and the sentences of discrepancy.json,
-// in the directory; each is null if its file is missing.
+// Returns {"tuned", "pareto", "discrepancy"}: the contents of tune.json and pareto.json in the directory, and the
+// sentences of its discrepancy.json. Each is null if its file is missing.
 // Throws: FormatError for a file of another shape or with impossible counts.
 nlohmann::ordered_json make_choices(const std::filesystem::path& directory);
 
@@ -27,7 +27,7 @@ std::string report_text(const nlohmann::ordered_json& report);
 // Reads a stored report.   Throws: FormatError, also for impossible counts.
 nlohmann::ordered_json read_report(const std::filesystem::path& file);
 
-// Reads the costs.json of that report; null if there is none.   Throws: as read_report.
+// Reads the costs.json of that report. Returns null if there is no such file.   Throws: as read_report.
 nlohmann::ordered_json stored_costs(const std::filesystem::path& file, const nlohmann::ordered_json& report);
 
 }  // namespace graze::reports

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reports of small campaigns that run here, and of damaged ones.
+// Tests reports of small campaigns that run here, and of damaged campaigns.
 #include "reports/report.h"
 
 #include <fmt/format.h>
@@ -49,7 +49,7 @@ TEST_F(ReportTest, AgreesWithTheSummary) {
   const Json report = make_report(root_ / "one"),
              summary = Json::parse(fuzz::read_whole(root_ / "one" / "summary.json"));
   EXPECT_EQ(report["answer"].size(), 6u);
-  ASSERT_EQ(report["rates"].size(), report["lanes"].size() * 4);  // three strata, and all
+  ASSERT_EQ(report["rates"].size(), report["lanes"].size() * 4);  // three strata, and all strata together
   for (const Json& row : report["rates"]) {
     if (row["stratum"].is_null()) continue;
     const std::string stratum = report["strata"][row["stratum"].get<std::size_t>()]["id"],
@@ -67,7 +67,7 @@ TEST_F(ReportTest, AgreesWithTheSummary) {
   EXPECT_EQ(kinds, (std::set<std::string>{"cpu-nofma", "f32-f64", "nofma-fma"}));
 }
 
-// Whatever is changed in a campaign's files, the error names the file.
+// If a file of a campaign is changed in any way, the error names that file.
 TEST_F(ReportTest, DamageIsBlamedOnItsFile) {
   run("damaged", 2);
   store_kinds("damaged");
@@ -157,8 +157,8 @@ TEST_F(ReportTest, ComparesTwoCampaigns) {
       fmt::format("None of {} rates changed, and no kind of failure with at least 14 expected signatures came or "
                   "went; ",
                   report["rates"].size())));
-  EXPECT_EQ(compare["differences"], Json::array({"They differ in seed: 3 before, 4 after."}));
-  // One algorithm is wrong on everything, and another has lost all its failures.
+  EXPECT_EQ(compare["differences"], Json::array({"The seed differs: 3 before, 4 after."}));
+  // Now every lane is wrong on every pair, and moller_1997 has lost all its kinds of failure.
   Json worse = before, without = Json::array();
   for (Json& row : worse["rates"]) row["wrong"] = to_json(share_of(row["wrong"]["of"], row["wrong"]["of"]));
   for (const Json& kind : kinds_before) {
@@ -173,7 +173,7 @@ TEST_F(ReportTest, ComparesTwoCampaigns) {
     EXPECT_TRUE(lost["key"].get<std::string>().starts_with("moller_1997/")) << lost;
 }
 
-// One place for each name; for lists, the first element.
+// Collects one place for each name. Of a list, it visits only the first element.
 void collect(const Json& value, const Json::json_pointer& at, std::vector<Json::json_pointer>& places) {
   if (!at.empty()) places.push_back(at);
   if (value.is_object()) {
@@ -194,7 +194,8 @@ void expect_all_refused(const Json& whole, const std::set<std::string>& possible
   for (const Json::json_pointer& place : places) {
     std::vector<Json> instead = {whole[place].is_array() ? Json::object() : Json::array()};
     if (!whole[place].is_number()) instead.push_back(5);
-    if (!whole[place].is_string() && !whole[place].is_null()) instead.push_back("x");  // null: a text is valid
+    // Where null is valid, a text may be valid too.
+    if (!whole[place].is_string() && !whole[place].is_null()) instead.push_back("x");
     if (whole[place].is_number_unsigned() && !possible.contains(place.to_string()) && !possible.contains(place.back()))
       instead.insert(instead.end(), {1'000'000'000'000, -1});
     for (const Json& value : instead) {

@@ -34,7 +34,7 @@ TEST(Terminal, SummaryShowsSharesAndCounts) {
   EXPECT_NE(out.str().find("1,234,567 pairs: some lane is wrong on 1,246, in 1 signature."), std::string::npos);
 }
 
-// GMP checks every disagreement and a sample of the other pairs. If the exact lane judges, it checks a sample and the
+// GMP checks every disagreement and a sample of the other pairs. If the exact lane judges, GMP checks a sample and the
 // kept cases.
 TEST(Terminal, SummarySaysWhatEachExactDecisionSaw) {
   std::ostringstream cpu, exact;

@@ -87,7 +87,7 @@ TEST(TextTable, ComesInBlocksOnTheNarrowest) {
 TEST(TextTable, SharesItsColumnsEvenlyByTheBlocks) {
   TextTable table({{"", Align::left}, {"one"}, {"two"}, {"six"}, {"ten"}});
   table.add({{"lane"}, {"12345678"}, {"12345678"}, {"12345678"}, {"1"}});
-  EXPECT_EQ(table.text({34, false}),  // where three fit
+  EXPECT_EQ(table.text({34, false}),  // three columns would fit
             "           one       two\n"
             "lane  12345678  12345678\n"
             "\n"

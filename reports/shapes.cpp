@@ -9,9 +9,9 @@ namespace graze::reports {
 using Json = nlohmann::ordered_json;
 namespace {
 
-// An object must have these fields; a '?' after a name makes the field optional, and "*" stands for all fields. All
-// elements of a list have one shape; with "some" the list must not be empty. "text?" may be null, a "positive count" is
-// not 0. Other words name shapes of this table. It follows reports/web/src/report.ts.
+// The shapes by name, as in reports/web/src/report.ts. An object must have the given fields. A '?' after a field's name
+// makes it optional, and "*" stands for all fields. All elements of a list have one shape; with "some", the list must
+// not be empty. A '?' after a shape allows null. A "positive count" is not 0. Other words name shapes of this table.
 constexpr const char* kShapes = R"({
 "share": {"count": "count", "of": "count", "share": "number?", "low": "number?", "high": "number?"},
 "threshold": {"exponent": "whole?", "above": "count", "bound": "number", "largest": "whole?"},

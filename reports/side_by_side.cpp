@@ -37,7 +37,7 @@ std::string error_text(const std::optional<double>& value, const ValueBeside& of
   return bucket == "0" || bucket == "unknown" || bucket == "not finite" ? bucket : "≤ " + bucket;
 }
 
-// Whether the comparison of this value has a different outcome in the other lane. left: the left value of a question
+// Whether the comparison of this value has different outcomes in the two lanes. left: the left value of a question
 // about two values, otherwise null.
 bool goes_otherwise(const Question& question, const ValueBeside* left, const ValueBeside& value) {
   if (!value.compared || !value.first || !value.second) return false;
@@ -79,7 +79,7 @@ std::string side_by_side(const analysis::LanesCompared& lanes, const AnyPair& pa
   const std::string values = differs
                                  ? otherwise ? "a comparison goes the other way" : "values differ, no comparison does"
                                  : "every value has the same bits";
-  return wrapped(fmt::format("first: {}, {}; second: {}, {}: {}. Errors in ulps of the exact value along the first "
+  return wrapped(fmt::format("first: {}, {}; second: {}, {}: {}. Errors are in ulps of the exact value along the first "
                              "lane's path.",
                              lanes.first->id, name(first), lanes.second->id, name(second), values),
                  screen.columns, 2, 4) +

@@ -143,7 +143,7 @@ std::string in_comment(std::string text) {
   return text;
 }
 
-// The call that decides a and b, and the text that must precede it.
+// The call that decides a and b, and the text that must precede the call.
 struct Call {
   std::string call, before;
 };
@@ -187,7 +187,7 @@ bool shows(SnippetKind kind, const Lane& lane) {
   const bool is_cuda = backends::language_of(lane) == backends::Language::cuda;
   if (lane.foreign) return kind == SnippetKind::gtest || kind == (is_cuda ? SnippetKind::cuda : SnippetKind::cpp);
   if (lane.under && lane.under->kind != Policy::Kind::tolerances) return false;  // such a lane is never wrong
-  if (lane.exact) return false;  // its verdict is right for the pair as float32 stores it
+  if (lane.exact) return false;  // its verdict is right for the stored pair
   return shows_lanes(kind) && is_cuda == (kind == SnippetKind::cuda);
 }
 
@@ -242,7 +242,7 @@ std::string snippet(SnippetKind kind, const SnippetCase& found) {
                                  {"function", std::move(call.function)},
                                  {"seconds", std::to_string(call.seconds)},
                                  {"code", found.truth == Verdict::intersects ? "1" : "0"},
-                                 // It may take many calls to show an unstable verdict, as in Graze itself.
+                                 // An unstable verdict may show only after many calls.
                                  {"rounds", found.verdict == Verdict::unstable &&
                                                     backends::language_of(*found.lane) == backends::Language::cpp
                                                 ? "1000"

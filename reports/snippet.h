@@ -20,7 +20,7 @@ inline constexpr std::string_view kSnippetKinds[] = {"cpp", "cuda", "python", "o
 // gtest also shows CUDA lanes of foreign code.
 bool shows(SnippetKind kind, const Lane& lane);
 
-// Whether this kind shows a lane at all.
+// Whether snippets of this kind show a lane.
 bool shows_lanes(SnippetKind kind);
 
 struct SnippetCase {
@@ -28,7 +28,7 @@ struct SnippetCase {
   AnyPair pair;
   Verdict truth;
   const Lane* lane;  // set if the kind shows a lane
-  Verdict verdict;   // that lane's verdict
+  Verdict verdict;   // the verdict of `lane`
 };
 
 // Requires: finite coordinates; truth is not declined; a lane that the kind shows, if it shows lanes.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests snippets as text, and runs the Python snippet over the whole corpus, which compares its 32 axes with the
-// oracle. cli/emit.test.cpp compiles and runs the others.
+// Tests snippets as text. Also runs the Python snippet over the whole corpus, to compare its 32 axes with the oracle.
+// cli/emit.test.cpp compiles and runs the other snippets.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -69,8 +69,8 @@ TEST(Snippet, ObjDecimalsReadAsTheSameBits) {
   }
 }
 
-// Every finite pair of the corpus: all contacts of triangles, segments and points, in space, in one plane and on one
-// line.
+// The corpus has all contacts of triangles, segments and points, in space, in one plane and on one line. Every finite
+// pair of float32 is tested.
 TEST(Snippet, PythonDecidesTheWholeCorpus) {
   if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "graze-python-snippets";
@@ -90,7 +90,7 @@ TEST(Snippet, PythonDecidesTheWholeCorpus) {
   }
   ASSERT_GT(count, 100);
   ASSERT_GT(disjoint, 30);
-  // One interpreter runs them all; each exits with status 0 if it agrees with the given truth.
+  // One interpreter runs all snippets. A snippet exits with status 0 if it agrees with the given truth.
   std::ofstream(folder / "all.driver") << "import glob, runpy, sys\n"
                                           "wrong = 0\n"
                                           "for f in glob.glob(sys.argv[1] + '/*.py'):\n"
@@ -104,7 +104,7 @@ TEST(Snippet, PythonDecidesTheWholeCorpus) {
   EXPECT_EQ(std::system(command.c_str()), 0);
 }
 
-// A false truth must be detected, which shows that the program really decides.
+// The program must detect a false truth. This shows that it really decides.
 TEST(Snippet, PythonContradictsAWrongTruth) {
   if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "graze-wrong-truth.py";

@@ -12,9 +12,9 @@
 namespace graze::reports {
 namespace {
 
-// "at 95 % confidence wrong on under 0.0004 of the pairs (3 of 100,000 fresh ones)"
+// "at 95 % confidence wrong on under 0.0004 of the pairs (3 of 100,000 fresh pairs)"
 std::string errors_words(const Candidate& c) {
-  return fmt::format("at 95 % confidence wrong on under {} of the pairs ({} of {} fresh ones)", rounded_up(c.bound, 2),
+  return fmt::format("at 95 % confidence wrong on under {} of the pairs ({} of {} fresh pairs)", rounded_up(c.bound, 2),
                      grouped(c.errors.wrong()), grouped(c.errors.pairs));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Says which published lane, and with which tolerance, is the cheapest that is right often enough in a scene.
+// Names the cheapest published lane that is right often enough in a scene, and its tolerance.
 #pragma once
 
 #include <optional>
@@ -18,16 +18,17 @@ struct Candidate {
   std::string lane;  // with its tolerance
   Scalar scalar;
   analysis::TuneResult result;
-  analysis::PolicyErrors errors;  // on pairs other than those it was chosen on
-  double bound;                   // of the rate of wrong verdicts, at 95 % confidence
+  analysis::PolicyErrors errors;  // on pairs that were not used to choose the tolerance
+  double bound;                   // upper bound of the rate of wrong verdicts, at 95 % confidence
   analysis::Cost cost;
 };
 
-// The index of the cheapest candidate of this scalar, or of any scalar, that keeps the rate; -1 for none.
+// The index of the cheapest candidate that keeps the rate; -1 if there is none.
+// scalar: if given, only candidates of this scalar count.
 int cheapest_sufficient(std::span<const Candidate> candidates, std::optional<Scalar> scalar = std::nullopt);
 
-// What to use at this rate of wrong verdicts, what the other precision would change, and what `exact` costs. A lane is
-// not called cheaper if the spreads of the costs overlap.   Requires: at least one candidate.
+// Says which lane to use at this rate of wrong verdicts, what the other precision would change, and what `exact` costs.
+// A lane is not called cheaper if the spreads of the costs overlap.   Requires: at least one candidate.
 std::vector<std::string> sufficient_sentences(double rate, std::span<const Candidate> candidates,
                                               const std::string& exact, const analysis::Cost& exact_cost);
 

@@ -36,10 +36,10 @@ TEST(Sufficient, ACheaperLaneIsRecommendedWithItsBound) {
       sufficient_sentences(1e-3, kThree, "exact/f32/cpu", {58, 60, 62}),
       (std::vector<std::string>{
           "Wrong on at most 0.001 of this scene's pairs: use c/f64/cpu, at 95 % confidence wrong on under 3e-05 of "
-          "the pairs (0 of 100,000 fresh ones), 30 ns (29 to 31) a pair.",
+          "the pairs (0 of 100,000 fresh pairs), 30 ns (29 to 31) a pair.",
           "exact/f32/cpu is never wrong and takes 60 ns (58 to 62).",
           "In f32 the cheapest that suffices is b/f32/cpu/rel:1: at 95 % confidence wrong on under 6.3e-05 of the "
-          "pairs (2 of 100,000 fresh ones), 40 ns (39 to 41)."}));
+          "pairs (2 of 100,000 fresh pairs), 40 ns (39 to 41)."}));
 }
 
 TEST(Sufficient, ExactIsRecommendedWhereNothingIsCheaper) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Common parts of the SVG pictures: 900 x 420, readable on light and dark backgrounds.
+// Common parts of the SVG pictures, which are 900 x 420 and readable on light and dark backgrounds.
 #pragma once
 
 #include <fmt/format.h>

@@ -33,8 +33,8 @@ Json wrong_of(const StratumCounts& stratum, std::size_t lane) {
   return to_json(share_of(stratum.wrong(lane), stratum.pairs));
 }
 
-// The shares of a lane's errors: false positives among the disjoint pairs, false negatives among the others, and all
-// wrong verdicts.
+// The shares of a lane's errors: false positives among the disjoint pairs, false negatives among the intersecting
+// pairs, and all wrong verdicts.
 Json errors_of(const StratumCounts& pairs, std::size_t lane) {
   const analysis::LaneCounts& found = pairs.lanes[lane];
   return {{"false_positive", to_json(share_of(found.false_positive, pairs.pairs - pairs.intersects))},
@@ -136,7 +136,7 @@ Threshold threshold(const StratumCounts& counts, std::size_t lane, int side) {
     if (found == counts.margins.end() || found->second.pairs == 0) continue;
     if (!result.largest) result.largest = exponent_of(found->first);
     if (found->second.wrong[lane] != 0) {
-      result.exponent = exponent_of(found->first) + 1;  // even if the buckets up to the next pairs are empty
+      result.exponent = exponent_of(found->first) + 1;  // even if the buckets just above are empty
       break;
     }
     result = {true, exponent_of(found->first), result.above + found->second.pairs, result.largest};

@@ -19,7 +19,7 @@ nlohmann::ordered_json rates(const CampaignCounts& counts);
 // cuda-nofma and cuda-fma; f32 and f64.
 nlohmann::ordered_json side_by_side(const CampaignCounts& counts);
 
-// The number of pairs on which two lanes' verdicts differ. Nothing if the campaign did not count it.
+// The number of pairs on which two lanes' verdicts differ. Nothing if the campaign did not count them.
 std::optional<std::uint64_t> differs(const CampaignCounts& counts, const StratumCounts& stratum, std::size_t left,
                                      std::size_t right);
 
@@ -28,14 +28,15 @@ nlohmann::ordered_json margins(const CampaignCounts& counts);
 // The smallest margin, a power of two in ulps, at or above which a lane was never wrong on one side of zero.
 struct Threshold {
   bool found = false;       // false: wrong at the largest margins seen, or no margins were seen
-  int exponent = 0;         // one more than that of the last error; without errors, that of the smallest margins seen
+  int exponent = 0;         // one more than at the largest margin with an error; without errors, at the smallest seen
   std::uint64_t above = 0;  // pairs with at least this margin
   std::optional<int> largest;  // exponent of the largest margins seen; nothing if no pair is on that side
 };
 Threshold threshold(const StratumCounts& counts, std::size_t lane, int side);
 nlohmann::ordered_json to_json(const Threshold& threshold);
 
-// For each group of strata, each stratum, and all strata together, because strata differ too much for one threshold.
+// Has thresholds for each group of strata, each stratum, and all strata together, because strata differ too much to
+// share one threshold.
 nlohmann::ordered_json thresholds(const CampaignCounts& counts);
 
 nlohmann::ordered_json groups(const CampaignCounts& counts);

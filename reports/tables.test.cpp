@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Intervals, and the tables of artificial summaries.
+// Tests intervals, and the tables of artificial summaries.
 #include "reports/tables.h"
 
 #include <random>
@@ -126,7 +126,7 @@ TEST(Wilson, BoundOfNoneIsTheRuleOfThree) {
 // A count that was not compared is null in the summary and in the report. Without pairs there is no share.
 TEST(Tables, OfNothingThereIsNoShare) {
   Json summary = summary_of({"moller_1997/f32/cuda-fma"}, {"uniform"}, {0, 3, 0, 0});
-  summary["strata"]["uniform"]["intersects"] = 1000;  // so that none can be a false positive
+  summary["strata"]["uniform"]["intersects"] = 1000;  // so that no verdict can be a false positive
   summary["strata"]["uniform"]["lanes"]["moller_1997/f32/cuda-fma"]["differs_from_cpu"] = nullptr;
   const Json row = rates(counts_of(summary)).front();
   EXPECT_TRUE(row["differs_from_cpu"].is_null());
@@ -164,7 +164,7 @@ TEST(Tables, ThresholdIsWhereErrorsEnd) {
   bucket("degenerate", "-2^2", 3, 0);
   const CampaignCounts counts = counts_of(summary);
   for (const Json& row : {threshold_of(counts, "general"), threshold_of(counts, "", "uniform")}) {
-    EXPECT_EQ(row["disjoint"]["exponent"], 1);  // though the next pairs are at 2^2
+    EXPECT_EQ(row["disjoint"]["exponent"], 1);  // although the next pairs are at 2^2
     EXPECT_EQ(row["disjoint"]["above"], 50);
     EXPECT_NEAR(row["disjoint"]["bound"], 1 - std::pow(0.05, 1 / 50.0), 1e-6);
     EXPECT_TRUE(row["intersects"]["exponent"].is_null());
@@ -174,9 +174,9 @@ TEST(Tables, ThresholdIsWhereErrorsEnd) {
   const Json other = threshold_of(counts, "degenerate"), all = threshold_of(counts, "");
   EXPECT_TRUE(other["disjoint"]["exponent"].is_null());
   EXPECT_EQ(other["disjoint"]["largest"], 9);
-  EXPECT_EQ(other["intersects"]["exponent"], -7);  // no error: the smallest margins seen
+  EXPECT_EQ(other["intersects"]["exponent"], -7);  // without an error, the threshold is at the smallest margins seen
   EXPECT_EQ(other["intersects"]["above"], 6);
-  EXPECT_TRUE(all["disjoint"]["exponent"].is_null());  // the result of pooling
+  EXPECT_TRUE(all["disjoint"]["exponent"].is_null());  // because all strata are pooled
 }
 
 TEST(Tables, GroupsHoldEveryStratumOnceAndAddUp) {
@@ -196,7 +196,7 @@ TEST(Tables, GroupsHoldEveryStratumOnceAndAddUp) {
   EXPECT_EQ(group_rates(counts).size(), 4u);
 }
 
-// A lane has its differences from cpu at each margin, as shares of the pairs there; the cpu lane itself has none.
+// A lane has its differences from cpu at each margin, as shares of the pairs there. The cpu lane itself has none.
 TEST(Tables, DifferencesFromCpuAreCountedByMargin) {
   const std::string fused = "moller_1997/f32/cuda-fma";
   Json summary = summary_of({"moller_1997/f32/cpu", fused}, {"uniform", "thesis"}, {0, 0, 0, 0, 0, 0, 0, 5});

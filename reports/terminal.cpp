@@ -46,8 +46,8 @@ void print_strata(std::ostream& out, const Json& summary, const Screen& screen) 
 void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
   const auto lanes = summary["spec"]["lanes"].get<std::vector<std::string>>();
   std::vector<Counts> counts(lanes.size());
-  std::vector<std::optional<std::uint64_t>> differs(lanes.size());  // from cpu; nothing if not compared
-  std::vector<std::optional<std::uint64_t>> stored(lanes.size());   // on pairs of doubles; nothing for lanes in double
+  std::vector<std::optional<std::uint64_t>> differs(lanes.size());  // differences from cpu; nothing if not compared
+  std::vector<std::optional<std::uint64_t>> stored(lanes.size());   // wrong by storing; nothing for lanes in double
   for (const auto& [stratum, row] : summary["strata"].items()) {
     for (std::size_t l = 0; l < lanes.size(); ++l) {
       const Json& of = row["lanes"][lanes[l]];
@@ -85,8 +85,8 @@ void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
   out << '\n' << table.text(screen);
 }
 
-// Says which exact decisions support the counts. A campaign stops if two of them differ, so here they agree.
-// doubles: whether some pairs are pairs of doubles; then GMP also decides those whose verdict float32 changes.
+// Says which exact decisions support the counts. A campaign stops if two exact decisions differ, so here they agree.
+// doubles: whether some pairs have doubles. If so, GMP also decides the pairs whose verdict changes in float32.
 std::string decided_by(std::uint64_t disagreements, const Json& oracle, bool doubles) {
   const std::uint64_t exact = oracle["exact"], gmp = oracle["gmp"];
   if (exact > 0) {

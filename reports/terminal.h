@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints results on a terminal: a campaign's summary, one pair's verdicts. It never computes a verdict.
+// Prints results on a terminal: a campaign's summary, and one pair's verdicts. It never computes a verdict.
 #pragma once
 
 #include <iosfwd>
@@ -14,7 +14,7 @@
 namespace graze::reports {
 
 // Prints the contents of summary.json as two tables: errors by stratum and algorithm, and errors by lane. Also says
-// which exact decisions support them (see Outcome).
+// which exact decisions support these counts.   oracle: as in fuzz::Outcome.
 void print_summary(std::ostream& out, const nlohmann::ordered_json& summary, const nlohmann::ordered_json& oracle,
                    const Screen& screen = {});
 
@@ -24,7 +24,7 @@ void print_summary(std::ostream& out, const nlohmann::ordered_json& summary, con
 void print_pair(std::ostream& out, const AnyPair& pair, const oracle::Truth& truth, std::span<const Lane* const> lanes,
                 std::span<const Verdict> verdicts, const Screen& screen = {});
 
-// A percentage without the sign, formatted as on the report's page: "47.8", "9.56", "0.156", "<0.001", "0".
+// A percentage without the % sign, formatted as on the report's page: "47.8", "9.56", "0.156", "<0.001", "0".
 std::string bare_percent(std::uint64_t part, std::uint64_t whole);
 
 // 1234567 as "1,234,567".

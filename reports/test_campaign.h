@@ -43,7 +43,7 @@ inline Json summary_of(const std::vector<std::string>& lanes, const std::vector<
   return summary;
 }
 
-// Small campaigns in a directory of their own: `one`, and those that a test runs in addition.
+// Runs small campaigns in a directory of their own: `one` for all tests, and others for single tests.
 class CampaignTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {

@@ -87,7 +87,8 @@ class Printer {
     return widest;
   }
 
-  // The text of a step is right-aligned with its column, so it needs room above the columns to its left.
+  // The width of the first column. A step's text is right-aligned with its column and needs room above the columns to
+  // its left, so it may widen the first column.
   int width_of_first(const std::vector<std::size_t>& some, Headers headers) const {
     int first = width(some[0], headers), before = 0;
     for (std::size_t i = 1; i < some.size(); ++i) {
@@ -117,7 +118,7 @@ class Printer {
       ends.push_back((ends.empty() ? indent_ : ends.back() + kBetween) + widths.back());
     }
     std::string result;
-    for (std::size_t i = some.size(); i-- > 0;) {  // steps, last column on top
+    for (std::size_t i = some.size(); i-- > 0;) {  // the steps, with the last column's on top
       if (!is_step(some[i], headers)) continue;
       std::string text = padded(columns_[some[i]].header, ends[i], Align::right);
       result += stems(text, some, ends, i + 1, headers);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rates against the tolerance at all sites, as a picture: relative tolerances on the left, absolute ones on the right.
+// Draws rates against the tolerance at all sites. Relative tolerances are on the left, absolute ones on the right.
 #pragma once
 
 #include <fmt/format.h>

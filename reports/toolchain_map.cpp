@@ -85,10 +85,10 @@ class Differences {
  private:
   const CampaignCounts& counts_;
   std::map<std::string, std::vector<std::pair<std::string, std::uint64_t>>> marks_;  // by algorithm
-  std::vector<std::size_t> places_;  // of a lane among those of its algorithm
+  std::vector<std::size_t> places_;  // of each lane, among the lanes of its algorithm
 };
 
-// Whether two variants have the same lanes, and these agree on every pair.
+// Whether two variants have the same lanes and these lanes agree on every pair.
 bool agree(const std::vector<Row>& rows, const Differences& differences, std::size_t left, std::size_t right) {
   return std::all_of(rows.begin(), rows.end(), [&](const Row& row) {
     if (!row.lanes[left] || !row.lanes[right]) return row.lanes[left] == row.lanes[right];
@@ -96,7 +96,7 @@ bool agree(const std::vector<Row>& rows, const Differences& differences, std::si
   });
 }
 
-// Groups of at least two variants.
+// The groups of at least two variants that agree.
 std::vector<std::vector<std::string>> groups_of(const std::vector<Row>& rows, const std::vector<std::string>& variants,
                                                 const Differences& differences) {
   std::vector<std::vector<std::size_t>> groups;

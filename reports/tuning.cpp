@@ -53,10 +53,10 @@ std::string choice_words(const TuneQuestion& q, const std::string& policy) {
                      policy.empty() || e.name == e.written ? "" : fmt::format(" (now {})", printable(e.written)));
 }
 
-// The subject of "is good enough here": "No tolerance", "No value".
+// The word for what is tuned, as in "No tolerance is good enough here".
 std::string_view setting(const TuneQuestion& q) { return q.source ? "value" : "tolerance"; }
 
-// "value of kEps from 0 up": a sweep has no values below 0, which mean something else.
+// "value of kEps from 0 up". A sweep has no values below 0, because they mean something else.
 std::string value_of(const TuneQuestion& q) { return "value of " + printable(q.source->epsilon.name) + " from 0 up"; }
 
 // "12 false negatives (0.012 %) and 0 false positives of 100,000 pairs"
@@ -70,12 +70,12 @@ std::string errors(const PolicyErrors& e) {
                      part(e.false_positive, "false positives"), grouped(e.pairs));
 }
 
-// The errors that double from one scale to another: all, or only the forbidden ones.
+// Names the errors that double from one scale to another: all errors, or only the forbidden kind.
 std::string_view doubled_words(const TuneQuestion& q, const PolicyErrors& here, const PolicyErrors& there) {
   return analysis::doubles(here.wrong(), there.wrong(), here.pairs) ? "errors" : words(q.forbid);
 }
 
-// How many pairs would show that the rate is under the limit, if more pairs have the same rate as these.
+// Says how many pairs would show that the rate is under the limit, if more pairs have the same rate.
 std::string pairs_to_show(const TuneQuestion& q, const Tuned& t) {
   const std::uint64_t errors = analysis::forbidden(t.confirmed, q.forbid), pairs = t.confirmed.pairs;
   if (errors == 0)
@@ -89,7 +89,7 @@ std::string pairs_to_show(const TuneQuestion& q, const Tuned& t) {
 }
 
 std::string answer(const TuneQuestion& q, const Tuned& t) {
-  const std::string on = "on pairs other than those it was chosen on, " + errors(t.confirmed),
+  const std::string on = "on pairs that were not used to choose it, " + errors(t.confirmed),
                     of = choice_words(q, t.chosen) + ": " + on;
   std::string trust = fmt::format("at 95 % confidence {} are under {}", words(q.forbid), rounded_up(t.bound, 2));
   if (q.forbid != Forbid::any)
@@ -113,9 +113,10 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
           of, words(q.forbid), q.max_rate);
     case TuneResult::not_useful:
       return fmt::format(
-          "No {6} is good enough here. Among those that keep {0} at or under {1}, the one with the fewest {2} is {3}; "
-          "{4}. The rate of {2} may be at most {5} (--max-other). The exact lane has no errors.",
-          words(q.forbid), q.max_rate, other_words(q.forbid), of, trust, q.max_other, setting(q));
+          "No {6} is good enough here. Among the {7} that keep {0} at or under {1}, the one with the fewest {2} is "
+          "{3}; {4}. The rate of {2} may be at most {5} (--max-other). The exact lane has no errors.",
+          words(q.forbid), q.max_rate, other_words(q.forbid), of, trust, q.max_other, setting(q),
+          q.source ? "values" : "tolerances");
     case TuneResult::not_satisfiable:
       break;
   }
@@ -125,8 +126,8 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
       setting(q), q.source ? "no " + value_of(q) : "no tolerance of " + q.lane, words(q.forbid), q.max_rate, of);
 }
 
-// Says that the chosen value 0 does not err like the next smallest value: a comparison with 0 also decides what is
-// exactly 0, as where triangles touch. Empty if it does err like it, or if another value was chosen.
+// A warning if the chosen value is 0 and errs differently from the next smallest value; otherwise empty. A comparison
+// with 0 also decides values that are exactly 0, for example where triangles touch.
 std::string zero_words(const TuneQuestion& q, const Tuned& t) {
   if (t.curves.empty()) return "";
   const std::vector<PolicyErrors>& points = t.curves[0].points;
@@ -204,9 +205,10 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
                                        : fmt::format("neither errors nor {} alone are", words(question.forbid)),
         counted(scale.here.pairs, "pair")));
   for (const analysis::Interaction& i : tuned.interactions) {
-    result.push_back(fmt::format("Two sites: {} alone has {} wrong, {} alone {}, both {}, of {} to choose on.", i.first,
-                                 grouped(i.of_first.wrong()), i.second, grouped(i.of_second.wrong()),
-                                 grouped(i.together.wrong()), counted(i.together.pairs, "pair")));
+    result.push_back(fmt::format(
+        "Two sites: with {} alone, {} verdicts are wrong, with {} alone {}, and with both {}, on {} used to choose.",
+        i.first, grouped(i.of_first.wrong()), i.second, grouped(i.of_second.wrong()), grouped(i.together.wrong()),
+        counted(i.together.pairs, "pair")));
   }
   return result;
 }

@@ -19,7 +19,7 @@ inline constexpr std::string_view kTuneForbids[] = {"false_negative", "false_pos
                                   kTuneResults[] = {"satisfied", "too few pairs", "not confirmed", "not satisfiable",
                                                     "not useful"};
 
-// How tune.json names the choice that changes nothing: no tolerance, or the unchanged epsilon of a user's source.
+// The names in tune.json of the choice that changes nothing: no tolerance, or the unchanged epsilon of a user's source.
 inline constexpr std::string_view kZero = "zero", kAsItIs = "as it is";
 
 // The tuned lane, and the goal of the tuning.
@@ -27,15 +27,15 @@ struct TuneQuestion {
   std::string lane;
   analysis::Forbid forbid = analysis::Forbid::any;
   double max_rate = 0, max_other = 0;
-  const subjects::TunableSource* source = nullptr;  // of a user's code: the source with the epsilon
-  std::string units = {};                           // of the scene's coordinates; empty without a scene
+  const subjects::TunableSource* source = nullptr;  // for a user's code: the source with the epsilon
+  std::string units = {};                           // unit of the scene's coordinates; empty without a scene
 };
 
-// Each sentence starts with its topic. Every number in it belongs to the pairs that the sentence names.
+// Each sentence starts with its topic and names the pairs that its numbers describe.
 std::vector<std::string> tuning_sentences(const TuneQuestion& question, const analysis::Tuned& tuned);
 
-// The best tolerance of each curve on the pairs used to choose: what it fixes and breaks, and what stays wrong.
-// Tolerances that change nothing there are left out.
+// Returns a table of the best tolerance of each curve. It counts the pairs that the tolerance fixes, breaks and leaves
+// wrong, among the pairs used to choose. Tolerances that change no verdict there are left out.
 std::string tuning_table(const TuneQuestion& question, const analysis::Tuned& tuned, const Screen& screen);
 
 nlohmann::ordered_json tuning_json(const TuneQuestion& question, const analysis::Tuned& tuned);

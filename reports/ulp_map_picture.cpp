@@ -16,8 +16,9 @@
 namespace graze::reports {
 namespace {
 
-// One colour for each kind of cell, in order; ink and paper come before the colours of failing foreign code. Correct
-// verdicts are grey. Wrong ones are vermilion and blue from Okabe and Ito's palette, which also differ in lightness.
+// One colour for each kind of cell, in order. Ink and paper come before the colours of failing foreign code. Correct
+// verdicts are grey. Wrong verdicts are vermilion and blue from Okabe and Ito's palette, which also differ in
+// lightness.
 constexpr std::uint8_t kPalette[][3] = {{0xee, 0xee, 0xee}, {0xaa, 0xaa, 0xaa}, {0xd5, 0x5e, 0x00}, {0x00, 0x72, 0xb2},
                                         {0xf0, 0xe4, 0x42}, {0xcc, 0x79, 0xa7}, {0x00, 0x00, 0x00}, {0xff, 0xff, 0xff},
                                         {0x00, 0x9e, 0x73}, {0x56, 0xb4, 0xe9}, {0xe6, 0x9f, 0x00}};
@@ -205,7 +206,7 @@ nlohmann::ordered_json legend_of(std::size_t kind) {
   return {{"colour", fmt::format("#{:02x}{:02x}{:02x}", red, green, blue)}, {"means", kCellNames[kind]}};
 }
 
-// What a map says about its coordinates.
+// The fields of a map that describe its coordinates.
 nlohmann::ordered_json frame_of(const std::string& x, const std::string& y) {
   return {{"title", fmt::format("{} and {} moved by up to {} ulps", x, y, analysis::kMapCentre)},
           {"x", x},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads pictures back with the PNG library: each pixel has its cell's colour.
+// Reads pictures back with the PNG library, and tests that each pixel has its cell's colour.
 #include "reports/ulp_map_picture.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ struct Picture {
 
 const Pair kPair{{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}}, {{0.75f, 0.75f, 0}, {0.75f, 0.75f, 1}, {0.5f, 0.75f, 1}}};
 
-// Rows of cells, one kind after the other, repeated.
+// A map in which each row has one kind of cell, and the kinds take turns.
 analysis::UlpMap striped(int lanes) {
   analysis::UlpMap map{kPair, {9, 10}, {}};
   for (int p = 0; p <= lanes; ++p) {

@@ -36,7 +36,7 @@ std::string simplest_in(const Json& row) {
   return row.contains("simplest") ? text_at(row.at("simplest"), "place") : "";
 }
 
-// One of the counts in a line of output: its name and position.
+// A count of a source line: its name in the JSON, and its member.
 struct LineCount {
   const char* name;
   std::uint64_t analysis::LineApart::*count;
@@ -114,7 +114,7 @@ std::string operands_sentence(const Json& operands) {
   return text;
 }
 
-// The cells of a line in both tables, after its place.
+// The cells that follow the place of a line in both tables.
 std::vector<std::string> line_cells(const Json& line) {
   const Octaves sizes = sizes_of(line);
   return {grouped(number_at(line, "compared")),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presents how often the verdicts of two lanes of a user's code differ, as a part of what `graze discrepancy` finds.
-// For a CUDA source it also presents how the operands of its comparisons differ.
+// Presents how often the verdicts of two lanes of a user's code differ, which is part of the results of `graze
+// discrepancy`. For a CUDA source it also presents how the operands of its comparisons differ.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -25,13 +25,13 @@ nlohmann::ordered_json verdicts_json(const analysis::TwoDeciders& deciders,
                                      const std::vector<analysis::VerdictsApart>& found,
                                      const analysis::OperandsApart* operands);
 
-// How often the verdicts differ, which lane is wrong then, and what decides or why no value is compared.   of: such an
-// object.
+// Says how often the verdicts differ, which lane is wrong, and which comparison decides or why no value is compared.
+// of, here and below: the result of verdicts_json.
 std::string verdicts_sentence(const nlohmann::ordered_json& of);
 
-// A row for each stratum, and one for each source line whose operands differ.
+// Returns a table with a row for each stratum, and one with a row for each source line whose operands differ.
 std::string verdicts_table(const nlohmann::ordered_json& of, const Screen& screen);
-std::string verdicts_section(const nlohmann::ordered_json& of);  // of the page
+std::string verdicts_section(const nlohmann::ordered_json& of);  // a section of the page
 std::string verdicts_csv(const nlohmann::ordered_json& of);      // rows as in discrepancy.csv
 
 // Throws: std::runtime_error for impossible counts.

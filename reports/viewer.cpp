@@ -48,13 +48,13 @@ std::string bits_of(const AnyPair& pair, Scalar type) {
   return bits_of(std::span(coordinates(pair.doubles), kCoordinates), type);
 }
 
-// The lanes that run here and that the module of this coordinate type has too.
+// The lanes that run here and are also in the module of this coordinate type.
 std::vector<const Lane*> replayed_lanes(Scalar type) {
   std::vector<const Lane*> result;
   for (const Lane& lane : lanes()) {
     const bool rebuilt =
         lane.exact || backends::backend_of(lane).is_replayed || info_of(lane.variant).arithmetic == Arithmetic::rounded;
-    if (lane.exact && lane.scalar == Scalar::f64 && type == Scalar::f32) continue;  // same as exact/f32/cpu there
+    if (lane.exact && lane.scalar == Scalar::f64 && type == Scalar::f32) continue;  // there it equals exact/f32/cpu
     if (rebuilt && !lane.foreign && !lane.under && backends::on_host(lane)) result.push_back(&lane);
   }
   return result;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The viewer: one HTML file in which graze.wasm or graze_f64.wasm decides pairs again as they change.
+// The viewer is one HTML file. In it, graze.wasm or graze_f64.wasm decides a pair again whenever the pair changes.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@
 
 namespace graze::reports {
 
-// What a lane of a user's code said about a pair. The page cannot run such code, so it shows this.
+// The verdict of a lane of a user's code on a pair. The page shows it because it cannot run such code.
 struct SaidOfPair {
   std::string lane;
   Verdict verdict;
   bool wrong;
-  bool stored = false;  // whether the campaign stored it, because its code is gone
+  bool stored = false;  // whether the verdict is the campaign's, because the code is gone
 };
 
 struct ViewedPair {
@@ -28,15 +28,15 @@ struct ViewedPair {
 };
 
 struct Viewed {
-  std::string title;              // of the list of pairs
-  std::vector<ViewedPair> pairs;  // empty: the special cases of 2012
+  std::string title;              // title of the list of pairs
+  std::vector<ViewedPair> pairs;  // if empty, the special cases of 2012 are shown
   // The triangles of a mesh or a query, shown against the first triangle of a pair. Triangles of float32 require pairs
   // of float32.
   std::vector<std::array<Vec3<double>, 3>> triangles;
-  std::vector<std::size_t> ids;           // of these triangles; if empty, they are numbered in order
+  std::vector<std::size_t> ids;           // ids of the triangles; if empty, they are numbered in order
   bool opens_with_triangles = false;      // show all triangles at once instead of a pair
-  nlohmann::ordered_json lanes_left_out;  // of a user's code, with the reasons; null if there are none
-  std::size_t random = 0;                 // if not 0: first show this many random triangles of 2012
+  nlohmann::ordered_json lanes_left_out;  // lanes of a user's code and the reasons; null without any
+  std::size_t random = 0;                 // if not 0, show this many random triangles of 2012 first
 };
 
 // Limits of the page's size.
@@ -45,12 +45,12 @@ inline constexpr std::size_t kMostViewedPairs = 5000, kMostViewedTriangles = 500
 // Whether this build has the viewer of reports/web, which is built with Node and a compiler for WebAssembly.
 bool has_viewer();
 
-// What the viewer needs for pairs of this coordinate type: its module, the evidence for the twins, and stored verdicts
-// against which it checks itself when it opens. The verdicts are on a few hundred pairs: some from every stratum, and
-// the canaries (cuda/twin/canaries.pairs). Null if the build has no viewer.
+// Returns the viewer's data for pairs of this coordinate type: its module, the evidence for the twins, and stored
+// verdicts. The viewer checks itself against these verdicts when it opens. They are on a few hundred pairs: some from
+// every stratum, and the canaries (cuda/twin/canaries.pairs). Null if the build has no viewer.
 nlohmann::ordered_json viewer_parts(Scalar coordinates);
 
-// The page. If any of its pairs has doubles, all are shown as doubles.
+// Returns the page. If any of its pairs has doubles, all pairs are shown as doubles.
 // Requires: has_viewer(); at most kMostViewedPairs pairs and kMostViewedTriangles triangles.
 std::string viewer_page(const Viewed& viewed);
 

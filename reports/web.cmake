@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Builds the page of SOURCE (reports/web) in BUILD, and writes it to OUT as a C++ string. If npm cannot fetch its
 # packages, for example offline, the string is empty, and reports are plain pages. Also writes the viewer to VIEWER, and
-# the modules WASM_F32 and WASM_F64 to MODULES, compressed with gzip, in base64. Without modules these strings are empty.
+# the modules WASM_F32 and WASM_F64 to MODULES, as base64 of gzip. Without modules, all these strings are empty.
 file(MAKE_DIRECTORY ${BUILD})
 file(REMOVE_RECURSE ${BUILD}/src)
 foreach(part index.html view.html package.json package-lock.json tsconfig.json vite.config.js src)
@@ -21,7 +21,7 @@ if(NOT installed STREQUAL lock)
   execute_process(COMMAND ${NPM} ci --ignore-scripts --no-audit --no-fund --prefer-offline --fetch-retries=1
     WORKING_DIRECTORY ${BUILD} RESULT_VARIABLE failed OUTPUT_QUIET ERROR_VARIABLE why)
   if(why MATCHES EUSAGE)
-    message(FATAL_ERROR "expected package-lock.json to fit package.json, found:\n${why}")
+    message(FATAL_ERROR "package-lock.json does not fit package.json:\n${why}")
   elseif(failed)
     message(WARNING "npm ci failed, so reports will be plain pages; to try again, remove ${OUT} and build.\n${why}")
     file(WRITE ${OUT} "\"\"\n")
@@ -34,7 +34,7 @@ function(build script html out)
   execute_process(COMMAND ${CMAKE_COMMAND} -E env GRAZE_VIEWER=${WASM_F32} GRAZE_SOURCE=${SOURCE}/../.. ${NPM} run --silent ${script} WORKING_DIRECTORY ${BUILD}
     RESULT_VARIABLE failed OUTPUT_VARIABLE said ERROR_VARIABLE said)
   if(failed)
-    message(FATAL_ERROR "expected reports/web to build, found:\n${said}")
+    message(FATAL_ERROR "cannot build reports/web:\n${said}")
   endif()
   file(READ ${BUILD}/dist/${html} page)
   file(WRITE ${out} "R\"graze_page(${page})graze_page\"\n")

@@ -42,7 +42,7 @@ test('two campaigns compared: what changed on top, rates, kinds gained and lost'
   expect(await page.locator('nav').evaluate((nav) => nav.scrollWidth - nav.clientWidth)).toBeLessThanOrEqual(0);
   await expect(section).toContainText(`seed ${compare!.other.seed}`);
   await expect(section.locator('.headline')).toHaveText(compare!.headline);
-  expect(compare!.differences[0]).toContain('They differ in seed');
+  expect(compare!.differences[0]).toContain('The seed differs');
   await expect(section.locator('.differences li')).toHaveText(compare!.differences);
   const tops = await section
     .locator('.headline, .differences, h3')

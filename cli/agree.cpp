@@ -74,8 +74,7 @@ int agree(const TuneOptions& options) {
   const analysis::Agreed agreed = analysis::agree(spec);
 
   const reports::Screen screen = output_screen();
-  for (const std::string& sentence : reports::agreement_sentences(question, agreed))
-    fmt::print("{}", reports::wrapped(sentence, screen.columns));
+  print_wrapped(reports::agreement_sentences(question, agreed));
   fmt::print("\n{}{}\n", reports::agreement_table(question, agreed, screen), pairs.left_out);
   const std::string& policy = agreed.chosen;
   const std::vector<Lane> under = {policy.empty() ? first : lane_under(first, policy),
@@ -84,8 +83,7 @@ int agree(const TuneOptions& options) {
     if (!policy.empty() && lane.id != costly.back()->id) add_cost_of(lane);
   }
   for (const Lane* lane : exact) add_cost_of(*lane);
-  for (const std::string& sentence : cost_sentences(costly, spec.others))
-    fmt::print("{}", reports::wrapped(sentence, screen.columns));
+  print_wrapped(cost_sentences(costly, spec.others));
 
   std::vector<Result> results = {{"agree.json", fuzz::sealed(reports::agreement_json(question, agreed)).dump(1) + "\n"},
                                  {"curves.svg", reports::agreement_figure(question, agreed)}};

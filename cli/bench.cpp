@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -188,10 +187,9 @@ void bench(const Options& options, int& status) {
   fmt::print("{}{}", not_timed(result), shares(result));
   if (std::any_of(lanes.under_test.lanes.begin(), lanes.under_test.lanes.end(),
                   [](const Lane* lane) { return lane->foreign; }))
-    fmt::print("{}",
-               reports::wrapped("Times of your own code include the exchange with its process, which decides each "
-                                "pair twice; `graze pareto` times the code alone, for host lanes.",
-                                output_screen().columns));
+    print_wrapped(
+        {"Times of your own code include the exchange with its process, which decides each pair twice; `graze pareto` "
+         "times the code alone, for host lanes."});
   if (!result.machine.devices.empty() && !options.sizes.empty()) {
     fmt::print("crossover: {}\n", result.crossover == 0
                                       ? "none; with copies included, all cores are faster"

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "cli/query_input.h"
 #include "core/error.h"
 #include "core/lanes/lanes.h"
 #include "cuda/query/device_query.h"
@@ -127,14 +128,10 @@ class Measuring {
 
   // The exact lane again, on the same numbers as doubles.
   void by_executors_in_doubles(const Array& array, std::vector<std::uint8_t>& exact) {
-    const auto widened = [](const Triangle& t) {
-      query::DoubleTriangle wide;
-      std::copy(t.begin(), t.end(), wide.begin());
-      return wide;
-    };
-    const query::DoubleTriangle reference = widened(array.reference);
+    const query::DoubleTriangle reference = in_doubles(array.reference);
     std::vector<query::DoubleTriangle> triangles(array.triangles.size());
-    std::transform(array.triangles.begin(), array.triangles.end(), triangles.begin(), widened);
+    std::transform(array.triangles.begin(), array.triangles.end(), triangles.begin(),
+                   [](const Triangle& t) { return in_doubles(t); });
     const graze_triangles host = query::rows_of(std::span<const query::DoubleTriangle>(triangles));
     by_executors(array.name, query::query_of(reference, host), sizeof triangles[0], "all", kExactInDoubles, exact,
                  &exact);

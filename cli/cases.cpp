@@ -115,6 +115,14 @@ std::string note_of_doubles(const corpus::Entry& entry, const oracle::Truth& tru
 
 }  // namespace
 
+std::string shown_name(const std::string& file, const corpus::Entry& entry) {
+  if (const std::optional<std::string> numbers = corpus::numbers_of(entry)) return printable(*numbers);
+  const std::string *kind = corpus::field(entry, "kind"), *from = corpus::field(entry, "from"),
+                    *label = corpus::field(entry, "name");
+  if (kind && from) return printable(*kind + " from " + *from);  // minimised from mesh:1:597
+  return printable(label ? *label : entry.line > 0 ? fmt::format("{}:{}", file, entry.line) : file);
+}
+
 oracle::Truth truth_of(const corpus::Entry& entry) { return oracle::truth(corpus::pair_of(entry)); }
 
 std::string written_note(const corpus::Entry& entry, const oracle::Truth& truth) {

@@ -20,6 +20,10 @@ namespace graze::cli {
 // std::runtime_error for a file without a case; UsageError or FormatError for a pair of doubles that is not `taken`.
 std::vector<corpus::Entry> read_cases(const std::string& name, PairTypes taken = PairTypes::f32);
 
+// What identifies the case for a reader: STRATUM:SEED:INDEX, the case that it was minimised from, its name, or its line
+// in the file.
+std::string shown_name(const std::string& file, const corpus::Entry& entry);
+
 // The truth of the pair in its own coordinate type.
 oracle::Truth truth_of(const corpus::Entry& entry);
 

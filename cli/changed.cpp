@@ -66,9 +66,8 @@ void count_on_pairs(const Lane& before, const Lane& after, const std::vector<str
   for (const Json* row : rows)
     of_rows.push_back(*std::find_if(sources.begin(), sources.end(),
                                     [&](const strata::PairSource& source) { return row->at("stratum") == source.id; }));
-  const auto simpler = [](const AnyPair& l, const AnyPair& r) { return simplicity(l) < simplicity(r); };
   const std::vector<analysis::VerdictsApart> found =
-      analysis::verdicts_apart({{&before, &after}, {before.decide, after.decide}}, of_rows, 0, simpler);
+      analysis::verdicts_apart({{&before, &after}, {before.decide, after.decide}}, of_rows, 0, is_simpler);
   for (std::size_t s = 0; s < rows.size(); ++s) {
     Json& row = *rows[s];
     if (found[s].differs < row["least"] || found[s].differs > row["most"]) continue;  // it answers differently now

@@ -2,13 +2,11 @@
 // `graze check`: prints the truth and every lane's verdict for pairs from a file or a pipe.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "analysis/convention.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/screen.h"
@@ -27,10 +25,6 @@ struct CheckOptions {
   bool truth_only = false;
   bool exact_input = false;
 };
-
-nlohmann::ordered_json number(double x) {
-  return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(nullptr);
-}
 
 void check(const CheckOptions& options) {
   const bool from_stdin = options.file == "-";
@@ -53,16 +47,15 @@ void check(const CheckOptions& options) {
     const std::string note = written_note(*entry, t), stored = stored_verdicts(*entry, under_test.left_out, t.verdict);
     const std::vector<Verdict> verdicts =
         options.truth_only ? std::vector<Verdict>() : decide(under_test, corpus::pair_of(*entry));
-    const std::vector<Verdict> counted =
-        corpus::visit(*entry, [&](const auto& pair) { return analysis::excused(under_test.lanes, verdicts, pair, t); });
+    const std::vector<Verdict> counted = counted_verdicts(under_test, verdicts, corpus::pair_of(*entry), t);
     wrong = wrong || some_is_wrong(counted, t.verdict);
     if (options.json) {
       nlohmann::ordered_json line = {{"pair", number_of_pair},
                                      {"truth",
                                       {{"verdict", name(t.verdict)},
                                        {"contact", name(t.contact)},
-                                       {"margin", number(t.margin)},
-                                       {"margin_ulps", number(t.margin_ulps)}}},
+                                       {"margin", t.margin},  // null if it is not finite
+                                       {"margin_ulps", t.margin_ulps}}},
                                      {"lanes", nlohmann::ordered_json::object()}};
       if (entry->doubles) line["coordinates"] = name(Scalar::f64);
       for (std::size_t l = 0; l < verdicts.size(); ++l) line["lanes"][under_test.lanes[l]->id] = name(verdicts[l]);

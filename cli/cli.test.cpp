@@ -325,7 +325,8 @@ TEST_F(Cli, AFolderMayBeNamedLikeAUri) {
 
 TEST_F(Cli, EveryVerbHasHelpWithAnExampleThatRuns) {
   for (const std::string verb :
-       {"fuzz", "check", "repro", "explain", "dump", "lanes", "plan", "strata"}) {  // prove-twin needs a device
+       {"fuzz", "check", "repro", "explain", "map", "corpus add", "corpus list", "corpus verify", "dump", "lanes",
+        "pareto", "plan", "strata"}) {  // prove-twin needs a device
     const Ran help = shell("graze " + verb + " --help");
     EXPECT_EQ(help.status, 0);
     const std::size_t at = help.out.find("Example: ");
@@ -333,6 +334,7 @@ TEST_F(Cli, EveryVerbHasHelpWithAnExampleThatRuns) {
     const std::string example = help.out.substr(at + 9, help.out.find('\n', at) - at - 9);
     EXPECT_EQ(shell("set -o pipefail; jq() { cat; }; " + example).status, 0) << example;
   }
+  expect_done("test -s map.png");
 }
 
 // `graze_campaign` is the program that scripts/campaign builds, linked by this build.

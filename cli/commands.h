@@ -11,8 +11,10 @@
 #include "core/whole.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/campaign_scene.h"
+#include "fuzz/campaign/shard.h"
 #include "fuzz/campaign/store_file.h"
 #include "fuzz/selected_lanes.h"
+#include "oracle/truth.h"
 
 namespace graze::cli {
 
@@ -109,6 +111,16 @@ CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::str
 // Writes the report of the campaign as `graze report DIR` does, but prints nothing.   Throws: what that verb throws.
 void write_report(const std::string& directory);
 
+// Unpacks the file into the new folder NAME-unpacked, runs its campaign there, and compares the results with the
+// pack's. Returns: the exit status, 1 if something differs.
+int repro_pack(const std::string& file);
+
+// `graze toolchain hip`: lists the products that hipcc fuses for AMD's GPUs, and nvcc for NVIDIA's, in the subjects, or
+// in the published algorithms. json: a file for them, or empty.   Returns: the exit status, 1 if products stay fused
+// with -ffp-contract=off.
+int list_hip_plans(const std::vector<std::string>& subjects, const std::vector<std::string>& flags,
+                   const std::string& json);
+
 // Adds --scene to a verb that draws pairs. If the verb has --coordinates, add that option first.
 void add_scene_option(CLI::App& command, std::string& file);
 
@@ -120,14 +132,10 @@ void write_scene_of(const std::string& mesh, const std::string& out, std::option
 // this share of the scene's pairs, what `exact` costs, and the strata that the scene leaves out.   Throws: as drawn.
 void print_sufficient(const std::string& scene, double rate);
 
-// Draws from the scene; sets `recorded` to what the verb's results record under "scene".
-// Throws: as fuzz::open_scene and strata::scene_sources.
-strata::SceneSources drawn_from_scene(const std::string& file, std::uint64_t seed, std::uint64_t pairs,
-                                      const std::vector<std::string>& globs, PairTypes types, fuzz::Json& recorded);
-
-// The same without recording; if `scene` is empty, draws from the strata.
+// Draws from the scene file, or from the strata if `scene` is empty. For a scene, sets `recorded` to what the verb's
+// results record under "scene".   Throws: as fuzz::open_scene, strata::scene_sources and strata::stratum_sources.
 strata::SceneSources drawn(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
-                           const std::vector<std::string>& globs, PairTypes types = PairTypes::f32);
+                           const std::vector<std::string>& globs, PairTypes types, fuzz::Json* recorded = nullptr);
 
 // Adds --coordinates to a verb that draws pairs of either type, or of both at once.
 enum class OfBothTypes { no, yes };
@@ -152,6 +160,9 @@ CLI::Option* add_count(CLI::App& command, const char* name, Whole& count, std::u
       ->option_text("N");
 }
 
+// Adds --shard K/N.
+void add_shard_option(CLI::App& command, fuzz::Shard& shard, const char* description);
+
 // Adds --threads to a verb that runs in parallel.
 inline constexpr std::uint64_t kMostThreads = 4096;
 CLI::Option* add_threads_option(CLI::App& command, int& threads);
@@ -168,6 +179,11 @@ CLI::Validator one_of(std::vector<std::string> words, Chosen chosen);
 
 // Each lane's verdict on one pair; reports on standard error where a device and its twin differ.
 std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const AnyPair& pair);
+
+// The verdicts of a pair as they count: those that a subject's convention excuses become the truth
+// (analysis/convention.h).
+std::vector<Verdict> counted_verdicts(const fuzz::SelectedLanes& under_test, const std::vector<Verdict>& verdicts,
+                                      const AnyPair& pair, const oracle::Truth& truth);
 
 // Whether a verdict is wrong; no verdict is wrong if the truth is declined.
 bool some_is_wrong(const std::vector<Verdict>& verdicts, Verdict truth);

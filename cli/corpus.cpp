@@ -52,10 +52,6 @@ fuzz::RegressionCorpus read_corpus(const CorpusOptions& options) {
   return corpus;
 }
 
-void write_corpus(const CorpusOptions& options, const fuzz::RegressionCorpus& corpus) {
-  fuzz::write_regressions(options.file(), corpus);
-}
-
 fuzz::DecideLanes decide_by(const fuzz::SelectedLanes& under_test) {
   return
       [&under_test](const AnyPair& pair, std::vector<const Lane*>& apart) { return decide(under_test, pair, apart); };
@@ -143,7 +139,7 @@ void add(const CorpusOptions& options) {
     if (not_run == std::accumulate(count.begin(), count.end(), std::size_t{0})) throw std::runtime_error(why);
     fmt::print(stderr, "graze: {}\n", why);
   }
-  write_corpus(options, corpus);
+  fuzz::write_regressions(options.file(), corpus);
   fmt::print("{} new, {} seen again, {} known already; {} holds {}\n", reports::grouped(count[0]),
              reports::grouped(count[1]), reports::grouped(count[2]), printable(options.file().string()),
              reports::grouped(corpus.size()));
@@ -222,7 +218,7 @@ int verify(const CorpusOptions& options) {
   for (const auto& [signature, c] : corpus) ++states[static_cast<std::size_t>(c.state)];
   for (const fuzz::Change& change : result.changes)
     fmt::print("{}: {}\n", printable(change.name), printable(change.what));
-  if (options.update) write_corpus(options, corpus);
+  if (options.update) fuzz::write_regressions(options.file(), corpus);
   fmt::print("{} cases on {} lanes: {} failing, {} fixed, {} flaky; {} verdicts compared, {} changes{}\n",
              reports::grouped(corpus.size()), under_test.lanes.size(), states[0], states[1], states[2],
              reports::grouped(result.compared), result.changes.size(), options.update ? ", recorded" : "");

@@ -186,16 +186,6 @@ TEST_F(CorpusVerb, AFullDiskLosesNothing) {
   EXPECT_EQ(shell("cmp r/cases.pairs old").status, 0);
 }
 
-TEST_F(CorpusVerb, ExamplesInTheHelpRun) {
-  for (const std::string verb : {"add", "list", "verify"}) {
-    const Ran help = shell("graze corpus " + verb + " --help");
-    const std::size_t at = help.out.find("Example: ");
-    ASSERT_NE(at, std::string::npos) << verb;
-    const std::string example = help.out.substr(at + 9, help.out.find('\n', at) - at - 9);
-    EXPECT_EQ(shell(example).status, 0) << example;
-  }
-}
-
 // Lanes without contraction give the same verdicts everywhere; the others depend on the compiler and the toolkit.
 TEST_F(CorpusVerb, TheRepositorysOwnHolds) {
   const Ran ran =

@@ -124,8 +124,6 @@ Comparisons comparisons_of(const DiscrepancyOptions& options) {
   return comparisons;
 }
 
-bool is_simpler(const AnyPair& l, const AnyPair& r) { return simplicity(l) < simplicity(r); }
-
 // Prefers pairs without segments and points, where a fault is hard to see, and among those the simpler pair.
 bool shows_better(const AnyPair& l, const AnyPair& r) {
   const auto is_degenerate = [](const AnyPair& pair) {
@@ -220,16 +218,12 @@ int discrepancy(DiscrepancyOptions options) {
   std::string scene;  // its name in results
   std::string left_out;
   if (options.campaign.empty()) {
-    if (options.scene.empty()) {
-      spec.sources = strata::stratum_sources(seed, options.pairs, options.strata, options.coordinates);
-    } else {
-      fuzz::Json recorded;
-      strata::SceneSources all =
-          drawn_from_scene(options.scene, seed, options.pairs, options.strata, options.coordinates, recorded);
-      spec.sources = std::move(all.sources);
-      left_out = left_out_text(all.left_out);
-      scene = recorded.at("name");
-    }
+    fuzz::Json recorded;
+    strata::SceneSources all =
+        drawn(options.scene, seed, options.pairs, options.strata, options.coordinates, &recorded);
+    spec.sources = std::move(all.sources);
+    left_out = left_out_text(all.left_out);
+    if (!recorded.is_null()) scene = recorded.at("name");
   } else {
     CampaignPairs of_campaign = pairs_of_campaign(options.campaign, options.pairs, "compare lanes on");
     spec.sources = std::move(of_campaign.sources);
@@ -299,8 +293,7 @@ int discrepancy(DiscrepancyOptions options) {
     for (const Lane* lane : deciders.lanes) foreign.push_back(lane->id);
   }
   if (const fuzz::Json code = reports::code_json(subjects::record(foreign)); !code.is_null()) json["subjects"] = code;
-  for (const std::string& sentence : reports::discrepancy_answer(json))
-    fmt::print("{}", reports::wrapped(sentence, screen.columns));
+  print_wrapped(reports::discrepancy_answer(json));
   write_results(folder.path, {{"discrepancy.json", fuzz::sealed(json).dump(1) + "\n"},
                               {"discrepancy.csv", csv},
                               {"discrepancy.html", reports::discrepancy_page(json)}});

@@ -5,28 +5,17 @@
 
 #include <optional>
 
-#include "analysis/convention.h"
 #include "analysis/signature.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
-#include "core/text.h"
 #include "oracle/truth.h"
 
 namespace graze::cli {
 namespace {
 
-// The case's origin: STRATUM:SEED:INDEX, the case that it was minimised from, its name, or its line.
-std::string origin(const std::string& name, const corpus::Entry& entry) {
-  if (const std::optional<std::string> numbers = corpus::numbers_of(entry)) return printable(*numbers);
-  const std::string *kind = corpus::field(entry, "kind"), *from = corpus::field(entry, "from"),
-                    *label = corpus::field(entry, "name");
-  if (kind && from) return printable(*kind + " from " + *from);
-  return printable(label ? *label : entry.line > 0 ? fmt::format("{}:{}", name, entry.line) : name);
-}
-
 std::string described(const std::string& name, const corpus::Entry& entry, const oracle::Truth& t) {
-  return fmt::format("Case {}: contact {}, margin {} ({} ulps)", origin(name, entry), graze::name(t.contact), t.margin,
-                     t.margin_ulps);
+  return fmt::format("Case {}: contact {}, margin {} ({} ulps)", shown_name(name, entry), graze::name(t.contact),
+                     t.margin, t.margin_ulps);
 }
 
 }  // namespace
@@ -39,8 +28,7 @@ std::string emit(reports::SnippetKind kind, const std::string& name, const std::
     if (t.verdict == Verdict::declined) continue;
     const reports::SnippetCase found{described(name, entry, t), corpus::pair_of(entry), t.verdict, nullptr, t.verdict};
     const std::vector<Verdict> verdicts = decide(under_test, corpus::pair_of(entry));
-    const std::vector<Verdict> counted =
-        corpus::visit(entry, [&](const auto& pair) { return analysis::excused(under_test.lanes, verdicts, pair, t); });
+    const std::vector<Verdict> counted = counted_verdicts(under_test, verdicts, corpus::pair_of(entry), t);
     const std::string* signature = corpus::field(entry, "signature");
     std::optional<std::size_t> wrong;
     for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {

@@ -273,7 +273,7 @@ void explain_cases(const ExplainOptions& options) {
 
 }  // namespace
 
-void add_explain(CLI::App& app, int& status) {
+void add_explain(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand(
       "explain",
       "Explain why lanes are wrong on a case: their values beside the exact ones, the cause, and what would help");
@@ -285,10 +285,7 @@ void add_explain(CLI::App& app, int& status) {
   add_exact_input(*command, options->exact_input);
   command->add_flag("--all", options->all, "Print all cases, verdicts and values, however many lines they take");
   command->add_flag("--json", options->json, "Print one JSON object per line, one line per case, with all values");
-  command->callback([options, &status] {
-    explain_cases(*options);
-    status = 0;
-  });
+  command->callback([options] { explain_cases(*options); });
 }
 
 }  // namespace graze::cli

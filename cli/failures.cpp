@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <limits>
 #include <map>
 
@@ -119,15 +118,15 @@ int kinds_of(const std::string& directory, bool json, bool all) {
   }
   fmt::print("{}", limited.text());
   if (shown < kinds.size())
-    fmt::print("{}", reports::wrapped(fmt::format("and {} rarer kinds with {:.1f} % of the failures (a pair may have "
-                                                  "several); --all lists them, and where each kind occurs",
-                                                  kinds.size() - shown, 100 * (1 - told / sum)),
-                                      screen.columns));
+    print_wrapped(
+        {fmt::format("and {} rarer kinds with {:.1f} % of the failures (a pair may have several); --all lists "
+                     "them, and where each kind occurs",
+                     kinds.size() - shown, 100 * (1 - told / sum))});
   if (const std::size_t without = fuzz::signatures_without_kind(summary, kinds); without > 0)
-    fmt::print("{}", reports::wrapped(fmt::format("{} of {} signatures belong to no kind: their lanes were not "
-                                                  "examined, run only on a device, or did not fail again",
-                                                  without, summary["signatures"].size()),
-                                      screen.columns));
+    print_wrapped(
+        {fmt::format("{} of {} signatures belong to no kind: their lanes were not examined, run only on a "
+                     "device, or did not fail again",
+                     without, summary["signatures"].size())});
   if (!kinds.empty() && all) {
     fmt::print("\n");
     print_audit(kinds, screen);

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -15,7 +14,6 @@
 #include <thread>
 
 #include "analysis/signature.h"
-#include "cli/campaign_end.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/fuzz.h"
@@ -23,7 +21,6 @@
 #include "cli/progress.h"
 #include "cli/results.h"
 #include "cli/screen.h"
-#include "cli/shard_option.h"
 #include "core/error.h"
 #include "core/lanes/lanes.h"
 #include "core/text.h"
@@ -149,15 +146,12 @@ fuzz::Campaign campaign_of(const FuzzOptions& options, const fuzz::SelectedLanes
   campaign.shard = options.shard;
   if (!options.scratch.empty()) campaign.scratch = fuzz::scratch_of(options.scratch, options.out);
   Json scene_spec;
-  if (!options.scene.empty()) {
+  if (options.mesh.empty() || !options.strata.empty()) {  // with a mesh, strata are used only if the user asks for them
     strata::SceneSources drawn =
-        drawn_from_scene(options.scene, options.seed, options.pairs, options.strata, options.coordinates, scene_spec);
+        cli::drawn(options.scene, options.seed, options.pairs, options.strata, options.coordinates, &scene_spec);
     say_notes(drawn.notes, drawn.rounding, options.exact_input);
     campaign.sources = std::move(drawn.sources);
     left_out = std::move(drawn.left_out);
-  } else if (options.mesh.empty() ||
-             !options.strata.empty()) {  // with a mesh, strata are used only if the user asks for them
-    campaign.sources = strata::stratum_sources(options.seed, options.pairs, options.strata, options.coordinates);
   }
   Json mesh_spec;
   if (!options.mesh.empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options of `graze fuzz`, and its steps, which `graze try` uses too. Defined in fuzz.cpp.
+// The options of `graze fuzz`, and its steps, which other verbs use too. Defined in fuzz.cpp.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ fuzz::SelectedLanes lanes_of_campaign(const FuzzOptions& options);
 
 // The campaign of these options. `left_out`: receives the strata that the scene cannot contain.
 // Requires: `under_test` outlives the campaign.
-// Throws: as drawn_from_scene, strata::read_mesh_pairs and fuzz::choose_engines.
+// Throws: as drawn, strata::read_mesh_pairs and fuzz::choose_engines.
 fuzz::Campaign campaign_of(const FuzzOptions& options, const fuzz::SelectedLanes& under_test,
                            std::vector<strata::LeftOut>& left_out);
 
@@ -48,5 +48,15 @@ void write_junit(const FuzzOptions& options, const fuzz::SelectedLanes& under_te
 // Runs or resumes the campaign, with a live line on a terminal, until it is done or the user interrupts it.
 // Throws: as fuzz::run_campaign.
 fuzz::Outcome run_with_progress(const fuzz::Campaign& campaign);
+
+// Prints the result of a campaign at the end of `fuzz` and `merge`, and writes its picture to `out`.
+void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool json,
+                    const std::vector<strata::LeftOut>& left_out = {});
+
+// The same for a shard.
+void print_shard(const std::string& out, const fuzz::Json& spec, const fuzz::Json& summary, bool json);
+
+// A line for each subject whose hash leaves something out, such as the libraries that it loads; empty for none.
+std::string not_covered_text(const fuzz::Json& spec);
 
 }  // namespace graze::cli

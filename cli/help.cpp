@@ -2,7 +2,6 @@
 #include "cli/help.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <functional>
@@ -13,10 +12,7 @@
 namespace graze::cli {
 namespace {
 
-constexpr int kWithoutTerminal = 80;  // columns; files and pipes get the same text everywhere
-constexpr int kNarrow = 64;           // columns; below this, a description starts on its own line
-
-int columns_of_help() { return isatty(STDOUT_FILENO) ? output_screen().columns : kWithoutTerminal; }
+constexpr int kNarrow = 64;  // columns; below this, a description starts on its own line
 
 // Formats a name with its description to the right, or below if there is no room.
 std::string row(const std::string& name, const std::string& meaning, int columns) {
@@ -59,7 +55,7 @@ std::string rows_of(const CLI::App& app, int columns, const std::function<bool(c
 class Help : public CLI::FormatterBase {
  public:
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode) const override {
-    const int columns = columns_of_help();
+    const int columns = output_screen().columns;
     const auto section = [](const std::string& title, const std::string& rows) {
       return rows.empty() ? "" : fmt::format("\n{}:\n{}", title, rows);
     };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/hip.h"
+#include "cli/commands.h"
 
 #include <fmt/format.h>
 
@@ -109,8 +109,6 @@ ByLine by_line(const Compared& of) {
   return lines;
 }
 
-std::string count_of(const FusedLine* line) { return line ? std::to_string(line->count) : ""; }
-
 std::vector<reports::Column> columns(const char* first) {
   std::vector<reports::Column> all = {{first, Align::left}};
   for (const std::string_view target : subjects::kHipTargets) all.push_back({std::string(target)});
@@ -145,7 +143,7 @@ std::string table_of_lines(const Compared& of) {
     std::vector<reports::Cell> row = {printable(fmt::format("{}:{}", place.first, place.second))};
     std::string code;
     for (const FusedLine* line : lines) {
-      row.emplace_back(count_of(line));
+      row.emplace_back(line ? std::to_string(line->count) : "");
       if (line) code = line->code;
     }
     row.emplace_back(printable(code));

@@ -7,13 +7,11 @@
 #include <iostream>
 #include <optional>
 
-#include "cli/campaign_end.h"
-#include "cli/commands.h"
+#include "cli/fuzz.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/results.h"
 #include "cli/screen.h"
-#include "cli/shard_option.h"
 #include "core/text.h"
 #include "fuzz/files.h"
 #include "fuzz/hunt/hunt.h"
@@ -82,17 +80,13 @@ int hunt(const HuntOptions& options) {
   hunt.campaign.directory = options.out;
   hunt.campaign.shard = options.shard;
   Json scene_spec;
-  std::vector<strata::LeftOut> left_out;
+  strata::SceneSources drawn =
+      cli::drawn(options.scene, options.seed, options.runs, options.strata, options.coordinates, &scene_spec);
+  hunt.drawn.sources = std::move(drawn.sources);
   std::optional<strata::Scene> scene;
   if (!options.scene.empty()) {
-    strata::SceneSources drawn =
-        drawn_from_scene(options.scene, options.seed, options.runs, options.strata, options.coordinates, scene_spec);
-    hunt.drawn.sources = std::move(drawn.sources);
-    left_out = std::move(drawn.left_out);
     hunt.drawn.scene = &scene.emplace(strata::resolved(
         strata::with_type(fuzz::open_scene(options.scene).scene, options.coordinates == PairTypes::f64)));
-  } else {
-    hunt.drawn.sources = strata::stratum_sources(options.seed, options.runs, options.strata, options.coordinates);
   }
   hunt.campaign.spec = fuzz::hunt_spec(hunt);
   if (!scene_spec.is_null()) hunt.campaign.spec["scene"] = scene_spec;
@@ -128,7 +122,7 @@ int hunt(const HuntOptions& options) {
     return 0;
   }
   reports::print_summary(std::cout, summary, oracle, output_screen());
-  std::cout << left_out_text(left_out) << not_covered_text(hunt.campaign.spec) << std::flush;
+  std::cout << left_out_text(drawn.left_out) << not_covered_text(hunt.campaign.spec) << std::flush;
   print_mutations(options.out);
   fmt::print("\nWrote {0}/summary.json, {0}/hunt.json, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite, {0}/hunt/\n",
              printable(options.out));

@@ -10,6 +10,10 @@ namespace graze::cli {
 inline constexpr int kInterrupted = 130;
 
 // From this call on, the two signals only set the returned flag, which is stop_requested.
-const std::atomic<bool>& catch_interrupts();
+inline const std::atomic<bool>& catch_interrupts() {
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+  return stop_requested;
+}
 
 }  // namespace graze::cli

@@ -33,7 +33,7 @@ int invariants(const InvariantsOptions& options) {
   strata::SceneSources all = drawn(options.scene, options.seed, options.pairs, options.strata, options.coordinates);
   spec.sources = std::move(all.sources);
   spec.threads = options.threads;
-  spec.simpler = [](const AnyPair& l, const AnyPair& r) { return simplicity(l) < simplicity(r); };
+  spec.simpler = is_simpler;
   const ResultFolder folder(options.out, "invariants.json");
   const analysis::Invariants found = analysis::invariants(spec);
 
@@ -41,8 +41,7 @@ int invariants(const InvariantsOptions& options) {
   fs::create_directories(out / "cases");
   const reports::Screen screen = output_screen();
   fmt::print("{}", reports::invariants_table(spec, found, screen));
-  for (const std::string& sentence : reports::invariants_sentences(spec, found))
-    fmt::print("{}", reports::wrapped(sentence, screen.columns));
+  print_wrapped(reports::invariants_sentences(spec, found));
   fmt::print("{}", left_out_text(all.left_out));
   nlohmann::ordered_json json = {{"pairs", options.pairs}, {"seed", options.seed}};
   if (!options.scene.empty()) json["scene"] = options.scene;

@@ -11,8 +11,6 @@ namespace {
 
 class InvariantsCommand : public CommandTest {};
 
-nlohmann::json json_of(const std::filesystem::path& file) { return nlohmann::json::parse(contents(file)); }
-
 TEST_F(InvariantsCommand, LeavesTheSameBytesWhateverTheThreads) {
   const std::string run =
       "graze invariants --lanes '*/f32/cpu,moller_1997/f32/cuda-fma' --strata 'near_*' --pairs 600 ";

@@ -55,11 +55,10 @@ void print_lanes(bool json, const std::vector<std::string>& globs) {
   }
   if (json) fmt::print("{}\n", rows.dump(1));
   if (!twins.empty()) {
-    fmt::print("\n{}",
-               reports::wrapped(fmt::format("CUDA lanes run by their twins, on the CPU, because there is no device "
-                                            "({}). Twins are: {}.",
-                                            why_no_device, fmt::join(twins, "; or ")),
-                                screen.columns));
+    fmt::print("\n");
+    print_wrapped(
+        {fmt::format("CUDA lanes run by their twins, on the CPU, because there is no device ({}). Twins are: {}.",
+                     why_no_device, fmt::join(twins, "; or "))});
   }
   if (!json) fmt::print("\nNext: graze fuzz --lanes '*/f32/cpu'\n");
 }

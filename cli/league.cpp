@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <chrono>
 #include <ctime>
-#include <fstream>
 #include <iostream>
 
 #include "cli/commands.h"

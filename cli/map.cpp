@@ -132,7 +132,7 @@ void draw_map(const MapOptions& options) {
                   asked           ? ""
                   : is_plain(map) ? "; no verdict changes"
                                   : ", along which verdicts change most");
-  fmt::print("{}", reports::wrapped(what, output_screen().columns));
+  print_wrapped({what});
   print_counts(map);
   write_pictures(map, options.out);
   fmt::print("Next: graze repro {} --emit cpp{}\n", path_word(options.name), own_words(options.lanes));

@@ -58,13 +58,6 @@ TEST_F(MapCommand, BadInputGetsOneLine) {
   }
 }
 
-TEST_F(MapCommand, HelpHasAnExampleThatRuns) {
-  const Ran help = shell("graze map --help");
-  const std::size_t at = help.out.find("Example: ");
-  ASSERT_NE(at, std::string::npos);
-  expect_done(help.out.substr(at + 9, help.out.find('\n', at) - at - 9) + " && test -s map.png");
-}
-
 TEST_F(MapCommand, MinimizeStoresTheMapsOfCardsOnceAndForItsPairs) {
   expect_done(
       "graze fuzz --seed 2 --pairs 120 --lanes '*/f32/*' --executor twin --strata near_edge_edge --out one > /dev/null "

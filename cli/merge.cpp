@@ -2,8 +2,7 @@
 // `graze merge`: merges shards into one campaign.
 #include <fmt/format.h>
 
-#include "cli/campaign_end.h"
-#include "cli/commands.h"
+#include "cli/fuzz.h"
 #include "core/text.h"
 #include "fuzz/shards/merge.h"
 #include "reports/terminal.h"

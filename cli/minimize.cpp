@@ -12,7 +12,6 @@
 #include <ctime>
 #include <iostream>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <sstream>
 
@@ -23,7 +22,6 @@
 #include "cli/progress.h"
 #include "cli/results.h"
 #include "cli/screen.h"
-#include "cli/shard_option.h"
 #include "core/cannot.h"
 #include "core/error.h"
 #include "core/text.h"

@@ -3,7 +3,6 @@
 #include "fuzz/pack/pack.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -11,7 +10,6 @@
 
 #include "cli/changed.h"
 #include "cli/commands.h"
-#include "cli/repro_pack.h"
 #include "core/cannot.h"
 #include "core/error.h"
 #include "core/programs/run_program.h"

@@ -37,13 +37,6 @@ struct ParetoOptions {
   bool device = false;
 };
 
-// Lane names, the lanes, and the function that measures them.
-struct Measured {
-  std::vector<std::string> ids;
-  std::vector<const Lane*> lanes;
-  analysis::Sweep sweep;
-};
-
 // Why the lane is left out: the time of a twin is not the time of the code. A user's code is judged even without a
 // time.
 std::string why_left_out(const Lane& lane, bool device) {
@@ -51,22 +44,14 @@ std::string why_left_out(const Lane& lane, bool device) {
   return backends::backend_of(lane).has_device ? "" : "--device times only CUDA lanes of published algorithms";
 }
 
-Measured measured(const ParetoOptions& options, const fuzz::SelectedLanes& under_test) {
-  Measured result;
-  for (const Lane* lane : under_test.lanes) {
-    result.ids.push_back(lane->id);
-    result.lanes.push_back(lane);
-  }
+// The function that counts the errors of lanes, given their names.
+analysis::Sweep sweep_of(const ParetoOptions& options) {
   const Lane* exact = find_lane(options.device                          ? "exact/f32/cuda"
                                 : options.coordinates == PairTypes::f32 ? fuzz::kExactLane
                                                                         : fuzz::kExactDoubles);
   const auto lane_of = [exact](const std::string& id) { return id.empty() ? exact : find_lane(id); };
-  if (options.device) {
-    result.sweep = analysis::device_sweep([=](const std::string& id) { return *lane_of(id); });
-  } else {
-    result.sweep = analysis::host_sweep([=](const std::string& id) { return analysis::decider_of(*lane_of(id)); });
-  }
-  return result;
+  if (options.device) return analysis::device_sweep([=](const std::string& id) { return *lane_of(id); });
+  return analysis::host_sweep([=](const std::string& id) { return analysis::decider_of(*lane_of(id)); });
 }
 
 // Minimises the first pair on which the lane is wrong; without a twin, returns that pair itself.
@@ -81,16 +66,17 @@ std::optional<AnyPair> smallest_failure(const Lane& lane, const analysis::Policy
   return fuzz::minimise(failures[0], pair).pair;
 }
 
-analysis::Pareto offers_of(const ParetoOptions& options, const Measured& measured,
+// all: the errors of each lane on the sources.
+analysis::Pareto offers_of(const ParetoOptions& options, const std::vector<const Lane*>& lanes,
+                           const std::vector<analysis::PolicyErrors>& all,
                            const std::vector<strata::PairSource>& sources) {
   analysis::Pareto pareto{fuzz::machine_name(), options.device, 0, {}, {}};
-  for (const analysis::PolicyErrors& errors : measured.sweep(measured.ids, sources)) {
+  for (const analysis::PolicyErrors& errors : all) {
     pareto.offers.push_back({errors.policy, errors});
-    pareto.offers.back().failure = smallest_failure(*measured.lanes[pareto.offers.size() - 1], errors, sources);
+    pareto.offers.back().failure = smallest_failure(*lanes[pareto.offers.size() - 1], errors, sources);
   }
   if (options.device) {
-    const cuda::DeviceCosts costs =
-        cuda::measure_on_device(measured.lanes, analysis::first_pairs(sources, kPairsOnDevice), 21);
+    const cuda::DeviceCosts costs = cuda::measure_on_device(lanes, analysis::first_pairs(sources, kPairsOnDevice), 21);
     pareto.machine = costs.device;
     pareto.threads_at_once = costs.threads_at_once;
     for (std::size_t l = 0; l < costs.of.size(); ++l) {
@@ -100,13 +86,13 @@ analysis::Pareto offers_of(const ParetoOptions& options, const Measured& measure
     }
   } else {
     const auto costs = [&](std::size_t pairs, int passes, analysis::Calls calls = analysis::Calls::of_blocks) {
-      return analysis::costs_of(measured.lanes, analysis::first_pairs(sources, pairs), passes, calls);
+      return analysis::costs_of(lanes, analysis::first_pairs(sources, pairs), passes, calls);
     };
     const auto in_cache = costs(kPairsInCache, 201), from_memory = costs(kPairsFromMemory, 3),
                alone = costs(kPairsInCache, 201, analysis::Calls::of_one);
-    for (std::size_t l = 0; l < measured.lanes.size(); ++l) {
+    for (std::size_t l = 0; l < lanes.size(); ++l) {
       analysis::Offer& offer = pareto.offers[l];
-      offer.why_not_timed = analysis::why_not_timed(*measured.lanes[l]);
+      offer.why_not_timed = analysis::why_not_timed(*lanes[l]);
       if (offer.why_not_timed.empty() && !(in_cache[l] && from_memory[l]))
         offer.why_not_timed = "it failed on some of the pairs";
       if (!offer.why_not_timed.empty()) continue;
@@ -133,18 +119,20 @@ int pareto(ParetoOptions options) {
   fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
   if (options.coordinates != PairTypes::f32) take_doubles(under_test);
   say_left_out(leave_out(under_test, [&](const Lane& lane) { return why_left_out(lane, options.device); }));
-  const Measured lanes = measured(options, under_test);
+  std::vector<std::string> ids;
+  for (const Lane* lane : under_test.lanes) ids.push_back(lane->id);
+  const analysis::Sweep sweep = sweep_of(options);
   const strata::SceneSources all =
       drawn(options.scene, options.seed, options.pairs, options.strata, options.coordinates);
   const ResultFolder folder(options.out, "pareto.json");
-  analysis::Pareto pareto = offers_of(options, lanes, all.sources);
+  analysis::Pareto pareto = offers_of(options, under_test.lanes, sweep(ids, all.sources), all.sources);
   const std::uint64_t at_each = std::max(options.pairs / 10, std::min(options.pairs, kFewestAtAnExtreme));
   const auto some = drawn(options.scene, options.seed, at_each, options.strata, options.coordinates).sources;
   for (const analysis::Extreme extreme : analysis::kExtremes) {
     const std::size_t first = pareto.curves.size();
-    for (const std::string& id : lanes.ids) pareto.curves.push_back({id, extreme, {}});
+    for (const std::string& id : ids) pareto.curves.push_back({id, extreme, {}});
     for (const int k : analysis::exponents(extreme)) {
-      const auto found = lanes.sweep(lanes.ids, analysis::made_extreme(some, extreme, k));
+      const auto found = sweep(ids, analysis::made_extreme(some, extreme, k));
       for (std::size_t l = 0; l < found.size(); ++l) pareto.curves[first + l].points.emplace_back(k, found[l]);
     }
   }
@@ -153,18 +141,17 @@ int pareto(ParetoOptions options) {
   const reports::Screen screen = output_screen();
   fmt::print("{}", reports::pareto_table(pareto, screen));
   if (options.device) {
-    fmt::print("{}", reports::wrapped(fmt::format("Registers and local bytes are per thread. Threads are those that a "
-                                                  "multiprocessor of {} holds at once, of at most {}.",
-                                                  pareto.machine, pareto.threads_at_once),
-                                      screen.columns));
+    print_wrapped(
+        {fmt::format("Registers and local bytes are per thread. Threads are those that a multiprocessor of {} "
+                     "holds at once, of at most {}.",
+                     pareto.machine, pareto.threads_at_once)});
   }
-  for (const std::string& sentence : reports::pareto_sentences(pareto))
-    fmt::print("{}", reports::wrapped(sentence, screen.columns));
+  print_wrapped(reports::pareto_sentences(pareto));
   fmt::print("{}", reports::extremes_text(pareto, screen));
   fmt::print("{}", left_out_text(all.left_out));
   nlohmann::ordered_json json = {{"pairs", pareto.offers.front().errors.pairs}, {"seed", options.seed}};
   fuzz::add_left_out(json, under_test);
-  if (const fuzz::Json code = subjects::record(lanes.ids); !code.is_null()) json["subjects"] = reports::code_json(code);
+  if (const fuzz::Json code = subjects::record(ids); !code.is_null()) json["subjects"] = reports::code_json(code);
   json.update(reports::pareto_json(pareto));
   std::vector<Result> results = {{"pareto.json", fuzz::sealed(json).dump(1) + "\n"},
                                  {"front.svg", reports::pareto_figure(pareto)}};

@@ -47,10 +47,7 @@ int plan(const PlanOptions& options) {
   campaign.under_test = &under_test;
   Json scene;
   campaign.sources =
-      options.scene.empty()
-          ? strata::stratum_sources(campaign.seed, options.pairs, options.strata, options.coordinates)
-          : drawn_from_scene(options.scene, campaign.seed, options.pairs, options.strata, options.coordinates, scene)
-                .sources;
+      drawn(options.scene, campaign.seed, options.pairs, options.strata, options.coordinates, &scene).sources;
   campaign.spec = fuzz::campaign_spec(campaign);
   if (!scene.is_null()) campaign.spec["scene"] = scene;
   const bool gpu = options.gpus > 0;

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
-#include <iostream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -38,15 +36,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostMismatches = 1000;  // mismatches kept as cases
 const std::vector<std::string> kExecutors = {"auto", "one-core", "all-cores", "one-gpu", "all-gpus"};
-
-struct QueryOptions {
-  std::vector<std::string> files;
-  std::string self;
-  bool between = false, any = false, all = false, json = false, exact_input = false;
-  LaneOptions lanes;
-  std::vector<std::string> executors;
-  std::string csv, obj, pairs, mismatches;
-};
 
 // A lane, an executor, and their verdicts.
 struct Run {
@@ -298,9 +287,7 @@ void query_all_pairs(const QueryOptions& options, int& status) {
         "--mismatches, and name one --executor");
   if (options.between && options.files.size() != 2)
     throw UsageError(fmt::format("--between needs two meshes, but got {}", options.files.size()));
-  query_meshes({options.between ? options.files : std::vector{options.self}, options.json, options.executors[0],
-                options.csv, options.obj, options.pairs, options.exact_input},
-               status);
+  query_meshes(options, status);
 }
 
 template <class Real>
@@ -340,6 +327,7 @@ void answer(const QueryOptions& options, const QueryLanes& lanes, const Triangle
              mismatches.size(), printable(kept));
   fmt::print("Next: graze explain {}\n", path_word(kept));
 }
+
 void query_mesh(const QueryOptions& options, int& status) {
   if (options.files.size() != 2)
     throw UsageError(
@@ -389,7 +377,6 @@ void add_query(CLI::App& app, int& status) {
       ->excludes("--self");
   CLI::Option* any = command->add_flag("--any", options->any, "Stop at the first hit");
   command->add_flag("--all", options->all, "Find all hits (default)")->excludes(any);
-  options->executors = {"auto"};
   command->add_option("--executor", options->executors, "Executors that decide; several are compared")
       ->delimiter(',')
       ->transform(one_of(kExecutors, Chosen::word))

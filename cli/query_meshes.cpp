@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <sstream>
 
 #include "cli/cases.h"
@@ -34,7 +33,7 @@ using reports::grouped;
 constexpr std::size_t kMostRows = std::size_t{1} << 26, kMostCases = std::size_t{1} << 22;
 
 struct Search {
-  const MeshQuestion& question;
+  const QueryOptions& options;
   TwoMeshes meshes;
   std::string executor = {};
   FoundPairs found = {};
@@ -49,25 +48,26 @@ struct Search {
   }
 };
 
-Search opened(const MeshQuestion& question) {
+Search opened(const QueryOptions& options) {
   std::vector<strata::MeshPairs> read;
-  for (const std::string& file : question.files) read.push_back(strata::read_triangles(file, strata::Coordinates::any));
+  for (const std::string& file : options.between ? options.files : std::vector{options.self})
+    read.push_back(strata::read_triangles(file, strata::Coordinates::any));
   const auto triangles_of = [](strata::MeshPairs& mesh) {
     return MeshTriangles{std::move(mesh.triangles), std::move(mesh.in_doubles), mesh.rounding.beyond > 0};
   };
-  Search search{question, {triangles_of(read[0]), {}}};
+  Search search{options, {triangles_of(read[0]), {}}};
   if (read.size() == 2) search.meshes.b = triangles_of(read[1]);
-  const bool of_doubles = search.meshes.are_doubles() && !question.exact_input;
+  const bool of_doubles = search.meshes.are_doubles() && !options.exact_input;
   for (const strata::MeshPairs& mesh : read)
-    say_notes(of_doubles ? mesh.notes_of_doubles : mesh.notes, mesh.rounding, question.exact_input);
+    say_notes(of_doubles ? mesh.notes_of_doubles : mesh.notes, mesh.rounding, options.exact_input);
   return search;
 }
 
 Kept kept(const Search& search) {
-  const MeshQuestion& question = search.question;
-  if (!question.csv.empty()) return {kMostRows};
-  const bool cases = !question.obj.empty() || !question.pairs.empty();
-  return {cases ? kMostCases : question.json ? kMostListed : 1, search.self()};
+  const QueryOptions& options = search.options;
+  if (!options.csv.empty()) return {kMostRows};
+  const bool cases = !options.obj.empty() || !options.pairs.empty();
+  return {cases ? kMostCases : options.json ? kMostListed : 1, search.self()};
 }
 
 // Throws: std::runtime_error if a file would have more pairs than its limit.
@@ -79,15 +79,15 @@ void expect_within_limits(const Search& search) {
                       "or split the mesh",
                       file, grouped(pairs), grouped(most)));
   };
-  expect(search.question.csv, search.found.all(), kMostRows);
-  expect(search.question.pairs, search.hits(), kMostCases);
-  expect(search.question.obj, search.hits(), kMostCases);
+  expect(search.options.csv, search.found.all(), kMostRows);
+  expect(search.options.pairs, search.hits(), kMostCases);
+  expect(search.options.obj, search.hits(), kMostCases);
 }
 
 void write_files(const Search& search) {
-  const MeshQuestion& question = search.question;
-  if (!question.csv.empty()) write_result(question.csv, csv_of(search.found.pairs), fuzz::NamedBy::user);
-  if (question.pairs.empty() && question.obj.empty()) return;
+  const QueryOptions& options = search.options;
+  if (!options.csv.empty()) write_result(options.csv, csv_of(search.found.pairs), fuzz::NamedBy::user);
+  if (options.pairs.empty() && options.obj.empty()) return;
   std::ostringstream pairs;
   corpus::write_header(pairs);
   ObjGroup hits{search.self() ? "piercing" : "hits", {}};
@@ -102,8 +102,8 @@ void write_files(const Search& search) {
       std::copy_n(from, 9, hits.triangles.back().begin());
     }
   }
-  if (!question.pairs.empty()) write_result(question.pairs, pairs.str(), fuzz::NamedBy::user);
-  if (!question.obj.empty()) write_result(question.obj, obj_of({hits}), fuzz::NamedBy::user);
+  if (!options.pairs.empty()) write_result(options.pairs, pairs.str(), fuzz::NamedBy::user);
+  if (!options.obj.empty()) write_result(options.obj, obj_of({hits}), fuzz::NamedBy::user);
 }
 
 Json json_of(const Search& search) {
@@ -155,21 +155,21 @@ std::string words_of(const Search& search) {
     text += fmt::format("the first pair that pierces: triangles {} and {}\n", list[0].i, list[0].j);
   else if (!list.empty())
     text += fmt::format("the first pair: triangle {} of {} and {} of {}\n", list[0].i,
-                        printable(search.question.files[0]), list[0].j, printable(search.question.files[1]));
+                        printable(search.options.files[0]), list[0].j, printable(search.options.files[1]));
   return text;
 }
 
 }  // namespace
 
-void query_meshes(const MeshQuestion& question, int& status) {
-  if (question.executor == "all-gpus")
+void query_meshes(const QueryOptions& options, int& status) {
+  if (options.executors[0] == "all-gpus")
     throw UsageError("--self and --between use one GPU at most; name one-core, all-cores or one-gpu");
-  if (!question.csv.empty()) expect_replaceable(question.csv, csv_of({}));
-  if (!question.pairs.empty()) expect_replaceable(question.pairs, kPairs);
-  if (!question.obj.empty()) expect_replaceable(question.obj, obj_of({}));
-  Search search = opened(question);
+  if (!options.csv.empty()) expect_replaceable(options.csv, csv_of({}));
+  if (!options.pairs.empty()) expect_replaceable(options.pairs, kPairs);
+  if (!options.obj.empty()) expect_replaceable(options.obj, obj_of({}));
+  Search search = opened(options);
   catch_interrupts();
-  const Decider decider = exact_decider(question.executor);
+  const Decider decider = exact_decider(options.executors[0]);
   search.executor = decider.executor;
   const std::size_t triangles = search.meshes.a.size();
   Progress progress("triangles", triangles, isatty(STDERR_FILENO), error_screen());
@@ -191,7 +191,7 @@ void query_meshes(const MeshQuestion& question, int& status) {
   fmt::print(stderr, "{}", progress.end());
   expect_within_limits(search);
   write_files(search);
-  if (question.json)
+  if (options.json)
     fmt::print("{}\n", json_of(search).dump());
   else
     fmt::print("{}", words_of(search));

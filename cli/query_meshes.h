@@ -4,18 +4,21 @@
 #include <string>
 #include <vector>
 
+#include "cli/commands.h"
+
 namespace graze::cli {
 
-struct MeshQuestion {
-  std::vector<std::string> files;  // one mesh against itself, or two against each other
-  bool json;
-  std::string executor;         // auto, one-core, all-cores, one-gpu, all-gpus
-  std::string csv, obj, pairs;  // files, or empty
-  bool exact_input;
+struct QueryOptions {
+  std::vector<std::string> files;
+  std::string self;
+  bool between = false, any = false, all = false, json = false, exact_input = false;
+  LaneOptions lanes;
+  std::vector<std::string> executors = {"auto"};  // or one-core, all-cores, one-gpu, all-gpus
+  std::string csv, obj, pairs, mismatches;        // files, or empty
 };
 
 // `graze query --self` and `--between`: prints how many pairs of triangles intersect, and how, and writes the pairs.
 // Sets `status` if it was interrupted; then nothing is written.
-void query_meshes(const MeshQuestion& question, int& status);
+void query_meshes(const QueryOptions& options, int& status);
 
 }  // namespace graze::cli

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <iostream>
 
-#include "analysis/convention.h"
 #include "analysis/signature.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/emit.h"
-#include "cli/repro_pack.h"
 #include "cli/screen.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -113,8 +111,7 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
       std::cout << reports::wrapped(stored, output_screen().columns, 2, 4);
     if (const std::string note = entry.doubles ? written_note(entry, t) : ""; !note.empty())
       std::cout << reports::wrapped(note, output_screen().columns, 2, 4);
-    const std::vector<Verdict> counted =
-        corpus::visit(entry, [&](const auto& pair) { return analysis::excused(under_test.lanes, verdicts, pair, t); });
+    const std::vector<Verdict> counted = counted_verdicts(under_test, verdicts, corpus::pair_of(entry), t);
     if (!fuzz::is_drawn(entry)) {
       std::cout << "  CHANGED, recorded: " << printable(corpus::numbers_of(entry).value_or("its stratum"))
                 << ", which is another pair\n";

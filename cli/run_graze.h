@@ -30,6 +30,8 @@ inline std::string contents(const std::filesystem::path& file) {
   return text.str();
 }
 
+inline nlohmann::json json_of(const std::filesystem::path& file) { return nlohmann::json::parse(contents(file)); }
+
 // The text of the object as Graze would write it, with the correct checksum (fuzz/sealed.h).
 inline std::string sealed(const nlohmann::ordered_json& json) { return fuzz::sealed(json).dump(1) + '\n'; }
 

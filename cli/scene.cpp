@@ -241,12 +241,13 @@ void add_scene_option(CLI::App& command, std::string& file) {
     types->default_str("f32, or those of the scene");
 }
 
-strata::SceneSources drawn_from_scene(const std::string& file, std::uint64_t seed, std::uint64_t pairs,
-                                      const std::vector<std::string>& globs, PairTypes types, fuzz::Json& recorded) {
-  expect_utf8("--scene", file);
-  const fuzz::NamedScene scene = fuzz::open_scene(file);
-  strata::SceneSources drawn = fuzz::sources_of(scene, seed, pairs, globs, types);
-  recorded = fuzz::scene_spec(scene, pairs, drawn);
+strata::SceneSources drawn(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
+                           const std::vector<std::string>& globs, PairTypes types, fuzz::Json* recorded) {
+  if (scene.empty()) return {strata::stratum_sources(seed, pairs, globs, types), {}, {}, {}};
+  expect_utf8("--scene", scene);
+  const fuzz::NamedScene named = fuzz::open_scene(scene);
+  strata::SceneSources drawn = fuzz::sources_of(named, seed, pairs, globs, types);
+  if (recorded) *recorded = fuzz::scene_spec(named, pairs, drawn);
   return drawn;
 }
 
@@ -271,13 +272,6 @@ void take_type_of_scene(const CLI::App& command, const std::string& scene, PairT
 
 PairTypes type_of_scene(const std::string& scene) {
   return fuzz::open_scene(scene).scene.in_doubles ? PairTypes::f64 : PairTypes::f32;
-}
-
-strata::SceneSources drawn(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
-                           const std::vector<std::string>& globs, PairTypes types) {
-  fuzz::Json recorded;
-  if (scene.empty()) return {strata::stratum_sources(seed, pairs, globs, types), {}, {}, {}};
-  return drawn_from_scene(scene, seed, pairs, globs, types, recorded);
 }
 
 std::string left_out_text(const std::vector<strata::LeftOut>& left_out) {

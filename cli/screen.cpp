@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/screen.h"
 
+#include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -38,6 +39,10 @@ reports::Screen screen_of(int file_descriptor) {
 
 reports::Screen output_screen() { return screen_of(STDOUT_FILENO); }
 reports::Screen error_screen() { return screen_of(STDERR_FILENO); }
+
+void print_wrapped(const std::vector<std::string>& sentences) {
+  for (const std::string& sentence : sentences) fmt::print("{}", reports::wrapped(sentence, output_screen().columns));
+}
 
 bool LimitedText::add(const std::string& block) {
   const int lines = static_cast<int>(std::count(block.begin(), block.end(), '\n'));

@@ -2,6 +2,9 @@
 // Properties of standard output and standard error as screens.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "reports/screen.h"
 
 namespace graze::cli {
@@ -10,6 +13,9 @@ namespace graze::cli {
 // Files and pipes have 80 columns and no colour.
 reports::Screen output_screen();
 reports::Screen error_screen();
+
+// Prints the sentences, each wrapped at the columns of standard output.
+void print_wrapped(const std::vector<std::string>& sentences);
 
 // The most lines that a verb prints before --all is needed.
 inline constexpr int kMostLines = 40;

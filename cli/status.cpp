@@ -135,13 +135,7 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
 // Returns {"shards": [row, …], "pairs", "done", "rate", "seconds_left", "disagreements", "states": {state: shards}},
 // with rows in the order of the directories.
 Json status_of(const StatusOptions& options) {
-  Json all = {{"shards", Json::array()},
-              {"pairs", 0},
-              {"done", 0},
-              {"rate", 0.0},
-              {"seconds_left", nullptr},
-              {"disagreements", 0},
-              {"states", Json::object()}};
+  Json shards = Json::array(), states = Json::object(), seconds_left = nullptr;
   std::uint64_t pairs = 0, done = 0, disagreements = 0;
   std::set<std::string> known;
   double rate = 0;
@@ -158,18 +152,20 @@ Json status_of(const StatusOptions& options) {
       done += row["done"].get<std::uint64_t>();
       disagreements += row["disagreements"].get<std::uint64_t>();
       rate += row["rate"].get<double>();
-      Json& count = all["states"][row["state"].get<std::string>()];
+      Json& count = states[row["state"].get<std::string>()];
       count = count.is_null() ? 1 : count.get<int>() + 1;
-      all["shards"].push_back(row);
+      shards.push_back(row);
     }
     pairs += of_ranks;
   }
-  all["pairs"] = pairs;
-  all["done"] = done;
-  all["rate"] = rate;
-  if (rate > 0 && done < pairs) all["seconds_left"] = static_cast<double>(pairs - done) / rate;
-  all["disagreements"] = disagreements;
-  return all;
+  if (rate > 0 && done < pairs) seconds_left = static_cast<double>(pairs - done) / rate;
+  return {{"shards", shards},
+          {"pairs", pairs},
+          {"done", done},
+          {"rate", rate},
+          {"seconds_left", seconds_left},
+          {"disagreements", disagreements},
+          {"states", states}};
 }
 
 std::string table(const Json& all) {

@@ -10,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/screen.h"
 #include "fuzz/campaign/campaign.h"
+#include "fuzz/campaign/recorded.h"
 #include "fuzz/selected_lanes.h"
 #include "reports/cost_words.h"
 #include "reports/sufficient.h"
@@ -31,9 +32,7 @@ std::uint64_t pairs_for(double rate) { return std::max<std::uint64_t>(100'000, s
 std::vector<strata::PairSource> pairs_before(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
                                              PairTypes types) {
   std::vector<strata::PairSource> sources = drawn(scene, seed, pairs, {}, types).sources;
-  std::erase_if(sources, [](const strata::PairSource& source) {
-    return strata::stratum_in_doubles(source.id).value_or(source.id) == "mesh";
-  });
+  std::erase_if(sources, [](const strata::PairSource& source) { return fuzz::is_of_mesh(source.id); });
   return sources;
 }
 
@@ -82,7 +81,7 @@ void print_sufficient(const std::string& scene, double rate) {
   sentences.push_back(reports::costs_sentence(analysis::Calls::of_blocks,
                                               fmt::format("{} of the scene's pairs", reports::grouped(kTimed)),
                                               fuzz::machine_name(), kPasses));
-  for (const std::string& sentence : sentences) fmt::print("{}", reports::wrapped(sentence, output_screen().columns));
+  print_wrapped(sentences);
   fmt::print("{}", left_out_text(last.left_out));
 }
 

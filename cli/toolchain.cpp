@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "cli/commands.h"
-#include "cli/hip.h"
 #include "cli/results.h"
 #include "cli/screen.h"
 #include "core/error.h"

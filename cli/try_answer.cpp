@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "analysis/verdicts_apart.h"
-#include "cli/campaign_end.h"
+#include "cli/fuzz.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/campaign.h"

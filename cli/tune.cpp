@@ -239,8 +239,7 @@ int tune(const TuneOptions& options) {
                                        units_of(options, pairs.campaign)};
   const fs::path& out = folder.path;
   const reports::Screen screen = output_screen();
-  for (const std::string& sentence : reports::tuning_sentences(question, tuned))
-    fmt::print("{}", reports::wrapped(sentence, screen.columns));
+  print_wrapped(reports::tuning_sentences(question, tuned));
   fmt::print("\n{}", reports::tuning_table(question, tuned, screen));
   std::string changes;
   if (!options.from.empty() && backends::why_not_on_host(*lane).empty()) {
@@ -252,8 +251,7 @@ int tune(const TuneOptions& options) {
   fmt::print("\n{}", pairs.left_out);
   const Lane chosen = tuned.chosen.empty() || source ? *lane : lane_under(*lane, tuned.chosen);
   const Lane* const costly[] = {&chosen, &exact};
-  for (const std::string& sentence : cost_sentences(costly, spec.others))
-    fmt::print("{}", reports::wrapped(sentence, screen.columns));
+  print_wrapped(cost_sentences(costly, spec.others));
   fuzz::Json json = reports::tuning_json(question, tuned);
   if (source) json["subjects"] = reports::code_json(subjects::record({lane->id}));
   std::vector<Result> results = {{"tune.json", fuzz::sealed(json).dump(1) + "\n"},

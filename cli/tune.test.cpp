@@ -17,8 +17,6 @@ class TuneCommand : public CommandTest {};
 class AgreeCommand : public CommandTest {};
 class ParetoCommand : public CommandTest {};
 
-nlohmann::json json_of(const std::filesystem::path& file) { return nlohmann::json::parse(contents(file)); }
-
 TEST_F(Policies, AreLanesOnEveryVerb) {
   const std::string lanes =
       " --lanes 'moller_1997/f32/cpu,moller_1997/f32/cpu/paper,moller_1997/f32/cuda-fma/rel:16,"
@@ -385,13 +383,6 @@ TEST_F(ParetoCommand, DrawsWithinAScene) {
   EXPECT_EQ(tuned.status, 0) << tuned.err;
   EXPECT_NE(tuned.out.find("extreme_scale: your coordinates stay within 0 … 108"), std::string::npos) << tuned.out;
   expect_error("graze tune moller_1997/f64/cpu --scene nowhere.toml", 1, {"nowhere.toml"});
-}
-
-TEST_F(ParetoCommand, HelpHasAnExampleThatRuns) {
-  const Ran help = shell("graze pareto --help");
-  const std::size_t at = help.out.find("Example: ");
-  ASSERT_NE(at, std::string::npos);
-  expect_done(help.out.substr(at + 9, help.out.find('\n', at) - at - 9));
 }
 
 }  // namespace

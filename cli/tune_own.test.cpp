@@ -9,8 +9,6 @@
 namespace graze::cli {
 namespace {
 
-nlohmann::json json_of(const std::filesystem::path& file) { return nlohmann::json::parse(contents(file)); }
-
 class TuneOwnCode : public CommandTest {
  protected:
   void write(const std::string& value) const {

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "analysis/convention.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/query_input.h"
@@ -34,14 +33,6 @@ using Triangle = std::array<Vec3<double>, 3>;
 
 Triangle widened(const std::array<Vec3<float>, 3>& t) {
   return {Vec3<double>{t[0].x, t[0].y, t[0].z}, {t[1].x, t[1].y, t[1].z}, {t[2].x, t[2].y, t[2].z}};
-}
-
-std::string name_of(const std::string& file, const corpus::Entry& entry) {
-  if (const std::optional<std::string> numbers = corpus::numbers_of(entry)) return printable(*numbers);
-  const std::string *label = corpus::field(entry, "name"), *kind = corpus::field(entry, "kind"),
-                    *from = corpus::field(entry, "from");
-  if (kind && from) return printable(fmt::format("{} from {}", *kind, *from));  // minimised from mesh:1:597
-  return printable(label ? *label : entry.line > 0 ? fmt::format("{}:{}", file, entry.line) : file);
 }
 
 // The user's code: from --subject, and from the campaign that is shown.
@@ -77,8 +68,7 @@ class OwnCode {
     for (reports::ViewedPair& one : viewed.pairs) {
       const oracle::Truth truth = oracle::truth(one.pair);
       const std::vector<Verdict> verdicts = decide(under_test_, one.pair);
-      const auto excuse = [&](const auto& own) { return analysis::excused(under_test_.lanes, verdicts, own, truth); };
-      const std::vector<Verdict> counted = visit(one.pair, excuse);
+      const std::vector<Verdict> counted = counted_verdicts(under_test_, verdicts, one.pair, truth);
       for (std::size_t l = 0; l < verdicts.size(); ++l) {
         const bool wrong = truth.verdict != Verdict::declined && is_wrong(counted[l], truth.verdict);
         one.said.push_back({under_test_.lanes[l]->id, verdicts[l], wrong});
@@ -95,7 +85,7 @@ void add_cases(const std::string& name, const OwnCode& own, Viewed& viewed,
   for (const corpus::Entry& entry : read_cases(name, PairTypes::both)) {
     if (most-- == 0 || viewed.pairs.size() == reports::kMostViewedPairs) break;
     viewed.pairs.push_back(
-        {name_of(fs::path(name).filename().string(), entry), corpus::pair_of(entry), own.stored(entry)});
+        {shown_name(fs::path(name).filename().string(), entry), corpus::pair_of(entry), own.stored(entry)});
   }
 }
 

@@ -43,6 +43,7 @@ template <class Real>
 bool simpler_coordinates(const BasicPair<Real>& l, const BasicPair<Real>& r);
 
 inline Simplicity simplicity(const AnyPair& pair) { return simplicity(pair.doubles); }
+inline bool is_simpler(const AnyPair& l, const AnyPair& r) { return simplicity(l) < simplicity(r); }
 
 // The number of the pair's different magnitudes other than 0 and 1.
 inline int nontrivial_magnitudes(const AnyPair& pair) { return count_of(simplicity(pair), 1); }

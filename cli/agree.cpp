@@ -21,7 +21,7 @@ void expect_on_host(const Lane& lane) {
     throw UsageError("--agree cannot run " + lane.id + " on this host (" + why + "); choose another lane");
 }
 
-// The same lane with every operation rounded as written.
+// Returns the variant of the lane in which every operation is rounded as written.
 const Lane& rounded(const Lane& lane) { return *counterpart(lane, rounded_variant(lane.variant)); }
 
 }  // namespace
@@ -57,7 +57,7 @@ int agree(const TuneOptions& options) {
       const Lane& mended = rounded(*lane);
       if (&mended == lane) continue;
       const std::string_view flags = info_of(mended.variant).flags;
-      question.flag = flags.substr(flags.rfind(' ') + 1);  // the last one turns contraction off
+      question.flag = flags.substr(flags.rfind(' ') + 1);  // the last flag turns contraction off
       add_cost_of(mended);
     }
   }

@@ -29,7 +29,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> sizes = {"10000", "100000", "1000000", "5000000", "10000000", "20000000"};
-  LaneOptions lanes;  // without patterns: common ones
+  LaneOptions lanes;  // kCommonLanes if no pattern is given
   std::string mesh, plot;
   std::vector<std::string> between;
   bool json = false;
@@ -75,7 +75,7 @@ nlohmann::ordered_json json_of(const Bench& bench) {
   return {{"machine", machine}, {"crossover", crossover}, {"not_timed_above", bench.not_timed_above}, {"rows", rows}};
 }
 
-// Formats the rows of one array.
+// Formats the rows of one array as a table.
 std::string table_of(const Bench& bench, std::size_t group) {
   using reports::Align;
   std::vector<std::vector<reports::Cell>> lines;
@@ -118,7 +118,7 @@ std::string shares(const Bench& bench) {
   const cuda::KernelNeeds& needs = bench.machine.exact_query;
   if (needs.threads > 0)
     text += fmt::format(
-        "exact, on a device: blocks of {} threads, {} registers a thread, {} threads at once on a "
+        "exact, on a device: blocks of {} threads, {} registers per thread, {} threads at once on a "
         "multiprocessor\n",
         needs.threads, needs.registers, reports::grouped(static_cast<std::uint64_t>(needs.active_threads)));
   return text;
@@ -148,7 +148,7 @@ void bench(const Options& options, int& status) {
   }
   const std::atomic<bool>& interrupted = catch_interrupts();
   const bool on_terminal = isatty(STDERR_FILENO);
-  std::size_t printed = 0;  // number of arrays
+  std::size_t printed = 0;  // arrays whose tables are printed
   const auto print_table = [&](const Bench& bench) {
     if (on_terminal) fmt::print(stderr, "\r\033[K");
     if (options.json) return;
@@ -213,7 +213,7 @@ void add_bench(CLI::App& app, int& status) {
       ->option_text("N,…");
   command
       ->add_option("--mesh", options->mesh,
-                   "Mesh to test as well: all its triangles against the middle one of the file")
+                   "Mesh to test as well: every triangle against the middle triangle of the file")
       ->option_text("FILE");
   command
       ->add_option("--between", options->between,
@@ -224,7 +224,7 @@ void add_bench(CLI::App& app, int& status) {
   add_globs(*command, "--lanes", options->lanes.globs,
             "Patterns of the lanes to time besides the exact one: host lanes on cores, CUDA lanes on GPUs, or as "
             "twins if there is no GPU")
-      ->default_str("six common ones, and those of --subject");
+      ->default_str("six common lanes, and those of --subject");
   add_subject_options(*command, options->lanes);
   command->add_option("--plot", options->plot, "Picture to write: verdicts per second against array size")
       ->option_text("FILE.svg");

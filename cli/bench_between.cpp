@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rows of `graze bench --between`. The exact decision and CGAL's do_intersect find all intersecting pairs of two
-// meshes among the same candidates. The row "boxes alone" is the part of the time that both share.
+// meshes among the same candidates. The row "boxes alone" times the search for candidates, which is part of both times.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -29,7 +29,7 @@ using query::Triangle;
 
 constexpr std::uint64_t kDrawn = 1'000'000;   // distinct triangles; larger arrays repeat them
 constexpr std::uint64_t kInTree = 1'000'000;  // more triangles would take minutes and gigabytes
-constexpr std::uint64_t kByLanes = 1'000'000, kByCudaLanes = 10'000'000;  // for inexact lanes: they are slower
+constexpr std::uint64_t kByLanes = 1'000'000, kByCudaLanes = 10'000'000;  // limits for inexact lanes, which are slower
 constexpr std::uint64_t kOnOneCore = 100'000'000, kInDoubles = 100'000'000;
 constexpr int kTimes = 3;
 constexpr Triangle kThesis = {2, -2, 4, 1, 5, -2, 1, -3, -3};
@@ -39,7 +39,7 @@ bool is_foreign(const std::string& id) {
   return lane && lane->foreign;
 }
 
-// A CUDA lane of ours; a user's runs in its own process.
+// Whether the lane is a CUDA lane of a published algorithm. A user's CUDA lane runs in its own process instead.
 bool is_cuda(const std::string& lane) { return lane.find("/cuda") != lane.npos && !is_foreign(lane); }
 
 struct Array {
@@ -60,7 +60,7 @@ Array thesis_array(std::uint64_t count) {
   return array;
 }
 
-// An array with one hit, among its first hundred triangles.
+// Returns an array with one hit, among its first hundred triangles.
 Array any_array(std::uint64_t count) {
   Array array{"thesis", kThesis, std::vector<Triangle>(count, Triangle{9, 9, 9, 9, 8, 9, 9, 9, 8})};
   array.triangles[std::min<std::uint64_t>(99, count - 1)] = kThesis;
@@ -126,7 +126,7 @@ class Measuring {
     by_executors(array.name, query::query_of(array.reference, host), sizeof(Triangle), mode, lane, bytes, exact);
   }
 
-  // The exact lane again, on the same numbers as doubles.
+  // Measures the exact lane again, on the same numbers stored as doubles.
   void by_executors_in_doubles(const Array& array, std::vector<std::uint8_t>& exact) {
     const query::DoubleTriangle reference = in_doubles(array.reference);
     std::vector<query::DoubleTriangle> triangles(array.triangles.size());
@@ -137,7 +137,7 @@ class Measuring {
                  &exact);
   }
 
-  // The lane's verdicts are written to `bytes` or, if `exact` is given, compared with it. Each triangle has `size`
+  // Writes the lane's verdicts to `bytes` or, if `exact` is given, compares them with `exact`. Each triangle has `size`
   // bytes.
   void by_executors(const std::string& array, graze_query query, std::size_t size, const std::string& mode,
                     const std::string& lane, std::vector<std::uint8_t>& bytes, const std::vector<std::uint8_t>* exact) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The measurements of `graze bench`: queries on arrays of several sizes with all available executors. Each is the best
-// of three runs after a warm-up. Also measures the limits of a device, and CGAL's tree of boxes.
+// The measurements of `graze bench`: queries on arrays of several sizes with all available executors. Each time is the
+// best of three runs after a warm-up. Also measures the limits of a device, and CGAL's tree of boxes.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +20,9 @@ inline constexpr const char *kExact = "exact", *kExactInDoubles = "exact, double
 
 struct BenchOptions {
   std::vector<std::uint64_t> sizes;
-  std::vector<query::Triangle> mesh;  // measured as well, unless empty
+  std::vector<query::Triangle> mesh;  // measured as well, unless it is empty
   std::string mesh_name;
-  std::vector<std::string> lanes;  // in addition to the exact one
+  std::vector<std::string> lanes;  // in addition to the exact lane
 };
 
 struct BenchRow {
@@ -33,10 +33,10 @@ struct BenchRow {
   std::string data;                   // "host", "resident"; "resident, split": in about eight launches
   std::string mode;                   // "all", "any"; "between" for two meshes
   std::string lane;                   // kExact, kExactInDoubles; "CGAL AABB tree"; "boxes alone"
-  double seconds, build_seconds = 0;  // build_seconds: for the tree
+  double seconds, build_seconds = 0;  // build_seconds: time to build the tree
   std::uint64_t hits;
-  std::optional<std::uint64_t> mismatches;  // triangles on which this lane differs from the exact one
-  double processor_seconds = 0;             // of all threads; measured only between two meshes
+  std::optional<std::uint64_t> mismatches;  // triangles on which this lane differs from the exact lane
+  double processor_seconds = 0;             // sum over all threads; measured only between two meshes
 
   double rate() const { return static_cast<double>(triangles) / seconds; }  // triangles per second
   std::string by() const { return data == "host" ? executor : executor + ", " + data; }
@@ -45,7 +45,7 @@ struct BenchRow {
 struct BenchMachine {
   int cores = 0;
   std::vector<std::string> devices;
-  // For the first device.
+  // The following members describe the first device.
   double copy_bytes_per_second = 0, to_device_bytes_per_second = 0;
   cuda::KernelNeeds exact_query;
 };
@@ -63,7 +63,7 @@ struct Bench {
 // Throws: std::runtime_error if a measurement fails.
 Bench measure(const BenchOptions& options, const std::function<bool(const Bench&)>& told);
 
-// Adds the rows of two meshes against each other. `told` as above.
+// Adds the rows of two meshes against each other. `told` works as in `measure`.
 // Throws: Stopped; std::runtime_error for a mesh that cannot be read; as `measure`.
 void measure_between(const std::vector<std::string>& files, Bench& bench,
                      const std::function<bool(const Bench&)>& told);

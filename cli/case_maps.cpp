@@ -13,7 +13,7 @@ namespace graze::cli {
 using fuzz::Json;
 namespace {
 
-// The maps in the file; null if they are missing or damaged: then they are drawn again.
+// Returns the maps in the file, or null if they are missing or damaged; the caller then draws new maps.
 Json stored(const std::filesystem::path& file) {
   try {
     return fuzz::read_sealed(file, "");

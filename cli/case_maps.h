@@ -9,8 +9,8 @@
 
 namespace graze::cli {
 
-// Maps the file's first case on the subject's lanes under test, along analysis::liveliest_coordinates, unless current
-// maps exist and `again` is false.
+// Draws the ulp maps of the file's first case for the subject's lanes under test, along
+// analysis::liveliest_coordinates, unless current maps exist and `again` is false.
 // Returns: whether this call made the maps.   Throws: OracleMismatch, std::runtime_error.
 bool map_case(const fuzz::SelectedLanes& under_test, const std::filesystem::path& case_file, const std::string& subject,
               bool again);

@@ -51,7 +51,7 @@ std::vector<corpus::Entry> read_cases(const std::string& name, PairTypes taken) 
                                 number(name.substr(middle + 1, last - middle - 1), name),
                                 number(name.substr(last + 1), name)};
     if (strata::stratum_in_doubles(named.id) && taken == PairTypes::f32)
-      throw UsageError(name + " is a pair of doubles; this takes pairs of float32");
+      throw UsageError(name + " is a pair of doubles; this verb takes only pairs of float32");
     return {corpus::entry_of(fuzz::draw_again(named), {{"stratum", named.id},
                                                        {"seed", std::to_string(named.seed)},
                                                        {"index", std::to_string(named.index)},
@@ -73,7 +73,7 @@ std::vector<corpus::Entry> read_cases(const std::string& name, PairTypes taken) 
   const std::vector<std::pair<std::string, std::string>> numbers = {
       {"stratum", stratum}, {"seed", seed}, {"index", index}};
   if (in_doubles && taken == PairTypes::f32)
-    throw UsageError(name + " is a pair of doubles; this takes pairs of float32");
+    throw UsageError(name + " is a pair of doubles; this verb takes only pairs of float32");
   return {corpus::entry_of(sources.front().any_pair(number(index, name)), numbers)};
 }
 
@@ -83,13 +83,13 @@ bool alike(const oracle::Truth& l, const oracle::Truth& r) {
   return l.verdict == r.verdict && l.contact == r.contact && l.margin_sign == r.margin_sign;
 }
 
-// "it rounds number 2, 0.1"; for several numbers, how many and the first.
+// Such as "it rounds number 2, 0.1". If several numbers are rounded, names how many and the first of them.
 std::string rounded_words(std::size_t count, std::size_t first, std::string_view number) {
   return fmt::format("it rounds {}number {}, {}", count == 1 ? "" : fmt::format("{} numbers, the first is ", count),
                      first + 1, number);
 }
 
-// The note about a pair of doubles. truth: of the doubles.
+// Returns the note about a pair of doubles. truth: the truth of the doubles.
 std::string note_of_doubles(const corpus::Entry& entry, const oracle::Truth& truth) {
   const double* own = coordinates(*entry.doubles);
   const float* stored = coordinates(entry.pair);
@@ -134,7 +134,7 @@ std::string written_note(const corpus::Entry& entry, const oracle::Truth& truth)
   for (std::size_t i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = std::strtod(entry.written[i].c_str(), nullptr);
   const oracle::Truth in_doubles = is_finite(pair) ? oracle::truth(pair) : *written;
   const bool double_differs = !alike(*written, in_doubles);
-  // One phrase covers both only if it is true of both.
+  // The words "as doubles and as stored in float32" are used only if they are true of both roundings.
   const bool float_differs = !alike(in_doubles, truth) || (double_differs && words(in_doubles) != words(truth));
   if (!double_differs && !float_differs) return "";
   std::string text = "as written: " + words(*written);

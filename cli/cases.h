@@ -15,9 +15,10 @@
 
 namespace graze::cli {
 
-// Returns: the cases, at least one; a stratum's pair has its three numbers as fields.
+// Returns: at least one case. A stratum's pair has the fields stratum, seed and index.
 // Throws: UsageError for an invalid name, FormatError for a file that is missing or not in the format,
-// std::runtime_error for a file without a case; UsageError or FormatError for a pair of doubles that is not `taken`.
+// std::runtime_error for a file without a case; UsageError or FormatError for a pair of doubles if `taken` excludes
+// doubles.
 std::vector<corpus::Entry> read_cases(const std::string& name, PairTypes taken = PairTypes::f32);
 
 // What identifies the case for a reader: STRATUM:SEED:INDEX, the case that it was minimised from, its name, or its line
@@ -28,7 +29,7 @@ std::string shown_name(const std::string& file, const corpus::Entry& entry);
 oracle::Truth truth_of(const corpus::Entry& entry);
 
 // "as written: disjoint, 1e-11 apart; as stored in float32: they share an area (it rounds number 12, 1.00000000001)",
-// if rounding to double or to float32 changes the truth; otherwise empty. truth: of the entry.
+// if rounding to double or to float32 changes the truth; otherwise empty. truth: the entry's truth.
 std::string written_note(const corpus::Entry& entry, const oracle::Truth& truth);
 
 // The verdicts that the entry's campaign stored for lanes of foreign code that are left out now. Empty unless the entry
@@ -37,7 +38,7 @@ std::vector<std::pair<std::string, Verdict>> stored_verdicts_of(const corpus::En
                                                                 const std::vector<fuzz::LaneLeftOut>& left_out,
                                                                 Verdict truth);
 
-// The same as a line: "stored by the campaign: mine/f32/cpu disjoint !". Empty if there are none.
+// The same verdicts as a line: "stored by the campaign: mine/f32/cpu disjoint !". Empty if there are none.
 std::string stored_verdicts(const corpus::Entry& entry, const std::vector<fuzz::LaneLeftOut>& left_out, Verdict truth);
 
 // Adds --exact-input to a verb that reads pairs or meshes.

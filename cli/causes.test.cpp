@@ -159,7 +159,7 @@ TEST_P(PlantedBugs, HasItsCauseAndItsWords) {
   ASSERT_EQ(found.status, 0) << found.err;
   const Ran told = shell("export XDG_CACHE_HOME=$PWD/cache; graze minimize c >&2 && graze failures c --json");
   ASSERT_EQ(told.status, 0) << told.err;
-  const json kind = json::parse(told.out.substr(0, told.out.find('\n')));  // the most frequent one
+  const json kind = json::parse(told.out.substr(0, told.out.find('\n')));  // the most frequent kind
   EXPECT_EQ(kind["cause"], bug.cause);
   EXPECT_GT(kind["settled"][0], 0);
   EXPECT_EQ(kind["settled"][0], kind["settled"][1]);
@@ -199,7 +199,7 @@ class TwoExperiments : public CommandTest {
   }
 };
 
-// In float the gap is lost at every scale; in double the epsilon hides it.
+// In float, rounding loses the gap at every scale; in double, the epsilon hides it.
 TEST_F(TwoExperiments, AnEpsilonAndRoundingTogetherAreNamed) {
   const std::string gap = "(n + 1024 * s) - (m + 1024 * s), (l + 1024 * s) - (k + 1024 * s)";
   const char* const pair = "0 0 0 -1 0 0 0 1 0  0x1p-21 0 0 1 0 0 1 1 0";

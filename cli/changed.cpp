@@ -25,7 +25,7 @@ namespace {
 using fuzz::ChangedVerdicts;
 
 // Finds a subject's lane with the code that the campaign ran. Opens the subject under a name that no user can
-// give.   Returns: null if the code is not there.
+// give.   Returns: null if the code no longer exists.
 class RecordedCode {
  public:
   RecordedCode(const std::string& directory, std::string suffix)
@@ -50,10 +50,10 @@ class RecordedCode {
  private:
   Json subjects_;
   std::string suffix_;
-  std::set<std::string> gone_;  // names of subjects whose code is not there
+  std::set<std::string> gone_;  // names of subjects whose code no longer exists
 };
 
-// scene: "@" and its name, or empty.
+// scene: "@" and the name of the scene, or empty.
 Json case_json(const strata::PairSource& source, const std::string& scene, std::uint64_t seed, std::uint64_t index) {
   return fmt::format("{}{}:{}:{} {}", source.id, scene, seed, index, fuzz::pair_text(source.any_pair(index)));
 }
@@ -70,7 +70,8 @@ void count_on_pairs(const Lane& before, const Lane& after, const std::vector<str
       analysis::verdicts_apart({{&before, &after}, {before.decide, after.decide}}, of_rows, 0, is_simpler);
   for (std::size_t s = 0; s < rows.size(); ++s) {
     Json& row = *rows[s];
-    if (found[s].differs < row["least"] || found[s].differs > row["most"]) continue;  // it answers differently now
+    // If the count is out of bounds, the code answers differently now.
+    if (found[s].differs < row["least"] || found[s].differs > row["most"]) continue;
     row["least"] = row["most"] = found[s].differs;
     row["broken"] = found[s].broken;
     row["mended"] = found[s].mended;

@@ -30,7 +30,7 @@ struct LaneOptions {
   std::vector<std::string> globs;
   std::vector<std::string> subjects;  // NAME=WHAT
   std::vector<std::string> flags;     // for the compiler
-  std::string toolchains;             // subjects::selected_toolchains
+  std::string toolchains;             // value of --toolchains; see subjects::selected_toolchains
   double timeout = 1;
   bool resubject = false;  // run a campaign's subjects even if their code has changed
   fuzz::Executor executor = fuzz::Executor::automatic;
@@ -41,7 +41,7 @@ void add_lane_options(CLI::App& command, LaneOptions& options, Executors executo
 // Adds only the options about subjects.
 void add_subject_options(CLI::App& command, LaneOptions& options);
 
-// The words of all values of --flags.
+// Splits the values of --flags into words.
 std::vector<std::string> compiler_flags(const std::vector<std::string>& texts);
 
 // Adds --resubject to a verb that reads campaigns and runs their subjects again.
@@ -50,26 +50,28 @@ void add_resubject_option(CLI::App& command, LaneOptions& options);
 // Opens the subjects.   Throws: as subjects::open.
 void open_subjects(const LaneOptions& options);
 
-// The names of the subjects, and patterns with "NAME/*" added for each: for verbs whose default is not every lane.
+// Returns the names of the subjects.
 std::vector<std::string> subject_names(const LaneOptions& options);
+// Adds the pattern "NAME/*" of each subject, for verbs whose default is not every lane.
 std::vector<std::string> with_subjects(std::vector<std::string> globs, const LaneOptions& options);
 
 // " --subject NAME=WHAT --flags=…": what a printed command needs to run this subject. Empty unless the subject is open.
 std::string subject_words(const std::string& subject);
 
-// The same for all subjects of the options.
+// Returns these words for all subjects of the options.
 std::string own_words(const LaneOptions& options);
 // " --toolchains arm64-gcc": the toolchains of the options, or else those of the lanes; empty for none.
 std::string toolchain_words(const LaneOptions& options, std::initializer_list<const Lane*> lanes);
 
-// Throws: UsageError if no lane of a subject or of --toolchains is among these, so that no verb ignores it silently.
-// where: the option or argument.
+// Throws: UsageError if no lane of a subject or of --toolchains is among these names, so that no verb ignores such an
+// option silently. where: the option or argument that names lanes.
 void expect_own_code_among(const LaneOptions& options, const std::vector<std::string>& ids, const char* where);
 
-// The spec that a campaign recorded. `name` is its directory or one of its case files; for other names an empty object.
+// Returns the spec that a campaign recorded. `name` is the campaign's directory or one of its case files; other names
+// give an empty object.
 fuzz::Json recorded_spec_of(const std::filesystem::path& name);
 
-// Opens the subjects of that spec.   resubject: even if their code has changed.
+// Opens the subjects of that spec; with `resubject`, even if their code has changed.
 // Throws: as subjects::open_recorded.
 void open_subjects_of(const std::filesystem::path& name, bool resubject = false);
 
@@ -81,7 +83,7 @@ fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesy
 
 // Throws: UsageError unless this names a published lane without a policy.
 const Lane& published_lane(const std::string& id);
-// The same, or a lane of a subject that is open.
+// Also accepts a lane of a subject that is open.
 const Lane& named_lane(const std::string& id);
 
 // The pairs of a campaign: strata are drawn again, meshes read again.
@@ -89,11 +91,12 @@ struct CampaignPairs {
   fuzz::Json summary;  // checked
   std::uint64_t seed = 1;
   std::vector<strata::PairSource> sources;
-  std::string scene;  // in which they were drawn; may be empty
+  std::string scene;  // the name of the pairs' scene; may be empty
 };
 
-// The first pairs of each source of the campaign, `most` in all; 0: all of them. For an unfinished campaign, includes
-// pairs that are not judged yet.   Throws: std::runtime_error for a hunt, naming the verb, and as checked_summary.
+// Returns the first pairs of each source of the campaign, `most` in all, or all pairs if `most` is 0. For an unfinished
+// campaign, includes pairs that are not judged yet.
+// Throws: std::runtime_error for a hunt, naming the verb, and as checked_summary.
 CampaignPairs pairs_of_campaign(const std::string& directory, std::uint64_t most, const char* verb);
 
 // Lists these lanes on standard error, each with the reason.
@@ -102,7 +105,7 @@ void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out);
 // Keeps the lanes that decide pairs of doubles, and names the others on standard error.
 // Throws: as fuzz::select_for_doubles.
 void take_doubles(fuzz::SelectedLanes& under_test);
-// The same if one of the pairs is a pair of doubles.
+// Calls take_doubles if one of the entries is a pair of doubles.
 void take_doubles_of(const std::vector<corpus::Entry>& entries, fuzz::SelectedLanes& under_test);
 
 // Adds an option for patterns, separated by commas in one argument.
@@ -124,8 +127,8 @@ int list_hip_plans(const std::vector<std::string>& subjects, const std::vector<s
 // Adds --scene to a verb that draws pairs. If the verb has --coordinates, add that option first.
 void add_scene_option(CLI::App& command, std::string& file);
 
-// Measures the mesh, in this type or else in the one it needs, and writes its scene to the file, as
-// `graze scene MESH --out FILE` does.   Throws: what that verb throws.
+// Measures the mesh in this coordinate type, or without a type in the type that the mesh needs. Writes the scene to the
+// file, as `graze scene MESH --out FILE` does.   Throws: what that verb throws.
 void write_scene_of(const std::string& mesh, const std::string& out, std::optional<PairTypes> type);
 
 // Prints the sentences of `graze scene --sufficient RATE`: the cheapest published host lane that is wrong on at most
@@ -140,7 +143,7 @@ strata::SceneSources drawn(const std::string& scene, std::uint64_t seed, std::ui
 // Adds --coordinates to a verb that draws pairs of either type, or of both at once.
 enum class OfBothTypes { no, yes };
 void add_coordinates_option(CLI::App& command, PairTypes& types, OfBothTypes both = OfBothTypes::yes);
-// Without --coordinates, pairs in a scene have the scene's type.   Throws: as fuzz::open_scene.
+// If --coordinates is not given, sets `types` to the type of the scene.   Throws: as fuzz::open_scene.
 void take_type_of_scene(const CLI::App& command, const std::string& scene, PairTypes& types);
 PairTypes type_of_scene(const std::string& scene);
 
@@ -173,11 +176,11 @@ CLI::Validator number(double least, double most);
 // Throws: UsageError for a file name that is not UTF-8, because results are UTF-8 and could not record it.
 void expect_utf8(const std::string& what, const std::string& file);
 
-// Accepts only these words. For transform(), which leaves the word or its index.
+// Accepts only these words. For transform(), which keeps the word or replaces it with its index.
 enum class Chosen { word, place };
 CLI::Validator one_of(std::vector<std::string> words, Chosen chosen);
 
-// Each lane's verdict on one pair; reports on standard error where a device and its twin differ.
+// Returns each lane's verdict on one pair. Reports on standard error if a device and its twin differ.
 std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const AnyPair& pair);
 
 // The verdicts of a pair as they count: those that a subject's convention excuses become the truth
@@ -185,7 +188,7 @@ std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const AnyPair
 std::vector<Verdict> counted_verdicts(const fuzz::SelectedLanes& under_test, const std::vector<Verdict>& verdicts,
                                       const AnyPair& pair, const oracle::Truth& truth);
 
-// Whether a verdict is wrong; no verdict is wrong if the truth is declined.
+// Whether some verdict is wrong. No verdict is wrong if the truth is declined.
 bool some_is_wrong(const std::vector<Verdict>& verdicts, Verdict truth);
 
 // Describes in one line what runs the CUDA lanes under test, each kind of evidence once. Empty without CUDA lanes.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two campaigns on the same pairs are compared verdict by verdict; on other pairs by their rates. And the command that
-// a report names runs the campaign again.
+// Two campaigns on the same pairs are compared verdict by verdict, and campaigns on different pairs by their rates. The
+// command that a report names runs the campaign again.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -18,8 +18,8 @@ class Compare : public CommandTest {
   }
   nlohmann::json json(const std::string& file) { return nlohmann::json::parse(contents(shell.folder / file)); }
 
-  // Compares before with after, and checks each row's counts against those of `graze discrepancy` on the same pairs,
-  // which gets the two builds that ran as two libraries.
+  // Compares the campaigns `before` and `after`, and checks each row's counts against `graze discrepancy` on the same
+  // pairs. `graze discrepancy` gets the two builds that ran as two libraries.
   // build_of_lane: index into the builds cpu, cpu-fma and cpu-fast.
   void expect_counts(const std::string& strata, int pairs, std::size_t build_of_lane = 0) {
     const Ran said = shell("export XDG_CACHE_HOME=$PWD/cache; graze report --compare before after");
@@ -52,7 +52,7 @@ class Compare : public CommandTest {
   }
 };
 
-// Three cases in which an unpaired test found no change.
+// Counting pair by pair finds changes in three cases in which an unpaired test found none.
 TEST_F(Compare, AnotherCompilerIsCountedPairByPair) {
   const std::string run =
       "graze fuzz --subject mine=./mine.cpp --lanes mine/f32/cpu --strata near_edge_edge,thesis --pairs 2000 --out ";

@@ -80,7 +80,7 @@ void expect_same_code(const std::vector<std::string>& names) {
       const auto& [other, before] = known.try_emplace(row.at("name"), name, row).first->second;
       if (before.at("hash") == row.at("hash")) continue;
       throw UsageError(
-          fmt::format("cannot add {} together with {}: they ran different code as {} ({} and {}); add them "
+          fmt::format("cannot add {} together with {}: they ran different code under the name {} ({} and {}); add them "
                       "one at a time",
                       printable(other), printable(name), printable(row["name"].get<std::string>()),
                       printable(before["what"].get<std::string>()), printable(row["what"].get<std::string>())));
@@ -98,7 +98,7 @@ void add(const CorpusOptions& options) {
   for (const std::string& name : options.names) {
     if (!std::filesystem::is_directory(name) && (!options.signatures.empty() || options.most != CorpusOptions().most))
       throw UsageError("--signatures and --top choose signatures of campaigns, and " + name +
-                       " is a file of cases; leave them out");
+                       " is a file of cases; leave these options out");
     found.emplace_back(
         name, std::filesystem::is_directory(name)
                   ? fuzz::found_in_campaign(name, options.signatures, options.most)

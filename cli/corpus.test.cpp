@@ -81,7 +81,7 @@ TEST_F(CorpusVerb, TakesEverySignatureWithItsCount) {
             0);
 }
 
-// Code that always says yes, and other code of the same name that always says no.
+// One code always answers yes; another code of the same name always answers no.
 TEST_F(CorpusVerb, FailuresInBothDirectionsAreKeptAndOtherCodeOfOneNameIsRefused) {
   for (const std::string answer : {"0", "1"}) {
     const Ran ran = shell("mkdir d" + answer + " && echo 'extern \"C\" int hit(const float*, const float*) { return " +

@@ -28,7 +28,7 @@
 namespace graze::cli {
 namespace {
 
-constexpr int kDevice = 1, kTwin = 2;   // of --executor
+constexpr int kDevice = 1, kTwin = 2;   // indices of the words of --executor
 constexpr std::size_t kMostTables = 2;  // with more comparisons, only shares are printed
 
 struct DiscrepancyOptions {
@@ -42,14 +42,14 @@ struct DiscrepancyOptions {
   std::string scene, campaign, out;
 };
 
-// What to compare: values, and for users' code verdicts.
+// What to compare: values or, for users' code, verdicts.
 struct Comparisons {
   std::vector<analysis::LanesCompared> values;
   std::vector<analysis::TwoDeciders> verdicts;
   fuzz::SelectedLanes of_subjects;  // if no lane was named: lanes of --subject, including those that do not run
 };
 
-// The function that runs a lane of a user's code here.   Throws: UsageError if there is none.
+// The function that runs a lane of a user's code here.   Throws: UsageError if the lane has none.
 DecideBlock on_host(const Lane& lane) {
   const fuzz::SelectedLanes selected = fuzz::select_lanes({lane.id});
   fuzz::expect_each_runs(selected);
@@ -102,7 +102,7 @@ Comparisons comparisons_of(const DiscrepancyOptions& options) {
   Comparisons comparisons;
   std::vector<analysis::LanesCompared>& lanes = comparisons.values;
   std::set<std::set<const Lane*>> named;
-  if (options.lanes.size() % 2 != 0) throw UsageError("lanes are compared two by two: name an even number of them");
+  if (options.lanes.size() % 2 != 0) throw UsageError("lanes are compared two at a time: name an even number of lanes");
   for (std::size_t i = 0; i < options.lanes.size(); i += 2) {
     const Lane *first = find_lane(options.lanes[i]), *second = find_lane(options.lanes[i + 1]);
     if (first && second && (first->foreign || second->foreign)) {
@@ -124,7 +124,8 @@ Comparisons comparisons_of(const DiscrepancyOptions& options) {
   return comparisons;
 }
 
-// Prefers pairs without segments and points, where a fault is hard to see, and among those the simpler pair.
+// Prefers pairs of two proper triangles, because a fault is hard to see on a segment or a point. Among equally good
+// pairs, prefers the simpler one.
 bool shows_better(const AnyPair& l, const AnyPair& r) {
   const auto is_degenerate = [](const AnyPair& pair) {
     return fuzz::shape_name(visit(pair, [](const auto& own) { return relation_of(own).hulls; })) == "degenerate";
@@ -184,7 +185,7 @@ int compare(const std::vector<std::string>& names) {
 
 constexpr const char* kFloat32Alone = "values of lanes in float are compared only on pairs of float32";
 
-// Without named lanes, leaves out those whose values are not compared on doubles, and says so.
+// Unless the user named the lanes, leaves out those whose values are not compared on doubles, and reports them.
 // Throws: UsageError if the user named a lane that takes only float32.
 void keep_for_doubles(Comparisons& comparisons, bool named) {
   std::erase_if(comparisons.values, [&](const analysis::LanesCompared& lanes) {
@@ -315,9 +316,10 @@ void add_discrepancy(CLI::App& app, int& status) {
   command
       ->add_option(
           "lanes", options->lanes,
-          "Lanes to compare, two by two. For your own code only verdicts are compared; for cuda-nofma with cuda-fma "
-          "of a CUDA source also the operands of its comparisons (default: the first lane of --subject with its "
-          "others, else cpu with cuda-fma and with cuda-nofma, for all algorithms)")
+          "Lanes to compare, two at a time. For your own code, only verdicts are compared. Between cuda-nofma and "
+          "cuda-fma of a CUDA source, the operands of comparisons are compared too (default: the first lane of "
+          "--subject with each of its other lanes; without --subject, cpu with cuda-fma and with cuda-nofma, for all "
+          "algorithms)")
       ->option_text("LANE LANE");
   command
       ->add_option("--compare", options->compare,

@@ -34,7 +34,7 @@ bool matches(const Lines& expected, std::size_t e, const Lines& found, std::size
   return f < found.size() && expected[e] == found[f] && matches(expected, e + 1, found, f + 1);
 }
 
-// The output, shortened like the document: as many lines before and after its "…".
+// Shortens the output like the document: keeps as many lines before and after the "…".
 Lines abridged(const Lines& expected, const Lines& found) {
   const auto dots = std::find(expected.begin(), expected.end(), "…");
   const auto before = dots - expected.begin(), behind = expected.end() - dots - 1;

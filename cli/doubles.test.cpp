@@ -140,7 +140,7 @@ TEST_F(Doubles, ATableIsReadBackWithTheSameTruth) {
   }
   EXPECT_EQ(pairs, 40);
   EXPECT_GT(changed, 35);
-  // The same pairs, named by their numbers and as a table of decimals.
+  // Names and a table of decimals give the same pairs.
   const std::string first = contents(shell.folder / "p.pairs").substr(0, 400);
   const Ran one = shell("graze repro stored/f64:7:0 --lanes 'exact/*/cpu'");
   EXPECT_EQ(one.status, 0) << one.err;
@@ -303,7 +303,7 @@ TEST_F(Doubles, CasesOfOtherStrataAreRefused) {
   expect_done("sed -i '3,$s/stratum=[a-z_]* seed=1 index=[0-9]* /stratum=nosuch seed=99 index=12345678 /' " + file);
   expect_error("graze report c", 1, {file, "does not belong to the campaign"});
   expect_error("graze minimize c", 1, {file, "does not belong to the campaign"});
-  // So is a case of the same signature from a campaign with another seed.
+  // A case of the same signature from a campaign with another seed is refused too.
   expect_done("graze fuzz --strata near_vertex_face --pairs 2000 --lanes 'moller_1997/f32/cpu' --seed 2 --out d");
   expect_done("graze fuzz --strata near_vertex_face --pairs 2000 --lanes 'moller_1997/f32/cpu' --out e");
   const Ran both = shell("cd d && head -qn 2 cases/* | grep -F \"$(head -qn 2 ../e/cases/* | grep '^# ')\" | head -1");
@@ -346,7 +346,7 @@ TEST_F(Doubles, NoMarginIsZeroOrInfiniteByRounding) {
   }
 }
 
-// minimize, failures, explain and the report's cards for a campaign on doubles.
+// Tests minimize, failures, explain and the report's cards on a campaign of doubles.
 TEST_F(Doubles, FailuresAreMinimisedAndExplained) {
   expect_done(
       "graze fuzz --coordinates f64 --strata 'stored,near_vertex_face,lattice' --pairs 600 --lanes "
@@ -409,8 +409,8 @@ TEST_F(Doubles, CasesBecomePrograms) {
   expect_done(repro + "obj > case.obj && grep -q 1.0000000000009095 case.obj");
 }
 
-// Two triangles are 1e-10 apart. The decimals of one have few digits, those of the other many. Both are decided as
-// written, in either order.
+// Two triangles are 1e-10 apart. The decimals of one triangle have few digits, and those of the other have many. Both
+// are decided as written, in either order.
 TEST_F(Doubles, AllDecimalsOfTwoMeshesAreDoublesIfSomeHaveManyDigits) {
   std::ofstream(shell.folder / "few.off") << "OFF\n3 1 0\n0.1 0 0\n0.1 1 0\n0.1 0 1\n3 0 1 2\n";
   std::ofstream(shell.folder / "many.off") << "OFF\n3 1 0\n0.1000000001 0 0\n0.1000000001 1 0\n0.1000000001 0 1\n"
@@ -492,10 +492,10 @@ TEST_F(Doubles, APolicyIsTunedOnThem) {
   const std::size_t next = told.find("Next: ");
   ASSERT_NE(next, std::string::npos);
   EXPECT_NE(shell(told.substr(next + 6)).out.find("moller_1997/f64"), std::string::npos) << told;
-  // A CUDA lane without contraction, as a twin.
+  // Tunes a CUDA lane without contraction, which runs as a twin.
   expect_done("graze tune moller_1997/f64/cuda-nofma --forbid false-negative " + strata + "--out w > told");
   EXPECT_EQ(Json::parse(contents(shell.folder / "w/tune.json"))["confirmed"], tuned["confirmed"]);
-  // A lane in float on a campaign's own pairs; and two lanes with --agree.
+  // Tunes a lane in float on a campaign's own pairs, and two lanes with --agree.
   expect_done(
       "graze fuzz --lanes 'moller_1997/*/cpu*' --strata near_vertex_face --pairs 500 --coordinates both --out d");
   expect_done("graze tune moller_1997/f32/cpu --from d --out u");
@@ -754,7 +754,7 @@ TEST_F(Doubles, ASceneIsDrawnInItsDoubles) {
   }
   EXPECT_EQ(pairs, 6000u);
   EXPECT_GT(stored, 600u);  // float32 has steps of half a metre there
-  // Killed, it resumes to the same bytes; in parts, it merges to them.
+  // A killed campaign resumes to the same bytes, and its shards merge to the same counts.
   for (const int write : {5, 15})
     ASSERT_EQ(shell(signal_at_write(SIGKILL, write) + fuzz + "--threads 1 --out two").status, 128 + SIGKILL) << write;
   expect_done(fuzz + "--threads 1 --out two && cmp one/summary.json two/summary.json && diff -r one/cases two/cases");
@@ -827,7 +827,7 @@ TEST_F(Doubles, AMeshOfDoublesBecomesASceneOfDoubles) {
   const Json strata = Json::parse(contents(shell.folder / "s/summary.json"))["strata"];
   for (const char* source : {"mesh/f64", "mesh_ulps/f64", "mesh_moved/f64", "shared_edge/f64"})
     EXPECT_GT(strata[source]["pairs"], 0) << source;
-  // Its own pairs are those that fuzz --mesh draws, in another order.
+  // The mesh's own pairs are those that fuzz --mesh draws, in another order.
   expect_done("graze fuzz --mesh site.off --coordinates f64 --lanes 'moller_1997/*/cpu,exact/*/cpu' --out m");
   const Json of_mesh = Json::parse(contents(shell.folder / "m/summary.json"))["strata"]["mesh/f64"];
   expect_done(

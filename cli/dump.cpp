@@ -173,7 +173,7 @@ CampaignPairs pairs_of_campaign(const std::string& directory, std::uint64_t most
   } catch (const Json::exception&) {
     throw std::runtime_error(cannot("use", directory + "/summary.json", "it is not the summary of a campaign"));
   }
-  if (most > 0) {  // every source gets the same share; the first ones also get the remainder
+  if (most > 0) {  // every source gets the same share; the first sources also get the remainder
     for (std::size_t s = 0; s < pairs.sources.size(); ++s) {
       const std::uint64_t share = most / pairs.sources.size() + (s < most % pairs.sources.size());
       pairs.sources[s].pairs = std::min(pairs.sources[s].pairs, share);
@@ -192,10 +192,9 @@ void add_dump(CLI::App& app, int&) {
       ->required();
   static_assert(static_cast<int>(Format::pairs) == 0 && static_cast<int>(Format::csv) == 1);
   command
-      ->add_option(
-          "--format", options->format,
-          "Format of the output. csv: a table with a header line, and coordinates as decimals that a reader of doubles "
-          "turns into the exact numbers; pairs: the format that `graze check` reads")
+      ->add_option("--format", options->format,
+                   "Format of the output. csv: a table with a header line; its decimals give the exact coordinates "
+                   "when they are read as doubles. pairs: the format that `graze check` reads")
       ->transform(one_of({"pairs", "csv"}, Chosen::place))
       ->option_text("pairs|csv")
       ->default_str("csv");

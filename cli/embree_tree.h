@@ -32,7 +32,7 @@ class EmbreeTree {
     rtcReleaseDevice(device_);
   }
 
-  // Returns how many of the tree's triangles intersect the reference; exact.   Requires: finite coordinates.
+  // Returns exactly how many of the tree's triangles intersect the reference.   Requires: finite coordinates.
   std::uint64_t count(const Triangle& reference) {
     Question question{{&reference, 1}, triangles_, 0};
     one_core_.execute([&] {

@@ -33,8 +33,8 @@ bool is_off(const oracle::Beside& beside, Scalar scalar) {
 // "guigue_devillers_2003.h:111"
 std::string place(const analysis::Step& step) { return step.line.substr(step.line.rfind('/') + 1); }
 
-// A value, with the exact value if it is off, or a comparison, with the exact values if its outcome differs. Marks the
-// step to report. places: width of the column for the place.
+// Formats a value, with the exact value if it is off, or a comparison, with the exact values if its outcome differs.
+// Marks the step to report. places: width of the column for the place.
 std::string step_text(const analysis::Step& step, bool told, Scalar scalar, int places, const reports::Screen& screen) {
   std::string text = fmt::format("{}{:<{}}  ", told ? "   => " : "      ", place(step), places), exactly;
   const int hang = reports::width_of(text);
@@ -57,7 +57,8 @@ std::string step_text(const analysis::Step& step, bool told, Scalar scalar, int 
   return (told ? reports::red(screen, text) : text) + '\n';
 }
 
-// The values up to the reported comparison, or all values if there is none; of these only the last kMost.
+// Formats the values up to the reported comparison, or all values if no comparison is reported. Shows only the last
+// kMost of these values.
 std::string steps_text(const analysis::LaneExplanation& lane, const reports::Screen& screen) {
   constexpr int kMost = 12;
   if (lane.evidence == analysis::Evidence::none)
@@ -143,8 +144,8 @@ std::string lane_text(const AnyPair& pair, const analysis::LaneExplanation& lane
   return text;
 }
 
-// The runs of two lanes side by side, if the user named exactly two and both record their values; else empty. Lanes in
-// float have none on a pair of doubles.
+// The runs of two lanes side by side, if the user named exactly two and both record their values; else empty. Also
+// empty for lanes in float on a pair of doubles.
 std::string side_by_side(const std::vector<const Lane*>& lanes, const AnyPair& pair, const reports::Screen& screen) {
   if (lanes.size() != 2 || !is_finite(pair.doubles) || analysis::decides_stored(*lanes[0], pair) ||
       !analysis::why_not_compared(*lanes[0], *lanes[1]).empty())
@@ -162,10 +163,11 @@ std::string cost_of_rounding(const std::string& lane) {
   }
   try {
     const subjects::KernelCosts costs = subjects::kernel_costs(builds);
-    return fmt::format("Cost of a pair on {}, for {} of the stratum uniform already in its memory: {} {}, {} {}.",
-                       printable(costs.device), reports::counted(subjects::kPairsOfKernelCosts, "pair"), rounded,
-                       reports::cost_words(analysis::quartiles(costs.nanoseconds.at(0))), lane,
-                       reports::cost_words(analysis::quartiles(costs.nanoseconds.at(1))));
+    return fmt::format(
+        "Cost of a pair on {}, for {} of the stratum uniform that are already in its memory: {} {}, {} {}.",
+        printable(costs.device), reports::counted(subjects::kPairsOfKernelCosts, "pair"), rounded,
+        reports::cost_words(analysis::quartiles(costs.nanoseconds.at(0))), lane,
+        reports::cost_words(analysis::quartiles(costs.nanoseconds.at(1))));
   } catch (const std::runtime_error& error) {
     return fmt::format("Cost of -fmad=false: not measured, because {}.", printable(error.what()));
   }
@@ -239,7 +241,8 @@ void explain_cases(const ExplainOptions& options) {
   for (const corpus::Entry& entry : entries) {
     if (options.exact_input) expect_exact_input(options.name, entry);
   }
-  LimitedText limited(options.all ? std::numeric_limits<int>::max() : kMostLines - 2);  // two more lines end it
+  // Two lines of the limit are kept for the text that follows.
+  LimitedText limited(options.all ? std::numeric_limits<int>::max() : kMostLines - 2);
   const auto add = [&](const std::vector<std::string>& blocks) {
     for (const std::string& block : blocks) limited.add(block);
   };

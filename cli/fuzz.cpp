@@ -57,7 +57,7 @@ std::vector<std::string> details(const fuzz::Progress& progress, const std::vect
 }
 
 // The subject's smallest case. Minimises, as `graze minimize` would, the kMostShrunk signatures whose first kept pairs
-// are the simplest. Returns the simplest result and its file; of equal results, the one from the simpler kept pair.
+// are the simplest. Returns the simplest result and its file; among equal results, the one from the simpler kept pair.
 std::pair<std::string, std::filesystem::path> smallest_case(const std::filesystem::path& campaign,
                                                             const fuzz::SelectedLanes& under_test, const Json& summary,
                                                             const std::string& subject) {
@@ -87,8 +87,8 @@ std::pair<std::string, std::filesystem::path> smallest_case(const std::filesyste
   return smallest;
 }
 
-// Reports each of the given subjects (of all, if none are given) that is wrong on more pairs than allowed, in one line
-// with its simplest case, minimised.
+// Reports each given subject that is wrong on more pairs than allowed or, if no subject is given, each such algorithm.
+// Prints one line with the simplest minimised case.
 // Returns: the exit status.
 int fail_above(const FuzzOptions& options, const fuzz::SelectedLanes& under_test, const Json& summary) {
   std::map<std::string, std::uint64_t> wrong;
@@ -221,7 +221,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
     fmt::print(stderr, "graze: interrupted; finished work is kept, and the same command resumes the campaign\n");
     return kInterrupted;
   }
-  // Foreign code can write into the folder too. So what it may have changed is read back before it is reported.
+  // Foreign code can write into the folder too. So the files are read back before the results are reported.
   const bool foreign = campaign.spec.contains("subjects");
   if (foreign && campaign.shard.whole()) {
     fuzz::checked_summary(options.out);
@@ -240,7 +240,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
   return options.fail_above ? fail_above(options, under_test, outcome.summary) : 0;
 }
 
-// Runs alone or as one of mpirun's processes; there, a failing process ends all of them.
+// Runs alone or as one of mpirun's processes. Under mpirun, a failing process ends all processes.
 int start(const FuzzOptions& options) {
   if (!options.junit.empty() && !options.shard.whole())
     throw UsageError("--junit is for whole campaigns; a shard has only a part of the pairs");
@@ -345,9 +345,10 @@ void add_fuzz(CLI::App& app, int& status) {
   static_assert(static_cast<int>(fuzz::EngineChoice::automatic) == 0 &&
                 static_cast<int>(fuzz::EngineChoice::cpu) == 1 && static_cast<int>(fuzz::EngineChoice::gpu) == 2);
   command
-      ->add_option("--engine", options->engine,
-                   "Engine that judges the pairs. cpu: see --judge; gpu: all on the device, only for CUDA lanes; "
-                   "auto: gpu where possible. Results do not depend on it")
+      ->add_option(
+          "--engine", options->engine,
+          "Engine that judges the pairs. cpu: see --judge; gpu: runs every step on the device; only for CUDA lanes. "
+          "auto: gpu where possible. Results do not depend on it")
       ->transform(one_of({"auto", "cpu", "gpu"}, Chosen::place))
       ->option_text("auto|cpu|gpu")
       ->default_str("auto");

@@ -32,7 +32,7 @@ using Plan = std::vector<FusedLine>;
 
 constexpr std::size_t kTargets = std::size(subjects::kHipTargets);
 
-// What each compiler fuses in one source and scalar.
+// The products that each compiler fuses in one source and scalar.
 struct Compared {
   std::string name;  // "moller_1997/f32"
   Plan amd[kTargets];
@@ -149,7 +149,7 @@ std::string table_of_lines(const Compared& of) {
     row.emplace_back(printable(code));
     table.add(std::move(row));
   }
-  return fmt::format("\n{}{}\n{}", of.name, of.nvidia ? "" : " (NVIDIA's is not known)",
+  return fmt::format("\n{}{}\n{}", of.name, of.nvidia ? "" : " (NVIDIA's plan is not known)",
                      table.rows() == 0 ? "  no fused product\n" : table.text(output_screen(), 2));
 }
 
@@ -188,8 +188,10 @@ int list_hip_plans(const std::vector<std::string>& subjects, const std::vector<s
   if (still_fused == 0) {
     fmt::print("\nWith -ffp-contract=off hipcc fuses none.\n");
   } else {
-    fmt::print("\nWith -ffp-contract=off {} fused. Calls of fma() may be; others mean that the flag does not work.\n",
-               still_fused == 1 ? "1 operation stays" : fmt::format("{} operations stay", still_fused));
+    fmt::print(
+        "\nWith -ffp-contract=off {} fused. Calls of fma() may stay fused; any other operation means that the flag "
+        "does not work.\n",
+        still_fused == 1 ? "1 operation stays" : fmt::format("{} operations stay", still_fused));
   }
   return still_fused == 0 ? 0 : 1;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// --lanes, --subject and --executor, the same for all verbs: select lanes, open a user's code, and report what does not
-// run.
+// The options --lanes, --subject and --executor, which are the same for all verbs. Selects lanes, opens a user's code,
+// and reports lanes that do not run.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -79,8 +79,7 @@ fuzz::Json recorded_spec_of(const std::filesystem::path& name) {
 }
 
 void add_resubject_option(CLI::App& command, LaneOptions& options) {
-  command.add_flag("--resubject", options.resubject,
-                   "Run your own code as it is now, although it has changed since the campaign ran");
+  command.add_flag("--resubject", options.resubject, "Run your own code even if it has changed since the campaign ran");
 }
 
 void open_subjects(const LaneOptions& options) {
@@ -124,8 +123,8 @@ void open_subjects_of(const std::filesystem::path& name, bool resubject) {
 
 namespace {
 
-// The same, but code that has changed or is missing is left out, and the verb goes on without it.
-// Returns: its lanes.
+// Opens the subjects of that spec, except code that has changed or is missing, so that the verb continues without it.
+// Returns: the lanes that are left out.
 std::vector<fuzz::LaneLeftOut> open_unchanged_subjects_of(const std::filesystem::path& name, bool resubject) {
   const fuzz::Json spec = recorded_spec_of(name);
   const subjects::Changed changed = resubject ? subjects::Changed::used : subjects::Changed::refused;
@@ -138,7 +137,7 @@ std::vector<fuzz::LaneLeftOut> open_unchanged_subjects_of(const std::filesystem:
       throw;
     } catch (const std::runtime_error& error) {
       const std::string subject = row.at("name").get<std::string>() + '/',
-                        why = printable(error.what()) + (resubject ? "" : "; --resubject runs it as it is now");
+                        why = printable(error.what()) + (resubject ? "" : "; --resubject runs the changed code");
       for (const std::string id : spec.at("lanes")) {
         if (id.starts_with(subject)) left_out.push_back({id, why});
       }
@@ -163,7 +162,7 @@ std::vector<std::string> with_subjects(std::vector<std::string> globs, const Lan
 void expect_own_code_among(const LaneOptions& options, const std::vector<std::string>& ids, const char* where) {
   for (const std::string& name : subject_names(options)) {
     if (std::none_of(ids.begin(), ids.end(), [&](const std::string& id) { return id.starts_with(name + '/'); }))
-      throw UsageError(fmt::format("--subject {0}: {1} names no lane of it; add '{0}/*' there", name, where));
+      throw UsageError(fmt::format("--subject {0}: {1} selects none of its lanes; add '{0}/*' to {1}", name, where));
   }
   if (options.toolchains.empty()) return;
   const std::vector<subjects::Toolchain> toolchains = subjects::selected_toolchains(options.toolchains);
@@ -172,7 +171,7 @@ void expect_own_code_among(const LaneOptions& options, const std::vector<std::st
                        [&](const subjects::Toolchain& toolchain) { return id.ends_with('/' + toolchain.name); });
   };
   if (std::none_of(ids.begin(), ids.end(), is_of_one))
-    throw UsageError(fmt::format("--toolchains {0}: {1} names no lane of it; add '*/{2}' there",
+    throw UsageError(fmt::format("--toolchains {0}: {1} selects none of their lanes; add '*/{2}' to {1}",
                                  printable(options.toolchains), where, toolchains.front().name));
 }
 

@@ -31,7 +31,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kStartOfAProgram = 10;  // seconds; added to the time for a program's first pair
+// Seconds. The least time limit of a program, because its first pair includes its start.
+constexpr double kStartOfAProgram = 10;
 
 struct LeagueOptions {
   std::string subjects, scene, out = "league";
@@ -109,7 +110,7 @@ void remove_other_drawings(const fs::path& folder, const std::map<std::string, s
 int league(const LeagueOptions& options) {
   if (options.coordinates == PairTypes::both)
     throw UsageError(
-        "graze league: --coordinates both: a table has pairs of one type; make one with f32 and one with "
+        "graze league: --coordinates both: a table has pairs of one type; make two tables, one with f32 and one with "
         "f64");
   fuzz::MostPairs most;
   std::vector<reports::LeagueSubject> subjects = read_subjects(options.subjects, most);

@@ -47,7 +47,7 @@ void refuse_empty_texts(CLI::App& app) {
   for (CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) refuse_empty_texts(*verb);
 }
 
-// Expects a verb as the first word, or one of the flags that stand without a verb.
+// Expects a verb as the first word, or a flag that needs no verb.
 void expect_verb(const CLI::App& app, const std::string& word) {
   if (word == "--help" || word == "-h" || word == "--version") return;
   std::vector<std::string> verbs;
@@ -59,7 +59,7 @@ void expect_verb(const CLI::App& app, const std::string& word) {
                                              "'; `graze --help` lists them" + graze::did_you_mean(word, verbs));
 }
 
-// "; did you mean '--lanes'?" for the first option that the verb does not have; empty if none is near.
+// "; did you mean '--lanes'?" for the first option that the verb does not have; empty if no option is similar.
 std::string option_meant(const CLI::App& app, int argc, char** argv) {
   const auto verb_of = [](const CLI::App& of, const std::string& name) {
     const auto found = of.get_subcommands([&](const CLI::App* verb) { return verb->get_name() == name; });

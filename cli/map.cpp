@@ -39,7 +39,8 @@ int coordinate(const std::string& option, const std::string& name) {
 // The requested coordinates, if any.
 std::optional<analysis::MovedCoordinates> asked_for(const MapOptions& options) {
   if (options.x.empty() && options.y.empty()) return std::nullopt;
-  if (options.x.empty() || options.y.empty()) throw UsageError("--x and --y work only together; add the other one");
+  if (options.x.empty() || options.y.empty())
+    throw UsageError("--x and --y work only together; add the missing option");
   const analysis::MovedCoordinates moved{coordinate("--x", options.x), coordinate("--y", options.y)};
   if (moved.x == moved.y) throw UsageError("--x and --y are both " + options.x + "; choose two coordinates");
   return moved;
@@ -155,9 +156,10 @@ void add_map(CLI::App& app, int&) {
       ->option_text("FILE.png|DIR")
       ->capture_default_str();
   command
-      ->add_option("--x", options->x,
-                   "Coordinate that moves to the right; by default, --x and --y are chosen so that most verdicts "
-                   "change")
+      ->add_option(
+          "--x", options->x,
+          "Coordinate that moves to the right; by default, --x and --y are the coordinates along which verdicts "
+          "change most")
       ->option_text("b[0].x");
   command->add_option("--y", options->y, "Coordinate that moves upwards")->option_text("b[0].y");
   command->callback([options] { draw_map(*options); });

@@ -47,7 +47,7 @@ void add_merge(CLI::App& app, int& status) {
       ->required()
       ->option_text("DIR");
   command->add_flag("--partial", options->partial,
-                    "Merge the shards that there are into an unfinished campaign, which `graze fuzz` resumes");
+                    "Merge the existing shards into an unfinished campaign, which `graze fuzz` resumes");
   command->add_flag("--json", options->json, "Print the summary as JSON");
   command->callback([options, &status] { status = merge(*options); });
 }

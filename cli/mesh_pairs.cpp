@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::size_t kBlock = 1 << 10, kDeviceBlock = 1 << 17;  // candidates decided together
 
-// The number of distinct points that are vertices of both.
+// Returns the number of distinct points that are vertices of both triangles.
 template <class Real>
 int common_vertices(const BasicPair<Real>& pair) {
   int common = 0;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The search of `graze query --self` and `--between`: all pairs of triangles that intersect, within one mesh or between
-// two, with their contact and kind. Boxes give the candidates (strata/mesh_slabs.h), in blocks; a decider says which of
-// them intersect, and the exact relation tells how. The result does not depend on the decider or the threads.
+// two, with their contact and kind. Boxes give blocks of candidates (strata/mesh_slabs.h). A decider finds the
+// candidates that intersect, and the exact relation tells how they meet. The result does not depend on the decider or
+// the threads.
 #pragma once
 
 #include <array>
@@ -37,15 +38,16 @@ struct FoundPair {
 
 inline constexpr std::size_t kMostListed = 100'000;  // hits in one JSON object
 
-// Requires: finite coordinates.   Exact: always.
+// Returns how triangle i of the first mesh meets triangle j of the second.   Requires: finite coordinates.   Exact:
+// always.
 FoundPair related(std::uint32_t i, std::uint32_t j, const Pair& pair);
 FoundPair related(std::uint32_t i, std::uint32_t j, const DoublePair& pair);
 
 // The text of a CSV file: a header, and a row for each pair.
 std::string csv_of(std::span<const FoundPair> pairs);
 
-// The triangles of a mesh in float32. `in_doubles` are the same in doubles, if float32 rounded a coordinate; else
-// empty.
+// The triangles of a mesh in float32. `in_doubles` has the same triangles in doubles if float32 rounded a coordinate;
+// otherwise it is empty.
 struct MeshTriangles {
   std::vector<std::array<Vec3<float>, 3>> triangles;
   std::vector<std::array<Vec3<double>, 3>> in_doubles = {};
@@ -95,14 +97,14 @@ struct FoundPairs {
   std::uint64_t candidates = 0;               // pairs whose boxes overlap
   std::uint64_t declined = 0;                 // triangles that are not finite; they are in no pair
   std::vector<FoundPair> pairs;               // sorted
-  double seconds = 0, processor_seconds = 0;  // elapsed; of all threads together
+  double seconds = 0, processor_seconds = 0;  // elapsed time; processor time of all threads together
 
   std::uint64_t of(Kind kind) const { return count[static_cast<std::size_t>(kind)]; }
   std::uint64_t all() const;
 };
 
-// Boxes are those of the triangles in float32. Rounding keeps the order of coordinates, so they miss no pair of
-// doubles.   told: called with the number of triangles of `a` that are done, by one thread at a time.
+// The boxes are those of the triangles in float32. Rounding keeps the order of coordinates, so these boxes miss no pair
+// of doubles.   told: called with the number of triangles of `a` that are done, by one thread at a time.
 // Throws: Stopped, soon after a request to stop (core/stop.h).
 FoundPairs find_pairs(
     const TwoMeshes& meshes, const Decider& decider, const Kept& kept,

@@ -193,7 +193,7 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
   fmt::print("number of magnitudes other than 0 and 1: signatures with that number (median {}):\n{}",
              magnitudes[magnitudes.size() / 2], reports::wrapped(counts, output_screen().columns, 2, 2));
   fmt::print(
-      "Wrote {}/cases/: the minimised pair first, then the worst one met, then the originals\n"
+      "Wrote {}/cases/: the minimised pair first, then the worst pair met, then the originals\n"
       "and, for each kind of failure, an explanation and the ulp maps of its simplest case\n",
       printable(directory));
 }

@@ -149,7 +149,7 @@ TEST_F(Minimize, CasesThatAreNotTheCampaignsAreRefusedAndCanBeBroughtBack) {
   }
 }
 
-// The pair's truth fits, but other lanes are wrong on it: only the lanes reveal that.
+// The forged pair has the right truth, but other lanes are wrong on it, so only the lanes reveal the forgery.
 TEST_F(Minimize, CasesOnWhichOtherLanesAreWrongAreRefused) {
   expect_done(std::string(kFuzz) + "--out c > /dev/null");
   const auto rows = nlohmann::json::parse(contents(shell.folder / "c/summary.json"))["signatures"];

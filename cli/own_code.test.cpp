@@ -130,7 +130,7 @@ TEST_F(OwnCodeTest, TheExactLaneRunsBesideItUnlessALaneOptionLeavesItOut) {
   EXPECT_EQ(lanes_of("--out b --lanes 'own/f32/cpu,!exact/*'"), Lanes{"own/f32/cpu"});
   EXPECT_EQ(lanes_of("--out c --lanes 'own/f32/cpu*,!*fast,!*fma'"), (Lanes{"exact/f32/cpu", "own/f32/cpu"}));
   expect_error(fuzz + "--out d --lanes 'own/*,!exakt/*'", 2, {"exakt/*"});
-  // The command in a shard's message leaves it out as well.
+  // The command in the message about a missing shard leaves out the exact lane as well.
   expect_done(fuzz + "--out s1 --lanes 'own/f32/cpu,!exact/*' --shard 1/2");
   const Ran gap = shell(graze + "merge s1 --out m");
   const std::size_t at = gap.err.find("graze fuzz ");
@@ -138,7 +138,7 @@ TEST_F(OwnCodeTest, TheExactLaneRunsBesideItUnlessALaneOptionLeavesItOut) {
   EXPECT_NE(gap.err.find("!exact/f32/cpu"), std::string::npos) << gap.err;
 }
 
-// Code that hangs, and code that crashes.
+// Tries code that hangs and code that crashes.
 TEST_F(OwnCodeTest, FailuresAreEmittedToo) {
   for (const char* does : {"for (;;) pause();", "abort();"}) {
     shell(
@@ -245,7 +245,7 @@ TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
       << late.out << late.err;
 }
 
-// Like the test below, but on a pair of doubles.
+// Like CudaAgainstCpuIsExplained, but on a pair of doubles.
 TEST_F(OwnCodeTest, CudaInDoubleIsExplainedOnDoubles) {
   shell(
       "cat > own.cu <<'EOF'\n"

@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Changes to another folder for its lifetime.
+// Changes the working directory during its lifetime.
 class InFolder {
  public:
   explicit InFolder(const fs::path& folder) : before_(fs::current_path()) {
@@ -49,7 +49,7 @@ class InFolder {
   fs::path before_;
 };
 
-// Opens the subjects from the pack's files alone, so that a pack that lacks one is not written.
+// Opens the subjects from the pack's files alone, so that Graze writes no pack that lacks a file.
 void expect_subjects_open(const fuzz::Pack& pack, const Json& recorded) {
   if (recorded.empty()) return;
   const Scratch scratch(subjects::cache_folder());

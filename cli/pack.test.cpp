@@ -50,7 +50,7 @@ TEST_F(PackCommand, ASourceWithItsHeadersRunsElsewhere) {
   expect_done("cd there/c-unpacked/files && rm -rf ../again && export XDG_CACHE_HOME=$PWD/cache && " +
               nlohmann::json::parse(manifest)["command"].get<std::string>() +
               " > /dev/null && test -s ../again/summary.json");
-  // A second unpacking would mix with the first.
+  // Unpacking again into the same folder would mix the files.
   expect_error("cd there; graze repro ../c.sqlar", 2, {"c-unpacked"});
 }
 

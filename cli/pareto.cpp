@@ -37,8 +37,8 @@ struct ParetoOptions {
   bool device = false;
 };
 
-// Why the lane is left out: the time of a twin is not the time of the code. A user's code is judged even without a
-// time.
+// Returns why the lane is left out, or an empty text. A twin's time is not the time of the code. A user's code is kept
+// even if it cannot be timed.
 std::string why_left_out(const Lane& lane, bool device) {
   if (!device) return lane.foreign ? "" : analysis::why_not_timed(lane);
   return backends::backend_of(lane).has_device ? "" : "--device times only CUDA lanes of published algorithms";

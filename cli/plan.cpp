@@ -108,10 +108,11 @@ void add_plan(CLI::App& app, int& status) {
   add_coordinates_option(*command, options->coordinates);
   add_scene_option(*command, options->scene);
   add_lane_options(*command, options->lanes);
-  CLI::Option* cores = add_count(*command, "--cores", options->cores, 1, 10'000'000, "Number of cores that run it");
+  CLI::Option* cores =
+      add_count(*command, "--cores", options->cores, 1, 10'000'000, "Number of cores that run the campaign");
   command
       ->add_option("--gpus", options->gpus,
-                   "Number of GPUs that run it; the rate is measured on one, or given by --rate")
+                   "Number of GPUs that run the campaign; the rate is measured on one GPU, or given by --rate")
       ->transform(whole_number(1, 10'000'000))
       ->excludes(cores)
       ->option_text("N");

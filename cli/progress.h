@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Progress of a long run. On a terminal, one line that is rewritten five times a second. Otherwise a new line after
-// every tenth of the run, but at most one in ten seconds and at least one in half a minute.
+// Progress of a long run. On a terminal, it is one line that is rewritten five times a second. Elsewhere, a new line
+// appears after every tenth of the run, but at most one in ten seconds and at least one in half a minute.
 #pragma once
 
 #include <cstddef>

@@ -33,8 +33,7 @@ cuda::ProofRecord record_of(const cuda::ProofOptions& options, const LaneOptions
   if (builds.empty()) throw UsageError("none of the subjects is a CUDA source " + of + "with a twin");
   for (const std::string& name : subject_names(lanes)) {
     if (std::none_of(builds.begin(), builds.end(), [&](auto& named) { return named.lane.starts_with(name + '/'); }))
-      throw UsageError(
-          fmt::format("--subject {}: it is not a CUDA source {}with a twin that --lanes selects", name, of));
+      throw UsageError(fmt::format("--subject {} is not a CUDA source {}with a twin that --lanes selects", name, of));
   }
   if (out.empty())
     out = subjects::proof_file(subjects::opened(parse_lane_name(builds[0].lane)->subject)->file).string();

@@ -135,7 +135,7 @@ std::string evidence_of(const Run& run) {
   return lane && on_cores ? backends::backend_of(*lane).evidence(*lane, run.of_doubles) : "";
 }
 
-// A query counts failures of a user's code as declined; this tells them apart.
+// A query counts failures of a user's code as declined verdicts. This function distinguishes the two.
 template <class Real>
 void find_failures(Run& run, const TrianglesOf<Real>& references, const TrianglesOf<Real>& triangles) {
   const Lane* lane = find_lane(run.lane);
@@ -166,7 +166,7 @@ Json json_of(const Run& run) {
   return json;
 }
 
-// The first hits: indices of triangles, or of a reference and a triangle where there are several references.
+// Adds the first hits: indices of triangles or, if there are several references, of a reference and a triangle.
 void add_list(Json& json, const Run& run, std::size_t triangles, std::size_t references) {
   json["list"] = Json::array();
   for (std::size_t p = 0; p < run.bytes.size() && json["list"].size() < kMostListed; ++p) {
@@ -176,7 +176,7 @@ void add_list(Json& json, const Run& run, std::size_t triangles, std::size_t ref
   json["not_listed"] = run.answer.hits - json["list"].size();
 }
 
-// For each two runs, the number of triangles on which they differ.
+// Two runs, and the number of triangles on which they differ.
 struct Differing {
   const Run *first, *second;
   std::uint64_t count = 0;
@@ -369,7 +369,7 @@ void add_query(CLI::App& app, int& status) {
       ->option_text("REF MESH");
   command
       ->add_option("--self", options->self,
-                   "Mesh to test against itself: the triangles that pierce each other are found instead")
+                   "Mesh to test against itself, instead of REF MESH; finds the triangles that pierce each other")
       ->excludes("files")
       ->option_text("MESH");
   command

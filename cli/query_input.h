@@ -15,7 +15,7 @@
 
 namespace graze::cli {
 
-// The lanes of a query. `exact` is the exact lane on any executor; the table of lanes does not have it.
+// The lanes of a query. `exact` is the exact lane on any executor; the table of lanes does not list it.
 struct QueryLanes {
   std::vector<std::string> ids;  // of lanes that run on cores, or on GPUs if there are any
   fuzz::SelectedLanes under_test;
@@ -59,8 +59,8 @@ query::DoubleTriangle in_doubles(const std::array<Real, 9>& triangle) {
   return result;
 }
 
-// The triangles as an OBJ file, in named groups. Each number has the digits that distinguish it from others of its
-// type: float32 if that holds it, else double.
+// The triangles as an OBJ file, in named groups. Each number has enough digits to distinguish it from all others of its
+// type: float32 if float32 can hold it, otherwise double.
 struct ObjGroup {
   std::string name;
   std::vector<std::array<double, 9>> triangles;

@@ -29,7 +29,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using reports::grouped;
 
-// Limits of memory: pairs in a CSV file, about 3 GB while it is written; and in the files of --pairs and --obj.
+// Limits of memory. The first is for pairs in a CSV file, which takes about 3 GB while it is written. The second is for
+// the files of --pairs and --obj.
 constexpr std::size_t kMostRows = std::size_t{1} << 26, kMostCases = std::size_t{1} << 22;
 
 struct Search {

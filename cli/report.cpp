@@ -51,7 +51,7 @@ std::vector<std::string> write_report(const fs::path& directory, const Json& rep
   if (!costs.is_null()) results.push_back({"costs.json", reports::report_text(fuzz::sealed(costs))});
   for (const reports::CsvTable& table : reports::csv_tables(directory, report))
     results.push_back({table.name, table.text});
-  if (!fs::exists(directory / "margins.svg"))  // a merge that was killed at its end left none
+  if (!fs::exists(directory / "margins.svg"))  // a merge that was killed at its end leaves no picture
     results.push_back({"margins.svg", reports::margin_figure(fuzz::checked_summary(directory))});
   write_results(directory, results);
   if (costs.is_null()) remove_result(directory / "costs.json", R"({"machine": "", "passes": 0})");
@@ -76,7 +76,8 @@ void say_report(const fs::path& directory, const Json& report, const std::vector
   say_what_the_page_is();
 }
 
-// Includes the lane costs and the results of tune and pareto if they are beside the report.
+// Returns the page of a stored report. Includes the lane costs and the results of tune and pareto if they are in the
+// same folder.
 std::string page_of(const std::string& file) {
   try {
     const Json report = reports::read_report(file);
@@ -87,7 +88,7 @@ std::string page_of(const std::string& file) {
   }
 }
 
-// The campaign's report. Opens its foreign code, which the programs that show a failure need.
+// Makes the campaign's report. Opens its foreign code, because the programs that show a failure need it.
 Json make_report(const fs::path& directory) {
   std::vector<std::string> missing;
   for (const Json& row : recorded_spec_of(directory).value("subjects", Json::array())) {
@@ -97,8 +98,8 @@ Json make_report(const fs::path& directory) {
       throw;
     } catch (const std::runtime_error& error) {
       missing.push_back(
-          fmt::format("No program shows a failure of {}, because the code that the campaign ran is not "
-                      "there: {}.",
+          fmt::format("No program shows a failure of {}, because the code that the campaign ran cannot "
+                      "be opened: {}.",
                       printable(row.at("name").get<std::string>()), printable(error.what())));
     }
   }
@@ -112,14 +113,14 @@ void report(const ReportOptions& options) {
   if (named != 1)
     throw UsageError(fmt::format("graze report needs exactly one of DIR, --compare and --from, but got {}", named));
   if (options.from.empty() != options.out.empty())
-    throw UsageError("--from and --out work only together; add the other one");
+    throw UsageError("--from and --out work only together; add the missing option");
   if (!options.from.empty()) {
     write_result(options.out, page_of(options.from), fuzz::NamedBy::user);
     fmt::print("Wrote {}\n", printable(options.out));
     say_what_the_page_is();
   } else if (!options.compare.empty()) {
-    // Made first, while no foreign code is open: only its counts are needed, and both may use one name for different
-    // code.
+    // This report is made first, while no foreign code is open. Only its counts are needed, and both campaigns may use
+    // one name for different code.
     const Json before = reports::make_report(options.compare[0]);
     Json after = make_report(options.compare[1]);
     const Json rows =

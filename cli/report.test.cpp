@@ -20,7 +20,7 @@ class Report : public CommandTest {
   nlohmann::json json(const char* file) { return nlohmann::json::parse(contents(shell.folder / file)); }
 };
 
-// The map's differences come from signatures. Those from x86-gcc, which equals cpu, are also counted pair by pair.
+// The map's differences come from signatures. The test also counts those from x86-gcc, which equals cpu, pair by pair.
 TEST_F(Report, MapsToolchains) {
   expect_done(
       "graze fuzz --pairs 4000 --lanes 'interval_overlap/*,exact/f32/cpu' --executor twin "
@@ -84,7 +84,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   more["kinds"][0]["pairs"] = more["kinds"][0]["pairs"].get<std::uint64_t>() + 1;
   write("c/failures.json", more);
   expect_error("graze failures c", 1, {"c/failures.json", "graze minimize"});
-  // Kinds that are missing, and lanes, strata and margins that do not exist: no failure may be hidden or invented.
+  // Missing kinds, and lanes, strata and margins that do not exist, are refused, so no failure is hidden or invented.
   const auto refused = [&](const std::string& found) {
     for (const char* reader : {"failures c", "report c", "report --compare c c"})
       expect_error(std::string("graze ") + reader, 1, {"c/failures.json", found, "graze minimize c"});
@@ -389,7 +389,7 @@ TEST_F(Report, ComparesCodeBeforeAndAfterAnEdit) {
   EXPECT_EQ(old.status, 0) << old.err;
   EXPECT_EQ(old.err, "");
   EXPECT_NE(old.out.find("m.cpp:hit has changed since the campaign ran: its hash is "), std::string::npos) << old.out;
-  // Two source files with one name: each report has only the programs of its own code.
+  // If two source files have the same name, each report has only the programs of its own code.
   expect_done(
       "mkdir p && mv m.cpp p && graze fuzz --subject mine=p/m.cpp:hit --lanes mine/f32/cpu --strata "
       "near_vertex_face --pairs 200 --out cp > /dev/null && graze minimize cp > /dev/null && "

@@ -22,8 +22,7 @@ namespace {
 
 enum class Compared { same, changed, nothing };
 
-// Compares the recorded signature with the present one: everything except the lanes, and those of the recorded lanes
-// that ran.
+// Compares the recorded signature with the present one. Of the recorded lanes, compares only those that ran.
 Compared compare(const analysis::Signature& recorded, const analysis::Signature& now,
                  std::span<const Lane* const> run) {
   const auto ran = [&](const std::string& lane) {
@@ -66,7 +65,7 @@ bool compare_signatures(const corpus::Entry& entry, const oracle::Truth& t, std:
   return compared == Compared::changed;
 }
 
-// Prints the recorded parts of the truth that do not hold.   Returns: whether there are any.
+// Prints the recorded parts of the truth that differ from the present truth.   Returns: whether there are any.
 bool compare_truth(const corpus::Entry& entry, const oracle::Truth& t) {
   bool changed = false;
   for (const auto& [field, now] : fuzz::truth_fields(t)) {

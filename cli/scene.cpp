@@ -28,8 +28,8 @@ namespace fs = std::filesystem;
 struct SceneVerb {
   std::vector<std::string> files;
   std::string out, poses, units = "units";
-  std::optional<PairTypes> coordinates;  // none: those that the input needs
-  double sufficient = 0;                 // the rate; 0: not asked
+  std::optional<PairTypes> coordinates;  // if not given, the type that the input needs
+  double sufficient = 0;                 // the rate; 0: not given
   bool exact_input = false;
 };
 
@@ -73,7 +73,7 @@ bool intersects(const BasicPair<Real>& pair) {
   return exact::intersects(&pair.a[0].x, &pair.b[0].x);
 }
 
-// How many pairs have another verdict when stored in float32.
+// Returns how many pairs have another verdict when float32 stores them.
 std::uint64_t changed_by_storing(const strata::MeshPairs& mesh) {
   if (mesh.in_doubles.empty() || mesh.rounding.beyond == 0) return 0;
   return tbb::parallel_reduce(

@@ -105,7 +105,7 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
   EXPECT_EQ(vertices_of(id + "@one" + numbers), vertices);
 }
 
-// A mesh has fewer pairs than its share. A message says how many run, and why.
+// If a mesh has fewer pairs than its share of the campaign, a message says how many run, and why.
 TEST_F(SceneVerb, FewerPairsThanAskedForAreExplained) {
   expect_done("graze scene hills.off --out hills.toml");
   const Ran ran = shell("graze fuzz --scene hills.toml --pairs 20000 --lanes 'moller_1997/f32/cpu' --out few");

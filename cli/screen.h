@@ -17,11 +17,11 @@ reports::Screen error_screen();
 // Prints the sentences, each wrapped at the columns of standard output.
 void print_wrapped(const std::vector<std::string>& sentences);
 
-// The most lines that a verb prints before --all is needed.
+// The most lines that a verb prints without --all.
 inline constexpr int kMostLines = 40;
 
-// Collects blocks of whole lines up to a limit of lines. Leaves out the first block that does not fit, and all after
-// it.
+// Collects blocks of whole lines up to a limit of lines. Leaves out the first block that does not fit, and all blocks
+// after it.
 class LimitedText {
  public:
   explicit LimitedText(int most) : left_(most) {}

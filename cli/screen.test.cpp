@@ -176,8 +176,8 @@ TEST_F(TerminalTest, StrataAreOneLineEachForProgramsAndWrappedForPeople) {
   const std::string piped = shell("graze strata").out, shown = on_terminal(shell, "graze strata", 80);
   EXPECT_LE(widest(shown), 80);
   EXPECT_LT(std::count(piped.begin(), piped.end(), '\n'), std::count(shown.begin(), shown.end(), '\n'));
-  const auto lines =
-      std::count(piped.begin(), piped.end(), '\n') - 4;  // without "With …:", "Next: …" and the empty lines before them
+  // Without "--coordinates f64 …:", "Next: …" and the empty lines before them.
+  const auto lines = std::count(piped.begin(), piped.end(), '\n') - 4;
   EXPECT_EQ(shell("graze strata | cut -c1-20 | grep -c '^[a-z]'").out, std::to_string(lines) + "\n");
 }
 

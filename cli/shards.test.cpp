@@ -22,7 +22,7 @@ class Shards : public CommandTest {
     EXPECT_EQ(ran.status, 0) << ran.out.substr(0, 1000) << ran.err;
   }
 
-  // The command that the message gives after `before`.
+  // Returns the command that follows `before` in the message.
   static std::string command_in(const std::string& said, const std::string& before) {
     const std::size_t at = said.find(before);
     EXPECT_NE(at, std::string::npos) << said;

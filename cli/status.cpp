@@ -88,7 +88,7 @@ void expect_own_counts(const fs::path& directory, const Json& status) {
                     status.at("disagreements").get<std::uint64_t>(), found, disagreements, most)));
 }
 
-// known: the signatures, without margins, of the rows so far; this row's are added.
+// known: the signatures, without margins, of earlier rows. The function adds those of this row.
 Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::string>& known) {
   Json row = {{"directory", directory.string()},
               {"shard", nullptr},
@@ -240,7 +240,7 @@ void add_status(CLI::App& app, int& status) {
       ->required();
   command
       ->add_option("--stalled", options->stalled,
-                   "Time without a sign of life after which a run counts as stalled, in seconds")
+                   "Time without an update after which a run counts as stalled, in seconds")
       ->transform(whole_number(1, 1'000'000'000))
       ->capture_default_str()
       ->option_text("SECONDS");

@@ -20,7 +20,7 @@ void add_strata(CLI::App& app, int&) {
       app.add_subcommand("strata", "List the strata, the named generators of pairs, each with its group");
   command->footer("Example: graze strata");
   command->callback([] {
-    // One line each, for programs that read the list.
+    // Programs that read the list get one line for each stratum.
     const int columns = isatty(STDOUT_FILENO) ? output_screen().columns : std::numeric_limits<int>::max();
     const auto print = [&](const strata::StratumInfo& row) {
       fmt::print("{}", reports::wrapped(fmt::format("{:<20} {:<11} {}", row.id,
@@ -28,7 +28,7 @@ void add_strata(CLI::App& app, int&) {
                                         columns, 0, 33));
     };
     for (const strata::StratumInfo& row : strata::kStrata) print(row);
-    fmt::print("\nWith --coordinates f64 all of these, drawn in doubles, and:\n");
+    fmt::print("\n--coordinates f64 draws all of these in doubles, and also the following:\n");
     for (const strata::StratumInfo& row : std::span(strata::kDoubleStrata).subspan(std::size(strata::kStrata)))
       print(row);
     fmt::print("\nNext: graze fuzz --strata 'near_*'\n");

@@ -157,7 +157,7 @@ TEST_F(SubjectVerbs, ParetoComparesTheCostOfOwnCode) {
 }
 
 // A campaign knows its subjects. If their code has changed, verbs say so, leave it out, and show what was stored;
-// --resubject runs it as it is now.
+// --resubject runs the changed code.
 TEST_F(SubjectVerbs, ChangedCodeIsSaidAndStoredVerdictsAreShown) {
   expect_done(
       std::string(kWithoutDevice) +
@@ -190,7 +190,7 @@ TEST_F(SubjectVerbs, ChangedCodeIsSaidAndStoredVerdictsAreShown) {
   expect_error(std::string(kWithoutDevice) + "check c/cases/one.pairs --lanes 'mine/*'", 2,
                {"mine/f32/cpu", "changed", "--resubject"});
   expect_error(std::string(kWithoutDevice) + "minimize c", 1, {"mine.c", "changed"});
-  // Verbs that need no code still work.
+  // Verbs that do not run the code still work.
   expect_done(std::string(kWithoutDevice) + "report c && graze dump c > /dev/null && graze status c");
   if (shell("graze view --out v.html").status == 0) {
     const Ran viewed = shell(std::string(kWithoutDevice) + "view c/cases/one.pairs --out v.html");

@@ -28,7 +28,8 @@ constexpr int kPasses = 9;
 // If no error occurs, 3 / rate pairs show the rate; more pairs leave room for some errors.
 std::uint64_t pairs_for(double rate) { return std::max<std::uint64_t>(100'000, std::llround(std::ceil(6 / rate))); }
 
-// Pairs to choose on and to judge by: all but a mesh's own, which do not depend on the seed and are left for the end.
+// Draws pairs to choose on or to judge by. Leaves out a mesh's own pairs, which do not depend on the seed and are
+// needed at the end.
 std::vector<strata::PairSource> pairs_before(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
                                              PairTypes types) {
   std::vector<strata::PairSource> sources = drawn(scene, seed, pairs, {}, types).sources;
@@ -54,7 +55,7 @@ void print_sufficient(const std::string& scene, double rate) {
     const analysis::Tuned tuned = analysis::tune(spec);
     lanes.push_back(tuned.chosen.empty() ? lane : lane_under(lane, tuned.chosen));
     candidates.push_back({lanes.back().id, lane.scalar, tuned.result, tuned.confirmed, tuned.bound, {}});
-    // Without a tolerance a lane is cheaper, so it may suffice although another tolerance has fewer errors.
+    // A lane without a tolerance is cheaper, so it may suffice even if a tolerance has fewer errors.
     const double bound = analysis::upper_bound(tuned.zero_confirmed.wrong(), tuned.zero_confirmed.pairs);
     if (tuned.chosen.empty() || bound > rate) continue;
     lanes.push_back(lane);

@@ -42,7 +42,7 @@ struct Options {
   int claims = -1;  // index of a Rounding; negative: as documented
 };
 
-// What the compiler fuses in a source: a published algorithm's, or a subject's.
+// The products that the compiler fuses in the source of a published algorithm or of a subject.
 struct PlanOf {
   std::string name;
   bool published;
@@ -50,7 +50,7 @@ struct PlanOf {
 };
 
 struct Findings {
-  Toolchain toolchain;  // without a name: a command
+  Toolchain toolchain;  // has no name if the user gave a command
   std::string command;
   Claim claim;
   std::vector<CanaryResult> results;
@@ -77,7 +77,7 @@ void list(const std::vector<Toolchain>& toolchains) {
   fmt::print("{}", table.text(output_screen()));
 }
 
-// Throws: UsageError if the text names no toolchain and no command; std::runtime_error if it is missing.
+// Throws: UsageError if the text names no toolchain and no command; std::runtime_error if the toolchain is missing.
 Toolchain wanted(const Options& options) {
   const std::vector<Toolchain> all = subjects::selected_toolchains(options.list);
   const auto named = std::find_if(all.begin(), all.end(), [&](const Toolchain& t) { return t.name == options.what; });
@@ -94,8 +94,8 @@ Toolchain wanted(const Options& options) {
   const auto first_word =
       std::find_if(all.begin(), all.end(), [&](const Toolchain& t) { return options.what.starts_with(t.name + ' '); });
   if (first_word != all.end())
-    throw UsageError(fmt::format("the toolchain {} takes no flags; give its command with yours: '{}'", first_word->name,
-                                 first_word->cxx));
+    throw UsageError(fmt::format("the toolchain {} takes no flags; give its command with your flags: '{}'",
+                                 first_word->name, first_word->cxx));
   if (!toolchain.name.empty()) throw std::runtime_error(fmt::format("{}: {}", toolchain.name, why_not));
   std::vector<std::string> names;
   for (const Toolchain& each : all) names.push_back(each.name);
@@ -103,7 +103,7 @@ Toolchain wanted(const Options& options) {
                                did_you_mean(options.what, names)));
 }
 
-// What is documented: --claims; for a toolchain, its row; for a command, its flags.
+// Returns what is documented, according to --claims, the toolchain's row or the command's flags.
 Claim claim_for(const Options& options, const Toolchain& toolchain, const std::string& command) {
   if (options.claims >= 0) return {static_cast<Rounding>(options.claims), true, "--claims"};
   const std::optional<Claim> of_flags = subjects::claim_of(command);
@@ -120,7 +120,7 @@ Claim claim_for(const Options& options, const Toolchain& toolchain, const std::s
 std::string table_of(const Findings& measured) {
   reports::TextTable table(
       {{"computation", Align::left}, {"float", Align::left}, {"double", Align::left}, {"documentation", Align::left}});
-  const std::size_t half = measured.results.size() / 2;  // of float; those of double follow
+  const std::size_t half = measured.results.size() / 2;  // the results for float; those for double follow
   for (std::size_t i = 0; i < half; ++i) {
     const auto cell = [&](const CanaryResult& result) {
       return Cell(result.found, !result.rounding || measured.documented(result) == Documented::does_not_hold);
@@ -316,9 +316,10 @@ void add_toolchain(CLI::App& app, int& status) {
                          ->option_text("COMMAND");
   CLI::Option* claims =
       command
-          ->add_option("--claims", options->claims,
-                       "What its flags are documented to do: rounded, contracted, excess or fast (default: from the "
-                       "table of toolchains, else from the flags of GCC or clang)")
+          ->add_option(
+              "--claims", options->claims,
+              "What the compiler's flags are documented to do: rounded, contracted, excess or fast (default: from the "
+              "table of toolchains, else from the flags of GCC or clang)")
           ->transform(one_of({"rounded", "contracted", "excess", "fast"}, Chosen::place))
           ->option_text("WORD");
   command

@@ -45,7 +45,7 @@ const Case kCases[] = {
     // clang's fast math fuses in spite of a later flag.
     {"ClangFastOff", "'clang-14 --target=x86_64-linux-gnu -O2 -march=x86-64-v3 -ffast-math -ffp-contract=off'", "fast",
      kUnroundedProducts, true},
-    // Planted: claims that the flags contradict.
+    // The following claims are false on purpose: the flags contradict them.
     {"ClaimedRounded",
      "'x86_64-linux-gnu-gcc -O2 -march=x86-64-v3 -ffp-contract=off -ffp-contract=fast' --claims rounded", "contracted",
      kUnroundedProducts, true},
@@ -103,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(cli, ToolchainCommand, testing::ValuesIn(kCases),
 
 using Toolchain = CommandTest;
 
-// Emulators compute these with their own software.
+// Emulators compute quotients and roots in software.
 TEST_F(Toolchain, EmulatorsDivideAndTakeRootsExactly) {
   int emulated = 0;
   for (const std::string name : {"arm64-gcc", "riscv64-gcc", "ppc64le-gcc"}) {
@@ -122,7 +122,7 @@ TEST_F(Toolchain, EmulatorsDivideAndTakeRootsExactly) {
   if (emulated == 0) GTEST_SKIP() << "no cross compiler with an emulator";
 }
 
-// fmaf() of Debian 12's wasi-libc rounds wrongly near the middle between two numbers. Nothing else of wasm is wrong.
+// fmaf() of Debian 12's wasi-libc rounds wrongly near the middle between two numbers. No other check of wasm fails.
 TEST_F(Toolchain, TheLibrarysOwnFmaIsTested) {
   if (shell("graze toolchain | grep -q '^wasm .* yes$'").status != 0) GTEST_SKIP() << "no wasm";
   const Ran ran = shell("graze toolchain wasm --json r.json");
@@ -146,7 +146,7 @@ TEST_F(Toolchain, ListsToolchains) {
   expect_error("graze toolchain mine --toolchains mine.toml", 1, {"mine", "no-such-c++"});
 }
 
-// The fused products of a source, with the command's own flags, and of the published algorithms.
+// The command lists the fused products of a source, with the given flags, and of the published algorithms.
 TEST_F(Toolchain, ListsFusedProducts) {
   if (shell("command -v x86_64-linux-gnu-g++").status != 0) GTEST_SKIP() << "no x86_64-linux-gnu-g++";
   if (shell("grep -qw fma /proc/cpuinfo").status != 0) GTEST_SKIP() << "the processor has no FMA";
@@ -261,7 +261,7 @@ TEST_F(Toolchain, SaysWhatIsWrong) {
   if (shell("command -v x86_64-linux-gnu-gcc").status != 0) GTEST_SKIP() << "no x86_64-linux-gnu-gcc";
   expect_error("graze toolchain 'x86_64-linux-gnu-gcc -no-such-flag'", 1, {"-no-such-flag"});
   expect_error("graze toolchain 'x86_64-linux-gnu-gcc -O2' --run false", 1, {"exit status 1"});
-  // A program that answers nothing, and one that forges a line.
+  // One program answers nothing, and another forges a line.
   EXPECT_EQ(shell("graze toolchain 'x86_64-linux-gnu-gcc -O2' --run 'true {}' --json r.json").status, 1);
   EXPECT_EQ(nlohmann::json::parse(contents(shell.folder / "r.json"))["without_answer"], 54);
   const Ran forged = shell("graze toolchain 'x86_64-linux-gnu-gcc -O2' --run 'echo expression f32 7; {}'");

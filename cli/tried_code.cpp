@@ -93,7 +93,7 @@ TriedCode code_of_python(const std::string& file, const std::string& function, c
 }  // namespace
 
 TriedCode code_of(const std::string& source, const std::string& out) {
-  // NAME=SOURCE, as --subject has it.
+  // The form NAME=SOURCE, as for --subject.
   const std::size_t equals = source.find('=');
   const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
   if (equals != source.npos && equals > 0 &&

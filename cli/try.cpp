@@ -47,7 +47,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostTold = 3;  // failures on the screen
-// Number of signatures minimised for each kind, those with the simplest pairs: for compiled code, and for a program.
+// Number of signatures to minimise for each kind, for compiled code and for a program. Those with the simplest pairs
+// come first.
 constexpr std::size_t kMostOfKind = 4, kMostOfProgram = 1;
 constexpr int kThreadsForPrograms = 4;          // for each core, because Graze mostly waits for the answers
 constexpr std::uint64_t kPairsOfCode = 40'000;  // for compiled code
@@ -57,7 +58,7 @@ constexpr const char* kOut = "try";
 struct TryOptions {
   std::string source, where;
   std::uint64_t pairs = 0;  // 0: the default for the kind of code
-  double timeout = 0;       // likewise
+  double timeout = 0;       // seconds; 0: the default for the kind of code
   bool names_coordinates = false;
   FuzzOptions fuzz;
   bool json = false;
@@ -207,7 +208,8 @@ std::string by_hand(const TriedCode& code, const std::string& pair) {
   return fmt::format("echo {} | {}", pair, code.what.substr(kCommand.size()));
 }
 
-// The last line on stderr of a program that fails on the pair; empty if it does not fail by hand, or says nothing.
+// Returns the last line that the program prints on stderr as it fails on the pair. Empty if it does not fail now, or
+// prints nothing.
 std::string last_words(const TriedCode& code, const std::string& pair, double seconds) {
   const Scratch scratch(subjects::cache_folder());
   int status = 0;
@@ -222,7 +224,7 @@ std::string last_words(const TriedCode& code, const std::string& pair, double se
   return status == 0 ? "" : printable(said.substr(said.rfind('\n') + 1));
 }
 
-// Says on stderr why a program crashes on one of the pairs, once.
+// Prints once, on stderr, why a program crashes on one of the pairs.
 void tell_crash(const Answer& answer, const std::string& lane, double seconds) {
   if (!answer.code.is_program) return;
   for (const Json& kind : answer.kinds) {

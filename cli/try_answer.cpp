@@ -24,12 +24,13 @@ namespace graze::cli {
 using fuzz::Json;
 namespace {
 
-constexpr std::size_t kPairsCalled = 4096;  // too many to learn their branches, but within a core's cache
+// Too many pairs for a processor to learn their branches, but few enough for a core's cache.
+constexpr std::size_t kPairsCalled = 4096;
 constexpr int kPassesOfCalls = 101;
 constexpr int kLinesOfScreen = 30, kLinesOfCosts = 4;
 constexpr std::size_t kMostNamed = 3;        // numbers that may be the epsilon
 constexpr double kLargestEpsilon = 0.1;      // a larger constant is not an epsilon
-constexpr std::size_t kMostStrataNamed = 6;  // that were left out
+constexpr std::size_t kMostStrataNamed = 6;  // strata that were left out
 
 std::string why_not_called(const Lane& lane) {
   if (const std::string why = analysis::why_not_timed(lane); !why.empty()) return why;
@@ -43,7 +44,7 @@ std::string epsilon_in_words(const std::filesystem::path& source, const subjects
                                epsilon.written, subjects::places_in_words(source, epsilon)));
 }
 
-// Applies the checks of `graze tune`, so that it accepts the suggested command.
+// Applies the checks of `graze tune`, so that `graze tune` accepts the suggested command.
 std::optional<subjects::TunableSource> tunable(const Lane& own, const std::string& name) {
   try {
     return subjects::tunable_source(own, name);

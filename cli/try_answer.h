@@ -23,13 +23,14 @@ struct CallCosts {
   struct Row {
     const Lane* lane = nullptr;
     std::optional<analysis::Cost> cost = {};
-    std::string why_not = {};  // without a cost
+    std::string why_not = {};  // why there is no cost
   };
   Row own, exact, cheapest;  // cheapest: of the published lanes
-  std::size_t pairs = 0;     // that were timed
+  std::size_t pairs = 0;     // number of timed pairs
 };
 
-// The lane of the code, the exact lane, and the published lane that costs least, on the first pairs of the sources.
+// Times the lane of the code, the exact lane, and the published lane that costs least, on the first pairs of the
+// sources.
 CallCosts call_costs(const Lane& own, const std::vector<strata::PairSource>& sources);
 
 // The epsilon in the code's source.
@@ -53,9 +54,9 @@ struct Answer {
   CallCosts costs;
   OwnEpsilon epsilon;
   std::optional<reports::EpsilonEffect> effect;
-  std::vector<nlohmann::ordered_json> told;  // kinds
+  std::vector<nlohmann::ordered_json> told;  // the kinds of failure to print
   std::string test;                          // the file with the first failure as a test; empty if there is none
-  std::string again;                         // the command, with more pairs
+  std::string again;                         // the command for ten times as many pairs
 };
 
 // The file of the kind's simplest pair.

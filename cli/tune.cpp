@@ -47,7 +47,7 @@ std::vector<strata::PairSource> without_meshes(std::vector<strata::PairSource> s
   return sources;
 }
 
-// The campaign's own pairs to choose on, which show the disagreements that it counted.
+// Returns the campaign's own pairs to choose on, and fresh pairs to judge the choice.
 TunePairs pairs_from(const TuneOptions& options) {
   CampaignPairs campaign = pairs_of_campaign(options.from, 0, "tune on");
   if (!campaign.summary.at("complete"))
@@ -170,8 +170,8 @@ std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
   } else if (!on_device.empty()) {
     const cuda::DeviceCosts there =
         cuda::measure_on_device(on_device, analysis::first_pairs(sources, std::size_t{1} << 20), 9);
-    sentences.push_back(sentence(" on " + there.device + ", with 2^20 pairs per call already in its memory", on_device,
-                                 [&](std::size_t l) { return analysis::quartiles(there.of[l].resident); }));
+    sentences.push_back(sentence(" on " + there.device + ", with 2^20 pairs per call that are already in its memory",
+                                 on_device, [&](std::size_t l) { return analysis::quartiles(there.of[l].resident); }));
   }
   return sentences;
 }
@@ -287,7 +287,7 @@ void add_tune(CLI::App& app, int& status) {
   const auto options = std::make_shared<TuneOptions>();
   command
       ->add_option("LANE", options->lanes,
-                   "Lane, without a policy; with --agree two published ones of one algorithm and scalar")
+                   "Lane without a policy; with --agree, two published lanes of one algorithm and scalar")
       ->required()
       ->option_text("LANE [LANE]");
   command->add_flag("--agree", options->agree,
@@ -295,9 +295,10 @@ void add_tune(CLI::App& app, int& status) {
   add_subject_options(*command, options->own_code);
   add_resubject_option(*command, options->own_code);
   command
-      ->add_option("--epsilon", options->epsilon,
-                   "Epsilon of your own C, C++ or CUDA source: the name of a constant, or a number as it is written "
-                   "there; the source is built again with values of it")
+      ->add_option(
+          "--epsilon", options->epsilon,
+          "Epsilon of your own C, C++ or CUDA source: the name of a constant, or a number as the source writes it. "
+          "The source is built again with other values")
       ->option_text("NAME")
       ->default_str("the obvious one");
   for (const char* of_own_code : {"--resubject", "--epsilon"}) command->get_option("--agree")->excludes(of_own_code);
@@ -306,7 +307,7 @@ void add_tune(CLI::App& app, int& status) {
   add_scene_option(*command, options->scene);
   command
       ->add_option("--from", options->from,
-                   "Campaign on whose pairs, with the disagreements that it counted, the choice is made")
+                   "Campaign on whose pairs the choice is made, including the disagreements that it counted")
       ->excludes("--strata")
       ->excludes("--coordinates")
       ->excludes("--scene")

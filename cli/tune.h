@@ -42,7 +42,7 @@ struct TunePairs {
   std::vector<strata::PairSource> sources, others;
   std::string left_out;  // left_out_text of the scene
 
-  bool in_doubles() const;  // some of them
+  bool in_doubles() const;  // whether some pairs are pairs of doubles
 };
 
 // Throws: as drawn and pairs_of_campaign; UsageError if no pairs are left to choose on, or to verify.
@@ -56,10 +56,11 @@ const Lane& exact_on(const TunePairs& pairs, const Lane& lane);
 
 AnyPair pair_at(const std::vector<strata::PairSource>& sources, const analysis::PairPlace& place);
 
-// The file for a pair, with these lanes.
+// Returns the text of a file with this pair and these lanes.
 std::string file_of_pair(const AnyPair& pair, const std::string& lanes);
 
-// The file for a minimised pair on which both lanes keep their verdicts. Without twins, the pair is not minimised.
+// Returns the text of a file with a minimised pair on which both lanes keep their verdicts. Without twins, the pair is
+// not minimised.
 // Requires: a lane is wrong on the pair.
 std::string smallest(const Lane& first, const Lane& second, const AnyPair& pair);
 
@@ -73,7 +74,7 @@ void write_listed(const std::filesystem::path& out, const std::vector<Result>& r
 std::string next_command(const std::filesystem::path& out, const Result& last, const std::string& lanes);
 
 // The cost of a pair for each lane: host lanes on one core, CUDA lanes on the device. A twin's time is not the time of
-// the code, so without a device, and for programs, a sentence says that it was not measured.
+// the code, so without a device, and for programs, a sentence says that the cost was not measured.
 std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
                                         const std::vector<strata::PairSource>& sources);
 

@@ -136,7 +136,7 @@ TEST_F(TuneCommand, ChoosesOnTheDisagreementsOfACampaign) {
     EXPECT_EQ(again.out.substr(0, second).find(" !") != std::string::npos, zero_wrong) << place << '\n' << again.out;
     EXPECT_EQ(again.out.find(" !", second) != std::string::npos, chosen_wrong) << place << '\n' << again.out;
   }
-  // The same bytes for any number of threads; changes.csv is removed when another run does not write it.
+  // Any number of threads gives the same bytes; changes.csv is removed when another run does not write it.
   expect_done(tune + "--max-other 0.5 --pairs 6k --threads 1 --out u > /dev/null && diff -r t u");
   expect_done("graze tune moller_1997/f32/cpu --strata near_vertex_face --pairs 1k --out t > /dev/null");
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "t/changes.csv"));

@@ -50,7 +50,7 @@ std::string changes_csv(const Lane& lane, const analysis::DecideUnder& own_code,
     }
   }
   if (found.first.size() < found.count)
-    fmt::print("changes.csv lists the first {} of {} such pairs.\n", reports::grouped(found.first.size()),
+    fmt::print("changes.csv lists the first {} of {} pairs.\n", reports::grouped(found.first.size()),
                reports::grouped(found.count));
   return csv;
 }

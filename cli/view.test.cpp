@@ -19,7 +19,7 @@ class ViewCommand : public CommandTest {
       GTEST_SKIP() << "this build has no viewer: it takes Node and a compiler for WebAssembly";
   }
 
-  // The data in the page.
+  // Returns the data in the page.
   nlohmann::json data(const std::string& page) const {
     const std::string text = contents(shell.folder / page), start = "<script type=\"application/json\" id=\"view\">";
     const std::size_t begin = text.find(start) + start.size();

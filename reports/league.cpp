@@ -389,7 +389,7 @@ std::string league_page(const Json& league, const std::string& command) {
   return fmt::format(
       R"(# League: triangle-triangle tests of libraries, side by side
 
-Made by `{command}`; do not edit. All lanes were given the same {pairs} pairs, drawn in equal shares from the strata with seed {seed}{doubles}. Lanes with the fewest clearly wrong verdicts come first.
+Made by `{command}`; do not edit. All lanes decided the same {pairs} pairs, drawn in equal shares from the strata with seed {seed}{doubles}. Lanes with the fewest clearly wrong verdicts come first.
 
 CGAL's exact decision and `core/exact` give the truth of every pair; GMP confirms it where a lane is wrong. Touching triangles intersect, and a degenerate triangle is a segment or a point. If a library's documentation says nothing about such pairs, every difference counts as an error. Columns:
 

@@ -129,7 +129,7 @@ class Findings(unittest.TestCase):
         for page in pages:
             text = page.read_text(encoding="utf-8")
             for part in (
-                "Not sent anywhere",
+                "This report was not sent to anyone.",
                 "**Smallest case**",
                 "**Expected:**",
                 "**Found:**",

@@ -49,7 +49,7 @@ Written by `scripts/measurements.py` from the records in [docs/measurements](mea
 - **commit** names the sources that were measured. If these were not noted, "by" names the commit that added the figure.
 - **how** is the number of the command under the table.
 
-[measurements/not_taken.md](measurements/not_taken.md) lists what was tried and not taken.
+[measurements/not_taken.md](measurements/not_taken.md) lists ideas that were tried and rejected.
 
 | machine | |
 |---|---|

@@ -167,7 +167,7 @@ class Sources(unittest.TestCase):
                 of_both = [float(x) for x in shown[lane][toolchain].split("/")]
                 self.assertEqual(float(value), of_both[0 if what == "differs" else -1], (lane, column))
         text = (DOCS / "results/toolchains.md").read_text(encoding="utf-8")
-        self.assertIn("give the same verdicts (ARM64: on 10,006,500 pairs a lane)", text)
+        self.assertIn("give the same verdicts (ARM64: on 10,006,500 pairs per lane)", text)
 
     def test_hosts_of_2012(self):
         of = "Pairs for one verdict that differs, of 10,000,000 with the reference of "
@@ -189,7 +189,7 @@ class Sources(unittest.TestCase):
             for column, value in columns.items():
                 self.assertEqual(f"{value:,}", shown[lane][column], (lane, column))
         pages = [path.read_text(encoding="utf-8") for path in (DOCS / "findings").glob("*.md")]
-        findings = sum("Found by `graze league`" in text for text in pages)
+        findings = sum("`graze league` found the failure" in text for text in pages)
         self.assertEqual(self.records("league", "findings of the league, [docs/findings](findings)"), findings)
 
 

@@ -52,11 +52,11 @@ def riddle(r):
         f"{count(pairs)} pairs drawn as the thesis drew them, on an H100 and on a CPU. {count(differ)} verdicts "
         f"differ: {one_in(differ, pairs)} (95 % interval {one_in_interval(differ, pairs)}), which is "
         f"{percent(share, 1)} of the thesis's rate. By default nvcc computes `a * b + c` with one rounding "
-        "(*contraction*); our host compiler is told not to. Built with `-fmad=false`, the GPU differs from the CPU "
-        f"on {count(none)} of {count(of(without))} verdicts of all lanes. The rest of the rate is unexplained: the "
-        f"thesis gives no counts, no compiler and no flags. If it saw a single difference among {count(saw)} "
-        f"triangles, its own 95 % interval is {one_pair_in(high, '')} to {one_pair_in(low, '')}, and our rate lies "
-        "within it.",
+        "(*contraction*); our host compiler is told not to contract. Built with `-fmad=false`, the GPU differs from "
+        f"the CPU on {count(none)} of {count(of(without))} verdicts of all lanes. The rest of the rate is "
+        "unexplained: the thesis gives no counts, no compiler and no flags. If it saw a single difference among "
+        f"{count(saw)} triangles, its own 95 % interval is {one_pair_in(high, '')} to {one_pair_in(low, '')}, and our "
+        "rate lies within it.",
         figure,
         alt,
         main=("agreement", changed),
@@ -150,7 +150,8 @@ def fast_math(r):
         f"changes at least {percent(least_share, 1, 2, math.floor)} as many verdicts as fast math. A changed verdict "
         "may be "
         f"right or wrong: {word(more)} of {word(len(errors))} lanes ({word(len(ALGORITHMS))} tests, float32 and "
-        "float64) err more often with fast math, the others less often. In float32, GCC then divides with an "
+        "float64) err more often with fast math, the others less often. With fast math, GCC divides float32 "
+        "numbers with an "
         "approximate reciprocal, whose bits depend on the processor's vendor. These counts hold for an AMD EPYC. On "
         "ordinary pairs (`uniform`), no lane that is right without fast math is wrong with it.",
         bars(alt, f"% of {count(pairs)} verdicts that the build changes, float32", rows),
@@ -190,9 +191,10 @@ def processors(r):
         f"ARM64 and x86-64 give the same verdicts on {count(pairs)} pairs once contraction is off; with GCC's "
         f"defaults {count(low)} % to {count(high)} % differ",
         "GCC contracts by default where the processor has a fused multiply-add. ARM64 has it; plain x86-64 does "
-        f"not. So the same source differs on {count(low)} % to {count(high)} % of {count(of(table))} pairs of all "
-        "strata, most of them near contact. Compiled for x86-64 processors that have it (`-march=x86-64-v3`), the "
-        f"source changes about as many verdicts. With `-ffp-contract=off`, the {word(len(lanes))} lanes have "
+        f"not. So verdicts of the same source differ on {count(low)} % to {count(high)} % of {count(of(table))} pairs "
+        "of all strata, most of them near contact. GCC changes about as many verdicts when it compiles for x86-64 "
+        "processors that have fused multiply-adds (`-march=x86-64-v3`). "
+        f"With `-ffp-contract=off`, the {word(len(lanes))} lanes have "
         f"{count(differ)} different verdicts on {count(pairs)} pairs each: with 95 % confidence, fewer than "
         f"{at_most_one_in(pairs)} for each lane. ARM64 code ran under QEMU, whose arithmetic `graze toolchain` checks, "
         "and not on an ARM64 processor. [All toolchains](toolchains.md).",

@@ -43,7 +43,7 @@ def stored(r):
         "verdict on the stored triangles with that on the doubles. For surveys of the same ground, in UTM "
         "coordinates, storing changes "
         f"{count(exact['survey'])} of {count(pairs['survey'])} verdicts; no test that reads floats can be right on "
-        "these. With the origin at a corner of the area, storing changes only "
+        "these pairs. With the origin at a corner of the area, storing changes only "
         f"{count(exact['local'])} of {count(pairs['local'])}. On machine parts, computing in float32 costs more than "
         "storing. For a shaft in its bore, far from the origin of its assembly, storing changes "
         f"{count(exact['bore'])} of {count(pairs['bore'])} verdicts, and `moller_1997` is wrong on "

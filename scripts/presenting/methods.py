@@ -186,7 +186,7 @@ def league(r):
         "slow libraries get only the first pairs of each stratum. A wrong verdict is *clearly* wrong if the triangles "
         "are proper, are neither coplanar nor needles, have no extreme coordinates, and are at least 2^12 ulps of "
         "the largest coordinate (in float32) away from touching: no convention and no rounding of the input excuses "
-        f"it. The figure shows the {word(len(rows))} lanes, of {count(len(clear))}, with such verdicts. "
+        f"it. The figure shows the {word(len(rows))} lanes, of {count(len(clear))}, with clearly wrong verdicts. "
         f"{word(len(double)).title()} libraries "
         f"have them in float64 too ({', '.join(double)}). CGAL appears only with its kernel that computes in plain "
         "float32; its exact kernels have none. None of the pairs is from an application, and a library without such "

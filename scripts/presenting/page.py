@@ -7,8 +7,8 @@ from presenting.records import plain
 HEAD = (
     "# What Graze found\n"
     "Graze runs triangle-triangle intersection tests on pairs of triangles whose exact answer it knows. Here are "
-    "its main results, for readers who will never run it. Most of its pairs nearly touch, are degenerate or are "
-    "coplanar, because tests fail there. A *stratum* is a family of pairs. Shares of wrong verdicts compare "
+    "its main results, for readers who do not run Graze. Most of its pairs nearly touch, are degenerate or are "
+    "coplanar, because tests fail on such pairs. A *stratum* is a family of pairs. Shares of wrong verdicts compare "
     "tests on the same pairs; on your own data they are far smaller. Intervals and bounds have 95 % confidence and are "
     "rounded outward. The [glossary](../glossary.md) defines the terms.\n\n"
 )
@@ -19,9 +19,9 @@ TAIL = (
     "hosts and devices for `--toolchains`.\n"
     "- [measurements.md](../measurements.md): every record, including those of speed.\n\n"
     "`scripts/results` writes this page and its figures from the records in "
-    "[docs/measurements](../measurements/README.md); do not edit. A test fails if a record changes and the page "
-    "does not, or if the page has a number without a record. `scripts/results --site DIR` writes it as a web site, "
-    "which shows some of the pairs in 3-D.\n"
+    "[docs/measurements](../measurements/README.md); do not edit the page. A test fails if a record changes and "
+    "the page does not, or if the page has a number without a record. `scripts/results --site DIR` writes it as a "
+    "web site, which shows some of the pairs in 3-D.\n"
 )
 
 

@@ -55,11 +55,6 @@ std::vector<std::string> words_of(const std::string& command, std::set<std::stri
   return words;
 }
 
-bool is_file(const fs::path& file) {
-  std::error_code none;
-  return fs::is_regular_file(file, none);
-}
-
 // Splits the text at these characters.
 std::set<std::string> parts_of(const std::string& text, std::string_view ends) {
   std::set<std::string> parts;
@@ -87,6 +82,11 @@ FileState state_of(const fs::path& file) {
           now.st_mtim.tv_nsec,
           now.st_ctim.tv_sec,
           now.st_ctim.tv_nsec};
+}
+
+bool is_file(const fs::path& file) {
+  std::error_code none;
+  return fs::is_regular_file(file, none);
 }
 
 std::string code_in(const fs::path& file) {

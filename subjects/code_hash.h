@@ -18,6 +18,9 @@ namespace graze::subjects {
 using FileState = std::array<std::int64_t, 7>;
 FileState state_of(const std::filesystem::path& file);
 
+// Whether it is a regular file; false if that cannot be found out.
+bool is_file(const std::filesystem::path& file);
+
 // A file that was read for a hash.
 struct HashedFile {
   std::filesystem::path file;

@@ -62,11 +62,19 @@ bool has_terminals() {
   return statfs("/dev/pts", &at) == 0 && at.f_type == DEVPTS_SUPER_MAGIC;
 }
 
+// Keeps the mounts below this place out of other namespaces.   Returns: false if it is not a mount point, as "/" in a
+// chroot.
+bool keep_private(const char* place) { return mount("none", place, nullptr, MS_REC | MS_PRIVATE, nullptr) == 0; }
+
 // In the new namespace: hides its mounts from outside. In a chroot, "/" is not a mount point, but the others are.
 bool keep_mounts_private() {
-  const auto keep = [](const char* place) { return mount("none", place, nullptr, MS_REC | MS_PRIVATE, nullptr) == 0; };
-  return keep("/") ||
-         (keep("/proc") && (keep("/dev/shm") || errno == ENOENT) && (!has_terminals() || keep("/dev/pts")));
+  return keep_private("/") || (keep_private("/proc") && (keep_private("/dev/shm") || errno == ENOENT) &&
+                               (!has_terminals() || keep_private("/dev/pts")));
+}
+
+// Mounts an empty folder that nobody can write to.
+bool hide(const char* place) {
+  return mount("tmpfs", place, "tmpfs", MS_RDONLY | MS_NOSUID | MS_NODEV | MS_NOEXEC, "size=4k") == 0;
 }
 
 // The terminals of the parent process that are not below /dev/pts, such as a console. Hiding /dev/pts does not hide
@@ -86,12 +94,9 @@ std::vector<std::string> terminals_of_parent() {
 
 // In the new namespace: hides the terminals. Code that stops a terminal's output or takes its input would stop graze.
 bool hide_terminals(const std::vector<std::string>& others) {
-  if (has_terminals() &&
-      mount("tmpfs", "/dev/pts", "tmpfs", MS_RDONLY | MS_NOSUID | MS_NODEV | MS_NOEXEC, "size=4k") != 0)
-    return false;
+  if (has_terminals() && !hide("/dev/pts")) return false;
   return std::all_of(others.begin(), others.end(), [](const std::string& file) {
-    const bool is_private = mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0;  // fails in a chroot
-    return is_private && mount("/dev/null", file.c_str(), nullptr, MS_BIND, nullptr) == 0;
+    return keep_private("/") && mount("/dev/null", file.c_str(), nullptr, MS_BIND, nullptr) == 0;
   });
 }
 
@@ -123,8 +128,7 @@ bool hide_control_groups() {
     if (mount("none", place.c_str(), nullptr, MS_PRIVATE, nullptr) != 0 &&
         (errno == ENOENT || errno == EINVAL || errno == EACCES))
       continue;  // it is hidden by another mount, or not accessible
-    if (mount("tmpfs", place.c_str(), "tmpfs", MS_RDONLY | MS_NOSUID | MS_NODEV | MS_NOEXEC, "size=4k") != 0)
-      return false;
+    if (!hide(place.c_str())) return false;
   }
   return true;
 }
@@ -175,11 +179,9 @@ void limit_devices() {
 
 // In the new namespace: makes settings of the system read-only, and hides files that create a device when read.
 void limit_settings() {
-  constexpr const char* kMakesDevices = "/sys/class/zram-control";
   for (const std::string& place : mount_points("")) {
     if (place != "/sys" && !place.starts_with("/sys/")) continue;
-    if (place == "/sys" && mount("none", "/sys", nullptr, MS_PRIVATE, nullptr) == 0)
-      mount("tmpfs", kMakesDevices, "tmpfs", MS_RDONLY | MS_NOSUID | MS_NODEV | MS_NOEXEC, "size=4k");
+    if (place == "/sys" && mount("none", "/sys", nullptr, MS_PRIVATE, nullptr) == 0) hide("/sys/class/zram-control");
     make_mount_read_only(place.c_str());
   }
   for (const char* place : {"/proc/sys", "/proc/sysrq-trigger", "/proc/irq", "/proc/bus", "/proc/fs"}) {
@@ -192,7 +194,7 @@ void make_read_only(const std::string& given) {
   std::error_code none;
   const std::string folder = fs::canonical(given, none), here = fs::current_path(none);
   const char* at = folder.c_str();
-  if (folder.empty() || mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0) return;
+  if (folder.empty() || !keep_private("/")) return;
   // Folders on which something is mounted can be neither renamed nor removed.
   for (std::size_t end = folder.find('/', 1); end != folder.npos; end = folder.find('/', end + 1)) {
     const std::string above = folder.substr(0, end);

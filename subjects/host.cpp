@@ -155,7 +155,7 @@ graze_subject subject_of_library(const std::string& file, const std::string& nam
     for (const char* type : {"f", "d"}) {  // a C++ function with two pointer parameters
       const std::string mangled = fmt::format("_Z{}{}PK{}{}", candidate.size(), candidate, type, "S0_");
       if (!found && (found = dlsym(library, mangled.c_str()))) {
-        graze_subject subject{GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
+        graze_subject subject{};
         if (*type == 'f') subject.f32 = reinterpret_cast<int (*)(const float*, const float*)>(found);
         put(loaded.symbol, mangled.c_str());
         if (*type == 'd') subject.f64 = reinterpret_cast<int (*)(const double*, const double*)>(found);
@@ -185,7 +185,7 @@ graze_subject subject_of_library(const std::string& file, const std::string& nam
       refuse(fmt::format("the description in {} names no function; set f32, f64, block_f32 or block_f64", file));
     return subject;
   }
-  graze_subject subject{GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
+  graze_subject subject{};
   if (scalar == "f64") {
     subject.f64 = reinterpret_cast<int (*)(const double*, const double*)>(found);
   } else {
@@ -333,26 +333,15 @@ template <class Ask>
 }
 
 #ifdef GRAZE_SUBJECT_DEVICE
-// The worker's own device, opened after the fork: a forked process cannot use its parent's.
-class OnDevice {
- public:
-  explicit OnDevice(const std::string& scalar) {
-    cuda::CudaBuild build{};
-    build.scalar = scalar == "f64" ? Scalar::f64 : Scalar::f32;
-    std::ostringstream text;
-    text << std::ifstream(kCode).rdbuf();
-    build.ptx = text.str();
-    device_ = cuda::open_on_device(build);
-  }
-
-  template <class Number>
-  void operator()(const Number* from, std::size_t count, signed char* answers) const {
-    device_->decide(std::span(reinterpret_cast<const BasicPair<Number>*>(from), count), answers);
-  }
-
- private:
-  std::unique_ptr<cuda::SubjectOnDevice> device_;
-};
+// The build whose PTX is in the file.
+cuda::CudaBuild build_in(const std::string& file, std::string_view scalar) {
+  cuda::CudaBuild build{};
+  build.scalar = scalar == "f64" ? Scalar::f64 : Scalar::f32;
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  build.ptx = text.str();
+  return build;
+}
 #endif
 
 void set_limit(int resource, rlim_t most) {
@@ -408,8 +397,11 @@ constexpr int kNotReady = 99;  // exit status of a worker that cannot start its 
   };
 #ifdef GRAZE_SUBJECT_DEVICE
   if (kind == "device") {
-    const OnDevice device(scalar);
-    const auto decide = [&](auto... asked) { device(asked...); };
+    // Opened after the fork, because a forked process cannot use its parent's device.
+    const std::unique_ptr<cuda::SubjectOnDevice> device = cuda::open_on_device(build_in(kCode, scalar));
+    const auto decide = [&]<class Number>(const Number* from, std::size_t count, signed char* answers) {
+      device->decide(std::span(reinterpret_cast<const BasicPair<Number>*>(from), count), answers);
+    };
     scalar == "f64" ? serve_by(Asking<double>(nullptr, decide)) : serve_by(Asking<float>(nullptr, decide));
   }
 #endif
@@ -433,7 +425,7 @@ int load_and_fork(char** argv, const std::string& kind, const std::string& what,
   if (kind != "device") set_limits(memory);
   const pid_t self = getpid();
   Loaded loaded{};
-  graze_subject subject{GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
+  graze_subject subject{};
   if (kind == "library") {
     subject = subject_of_library(what, name, scalar, loaded);
     put(loaded.version, subject.version);
@@ -487,13 +479,7 @@ int load_and_fork(char** argv, const std::string& kind, const std::string& what,
 #ifdef GRAZE_SUBJECT_DEVICE
 int print_times(int count, char** arguments) try {
   std::vector<cuda::CudaBuild> builds;
-  for (int i = 2; i + 1 < count; i += 2) {
-    std::ostringstream ptx;
-    ptx << std::ifstream(arguments[i + 1]).rdbuf();
-    cuda::CudaBuild& build = builds.emplace_back();
-    build.scalar = std::strcmp(arguments[i], "f64") == 0 ? Scalar::f64 : Scalar::f32;
-    build.ptx = ptx.str();
-  }
+  for (int i = 2; i + 1 < count; i += 2) builds.push_back(build_in(arguments[i + 1], arguments[i]));
   const auto pairs_timed = static_cast<std::uint32_t>(std::strtoul(arguments[0], nullptr, 10));
   const cuda::SubjectCosts costs = cuda::time_subjects(builds, pairs_timed, std::atoi(arguments[1]));
   fmt::print("{}\n", costs.device);

@@ -99,6 +99,28 @@ struct Hostile : testing::Test {
     return result;  // crashed stands for every failure
   }
 
+  // Expects this verdict on the bad pairs, and the answer of `good` on the others.
+  static void expect(const std::vector<Verdict>& found, Verdict of_bad) {
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      EXPECT_EQ(found[i], is_bad(pairs[i]) ? of_bad : left_of(pairs[i])) << i;
+  }
+  static void expect_left_of(const std::vector<Verdict>& found) {
+    for (std::size_t i = 0; i < pairs.size(); ++i) EXPECT_EQ(found[i], left_of(pairs[i])) << i;
+  }
+
+  static Code attack(const char* name, bool namespaces, double timeout = 0.1) {
+    Code code{"library", (folder / "libhostile.so").string(), name, "f32", timeout, 256};
+    code.namespaces = namespaces;
+    return code;
+  }
+
+  static std::jthread stop_after(unsigned microseconds) {
+    return std::jthread([microseconds] {
+      usleep(microseconds);
+      stop_requested = true;
+    });
+  }
+
   // Processes started here that still exist, except the bystander.
   static std::set<pid_t> left_over() {
     std::set<pid_t> found;
@@ -169,15 +191,12 @@ TEST_P(EveryAttack, IsAVerdictOfItsPairs) {
     GTEST_SKIP() << "in a chroot the cache can be written to";
   const std::size_t maps = count_in("/proc/self/map_files"), files = count_in("/proc/self/fd");
   {
-    Code code{"library", (folder / "libhostile.so").string(), attack.name, "f32", 0.1, 256};
-    code.namespaces = namespaces;
-    ForeignProcesses subject(code, Scalar::f32);
+    ForeignProcesses subject(Hostile::attack(attack.name, namespaces), Scalar::f32);
     for (int times = 0; times < 2; ++times) {
       const std::vector<Verdict> found = verdicts(subject);
-      std::size_t bad = 0, failed = 0;
+      std::size_t bad = 0;
       for (std::size_t i = 0; i < pairs.size(); ++i) {
         bad += is_bad(pairs[i]);
-        failed += found[i] == Verdict::crashed;
         if (is_bad(pairs[i])) {
           EXPECT_EQ(found[i], Verdict::crashed) << i;
         } else if (!attack.on_others || found[i] != Verdict::crashed) {
@@ -259,10 +278,8 @@ TEST_F(Hostile, ABombOfAUserWithoutANamespaceEnds) {
     if (asking == 0) {
       constexpr uid_t kNobody = 65534;
       if (setgid(kNobody) != 0 || setuid(kNobody) != 0) _exit(2);
-      Code code{"library", (folder / "libhostile.so").string(), bomb, "f32", 0.1, 256};
-      code.namespaces = false;
       try {
-        ForeignProcesses subject(code, Scalar::f32);
+        ForeignProcesses subject(attack(bomb, false), Scalar::f32);
         const std::vector<Verdict> found = verdicts(subject);
         for (std::size_t i = 0; i < pairs.size(); ++i) {
           if (found[i] != (is_bad(pairs[i]) ? Verdict::crashed : left_of(pairs[i]))) _exit(3);
@@ -379,11 +396,8 @@ TEST_F(Hostile, ChildrenThatAreLeftInSilenceEndWithTheSubject) {
   const auto children = 2 * static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(), is_bad));
   ASSERT_GT(children, 0u);
   for (const bool namespaces : {true, false}) {
-    Code code{"library", (folder / "libhostile.so").string(), "leaves_children_silently", "f32", 1, 256};
-    code.namespaces = namespaces;
-    auto subject = std::make_unique<ForeignProcesses>(code, Scalar::f32);
-    const std::vector<Verdict> found = verdicts(*subject);
-    for (std::size_t i = 0; i < pairs.size(); ++i) EXPECT_EQ(found[i], left_of(pairs[i])) << i;
+    auto subject = std::make_unique<ForeignProcesses>(attack("leaves_children_silently", namespaces, 1), Scalar::f32);
+    expect_left_of(verdicts(*subject));
     // Beside the supervisor, the process that loads the code and the worker. A child may still be starting.
     std::size_t left = 0;
     for (int times = 0; times < 6000 && (left = left_over().size()) < 3 + children; ++times) usleep(10'000);
@@ -443,11 +457,7 @@ TEST_F(Hostile, CodeThatIsGoneAfterItWasReadIsLoadedAgain) {
                                        (folder / "removes.so").string() +
                                        "\"); kill(getppid(), SIGKILL); _exit(1); }\n  return a[0] < b[0]; }");
   ForeignProcesses subject({"library", file.string(), "intersects", "f32"}, Scalar::f32);
-  for (int times = 0; times < 2; ++times) {
-    const std::vector<Verdict> found = verdicts(subject);
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-      EXPECT_EQ(found[i], is_bad(pairs[i]) ? Verdict::crashed : left_of(pairs[i])) << i;
-  }
+  for (int times = 0; times < 2; ++times) expect(verdicts(subject), Verdict::crashed);
   EXPECT_FALSE(fs::exists(file));
 }
 
@@ -465,9 +475,7 @@ TEST_F(Hostile, CodeThatIsReplacedOrWrittenIntoIsTheCodeThatWasRead) {
     ForeignProcesses subject({"library", file.string(), "intersects", "f32"}, Scalar::f32);
     for (int times = 0; times < 2; ++times) {
       const std::unique_ptr<ForeignProcesses> later = subject.anew();
-      const std::vector<Verdict> found = verdicts(times == 0 ? subject : *later);
-      for (std::size_t i = 0; i < pairs.size(); ++i)
-        EXPECT_EQ(found[i], is_bad(pairs[i]) ? Verdict::crashed : left_of(pairs[i])) << i;
+      expect(verdicts(times == 0 ? subject : *later), Verdict::crashed);
       if (in_place) {
         std::ofstream(file, std::ios::binary) << text_of(other);
       } else {
@@ -489,8 +497,7 @@ TEST_F(Hostile, LibrariesBesideTheCodeAreFound) {
     const fs::path file = build("uses.so", (folder / "uses.c").string() + " -L" + (folder / "beside").string() +
                                                " -lless -Wl,-rpath,'/none:" + origin + "/beside:/other'");
     ForeignProcesses subject({"library", file.string(), "intersects", "f32"}, Scalar::f32);
-    const std::vector<Verdict> found = verdicts(subject);
-    for (std::size_t i = 0; i < pairs.size(); ++i) EXPECT_EQ(found[i], left_of(pairs[i])) << i;
+    expect_left_of(verdicts(subject));
   }
 }
 
@@ -564,20 +571,14 @@ TEST_F(Hostile, ARequestToStopEndsEveryWait) {
     Code code{"library", file.string(), "intersects", "f32", 3600};
     code.namespaces = namespaces;
     ForeignProcesses subject(code, Scalar::f32);
-    std::jthread request([] {
-      usleep(200'000);
-      stop_requested = true;
-    });
+    const std::jthread request = stop_after(200'000);
     EXPECT_THROW(verdicts(subject), Stopped);
     stop_requested = false;
     expect_nothing_left();
   }
   const fs::path slow =
       built_from("slow", "#include <unistd.h>\n__attribute__((constructor)) static void f(void) { for (;;) pause(); }");
-  std::jthread request([] {
-    usleep(200'000);
-    stop_requested = true;
-  });
+  const std::jthread request = stop_after(200'000);
   EXPECT_THROW(describe({"library", slow.string(), ""}), Stopped);
   stop_requested = false;
   expect_nothing_left();
@@ -605,15 +606,10 @@ TEST_F(Hostile, AFrozenSupervisorIsAVerdictAndIsLeft) {
   ASSERT_FALSE(pairs.empty());
   pairs.resize(1);
   {
-    Code code{"library", (folder / "libhostile.so").string(), "freezes_supervisor", "f32", 0.1, 256};
-    code.namespaces = false;
-    ForeignProcesses subject(code, Scalar::f32);
+    ForeignProcesses subject(attack("freezes_supervisor", false), Scalar::f32);
     EXPECT_EQ(verdicts(subject), std::vector<Verdict>{Verdict::crashed});  // crashed stands for every failure
     EXPECT_EQ(subject.failure(pairs[0]), Verdict::timed_out);
-    std::jthread request([] {
-      usleep(500'000);
-      stop_requested = true;
-    });
+    const std::jthread request = stop_after(500'000);
     EXPECT_THROW(verdicts(subject), Stopped);
     stop_requested = false;
   }
@@ -796,8 +792,7 @@ TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
     for (int run = 0; run < 3; ++run) {
       SCOPED_TRACE(file);
       ForeignProcesses subject({"library", file.string(), "intersects", "f32"}, Scalar::f32);
-      const std::vector<Verdict> found = verdicts(subject);
-      for (std::size_t i = 0; i < pairs.size(); ++i) EXPECT_EQ(found[i], left_of(pairs[i])) << i;
+      expect_left_of(verdicts(subject));
     }
     expect_nothing_left();
   }
@@ -808,8 +803,7 @@ TEST_F(Hostile, CodeThatStopsItsProcessGroupStopsOnlyItself) {
   const auto bad = std::find_if(pairs.begin(), pairs.end(), is_bad);
   ASSERT_NE(bad, pairs.end());
   for (const bool namespaces : {true, false}) {
-    Code code{"library", (folder / "libhostile.so").string(), "stops_group", "f32", 0.1, 256};
-    code.namespaces = namespaces;
+    Code code = attack("stops_group", namespaces);
     // The verdict would be `crashed` if the supervisor or the guardian stopped.
     EXPECT_EQ(ForeignProcesses(code, Scalar::f32).failure(*bad), Verdict::timed_out);
     expect_nothing_left();
@@ -930,9 +924,7 @@ TEST_F(Hostile, NothingOutlivesTheProcessThatAsks) {
     for (const bool namespaces : {true, false}) {
       const pid_t asking = fork();
       if (asking == 0) {
-        Code code{"library", (folder / "libhostile.so").string(), name, "f32", 3600, 256};
-        code.namespaces = namespaces;
-        ForeignProcesses subject(code, Scalar::f32);
+        ForeignProcesses subject(attack(name, namespaces, 3600), Scalar::f32);
         verdicts(subject);
         pause();
       }

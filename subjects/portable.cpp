@@ -15,11 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_file(const fs::path& file) {
-  std::error_code none;
-  return fs::is_regular_file(file, none);
-}
-
 fs::path normal(const fs::path& file) { return fs::absolute(file).lexically_normal(); }
 
 bool is_within(const fs::path& file, const fs::path& folder) {

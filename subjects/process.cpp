@@ -25,17 +25,6 @@ namespace {
 
 constexpr std::size_t kMostFailuresKept = std::size_t{1} << 20;
 
-// Memory that only this process can write.
-int pairs_memory(void*& at) {
-  const int fd = memfd_create("graze-pairs", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-  at = MAP_FAILED;
-  if (fd >= 0 && ftruncate(fd, kPairsBytes) == 0)
-    at = mmap(nullptr, kPairsBytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
-  if (at == MAP_FAILED || fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_FUTURE_WRITE | F_SEAL_SEAL) != 0)
-    throw std::system_error(errno, std::generic_category(), "cannot share memory with a subject");
-  return fd;
-}
-
 Verdict verdict_of(signed char answer) {
   switch (answer) {
     case kDisjoint:
@@ -59,10 +48,16 @@ std::string fit(const char* text) {
   return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-// The pairs in memory shared with the supervisor.
+// The pairs, in memory that is shared with the supervisor and that only this process can write.
 class SharedPairs {
  public:
-  SharedPairs() : fd_(pairs_memory(at_)) {}
+  SharedPairs() : fd_(memfd_create("graze-pairs", MFD_CLOEXEC | MFD_ALLOW_SEALING)) {
+    if (fd_ >= 0 && ftruncate(fd_, kPairsBytes) == 0)
+      at_ = mmap(nullptr, kPairsBytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd_, 0);
+    constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_FUTURE_WRITE | F_SEAL_SEAL;
+    if (at_ == MAP_FAILED || fcntl(fd_, F_ADD_SEALS, kSeals) != 0)
+      throw std::system_error(errno, std::generic_category(), "cannot share memory with a subject");
+  }
   ~SharedPairs() {
     close(fd_);
     munmap(at_, kPairsBytes);
@@ -73,8 +68,8 @@ class SharedPairs {
   void* at() const { return at_; }
 
  private:
-  void* at_ = nullptr;
   int fd_;
+  void* at_ = MAP_FAILED;
 };
 
 std::vector<std::string> arguments_of(const Code& code, bool describe) {

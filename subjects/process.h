@@ -39,6 +39,8 @@ struct Description {
   std::string symbol;             // for a library: the symbol that was loaded
   std::string said;               // for a program: the first line of its answer to `describe`
   bool of_blocks = false;         // decides many pairs in a call
+
+  bool has(Scalar scalar) const { return scalar == Scalar::f32 ? f32 : f64; }
 };
 
 // Throws: std::runtime_error with one line when the code cannot be loaded; Stopped.

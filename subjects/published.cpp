@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
 #include <string_view>
 
 #include "core/fnv1a.h"
@@ -42,11 +40,6 @@ std::string text_of(const Header& header) {
   return text;
 }
 
-bool holds(const std::filesystem::path& file, std::string_view text) {
-  std::ifstream in(file, std::ios::binary);
-  return in && std::string(std::istreambuf_iterator<char>(in), {}) == text;
-}
-
 }  // namespace
 
 std::vector<const Lane*> published_algorithms() {
@@ -61,12 +54,9 @@ std::filesystem::path published_source(const Lane& lane) {
   std::uint64_t hash = fnv1a("");
   for (const Header& header : kHeaders) hash = fnv1a(text_of(header), fnv1a(header.name, hash));
   const std::filesystem::path folder = cache_folder() / fmt::format("published-{:016x}", hash);
-  const auto keep = [&](const std::filesystem::path& file, std::string_view text) {
-    if (!holds(file, text)) write_atomically(file, text);
-  };
-  for (const Header& header : kHeaders) keep(folder / header.name, text_of(header));
+  for (const Header& header : kHeaders) write_if_new(folder / header.name, text_of(header));
   const std::filesystem::path source = folder / fmt::format("{}.cpp", lane.info->id);
-  keep(source, fmt::format(kSource, lane.info->id, lane.algorithm));
+  write_if_new(source, fmt::format(kSource, lane.info->id, lane.algorithm));
   return source;
 }
 

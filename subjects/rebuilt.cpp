@@ -150,8 +150,7 @@ std::unique_ptr<ForeignProcesses> rebuilt(const Lane& lane, const std::string& t
   if (by_nvrtc) return std::make_unique<ForeignProcesses>(cuda_code(lane, subject, copy, flags), scalar);
   const Code code =
       code_of_build(lane, subject, build_source(copy, function_of(subject), recipe_of_lane(lane, copy), flags));
-  const Description description = describe(code);
-  if (!(scalar == Scalar::f32 ? description.f32 : description.f64))
+  if (!describe(code).has(scalar))
     throw std::runtime_error(cannot("run", lane.id + " as changed", "its function then takes another type of number"));
   return std::make_unique<ForeignProcesses>(code, scalar);
 }

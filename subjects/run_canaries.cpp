@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
 
 #include "core/cannot.h"
@@ -24,16 +23,9 @@ constexpr unsigned char kSourceBytes[] = {
 #include "subjects/canaries_c.inc"
 };
 
-// The first error in the text, or its first line.
-std::string complaint_in(const std::string& text) {
-  std::istringstream lines(text);
-  std::string first, line;
-  while (std::getline(lines, line)) {
-    if (line.find("error") != line.npos || line.find("sorry") != line.npos || line.find("not found") != line.npos)
-      return line;
-    if (first.empty()) first = line;
-  }
-  return first.empty() ? "it said nothing" : first;
+std::string complaint_in(const std::string& output) {
+  const std::string line = line_with(output, {"error", "sorry", "not found"});
+  return line.empty() ? "it said nothing" : line;
 }
 
 constexpr double kToCompile = 300, kToRun = 60;  // seconds

@@ -17,8 +17,10 @@
 
 #include "core/cannot.h"
 #include "core/fnv1a.h"
+#include "core/plain_file.h"
 #include "core/programs/kept_file.h"
 #include "core/programs/run_program.h"
+#include "core/stop.h"
 #include "core/text.h"
 
 namespace graze::subjects {
@@ -111,25 +113,26 @@ void write(const fs::path& file, std::string_view text) {
   if (!(out << text << std::flush)) throw std::runtime_error(cannot("write", file, errno));
 }
 
-std::string first_error(const std::string& text) {
-  std::istringstream lines(text);
-  std::string first, line;
-  while (std::getline(lines, line)) {
-    if (line.find("error") != line.npos || line.find("undefined") != line.npos) return line;
-    if (first.empty()) first = line;
-  }
-  return first.empty() ? "the compiler failed and said nothing" : first;
+std::string first_error(const std::string& output) {
+  const std::string line = line_with(output, {"error", "undefined"});
+  return line.empty() ? "the compiler failed and said nothing" : line;
+}
+
+// The compiler with all flags.
+std::string command_with(const Recipe& recipe, const std::vector<std::string>& flags) {
+  std::string command = recipe.compiler + ' ' + recipe.fixed;
+  if (!recipe.flags.empty()) command += ' ' + recipe.flags;
+  for (const std::string& flag : flags) command += ' ' + shell_word(flag);
+  return command;
 }
 
 // The last flags may ask for something other than the file, such as --version.   Throws: std::runtime_error.
 void expect_made(const fs::path& file, const std::string& name, const Recipe& recipe,
                  const std::vector<std::string>& flags) {
-  if (fs::exists(file)) return;
-  std::string command = recipe.compiler + ' ' + recipe.fixed;
-  if (!recipe.flags.empty()) command += ' ' + recipe.flags;
-  for (const std::string& flag : flags) command += ' ' + shell_word(flag);
-  throw std::runtime_error(
-      cannot("compile", name, fmt::format("the compiler reported no error and made no object file: {}", command)));
+  if (!fs::exists(file))
+    throw std::runtime_error(
+        cannot("compile", name,
+               fmt::format("the compiler reported no error and made no object file: {}", command_with(recipe, flags))));
 }
 
 // Flags that stand in the compiler's name, as in CXX='c++ -Og', and variables that name its parts.
@@ -235,8 +238,26 @@ void write_atomically(const fs::path& file, std::string_view text) {
   move_over(part, file);
 }
 
+void write_if_new(const fs::path& file, std::string_view text) {
+  const StopSignals stops;
+  std::string why;
+  if (plain_file(file, why) != text) write_atomically(file, text);
+}
+
+std::string line_with(const std::string& output, std::initializer_list<std::string_view> words) {
+  std::istringstream lines(output);
+  std::string first;
+  for (std::string line; std::getline(lines, line);) {
+    if (std::any_of(words.begin(), words.end(), [&](std::string_view word) { return line.find(word) != line.npos; }))
+      return line;
+    if (first.empty()) first = line;
+  }
+  return first;
+}
+
 namespace {
 
+bool is_c(const fs::path& source) { return source.extension() == ".c"; }
 bool is_cuda(const fs::path& source) { return source.extension() == ".cu"; }
 
 // They come before the user's flags, which may name the folder of the toolkit's own headers.
@@ -247,7 +268,7 @@ std::string headers_for(const fs::path& source) {
 }  // namespace
 
 Recipe recipe_of(const VariantInfo& variant, const fs::path& source) {
-  const bool c = source.extension() == ".c";
+  const bool c = is_c(source);
   const char* chosen = std::getenv(c ? "CC" : "CXX");
   const std::string compiler = chosen && *chosen ? chosen : c ? "cc" : "c++";
   return {compiler, (c ? "-std=gnu11 -O2 -fPIC -shared" : "-std=c++20 -O2 -fPIC -shared") + headers_for(source),
@@ -257,7 +278,7 @@ Recipe recipe_of(const VariantInfo& variant, const fs::path& source) {
 // Uses the GNU dialects: in the ISO dialects, GCC does not contract C, and from version 13 keeps no excess precision in
 // C++.
 Recipe recipe_of(const Toolchain& toolchain, const fs::path& source) {
-  const bool c = source.extension() == ".c";
+  const bool c = is_c(source);
   const std::string& compiler = c ? toolchain.cc : toolchain.cxx;
   if (compiler.empty())
     throw std::runtime_error(fmt::format("the toolchain {} has no compiler for {}", toolchain.name, c ? "C" : "C++"));
@@ -277,17 +298,12 @@ struct Wrapped {
 
 Wrapped wrapped(const fs::path& source, const std::string& function, const Recipe& recipe,
                 const std::vector<std::string>& flags, const fs::path& folder) {
-  const bool c = source.extension() == ".c";
+  const bool c = is_c(source);
   const bool describes_itself = source_describes_itself(source);
-  Wrapped result{fmt::format("{} {} {}", recipe.compiler, recipe.fixed, recipe.flags),
-                 fmt::format("expected a function {} of two triangles, const float[9] or const double[9] each, "
-                             "that returns int or bool",
-                             function)};
-  for (const std::string& flag : flags) result.command += ' ' + shell_word(flag);
-  for (const auto& [file, text] : kHeaders) {
-    const fs::path header = cache_folder() / "include" / file;
-    if (!fs::exists(header) || text_of(header) != text) write_atomically(header, text);
-  }
+  const std::string expected = fmt::format(
+      "expected a function {} of two triangles, const float[9] or const double[9] each, that returns int or bool",
+      function);
+  for (const auto& [file, text] : kHeaders) write_if_new(cache_folder() / "include" / file, text);
   const fs::path whole = folder / (c ? "whole.c" : "whole.cpp");
   const bool says_where = is_cuda(source) || source.extension() == ".hip";
   const std::string_view of_gpu = recipe.is_kernel  ? says_where ? "#define GRAZE_SAYS_WHERE\n" : ""
@@ -295,16 +311,16 @@ Wrapped wrapped(const fs::path& source, const std::string& function, const Recip
                                                     : std::string_view();
   // An absolute path, so that the source finds includes in its own folder.
   write(whole, fmt::format("{}#define SOURCE \"{}\"\n#define FUNCTION {}\n#define EXPECTED \"{}\"\n{}{}", of_gpu,
-                           fs::absolute(source).string(), function, result.expected,
+                           fs::absolute(source).string(), function, expected,
                            recipe.is_kernel   ? kHip
                            : describes_itself ? "#include SOURCE\n"
                            : c                ? kC
                                               : kCpp,
                            recipe.is_program ? "#include <graze/program.h>\n" : ""));
   // With the real time, code that uses __TIME__ would have another hash at each reading.
-  result.command = fmt::format("SOURCE_DATE_EPOCH=${{SOURCE_DATE_EPOCH:-0}} {} -I{} {}", result.command,
-                               shell_word((cache_folder() / "include").string()), shell_word(whole.string()));
-  return result;
+  return {fmt::format("SOURCE_DATE_EPOCH=${{SOURCE_DATE_EPOCH:-0}} {} -I{} {}", command_with(recipe, flags),
+                      shell_word((cache_folder() / "include").string()), shell_word(whole.string())),
+          expected};
 }
 
 }  // namespace
@@ -335,8 +351,7 @@ bool is_host_device(const fs::path& source, const std::string& function, const R
 
 Built build_source(const fs::path& source, const std::string& function, const Recipe& recipe,
                    const std::vector<std::string>& flags) {
-  const bool c = source.extension() == ".c";
-  const std::string text = text_of(source);
+  const bool c = is_c(source);
   const std::string name = fs::absolute(source).string();
   const std::string& compiler = recipe.compiler;
   const fs::path folder = cache_folder();
@@ -438,12 +453,10 @@ Built build_assembly(std::string_view assembly, const Recipe& recipe, const std:
   const Scratch scratch(cache_folder());
   const fs::path file = scratch.path() / "whole.s", object = scratch.path() / "whole.out";
   write(file, assembly);
-  std::string command = fmt::format("{} {} {}", recipe.compiler, recipe.fixed, recipe.flags);
-  for (const std::string& flag : flags) command += ' ' + shell_word(flag);
   int status = 0;
-  const std::string said =
-      shell_output(fmt::format("{} {} -o {}", command, shell_word(file.string()), shell_word(object.string())),
-                   scratch.path(), status);
+  const std::string said = shell_output(
+      fmt::format("{} {} -o {}", command_with(recipe, flags), shell_word(file.string()), shell_word(object.string())),
+      scratch.path(), status);
   if (status != 0) throw std::runtime_error(cannot("assemble", file, first_error(said)));
   return {object.filename(), "", std::make_shared<SealedCopy>("assembled", code_in(object)), ""};
 }
@@ -456,7 +469,7 @@ Built kept_build(const std::string& name, bool is_program) {
 }
 
 std::map<std::string, std::string> compiler_environment(const fs::path& source) {
-  const bool c = source.extension() == ".c";
+  const bool c = is_c(source);
   std::map<std::string, std::string> set;
   for (const char* name :
        {c ? "CC" : "CXX", "CPATH", c ? "C_INCLUDE_PATH" : "CPLUS_INCLUDE_PATH", "SOURCE_DATE_EPOCH"}) {

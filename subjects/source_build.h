@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <string_view>
@@ -20,6 +21,12 @@ std::filesystem::path cache_folder();
 
 // Writes the file atomically: no reader sees an incomplete file.   Throws: std::runtime_error.
 void write_atomically(const std::filesystem::path& file, std::string_view text);
+
+// Likewise, unless the file has this text already.   Throws: std::runtime_error; Stopped.
+void write_if_new(const std::filesystem::path& file, std::string_view text);
+
+// The first line of a program's output that has one of these words, else its first line; empty without output.
+std::string line_with(const std::string& output, std::initializer_list<std::string_view> words);
 
 // Whether the source defines a struct graze_subject.
 bool source_describes_itself(const std::filesystem::path& source);

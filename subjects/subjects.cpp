@@ -56,6 +56,13 @@ std::deque<Entry>& entries() {
   return all;
 }
 
+// Null if no subject is open under this name.
+Entry* find_entry(std::string_view name) {
+  const auto found = std::find_if(entries().begin(), entries().end(),
+                                  [&](const Entry& entry) { return entry.opened.wanted.name == name; });
+  return found == entries().end() ? nullptr : &*found;
+}
+
 constexpr std::string_view kCommand = "cmd:", kPublished = "published";
 constexpr std::size_t kLongestFunction = 4096;
 
@@ -163,10 +170,6 @@ void add_lane(Entry& entry, std::vector<Lane>& lanes, Code code, Lane lane) {
   lanes.push_back(std::move(lane));
 }
 
-void add_lane(Entry& entry, std::vector<Lane>& lanes, Code code, Scalar scalar, Variant variant, unsigned outside) {
-  add_lane(entry, lanes, std::move(code), lane_row(&entry.info, scalar, variant, outside));
-}
-
 LaneName lane_name(const std::string& subject, const cuda::CudaBuild& build) {
   return {subject, std::string(name(build.scalar)), std::string(name(build.variant)), ""};
 }
@@ -227,8 +230,7 @@ void add_host_lanes(Entry& entry, std::vector<Lane>& made) {
       const Built& build = built.emplace_back(build_source(o.file, function_of(o), recipe_of(row, o.file), flags));
       Code code{"library", build.file.string(), "", "any", o.wanted.timeout, o.wanted.memory};
       code.content = build.content;
-      const Description description = describe(code);
-      if (!(scalar == Scalar::f32 ? description.f32 : description.f64))
+      if (!describe(code).has(scalar))
         throw std::runtime_error("on the host its function takes another type of number");
       add_lane(entry, made, std::move(code), std::move(lane));
     } catch (const std::runtime_error& error) {
@@ -245,12 +247,9 @@ void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   std::vector<Lane> made;
   for (cuda::CudaBuild& build : cuda::build_cuda_subject(o.file, function_of(o), o.wanted.flags, cache_folder())) {
     Code code = code_of(build, o.wanted, on_device, entry.twins.emplace_back(twin_of(build)));
-    if (code.what.empty()) {
-      made.push_back(lane_row(&entry.info, build.scalar, build.variant, 0));
-    } else {
-      add_lane(entry, made, std::move(code), build.scalar, build.variant, 0);
-    }
-    made.back().evidence = on_device ? "device" : evidence_of(o.file, build);
+    Lane lane = lane_row(&entry.info, build.scalar, build.variant, 0);
+    lane.evidence = on_device ? "device" : evidence_of(o.file, build);
+    code.what.empty() ? made.push_back(std::move(lane)) : add_lane(entry, made, std::move(code), std::move(lane));
     entry.builds.push_back(std::move(build));
   }
   std::vector<Lane> all;
@@ -314,15 +313,11 @@ void add_toolchain_lanes(Entry& entry, const std::vector<Toolchain>& toolchains,
     }
     entry.from_toolchains.push_back({toolchain, why_not.empty() ? built.file.stem().string() : "", built.compiler});
     for (const Scalar scalar : {Scalar::f32, Scalar::f64}) {
-      if (!(scalar == Scalar::f32 ? description.f32 : description.f64)) continue;
+      if (!description.has(scalar)) continue;
       Lane lane = lane_row(info, scalar, Variant::toolchain, known.outside);
       lane.toolchain = toolchain.name;
       lane.evidence = why_not;
-      if (why_not.empty()) {
-        add_lane(entry, made, code, std::move(lane));
-      } else {
-        made.push_back(std::move(lane));
-      }
+      why_not.empty() ? add_lane(entry, made, code, std::move(lane)) : made.push_back(std::move(lane));
     }
   }
   add_lanes(std::move(made));
@@ -334,48 +329,14 @@ bool runs_on_host(const Opened& source) {
 }
 
 void open_as(const Wanted& wanted, bool on_device, const std::string& recorded,
-             const std::map<std::string, std::string>& kept = {});
-
-}  // namespace
-
-Wanted parse_subject(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  const std::string name = text.substr(0, equals);
-  const auto fits = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == '.';
-  };
-  if (equals == text.npos || name.find_first_not_of('.') == name.npos || !std::all_of(name.begin(), name.end(), fits) ||
-      equals + 1 == text.size()) {
-    throw UsageError("--subject: expected NAME=WHAT with a name of letters, digits, '_', '-' and '.', found '" +
-                     printable(text) + "'");
-  }
-  Wanted wanted{name, text.substr(equals + 1), {}};
-  if (!wanted.what.starts_with(kCommand)) wanted.what = fs::absolute(wanted.what).lexically_normal().string();
-  return wanted;
-}
-
-void open(const Wanted& wanted, bool on_device) { open_as(wanted, on_device, ""); }
-
-namespace {
-
-// How a C or C++ source was compiled, for record().
-Json how_made(const Opened& source, const std::vector<Built>& built) {
-  Json made = {{"source_hash", fmt::format("{:016x}", source.hash)}};
-  made.update(how_built(source, built));
-  return made;
-}
-
-void open_as(const Wanted& wanted, bool on_device, const std::string& recorded,
-             const std::map<std::string, std::string>& kept) {
+             const std::map<std::string, std::string>& kept = {}) {
   const Opened wish = parsed(wanted);
   if (wish.kind == "hip")
     throw UsageError(fmt::format(
         "--subject {0}: code of HIP is compiled, but not run; `graze toolchain hip --subject {0}={1}` lists what its "
         "compiler fuses",
         wanted.name, shown_path(wanted.what)));
-  const auto there = std::find_if(entries().begin(), entries().end(),
-                                  [&](const Entry& entry) { return entry.opened.wanted.name == wanted.name; });
-  if (there != entries().end()) {
+  if (Entry* const there = find_entry(wanted.name)) {
     const bool more = wish.kind == kPublished || runs_on_host(there->opened);
     if (there->opened.hash == wish.hash && there->opened.wanted.what == wanted.what &&
         there->opened.wanted.flags == wanted.flags)
@@ -443,12 +404,13 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded,
       if (!runs_on_this_cpu(probe)) continue;
       description = describe(of_variant);
       if (wish.kind == "command") add_description(description, wanted.name);
-      if (description.f32) add_lane(entry, made, of_variant, Scalar::f32, variant, description.outside);
+      if (description.f32)
+        add_lane(entry, made, of_variant, lane_row(&entry.info, Scalar::f32, variant, description.outside));
     }
     for (const auto& [variant, of_variant] : builds) {
       probe.variant = variant;
       if (description.f64 && runs_on_this_cpu(probe))
-        add_lane(entry, made, of_variant, Scalar::f64, variant, description.outside);
+        add_lane(entry, made, of_variant, lane_row(&entry.info, Scalar::f64, variant, description.outside));
     }
     if (made.empty())
       throw std::runtime_error(
@@ -456,7 +418,8 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded,
                       wanted.name, shown(wanted.what)));
     if (wish.kind == "source") {
       entry.opened.code = hash_of_builds(built_files);
-      entry.opened.made = how_made(wish, built_files);
+      entry.opened.made = {{"source_hash", fmt::format("{:016x}", wish.hash)}};
+      entry.opened.made.update(how_built(wish, built_files));
     }
     if (wish.kind == "command" || description.describes_itself) {  // a description may depend on more than files
       entry.opened.code.hash = fnv1a(fmt::format("{}\n{}\n{}\n{}", description.version, description.source,
@@ -476,6 +439,24 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded,
 }
 
 }  // namespace
+
+Wanted parse_subject(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::string name = text.substr(0, equals);
+  const auto fits = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == '.';
+  };
+  if (equals == text.npos || name.find_first_not_of('.') == name.npos || !std::all_of(name.begin(), name.end(), fits) ||
+      equals + 1 == text.size()) {
+    throw UsageError("--subject: expected NAME=WHAT with a name of letters, digits, '_', '-' and '.', found '" +
+                     printable(text) + "'");
+  }
+  Wanted wanted{name, text.substr(equals + 1), {}};
+  if (!wanted.what.starts_with(kCommand)) wanted.what = fs::absolute(wanted.what).lexically_normal().string();
+  return wanted;
+}
+
+void open(const Wanted& wanted, bool on_device) { open_as(wanted, on_device, ""); }
 
 std::vector<std::string> host_flags(const Opened& source) {
   std::vector<std::string> flags = source.wanted.flags;
@@ -502,30 +483,24 @@ std::vector<cuda::NamedBuild> cuda_builds() {
 }
 
 const Opened* opened(std::string_view subject) {
-  for (const Entry& entry : entries()) {
-    if (entry.opened.wanted.name == subject) return &entry.opened;
-  }
-  return nullptr;
+  const Entry* const entry = find_entry(subject);
+  return entry ? &entry->opened : nullptr;
 }
 
 const Toolchain* toolchain_of(const Lane& lane) {
-  if (lane.toolchain.empty()) return nullptr;
-  for (const Entry& entry : entries()) {
-    if (entry.opened.wanted.name != lane.info->id) continue;
-    for (const Entry::FromToolchain& row : entry.from_toolchains) {
-      if (row.toolchain.name == lane.toolchain) return &row.toolchain;
-    }
+  const Entry* const entry = lane.toolchain.empty() ? nullptr : find_entry(lane.info->id);
+  if (!entry) return nullptr;
+  for (const Entry::FromToolchain& row : entry->from_toolchains) {
+    if (row.toolchain.name == lane.toolchain) return &row.toolchain;
   }
   return nullptr;
 }
 
 ForeignProcesses& processes_of(const Lane& lane) {
   const LaneName name = lane.lane_name();
-  for (const Entry& entry : entries()) {
-    if (entry.opened.wanted.name != name.subject) continue;
-    for (const Entry::Running& running : entry.running) {
-      if (running.within_subject == name.within_subject()) return *running.processes;
-    }
+  const Entry* const entry = find_entry(name.subject);
+  for (std::size_t i = 0; entry && i < entry->running.size(); ++i) {
+    if (entry->running[i].within_subject == name.within_subject()) return *entry->running[i].processes;
   }
   throw std::logic_error(lane.id + ": expected a lane of foreign code");
 }
@@ -629,20 +604,18 @@ std::vector<std::string> open_recorded(const Json& spec, bool on_device, Changed
       differs.push_back(what);
     }
     const std::map<std::string, std::string> builds = recorded_builds(row);
-    for (const Entry& entry : entries()) {
-      if (entry.opened.wanted.name != name) continue;
-      for (const Entry::FromToolchain& made : entry.from_toolchains) {
-        const auto then = builds.find(made.toolchain.name);
-        if (then == builds.end() || made.build.empty() || made.build == then->second) continue;
-        std::string what = fmt::format("{}: {} does not build what the campaign ran: {} then, {} now", name,
-                                       made.toolchain.name, then->second, made.build);
-        const Json plan = plan_of(entry.opened, made.toolchain, made.build);
-        if (const std::string fused = plan_difference(recorded_contraction(row, made.toolchain.name), plan);
-            !fused.empty())
-          what += "; " + fused;
-        if (changed == Changed::refused) throw std::runtime_error(what);
-        differs.push_back(what);
-      }
+    const Entry& entry = *find_entry(name);
+    for (const Entry::FromToolchain& made : entry.from_toolchains) {
+      const auto then = builds.find(made.toolchain.name);
+      if (then == builds.end() || made.build.empty() || made.build == then->second) continue;
+      std::string what = fmt::format("{}: {} does not build what the campaign ran: {} then, {} now", name,
+                                     made.toolchain.name, then->second, made.build);
+      const Json plan = plan_of(entry.opened, made.toolchain, made.build);
+      if (const std::string fused = plan_difference(recorded_contraction(row, made.toolchain.name), plan);
+          !fused.empty())
+        what += "; " + fused;
+      if (changed == Changed::refused) throw std::runtime_error(what);
+      differs.push_back(what);
     }
   }
   return differs;

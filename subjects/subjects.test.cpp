@@ -100,6 +100,8 @@ GRAZE_SUBJECT(of_another_time) = {99, 0, nullptr, nullptr, nullptr, throws, null
 GRAZE_SUBJECT(empty) = {GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
 )";
 
+constexpr const char* kLess = "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }";
+
 struct Subjects : testing::Test {
   static inline fs::path folder;
   static inline std::vector<Pair> pairs;
@@ -112,17 +114,20 @@ struct Subjects : testing::Test {
     folder = fs::path(testing::TempDir()) / ("subjects-" + std::to_string(getpid()));
     fs::create_directories(folder);
     setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
-    const std::string include = "-I" GRAZE_SOURCE_DIR "/subjects/include ";
-    const fs::path c = write("bad.c", kMisbehaving), cpp = write("described.cpp", kDescribed);
-    ASSERT_EQ(std::system(("cc -O2 -shared -fPIC " + c.string() + " -o " + (folder / "libbad.so").string()).c_str()),
-              0);
-    ASSERT_EQ(std::system(("c++ -std=c++20 -O2 -shared -fPIC " + include + cpp.string() + " -o " +
-                           (folder / "libdescribed.so").string())
-                              .c_str()),
-              0);
+    build("cc -O2", write("bad.c", kMisbehaving), "libbad.so");
+    build("c++ -std=c++20 -O2", write("described.cpp", kDescribed), "libdescribed.so");
     for (std::uint64_t i = 0; i < 3000; ++i) pairs.push_back(strata::generate(1, strata::Stratum::uniform, i));
   }
   static void TearDownTestSuite() { fs::remove_all(folder); }
+
+  static fs::path build(const std::string& compiler, const fs::path& source, const std::string& library) {
+    const fs::path file = folder / library;
+    EXPECT_EQ(std::system(fmt::format("{} -shared -fPIC -I" GRAZE_SOURCE_DIR "/subjects/include {} -o {}", compiler,
+                                      source.string(), file.string())
+                              .c_str()),
+              0);
+    return file;
+  }
 
   static bool is_bad(const Pair& pair) { return pair.a[0].x > 0.9f; }
   static Verdict left_of(const Pair& pair) {
@@ -131,14 +136,20 @@ struct Subjects : testing::Test {
 
   static std::vector<Verdict> verdicts(const DecideBlock& block) { return verdicts_of(block, pairs); }
   // Expects `of_bad` on the bad pairs, and the answer of `good` on the others.
-  static void expect(ForeignProcesses& subject, Verdict of_bad) {
-    const std::vector<Verdict> found = verdicts(subject);
-    std::size_t bad = 0;
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      bad += is_bad(pairs[i]);
+  static void expect(const std::vector<Verdict>& found, Verdict of_bad) {
+    for (std::size_t i = 0; i < pairs.size(); ++i)
       ASSERT_EQ(found[i], is_bad(pairs[i]) ? of_bad : left_of(pairs[i])) << i;
-    }
-    EXPECT_GT(bad, 50u);
+  }
+  static void expect(ForeignProcesses& subject, Verdict of_bad) {
+    EXPECT_GT(std::count_if(pairs.begin(), pairs.end(), is_bad), 50);
+    expect(verdicts(subject), of_bad);
+  }
+  // Whether the build answers like kLess on the first pair.
+  static bool is_less(const Built& built) {
+    Code code{"library", built.file.string(), ""};
+    code.content = built.content;
+    ForeignProcesses subject(code, Scalar::f32);
+    return verdicts(subject)[0] == left_of(pairs[0]);
   }
   static std::string error_of(const std::function<void()>& act) {
     try {
@@ -152,13 +163,11 @@ struct Subjects : testing::Test {
 };
 
 TEST_F(Subjects, WhatTheCodeItselfTakesIsKnown) {
-  write("slow.c",
-        "int slow(const float a[9], const float b[9]) { volatile int i = 20000; while (i > 0) --i; return a[0] < b[0]; "
-        "}");
-  ASSERT_EQ(
-      std::system(
-          ("cc -O2 -shared -fPIC " + (folder / "slow.c").string() + " -o " + (folder / "libslow.so").string()).c_str()),
-      0);
+  build("cc -O2",
+        write("slow.c",
+              "int slow(const float a[9], const float b[9]) { volatile int i = 20000; while (i > 0) --i; "
+              "return a[0] < b[0]; }"),
+        "libslow.so");
   const auto nanoseconds = [&](const char* library, const char* function) {
     ForeignProcesses subject({"library", (folder / library).string(), function, "f32"}, Scalar::f32);
     EXPECT_FALSE(subject.nanoseconds());
@@ -182,12 +191,11 @@ TEST_F(Subjects, WhatMisbehavesIsAVerdictOfThePairsOnWhichItDoes) {
   const struct {
     const char* name;
     Verdict verdict;
-    double timeout = 5;
   } kCases[] = {{"declines", Verdict::declined}, {"aborts", Verdict::crashed},  {"exits", Verdict::crashed},
                 {"scribbles", Verdict::crashed}, {"wavers", Verdict::unstable}, {"rounds", Verdict::unstable}};
   for (const auto& c : kCases) {
     SCOPED_TRACE(c.name);
-    ForeignProcesses subject({"library", (folder / "libbad.so").string(), c.name, "f32", c.timeout}, Scalar::f32);
+    ForeignProcesses subject({"library", (folder / "libbad.so").string(), c.name, "f32", 5}, Scalar::f32);
     expect(subject, c.verdict);
   }
 }
@@ -195,16 +203,11 @@ TEST_F(Subjects, WhatMisbehavesIsAVerdictOfThePairsOnWhichItDoes) {
 TEST_F(Subjects, EndlessLoopsAndMemoryEnd) {
   const std::vector<Pair> all = pairs;
   pairs.assign(all.begin(), all.begin() + 600);
-  std::vector<Verdict> found;
   ForeignProcesses hangs({"library", (folder / "libbad.so").string(), "hangs", "f32", 0.02}, Scalar::f32);
-  found = verdicts(hangs);
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    EXPECT_EQ(found[i], is_bad(pairs[i]) ? Verdict::timed_out : left_of(pairs[i])) << i;
+  expect(verdicts(hangs), Verdict::timed_out);
   pairs.assign(all.begin(), all.begin() + 60);
   ForeignProcesses eats({"library", (folder / "libbad.so").string(), "eats", "f32", 60, 64}, Scalar::f32);
-  found = verdicts(eats);
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    EXPECT_EQ(found[i], is_bad(pairs[i]) ? Verdict::crashed : left_of(pairs[i])) << i;
+  expect(verdicts(eats), Verdict::crashed);
   pairs = all;
 }
 
@@ -280,9 +283,8 @@ for number, line in enumerate(sys.stdin, 1):
   };
   for (const auto& [how, verdict] :
        {std::pair{"declines", Verdict::declined}, {"dies", Verdict::crashed}, {"babbles", Verdict::crashed}}) {
-    const std::vector<Verdict> found = run(how);
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-      EXPECT_EQ(found[i], is_bad(pairs[i]) ? verdict : left_of(pairs[i])) << how << ' ' << i;
+    SCOPED_TRACE(how);
+    expect(run(how), verdict);
   }
   // No pair makes this program fail; it fails after a number of lines.
   const std::vector<Verdict> found = run("ages");
@@ -503,11 +505,7 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
   const std::string so = (folder / "libbad.so").string(), described = (folder / "libdescribed.so").string();
   write("broken.cpp", "bool intersects(const float a[9], const float b[9]) { return a[0] < ; }");
   write("other.cpp", "int intersects(int a) { return a; }");
-  write("loads.c", "__attribute__((constructor)) static void f(void) { __builtin_trap(); }");
-  ASSERT_EQ(
-      std::system(
-          ("cc -shared -fPIC " + (folder / "loads.c").string() + " -o " + (folder / "loads.so").string()).c_str()),
-      0);
+  build("cc", write("loads.c", "__attribute__((constructor)) static void f(void) { __builtin_trap(); }"), "loads.so");
   const auto expect_error = [&](const std::string& text, const std::string& pattern) {
     const std::string error = error_of([&] { open_one(text); });
     EXPECT_TRUE(std::regex_search(error, std::regex(pattern))) << text << ": " << error;
@@ -554,8 +552,7 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
 }
 
 TEST_F(Subjects, ACampaignsRecordOpensThemAgainUnlessTheyChanged) {
-  const fs::path source =
-      write("recorded.c", "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }");
+  const fs::path source = write("recorded.c", kLess);
   open_one("recorded=" + source.string());
   EXPECT_TRUE(record({"moller_1997/f32/cpu", "recorded2/f32/cpu"}).is_null());
   nlohmann::ordered_json spec{{"subjects", record({"moller_1997/f32/cpu", "recorded/f32/cpu"})}};
@@ -677,8 +674,7 @@ int intersects(const float a[9], const float b[9]) { return data[0] == 'l' ? a[0
 }
 
 TEST_F(Subjects, ACommandThatMakesNoObjectIsNamedWithItsFlags) {
-  const fs::path source =
-      write("quiet.c", "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }");
+  const fs::path source = write("quiet.c", kLess);
   const Recipe recipe = recipe_of(kVariants[0], source), does_nothing{"true", "-O2", ""};
   for (const std::string& error :
        {error_of([&] { build_source(source, "intersects", recipe, {"--version"}); }),
@@ -701,12 +697,6 @@ TEST_F(Subjects, CodeThatChangesWhileItIsBuiltIsBuiltAgain) {
   fs::permissions(compiler, fs::perms::owner_all);
   setenv("CC", compiler.c_str(), 1);
   const auto build = [&] { return build_source(source, "intersects", recipe_of(kVariants[0], source), {}); };
-  const auto is_less = [&](const Built& built) {
-    Code code{"library", built.file.string(), ""};
-    code.content = built.content;
-    ForeignProcesses subject(code, Scalar::f32);
-    return verdicts(subject)[0] == left_of(pairs[0]);
-  };
   write("edits", "rm edits; echo '#define LESS >=' > edited.h");
   const Built edited = build();
   EXPECT_FALSE(is_less(edited));
@@ -747,12 +737,6 @@ int intersects(const float a[9], const float b[9]) { return blob[0] == 'l' ? a[0
     return build_source(source, "intersects", recipe_of(kVariants[0], source),
                         {"-I" + first.string(), "-I" + second.string()});
   };
-  const auto is_less = [&](const Built& built) {
-    Code code{"library", built.file.string(), ""};
-    code.content = built.content;
-    ForeignProcesses subject(code, Scalar::f32);
-    return verdicts(subject)[0] == left_of(pairs[0]);
-  };
   std::ofstream(second / "searched.bin") << 'l';
   const Built before = build();
   EXPECT_TRUE(is_less(before));
@@ -767,8 +751,7 @@ int intersects(const float a[9], const float b[9]) { return blob[0] == 'l' ? a[0
 
 // The same compiler version may use another assembler or linker of the PATH, and the compiler may be a script.
 TEST_F(Subjects, TheCompilersPartsAndScriptsAreInTheHash) {
-  const fs::path source =
-      write("by_parts.c", "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }");
+  const fs::path source = write("by_parts.c", kLess);
   const auto hash = [&] {
     return build_source(source, "intersects", recipe_of(kVariants[0], source), {}).file.string();
   };
@@ -816,8 +799,7 @@ TEST_F(Subjects, FlagsThatMayBringInAnythingAreNotCovered) {
     EXPECT_EQ(not_covered({archive}).empty(), covered) << how;
   }
   // The hash covers flags in the compiler's name, and environment variables that name the compiler's parts.
-  const fs::path source =
-      write("by_flags.c", "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }");
+  const fs::path source = write("by_flags.c", kLess);
   const auto build = [&] { return build_source(source, "intersects", recipe_of(kVariants[0], source), {}); };
   const Built plain = build();
   EXPECT_EQ(plain.not_covered, "");
@@ -832,8 +814,7 @@ TEST_F(Subjects, FlagsThatMayBringInAnythingAreNotCovered) {
 }
 
 TEST_F(Subjects, AKeptObjectThatIsNotAsItWasBuiltIsBuiltAgain) {
-  const fs::path source =
-                     write("keeps.c", "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }"),
+  const fs::path source = write("keeps.c", kLess),
                  other = write("keeps_other.c",
                                "int intersects(const float a[9], const float b[9]) { return a[0] >= b[0]; }");
   const auto build = [](const fs::path& from) {
@@ -934,11 +915,7 @@ TEST_F(Subjects, TheHashOfALibraryIsOfWhatItSaysOfItselfToo) {
 static int decide(const float a[9], const float b[9]) { return a[0] < b[0]; }
 GRAZE_SUBJECT(graze_subject) = {GRAZE_SUBJECT_ABI, 0, getenv("VERSION_OF_TEST"), nullptr, nullptr, decide, nullptr, nullptr, nullptr};
 )"));
-  const fs::path library = folder / "libversions.so";
-  ASSERT_EQ(std::system(("c++ -std=c++20 -shared -fPIC -I" GRAZE_SOURCE_DIR "/subjects/include " + code.string() +
-                         " -o " + library.string())
-                            .c_str()),
-            0);
+  const fs::path library = build("c++ -std=c++20", code, "libversions.so");
   const auto hash = [&](const std::string& name, const char* version) {
     setenv("VERSION_OF_TEST", version, 1);
     open(parse_subject(name + '=' + library.string()));

@@ -17,7 +17,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -37,6 +36,8 @@ using Time = Clock::time_point;
 constexpr auto kLookEvery = std::chrono::milliseconds(100);  // between checks of what the processes use
 constexpr int kMostWaits = 20;                               // a program may wait this many limits for a processor
 constexpr int kMostLoads = 3;                                // failed ones, for one block
+constexpr double kLoadSeconds = 60;                          // to load the code and start a worker
+constexpr std::uint64_t kMostProcesses = 64;
 
 Time after(double seconds) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
@@ -92,6 +93,12 @@ class Supervisor {
     return found;
   }
 
+  // Likewise, until this time or the next check of the processes' usage.
+  void wait_for(pollfd* of, nfds_t count, Time until) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(std::min(until, next_look_) - Clock::now()).count();
+    wait_for(of, count, static_cast<int>(std::max<long>(0, left)));
+  }
+
   // Waits for graze's next block and checks the processes' usage meanwhile.   Returns: false when there is no further
   // block.
   bool next_block(Block& block) {
@@ -139,14 +146,14 @@ class Supervisor {
 
   // Waits until the worker has given all answers (kDeclined) or has to be ended (kCrashed, kTimedOut).
   signed char watch(Questions& questions) {
-    double before = worker_seconds();
+    double before = processor_seconds(worker_);
     int times = 0;
     std::optional<Activity> programs;  // at the last time limit
     Time until = after(limits_.seconds);
     for (;;) {
       const bool told = wait(until);
       if (questions.take(words_) > 0) {
-        before = worker_seconds();
+        before = processor_seconds(worker_);
         times = 0;
         programs.reset();
         until = after(limits_.seconds);
@@ -160,7 +167,7 @@ class Supervisor {
       if (Clock::now() < until) continue;
       // It timed out only if it had the processor time; load on the machine must not cause verdicts.
       if (limits_.program && times < kMostWaits) {  // the worker itself only waits for its program
-        const Activity now = activity_of_descendants(limits_.processes);
+        const Activity now = activity_of_descendants(kMostProcesses);
         const bool had_time = programs && now.seconds - programs->seconds >= 0.9 * limits_.seconds;
         programs = now;
         if (now.wants_processor && !had_time) {
@@ -169,7 +176,7 @@ class Supervisor {
           continue;
         }
       }
-      if (++times >= most_times() || worker_seconds() - before >= 0.9 * limits_.seconds) return kTimedOut;
+      if (++times >= most_times() || processor_seconds(worker_) - before >= 0.9 * limits_.seconds) return kTimedOut;
       until = after(limits_.seconds);
     }
   }
@@ -177,9 +184,8 @@ class Supervisor {
   // Waits for an event, at most until `until`.   Returns: whether the worker says that it has answered the last
   // question.
   bool wait(Time until) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(std::min(until, next_look_) - Clock::now()).count();
     pollfd news[] = {{talk_, POLLIN, 0}, {worker_fd_, POLLIN, 0}, {kControlFd, POLLIN, 0}};
-    wait_for(news, 3, static_cast<int>(std::max<long>(0, left)));
+    wait_for(news, 3, until);
     if (news[2].revents) leave();  // nobody waits for the answers
     if (Clock::now() >= next_look_) {
       tell_alive();
@@ -229,9 +235,9 @@ class Supervisor {
     close(talk[1]);
     talk_ = talk[0];
     loader_fd_ = loader_ > 0 ? open_process(loader_) : -1;
-    const Time until = after(limits_.load_seconds);
+    const Time until = after(kLoadSeconds);
     while (loader_fd_ >= 0) {
-      if (!wait_for_message(until, loader_fd_)) break;
+      if (!wait_for_message(until)) break;
       pid_t sender = 0;
       char bytes[sizeof(Loaded)];
       const ssize_t received = receive(bytes, sizeof bytes, sender);
@@ -264,12 +270,10 @@ class Supervisor {
 
   // Returns: whether there is a message. If not, the process ended, the time is up or a limit is exceeded; why_ says
   // which.
-  bool wait_for_message(Time until, int process_fd) {
+  bool wait_for_message(Time until) {
     while (Clock::now() < until) {
-      const auto left =
-          std::chrono::ceil<std::chrono::milliseconds>(std::min(until, next_look_) - Clock::now()).count();
-      pollfd news[] = {{talk_, POLLIN, 0}, {process_fd, POLLIN, 0}, {kControlFd, POLLRDHUP, 0}};
-      wait_for(news, 3, static_cast<int>(std::max<long>(0, left)));
+      pollfd news[] = {{talk_, POLLIN, 0}, {loader_fd_, POLLIN, 0}, {kControlFd, POLLRDHUP, 0}};
+      wait_for(news, 3, until);
       if (news[2].revents & (POLLHUP | POLLERR | POLLRDHUP)) leave();
       if (news[0].revents & POLLIN) return true;
       if (news[0].revents || news[1].revents) return false;
@@ -278,19 +282,18 @@ class Supervisor {
       reap();
       if (is_stopped(loader_)) break;
       if (within_limits()) continue;
-      why_ = fmt::format("takes more than {} MiB or {} processes while it is loaded", limits_.bytes >> 20,
-                         limits_.processes);
+      why_ =
+          fmt::format("takes more than {} MiB or {} processes while it is loaded", limits_.bytes >> 20, kMostProcesses);
       return false;
     }
-    why_ = is_stopped(loader_) ? "stopped while it was loaded"
-                               : fmt::format("is not loaded after {} s", limits_.load_seconds);
+    why_ = is_stopped(loader_) ? "stopped while it was loaded" : fmt::format("is not loaded after {} s", kLoadSeconds);
     return false;
   }
 
   // Waits for the loader's next worker.   Returns: whether it is ready.
   bool await_worker() {
-    const Time until = after(limits_.load_seconds);
-    while (wait_for_message(until, loader_fd_)) {
+    const Time until = after(kLoadSeconds);
+    while (wait_for_message(until)) {
       Says said{};
       pid_t sender = 0;
       const ssize_t received = receive(&said, sizeof said, sender);
@@ -339,21 +342,13 @@ class Supervisor {
   bool within_limits() {
     next_look_ = Clock::now() + kLookEvery;
     if (limits_.bytes == 0) return true;
-    const Usage usage = usage_of_descendants(limits_.bytes, limits_.processes);
-    return usage.bytes <= limits_.bytes && usage.processes <= limits_.processes;
+    const Usage usage = usage_of_descendants(limits_.bytes, kMostProcesses);
+    return usage.bytes <= limits_.bytes && usage.processes <= kMostProcesses;
   }
 
   static bool has_ended(int process_fd) {
     pollfd ended{process_fd, POLLIN, 0};
     return process_fd < 0 || poll(&ended, 1, 0) > 0;
-  }
-
-  // The processor time that the worker has used, in seconds.
-  double worker_seconds() const {
-    clockid_t clock;
-    timespec taken{};
-    if (clock_getcpuclockid(worker_, &clock) != 0 || clock_gettime(clock, &taken) != 0) return 0;
-    return static_cast<double>(taken.tv_sec) + 1e-9 * static_cast<double>(taken.tv_nsec);
   }
 
   // How many times its time limit the worker may wait: 100 times if it waits for a processor, 3 times for a disk (a

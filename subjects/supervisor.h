@@ -9,13 +9,11 @@
 namespace graze::subjects {
 
 struct Limits {
-  double seconds = 1;        // processor time for a pair, or for a block of a subject that takes blocks
-  double load_seconds = 60;  // to load the code and start a worker
-  std::uint64_t bytes = 0;   // memory of all its processes together; 0: unlimited
-  std::uint64_t processes = 64;
-  bool program = false;   // a separate program answers
-  bool has_code = true;   // there is a file to load
-  bool system_v = false;  // it may make System V memory, semaphores and message queues, which have limits then
+  double seconds = 1;       // processor time for a pair, or for a block of a subject that takes blocks
+  std::uint64_t bytes = 0;  // memory of all its processes together; 0: unlimited
+  bool program = false;     // a separate program answers
+  bool has_code = true;     // there is a file to load
+  bool system_v = false;    // it may make System V memory, semaphores and message queues, which have limits then
 };
 
 // Answers blocks on kControlFd until graze closes it, then ends all processes that it started.

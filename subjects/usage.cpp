@@ -130,14 +130,18 @@ std::vector<pid_t> descendants(std::uint64_t most, pid_t except) {
   return all;
 }
 
+double processor_seconds(pid_t process) {
+  clockid_t clock;
+  timespec taken{};
+  if (clock_getcpuclockid(process, &clock) != 0 || clock_gettime(clock, &taken) != 0) return 0;
+  return static_cast<double>(taken.tv_sec) + 1e-9 * static_cast<double>(taken.tv_nsec);
+}
+
 Activity activity_of_descendants(std::uint64_t most) {
   Activity activity;
   for (const pid_t process : descendants(most)) {
     activity.wants_processor |= process_state(process) == 'R';
-    clockid_t clock;
-    timespec taken{};
-    if (clock_getcpuclockid(process, &clock) == 0 && clock_gettime(clock, &taken) == 0)
-      activity.seconds += static_cast<double>(taken.tv_sec) + 1e-9 * static_cast<double>(taken.tv_nsec);
+    activity.seconds += processor_seconds(process);
   }
   return activity;
 }

@@ -14,6 +14,8 @@ std::vector<pid_t> own_children();  // of the calling thread
 // All descendants except those of one child, or a little more than `most` of them.
 std::vector<pid_t> descendants(std::uint64_t most, pid_t except = -1);
 
+double processor_seconds(pid_t process);  // that the process has used; 0 if it is not there
+
 // Whether some descendant runs or waits for a processor, and the processor time of all that exist, in seconds.
 struct Activity {
   bool wants_processor = false;

@@ -109,16 +109,6 @@ std::vector<Device> devices_of(const std::vector<cl_platform_id>& platforms, cl_
   return devices;
 }
 
-// A text that a call gives: ask(size, at, size needed).
-template <class Ask>
-std::string text_of(const char* call, Ask ask) {
-  std::size_t size = 0;
-  check(ask(std::size_t{0}, nullptr, &size), call);
-  std::string text(size, '\0');
-  check(ask(size, text.data(), nullptr), call);
-  return text.c_str();  // up to its zero
-}
-
 }  // namespace
 
 void check(cl_int error, const char* call) {

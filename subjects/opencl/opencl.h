@@ -6,6 +6,7 @@
 #define CL_USE_DEPRECATED_OPENCL_1_1_APIS  // clGetExtensionFunctionAddress, the only function that drivers must export
 #include <CL/cl_icd.h>
 
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -23,6 +24,16 @@ extern const cl_icd_dispatch* cl;
 
 // Throws: Failure with the call and the error, unless that is CL_SUCCESS.
 void check(cl_int error, const char* call);
+
+// A text that a call gives.   ask(size, at, size_needed): makes the call.   Throws: Failure.
+template <class Ask>
+std::string text_of(const char* call, Ask ask) {
+  std::size_t size = 0;
+  check(ask(std::size_t{0}, nullptr, &size), call);
+  std::string text(size, '\0');
+  check(ask(size, text.data(), nullptr), call);
+  return text.c_str();  // up to its zero
+}
 
 struct Device {
   cl_platform_id platform;

@@ -213,13 +213,9 @@ class OnDevice {
   }
 
   std::string log_of(cl_program program) const {
-    std::size_t size = 0;
-    check(cl->clGetProgramBuildInfo(program, device_.id, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size),
-          "clGetProgramBuildInfo");
-    std::string log(size, '\0');
-    check(cl->clGetProgramBuildInfo(program, device_.id, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr),
-          "clGetProgramBuildInfo");
-    return log.c_str();
+    return text_of("clGetProgramBuildInfo", [&](auto... to) {
+      return cl->clGetProgramBuildInfo(program, device_.id, CL_PROGRAM_BUILD_LOG, to...);
+    });
   }
 
   const Subject& subject_;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <optional>
 #include <stdexcept>
 
@@ -39,8 +40,10 @@ constexpr std::pair<const char*, std::string Toolchain::*> kTexts[] = {
     {"name", &Toolchain::name},   {"cxx", &Toolchain::cxx},       {"cc", &Toolchain::cc},    {"run", &Toolchain::run},
     {"needs", &Toolchain::needs}, {"strict", &Toolchain::strict}, {"file", &Toolchain::file}};
 
-Rounding rounding_of(const std::string& word) {
-  return static_cast<Rounding>(std::find(std::begin(kRoundings), std::end(kRoundings), word) - std::begin(kRoundings));
+std::optional<Rounding> rounding_of(const std::string& word) {
+  const auto found = std::find(std::begin(kRoundings), std::end(kRoundings), word);
+  if (found == std::end(kRoundings)) return std::nullopt;
+  return static_cast<Rounding>(found - std::begin(kRoundings));
 }
 
 class Reader {
@@ -63,14 +66,14 @@ class Reader {
   }
 
  private:
-  std::string at(const toml::node& node) const { return fmt::format("{}:{}", name_, node.source().begin.line); }
+  // of: a node or a key.
+  std::string at(const auto& of) const { return fmt::format("{}:{}", name_, of.source().begin.line); }
 
   void keys(const toml::table& table, const std::vector<std::string>& known) const {
     for (const auto& [key, value] : table) {
       const std::string word(key.str());
       if (std::find(known.begin(), known.end(), word) == known.end())
-        fail(fmt::format("{}:{}", name_, key.source().begin.line), fmt::format("{}", fmt::join(known, ", ")),
-             shown(word) + did_you_mean(word, known));
+        fail(at(key), fmt::format("{}", fmt::join(known, ", ")), shown(word) + did_you_mean(word, known));
     }
   }
 
@@ -91,10 +94,9 @@ class Reader {
     if (variant_of_name(t.name)) fail(at(row), "a name that no variant of Graze has", shown(t.name));
     if (t.cxx.empty() && t.cc.empty()) fail(at(row), "cxx or cc, the command of a compiler", "neither");
     if (const toml::node* node = row.get("rounding")) {
-      const std::string word = node->value_exact<std::string>().value_or("");
-      if (std::find(std::begin(kRoundings), std::end(kRoundings), word) == std::end(kRoundings))
-        fail(at(*node), fmt::format("{}", fmt::join(kRoundings, ", ")), found_text(*node));
-      t.rounding = rounding_of(word);
+      const std::optional<Rounding> rounding = rounding_of(node->value_exact<std::string>().value_or(""));
+      if (!rounding) fail(at(*node), fmt::format("{}", fmt::join(kRoundings, ", ")), found_text(*node));
+      t.rounding = *rounding;
     }
     return t;
   }
@@ -138,9 +140,9 @@ Toolchain toolchain_of_json(const nlohmann::ordered_json& row) {
   Toolchain toolchain;
   for (const auto& [key, text] : kTexts) toolchain.*text = row.value(key, "");
   const std::string word = row.at("rounding");
-  if (std::find(std::begin(kRoundings), std::end(kRoundings), word) == std::end(kRoundings))
-    throw std::runtime_error(fmt::format("expected a toolchain's rounding, found {}", shown(word)));
-  toolchain.rounding = rounding_of(word);
+  const std::optional<Rounding> rounding = rounding_of(word);
+  if (!rounding) throw std::runtime_error(fmt::format("expected a toolchain's rounding, found {}", shown(word)));
+  toolchain.rounding = *rounding;
   return toolchain;
 }
 
@@ -157,16 +159,6 @@ std::vector<Toolchain> parse_toolchains(const std::string& name, std::string_vie
     fail(fmt::format("{}:{}", name, parsed.error().source().begin.line), "TOML",
          printable(parsed.error().description()));
   return Reader(name).toolchains(parsed.table());
-}
-
-std::vector<Toolchain> read_toolchains(const fs::path& file) {
-  std::string why;
-  if (const auto text = plain_file(file, why)) {
-    std::vector<Toolchain> rows = parse_toolchains(file.string(), *text);
-    for (Toolchain& row : rows) row.file = fs::absolute(file).lexically_normal().string();
-    return rows;
-  }
-  throw std::runtime_error(cannot("read", file, why));
 }
 
 std::string list_of(const std::vector<Toolchain>& toolchains) {
@@ -197,7 +189,11 @@ std::vector<Toolchain> selected_toolchains(const std::string& list) {
       patterns.push_back(word == "all" ? "*" : word);
       continue;
     }
-    for (const Toolchain& t : read_toolchains(word)) {
+    std::string why;
+    const std::optional<std::string> text = plain_file(word, why);
+    if (!text) throw std::runtime_error(cannot("read", word, why));
+    for (Toolchain& t : parse_toolchains(word, *text)) {
+      t.file = fs::absolute(word).lexically_normal().string();
       put(known, t);
       patterns.push_back(t.name);
     }

@@ -3,7 +3,6 @@
 // subjects/toolchains/built_in.toml has the built-in ones; a user's file has further ones (docs/toolchains.md).
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -37,15 +36,16 @@ Toolchain toolchain_of_json(const nlohmann::ordered_json& row);
 
 const std::vector<Toolchain>& built_in_toolchains();
 
-// Throws: std::runtime_error of one line: FILE:LINE: expected …, found ….
-std::vector<Toolchain> read_toolchains(const std::filesystem::path& file);
+// The toolchains of a file with this name and text.   Throws: std::runtime_error of one line: FILE:LINE: expected …,
+// found ….
 std::vector<Toolchain> parse_toolchains(const std::string& name, std::string_view text);
 
 // A list with which selected_toolchains finds these toolchains again.
 std::string list_of(const std::vector<Toolchain>& toolchains);
 
 // The toolchains of a list: names and shell patterns of built-in ones, "all", and files (*.toml), whose toolchains
-// replace built-in ones of the same name and can be named too.   Throws: UsageError, and as read_toolchains.
+// replace built-in ones of the same name and can be named too.   Throws: UsageError; as parse_toolchains;
+// std::runtime_error if a file cannot be read.
 std::vector<Toolchain> selected_toolchains(const std::string& list);
 
 // The program that a shell would start for the command, if it is missing. Empty if it exists, or if only a shell can

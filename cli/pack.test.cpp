@@ -85,7 +85,7 @@ TEST_F(PackCommand, LibrariesCommandsMeshesAndScenesRunElsewhere) {
       "'own=cmd:bin/own.sh' --subject \"two=cmd:sh $PWD/bin/own.sh\" --lanes 'own/f32/cpu,two/f32/cpu' --pairs 60 "
       "--out c");
   expect_reproduced(elsewhere());
-  EXPECT_NE(contents(shell.folder / "packed").find("two: not in the pack: sh; "), std::string::npos);
+  EXPECT_NE(contents(shell.folder / "packed").find("two: the pack does not contain sh, "), std::string::npos);
   run(mesh + "graze fuzz --mesh 'a mesh.off' --lanes 'moller_1997/f32/cpu' --strata thesis --pairs 50 --out c");
   expect_reproduced(elsewhere());
   run(mesh +

@@ -182,7 +182,8 @@ TEST_F(SubjectVerbs, ChangedCodeIsSaidAndStoredVerdictsAreShown) {
     const bool of_a_case = verb.find("one.pairs") != verb.npos && !verb.starts_with("map");
     EXPECT_EQ(ran.out.find("stored by the campaign: mine/f32/cpu ") != std::string::npos, of_a_case) << ran.out;
     const Ran again = shell(kWithoutDevice + verb + " --resubject");
-    EXPECT_TRUE(names(again.err.substr(0, again.err.find('\n')), {"mine: its code is not what the campaign ran"}))
+    EXPECT_TRUE(
+        names(again.err.substr(0, again.err.find('\n')), {"mine: its code is not the code that the campaign ran"}))
         << again.err;
     EXPECT_NE(again.out.find("mine"), std::string::npos) << again.out;
   }

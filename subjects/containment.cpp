@@ -44,7 +44,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// In a new user namespace, gives an unprivileged user privileges under the same user id.
+// In a new user namespace, keeps the user's and the group's ids, with all privileges in that namespace.
 bool map_user(uid_t user, gid_t group) {
   const auto write_to = [](const char* file, const std::string& text) {
     const int fd = open(file, O_WRONLY | O_CLOEXEC);
@@ -62,23 +62,23 @@ bool has_terminals() {
   return statfs("/dev/pts", &at) == 0 && at.f_type == DEVPTS_SUPER_MAGIC;
 }
 
-// Keeps the mounts below this place out of other namespaces.   Returns: false if it is not a mount point, as "/" in a
-// chroot.
+// Makes the mounts below this place invisible in other namespaces.   Returns: false if the place is no mount point,
+// as "/" in a chroot.
 bool keep_private(const char* place) { return mount("none", place, nullptr, MS_REC | MS_PRIVATE, nullptr) == 0; }
 
-// In the new namespace: hides its mounts from outside. In a chroot, "/" is not a mount point, but the others are.
+// In the new namespace: hides later mounts from outside. In a chroot, only "/" is not a mount point.
 bool keep_mounts_private() {
   return keep_private("/") || (keep_private("/proc") && (keep_private("/dev/shm") || errno == ENOENT) &&
                                (!has_terminals() || keep_private("/dev/pts")));
 }
 
-// Mounts an empty folder that nobody can write to.
+// Mounts an empty, read-only folder over this place.
 bool hide(const char* place) {
   return mount("tmpfs", place, "tmpfs", MS_RDONLY | MS_NOSUID | MS_NODEV | MS_NOEXEC, "size=4k") == 0;
 }
 
-// The terminals of the parent process that are not below /dev/pts, such as a console. Hiding /dev/pts does not hide
-// them.
+// The parent process's terminals that are not below /dev/pts, such as a console. Hiding /dev/pts does not hide such
+// terminals.
 std::vector<std::string> terminals_of_parent() {
   std::vector<std::string> found;
   for (const char* name : {"0", "1", "2"}) {
@@ -92,7 +92,8 @@ std::vector<std::string> terminals_of_parent() {
   return found;
 }
 
-// In the new namespace: hides the terminals. Code that stops a terminal's output or takes its input would stop graze.
+// In the new namespace: hides the terminals below /dev/pts, and `others`. Code that stops a terminal's output or takes
+// its input would stop graze.
 bool hide_terminals(const std::vector<std::string>& others) {
   if (has_terminals() && !hide("/dev/pts")) return false;
   return std::all_of(others.begin(), others.end(), [](const std::string& file) {
@@ -100,8 +101,8 @@ bool hide_terminals(const std::vector<std::string>& others) {
   });
 }
 
-// The mount points of file systems whose type begins with this, from the system's list of mounts, which writes spaces
-// and similar as \040.
+// The mount points of file systems whose type begins with this text, from the system's list of mounts. The list writes
+// a space as \040, and other special characters in the same way.
 std::vector<std::string> mount_points(const std::string& type_begins) {
   std::vector<std::string> found;
   std::ifstream in("/proc/self/mountinfo");
@@ -120,20 +121,20 @@ std::vector<std::string> mount_points(const std::string& type_begins) {
   return found;
 }
 
-// In the new namespace: hides the control groups. Root, or a user who owns some of them, could use them to freeze the
-// supervisor or take its memory and processor.
+// In the new namespace: hides the control groups. By control groups, root, or a user who owns some of
+// them, could freeze the supervisor, or take its memory and processor.
 bool hide_control_groups() {
-  for (const std::string& place : mount_points("cgroup")) {  // and cgroup2
+  for (const std::string& place : mount_points("cgroup")) {  // this finds cgroup2 too
     // A mount on top of a shared mount, as in a chroot, would be visible outside.
     if (mount("none", place.c_str(), nullptr, MS_PRIVATE, nullptr) != 0 &&
         (errno == ENOENT || errno == EINVAL || errno == EACCES))
-      continue;  // it is hidden by another mount, or not accessible
+      continue;  // another mount hides this one, or it is not accessible
     if (!hide(place.c_str())) return false;
   }
   return true;
 }
 
-// Makes a mount of this namespace read-only. It keeps the mount's other flags, which a user may not remove.
+// Makes a mount of this namespace read-only. Keeps the mount's other flags, because a user may not remove them.
 bool make_mount_read_only(const char* place, unsigned long more_flags = 0) {
   struct statvfs now {};
   if (statvfs(place, &now) != 0) return false;
@@ -144,8 +145,8 @@ bool make_mount_read_only(const char* place, unsigned long more_flags = 0) {
   return mount("none", place, nullptr, flags, nullptr) == 0;
 }
 
-// Whether it is a device that stores nothing, or one that computes. Others create devices or memory that outlive the
-// namespace, or are terminals.
+// Whether the device stores nothing, or computes. Other devices are terminals, or create devices or memory
+// that outlive the namespace.
 bool is_harmless(const fs::path& device) {
   const std::string name = device.filename(), folder = device.parent_path();
   constexpr const char* kNames[] = {"null", "zero", "full", "random", "urandom", "kfd", "dxg"};
@@ -153,8 +154,8 @@ bool is_harmless(const fs::path& device) {
          std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
 }
 
-// In the new namespace: makes sure that only harmless devices can be opened. Each of them becomes a mount of its own
-// before /dev loses its devices. No files can be made there, because they would be memory that no limit counts.
+// In the new namespace: makes sure that only harmless devices can be opened. Mounts each harmless device over itself,
+// and then makes /dev a read-only mount without devices. Files in /dev would be memory that no limit counts.
 void limit_devices() {
   const std::vector<std::string> places = mount_points("");
   // On a shared mount, as in a chroot, the mounts would be visible outside.
@@ -177,7 +178,7 @@ void limit_devices() {
   make_mount_read_only("/dev", MS_NODEV);
 }
 
-// In the new namespace: makes settings of the system read-only, and hides files that create a device when read.
+// In the new namespace: makes the system's settings read-only, and hides files that create a device when they are read.
 void limit_settings() {
   for (const std::string& place : mount_points("")) {
     if (place != "/sys" && !place.starts_with("/sys/")) continue;
@@ -189,7 +190,7 @@ void limit_settings() {
   }
 }
 
-// In the new namespace: makes the folder read-only. Not in a chroot, where the mount would be visible outside.
+// In the new namespace: makes the folder read-only, except in a chroot, where the mount would be visible outside.
 void make_read_only(const std::string& given) {
   std::error_code none;
   const std::string folder = fs::canonical(given, none), here = fs::current_path(none);
@@ -201,17 +202,17 @@ void make_read_only(const std::string& given) {
     mount(above.c_str(), above.c_str(), nullptr, MS_BIND | MS_REC, nullptr);
   }
   if (mount(at, at, nullptr, MS_BIND, nullptr) == 0) make_mount_read_only(at);
-  fs::current_path(here, none);  // otherwise it lies below these mounts
+  fs::current_path(here, none);  // enters the same folder through the new mounts
 }
 
-// In the new namespace: mounts its own /proc, without which its processes could not be found.
+// In the new namespace: mounts a new /proc, which shows the namespace's processes.
 bool mount_proc() {
   return mount("proc", "/proc", "proc", MS_NOSUID | MS_NODEV | MS_NOEXEC, nullptr) == 0 &&
          fs::exists("/proc/thread-self/children");
 }
 
-// In the new namespace: System V memory, semaphores and message queues get limits and end with the namespace.
-// Returns: whether they have limits. Before Linux 6.10 only root may set them.
+// In the new namespace: sets limits on System V memory, semaphores and message queues, which end with the namespace.
+// Returns: whether the limits are set. Before Linux 6.10 only root may set these limits.
 bool limit_system_v(std::uint64_t bytes) {
   const auto set = [](const char* name, const std::string& value) {
     return bool(std::ofstream(std::string("/proc/sys/kernel/") + name) << value << std::flush);
@@ -220,19 +221,21 @@ bool limit_system_v(std::uint64_t bytes) {
   return set("shmall", pages) && set("sem", "250 32000 32 128") && set("msgmni", "32");
 }
 
-// In the new namespace: POSIX shared memory gets a limit and ends with the namespace.
+// In the new namespace: mounts a new /dev/shm, which limits POSIX shared memory and ends with the namespace.
 bool limit_shared_memory(std::uint64_t bytes) {
   return mount("tmpfs", "/dev/shm", "tmpfs", MS_NOSUID | MS_NODEV, ("size=" + std::to_string(bytes)).c_str()) == 0 ||
          errno == ENOENT;
 }
 
-// Most tasks, threads included. Stops code that starts more tasks between two checks than the machine can hold.
+// The most tasks, threads included. This limit stops code that could exhaust the machine between two checks.
 constexpr int kMostTasks = 1024;
-// Without a process namespace, each task is found and killed separately, while the others compete for the processors.
+// The limit is lower without a process namespace, where each task is found and killed separately. Meanwhile the other
+// tasks compete for the processors.
 constexpr int kMostTasksWithoutNamespace = 256;
 
-// Since Linux 6.14 a process namespace has its own pid_max; before, it applied to the whole machine. Root has no other
-// limit of tasks. A user has a limit for all tasks in a user namespace.
+// Limits the tasks in the new namespace. Since Linux 6.14 a process namespace has its own pid_max; before, pid_max
+// applied to the whole machine. Root has no other task limit. Other users have RLIMIT_NPROC, which counts the
+// tasks in a user namespace.
 void limit_tasks() {
   utsname system{};
   int major = 0, minor = 0;
@@ -243,7 +246,7 @@ void limit_tasks() {
   if (geteuid() != 0) setrlimit(RLIMIT_NPROC, &most);
 }
 
-// The tasks that the user has now.
+// The number of tasks that the user has now.
 rlim_t tasks_of(uid_t user) {
   rlim_t tasks = 0;
   std::error_code error;
@@ -257,9 +260,10 @@ rlim_t tasks_of(uid_t user) {
   return tasks;
 }
 
-// Foreign code cannot reach this process, only the supervisor, whose waits it may delay.
+// The guardian: waits until the supervisor ends, or kills it. Foreign code cannot reach the guardian, but may delay
+// the supervisor's waits.
 [[noreturn]] void guard(pid_t supervisor, int control) {
-  constexpr int kMostMilliseconds = 6000;  // for the supervisor to end in order
+  constexpr int kMostMilliseconds = 6000;  // until the supervisor must have ended
   const int process = open_process(supervisor);
   for (int fd = 0; fd < 1024; ++fd) {
     if (fd != control && fd != process) close(fd);
@@ -268,7 +272,7 @@ rlim_t tasks_of(uid_t user) {
   while (process >= 0 && poll(news, 2, -1) < 0 && errno == EINTR) {
   }
   if (process >= 0 && !news[1].revents) poll(news + 1, 1, kMostMilliseconds);
-  if (process >= 0) kill(supervisor, SIGKILL);  // the id stays the supervisor's until we wait for it
+  if (process >= 0) kill(supervisor, SIGKILL);  // the id stays the supervisor's until waitpid
   while (waitpid(supervisor, nullptr, 0) < 0 && errno == EINTR) {
   }
   _exit(0);
@@ -324,13 +328,14 @@ bool is_descendant(pid_t process) {
 
 namespace {
 
-// Kills all descendants except those of one child.   Returns: whether any of them had not ended.
+// Kills all descendants except the child `except` and its descendants.   Returns: whether any of the killed processes
+// was still running.
 bool kill_descendants(pid_t except, void (*tell_alive)()) {
   bool found = false;
   std::set<pid_t> known{getpid()};  // parents are listed before their children
   for (const pid_t process : descendants(~std::uint64_t{0}, except)) {
-    tell_alive();  // this loop may take long if each of these processes gets as much time as this one
-    const int fd = open_process(process);  // first, so that the id stays this process's during the checks
+    tell_alive();  // this loop is slow if each of these processes gets as much processor time as this one
+    const int fd = open_process(process);  // first, so that no other process gets the id during the checks
     const ProcessStatus status = process_status(process);
     if (fd >= 0 && known.contains(status.parent)) {
       known.insert(process);
@@ -345,22 +350,23 @@ bool kill_descendants(pid_t except, void (*tell_alive)()) {
 
 bool end_children(pid_t except, void (*tell_alive)()) {
   const bool in_namespace = getpid() == 1;
-  // Counts rounds of a millisecond, not time: without a namespace, processes that are left now would never end, and
-  // they may leave this process little time.
+  // Counts rounds of a millisecond, not time, because the other processes may leave this one little processor time.
+  // Without a namespace there are more rounds: a process that is left over would never end.
   for (int rounds = in_namespace ? 4'000 : 40'000; rounds > 0; --rounds) {
     tell_alive();
-    if (except < 0 && in_namespace) kill(-1, SIGKILL);  // all processes at once, even those started meanwhile
+    if (except < 0 && in_namespace) kill(-1, SIGKILL);  // all processes at once, even new ones
     bool left = false;
     for (const pid_t child : own_children()) {
       if (child == except) continue;
       left = true;
-      // Its id stays valid until we wait for it, which only we can do. Its group, if it leads one, ends at once.
+      // The child's id stays valid until waitpid, which only this process can call. If the child leads a process group,
+      // the group ends at once.
       kill(-child, SIGKILL);
       kill(child, SIGKILL);
     }
     if (!left) return true;
-    // An ended process counts towards the task limit until it is collected. So as long as any of them runs, none is
-    // collected, and soon no more can be started.
+    // An ended process counts towards the task limit until it is collected. So no process is collected while any still
+    // runs, and soon the code cannot start more.
     const bool running = kill_descendants(except, tell_alive);
     poll(nullptr, 0, 1);
     if (running) continue;
@@ -373,13 +379,13 @@ bool end_children(pid_t except, void (*tell_alive)()) {
 
 namespace {
 
-// The numbers of these calls in one table of system calls. A filter only sees numbers and arguments, so calls with
-// their arguments in memory are not listed.
+// The numbers of system calls in one processor mode. A filter sees only numbers and arguments, not memory, so it cannot
+// check calls with arguments in memory.
 struct Calls {
   std::uint32_t prlimit, clone, clone3, prctl;
-  // memfd_create, memfd_secret, io_uring_setup: memory that no limit counts. vmsplice: a page of 4 KiB in a pipe may
-  // keep 2 MiB. bpf, perf_event_open: these reach other processes. unshare, setns: new namespaces. add_key,
-  // request_key, keyctl: keys outlive the code.
+  // memfd_create, memfd_secret and io_uring_setup allocate memory that no limit counts. With vmsplice, a page of 4 KiB
+  // in a pipe may keep 2 MiB allocated. bpf and perf_event_open reach other processes. unshare and setns enter
+  // namespaces. add_key, request_key and keyctl make keys that outlive the code.
   std::array<std::uint32_t, 11> forbidden;
   std::vector<std::uint32_t> system_v;  // calls that make System V objects
 };
@@ -400,21 +406,22 @@ void append_rules(std::vector<sock_filter>& steps, const Calls& calls, bool syst
        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0, 1, 0), refuse, allow});
   add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.clone, 0, 4), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
        BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, kNamespaces, 0, 1), refuse, allow});
-  // Huge pages must stay off: one part of a huge page in a socket's buffer would keep the whole page.
+  // Huge pages must stay off: a part of a huge page in a socket's buffer would keep the whole page allocated.
   add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.prctl, 0, 4), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, PR_SET_THP_DISABLE, 0, 1), refuse, allow});
-  // The C library then uses clone.
+  // Without clone3, the C library uses clone.
   add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.clone3, 0, 1), BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | ENOSYS),
        allow});
 }
 
 }  // namespace
 
-// In a user namespace of its own, code could mount file systems: memory that is not counted, and control groups.
+// The code must not make a user namespace. In a user namespace, code could mount file systems in memory, which no limit
+// counts, and control groups.
 void forbid_calls(bool system_v) {
-  constexpr std::uint32_t kMemfdSecret = 447;  // older headers lack it
+  constexpr std::uint32_t kMemfdSecret = 447;  // older headers lack SYS_memfd_secret
   std::vector<sock_filter> i386, steps{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, arch))};
-  // The last four: ipc, which makes all three objects, semget, shmget and msgget.
+  // The last four numbers are those of ipc, which makes all three kinds of objects, semget, shmget and msgget.
   append_rules(i386,
                {340, 120, 435, 172, {356, 447, 425, 316, 357, 336, 310, 346, 286, 287, 288}, {117, 393, 395, 399}},
                system_v);

@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kScalars[] = {"f32", "f64"};
 
-// The processor that the compiler compiles for, as it says; empty if it does not.
+// The processor for which the compiler compiles, as -dumpmachine reports it; empty if it reports none.
 std::string target_of(const std::string& compiler) {
   const Scratch scratch(cache_folder());
   int status = 0;
@@ -28,7 +28,7 @@ std::string target_of(const std::string& compiler) {
   return status == 0 ? said.substr(0, said.find('\n')) : "";
 }
 
-// With -flto a compiler writes its own language instead of assembly.
+// Whether the compiler has written its own language in place of assembly, as with -flto.
 bool is_for_link_time(const std::string& assembly) {
   return assembly.find(".gnu.lto_") != assembly.npos || assembly.starts_with("; ModuleID");
 }
@@ -39,7 +39,7 @@ Json row_of(const std::vector<FusedLine>& plan) {
   return row;
 }
 
-// The plan in kept_content, without the checksum line. Null if it is not a plan.
+// The plan in a cached file, without the checksum line. Null if there is no plan.
 Json kept_plan(const fs::path& file) {
   const std::string text = kept_content(file).value_or("");
   const Json plan = Json::parse(text.substr(0, text.find('\n')), nullptr, false);
@@ -82,7 +82,7 @@ Json recorded_plan(const std::string& build, const fs::path& source, const std::
     const Json recorded = {{"f32", row_of(plan.f32)}, {"f64", row_of(plan.f64)}};
     if (again.not_covered.empty()) keep_plan(recorded, file);
     return recorded;
-  } catch (const std::runtime_error&) {  // a compiler without assembly, or a source that is gone
+  } catch (const std::runtime_error&) {  // the compiler writes no assembly, or the source is missing
     return nullptr;
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the contraction plans of the built-in toolchains and of the cpu-fma lanes with those of each compiler in
-// toolchains/plans.json. A compiler that fuses different products changes verdicts, and no other test would say why.
+// Compares the contraction plans of the built-in toolchains and of the cpu-fma lanes with the goldens in
+// toolchains/plans.json, by compiler. A compiler that fuses other products changes verdicts, and no other test would
+// show the reason.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -25,8 +26,8 @@ using Json = nlohmann::ordered_json;
 
 const fs::path kGoldens = fs::path(GRAZE_SOURCE_DIR) / "subjects/toolchains/plans.json";
 
-// "GCC 12.2.0" or "clang 14.0.6", by the first line of the compiler's --version; empty for others, and where the
-// standard library's headers are missing.
+// "GCC 12.2.0" or "clang 14.0.6", from the first line of the compiler's --version. Empty for other compilers, and if
+// the headers of the standard library are missing.
 std::string version_of(const std::string& compiler) {
   const Scratch scratch(cache_folder());
   int status = 0;
@@ -34,7 +35,7 @@ std::string version_of(const std::string& compiler) {
   const std::string line = said.substr(0, said.find('\n'));
   std::smatch found;
   if (status != 0 || !std::regex_search(line, found, std::regex("[0-9]+\\.[0-9]+\\.[0-9]+"))) return "";
-  // clang has every processor's code, but not every processor's headers.
+  // clang compiles for every processor, but may lack the headers for a processor.
   shell_output("printf '#include <tuple>' | " + compiler + " -x c++ -fsyntax-only -", scratch.path(), status);
   return status != 0 ? "" : (line.find("clang") != line.npos ? "clang " : "GCC ") + found.str();
 }
@@ -51,7 +52,7 @@ struct ContractionPlans : testing::Test {
   }
   static void TearDownTestSuite() { fs::remove_all(folder); }
 
-  // Compares, and writes what was found into plans.json.new if it differs or has no golden.
+  // Compares the plans with their goldens. Writes plans that differ, or that have no golden, into plans.json.new.
   void expect_golden(const std::string& builder, const std::string& compiler, const Json& found) {
     const Json golden = goldens.value(builder, Json::object()).value(compiler, Json());
     if (golden == found) return;
@@ -79,7 +80,7 @@ TEST_F(ContractionPlans, OfBuiltInToolchainsAreTheGoldens) {
     if (toolchain.rounding != Rounding::contracted) continue;
     const std::string compiler = version_of(toolchain.cxx);
     if (compiler.empty()) {
-      std::printf("not here: %s (install %s)\n", toolchain.name.c_str(), toolchain.needs.c_str());
+      std::printf("not installed: %s (install %s)\n", toolchain.name.c_str(), toolchain.needs.c_str());
       continue;
     }
     Json found;
@@ -99,7 +100,7 @@ TEST_F(ContractionPlans, OfBuiltInToolchainsAreTheGoldens) {
   skip_without_golden();
 }
 
-// A comment above the code only moves lines. Different code, operations or files change the plan.
+// A comment above the code only moves lines, and does not change the plan. Other code or operations change the plan.
 TEST_F(ContractionPlans, DoNotChangeWithLineNumbers) {
   const auto plan_of = [](const std::string& source, const char* instruction) {
     fs::create_directories(folder);
@@ -118,7 +119,7 @@ TEST_F(ContractionPlans, DoNotChangeWithLineNumbers) {
   EXPECT_NE(plan_of("x = a * b + c;\n", "vfmadd231sd"), hash);
 }
 
-// A campaign records the plan of each lane of a toolchain. Later verbs refuse another build, and name a changed plan.
+// A campaign records the plan of each toolchain's lane. Later verbs refuse another build, and name a changed plan.
 TEST_F(ContractionPlans, AreRecordedAndNamedWhenABuildIsRefused) {
   if (version_of("x86_64-linux-gnu-g++").empty()) GTEST_SKIP() << "no x86_64-linux-gnu-g++";
   fs::create_directories(folder);
@@ -166,7 +167,7 @@ TEST_F(ContractionPlans, AreRecordedAndNamedWhenABuildIsRefused) {
                                 plan(fused, "f32")["plan"].get<std::string>() + " now"}));
 }
 
-// A damaged plan in the cache is rebuilt.
+// A damaged plan in the cache is read again from the compiler's assembly.
 TEST_F(ContractionPlans, AreKeptBesideTheBuild) {
   if (version_of("x86_64-linux-gnu-g++").empty()) GTEST_SKIP() << "no x86_64-linux-gnu-g++";
   fs::create_directories(folder);
@@ -185,7 +186,8 @@ TEST_F(ContractionPlans, AreKeptBesideTheBuild) {
   EXPECT_TRUE(recorded_plan("0123456789abcdef", source, "intersects", recipe, {}).is_null());
 }
 
-// Toolchains that round as written fuse nothing, nor do those of the x87. One algorithm shows it.
+// Toolchains that round as written fuse nothing. Toolchains for the x87 fuse nothing either. The
+// test checks one algorithm.
 TEST_F(ContractionPlans, WhereNothingIsContractedNothingIsFused) {
   const Lane& lane = published_lanes().front();
   for (const Toolchain& toolchain : built_in_toolchains()) {
@@ -197,7 +199,7 @@ TEST_F(ContractionPlans, WhereNothingIsContractedNothingIsFused) {
   }
 }
 
-// GRAZE_FMA_COMMAND compiles the code of the lanes cpu-fma as a release of Graze has it.
+// GRAZE_FMA_COMMAND compiles the code of the lanes cpu-fma with the flags of a release of Graze.
 TEST_F(ContractionPlans, OfCpuFmaAreTheGoldens) {
 #if defined(__x86_64__)
   const Scratch scratch(cache_folder());

@@ -70,7 +70,7 @@ KernelCosts kernel_costs(std::span<const cuda::CudaBuild* const> builds) {
   }
   const auto incomplete = [](const std::vector<double>& passes) { return passes.size() != std::size_t{kPasses}; };
   if (costs.nanoseconds.size() != builds.size() || std::ranges::any_of(costs.nanoseconds, incomplete))
-    throw std::runtime_error("the times that were measured cannot be read");
+    throw std::runtime_error("the output of graze-subject-device cannot be read");
   return costs;
 }
 

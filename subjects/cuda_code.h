@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What runs the build of a user's CUDA source: a device, or the build's twin.
+// The code that runs for a build of a user's CUDA source: its PTX on a device, or its twin.
 #pragma once
 
 #include <cstdint>
@@ -14,22 +14,23 @@
 
 namespace graze::subjects {
 
-// The build's twin as it was kept; null if it has none.   Throws: std::runtime_error if its file has changed since.
+// The build's twin from the cache; null if the build has none.   Throws: std::runtime_error if the twin's file has
+// changed since it was built.
 std::shared_ptr<const SealedCopy> twin_of(const cuda::CudaBuild& build);
 
-// The code for a device or, without one, for the twin. Its `what` is empty if there is neither.
+// The code that runs on a device if `on_device` is set, otherwise as the twin. `what` is empty if there is neither.
 Code code_of(const cuda::CudaBuild& build, const Wanted& wanted, bool on_device,
              std::shared_ptr<const SealedCopy> twin);
 
-// What the kernels of builds cost on this machine's device.
+// The times that the kernels of builds take on this machine's device.
 struct KernelCosts {
   std::string device;
-  std::vector<std::vector<double>> nanoseconds;  // per pair: for each build, one number per pass; none is empty
+  std::vector<std::vector<double>> nanoseconds;  // per pair; for each build, one number for each pass
 };
-inline constexpr std::uint32_t kPairsOfKernelCosts = 1u << 20;  // of the stratum `uniform`, in device memory already
+inline constexpr std::uint32_t kPairsOfKernelCosts = 1u << 20;  // of the stratum `uniform`, already in device memory
 
-// Measures in a process of its own, for at most a minute.   Throws: std::runtime_error that says why there is no cost,
-// such as a missing device; Stopped.
+// Measures the times in a separate process, for at most a minute.   Throws: std::runtime_error with the reason why
+// there are no times, such as a missing device; Stopped.
 KernelCosts kernel_costs(std::span<const cuda::CudaBuild* const> builds);
 
 }  // namespace graze::subjects

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CUDA sources whose function is __host__ __device__: their lanes on the host.
+// Tests of the host's lanes of CUDA sources whose function is __host__ __device__.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// If one product of the area is fused, the two no longer cancel exactly.
+// If one product of the area is fused, the two products no longer cancel exactly.
 constexpr char kBoth[] = R"(#include <cuda_runtime.h>
 #ifdef __CUDACC__
 #define HD __device__ __forceinline__ __host__
@@ -42,7 +42,7 @@ struct CudaHost : testing::Test {
     std::ofstream(folder / name) << text;
     return (folder / name).string();
   }
-  // Returns: whether NVRTC is there.
+  // Opens the subject.   Returns: false without NVRTC.
   bool opens(const std::string& subject, std::vector<std::string> flags = {}) {
     try {
       Wanted wanted = parse_subject(subject);
@@ -83,7 +83,7 @@ TEST_F(CudaHost, HasTheLanesOfACppSource) {
   EXPECT_TRUE(has_source_as_built(*cpu));
   EXPECT_FALSE(has_source_as_built(*fused));
 
-  // A record names the host's builds, if its lanes ran. An older record has none, and still opens.
+  // A record names the host's builds, if lanes of the host ran. An older record names none, and can still be opened.
   EXPECT_FALSE(record({"hd/f32/cuda-fma"})[0].contains("host"));
   Json spec{{"subjects", record({"hd/f32/cpu", "hd/f32/cuda-fma"})}};
   EXPECT_GE(spec["subjects"][0].at("host").at("builds").size(), 1u) << spec;

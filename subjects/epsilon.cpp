@@ -16,12 +16,12 @@ namespace graze::subjects {
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 20, kMostListed = 6;
-constexpr std::size_t kMostTokens = 64;  // of a constant's value; a longer one is no epsilon
-constexpr double kSmall = 1e-3;          // bare numbers up to this may be an epsilon to tune
-constexpr double kLargest = 0.1;         // numbers up to this may be the cause of a wrong verdict
-constexpr std::size_t kMostNumbers = 6;  // that may be the cause
+constexpr std::size_t kMostTokens = 64;  // of a constant's value; a longer value is no epsilon
+constexpr double kSmall = 1e-3;          // the largest bare number that may be an epsilon to tune
+constexpr double kLargest = 0.1;         // the largest number that may cause a wrong verdict
+constexpr std::size_t kMostNumbers = 6;  // the most numbers that are listed as possible causes
 
-enum class Kind { word, number, sign, line_end };  // line_end: of a directive, such as #define
+enum class Kind { word, number, sign, line_end };  // line_end: the end of a directive, such as #define
 
 struct Token {
   Kind kind;
@@ -31,7 +31,7 @@ struct Token {
 
 bool is_in_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '$'; }
 
-// The tokens of C, C++ or CUDA, without comments, texts and characters.
+// The tokens of a source in C, C++ or CUDA, without comments, strings and character literals.
 class Tokens {
  public:
   explicit Tokens(std::string_view text) : text_(text) {
@@ -111,7 +111,7 @@ class Tokens {
   bool in_directive_ = false;
 };
 
-// The value of a number with a point or an exponent; nothing for whole numbers and for anything else.
+// The value of a number with a point or an exponent; nothing for any other text, such as a whole number.
 std::optional<double> value_of(std::string_view written) {
   std::string digits(written);
   std::erase(digits, '\'');
@@ -172,7 +172,7 @@ class Finder {
   }
   bool is(std::size_t t, std::string_view word) const { return t < tokens_.size() && of(t) == word; }
 
-  // If a constant's name stands here, the first token of its value: NAME = VALUE, NAME{VALUE}, #define NAME VALUE.
+  // If token t is the name of a constant, the first token of its value: NAME = VALUE, NAME{VALUE}, #define NAME VALUE.
   std::optional<std::size_t> value_after(std::size_t t) const {
     if (tokens_[t].kind != Kind::word) return std::nullopt;
     const std::size_t first = t + 2;
@@ -182,14 +182,14 @@ class Finder {
     }
     const bool in_braces = is(t + 1, "{") && t + 2 < tokens_.size() && tokens_[t + 2].kind == Kind::number;
     if (!in_braces && !(is(t + 1, "=") && !is(t + 2, "="))) return std::nullopt;
-    // A declaration has a type before its first name, and commas between names; "x = 1e-3;" changes a variable.
+    // A declaration has a type before its first name, and commas between names. "x = 1e-3;" only changes a variable.
     while (t != next_name_ && t >= 2 && is(t - 1, ",") && tokens_[t - 2].kind == Kind::word) t -= 2;
     const bool declared = t == next_name_ || (t >= 1 && tokens_[t - 1].kind == Kind::word && !is(t - 1, "return"));
     return declared ? std::optional(first) : std::nullopt;
   }
 
-  // The end of the value that starts at the token: for a macro the end of its line, else , ; ) or } outside brackets.
-  // Returns: `first` if there is no short value.
+  // The token after the value that starts at token `first`. The value of a macro ends with its line, another value at
+  // the next , ; ) or } outside brackets.   Returns: `first` if there is no short value.
   std::size_t end_of_value(std::size_t first) const {
     const bool of_macro = first >= 3 && is(first - 2, "define") && is(first - 3, "#");
     int depth = 0;
@@ -214,7 +214,7 @@ class Finder {
       ++begin_number, --end_number;
     const bool is_number = end_number - begin_number == 1;
     const std::optional<double> value = is_number ? value_of(of(begin_number)) : std::nullopt;
-    if (!value && !sounds_like_epsilon(name)) return;  // its value may contain a bare number
+    if (!value && !sounds_like_epsilon(name)) return;  // the value may still contain a bare number
     if (!value) begin_number = first, end_number = end;
     constant_ends_ = end;
     add(name, begin_number, end_number, value);
@@ -235,9 +235,9 @@ class Finder {
   std::string_view text_;
   std::vector<Token> tokens_;
   std::vector<Epsilon> found_;
-  std::map<std::string, std::size_t> index_;  // in found_, by name
-  std::size_t next_name_ = ~std::size_t{0};   // after the value of a constant and a comma
-  std::size_t constant_ends_ = 0;             // where the value of the last constant that was added ends
+  std::map<std::string, std::size_t> index_;  // the index in found_, by name
+  std::size_t next_name_ = ~std::size_t{0};   // the token after the last constant's value and a comma
+  std::size_t constant_ends_ = 0;             // the token after the value of the last constant that was added
 };
 
 std::string listed(const std::filesystem::path& source, const std::vector<Epsilon>& epsilons) {
@@ -305,7 +305,7 @@ std::string written_value(const Epsilon& epsilon, double value) {
 
 std::string with_value(std::string_view text, const std::vector<Epsilon>& epsilons, double value,
                        SourceLanguage language) {
-  std::map<std::size_t, std::pair<std::size_t, const Epsilon*>> places;  // from begin to end
+  std::map<std::size_t, std::pair<std::size_t, const Epsilon*>> places;  // the end and the epsilon, by the begin
   for (const Epsilon& epsilon : epsilons) {
     for (const SourcePlace& place : epsilon.places) places[place.begin] = {place.end, &epsilon};
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The epsilon of a user's source: a constant such as kEps, or a small number such as 1e-6f. Finds it in the text, and
-// writes the text with another value. The text may be anything: it is read once, from front to back.
+// The epsilon of a user's source: a constant such as kEps, or a small number such as 1e-6f. These functions find an
+// epsilon in the text, and write the text with another value. The text may be anything, and is read once, from front to
+// back.
 #pragma once
 
 #include <cstddef>
@@ -12,35 +13,35 @@
 
 namespace graze::subjects {
 
-// Decides how a value is cast to its former type. cpp: also CUDA.
+// Determines the syntax of the cast to a value's former type. cpp: C++ and CUDA.
 enum class SourceLanguage { c, cpp };
 
-// The bytes [begin, end) of a source, in a line counted from 1.
+// The bytes [begin, end) of a source, and the number of their line, from 1.
 struct SourcePlace {
   std::size_t begin, end;
   int line;
 };
 
 struct Epsilon {
-  std::string name;                 // the constant's name; for a bare number, the number as it is written
+  std::string name;                 // the constant's name; a bare number's text
   std::string written;              // its value in the source: "1e-6f", "4 * FLT_EPSILON"
-  std::optional<double> value;      // if it is a number
-  std::vector<SourcePlace> places;  // at least one: where the value stands
+  std::optional<double> value;      // nothing if the text is not a number
+  std::vector<SourcePlace> places;  // of the value; at least one
 };
 
-// The constants with a value, and the bare numbers between 0 and 1e-3, each once, in order of their first place.
-// Throws: std::runtime_error for a text of more than 1 MiB.
+// The constants that have a value, and the bare numbers between 0 and 1e-3. Each occurs once, in order of first
+// place.   Throws: std::runtime_error for a text of more than 1 MiB.
 std::vector<Epsilon> epsilons_in(std::string_view text);
 
-// The numbers above 0 and up to 0.1, FLT_EPSILON, DBL_EPSILON and std::numeric_limits<…>::epsilon(), as they are
-// written: each once, at all its places, the first six.   Throws: as epsilons_in.
+// The first six different texts of numbers above 0 and up to 0.1, FLT_EPSILON, DBL_EPSILON and
+// std::numeric_limits<…>::epsilon(), each with all its places.   Throws: as epsilons_in.
 std::vector<Epsilon> small_numbers_in(std::string_view text);
 
-// The epsilon of that name or, for an empty one, the obvious one: the only constant whose name contains eps or tol, or
-// else the only small number.   Throws: UsageError that lists the candidates, or says how to name the constant.
+// The epsilon with this name. Without a name, the only constant whose name contains eps or tol, or else the only small
+// number.   Throws: UsageError that lists the candidates, or says how to name the constant.
 Epsilon epsilon_of(const std::filesystem::path& source, std::string_view text, const std::string& name);
 
-// The text with this value at each place of the epsilons, of the same type as before.
+// The text with this value at each place of the epsilons. The new value has the same type as the old one.
 std::string with_value(std::string_view text, const std::vector<Epsilon>& epsilons, double value,
                        SourceLanguage language);
 

@@ -113,7 +113,7 @@ TEST(SmallNumbers, AreWhatMayBeAnEpsilonAtAllTheirPlaces) {
             "x < 0.25f || y < 0.25f || z < 0.25;");
 }
 
-// Whatever the text is, places lie within it and do not overlap, and reading it takes time in proportion to its length.
+// In any text, places are within the text and do not overlap. The time to read a text is proportional to its length.
 TEST(Epsilon, AnyTextIsReadOnce) {
   const auto expect_places = [](const std::string& text) {
     std::vector<Epsilon> all = epsilons_in(text);

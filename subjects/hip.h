@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contraction by HIP's compiler for AMD's GPUs, read from their machine code. Nothing runs, so there is no verdict.
+// The contractions that HIP's compiler makes for AMD's GPUs, read from its assembly. No code runs, so there is no
+// verdict.
 #pragma once
 
 #include <filesystem>
@@ -14,16 +15,16 @@ namespace graze::subjects {
 
 inline constexpr std::string_view kHipTargets[] = {"gfx90a", "gfx1100"};
 
-// Why hipcc cannot compile here; empty if it can.
+// The reason why hipcc cannot compile here; empty if there is none.
 std::string why_no_hip();
 
-// The plan of `function`, which takes two triangles, for the target. The source is HIP, CUDA without its headers, or
-// C++.   Throws: std::runtime_error with the compiler's first error; Stopped.
+// The contraction plan for the target of `function`, which takes two triangles. The source is in HIP, CUDA without its
+// headers, or C++.   Throws: std::runtime_error with the compiler's first error; Stopped.
 ContractionPlan hip_plan(const std::filesystem::path& source, const std::string& function, std::string_view target,
                          const std::vector<std::string>& flags);
 
-// The contractions that nvcc and ptxas make in a CUDA lane, as its twin replays them. Empty without a twin, or for a
-// lane without contractions.   folder: of the source.
+// The contractions that nvcc and ptxas make in a CUDA lane, as the lane's twin replays them. Empty if the lane has no
+// twin or no contractions.   folder: the folder of the source.
 std::vector<FusedLine> nvidia_plan(const Lane& lane, const std::filesystem::path& folder);
 
 }  // namespace graze::subjects

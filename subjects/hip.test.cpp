@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What hipcc fuses, read from the machine code of AMD's GPUs. Tests that compile are skipped without hipcc.
+// Tests of the contractions that hipcc makes, read from the assembly of AMD's GPUs. Without hipcc, tests that
+// compile are skipped.
 #include "subjects/hip.h"
 
 #include <fmt/format.h>
@@ -17,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Lines 2 to 5: fused within an expression, across statements, a quotient, nothing.
+// Line 2 has a fused product within an expression. Lines 3 and 4 have a fused product across statements. Line 5 has a
+// quotient.
 constexpr const char* kSource = R"(template <class T> __device__ bool meets(const T* a, const T* b) {
   const T u = a[0] * b[0] + a[1];
   const T v = a[2] * b[2];
@@ -98,7 +100,7 @@ TEST_F(Hip, SaysWhatDoesNotCompile) {
   }
 }
 
-// All published algorithms: products are fused, and none without contraction.
+// In all published algorithms, products are fused. Without contraction, no product is fused.
 TEST_F(Hip, ReadsThePublishedAlgorithms) {
   std::size_t read = 0;
   for (const Lane& lane : published_lanes()) {

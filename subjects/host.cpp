@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze-subject-host runs foreign code. Graze starts it, not a person. As the supervisor of foreign code:
+// graze-subject-host runs foreign code. Only Graze starts this program. As the supervisor of foreign code:
 //   graze-subject-host KIND WHAT NAME SCALAR MEMORY SECONDS DESCRIBE NAMESPACES CACHE
 // The supervisor starts this program again as the process that loads the code and forks workers:
 //   graze-subject-host --worker KIND WHAT NAME SCALAR MEMORY DESCRIBE
@@ -12,9 +12,9 @@
 //                         command TEXT "" f32             a program; see subjects/README.md
 //                         program RUN "" f32|f64|any      a program that RUN runs; see graze/program.h and toolchains.h
 //                         device FILE "" f32|f64          PTX of cuda/subject; run by graze-subject-device with CUDA
-// MEMORY: MiB that the code may use; a device's driver has no limit. SECONDS: for a pair or a block. DESCRIBE: 1 asks a
-// program to describe itself. NAMESPACES: 0 uses no process namespace. CACHE: a folder that the code cannot write to;
-// may be empty.
+// MEMORY: the MiB that the code may use; a device's driver has no limit. SECONDS: the time limit for a pair or a block.
+// DESCRIBE: 1 asks a program to describe itself. NAMESPACES: 0 uses no process namespace. CACHE: a folder that the code
+// cannot write to; may be empty.
 #include <dlfcn.h>
 #include <elf.h>
 #include <fcntl.h>
@@ -67,7 +67,7 @@ namespace {
 std::uint64_t* words;
 const void* pairs;
 
-// Exits when the receiver is gone, because nobody needs the answer.
+// Sends a message to the supervisor. Exits if the supervisor is gone, because then nobody needs the answer.
 void send_message(const void* message, std::size_t size) {
   if (send(kTalkFd, message, size, MSG_NOSIGNAL) != static_cast<ssize_t>(size)) _exit(0);
 }
@@ -110,11 +110,11 @@ std::string exported(void* library) {
   return names.empty() ? "none that it exports" : "only " + names + (count > 8 ? ", …" : "");
 }
 
-// The file to load: the sealed copy of the code that graze verified.
+// The file to load. This is the sealed copy of the code that graze verified.
 const std::string kCode = "/proc/self/fd/" + std::to_string(kCodeFd);
 
-// The sealed copy is in no folder, so its $ORIGIN is passed as a library path. The system reads that path only at
-// program start, so this program starts again.
+// Adds the folders that the code names by $ORIGIN to the library path, because the sealed copy is in no folder. The
+// system reads the library path only when a program starts, so this program starts itself again.
 void name_origin(const std::string& file, char** argv) {
   struct stat code {};
   if (fstat(kCodeFd, &code) != 0 || code.st_size == 0) return;
@@ -126,7 +126,7 @@ void name_origin(const std::string& file, char** argv) {
   std::string folders;
   for (const std::string word : {"$ORIGIN", "${ORIGIN}"}) {
     for (std::size_t at = bytes.find(word); at != bytes.npos; at = bytes.find(word, at + 1)) {
-      const std::size_t begin = bytes.find_last_of(std::string(":\0", 2), at) + 1;  // of a list of folders
+      const std::size_t begin = bytes.find_last_of(std::string(":\0", 2), at) + 1;  // of an entry in a list of folders
       std::string found(bytes.substr(begin, bytes.find_first_of(std::string(":\0", 2), at) - begin));
       found.replace(at - begin, word.size(), folder);
       folders += found + ':';
@@ -194,7 +194,8 @@ graze_subject subject_of_library(const std::string& file, const std::string& nam
   return subject;
 }
 
-// Whether foreign code forked this process from the worker, so that its call has returned here a second time.
+// Whether foreign code forked this process from the worker. In that case, the code's call returns in both
+// processes.
 bool is_copy = false;
 
 signed char answer_of(int said) {
@@ -202,20 +203,20 @@ signed char answer_of(int said) {
   return said < 0 ? kDeclined : said > 0 ? kIntersects : kDisjoint;
 }
 
-// Processor time of this thread, which does not depend on other load of the machine.
+// The processor time of this thread. Other load on the machine does not change it.
 std::uint64_t processor_nanoseconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000'000 + static_cast<std::uint64_t>(now.tv_nsec);
 }
 
-// The processor's rounding mode, precision and treatment of subnormals, as loading the code has left them. Code that
-// changes them would change the answers to the pairs that come later.
+// The processor's rounding mode, precision and treatment of subnormals after the code was loaded. Code that changes
+// these settings would change the answers to later pairs.
 class FloatControl {
  public:
   FloatControl() : modes_(modes()), x87_(x87()) {}
 
-  // Returns: whether they had changed.
+  // Sets the processor back to this state.   Returns: whether the state had changed.
   bool restore() const {
     if (modes() == modes_ && x87() == x87_) return false;
 #ifdef __x86_64__
@@ -229,7 +230,7 @@ class FloatControl {
 
  private:
 #ifdef __x86_64__
-  static unsigned modes() { return _mm_getcsr() & ~0x3fu; }  // without the flags of exceptions
+  static unsigned modes() { return _mm_getcsr() & ~0x3fu; }  // without the exception flags
   static std::uint16_t x87() {
     std::uint16_t word;
     __asm__ volatile("fnstcw %0" : "=m"(word));
@@ -257,7 +258,7 @@ class Asking {
     const std::uint64_t start = processor_nanoseconds();
     for (std::size_t i = 0; i < question.count; ++i) {
       if (!is_chosen(question.first, i)) continue;
-      if (block_ && !question.singly) {  // then the question has all pairs
+      if (block_ && !question.singly) {  // such a question is about all pairs
         ask_block(question, false, 0, question.count);
         break;
       }
@@ -265,8 +266,8 @@ class Asking {
     }
     const std::uint64_t taken = processor_nanoseconds() - start;
     if (block_ && !question.singly) {
-      // Asks in parts that begin at odd places: almost every pair gets another place in its block, modulo every power
-      // of two.
+      // Asks in parts that begin at odd places. So almost every pair gets another place in its block, modulo every
+      // power of two.
       const std::size_t half = std::min<std::size_t>(question.count, question.count / 2 | 1);
       const std::size_t first = std::min<std::size_t>(half, 3);
       ask_block(question, true, half, question.count);
@@ -283,11 +284,12 @@ class Asking {
  private:
   const Number* pair(std::size_t i) const { return static_cast<const Number*>(pairs) + 18 * i; }
 
-  // What an answer holds before a block's function writes it. It differs between the passes, so an answer that is not
-  // written is unstable.
+  // The value of an answer before a block's function writes it. The value differs between the passes, so an answer that
+  // the function does not write makes its pair unstable.
   static signed char unwritten(bool second) { return second ? kDisjoint : kDeclined; }
 
-  // A call that changes the floating-point control gets a different answer in the second pass, so it is unstable.
+  // Asks about one pair. If the call changes the floating-point control, the second pass gives a different answer, so
+  // that the pair is unstable.
   signed char one(std::size_t i, bool second) const {
     signed char said = unwritten(second);
     if (block_) {
@@ -305,7 +307,7 @@ class Asking {
     signed char said[kMostAsked];
     std::fill_n(said, kMostAsked, unwritten(second));
     block_(pair(begin), end - begin, said);
-    if (control_.restore()) _exit(1);  // then the pairs are asked one at a time
+    if (control_.restore()) _exit(1);  // the supervisor then asks one pair at a time
     for (std::size_t i = begin; i < end; ++i) put_answer(words, question, second, i, answer_of(said[i - begin]));
   }
 
@@ -314,13 +316,13 @@ class Asking {
   FloatControl control_;
 };
 
-// In the worker: answers questions forever.   ask: answers a question and returns its processor time.
+// In the worker: answers questions until the supervisor is gone.   ask: answers a question, and returns its time.
 template <class Ask>
 [[noreturn]] void serve(Ask ask) {
   const Says ready = Says::ready;
   send_message(&ready, sizeof ready);
   for (Question question; recv(kTalkFd, &question, sizeof question, 0) == sizeof question;) {
-    if (question.worker != getpid()) continue;  // meant for a worker that died before reading it
+    if (question.worker != getpid()) continue;  // sent to an earlier worker, which ended before it read the question
     Answered answered{Says::answered, 0, question.nonce, 0};
     try {
       answered.nanoseconds = ask(question);
@@ -351,7 +353,7 @@ void set_limit(int resource, rlim_t most) {
 
 constexpr rlim_t kMostFileBytes = rlim_t{1} << 30;
 
-// Limits that the system keeps for each process. The supervisor checks the sum over all processes.
+// Sets the limits that the system enforces for each process. The supervisor checks the sums over all processes.
 void set_limits(const char* mib) {
 #ifdef __SANITIZE_ADDRESS__
   static_cast<void>(mib);  // the sanitizer's shadow memory counts as data
@@ -360,10 +362,11 @@ void set_limits(const char* mib) {
 #endif
   set_limit(RLIMIT_CORE, 0);
   set_limit(RLIMIT_FSIZE, kMostFileBytes);
-  set_limit(RLIMIT_NOFILE, 1024);  // a socket's buffers are system memory, which is not charged to the process
+  set_limit(RLIMIT_NOFILE,
+            1024);  // because a socket's buffers are system memory, which does not count as the process's memory
 }
 
-// Turns off address randomisation where possible, so that code whose answers depend on addresses repeats them.
+// Turns off address randomisation where possible, so that code whose answers depend on addresses repeats its answers.
 void fix_addresses(char** argv) {
   const int now = personality(0xffffffff);
   if (now < 0 || now & ADDR_NO_RANDOMIZE || personality(static_cast<unsigned long>(now) | ADDR_NO_RANDOMIZE) < 0)
@@ -373,9 +376,9 @@ void fix_addresses(char** argv) {
 
 constexpr double kGreetingSeconds = 50;  // an emulator or another machine may be slow to start
 
-constexpr int kNotReady = 99;  // exit status of a worker that cannot start its program or open its device
+constexpr int kNotReady = 99;  // the exit status of a worker that cannot start its program or open its device
 
-// Becomes a worker.   subject: the library's description.   Throws: std::exception if it cannot.
+// Becomes a worker.   subject: the library's description.   Throws: std::exception if the worker cannot start.
 [[noreturn]] void work(const std::string& kind, const std::string& what, const std::string& scalar,
                        const graze_subject& subject) {
   if (kind == "command") {
@@ -410,7 +413,7 @@ constexpr int kNotReady = 99;  // exit status of a worker that cannot start its 
   std::abort();  // serve does not return
 }
 
-// Loads the code, then forks a worker, and another whenever one ends.
+// Loads the code, then forks a worker, and another worker whenever the last one has ended.
 int load_and_fork(char** argv, const std::string& kind, const std::string& what, const std::string& name,
                   const std::string& scalar, const char* memory, bool describe) {
   if (kind == "library") name_origin(what, argv);
@@ -450,7 +453,7 @@ int load_and_fork(char** argv, const std::string& kind, const std::string& what,
     loaded.of_blocks = 1;
     if (kind == "command" && describe) put(loaded.text, described_by(what).c_str());
   }
-  if (getpid() != self) _exit(0);  // a copy that the code made of this process while it was loaded
+  if (getpid() != self) _exit(0);  // a copy of this process, which the code forked while it was loaded
   loaded.says = Says::loaded;
   send_message(&loaded, sizeof loaded);
   pthread_atfork(nullptr, nullptr, [] { is_copy = true; });
@@ -468,8 +471,8 @@ int load_and_fork(char** argv, const std::string& kind, const std::string& what,
     }
     if (worker < 0) return 1;
     int status = 0;
-    // A worker may make this process its tracer (PTRACE_TRACEME) and then stops at each signal. It is detached and gets
-    // the signal.
+    // A worker that makes this process its tracer (PTRACE_TRACEME) stops at each signal. This loop detaches the worker
+    // and passes the signal on.
     while (waitpid(worker, &status, 0) < 0 ? errno == EINTR : WIFSTOPPED(status))
       ptrace(PTRACE_DETACH, worker, nullptr, WSTOPSIG(status));
     if (WIFEXITED(status) && WEXITSTATUS(status) == kNotReady) return 1;
@@ -501,7 +504,7 @@ int host(int argc, char** argv) {
     fcntl(kControlFd, F_SETFD, FD_CLOEXEC);
     close_range(kControlFd + 1, ~0u, 0);
     setenv("TMPDIR", argv[3], 1);
-    setenv("LC_ALL", "C", 1);  // a compiler's message, with quotes in ASCII
+    setenv("LC_ALL", "C", 1);  // so that compilers write messages with ASCII quotes
     enter_containment(*argv[4] == '1', std::uint64_t{1} << 30, kControlFd);
     set_limit(RLIMIT_FSIZE, kMostFileBytes);
     return supervise_program(std::strtod(argv[2], nullptr), std::strtoull(argv[5], nullptr, 10) << 20, argv[3],

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Subjects that attack what runs them, on the pairs that `bad` picks; on the others they say whether a is left of b.
+// Subjects that attack the processes around them on the pairs that `bad` selects. On other pairs they answer whether a
+// is left of b.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -36,13 +37,13 @@ static int good(const float a[9], const float b[9]) { return a[0] < b[0]; }
     return good(a, b);                           \
   }
 
-// Whether only its own processes are in reach.
+// Whether the code can reach only its own processes.
 static int alone(void) {
   char name[100] = {0};
   return readlink("/proc/1/exe", name, 99) > 0 && strstr(name, "graze-subject") != 0;
 }
 
-// Calls act for the mappings with this name. Some are memory that is shared with the supervisor.
+// Calls act for each mapping with this name. Some mappings are memory that is shared with the supervisor.
 static void mappings(const char* name, void (*act)(char* from, size_t bytes)) {
   FILE* maps = fopen("/proc/self/maps", "r");
   char line[1024];
@@ -162,7 +163,7 @@ static void make_segments(void) {
   while (count < 10 && (made[count] = shmget(IPC_PRIVATE, 100 << 20, 0600 | IPC_CREAT)) >= 0) ++count;
   const int limited = count < 10;
   while (count > 0) shmctl(made[--count], IPC_RMID, 0);
-  if (limited) abort();  // else the pair has an answer, and the test fails
+  if (limited) abort();  // without a limit, the pair gets an answer, and the test fails
 }
 ATTACK(eats_system_v, make_segments())
 static void make_semaphores(void) {
@@ -207,7 +208,7 @@ static void open_terminals(void) {
   for (int i = 0; i < 1024; ++i) {
     char name[40];
     snprintf(name, sizeof name, "/dev/pts/%d", i);
-    if (open(name, O_RDWR | O_NOCTTY) >= 0) return;  // then the pair has an answer, and the test fails
+    if (open(name, O_RDWR | O_NOCTTY) >= 0) return;  // the pair gets an answer, and the test fails
   }
   abort();
 }
@@ -229,7 +230,7 @@ static int parent_of(int process) {
   if (file) fclose(file);
   return parent;
 }
-// Freezes the process that loaded this code, its supervisor and itself, with control groups of either version.
+// Freezes the supervisor, the process that loaded this code, and this process, with control groups of either version.
 static int freeze(void) {
   const char* roots[] = {"/sys/fs/cgroup/freezer", "/sys/fs/cgroup/unified", "/sys/fs/cgroup"};
   const char* test = getenv("GRAZE_HOSTILE_TEST");
@@ -247,7 +248,7 @@ static int freeze(void) {
   return 0;
 }
 ATTACK(freezes_supervisor, if (freeze()) for (;;) pause(); abort())
-// Tries its name, a name that leads there from the current folder, a folder that was moved, and a file handle.
+// Tries to write to the cache by its name, by a relative name, by moving a folder, and by a file handle.
 static int write_to_cache(void) {
   char name[300], other[300];
   const char* cache = getenv("XDG_CACHE_HOME");
@@ -255,7 +256,7 @@ static int write_to_cache(void) {
   if (open(name, O_WRONLY | O_CREAT, 0600) >= 0) return 1;
   if (open("cache/graze/hostile", O_WRONLY | O_CREAT, 0600) >= 0) return 1;
   snprintf(name, sizeof name, "%s", cache ? cache : "");
-  for (int i = 0; i < 2; ++i) {  // also the folder above
+  for (int i = 0; i < 2; ++i) {  // moves the folder, and then the folder above
     snprintf(other, sizeof other, "%s-moved", name);
     if (rename(name, other) == 0) return rename(other, name) == 0;
     *strrchr(name, '/') = 0;
@@ -272,7 +273,7 @@ static int write_to_cache(void) {
   return folder >= 0 && openat(folder, "hostile", O_WRONLY | O_CREAT, 0600) >= 0;
 }
 ATTACK(writes_to_cache, if (!write_to_cache()) abort())
-// Delays the waits of the processes that wait for this one: the one that loaded this code, and its supervisor.
+// Delays the waits of the process that loaded this code, and those of the supervisor.
 static int stretch_waits(void) {
   char name[60];
   const int processes[] = {getppid(), parent_of(getppid())};
@@ -285,7 +286,7 @@ static int stretch_waits(void) {
 }
 ATTACK(stretches_waits, if (!stretch_waits()) abort(); for (;;) pause())
 static void make_namespaces(void) {
-  if (unshare(CLONE_NEWUSER | CLONE_NEWNS) == 0) return;  // then the pair has an answer, and the test fails
+  if (unshare(CLONE_NEWUSER | CLONE_NEWNS) == 0) return;  // the pair gets an answer, and the test fails
   const long child = syscall(SYS_clone, CLONE_NEWUSER | SIGCHLD, 0, 0, 0, 0);
   if (child == 0) _exit(0);
   if (child > 0) return;
@@ -297,24 +298,23 @@ static void raise_task_limit(void) {
   abort();
 }
 ATTACK(raises_task_limit, raise_task_limit())
-// Asks for memory that no limit counts, and for programs that run in the kernel for every process.
+// Makes calls for memory that no limit counts, and for programs that run in the kernel and reach every process.
 static void call_the_kernel(void) {
   const long calls[] = {SYS_bpf, SYS_perf_event_open, SYS_io_uring_setup, 447 /* memfd_secret */};
   char nothing[128] = {0};
   for (int i = 0; i < 4; ++i) {
     if (syscall(calls[i], i == 3 ? 0 : 4, nothing, sizeof nothing, -1, 0) >= 0 || errno != EPERM)
-      return;  // then the pair has an answer, and the test fails
+      return;  // the pair gets an answer, and the test fails
   }
   abort();
 }
 ATTACK(calls_the_kernel, call_the_kernel())
-// A page in a pipe that keeps a huge page, keys that stay, and files in memory.
+// Tries to keep memory: by a page in a pipe that keeps a huge page, by keys that remain, and by files in memory.
 static void keep_memory(void) {
   int ends[2];
   char page[4096] = {0};
   struct iovec part = {page, sizeof page};
-  if (pipe(ends) == 0 && vmsplice(ends[1], &part, 1, 0) >= 0)
-    return;  // then the pair has an answer, and the test fails
+  if (pipe(ends) == 0 && vmsplice(ends[1], &part, 1, 0) >= 0) return;  // the pair gets an answer, and the test fails
   if (syscall(SYS_add_key, "user", "graze-hostile", page, 8, -4) >= 0 || syscall(SYS_keyctl, 0, -4, 1) >= 0) return;
   if (prctl(PR_GET_THP_DISABLE, 0, 0, 0, 0) != 1 || prctl(PR_SET_THP_DISABLE, 0, 0, 0, 0) == 0) return;
   const char* in_memory[] = {"/dev", "/sys/fs/cgroup"};
@@ -324,13 +324,13 @@ static void keep_memory(void) {
   abort();
 }
 ATTACK(keeps_memory, keep_memory())
-// Whether the device can be opened. In its place may be the null device, which holds nothing.
+// Whether the device can be opened. The null device may be in its place, and is harmless.
 static int can_open_device(const char* name) {
   struct stat at;
   int fd = open(name, O_RDONLY | O_NOCTTY | O_NONBLOCK);
   return fd >= 0 && !(fstat(fd, &at) == 0 && S_ISCHR(at.st_mode) && at.st_rdev == makedev(1, 3));
 }
-// Devices that make others, hold memory or are terminals, and settings of the system.
+// Opens devices that make other devices, keep memory or are terminals, and settings of the system.
 static void open_devices(void) {
   const char* closed[] = {"/dev/loop-control",
                           "/dev/kvm",
@@ -348,16 +348,16 @@ static void open_devices(void) {
   const char* settings[] = {"/proc/sysrq-trigger", "/proc/sys/kernel/core_pattern",
                             "/sys/kernel/mm/transparent_hugepage/enabled"};
   for (unsigned i = 0; i < sizeof closed / sizeof *closed; ++i) {
-    if (can_open_device(closed[i])) return;  // then the pair has an answer
+    if (can_open_device(closed[i])) return;  // the pair gets an answer, and the test fails
   }
   for (int i = 0; i < 3; ++i) {
     if (open(settings[i], O_WRONLY) >= 0) return;
   }
-  if (open("/dev/null", O_RDWR) < 0 || open("/dev/urandom", O_RDONLY) < 0) return;  // what programs need
+  if (open("/dev/null", O_RDWR) < 0 || open("/dev/urandom", O_RDONLY) < 0) return;  // programs need these devices
   abort();
 }
 ATTACK(opens_devices, open_devices())
-// Shared memory that stays when nobody has it mapped.
+// Tries to keep shared memory by a descriptor, so that it remains when nobody maps it.
 static void keep_mapping(void) {
   char name[100];
   char* p = mmap(0, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -366,7 +366,7 @@ static void keep_mapping(void) {
   abort();
 }
 ATTACK(keeps_mapping, keep_mapping())
-// Read pages are the system's zero page, but each needs a page table.
+// Reads pages without writing them. Each page is the system's zero page, but needs its own page table.
 static void eat_page_tables(void) {
   const size_t bytes = (size_t)320 << 30, step = 2 << 20;
   volatile char* p = mmap(0, bytes, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);

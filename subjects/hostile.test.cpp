@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Foreign code that attacks the processes around it. Each attack is a verdict on its own pair only.
+// Foreign code that attacks the processes around it. Each attack must be a verdict on its own pair only.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -49,7 +49,7 @@ std::size_t count_in(const fs::path& folder) {
 
 struct Hostile : testing::Test {
   static inline fs::path folder, before;
-  static inline std::string mark;  // in the environment of all processes that this one starts
+  static inline std::string mark;  // in the environment of all processes that this process starts
   static inline pid_t bystander = -1;
   static inline int terminal = -1;
   static inline std::vector<Pair> pairs;
@@ -121,7 +121,7 @@ struct Hostile : testing::Test {
     });
   }
 
-  // Processes started here that still exist, except the bystander.
+  // The processes that this test started and that still exist, except the bystander.
   static std::set<pid_t> left_over() {
     std::set<pid_t> found;
     for (const auto& entry : fs::directory_iterator("/proc")) {
@@ -133,7 +133,7 @@ struct Hostile : testing::Test {
   }
   static void expect_nothing_left() {
     for (int times = 0; times < 6000 && !left_over().empty(); ++times) usleep(10'000);
-    EXPECT_TRUE(left_over().empty()) << "of " << left_over().size() << " processes the first is "
+    EXPECT_TRUE(left_over().empty()) << left_over().size() << " processes are left; the first one is "
                                      << *left_over().begin();
     EXPECT_EQ(waitpid(bystander, nullptr, WNOHANG), 0) << "an unrelated process was ended";
   }
@@ -158,7 +158,8 @@ bool has_namespaces() {
   return inside;
 }
 
-// In a chroot "/" is not a mount point, and the cache cannot be protected (subjects/README.md).
+// Whether "/" is a mount point. In a chroot, "/" is no mount point, and the cache cannot be protected
+// (subjects/README.md).
 bool root_is_a_mount_point() {
   std::ifstream in("/proc/self/mountinfo");
   for (std::string line; std::getline(in, line);) {
@@ -183,12 +184,13 @@ class EveryAttack : public Hostile, public testing::WithParamInterface<std::tupl
 TEST_P(EveryAttack, IsAVerdictOfItsPairs) {
   const auto& [attack, namespaces] = GetParam();
   if (!attack.without_namespaces && !(namespaces && has_namespaces()))
-    GTEST_SKIP() << "contained by a process namespace alone";
+    GTEST_SKIP() << "only a process namespace contains this attack";
   if (std::string_view(attack.name).starts_with("forks_a_bomb") && !namespaces && geteuid() == 0)
     GTEST_SKIP() << "without a process namespace, root has no task limit";
-  if (attack.name == std::string_view("opens_terminals") && terminal < 0) GTEST_SKIP() << "no terminal can be had";
+  if (attack.name == std::string_view("opens_terminals") && terminal < 0)
+    GTEST_SKIP() << "this system gives no terminal";
   if (attack.name == std::string_view("writes_to_cache") && !root_is_a_mount_point())
-    GTEST_SKIP() << "in a chroot the cache can be written to";
+    GTEST_SKIP() << "in a chroot, code can write to the cache";
   const std::size_t maps = count_in("/proc/self/map_files"), files = count_in("/proc/self/fd");
   {
     ForeignProcesses subject(Hostile::attack(attack.name, namespaces), Scalar::f32);
@@ -208,7 +210,7 @@ TEST_P(EveryAttack, IsAVerdictOfItsPairs) {
   }
   expect_nothing_left();
   EXPECT_TRUE(attack.without_namespaces || !fs::exists("/dev/shm/graze-hostile"));
-  EXPECT_LE(count_in("/proc/self/map_files"), maps + 2);  // the allocator may keep some
+  EXPECT_LE(count_in("/proc/self/map_files"), maps + 2);  // the allocator may keep two mappings
   EXPECT_EQ(count_in("/proc/self/fd"), files);
 }
 
@@ -267,11 +269,11 @@ INSTANTIATE_TEST_SUITE_P(Subjects, EveryAttack, testing::Combine(testing::Values
                                   (std::get<1>(of.param) ? "" : "_without_namespaces");
                          });
 
-// Root has no task limit there, so the test runs as another user.
+// Root has no task limit without a process namespace, so the test runs as another user.
 TEST_F(Hostile, ABombOfAUserWithoutANamespaceEnds) {
-  if (geteuid() != 0) GTEST_SKIP() << "EveryAttack tests it";
+  if (geteuid() != 0) GTEST_SKIP() << "for users other than root, EveryAttack tests these attacks";
   fs::permissions(folder, fs::perms::all);
-  const fs::path program = fs::read_symlink("/proc/self/exe");  // in the folder of those that it runs
+  const fs::path program = fs::read_symlink("/proc/self/exe");  // it runs other programs of the same folder
   for (const char* bomb : {"forks_a_bomb", "forks_a_bomb_of_sessions", "forks_a_bomb_in_a_chain"}) {
     SCOPED_TRACE(bomb);
     const pid_t asking = fork();
@@ -298,7 +300,7 @@ TEST_F(Hostile, ABombOfAUserWithoutANamespaceEnds) {
   }
 }
 
-// The usage of a child that does `work` and then waits, counted up to `most`.
+// The memory of a child that does `work` and then waits, counted up to `most` bytes.
 std::uint64_t usage_after(const std::function<bool()>& work, std::uint64_t most = std::uint64_t{1} << 40) {
   int ready[2];
   EXPECT_EQ(pipe2(ready, O_CLOEXEC), 0);
@@ -327,7 +329,8 @@ TEST_F(Hostile, PageTablesAreMemory) {
     for (std::size_t i = 0; i < kPages; ++i) (void)static_cast<volatile char*>(at)[i * kStep];
     return true;
   };
-  for (const std::uint64_t most : {std::uint64_t{1} << 40, std::uint64_t{1} << 20})  // both ways to count
+  for (const std::uint64_t most :
+       {std::uint64_t{1} << 40, std::uint64_t{1} << 20})  // with whole pages of files, and with shares
     EXPECT_GE(usage_after(read_pages, most), std::min<std::uint64_t>(kPages * 4096, most));
 }
 
@@ -340,7 +343,7 @@ char* written(int flags) {
   return static_cast<char*>(at);
 }
 
-// Forks a child that waits; it ends with its parent.
+// Forks a child that waits, and that ends with its parent.
 bool fork_idle() {
   const pid_t parent = getpid(), idle = fork();
   if (idle == 0) {
@@ -362,7 +365,7 @@ TEST_F(Hostile, SharedMemoryThatNoPageTableShowsIsMemory) {
   EXPECT_LT(usage_after([] { return written(MAP_SHARED) && fork_idle() && fork_idle(); }), 2 * kEaten);
 }
 
-// Only root may ask how much of it there is; see subjects/README.md.
+// Only root may ask how much of the shared memory is in use; see subjects/README.md.
 TEST_F(Hostile, SharedMemoryOfWhichAPartIsMappedIsMemory) {
   if (geteuid() != 0 || !fs::exists("/proc/self/map_files")) GTEST_SKIP() << "only for root";
   const std::uint64_t bytes = usage_after([] { return munmap(written(MAP_SHARED) + 4096, kEaten - 4096) == 0; });
@@ -381,7 +384,7 @@ TEST_F(Hostile, MemoryOfAProcessWhoseFirstThreadHasEndedIsMemory) {
       if (write(ready[1], "y", 1) == 1) pause();
       _exit(1);
     }).detach();
-    syscall(SYS_exit, 0);  // only this thread
+    syscall(SYS_exit, 0);  // ends only this thread
   }
   close(ready[1]);
   char said = 0;
@@ -398,7 +401,8 @@ TEST_F(Hostile, ChildrenThatAreLeftInSilenceEndWithTheSubject) {
   for (const bool namespaces : {true, false}) {
     auto subject = std::make_unique<ForeignProcesses>(attack("leaves_children_silently", namespaces, 1), Scalar::f32);
     expect_left_of(verdicts(*subject));
-    // Beside the supervisor, the process that loads the code and the worker. A child may still be starting.
+    // The other three processes are the supervisor, the process that loads the code, and the worker. A child may still
+    // start.
     std::size_t left = 0;
     for (int times = 0; times < 6000 && (left = left_over().size()) < 3 + children; ++times) usleep(10'000);
     EXPECT_GE(left, 3 + children);
@@ -436,7 +440,7 @@ TEST_F(Hostile, ConstructorsThatAttackAreOneLine) {
       code.namespaces = namespaces;
       try {
         const Description description = describe(code);
-        EXPECT_FALSE(description.f32 || description.f64);  // the code said so itself
+        EXPECT_FALSE(description.f32 || description.f64);  // the code itself sent this message
       } catch (const std::runtime_error& error) {
         EXPECT_NE(std::string(error.what()).find(c.name), std::string::npos) << error.what();
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
@@ -461,7 +465,7 @@ TEST_F(Hostile, CodeThatIsGoneAfterItWasReadIsLoadedAgain) {
   EXPECT_FALSE(fs::exists(file));
 }
 
-// Processes that start later also run the code that was read, not the file's new content.
+// Processes that start after the file was changed also run the code that was read, not the file's new content.
 TEST_F(Hostile, CodeThatIsReplacedOrWrittenIntoIsTheCodeThatWasRead) {
   const auto text = [](const char* compare) {
     return std::string(
@@ -512,7 +516,7 @@ TEST_F(Hostile, AProgramWhoseFileChangesEndsTheRunWithItsName) {
   ForeignProcesses subject(code, Scalar::f32);
   const std::vector<Verdict> all(pairs.size(), Verdict::intersects);
   EXPECT_EQ(verdicts(subject), all);
-  write("while read l; do echo 1; done\n");  // the same again
+  write("while read l; do echo 1; done\n");  // the same content again
   EXPECT_EQ(verdicts(subject), all);
   write("while read l; do echo 0; done\n");
   const std::unique_ptr<ForeignProcesses> later = subject.anew();
@@ -564,7 +568,7 @@ TEST_F(Hostile, DescriptionsOfProgramsAreBounded) {
   expect_nothing_left();
 }
 
-// Requests the stop while the subject hangs. Otherwise each pair would take an hour.
+// Requests the stop while the subject hangs. Without the request, each pair would take an hour.
 TEST_F(Hostile, ARequestToStopEndsEveryWait) {
   const fs::path file = built_from("hangs", "int intersects(const float a[9], const float b[9]) { for (;;) ; }");
   for (const bool namespaces : {true, false}) {
@@ -597,10 +601,10 @@ fs::path freezing_group(const std::string& name) {
   return {};
 }
 
-// Without a mount namespace, root can freeze the supervisor. A frozen supervisor sends nothing and cannot be ended.
+// Without a mount namespace, root can freeze the supervisor. A frozen supervisor sends nothing and cannot be killed.
 TEST_F(Hostile, AFrozenSupervisorIsAVerdictAndIsLeft) {
   const fs::path group = freezing_group(std::to_string(getpid()));
-  if (group.empty()) GTEST_SKIP() << "no control groups for this user";
+  if (group.empty()) GTEST_SKIP() << "this user has no control groups";
   const std::vector<Pair> all = pairs;
   pairs.erase(std::remove_if(pairs.begin(), pairs.end(), [](const Pair& pair) { return !is_bad(pair); }), pairs.end());
   ASSERT_FALSE(pairs.empty());
@@ -615,7 +619,7 @@ TEST_F(Hostile, AFrozenSupervisorIsAVerdictAndIsLeft) {
   }
   pairs = all;
   EXPECT_FALSE(left_over().empty());
-  // Repeats this because a thawed process may freeze all of them again.
+  // Thaws the processes repeatedly, because a thawed process may freeze all of them again.
   for (int times = 0; times < 1000 && rmdir(group.c_str()) != 0; ++times) {
     const bool second = fs::exists(group / "cgroup.freeze");
     std::ofstream(group / (second ? "cgroup.freeze" : "freezer.state")) << (second ? "0" : "THAWED") << std::flush;
@@ -625,9 +629,9 @@ TEST_F(Hostile, AFrozenSupervisorIsAVerdictAndIsLeft) {
   expect_nothing_left();
 }
 
-// Foreign code may delay its supervisor, but not the guardian, which is outside of its namespace.
+// Foreign code may delay its supervisor, but not the guardian, which is outside the code's namespace.
 TEST_F(Hostile, ASupervisorThatCannotEndIsEndedWithGraze) {
-  if (!has_namespaces()) GTEST_SKIP() << "by a process namespace alone";
+  if (!has_namespaces()) GTEST_SKIP() << "only a process namespace has a guardian";
   for (const bool program : {false, true}) {
     SCOPED_TRACE(program);
     const pid_t asking = fork();
@@ -642,9 +646,9 @@ TEST_F(Hostile, ASupervisorThatCannotEndIsEndedWithGraze) {
       verdicts(subject);
       _exit(0);
     }
-    std::vector<pid_t> supervisors;  // process 1 of its namespace
+    std::vector<pid_t> supervisors;  // each is process 1 of its namespace
     while (supervisors.empty()) {
-      usleep(300'000);  // until it waits
+      usleep(300'000);  // until the supervisor waits
       for (const pid_t process : left_over()) {
         const std::string status = text_of("/proc/" + std::to_string(process) + "/status");
         const std::size_t numbers = status.find("NSpid:");
@@ -659,7 +663,7 @@ TEST_F(Hostile, ASupervisorThatCannotEndIsEndedWithGraze) {
   }
 }
 
-// If a header is a pipe, the compiler waits for ever, and so does the assembler if its data is a pipe.
+// If a header is a pipe, the compiler waits for ever. If included data is a pipe, the assembler waits for ever.
 TEST_F(Hostile, WhatBuildsASubjectEndsWithARequestToStopAndWithGraze) {
   for (const char* name : {"pipe.h", "pipe.bin"}) ASSERT_EQ(mkfifo((folder / name).c_str(), 0600), 0);
   std::ofstream(folder / "header.c") << "#include \"pipe.h\"\nint intersects(const float*, const float*);";
@@ -743,7 +747,7 @@ TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
     EXPECT_EQ(run("setsid sleep 1000 & echo one; echo two >&2; exit 3", 600), 3);
     EXPECT_EQ(said, "one\ntwo\n");
     EXPECT_EQ(run("kill -9 $$", 600), 128 + SIGKILL);
-    EXPECT_EQ(run("kill -9 0", 600), 128 + SIGKILL);  // its process group
+    EXPECT_EQ(run("kill -9 0", 600), 128 + SIGKILL);  // kills its process group
     EXPECT_EQ(run("echo $TMPDIR", 600), 0);
     EXPECT_EQ(said, scratch.path().string() + '\n');
     EXPECT_EQ(run("echo 4000000000000 2>&1 > /proc/$PPID/timerslack_ns || echo refused", 600), 0);
@@ -751,10 +755,10 @@ TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
     EXPECT_EQ(run_program({{"no-such-program"}, 600, namespaces}, scratch.path(), said), 127);
     EXPECT_EQ(said, "No such file or directory\n");
     EXPECT_THROW(run("setsid sleep 1000 & sleep 1001", 0.2), std::runtime_error);
-    try {  // tail keeps the last line, here 300 MiB, and then waits
+    try {  // tail keeps the last line, which has 300 MiB here, and then waits
       run_program({{"sh", "-c", "{ head -c 300M /dev/zero; sleep 1000; } | tail -n 1"}, 600, namespaces, 100},
                   scratch.path(), said);
-      ADD_FAILURE() << "no limit of memory";
+      ADD_FAILURE() << "memory has no limit";
     } catch (const std::runtime_error& error) {
       EXPECT_TRUE(names(error.what(), {"head -c 300M", "100 MiB", "memory"})) << error.what();
     }
@@ -779,8 +783,8 @@ TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
   }
 }
 
-// If each call forks, each pair leaves one more process, but there must be no second worker. Nor may there be a second
-// process that loads the code and starts workers.
+// If each call forks, each pair leaves one more process, but there must be no second worker. There must also be no
+// second process that loads the code and starts workers.
 TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
   const std::string includes = "#include <signal.h>\n#include <unistd.h>\n",
                     function = "int intersects(const float a[9], const float b[9]) {\n";
@@ -825,8 +829,8 @@ TEST_F(Hostile, CodeThatStopsItsProcessGroupStopsOnlyItself) {
   }
 }
 
-// A tracee stops at each signal. Its tracer is the process that forks the workers. It must not mistake the stop for an
-// end: it would fork another worker too early, and the code would be loaded again.
+// A tracee stops at each signal. A worker's tracer here is the process that forks the workers. The tracer must not
+// mistake the stop for an end: it would fork another worker too early, and the code would be loaded again.
 TEST_F(Hostile, AWorkerThatIsTracedByItsParentIsAVerdictAndTheCodeStaysLoaded) {
   const fs::path loads = folder / "loads";
   const struct {
@@ -869,7 +873,7 @@ TEST_F(Hostile, AWorkerThatIsTracedByItsParentIsAVerdictAndTheCodeStaysLoaded) {
   }
 }
 
-// An unexpected line shifts all later answers. Asking about single pairs shows which pair caused it.
+// An unexpected line shifts all later answers. Asking about single pairs shows the pair that caused the line.
 TEST_F(Hostile, LinesThatWereNotAskedForAreVerdictsOfTheirPairs) {
   std::ofstream(folder / "extra.c") << R"(#include <stdio.h>
 #include <stdlib.h>
@@ -900,7 +904,8 @@ int main(int count, char** words) {
       std::vector<Verdict> expected;
       for (const Pair& pair : pairs)
         expected.push_back(is_bad(pair) || how.ends_with("before") ? Verdict::crashed : left_of(pair));
-      // A line that is written apart belongs to its pair if it comes in time, which a loaded machine may prevent.
+      // A line that is written apart counts for its pair only if it arrives in time. Load on the machine may delay
+      // the line.
       std::vector<Verdict> found;
       for (int tries = how.ends_with("apart") ? 20 : 1; tries > 0 && found != expected; --tries)
         found = verdicts(subject);
@@ -918,7 +923,7 @@ TEST_F(Hostile, ProgramsThatEndAtOnceCrashOnEveryPair) {
   }
 }
 
-// The asking process may be killed at any time; all others end with it.
+// The asking process may be killed at any time. All other processes must end with the asking one.
 TEST_F(Hostile, NothingOutlivesTheProcessThatAsks) {
   for (const char* name : {"leaves_children_silently", "forks_without_end", "stops_itself"}) {
     for (const bool namespaces : {true, false}) {

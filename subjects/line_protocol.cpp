@@ -18,8 +18,8 @@
 namespace graze::subjects {
 namespace {
 
-constexpr double kDescribeSeconds = 10;  // to start and answer
-constexpr int kSilence = 2;              // milliseconds after the last answer
+constexpr double kDescribeSeconds = 10;  // for a program to start and describe itself
+constexpr int kSilence = 2;              // milliseconds without output after the last answer
 
 std::string line_of(const float* pair) {
   std::string line;
@@ -38,7 +38,7 @@ void Lines::add(const char* bytes, std::size_t count) {
   bytes_.erase(0, taken_);
   taken_ = 0;
   bytes_.append(bytes, count);
-  if (bytes_.size() > kMostBytes) throw std::runtime_error("the program writes more than it was asked for");
+  if (bytes_.size() > kMostBytes) throw std::runtime_error("the program writes output that was not requested");
 }
 
 bool Lines::take(std::string& line) {
@@ -86,7 +86,7 @@ void LineProtocol::read_some() {
   if (count > 0) lines_.add(bytes, static_cast<std::size_t>(count));
 }
 
-// Writes and reads at the same time, so that a full pipe causes no deadlock.
+// Writes the lines, and reads meanwhile, so that a full pipe causes no deadlock.
 void LineProtocol::send(const std::string& lines) {
   expect_silence(0);
   std::size_t sent = 0;
@@ -94,7 +94,8 @@ void LineProtocol::send(const std::string& lines) {
     pollfd ready[] = {{pipes_.to, POLLOUT, 0}, {pipes_.from, POLLIN, 0}};
     poll(ready, 2, -1);
     if (ready[1].revents & POLLIN) read_some();
-    if (ready[0].revents & (POLLERR | POLLHUP)) return;  // it reads no more; answers that it has given still count
+    if (ready[0].revents & (POLLERR | POLLHUP))
+      return;  // the program has closed its input; its earlier answers still count
     if (!(ready[0].revents & POLLOUT)) continue;
     const ssize_t count = write(pipes_.to, lines.data() + sent, lines.size() - sent);
     if (count > 0) sent += static_cast<std::size_t>(count);
@@ -110,7 +111,7 @@ std::string LineProtocol::line() {
 void LineProtocol::expect_silence(int milliseconds) {
   pollfd more{pipes_.from, POLLIN, 0};
   if (!lines_.empty() || (poll(&more, 1, milliseconds) > 0 && more.revents & POLLIN))
-    throw std::runtime_error("the program writes more than it was asked for");
+    throw std::runtime_error("the program writes output that was not requested");
 }
 
 void LineProtocol::ask(const Question& question, const float* pairs, std::uint64_t* words) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program that answers on its standard output. It writes one line for each line of input, which has the 18
+// Runs a program that answers on its standard output, with one line for each line of input. A line of input has the 18
 // coordinates of a pair as hexadecimal floats (0x1.8p+1). Answers: 0 disjoint, 1 intersects, ? declined.
 #pragma once
 
@@ -15,11 +15,11 @@ namespace graze::subjects {
 // Splits a program's output into lines. The output may be anything and may be endless.
 class Lines {
  public:
-  static constexpr std::size_t kMostBytes = std::size_t{1} << 20;  // most bytes not yet taken
+  static constexpr std::size_t kMostBytes = std::size_t{1} << 20;  // the most bytes that may wait to be taken
 
-  // Throws: std::runtime_error when more than kMostBytes are waiting.
+  // Throws: std::runtime_error when more than kMostBytes wait.
   void add(const char* bytes, std::size_t count);
-  // Takes a line without its end-of-line.   Returns: whether there was a whole line.
+  // Takes the next line, without its end.   Returns: whether there was a whole line.
   bool take(std::string& line);
   bool empty() const { return taken_ == bytes_.size(); }
 
@@ -31,25 +31,25 @@ class Lines {
 // Throws: std::runtime_error for a line that is not an answer.
 signed char answer_of_line(const std::string& line);
 
-// A program's standard input and output. The input does not block.
+// A program's standard input and output. Writing to the input does not block.
 struct Pipes {
   int to = -1, from = -1;
 };
 
-// Starts the program in a shell. It ends with the calling process.   Throws: std::runtime_error.
+// Starts the program in a shell. The program ends with the calling process.   Throws: std::runtime_error.
 Pipes start_program(const std::string& command);
 
 class LineProtocol {
  public:
   explicit LineProtocol(const std::string& command) : pipes_(start_program(command)) {}
 
-  // Asks about the question's pairs, forward and then backward. Writes each answer into memory as it arrives. Then
-  // waits 2 ms for unexpected output.
+  // Asks about the question's pairs, forward and then backward. Writes each answer into `words` as it arrives. After
+  // the last answer, waits 2 ms for unexpected output.
   // Throws: std::runtime_error when the program ends, gives an invalid answer, or writes unexpected output.
   void ask(const Question& question, const float* pairs, std::uint64_t* words);
 
   // Sends a line, closes the program's input, and returns the first line of its answer. Empty when the program ends
-  // without one, writes more than Loaded can hold, or takes longer than `seconds`.
+  // without an answer; kLongAnswer if the answer does not fit into Loaded; kNoAnswer after `seconds`.
   std::string first_line(const std::string& in_answer_to, double seconds);
 
  private:
@@ -63,8 +63,8 @@ class LineProtocol {
   Lines lines_;
 };
 
-// The program's answer to `describe`; kNoAnswer if it gives none in time and does not end, kLongAnswer for a line that
-// is too long.
+// The program's answer to `describe`; kNoAnswer if it gives none in time and does not end; kLongAnswer if the answer is
+// too long.
 inline constexpr const char* kNoAnswer = "?no answer within 10 s";
 inline constexpr const char* kLongAnswer = "?an answer of 8 KiB or more";
 std::string described_by(const std::string& command);

@@ -22,10 +22,10 @@ bool is_within(const fs::path& file, const fs::path& folder) {
   return !relative.empty() && *relative.begin() != "..";
 }
 
-// A flag that names a folder or a file for the preprocessor: "-I", "dir". Its value may be the next word.
+// A compiler flag. If the flag names a folder or a file for the preprocessor, it has a name and a value: "-I", "dir".
 struct PathFlag {
-  std::string name, value;  // an empty name: another flag, with its text in `value`
-  bool is_joined = true;    // name and value are one word
+  std::string name, value;  // for any other flag: an empty name, and the flag's text in `value`
+  bool is_joined = true;    // name and value are one word; false: two words
 };
 
 std::vector<PathFlag> parse_flags(const std::vector<std::string>& words) {
@@ -43,7 +43,7 @@ std::vector<PathFlag> parse_flags(const std::vector<std::string>& words) {
   return flags;
 }
 
-// The file and all that it includes from its own folder or from these folders.
+// Adds the file, and all files that it includes from its own folder or from these folders.
 void add_includes(const fs::path& file, const std::vector<fs::path>& folders, std::set<fs::path>& files) {
   if (!files.insert(file).second) return;
   static const std::regex include(R"re(^\s*#\s*(?:include|include_next|import)\s*([<"])([^>"]+)[>"])re");
@@ -62,7 +62,7 @@ void add_includes(const fs::path& file, const std::vector<fs::path>& folders, st
   }
 }
 
-// The folder that all files and folders are in.
+// The innermost folder that contains all these files.
 fs::path common_folder(const std::set<fs::path>& files) {
   fs::path folder = files.begin()->parent_path();
   for (const fs::path& file : files) {
@@ -88,7 +88,7 @@ Portable of_source(const Opened& subject, const std::string& folder) {
       return file == normal(flag.value) || (!flag.name.empty() && is_within(file, normal(flag.value)));
     });
   };
-  std::set<fs::path> rooted = files;  // flags name folders relative to the files
+  std::set<fs::path> rooted = files;  // plus a name in each folder that the flags name, so that `common` contains it
   for (const PathFlag& flag : flags) {
     if (!flag.name.empty() && flag.name != "-include" && names_files(flag)) rooted.insert(normal(flag.value) / "any");
   }
@@ -113,7 +113,7 @@ void replace_all(std::string& text, const std::string& old, const std::string& n
     text.replace(at, old.size(), now);
 }
 
-// Folders whose files belong to the machine.
+// Folders of the system. Files in these folders are not packed.
 constexpr const char* kOfSystem[] = {"/usr/",   "/bin/", "/sbin/", "/lib/", "/lib32/",
                                      "/lib64/", "/opt/", "/etc/",  "/dev/", "/proc/"};
 
@@ -126,8 +126,8 @@ Portable of_command(const Opened& subject, const std::string& folder) {
                                        [&](const char* start) { return absolute.starts_with(start); });
     if (!file.program.empty() || of_system) {
       const std::string program = file.program.empty() ? absolute : file.program;
-      made.missing.push_back(
-          fmt::format("{}: not in the pack: {}; it has to be there.", subject.wanted.name, printable(program)));
+      made.missing.push_back(fmt::format("{}: the pack does not contain {}, which must exist where the pack runs.",
+                                         subject.wanted.name, printable(program)));
       continue;
     }
     // A file below the current folder keeps its name; the command runs in the folder that gets the files.
@@ -158,7 +158,8 @@ Portable portable(const Opened& subject) {
             {}};
   }
   if (!subject.code.not_covered.empty())
-    made.missing.push_back(fmt::format("{}: not in the pack: {}.", subject.wanted.name, subject.code.not_covered));
+    made.missing.push_back(
+        fmt::format("{}: the pack does not contain {}.", subject.wanted.name, subject.code.not_covered));
   return made;
 }
 

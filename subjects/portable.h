@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a subject consists of, to run it in another folder or on another machine.
+// The files and the arguments with which a subject runs in another folder or on another machine.
 #pragma once
 
 #include <filesystem>
@@ -11,16 +11,16 @@
 
 namespace graze::subjects {
 
-// Names in it are relative to the folder that gets the files.
+// All names are relative to the folder that gets the files.
 struct Portable {
-  std::vector<std::pair<std::string, std::filesystem::path>> files;  // the name there, and the file here
+  std::vector<std::pair<std::string, std::filesystem::path>> files;  // each name in that folder, and the file here
   std::string what;                                                  // for --subject NAME=WHAT
   std::vector<std::string> flags;
-  std::vector<std::string> missing;  // what it also needs, one sentence each
+  std::vector<std::string> missing;  // one sentence for each thing that the subject also needs
 };
 
-// For a source: the file, and the files that it includes from its own folder and the folders of its flags. For a
-// library: the file. For a command: the files that it names, except programs of the system.
+// The files of a source are the source, and the files that it includes from its own folder and from the folders of its
+// flags. A library has one file. The files of a command are those that it names, except programs of the system.
 Portable portable(const Opened& subject);
 
 }  // namespace graze::subjects

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cost of the process around foreign code: a function that does nearly nothing, asked twice about each pair.
+// Measures the cost of the processes around foreign code. The function does almost nothing, and is called twice for
+// each pair.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -18,14 +19,14 @@ void cheap_function(benchmark::State& state) {
   std::ofstream(folder / "cheap.c") << "int intersects(const float* a, const float* b) { return a[0] < b[0]; }";
   const std::string library = (folder / "cheap.so").string();
   if (std::system(("cc -O2 -shared -fPIC " + (folder / "cheap.c").string() + " -o " + library).c_str()) != 0)
-    return state.SkipWithError("expected a C compiler, found none");
+    return state.SkipWithError("cannot compile the subject: the command cc failed; install a C compiler");
   ForeignProcesses subject({"library", library, "intersects", "f32"}, Scalar::f32);
   std::vector<Pair> pairs;
   for (std::uint64_t i = 0; i < 65536; ++i) pairs.push_back(strata::generate(1, strata::Stratum::uniform, i));
   std::vector<std::uint64_t> intersects(pairs.size() / 64), declined(intersects.size());
   for (auto _ : state) {
     subject.decide(pairs.data(), pairs.size(), intersects.data(), declined.data());
-    if (declined[0] != 0) state.SkipWithError("expected answers, found none");
+    if (declined[0] != 0) state.SkipWithError("the subject gave no answers");
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(pairs.size()));
   std::filesystem::remove_all(folder);

@@ -48,7 +48,7 @@ std::string fit(const char* text) {
   return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-// The pairs, in memory that is shared with the supervisor and that only this process can write.
+// Shared memory for the pairs, which the supervisor can read and only this process can write.
 class SharedPairs {
  public:
   SharedPairs() : fd_(memfd_create("graze-pairs", MFD_CLOEXEC | MFD_ALLOW_SEALING)) {
@@ -73,7 +73,7 @@ class SharedPairs {
 };
 
 std::vector<std::string> arguments_of(const Code& code, bool describe) {
-  std::error_code none;  // only a folder that exists can be protected
+  std::error_code none;  // the folder must exist to be protected
   std::filesystem::create_directories(cache_folder(), none);
   return {code.kind,
           code.what,
@@ -86,7 +86,7 @@ std::vector<std::string> arguments_of(const Code& code, bool describe) {
           cache_folder()};
 }
 
-// The code with the content of its file.   Throws: std::runtime_error if it cannot be read.
+// The code, with the content of its file.   Throws: std::runtime_error if the file cannot be read.
 Code loadable(Code code) {
   if (code.kind != "command" && !code.content)
     code.content =
@@ -127,7 +127,7 @@ class HostProcess {
 
   const Loaded& loaded() const { return loaded_; }
 
-  // Returns: the answers; nullopt when the supervisor cannot continue. Then this object must not be used any more.
+  // Returns: the answers; nullopt when the supervisor cannot continue. After nullopt, this object must not be used.
   std::optional<Answers> ask(const Pair* pairs, std::size_t count, bool in_double) {
     if (in_double) {
       std::copy_n(&pairs[0].a[0].x, count * 18, static_cast<double*>(pairs_.at()));
@@ -161,8 +161,8 @@ class HostProcess {
 
 namespace {
 
-// Returns: the description that the code gives of itself. A program that cannot be loaded with the question is loaded
-// without it.
+// Returns: the code's description of itself. A program that fails when it is asked to describe itself is loaded without
+// that question.
 Loaded loaded_of(const Code& code) {
   if (code.kind == "command") {
     try {
@@ -201,7 +201,7 @@ std::unique_ptr<HostProcess> ForeignProcesses::idle_or_new() {
   try {
     return std::make_unique<HostProcess>(code_, false);
   } catch (const HostProcess::CannotLoad&) {
-    return nullptr;  // it could be loaded before, so this failure is the code's
+    return nullptr;  // the code could be loaded before, so it causes this failure itself
   }
 }
 
@@ -213,8 +213,8 @@ void ForeignProcesses::decide_all(const AnyPair* pairs, std::size_t count, std::
   const bool in_double = decides_doubles();
   std::unique_ptr<HostProcess> process = idle_or_new();
   bool loads = process != nullptr;
-  signed char how = kCrashed;  // for pairs without an answer
-  // Asks about pairs. Nullopt when the supervisor ended or the code can no longer be loaded.
+  signed char how = kCrashed;  // the answer for pairs that get none
+  // Asks about pairs.   Returns: nullopt when the supervisor ended, or when the code can no longer be loaded.
   const auto ask = [&](const AnyPair* of, std::size_t size) {
     std::optional<Answers> answers;
     if (!process && loads) loads = (process = idle_or_new()) != nullptr;
@@ -229,7 +229,7 @@ void ForeignProcesses::decide_all(const AnyPair* pairs, std::size_t count, std::
   for (std::size_t begin = 0; begin < count; begin += kMostAsked) {
     const std::size_t size = std::min(count - begin, kMostAsked);
     std::optional<Answers> answers = ask(pairs + begin, size);
-    if (!answers) {  // asks about single pairs to find the one at fault
+    if (!answers) {  // asks about single pairs, to find the pair at fault
       answers.emplace();
       for (std::size_t i = 0; i < size; ++i) {
         const std::optional<Answers> of_pair = ask(pairs + begin + i, 1);
@@ -250,8 +250,8 @@ void ForeignProcesses::decide_all(const AnyPair* pairs, std::size_t count, std::
       failures_[std::string(reinterpret_cast<const char*>(&pairs[at]), sizeof(AnyPair))] = verdict;
     }
   }
-  // The processes started after the files were read and have answered, so if the files are unchanged now, they ran that
-  // code.
+  // The processes started after the files were read, and have answered. So if the files are unchanged now, the
+  // processes ran the code that was hashed.
   expect_unchanged(code_.files);
   const std::lock_guard lock(mutex_);
   nanoseconds_ = nanoseconds;
@@ -291,7 +291,7 @@ Verdict ForeignProcesses::failure_of(const AnyPair& pair) {
   if (const std::optional<Verdict> verdict = kept()) return *verdict;
   std::uint64_t intersects, declined;
   decide_all(&pair, 1, &intersects, &declined);
-  return kept().value_or(Verdict::unstable);  // it failed before and does not fail now
+  return kept().value_or(Verdict::unstable);  // the code failed on this pair before, and does not fail now
 }
 
 Verdict ForeignProcesses::failure(const Pair& pair) { return failure_of(pair); }

@@ -31,8 +31,9 @@ ProgramProtocol::ProgramProtocol(const std::string& command, double seconds) : p
   graze_hello hello;
   exchange({}, &hello, sizeof hello, seconds);
   if (std::memcmp(hello.greeting, "graze 1\n", sizeof hello.greeting) != 0)
-    throw std::runtime_error("the program's greeting is not that of graze/program.h");
-  if (hello.order != 1) throw std::runtime_error("its processor has another byte order; only little-endian ones work");
+    throw std::runtime_error("the program does not begin with the greeting of graze/program.h");
+  if (hello.order != 1)
+    throw std::runtime_error("the program's processor is not little-endian; use a little-endian one");
   has_ = hello.has;
 }
 
@@ -71,8 +72,9 @@ void ProgramProtocol::exchange(const std::vector<char>& bytes, void* answer, std
     if (left <= 0) throw std::runtime_error("the program does not answer");
     pollfd ready[] = {{sent < bytes.size() ? pipes_.to : -1, POLLOUT, 0}, {pipes_.from, POLLIN, 0}};
     if (poll(ready, 2, left == kForever ? -1 : static_cast<int>(1000 * left) + 1) < 0 && errno != EINTR)
-      throw std::runtime_error("the program cannot be waited for");
-    if (ready[0].revents & (POLLERR | POLLHUP)) sent = bytes.size();  // it reads no more, and may have ended
+      throw std::runtime_error("waiting for the program failed");
+    if (ready[0].revents & (POLLERR | POLLHUP))
+      sent = bytes.size();  // the program has closed its input, and may have ended
     if (ready[0].revents & POLLOUT) {
       const ssize_t written = write(pipes_.to, bytes.data() + sent, bytes.size() - sent);
       if (written > 0) sent += static_cast<std::size_t>(written);

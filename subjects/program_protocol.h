@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program made from a subject for a toolchain (graze/program.h), which answers block by block on its standard output.
+// Reads the answers of a program that a toolchain made from a subject (graze/program.h). The program answers block by
+// block on its standard output.
 #pragma once
 
 #include <cstdint>
@@ -14,23 +15,23 @@ namespace graze::subjects {
 class ProgramProtocol {
  public:
   // Starts the program in a shell and waits for its greeting.
-  // Throws: std::runtime_error when it does not come within `seconds`, or is not a greeting.
+  // Throws: std::runtime_error when no greeting comes within `seconds`, or when the program's output is not a greeting.
   ProgramProtocol(const std::string& command, double seconds);
 
-  ~ProgramProtocol();  // the program's input ends, and so does the program
+  ~ProgramProtocol();  // closes the program's input, which ends the program
   ProgramProtocol(const ProgramProtocol&) = delete;
   ProgramProtocol& operator=(const ProgramProtocol&) = delete;
 
   bool has_f32() const { return has_ & 1; }
   bool has_f64() const { return has_ & 2; }
 
-  // Asks about the question's pairs, forward and then backward. Writes the answers into memory when all are there; the
-  // supervisor checks them.
+  // Asks about the question's pairs, forward and then backward. Writes the answers into `words` once all have arrived.
+  // The supervisor checks the answers.
   // Throws: std::runtime_error when the program ends.
   void ask(const Question& question, const void* pairs, bool in_double, std::uint64_t* words);
 
  private:
-  // Writes `bytes` and reads `count` bytes at the same time, so that a full pipe causes no deadlock.
+  // Writes `bytes`, and reads `count` bytes meanwhile, so that a full pipe causes no deadlock.
   void exchange(const std::vector<char>& bytes, void* answer, std::size_t count, double seconds);
 
   Pipes pipes_;

@@ -9,14 +9,15 @@
 
 namespace graze::subjects {
 
-// The name of the functions in such a source, for floats and for doubles.
+// The name of the function in a source that published_source writes. The function is a template for float and double.
 inline constexpr char kPublishedFunction[] = "graze_published";
 
 // One lane of each published algorithm, in the order of the lane table.
 std::vector<const Lane*> published_algorithms();
 
-// Writes the source of the lane's algorithm into the cache, with the headers that it needs, which this program
-// contains. Returns: the source.   Requires: a lane of a published algorithm.   Throws: std::runtime_error.
+// Writes the source of the lane's algorithm into the cache, with the headers that it includes. This program contains
+// these headers.   Returns: the source file.   Requires: a lane of a published algorithm.
+// Throws: std::runtime_error; Stopped.
 std::filesystem::path published_source(const Lane& lane);
 
 }  // namespace graze::subjects

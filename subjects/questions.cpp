@@ -28,7 +28,7 @@ Question Questions::next(std::uint64_t nonce) {
   return question;
 }
 
-// Skips pairs that failed and need no second answer.
+// Skips pairs that failed, because they need no second answer.
 void Questions::skip_failed() {
   while (second_ && at_ > 0 && answers_[at_ - 1] > kIntersects) --at_;
 }
@@ -80,7 +80,7 @@ void Questions::failed(signed char how) {
     most_ = 1;
   } else {
     answers_[next_pair()] = how;
-    failed_here_.fill(0);  // this pair is why
+    failed_here_.fill(0);  // this pair caused the earlier failures
     advance();
     most_ = program_ ? 1 : 2 * kMostAsked;
   }

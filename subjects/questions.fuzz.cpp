@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The subject's side of the protocol: forged, early, late and destroyed answers in shared memory, arbitrary messages,
-// and arbitrary lines of a program. In every case the questions must end, and an accepted answer must stay.
+// Plays hostile subjects: forged, early, late and destroyed answers in shared memory, arbitrary messages, and arbitrary
+// lines of a program. In every case the questions must end, and an accepted failure must remain.
 #include "subjects/questions.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace graze::subjects {
 namespace {
 
-// Whether the supervisor's state after a step is allowed after its earlier state.
+// Checks that the answers after a step may follow the answers before it.
 void must_follow(std::span<const signed char> before, std::span<const signed char> now) {
   for (std::size_t i = 0; i < now.size(); ++i) {
     must_hold(now[i] >= kDeclined && now[i] <= kUnstable, "an answer is one of enum Answer");
@@ -55,7 +55,7 @@ void ask_hostile(std::string_view bytes) {
     const auto answer = static_cast<signed char>(static_cast<int>(what >> 4) % 3 - 1);
     switch (what % 8) {
       case 0:
-      case 1: {  // as an honest worker does: all answers of a pass
+      case 1: {  // writes all answers of a pass, as an honest worker does
         for (std::size_t i = 0; i < count; ++i)
           words[(second ? kMostAsked : 0) + i] = word_of(nonce, second, i, answer);
         break;
@@ -82,7 +82,7 @@ void ask_hostile(std::string_view bytes) {
         if (questions.answered() && !program) break;
         questions.failed(how & 1 ? kCrashed : kTimedOut);
         asked = false;
-        if (program) before = before_question;  // no answer to the question counts
+        if (program) before = before_question;  // no answer to a question that failed counts
         must_hold(++failures <= (program ? 1 + 12 * count : 1 + 4 * count), "the number of failures is limited");
     }
     must_follow({before.data(), count}, questions.answers());

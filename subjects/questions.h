@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The supervisor's side of the questions: which pairs of a block still need an answer, and the answers so far.
+// The supervisor's side of the questions about a block: the pairs that still need an answer, and the answers so far.
 #pragma once
 
 #include <span>
@@ -9,9 +9,9 @@
 namespace graze::subjects {
 
 // Each pair is asked twice, forward and then backward, so that state left behind by one call shows in another. Answers
-// are accepted only in this order, and only once each. A word that is forged, early, late or for another question
-// changes nothing. A program's answers have no numbers: one extra line would give each later pair the answer of another
-// pair. So a question's answers count all or not at all, and the pair that makes it fail is found by asking it alone.
+// are accepted only in the order of the question, and only once each. A word that is forged, early, late or for another
+// question changes nothing. A program's answers have no numbers: one extra line would give each later pair the answer
+// of another pair. So either all answers to a question count, or none. Single questions find the pair that fails.
 class Questions {
  public:
   // of_blocks: the subject takes blocks of pairs. program: a program answers, by lines or block by block.
@@ -21,19 +21,20 @@ class Questions {
   // The next question.   Requires: a nonce that was not used before; !done().
   Question next(std::uint64_t nonce);
 
-  // Takes the last question's answers from memory (kWords words, each read once).   Returns: how many.
+  // Takes the last question's answers from memory (kWords words, each read once).   Returns: the number taken.
   std::size_t take(const std::uint64_t* words);
 
-  // Whether all answers to the last question are there.
+  // Whether all answers to the last question have been taken.
   bool answered() const { return asked_ == taken_; }
 
-  // The worker ended, or was ended, before the question was answered. What happens depends on the subject:
-  // - blocks: asks the block again, one pair at a time.
-  // - single pairs: the first pair without an answer gets `how`, kCrashed or kTimedOut. If no pair has an answer, it
-  //   first asks that pair alone, because code that destroys its own answers fails on a later pair.
+  // To call if the worker ended, or was ended, before it had answered. The next step depends on the subject:
+  // - blocks: the next question is about the same pairs, one at a time.
+  // - single pairs: the first pair without an answer gets `how`, kCrashed or kTimedOut. If no pair has an answer, the
+  //   next question is about that pair alone, because code that destroys its own answers fails on a later pair.
   // - a program: all answers to this question are discarded, and the next question has fewer pairs. If no pair of the
-  //   block fails alone afterwards, the failure came from the program's state. Then the pair at which it failed gets
-  //   `how`: the first one without an answer, or the last one if the program wrote more than it was asked for.
+  //   block fails alone afterwards, the failure came from the program's state. Then the pair at which the question
+  //   failed gets `how`. A question fails at the first pair without an answer, or at the last pair if the program wrote
+  //   extra lines.
   // Requires: !answered(), except for a program.
   void failed(signed char how);
 
@@ -51,20 +52,21 @@ class Questions {
 
   std::size_t count_;
   bool singly_, program_;
-  std::size_t most_ = 2 * kMostAsked;  // most answers that the next question asks for
+  std::size_t most_ = 2 * kMostAsked;  // the most answers that the next question asks for
   std::size_t asked_ = 0, taken_ = 0;  // numbers of answers, for the last question
   bool second_ = false;
-  std::size_t at_ = 0;  // forward: the first pair without an answer; backward: the one after it
+  std::size_t at_ = 0;  // forward: the first pair without an answer; backward: the pair after that one
   std::array<signed char, kMostAsked> answers_{};
   std::uint64_t nonce_ = 0;
-  // The answers before the last question.
+  // The state before the last question.
   bool second_before_ = false;
   std::size_t at_before_ = 0;
   std::array<signed char, kMostAsked> answers_before_{};
-  std::array<signed char, kMostAsked> failed_here_{};  // for a program: how a question failed at this pair; 0: none did
+  std::array<signed char, kMostAsked>
+      failed_here_{};  // of a program: how a question failed at each pair; 0: not at all
 };
 
-// Sanitises a worker's message about its code: terminates texts, makes them printable, and sets flags to 0 or 1.
+// Sanitises a worker's message about its code: ends texts, replaces control characters, and sets flags to 0 or 1.
 // Returns: whether the bytes are such a message.
 bool read_loaded(std::span<const char> bytes, Loaded& loaded);
 

@@ -32,7 +32,7 @@ const Opened& opened_of(const Lane& lane) {
   return *found;
 }
 
-// The build of the lane's variant and scalar, for the device if the lane runs there.
+// The code that runs a build of the changed source `copy` for the lane's variant, on the device if the lane runs there.
 Code cuda_code(const Lane& lane, const Opened& subject, const fs::path& copy, const std::vector<std::string>& flags) {
   for (const cuda::CudaBuild& build :
        cuda::build_cuda_subject(copy, function_of(subject), flags, cache_folder(), lane.variant)) {
@@ -41,7 +41,8 @@ Code cuda_code(const Lane& lane, const Opened& subject, const fs::path& copy, co
     if (code.what.empty()) throw std::runtime_error(cannot("run", lane.id + " as changed", build.why_no_twin));
     return code;
   }
-  throw std::runtime_error(cannot("run", lane.id + " as changed", "its function then takes another type of number"));
+  throw std::runtime_error(
+      cannot("run", lane.id + " as changed", "after the change, its function takes another type of number"));
 }
 
 SourceLanguage language_of(const Opened& subject) {
@@ -63,7 +64,7 @@ Code code_of_build(const Lane& lane, const Opened& subject, const Built& built) 
   return code;
 }
 
-// The assembly of the lane's source. Kept in this process.   Throws: std::runtime_error; Stopped.
+// The assembly of the lane's source. Each process compiles it once.   Throws: std::runtime_error; Stopped.
 const std::string& assembly_of_lane(const Lane& lane) {
   static std::mutex mutex;
   static std::map<std::string, std::string> known;
@@ -75,8 +76,7 @@ const std::string& assembly_of_lane(const Lane& lane) {
   return text;
 }
 
-// The lane's code with the products of this line rounded.   Throws: std::runtime_error if it cannot be built so;
-// Stopped.
+// The lane's code with the products of this line rounded.   Throws: std::runtime_error without such a build; Stopped.
 std::unique_ptr<ForeignProcesses> with_rounded(const Lane& lane, const FusedLine& line) {
   const Opened& subject = opened_of(lane);
   const auto text = with_rounded_products(assembly_of_lane(lane), subject.file.parent_path(), line);
@@ -86,7 +86,8 @@ std::unique_ptr<ForeignProcesses> with_rounded(const Lane& lane, const FusedLine
       lane.scalar);
 }
 
-// The text of a C or C++ lane's source; empty if it has none, or if that has changed or gone since it was built.
+// The text of the source of a host's lane. Empty if the lane has no source, or if the source has been changed or
+// removed since it was built.
 std::string source_as_built(const Lane& lane) {
   const Opened* subject = opened(lane.lane_name().subject);
   if (!subject || lane.is_cuda() ||
@@ -103,8 +104,9 @@ std::string source_as_built(const Lane& lane) {
 // The builds that changed() has made, by lane and change.
 struct Builds {
   std::mutex mutex;
-  std::map<std::string, std::unique_ptr<ForeignProcesses>> built;  // none of them runs; null: it does not compile
-  std::list<std::pair<std::string, std::unique_ptr<ForeignProcesses>>> idle;  // handed back, the last one first
+  std::map<std::string, std::unique_ptr<ForeignProcesses>>
+      built;  // without processes; null: the source does not compile
+  std::list<std::pair<std::string, std::unique_ptr<ForeignProcesses>>> idle;  // processes handed back, the latest first
 };
 
 Builds& builds() {
@@ -144,14 +146,15 @@ std::unique_ptr<ForeignProcesses> rebuilt(const Lane& lane, const std::string& t
   write_atomically(copy, text);
   const bool by_nvrtc = subject.kind == "cuda" && lane.is_cuda();
   std::vector<std::string> flags = by_nvrtc ? subject.wanted.flags : host_flags(subject);
-  const std::string folder = subject.file.parent_path().string();  // of the files that the source includes
+  const std::string folder = subject.file.parent_path().string();  // with files that the source includes
   flags.push_back((by_nvrtc ? "-I" : "-iquote") + folder);
   flags.insert(flags.end(), more_flags.begin(), more_flags.end());
   if (by_nvrtc) return std::make_unique<ForeignProcesses>(cuda_code(lane, subject, copy, flags), scalar);
   const Code code =
       code_of_build(lane, subject, build_source(copy, function_of(subject), recipe_of_lane(lane, copy), flags));
   if (!describe(code).has(scalar))
-    throw std::runtime_error(cannot("run", lane.id + " as changed", "its function then takes another type of number"));
+    throw std::runtime_error(
+        cannot("run", lane.id + " as changed", "after the change, its function takes another type of number"));
   return std::make_unique<ForeignProcesses>(code, scalar);
 }
 
@@ -161,7 +164,7 @@ std::vector<FusedLine> fused_lines_of(const Lane& lane) {
   const StopSignals stops;
   try {
     return fused_lines(assembly_of_lane(lane), subject.file.parent_path());
-  } catch (const std::runtime_error&) {  // a compiler without assembly
+  } catch (const std::runtime_error&) {  // the compiler writes no assembly
     return {};
   }
 }
@@ -173,9 +176,9 @@ std::optional<bool> may_have_epsilon(const Lane& lane) {
   if (!subject || (subject->kind != "source" && subject->kind != "cuda")) return std::nullopt;
   try {
     const std::string text = code_in(subject->file);
-    return !small_numbers_in(text).empty() ||  // which throws for a large one
+    return !small_numbers_in(text).empty() ||  // throws for a large text
            std::regex_search(text, std::regex("#[ \t]*include[ \t]*\"|epsilon", std::regex::icase));
-  } catch (const std::runtime_error&) {  // it is gone, or too large
+  } catch (const std::runtime_error&) {  // the file is missing or too large
     return std::nullopt;
   }
 }
@@ -183,13 +186,13 @@ std::optional<bool> may_have_epsilon(const Lane& lane) {
 std::vector<Epsilon> small_numbers(const Lane& lane) {
   try {
     return small_numbers_in(source_as_built(lane));
-  } catch (const std::runtime_error&) {  // it is too large
+  } catch (const std::runtime_error&) {  // the source is too large
     return {};
   }
 }
 
 void HandBack::operator()(ForeignProcesses* code) const {
-  std::unique_ptr<ForeignProcesses> ends;  // its destructor waits for processes, so it runs without the lock
+  std::unique_ptr<ForeignProcesses> ends;  // destroyed after the lock, because its destructor waits for processes
   Builds& all = builds();
   const std::lock_guard lock(all.mutex);
   all.idle.emplace_front(key, code);
@@ -223,7 +226,7 @@ ChangedCode changed(const Lane& lane, const Change& change) {
     try {
       made = change.rounded ? with_rounded(lane, *change.rounded)
                             : rebuilt(lane, text, change.doubles ? Scalar::f64 : lane.scalar, change.flags);
-    } catch (const std::runtime_error&) {  // it does not compile: the change shows nothing
+    } catch (const std::runtime_error&) {  // the changed source does not compile
     }
     found = all.built.emplace(key, std::move(made)).first;
   }
@@ -239,7 +242,7 @@ std::string in_doubles(std::string_view source) {
       begin = end;
     at = end;
   }
-  std::string functions;  // of floats, which would round
+  std::string functions;  // macros for the functions of float, which would round
   for (const char* name :
        {"acos",      "asin",  "atan",      "atan2", "cbrt",  "ceil", "copysign", "cos",   "exp",  "exp2", "fabs",
         "fdim",      "floor", "fma",       "fmax",  "fmin",  "fmod", "hypot",    "ldexp", "log",  "log2", "nearbyint",

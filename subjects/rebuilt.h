@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A user's source, rebuilt with a change and run in processes of its own: to try another epsilon, or to find the cause
-// of a wrong verdict.
+// Rebuilds a user's source with a change, and runs the build in processes of its own. Such a build tries another
+// epsilon or shows the cause of a wrong verdict.
 #pragma once
 
 #include <filesystem>
@@ -16,8 +16,8 @@
 
 namespace graze::subjects {
 
-// Why the lane's code cannot be built from another text: "it is a command, and only C, C++ and CUDA sources can be
-// rebuilt". Empty if it can.
+// The reason why the lane's code cannot be built from another text: "it is a command, and only C, C++ and CUDA sources
+// can be rebuilt". Empty if there is none.
 std::string why_not_rebuilt(const Lane& lane);
 
 // A source of a user's lane, with the epsilon in it.
@@ -32,52 +32,55 @@ struct TunableSource {
 // Throws: as epsilon_of; UsageError if the code cannot be rebuilt, or if a compiler flag defines the epsilon.
 TunableSource tunable_source(const Lane& lane, const std::string& name);
 
-// The lane's code as built from the text: the same variant, flags and limits. The cache of builds keeps it.
+// The lane's code, built from the text with the lane's variant, flags and limits. The build is cached.
 // Requires: a lane that can be rebuilt.   Throws: as build_source and cuda::build_cuda_subject; std::runtime_error
 // if the function does not take these numbers, or if CUDA code has neither a device nor a twin.
 std::unique_ptr<ForeignProcesses> rebuilt(const Lane& lane, const std::string& text, Scalar scalar,
                                           const std::vector<std::string>& more_flags = {});
 
-inline constexpr double kNegligible = 1e-36;  // a normal number in float32; comparisons with 0 keep their outcome
+// The number that replaces an epsilon. As it is positive, comparisons of 0 keep their outcome. It is a normal number in
+// float32.
+inline constexpr double kNegligible = 1e-36;
 struct Change {
-  std::vector<Epsilon> negligible = {};  // numbers to replace by this one:
+  std::vector<Epsilon> negligible = {};  // `value` replaces these numbers
   double value = kNegligible;
   std::vector<std::string> flags = {};    // further compiler flags
   bool doubles = false;                   // double replaces float
-  std::optional<FusedLine> rounded = {};  // products that the compiler fuses at this line are rounded
+  std::optional<FusedLine> rounded = {};  // the line whose fused products are rounded
 };
 
-// The lines of the lane's source at which its compiler fuses products into additions. Empty if it fuses none, or if
-// there is no source or it has changed since it was built.   Throws: Stopped.
+// The lines of the lane's source at which its compiler fuses products into additions. Empty if the compiler fuses none,
+// if there is no source, or if the source has changed since it was built.   Throws: Stopped.
 std::vector<FusedLine> fused_lines_of(const Lane& lane);
 
 // Whether the lane is built from a C or C++ source whose file exists and is unchanged.
 bool has_source_as_built(const Lane& lane);
 
-// Whether the lane's source may have a small number or another epsilon. Nothing if there is no source.
+// Whether the lane's source may have a small number or another epsilon; nothing if there is no readable source.
 std::optional<bool> may_have_epsilon(const Lane& lane);
 
-// The small numbers in a lane's source file; none if it is missing, larger than 1 MiB, or changed since it was built.
+// The small numbers in a lane's source file. None if the file is missing, changed, or larger than 1 MiB.
 std::vector<Epsilon> small_numbers(const Lane& lane);
 
-// Processes of a changed build that nothing else uses. The kMostIdle that were handed back last wait to be used again;
-// others end.
-inline constexpr int kMostIdle = 12;  // all changes of one lane
+// The processes of a changed build, with a single user. The destructor hands the processes back. The kMostIdle that
+// were handed back last wait for the next user; older ones end.
+inline constexpr int kMostIdle = 12;  // enough for all changes of one lane
 struct HandBack {
-  std::string key = {};  // of the lane and the change
+  std::string key = {};  // names the lane and the change
   void operator()(ForeignProcesses* code) const;
 };
 using ChangedCode = std::unique_ptr<ForeignProcesses, HandBack>;
 
-// The lane's code with this change, built once in the lifetime of this process. Null if the lane's source file is
-// missing or changed since it was built, or if the changed source does not compile.   Thread-safe.   Throws: Stopped.
+// The lane's code with this change, which is built once in the lifetime of this process. Null if the lane's source file
+// is missing or changed since it was built, or if the changed source does not compile.
+// Thread-safe.   Throws: Stopped.
 ChangedCode changed(const Lane& lane, const Change& change);
 
-// The source with double in place of float, and functions of doubles in place of those of floats, from the line after
-// its last #include on.
+// The source with double in place of float, and with the functions for double in place of those for float. Lines up to
+// the last #include stay unchanged.
 std::string in_doubles(std::string_view source);
 
-// Whether that changes all of the lane's arithmetic: no file of its own is included, and no vector intrinsic is used.
+// Whether in_doubles changes all arithmetic: the source includes no file in quotes, and uses no vector intrinsic.
 bool is_all_in_doubles(const Lane& lane);
 
 }  // namespace graze::subjects

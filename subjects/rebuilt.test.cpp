@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sources rebuilt with a change.
+// Tests of sources that are rebuilt with a change.
 #include "subjects/rebuilt.h"
 
 #include <gtest/gtest.h>
@@ -64,8 +64,7 @@ int children() {
   return count;
 }
 
-// The source includes a file of its own folder. Its verdicts change with its number, with doubles, and with initial
-// values.
+// The source includes a file from its own folder. Its verdicts depend on a small number, doubles and initial values.
 TEST_F(Rebuilt, ChangesAreSeenInVerdicts) {
   std::ofstream(folder_ / "src/own.h") << "#define THERE 1\n";
   const Lane& lane = opened_lane("changes",
@@ -86,7 +85,7 @@ TEST_F(Rebuilt, ChangesAreSeenInVerdicts) {
   fs::remove_all(folder_ / "cache");
   EXPECT_EQ(said(changed(lane, {.negligible = numbers}), pair), Verdict::disjoint);
   for (const auto& entry : fs::recursive_directory_iterator(folder_ / "cache"))
-    EXPECT_EQ(entry.path().filename().string().find("changed-"), std::string::npos) << "it was built once more";
+    EXPECT_EQ(entry.path().filename().string().find("changed-"), std::string::npos) << "the source was built once more";
   pair.a[0] = {0x1p-30f, 1, 0};
   EXPECT_EQ(decide_one(lane.decide, pair), Verdict::disjoint);
   EXPECT_EQ(said(changed(lane, {.doubles = true}), pair), Verdict::intersects);
@@ -95,7 +94,7 @@ TEST_F(Rebuilt, ChangesAreSeenInVerdicts) {
   EXPECT_EQ(said(changed(lane, {.flags = {"-ftrivial-auto-var-init=pattern"}}), pair), Verdict::disjoint);
 }
 
-// However many threads ask, only the builds stay, with one descriptor each, and a few processes, with two each.
+// However many threads ask, only the builds and a few processes remain. A build has one descriptor, a process has two.
 TEST_F(Rebuilt, FewProcessesStay) {
   const Lane& lane = opened_lane(
       "many", "#ifndef N\n#define N 0\n#endif\nbool intersects(const float* a, const float*) { return *a < N; }\n");

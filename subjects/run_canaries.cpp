@@ -25,7 +25,7 @@ constexpr unsigned char kSourceBytes[] = {
 
 std::string complaint_in(const std::string& output) {
   const std::string line = line_with(output, {"error", "sorry", "not found"});
-  return line.empty() ? "it said nothing" : line;
+  return line.empty() ? "no output" : line;
 }
 
 constexpr double kToCompile = 300, kToRun = 60;  // seconds
@@ -47,7 +47,7 @@ std::string run_canaries(const std::string& compiler, const std::string& run) {
   std::ofstream out(source, std::ios::binary);
   if (!out.write(reinterpret_cast<const char*>(kSourceBytes), sizeof kSourceBytes).flush())
     throw std::runtime_error(cannot("write", source, errno));
-  // As subjects are compiled, unless the command names a standard itself.
+  // The standard for subjects, unless the command names a standard itself.
   const char* standard = compiler.find("-std=") != compiler.npos ? "" : cxx ? "-std=gnu++20" : "-std=gnu11";
   int status = 0;
   const std::string said = shell_output(

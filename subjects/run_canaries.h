@@ -13,11 +13,11 @@ namespace graze::subjects {
 // Whether the command compiles C++: the name of its program contains "++". Otherwise it compiles C.
 bool is_cxx(std::string_view compiler);
 
-// Compiles the canaries with the command and runs them.   run: as Toolchain::run.   Returns: what they print.
-// Throws: std::runtime_error with the first error of the compiler, or when the program fails; Stopped.
+// Compiles the canaries with the command and runs them.   run: as Toolchain::run.   Returns: the output of the
+// canaries.   Throws: std::runtime_error with the compiler's first error, or when the program fails; Stopped.
 std::string run_canaries(const std::string& compiler, const std::string& run);
 
-// The claim of the command, as documented_claim.   Throws: as run_canaries.
+// The documented claim for code that the command compiles; see documented_claim.   Throws: as run_canaries.
 std::optional<Claim> claim_of(const std::string& compiler);
 
 }  // namespace graze::subjects

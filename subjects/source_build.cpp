@@ -38,7 +38,8 @@ constexpr unsigned char kCudaHostBytes[] = {
 #include "subjects/cuda_host_h.inc"
 };
 constexpr const char* kCudaHost = "#include <graze/cuda_host.h>\n";
-// Below include/ in the cache folder. A CUDA source on the host finds those of cuda/ in place of the toolkit's.
+// Headers below include/ in the cache folder. On the host, a CUDA source includes the headers in cuda/, not the
+// toolkit's.
 const std::pair<const char*, std::string> kHeaders[] = {
     {"graze/subject.h", {std::begin(kHeaderBytes), std::end(kHeaderBytes)}},
     {"graze/program.h", {std::begin(kProgramBytes), std::end(kProgramBytes)}},
@@ -50,7 +51,7 @@ const std::pair<const char*, std::string> kHeaders[] = {
     {"cuda/vector_types.h", kCudaHost},
     {"cuda/vector_functions.h", kCudaHost}};
 
-// The file that is compiled: it includes the source and describes the function.
+// The compiled file includes the source and describes the function.
 constexpr std::string_view kCpp = R"(#include SOURCE
 #include <graze/subject.h>
 namespace {
@@ -80,7 +81,7 @@ static int graze_of_f64(const double* a, const double* b) { return FUNCTION((con
 GRAZE_SUBJECT(graze_subject) = {.abi = GRAZE_SUBJECT_ABI, .f32 = graze_f32 ? graze_of_f32 : 0, .f64 = graze_f64 ? graze_of_f64 : 0};
 )";
 
-// HIP kernels. C++ functions do not say where they run, so in C++ every function is device code too.
+// The compiled file for HIP. In a C++ source, every function becomes device code too, because C++ has no decorations.
 constexpr std::string_view kHip = R"(#include <hip/hip_runtime.h>
 #ifdef GRAZE_SAYS_WHERE
 #include SOURCE
@@ -115,7 +116,7 @@ void write(const fs::path& file, std::string_view text) {
 
 std::string first_error(const std::string& output) {
   const std::string line = line_with(output, {"error", "undefined"});
-  return line.empty() ? "the compiler failed and said nothing" : line;
+  return line.empty() ? "the compiler failed without output" : line;
 }
 
 // The compiler with all flags.
@@ -126,7 +127,7 @@ std::string command_with(const Recipe& recipe, const std::vector<std::string>& f
   return command;
 }
 
-// The last flags may ask for something other than the file, such as --version.   Throws: std::runtime_error.
+// Throws: std::runtime_error if the compiler made no file. A flag such as --version can cause this.
 void expect_made(const fs::path& file, const std::string& name, const Recipe& recipe,
                  const std::vector<std::string>& flags) {
   if (!fs::exists(file))
@@ -135,7 +136,7 @@ void expect_made(const fs::path& file, const std::string& name, const Recipe& re
                fmt::format("the compiler reported no error and made no object file: {}", command_with(recipe, flags))));
 }
 
-// Flags that stand in the compiler's name, as in CXX='c++ -Og', and variables that name its parts.
+// The flags in the compiler's name, as in CXX='c++ -Og', and the environment variables that name its parts.
 std::vector<std::string> further_flags(const std::string& compiler) {
   std::vector<std::string> flags;
   std::istringstream words(compiler);
@@ -148,14 +149,14 @@ std::vector<std::string> further_flags(const std::string& compiler) {
   return flags;
 }
 
-// Whether the text of the preprocessed source suggests assembler code that includes files.
+// Whether the text of a preprocessed source suggests assembler code that includes files.
 bool may_include_by_assembler(std::string preprocessed) {
   for (char& c : preprocessed) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return preprocessed.find("incbin") != preprocessed.npos || preprocessed.find(".include") != preprocessed.npos;
 }
 
-// GNU as can list the files that it has read; clang's own assembler cannot. With -flto code is assembled at link time,
-// without such a list.
+// Whether the assembler can list the files that it reads. GNU as can list them; clang's own assembler cannot. With
+// -flto, code is assembled at link time, without a list.
 bool assembler_lists_files(const std::string& compiler, const std::vector<std::string>& flags, const Scratch& scratch) {
   if (std::any_of(flags.begin(), flags.end(), [](const std::string& flag) { return flag.starts_with("-flto"); }))
     return false;
@@ -170,8 +171,8 @@ bool assembler_lists_files(const std::string& compiler, const std::vector<std::s
   return known[compiler] = status == 0 && fs::exists(list);
 }
 
-// The files in the assembler's list, one on each line. Omits files in the build's own folder and names that are not
-// files.
+// The files in a list that the assembler or the preprocessor wrote, one on each line. Omits files in the folder `own`,
+// and names of other things than files.
 std::string listed_files(const fs::path& list, const fs::path& own) {
   std::string text = text_of(list), file, files;
   text = text.substr(std::min(text.find(": "), text.size())) + ' ';
@@ -190,7 +191,7 @@ std::string listed_files(const fs::path& list, const fs::path& own) {
   return files;
 }
 
-// Device, inode, size and times of these files, as text.
+// The device, inode, size and times of these files, as text.
 std::string states_of_listed(const std::string& files) {
   std::istringstream lines(files);
   std::string states;
@@ -208,14 +209,14 @@ std::uint64_t hash_of_listed(const std::string& files, std::uint64_t hash) {
 }
 
 constexpr std::string_view kObject = ".so", kProgram = ".program";
-constexpr int kMostBuilds = 4;  // of code that changes meanwhile
+constexpr int kMostBuilds = 4;  // attempts to build code that changes meanwhile
 
-// The state of all inputs of a build at one time.
+// The state of all inputs of a build when they were read.
 struct Reading {
   std::uint64_t hash = 0;
-  std::string states;       // of the files, taken after they were read: shows a change that was undone between readings
-  std::string not_covered;  // what the hash leaves out, in words
-  bool is_whole = false;    // whether the preprocessor found all
+  std::string states;       // of the files, after they were read; they show a change that was undone between readings
+  std::string not_covered;  // the inputs that the hash leaves out, in words
+  bool is_whole = false;    // whether the preprocessor found all files
   bool operator==(const Reading&) const = default;
 };
 
@@ -260,7 +261,7 @@ namespace {
 bool is_c(const fs::path& source) { return source.extension() == ".c"; }
 bool is_cuda(const fs::path& source) { return source.extension() == ".cu"; }
 
-// They come before the user's flags, which may name the folder of the toolkit's own headers.
+// The flag for our headers of CUDA. The user's flags come later, because they may name the toolkit's headers.
 std::string headers_for(const fs::path& source) {
   return is_cuda(source) ? " -I" + shell_word((cache_folder() / "include/cuda").string()) : "";
 }
@@ -275,8 +276,8 @@ Recipe recipe_of(const VariantInfo& variant, const fs::path& source) {
           std::string(variant.flags)};
 }
 
-// Uses the GNU dialects: in the ISO dialects, GCC does not contract C, and from version 13 keeps no excess precision in
-// C++.
+// Uses the GNU dialects. In the ISO dialects, GCC does not contract C, and from version 13 on keeps no excess precision
+// in C++.
 Recipe recipe_of(const Toolchain& toolchain, const fs::path& source) {
   const bool c = is_c(source);
   const std::string& compiler = c ? toolchain.cc : toolchain.cxx;
@@ -291,11 +292,12 @@ bool source_describes_itself(const fs::path& source) {
 
 namespace {
 
-// The file that is compiled, in `folder`, and the command that compiles it.
 struct Wrapped {
-  std::string command, expected;  // expected: what the compiler says if the function does not fit
+  std::string command;   // compiles the file
+  std::string expected;  // the compiler's message if the function has other types
 };
 
+// Writes the file that is compiled into `folder`.
 Wrapped wrapped(const fs::path& source, const std::string& function, const Recipe& recipe,
                 const std::vector<std::string>& flags, const fs::path& folder) {
   const bool c = is_c(source);
@@ -309,7 +311,7 @@ Wrapped wrapped(const fs::path& source, const std::string& function, const Recip
   const std::string_view of_gpu = recipe.is_kernel  ? says_where ? "#define GRAZE_SAYS_WHERE\n" : ""
                                   : is_cuda(source) ? kCudaHost
                                                     : std::string_view();
-  // An absolute path, so that the source finds includes in its own folder.
+  // The path is absolute, so that the source finds includes in its own folder.
   write(whole, fmt::format("{}#define SOURCE \"{}\"\n#define FUNCTION {}\n#define EXPECTED \"{}\"\n{}{}", of_gpu,
                            fs::absolute(source).string(), function, expected,
                            recipe.is_kernel   ? kHip
@@ -317,7 +319,7 @@ Wrapped wrapped(const fs::path& source, const std::string& function, const Recip
                            : c                ? kC
                                               : kCpp,
                            recipe.is_program ? "#include <graze/program.h>\n" : ""));
-  // With the real time, code that uses __TIME__ would have another hash at each reading.
+  // If the real time were used, code with __TIME__ would have another hash at each reading.
   return {fmt::format("SOURCE_DATE_EPOCH=${{SOURCE_DATE_EPOCH:-0}} {} -I{} {}", command_with(recipe, flags),
                       shell_word((cache_folder() / "include").string()), shell_word(whole.string())),
           expected};
@@ -341,7 +343,7 @@ bool is_host_device(const fs::path& source, const std::string& function, const R
   for (std::size_t at = text.find(name); at != text.npos; at = text.find(name, at + 1)) {
     const std::size_t behind = text.find_first_not_of(" \t\n", at + name.size());
     if (behind == text.npos || text[behind] != '(' || at == 0 || is_of_word(text[at - 1])) continue;
-    const std::size_t end = text.find_last_of(";{}", at);  // of what comes before the declaration
+    const std::size_t end = text.find_last_of(";{}", at);  // the end of the code before the declaration
     const std::size_t begin = end == text.npos ? 0 : end + 1;
     const std::string_view declaration = std::string_view(text).substr(begin, at - begin);
     if (declaration.find(host) != declaration.npos && declaration.find(device) != declaration.npos) return true;
@@ -358,7 +360,7 @@ Built build_source(const fs::path& source, const std::string& function, const Re
   const Scratch scratch(folder);
   int status = 0;
   const std::string version = shell_output(compiler + " --version", scratch.path(), status);
-  const std::string first_line = version.substr(0, version.find('\n'));  // the lines below contain paths
+  const std::string first_line = version.substr(0, version.find('\n'));  // the other lines contain paths
   std::string identity = first_line;
   if (status != 0)
     throw std::runtime_error(
@@ -369,20 +371,22 @@ Built build_source(const fs::path& source, const std::string& function, const Re
                    : fmt::format("'{} --version' ended with exit status {}", compiler, status)));
   // The same compiler version may use other parts from another machine's PATH, and the compiler may be a script.
   identity += shell_output(
-      // Through a file: a pipe would also wait for processes that the compiler leaves behind.
+      // The name is read from a file, because a pipe would also wait for processes that the compiler leaves behind.
       fmt::format("for part in as ld {1}; do {0} -print-prog-name=$part > {3} 2>/dev/null; read -r name < {3}; "
                   "file=$(command -v \"$name\") && cksum < \"$file\"; done; cksum < \"$(command -v {2})\"",
                   compiler, c ? "cc1" : "cc1plus", compiler.substr(0, compiler.find(' ')),
                   shell_word((scratch.path() / "part").string())),
       scratch.path(), status);
-  // Included files may change too, so the hash is of the preprocessor's output.
+  // Hashes the preprocessor's output, because included files may change too.
   const auto [command, expected] = wrapped(source, function, recipe, flags, scratch.path());
   const fs::path object = scratch.path() / "whole.out", list = scratch.path() / "assembled.d";
   std::vector<std::string> all_flags = further_flags(compiler);
   all_flags.insert(all_flags.end(), flags.begin(), flags.end());
-  const auto lists = [&] { return assembler_lists_files(compiler, flags, scratch); };  // asked only where it matters
+  const auto lists = [&] {
+    return assembler_lists_files(compiler, flags, scratch);
+  };  // called only where the answer matters
   const fs::path included = scratch.path() / "included.d";
-  std::string assembled;  // the files that the assembler read when it ran last
+  std::string assembled;  // the files that the assembler read in its last run
   const auto read = [&] {
     Reading reading;
     const std::string preprocessed = shell_output(
@@ -396,14 +400,14 @@ Built build_source(const fs::path& source, const std::string& function, const Re
     reading.states = states_of_listed((fs::exists(included) ? listed_files(included, folder) : "") + assembled);
     return reading;
   };
-  // The compiler reads the files once more. If readings before and after it agree, it has read the code that was
-  // hashed.
+  // When it compiles, the compiler reads the files once more. If the readings before and after the compiler ran agree,
+  // it has compiled the code that was hashed.
   for (int builds = 0; builds < kMostBuilds; ++builds) {
     const Reading before = read();
     Built built{folder / fmt::format("{:016x}{}", before.hash, recipe.is_program ? kProgram : kObject),
                 before.not_covered, nullptr, first_line};
-    // An object is not cached under this name if the assembler read further files for it, because only a run of the
-    // assembler shows which files it would read now.
+    // If the assembler reads files, the object gets another name in the next round and is never loaded from the cache,
+    // because only another run of the assembler shows which files it reads now.
     if (before.is_whole && before.not_covered.empty() && assembled.empty()) {
       if (const auto kept = kept_content(built.file)) {
         built.content = std::make_shared<SealedCopy>(built.file.filename().string(), *kept);
@@ -417,7 +421,7 @@ Built build_source(const fs::path& source, const std::string& function, const Re
     if (status != 0) {
       std::string error = first_error(said);
       if (error.find(expected) != error.npos) error = name + ": " + expected;
-      // Errors of the linker or of a full disk name no source.
+      // Messages of the linker, or about a full disk, do not name the source.
       if (error.find(source.filename().string()) == error.npos) error = cannot("compile", name, error);
       throw std::runtime_error(error);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds a user's C or C++ source, or a CUDA source whose function is __host__ __device__: as a shared object for each
-// host variant, as a program for each toolchain. They are cached by the hash of all their inputs.
+// Builds a user's C or C++ source, or a CUDA source whose function is __host__ __device__. A host variant gets a shared
+// object, a toolchain gets a program. Builds are cached by the hash of all their inputs.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +22,7 @@ std::filesystem::path cache_folder();
 // Writes the file atomically: no reader sees an incomplete file.   Throws: std::runtime_error.
 void write_atomically(const std::filesystem::path& file, std::string_view text);
 
-// Likewise, unless the file has this text already.   Throws: std::runtime_error; Stopped.
+// Writes the file atomically, unless it has this text already.   Throws: std::runtime_error; Stopped.
 void write_if_new(const std::filesystem::path& file, std::string_view text);
 
 // The first line of a program's output that has one of these words, else its first line; empty without output.
@@ -34,41 +34,41 @@ bool source_describes_itself(const std::filesystem::path& source);
 // How a source is compiled.
 struct Recipe {
   std::string compiler;     // with its flags: "aarch64-linux-gnu-g++ -O2 -static"
-  std::string fixed;        // the flags that all recipes of its kind have
-  std::string flags;        // further ones
-  bool is_program = false;  // of graze/program.h, instead of a shared object
-  bool is_kernel = false;   // of HIP, to read its assembly
+  std::string fixed;        // the flags that all recipes of this kind have
+  std::string flags;        // further flags
+  bool is_program = false;  // makes a program with graze/program.h, not a shared object
+  bool is_kernel = false;   // compiles a HIP kernel, whose assembly is read
 };
 Recipe recipe_of(const VariantInfo& variant, const std::filesystem::path& source);
 Recipe recipe_of(const Toolchain& toolchain, const std::filesystem::path& source);
 
-// Whether a CUDA source declares the function as __host__ __device__, directly or by a macro. A source that the host's
-// preprocessor cannot read whole must say so in these words.   Throws: std::runtime_error; Stopped.
+// Whether a CUDA source declares the function as __host__ __device__, directly or by a macro. If the host's
+// preprocessor cannot read the whole source, macros do not count.   Throws: std::runtime_error; Stopped.
 bool is_host_device(const std::filesystem::path& source, const std::string& function, const Recipe& recipe,
                     const std::vector<std::string>& flags);
 
 // Builds a shared object or a program with `function` of the source, or with the source's own descriptions (see
-// graze/subject.h). Compiles with the recipe's flags, then `flags`. The file name is a hash of the preprocessed source,
-// the flags, the files that they name, the files that the assembler reports as read, and the first line of the
-// compiler's --version. A cached object is used if it is unchanged, the hash covers all its inputs, and the assembler
-// read no files for it. Builds again if the files have changed since they were read for the hash. Throws:
-// std::runtime_error with the compiler's first error, or when the files keep changing; Stopped.
+// graze/subject.h). Compiles with the recipe's flags, then `flags`. The file name is a hash of the inputs: the
+// preprocessed source, the flags, the files that they name, the files that the assembler reports as read, the
+// compiler's version, and its parts. Uses a cached object if it is unchanged, the hash covers all its inputs, and the
+// assembler read no files for it. Builds again if a file has changed since it was read for the hash.
+// Throws: std::runtime_error with the compiler's first error, or when the files keep changing; Stopped.
 Built build_source(const std::filesystem::path& source, const std::string& function, const Recipe& recipe,
                    const std::vector<std::string>& flags);
 
-// The compiler's assembly of what build_source builds, with line information; see toolchains/assembly.h.
+// The compiler's assembly for the code that build_source builds, with line information; see toolchains/assembly.h.
 // Throws: std::runtime_error with the compiler's first error; Stopped.
 std::string assembly_of(const std::filesystem::path& source, const std::string& function, const Recipe& recipe,
                         const std::vector<std::string>& flags);
 
-// Assembles and links such an assembly. It is not cached.   Throws: as assembly_of.
+// Assembles and links the result of assembly_of. The build is not cached.   Throws: as assembly_of.
 Built build_assembly(std::string_view assembly, const Recipe& recipe, const std::vector<std::string>& flags);
 
-// What build_source has built and cached under this name, 16 hex digits.
-// Throws: std::runtime_error if it is not there any more.
+// The build that build_source has cached under this name, which is 16 hex digits.
+// Throws: std::runtime_error if the build is no longer in the cache.
 Built kept_build(const std::string& name, bool is_program = false);
 
-// The set variables that choose the compiler of a C or C++ source, or what it reads.
+// The environment variables that choose the compiler of a C or C++ source or the files that it reads, if they are set.
 std::map<std::string, std::string> compiler_environment(const std::filesystem::path& source);
 
 }  // namespace graze::subjects

@@ -32,7 +32,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// The lane table points to entries, so they are never freed.
+// A subject that is open. The lane table points to entries, so they are never freed.
 struct Entry {
   Opened opened;
   std::string source, coplanar, degenerate, order;
@@ -42,11 +42,11 @@ struct Entry {
     std::unique_ptr<ForeignProcesses> processes;
   };
   std::vector<Running> running;
-  std::vector<cuda::CudaBuild> builds;                   // for CUDA code: one for each lane
-  std::vector<std::shared_ptr<const SealedCopy>> twins;  // one for each of these builds; null if it has none
+  std::vector<cuda::CudaBuild> builds;                   // of CUDA code: one for each lane
+  std::vector<std::shared_ptr<const SealedCopy>> twins;  // one for each build; null if the build has no twin
   struct FromToolchain {
     Toolchain toolchain;
-    std::string build, compiler;  // its cached program; empty: it cannot be built or run here
+    std::string build, compiler;  // its cached program; empty: the program cannot be built or run here
   };
   std::deque<FromToolchain> from_toolchains = {};
 };
@@ -73,12 +73,12 @@ std::string kind_of(std::string_view file) {
   if (file.ends_with(".cu")) return "cuda";
   if (file.ends_with(".cl")) return "opencl";
   if (file.ends_with(".hip")) return "hip";
-  for (const std::string_view ending : {".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hxx", ".hh"})  // headers: C++
+  for (const std::string_view ending : {".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hxx", ".hh"})  // headers are C++
     if (file.ends_with(ending)) return "source";
   return "";
 }
 
-// A lane of the published algorithm; null if there is none.
+// A lane of the published algorithm with this name; null if there is none.
 const Lane* find_published(std::string_view name) {
   const auto found = std::find_if(published_lanes().begin(), published_lanes().end(),
                                   [&](const Lane& row) { return row.info->id == name; });
@@ -107,7 +107,7 @@ Opened parsed(const Wanted& wanted) {
     return result;
   }
   const std::string_view what = wanted.what;
-  std::size_t end = what.size();  // end of the file name; a colon and a function may follow
+  std::size_t end = what.size();  // the end of the file name; a colon and a function may follow
   while (end != what.npos && kind_of(what.substr(0, end)).empty())
     end = end == 0 ? what.npos : what.rfind(':', end - 1);
   if (end == what.npos || end + 1 == what.size()) {
@@ -135,14 +135,14 @@ Opened parsed(const Wanted& wanted) {
                     "backslashes and control characters",
                     wanted.name, shown_path(name)));
   const std::string bytes = wanted.builds.empty() ? code_in(result.file) : "";
-  result.code = {fnv1a(bytes), "the libraries that it loads"};  // of a source, until it is built
+  result.code = {fnv1a(bytes), "the libraries that it loads"};  // replaced when a source is built
   result.hash = result.code.hash;
   if (result.kind == "library" || result.kind == "opencl")
     result.content = std::make_shared<SealedCopy>(result.file.filename().string(), bytes);
   return result;
 }
 
-// The text for a kind of pair: `otherwise`, or a note that the subject's convention excludes the kind.
+// The text for a kind of pair: a note that the subject's convention excludes this kind, or else `otherwise`.
 std::string says(const Description& description, unsigned outside, std::string_view otherwise) {
   if (!(description.outside & outside)) return std::string(otherwise);
   return "not in its contract" + (description.convention.empty() ? "" : ": " + description.convention);
@@ -158,7 +158,7 @@ void describe_info(Entry& entry, const Description& description) {
   entry.info = {entry.opened.wanted.name, entry.source, entry.coplanar, entry.degenerate, entry.order, false};
 }
 
-// The row of a lane that nothing runs yet.
+// The row of a lane that has no processes yet.
 Lane lane_row(const AlgorithmInfo* info, Scalar scalar, Variant variant, unsigned outside) {
   return {"", info, scalar, variant, "", {}, -1, nullptr, false, false, true, outside, "", ""};
 }
@@ -174,8 +174,8 @@ LaneName lane_name(const std::string& subject, const cuda::CudaBuild& build) {
   return {subject, std::string(name(build.scalar)), std::string(name(build.variant)), ""};
 }
 
-// The evidence for this build in the proof record beside the source. Without such a record, the evidence of the build
-// itself.
+// The evidence for this build from the proof record beside the source. If no record verifies this build, the evidence
+// of the build itself.
 std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
   std::string why;
   const Json record = Json::parse(plain_file(proof_file(source), why).value_or(""), nullptr, false);
@@ -189,12 +189,13 @@ std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
           record.at("device").get_ref<const std::string&>(), record.at("toolkit").get_ref<const std::string&>(),
           static_cast<double>(count("pairs")), static_cast<double>(count("twin_pairs"))});
     }
-  } catch (const Json::exception&) {  // a missing or damaged record verifies nothing
+  } catch (const Json::exception&) {  // the record is missing or damaged
   }
   return cuda::evidence(build);
 }
 
-// recorded: the hash of the code that a campaign ran; empty accepts any code.
+// Throws: std::runtime_error if the subject's code is not the code that a campaign ran.   recorded: the hash of that
+// code; empty accepts any code.
 void expect_code(const Opened& subject, const std::string& recorded) {
   if (const std::string found = fmt::format("{:016x}", subject.code.hash); !recorded.empty() && found != recorded)
     throw std::runtime_error(fmt::format(
@@ -202,14 +203,15 @@ void expect_code(const Opened& subject, const std::string& recorded) {
         subject.wanted.what, found, recorded));
 }
 
-// How a host compiler built a source, for record().
+// The compiler, environment and builds of a source that a host compiler built, for record().
 Json how_built(const Opened& source, const std::vector<Built>& built) {
   Json made = {{"compiler", built.front().compiler}, {"environment", compiler_environment(source.file)}};
   for (const Built& build : built) made["builds"].push_back(build.file.stem().string());
   return made;
 }
 
-// The host's lanes of a CUDA source whose function is __host__ __device__. One that cannot be built says why.
+// Makes the host's lanes of a CUDA source whose function is __host__ __device__. The evidence of a lane that cannot be
+// built is the reason.
 void add_host_lanes(Entry& entry, std::vector<Lane>& made) {
   Opened& o = entry.opened;
   const Scalar scalar = entry.builds.front().scalar;
@@ -217,7 +219,7 @@ void add_host_lanes(Entry& entry, std::vector<Lane>& made) {
   const StopSignals stops;
   try {
     if (!is_host_device(o.file, function_of(o), recipe_of(info_of(Variant::cpu), o.file), flags)) return;
-  } catch (const std::runtime_error&) {  // the host's compiler cannot read it
+  } catch (const std::runtime_error&) {  // the host's compiler cannot read the source
     return;
   }
   (scalar == Scalar::f32 ? o.description.f32 : o.description.f64) = true;
@@ -231,7 +233,7 @@ void add_host_lanes(Entry& entry, std::vector<Lane>& made) {
       Code code{"library", build.file.string(), "", "any", o.wanted.timeout, o.wanted.memory};
       code.content = build.content;
       if (!describe(code).has(scalar))
-        throw std::runtime_error("on the host its function takes another type of number");
+        throw std::runtime_error("on the host, its function takes another type of number");
       add_lane(entry, made, std::move(code), std::move(lane));
     } catch (const std::runtime_error& error) {
       lane.evidence = printable(error.what());
@@ -241,7 +243,8 @@ void add_host_lanes(Entry& entry, std::vector<Lane>& made) {
   if (!built.empty()) o.made["host"] = how_built(o, built);
 }
 
-// Adds the build for a device if there is one, else its twin. If there is neither, the lane says why.
+// Adds the lanes of a CUDA source, which run on the device or as twins. If a lane has neither, its
+// evidence is the reason.
 void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   const Opened& o = entry.opened;
   std::vector<Lane> made;
@@ -288,8 +291,8 @@ Code code_by(const Toolchain& toolchain, const Opened& subject, const std::strin
   return code;
 }
 
-// Adds the lanes of the toolchains that the entry does not have yet. A lane that cannot be built or run here says why.
-// kept: the programs to load instead, by toolchain.
+// Adds the lanes of toolchains that the entry does not have yet. The evidence of a lane that cannot be built or run
+// here is the reason.   kept: cached programs to load instead of compiling, by toolchain.
 void add_toolchain_lanes(Entry& entry, const std::vector<Toolchain>& toolchains,
                          const std::map<std::string, std::string>& kept) {
   const bool published = entry.opened.kind == kPublished;
@@ -333,8 +336,8 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded,
   const Opened wish = parsed(wanted);
   if (wish.kind == "hip")
     throw UsageError(fmt::format(
-        "--subject {0}: code of HIP is compiled, but not run; `graze toolchain hip --subject {0}={1}` lists what its "
-        "compiler fuses",
+        "--subject {0}: HIP code is compiled, but not run; `graze toolchain hip --subject {0}={1}` lists the products "
+        "that its compiler fuses",
         wanted.name, shown_path(wanted.what)));
   if (Entry* const there = find_entry(wanted.name)) {
     const bool more = wish.kind == kPublished || runs_on_host(there->opened);
@@ -378,7 +381,7 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded,
       add_cuda_lanes(entry, on_device, recorded);
       return runs_on_host(entry.opened) ? add_toolchain_lanes(entry, wanted.toolchains, kept) : void();
     }
-    const StopSignals stops;  // not active while NVRTC compiles, which cannot be stopped
+    const StopSignals stops;  // only here, because NVRTC's compilations above cannot be stopped
     std::vector<std::pair<Variant, Code>> builds;
     std::vector<Built> built_files;
     if (wish.kind == "source") {
@@ -421,7 +424,7 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded,
       entry.opened.made = {{"source_hash", fmt::format("{:016x}", wish.hash)}};
       entry.opened.made.update(how_built(wish, built_files));
     }
-    if (wish.kind == "command" || description.describes_itself) {  // a description may depend on more than files
+    if (wish.kind == "command" || description.describes_itself) {  // a description can change although no file does
       entry.opened.code.hash = fnv1a(fmt::format("{}\n{}\n{}\n{}", description.version, description.source,
                                                  description.convention, description.outside),
                                      entry.opened.code.hash);
@@ -507,7 +510,7 @@ ForeignProcesses& processes_of(const Lane& lane) {
 
 namespace {
 
-// Null for code that no compiler of ours has built; otherwise as recorded_plan.
+// The plan of a toolchain's build, as recorded_plan. Null for OpenCL C, which the device's driver compiles.
 Json plan_of(const Opened& subject, const Toolchain& toolchain, const std::string& build) {
   if (subject.kind == "opencl") return nullptr;
   return recorded_plan(build, subject.file, function_of(subject), recipe_of(toolchain, subject.file),
@@ -529,7 +532,7 @@ Json record(const std::vector<std::string>& lanes) {
           }))
         continue;
       from_toolchains.push_back(to_json(row.toolchain));
-      // Before the build, so that the first difference of two records names it.
+      // The plan comes before the build, so that the first difference of two records names the plan.
       if (const Json plan = plan_of(o, row.toolchain, row.build); !plan.is_null())
         from_toolchains.back()["contraction"] = plan;
       from_toolchains.back()["build"] = row.build;
@@ -591,14 +594,15 @@ std::vector<std::string> open_recorded(const Json& spec, bool on_device, Changed
     if (!opened(name) || !wanted.toolchains.empty())
       open_as(wanted, on_device, changed == Changed::refused ? hash : "");
     if (const std::string found = fmt::format("{:016x}", opened(name)->code.hash); found != hash)
-      differs.push_back(fmt::format("{}: its code is not what the campaign ran: {} then, {} now", name, hash, found));
+      differs.push_back(
+          fmt::format("{}: its code is not the code that the campaign ran: {} then, {} now", name, hash, found));
     const auto builds_on_host = [](const Json& made) {
       return made.value("host", Json::object()).value("builds", Json());
     };
     if (const Json then = builds_on_host(row), now = builds_on_host(opened(name)->made);
         !then.is_null() && then != now) {
       const std::string what =
-          fmt::format("{}: the host's compiler does not build what the campaign ran: {} then, {} now", name,
+          fmt::format("{}: the host's compiler does not build the code that the campaign ran: {} then, {} now", name,
                       then.dump(), now.dump());
       if (changed == Changed::refused) throw std::runtime_error(what);
       differs.push_back(what);
@@ -608,7 +612,7 @@ std::vector<std::string> open_recorded(const Json& spec, bool on_device, Changed
     for (const Entry::FromToolchain& made : entry.from_toolchains) {
       const auto then = builds.find(made.toolchain.name);
       if (then == builds.end() || made.build.empty() || made.build == then->second) continue;
-      std::string what = fmt::format("{}: {} does not build what the campaign ran: {} then, {} now", name,
+      std::string what = fmt::format("{}: {} does not build the code that the campaign ran: {} then, {} now", name,
                                      made.toolchain.name, then->second, made.build);
       const Json plan = plan_of(entry.opened, made.toolchain, made.build);
       if (const std::string fused = plan_difference(recorded_contraction(row, made.toolchain.name), plan);
@@ -635,8 +639,8 @@ bool open_kept(const Json& row, const std::string& name) {
       throw;
     } catch (const Json::exception&) {
       throw;
-    } catch (const std::runtime_error&) {  // the code has changed, or is gone
-    } catch (const std::out_of_range&) {   // builds of other variants
+    } catch (const std::runtime_error&) {  // the code has changed or is missing
+    } catch (const std::out_of_range&) {   // the builds are for other variants
     }
   }
   return false;

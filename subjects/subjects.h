@@ -17,10 +17,12 @@ namespace graze::subjects {
 
 // WHAT is one of
 //   FILE.so[:NAME[/f64]]   a shared object: a description (graze/subject.h) or a function
-//   FILE.cpp[:FUNCTION]    a C++ source (also .cc, .cxx) or FILE.c: built for each host variant
-//   FILE.cu[:FUNCTION]     a CUDA source with a __device__ function: NVRTC builds it for each device variant; it runs
-//                          on a device or as a twin; a __host__ __device__ function is built for host variants too
-//   FILE.cl[:FUNCTION]     a source in OpenCL C: the device's driver builds it for each of its ways to contract
+//   FILE.cpp[:FUNCTION]    a C++ source or header (also .cc, .cxx, .h, .hpp, .hxx, .hh) or FILE.c: built for each host
+//                          variant
+//   FILE.cu[:FUNCTION]     a CUDA source with a __device__ function: NVRTC builds it for each device variant. The
+//                          build runs on a device or as a twin. A __host__ __device__ function is built for host
+//                          variants too.
+//   FILE.cl[:FUNCTION]     a source in OpenCL C: the device's driver builds it in four modes of its compiler
 //   cmd:COMMAND            a program that answers line by line
 //   published              the published algorithm of this name, only for toolchains
 struct Wanted {
@@ -28,65 +30,67 @@ struct Wanted {
   std::vector<std::string> flags;          // compiler flags, after ours
   double timeout = 1;                      // seconds
   std::uint64_t memory = 1024;             // MiB
-  std::vector<std::string> builds = {};    // for a C or C++ source: those to load (kept_build), not compiled again
-  std::vector<Toolchain> toolchains = {};  // which compile the source too
+  std::vector<std::string> builds = {};    // of a C or C++ source: cached builds to load (kept_build), not to compile
+  std::vector<Toolchain> toolchains = {};  // toolchains that compile the source too
 };
 
 // Splits NAME=WHAT; a file's path becomes absolute.   Throws: UsageError.
 Wanted parse_subject(const std::string& text);
 
-// Adds the subject's lanes to the lane table. If the same name and content are already there, adds lanes of toolchains
-// that are not there yet. on_device: run CUDA code on the device, else by its twin.
+// Adds the subject's lanes to the lane table. If the table already has the same name and content, adds only the missing
+// lanes of toolchains.   on_device: run CUDA code on the device, not as its twin.
 // Throws: UsageError for a name that is taken; std::runtime_error with one line when the code cannot be loaded.
 void open(const Wanted& wanted, bool on_device = false);
 
-// What a campaign records about the subjects of these lanes, so that it can open them again: [{"name", "what", "flags",
+// The record that a campaign keeps about the subjects of these lanes, to open them again: [{"name", "what", "flags",
 // "timeout", "memory", "hash", "source_hash", "compiler", "environment", "builds", "toolchains", "not_covered"}, …].
-// "toolchains" has those of these lanes: to_json, with "contraction" (recorded_plan), "build" and "compiler". Only
-// sources have "source_hash" (of the file alone) and "compiler"; C and C++ sources also have "environment"
-// (compiler_environment) and "builds" (the cached objects). A CUDA source has these three for its host compiler in
-// "host", if one of the lanes is the host's. "not_covered" describes the parts that the hash leaves out, and is absent
-// if there are none. Null when no lane has a subject.
+// "toolchains" has the toolchains of these lanes: to_json, with "contraction" (recorded_plan), "build" and "compiler".
+// Only sources have "source_hash" (of the file alone) and "compiler". C and C++ sources also have "environment"
+// (compiler_environment) and "builds" (the cached objects). A CUDA source has "compiler", "environment" and "builds" of
+// its host compiler in "host", if one of the lanes runs on the host. "not_covered" describes the parts that the hash
+// leaves out, and is absent if there are none. The record is null when no lane has a subject.
 nlohmann::ordered_json record(const std::vector<std::string>& lanes);
 
-// Opens the subjects that a campaign recorded and that are not open yet.   changed: what to do with code that changed.
-// Returns: a line for each open subject whose code differs from what the campaign ran.
+// Opens the subjects that a campaign recorded, unless they are open already.   changed: whether to refuse changed code.
+// Returns: a line for each subject whose code differs from the code that the campaign ran.
 // Throws: std::runtime_error when the code of a newly opened subject is missing, or has changed and is refused.
 enum class Changed { refused, used };
 std::vector<std::string> open_recorded(const nlohmann::ordered_json& spec, bool on_device = false,
                                        Changed changed = Changed::refused);
 
-// Opens the code of a row of record() under another name, if it still exists: the unchanged file or, for a C or C++
-// source, the builds that ran.   Returns: whether it does.   Throws: Stopped; UsageError for a name that is taken.
+// Opens the code of a row of record() under another name, if the code still exists: as the unchanged file or, for a C
+// or C++ source, as the builds that ran.   Returns: whether the code exists.   Throws: Stopped; UsageError for a name
+// that is taken.
 bool open_kept(const nlohmann::ordered_json& row, const std::string& name);
 
-// How a lane's subject was opened, for showing a case again; empty for our own subjects.
+// How a subject was opened, so that a case can be shown again.
 struct Opened {
   Wanted wanted;
   std::string kind;  // "library", "source", "cuda", "opencl", "command", "published"
   std::filesystem::path file;
-  std::string function;                                            // empty: none named
+  std::string function;                                            // empty: the user named none
   std::uint64_t hash = 0;                                          // of the file, or of the command
-  CodeHash code;                                                   // of all that is compiled or run
-  std::shared_ptr<const SealedCopy> content;                       // for a library: the bytes that were hashed
-  Description description;                                         // of its first build
+  CodeHash code;                                                   // of all code that is compiled or run
+  std::shared_ptr<const SealedCopy> content;                       // of a library or OpenCL source: the hashed bytes
+  Description description;                                         // of a build
   nlohmann::ordered_json made = nlohmann::ordered_json::object();  // how a source was compiled; see record()
 };
+// Null if no foreign subject has this name.
 const Opened* opened(std::string_view subject);
 
-// The user's flags for a host compiler. For a CUDA source, whose flags are NVRTC's: those that begin with -D, -U or -I.
+// The user's flags for a host compiler. A CUDA source has flags for NVRTC, so only those with -D, -U and -I are kept.
 std::vector<std::string> host_flags(const Opened& source);
 
-// The file and the function that the text names, without lanes.   Throws: as open.
+// Reads the file and the function from `wanted`, and adds no lanes.   Throws: as open.
 Opened named_by(const Wanted& wanted);
 
-// The function that a source is built for.
+// The function for which a source is built; "intersects" if the user named none.
 std::string function_of(const Opened& source);
 
-// The builds of all opened CUDA sources, with their lanes' names.
+// The builds of all opened CUDA sources, with the names of their lanes.
 std::vector<cuda::NamedBuild> cuda_builds();
 
-// The file for the proof record of a CUDA source. Lanes whose twin it covers report it.
+// The file for the proof record of a CUDA source. A lane whose twin the record covers reports the record as evidence.
 std::filesystem::path proof_file(const std::filesystem::path& source);
 
 // The toolchain of a foreign lane; null if it has none.

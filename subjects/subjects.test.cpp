@@ -28,8 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// One subject for each misbehaviour, on the pairs that `bad` selects. On other pairs they answer whether a is left of
-// b.
+// One subject for each misbehaviour, on the pairs that `bad` selects. On other pairs the subjects answer whether a is
+// left of b.
 constexpr const char* kMisbehaving = R"(
 #include <stdlib.h>
 #include <unistd.h>
@@ -42,7 +42,7 @@ int exits(const float a[9], const float b[9]) { if (bad(a)) exit(0); return good
 int scribbles(const float a[9], const float b[9]) { if (bad(a)) ((float*)b)[3] = 3; return good(a, b); }
 int hangs(const float a[9], const float b[9]) { if (bad(a)) for (;;) pause(); return good(a, b); }
 int wavers(const float a[9], const float b[9]) { return bad(a) ? ++calls & 1 : good(a, b); }
-int rounds(const float a[9], const float b[9]) {  // upward from a bad pair on, and then it is wrong
+int rounds(const float a[9], const float b[9]) {  // rounds upward after the first bad pair, and is then wrong
   volatile float one = 1, tiny = 0x1p-30f;
   const int upward = one + tiny != one;
 #ifdef __x86_64__
@@ -86,7 +86,7 @@ static void rounds(const float* pairs, size_t count, signed char* answers) {
   }
 }
 GRAZE_SUBJECT(rounds_in_blocks) = {GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, rounds, nullptr};
-static void by_place(const float* pairs, size_t count, signed char* answers) {  // every eighth place is wrong
+static void by_place(const float* pairs, size_t count, signed char* answers) {  // wrong at every eighth place
   for (size_t i = 0; i < count; ++i) answers[i] = (pairs[18 * i] < pairs[18 * i + 9]) != (i % 8 == 7);
 }
 GRAZE_SUBJECT(by_place_in_block) = {GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, by_place, nullptr};
@@ -178,13 +178,14 @@ TEST_F(Subjects, WhatTheCodeItselfTakesIsKnown) {
   ASSERT_TRUE(slow);
   EXPECT_GT(*slow, 3000u * 2000);  // at least 2 µs per pair: 20,000 steps
   std::optional<std::uint64_t> quick;
-  for (int tries = 0; tries < 50 && (!quick || 20 * *quick >= *slow); ++tries) {  // others may use the core meanwhile
+  for (int tries = 0; tries < 50 && (!quick || 20 * *quick >= *slow);
+       ++tries) {  // other processes may use the core meanwhile
     quick = nanoseconds("libbad.so", "good");
     ASSERT_TRUE(quick);
   }
   EXPECT_GT(*quick, 0u);
   EXPECT_LT(20 * *quick, *slow);
-  EXPECT_FALSE(nanoseconds("libbad.so", "aborts"));  // it failed on some pairs
+  EXPECT_FALSE(nanoseconds("libbad.so", "aborts"));  // the code failed on some pairs
 }
 
 TEST_F(Subjects, WhatMisbehavesIsAVerdictOfThePairsOnWhichItDoes) {
@@ -211,7 +212,7 @@ TEST_F(Subjects, EndlessLoopsAndMemoryEnd) {
   pairs = all;
 }
 
-// A process that is ended just as it is about to answer leaves no answer for another pair.
+// A process that is killed just before it answers leaves no answer for another pair.
 TEST_F(Subjects, TimesAtTheLimitAreVerdictsOrTooLate) {
   const std::vector<Pair> all = pairs;
   pairs.assign(all.begin(), all.begin() + 300);
@@ -234,7 +235,8 @@ TEST_F(Subjects, DescriptionsAndBlocksAndExceptions) {
   expect(throws, Verdict::crashed);
   ForeignProcesses in_blocks({"library", (folder / "libdescribed.so").string(), "in_blocks"}, Scalar::f32);
   expect(in_blocks, Verdict::crashed);
-  // Answers that depend on the place in a block: all places but the first three differ in the second pass.
+  // The answers of this subject depend on the place in a block. In the second pass, all pairs but the first three have
+  // other places.
   ForeignProcesses by_place({"library", (folder / "libdescribed.so").string(), "by_place_in_block"}, Scalar::f32);
   const std::vector<Verdict> placed = verdicts(by_place);
   std::size_t wrong = 0, unstable = 0;
@@ -298,7 +300,7 @@ for number, line in enumerate(sys.stdin, 1):
   pairs = all;
 }
 
-// A program may describe itself when asked. A program that does not know the question is used as it is.
+// A program may describe itself when Graze asks. A program that does not know the question runs without a description.
 TEST_F(Subjects, AProgramMayDescribeItself) {
   const std::string answers = "; while read line; do echo 1; done";
   const auto open_program = [&](const std::string& name, const std::string& describes) {
@@ -342,7 +344,7 @@ TEST_F(Subjects, AProgramMayDescribeItself) {
             std::string::npos);
 }
 
-// The published algorithms, opened as foreign sources, give exactly the verdicts of their lanes.
+// Published algorithms that are opened as foreign sources give exactly the verdicts of their lanes.
 class OurOwn : public Subjects, public testing::WithParamInterface<int> {};
 
 TEST_P(OurOwn, AsForeignCodeAreTheirLanes) {
@@ -372,7 +374,7 @@ int decide(const Real a[9], const Real b[9]) {
   open(wanted);
   std::size_t compared = 0;
   for (const char* scalar : {"f32", "f64"}) {
-    {  // the compiler decides what cpu-fma fuses, and may decide differently in another function
+    {  // only `cpu`: for cpu-fma, the compiler may fuse other products in another function
       const std::string lane = std::string("/") + scalar + "/cpu";
       const Lane *foreign = find_lane(name + lane), *ours = find_lane(id + lane);
       ASSERT_TRUE(ours);
@@ -413,7 +415,7 @@ TEST_F(Subjects, SourcesInCAndCppFindTheirFunctionAndScalar) {
     const std::vector<Verdict> found = verdicts(lane->decide);
     for (std::size_t i = 0; i < pairs.size(); ++i) ASSERT_EQ(found[i], left_of(pairs[i])) << id;
   }
-  // A function in double gets the doubles of a pair of doubles, not what float32 stores.
+  // A function of doubles gets the doubles of a pair, not their float32 values.
   ASSERT_TRUE(find_lane("in_double/f64/cpu")->decide.decides_doubles());
   EXPECT_FALSE(find_lane("both/f32/cpu")->decide.decides_doubles());
   std::vector<DoublePair> close;
@@ -426,14 +428,14 @@ TEST_F(Subjects, SourcesInCAndCppFindTheirFunctionAndScalar) {
   for (std::size_t i = 0; i < close.size(); ++i) ASSERT_EQ(test_bit(bits.intersects, i), i % 3 == 0) << i;
   EXPECT_FALSE(find_lane("in_double/f32/cpu"));
   EXPECT_FALSE(find_lane("by_name/f32/cpu"));
-  // Included files count: another header makes another build.
+  // Another text of an included header makes another build.
   write("part.h", "#define LESS(a, b) (a)[0] >= (b)[0]");
   open_one("changed=" + (folder / "both.cpp").string() + ":geo::meets");
   EXPECT_EQ(verdicts(find_lane("changed/f32/cpu")->decide)[0],
             left_of(pairs[0]) == Verdict::disjoint ? Verdict::intersects : Verdict::disjoint);
 }
 
-// Without a device, the twin replays a CUDA source. Fusing a product into a sum has a visible effect.
+// Without a device, the twin replays a CUDA source. Fusing a product into a sum changes verdicts.
 TEST_F(Subjects, ACudaSourceIsReplayedByItsTwin) {
   const fs::path source = write("mine.cu", R"(
 #include <math.h>
@@ -557,8 +559,8 @@ TEST_F(Subjects, ACampaignsRecordOpensThemAgainUnlessTheyChanged) {
   EXPECT_TRUE(record({"moller_1997/f32/cpu", "recorded2/f32/cpu"}).is_null());
   nlohmann::ordered_json spec{{"subjects", record({"moller_1997/f32/cpu", "recorded/f32/cpu"})}};
   ASSERT_EQ(spec["subjects"].size(), 1u);
-  open_recorded(spec);                      // already open
-  open_one("recorded=" + source.string());  // the same again
+  open_recorded(spec);                      // the subject is already open
+  open_one("recorded=" + source.string());  // the same subject again
   spec["subjects"][0]["name"] = "again";
   open_recorded(spec);
   EXPECT_TRUE(find_lane("again/f32/cpu"));
@@ -592,12 +594,12 @@ TEST_F(Subjects, CodeIsKnownByWhatIsCompiledOrRun) {
     const std::string error = error_of([&] { open_recorded(spec); });
     EXPECT_TRUE(names(error, {"changed", spec["subjects"][0]["hash"].get<std::string>()}));
     EXPECT_FALSE(opened(name + "_changed"));
-    open_one(name + "_changed=" + what);  // as a person requests it
+    open_one(name + "_changed=" + what);  // by a user's request
     EXPECT_EQ(open_recorded(spec).size(), 1u);
   }
 }
 
-// Whether the cached build may be used. A build from other files must never be used.
+// A cached build of the same files may be used. A build of other files must never be used.
 TEST_F(Subjects, WhatIsBuiltInBesideTheSourceIsKnownOrBuiltAnew) {
   const fs::path object = folder / "helper.o", data = folder / "some $data.bin";
   const auto build = [&](bool less) {
@@ -649,7 +651,7 @@ int intersects(const float a[9], const float b[9]) { return data[0] == 'l' ? a[0
                           Case{"tools", assembles, {"-B" + folder.string()}, false},
                           Case{"incbin", reads(0), {}, lists},
                           Case{"incbin_when_linked", reads(0), {"-flto"}, false}};
-  if (lists) {  // by an assembler that does not list what it reads, only the plain spelling is found
+  if (lists) {  // if the assembler does not list the files that it reads, Graze finds only the plain spelling
     cases.push_back({"incbin_in_parts", reads(1), {}, true});
     cases.push_back({"incbin_in_numbers", reads(2), {}, true});
   }
@@ -706,7 +708,7 @@ TEST_F(Subjects, CodeThatChangesWhileItIsBuiltIsBuiltAgain) {
   write("edited.h", "#define LESS <\n");
   write("edits",
         "rm edits; mv edited.h old.h; echo '#define LESS >=' > edited.h; cc \"$@\"; status=$?; "
-        "cp old.h new.h; mv new.h edited.h; exit $status");  // undone before the next reading
+        "cp old.h new.h; mv new.h edited.h; exit $status");  // the change is undone before the next reading
   const Built undone = build();
   EXPECT_FALSE(fs::exists(edits));
   EXPECT_NE(undone.file, edited.file);
@@ -724,7 +726,7 @@ TEST_F(Subjects, CodeThatChangesWhileItIsBuiltIsBuiltAgain) {
   unsetenv("CC");
 }
 
-// The assembler searches folders in order, so a new file in an earlier folder is different code.
+// The assembler searches folders in order, so a new file in an earlier folder makes different code.
 TEST_F(Subjects, AFileThatTheAssemblerNowFindsEarlierIsBuiltIn) {
   const fs::path source = write("searched.c", R"(
 __asm__(".section .rodata\n.global blob\nblob: .incbin \"searched.bin\"\n.previous");
@@ -749,7 +751,7 @@ int intersects(const float a[9], const float b[9]) { return blob[0] == 'l' ? a[0
   EXPECT_TRUE(is_less(build()));
 }
 
-// The same compiler version may use another assembler or linker of the PATH, and the compiler may be a script.
+// The same version of a compiler may use another assembler or linker from the PATH, and the compiler may be a script.
 TEST_F(Subjects, TheCompilersPartsAndScriptsAreInTheHash) {
   const fs::path source = write("by_parts.c", kLess);
   const auto hash = [&] {
@@ -775,7 +777,7 @@ TEST_F(Subjects, TheCompilersPartsAndScriptsAreInTheHash) {
   EXPECT_TRUE(hashes.insert(hash()).second);
   tool("my_cc", "exec cc -funsigned-char");
   EXPECT_TRUE(hashes.insert(hash()).second);
-  tool("my_cc", "sleep 100000 &\nexec cc");  // what it leaves behind is not waited for
+  tool("my_cc", "sleep 100000 &\nexec cc");  // Graze does not wait for the process that it leaves behind
   EXPECT_TRUE(hashes.insert(hash()).second);
   unsetenv("CC");
   EXPECT_EQ(hash(), plain);
@@ -790,7 +792,8 @@ TEST_F(Subjects, FlagsThatMayBringInAnythingAreNotCovered) {
                            "-Wa,-Iinclude", "--sysroot=/x", "-include-pch", "-fprofile-use"})
     EXPECT_NE(not_covered({"-O2", flag}), "") << flag;
   EXPECT_EQ(not_covered({"-lm", "-B/x", "-Wl,-s"}), "the libraries that its flags link, what -B/x brings in");
-  for (const auto& [how, covered] : {std::pair("rc", true), std::pair("rcT", false)}) {  // thin: of files' names
+  for (const auto& [how, covered] :
+       {std::pair("rc", true), std::pair("rcT", false)}) {  // a thin archive has only names of files
     const fs::path archive = folder / (std::string("lib") + how + ".a");
     ASSERT_EQ(std::system(fmt::format("cd {} && echo 'int x;' > x.c && cc -c x.c && ar {} {} x.o", folder.string(), how,
                                       archive.string())
@@ -848,7 +851,7 @@ TEST_F(Subjects, AKeptObjectThatIsNotAsItWasBuiltIsBuiltAgain) {
   EXPECT_TRUE(fs::exists(kept / "inner"));
 }
 
-// Graze knows which code runs only for a program alone, or for a program with a file as its first argument.
+// Graze knows the code of a command only for a program alone, or for a program with a file as its first argument.
 TEST_F(Subjects, ACommandWhoseCodeIsNotPlainIsNotCovered) {
   const fs::path plain = write("plain.py", "pass"), program = write("plain", "pass");
   const std::string own = program.string();
@@ -907,7 +910,7 @@ TEST_F(Subjects, AProgramThatThePathFindsEarlierMeanwhileIsRefused) {
   setenv("PATH", path.c_str(), 1);
 }
 
-// Otherwise shards of two versions would merge.
+// The hash covers the description. If it did not, shards of two versions of a library would merge.
 TEST_F(Subjects, TheHashOfALibraryIsOfWhatItSaysOfItselfToo) {
   const fs::path code = write("versions.cpp", std::string(R"(
 #include <graze/subject.h>

@@ -33,18 +33,17 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Time = Clock::time_point;
 
-constexpr auto kLookEvery = std::chrono::milliseconds(100);  // between checks of what the processes use
-constexpr int kMostWaits = 20;                               // a program may wait this many limits for a processor
-constexpr int kMostLoads = 3;                                // failed ones, for one block
-constexpr double kLoadSeconds = 60;                          // to load the code and start a worker
+constexpr auto kLookEvery = std::chrono::milliseconds(100);  // between checks of the processes' usage
+constexpr int kMostWaits = 20;       // a program may wait this many times its limit for a processor
+constexpr int kMostLoads = 3;        // the most loads that may fail for one block
+constexpr double kLoadSeconds = 60;  // to load the code and start a worker
 constexpr std::uint64_t kMostProcesses = 64;
 
 Time after(double seconds) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-// Tells graze, at most a hundred times a second, that this supervisor works. graze assumes that a silent one cannot
-// continue.
+// Tells graze, at most a hundred times a second, that this supervisor works. Graze gives up a silent supervisor.
 void tell_alive() {
   static Time next{};
   const Time now = Clock::now();
@@ -86,21 +85,20 @@ class Supervisor {
     _exit(0);
   }
 
-  // If the system call fails, supervision is impossible: leaves, and graze starts another supervisor.
+  // Calls poll. If the system call fails, this supervisor cannot supervise: it leaves, and graze starts another.
   int wait_for(pollfd* of, nfds_t count, int milliseconds) {
     const int found = poll(of, count, milliseconds);
     if (found < 0 && errno != EINTR) leave();
     return found;
   }
 
-  // Likewise, until this time or the next check of the processes' usage.
+  // Waits until this time, or until the next check of the processes' usage.
   void wait_for(pollfd* of, nfds_t count, Time until) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(std::min(until, next_look_) - Clock::now()).count();
     wait_for(of, count, static_cast<int>(std::max<long>(0, left)));
   }
 
-  // Waits for graze's next block and checks the processes' usage meanwhile.   Returns: false when there is no further
-  // block.
+  // Waits for graze's next block, and checks the processes' usage meanwhile.   Returns: false if there is none.
   bool next_block(Block& block) {
     for (;;) {
       pollfd control{kControlFd, POLLIN, 0};
@@ -137,14 +135,14 @@ class Supervisor {
         continue;
       }
       end_worker();
-      questions.take(words_);  // answers that came at the last moment
+      questions.take(words_);  // the last answers may have arrived meanwhile
       if (!questions.answered() || limits_.program) questions.failed(how);
     }
     std::copy(questions.answers().begin(), questions.answers().end(), answers.answers);
     if (send(kControlFd, &answers, sizeof answers, MSG_NOSIGNAL) != sizeof answers) leave();
   }
 
-  // Waits until the worker has given all answers (kDeclined) or has to be ended (kCrashed, kTimedOut).
+  // Waits for the worker's answers.   Returns: kDeclined if all are there; else kCrashed or kTimedOut.
   signed char watch(Questions& questions) {
     double before = processor_seconds(worker_);
     int times = 0;
@@ -158,14 +156,14 @@ class Supervisor {
         programs.reset();
         until = after(limits_.seconds);
       }
-      if (told) return questions.answered() ? kDeclined : kCrashed;  // it claims to have given all answers
+      if (told) return questions.answered() ? kDeclined : kCrashed;  // the worker claims that it has answered
       if (over_limits_) return kCrashed;
       if (has_ended(worker_fd_)) {
         questions.take(words_);
         return kCrashed;
       }
       if (Clock::now() < until) continue;
-      // It timed out only if it had the processor time; load on the machine must not cause verdicts.
+      // A timeout counts only if the code had the processor time, because load on the machine must not cause verdicts.
       if (limits_.program && times < kMostWaits) {  // the worker itself only waits for its program
         const Activity now = activity_of_descendants(kMostProcesses);
         const bool had_time = programs && now.seconds - programs->seconds >= 0.9 * limits_.seconds;
@@ -181,8 +179,7 @@ class Supervisor {
     }
   }
 
-  // Waits for an event, at most until `until`.   Returns: whether the worker says that it has answered the last
-  // question.
+  // Waits for an event, at most until `until`.   Returns: whether the worker claims that it has answered.
   bool wait(Time until) {
     pollfd news[] = {{talk_, POLLIN, 0}, {worker_fd_, POLLIN, 0}, {kControlFd, POLLIN, 0}};
     wait_for(news, 3, until);
@@ -192,7 +189,8 @@ class Supervisor {
       reap();
       over_limits_ = !within_limits();
     }
-    // When a worker has ended, the next message may already be that a new worker is ready.
+    // After a worker has ended, the next message may already say that a new worker is ready. That message must not be
+    // read here.
     if (news[1].revents || !(news[0].revents & POLLIN)) return false;
     Answered said{};
     pid_t sender = 0;
@@ -203,8 +201,8 @@ class Supervisor {
     return true;
   }
 
-  // Receives a message and the sender's process id, as the system reports it.   Returns: its size in bytes; -1 for
-  // none.
+  // Receives a message, and the sender's process id as the system reports it.   Returns: the size of the message in
+  // bytes; -1 if there is none.
   ssize_t receive(void* to, std::size_t size, pid_t& sender) {
     iovec part{to, size};
     alignas(cmsghdr) char more[CMSG_SPACE(sizeof(ucred))];
@@ -219,7 +217,8 @@ class Supervisor {
     return received;
   }
 
-  // Starts the process that loads the code and waits for it.   Returns: whether it loaded; if not, why_ has the reason.
+  // Starts the process that loads the code, and waits until it has.   Returns: whether the code is loaded; if not, why_
+  // has the reason.
   bool load(Loaded& loaded) {
     int talk[2];
     const int yes = 1;
@@ -251,8 +250,8 @@ class Supervisor {
 
   [[noreturn]] void become_loader(int talk) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    setsid();  // kill(0, …) must reach neither this supervisor nor its guardian, which a namespace does not hide from
-               // it
+    // Signals to the code's process group must not reach the supervisor or its guardian, even without a namespace.
+    setsid();
     const int given[] = {kSupervisorPairsFd, words_fd_, talk, kSupervisorCodeFd};
     const int to[] = {kPairsFd, kWordsFd, kTalkFd, kCodeFd};
     const int count = limits_.has_code ? 4 : 3;
@@ -260,7 +259,7 @@ class Supervisor {
     for (int i = 0; i < count; ++i) from[i] = fcntl(given[i], F_DUPFD, 16);
     for (int i = 0; i < count; ++i) dup2(from[i], to[i]);
     close_range(static_cast<unsigned>(to[count - 1]) + 1, ~0u, 0);
-    if (limits_.bytes > 0) {  // foreign code, and not a device's driver
+    if (limits_.bytes > 0) {  // the code does not need a device's driver
       drop_rights();
       forbid_calls(limits_.system_v);
     }
@@ -268,8 +267,8 @@ class Supervisor {
     _exit(127);
   }
 
-  // Returns: whether there is a message. If not, the process ended, the time is up or a limit is exceeded; why_ says
-  // which.
+  // Waits for a message of the loader or its workers.   Returns: whether there is one. If not, the loader ended or
+  // stopped, the time is up, or a limit is exceeded. Unless the loader ended, why_ gets the reason for false.
   bool wait_for_message(Time until) {
     while (Clock::now() < until) {
       pollfd news[] = {{talk_, POLLIN, 0}, {loader_fd_, POLLIN, 0}, {kControlFd, POLLRDHUP, 0}};
@@ -283,14 +282,15 @@ class Supervisor {
       if (is_stopped(loader_)) break;
       if (within_limits()) continue;
       why_ =
-          fmt::format("takes more than {} MiB or {} processes while it is loaded", limits_.bytes >> 20, kMostProcesses);
+          fmt::format("used more than {} MiB or {} processes while it was loaded", limits_.bytes >> 20, kMostProcesses);
       return false;
     }
-    why_ = is_stopped(loader_) ? "stopped while it was loaded" : fmt::format("is not loaded after {} s", kLoadSeconds);
+    why_ =
+        is_stopped(loader_) ? "stopped while it was loaded" : fmt::format("was not loaded within {} s", kLoadSeconds);
     return false;
   }
 
-  // Waits for the loader's next worker.   Returns: whether it is ready.
+  // Waits for the loader's next worker.   Returns: whether that worker is ready.
   bool await_worker() {
     const Time until = after(kLoadSeconds);
     while (wait_for_message(until)) {
@@ -299,7 +299,7 @@ class Supervisor {
       const ssize_t received = receive(&said, sizeof said, sender);
       if (received == 0) return false;  // nobody holds the socket any more
       if (received != sizeof said || said != Says::ready || sender <= 1) continue;
-      const int fd = open_process(sender);  // first, so that the id stays this process's during the checks
+      const int fd = open_process(sender);  // first, so that no other process gets the id during the checks
       if (fd >= 0 && is_descendant(sender) && !has_ended(fd)) {
         worker_ = sender;
         worker_fd_ = fd;
@@ -310,8 +310,7 @@ class Supervisor {
     return false;
   }
 
-  // Ends the worker and the processes that it started. The process that loaded the code stays, and forks the next
-  // worker.
+  // Ends the worker and the processes that it started. The process that loaded the code forks the next worker.
   void end_worker() {
     if (over_limits_) return end_all();
     syscall(SYS_pidfd_send_signal, worker_fd_, SIGKILL, nullptr, 0);
@@ -324,7 +323,7 @@ class Supervisor {
 
   void end_all() {
     if (!end_children(-1, tell_alive))
-      _exit(1);  // the code starts processes faster than they end; the namespace ends with this process
+      _exit(1);  // the code starts processes faster than they can be killed; the namespace ends with this process
     for (int* fd : {&talk_, &loader_fd_, &worker_fd_}) {
       if (*fd >= 0) close(*fd);
       *fd = -1;
@@ -351,8 +350,8 @@ class Supervisor {
     return process_fd < 0 || poll(&ended, 1, 0) > 0;
   }
 
-  // How many times its time limit the worker may wait: 100 times if it waits for a processor, 3 times for a disk (a
-  // state that it can also fake by vfork), otherwise once.
+  // The number of time limits for which the worker may wait: 100 if it waits for a processor, 3 if it waits for a disk,
+  // otherwise 1. Code can fake the wait for a disk by vfork.
   int most_times() const {
     const char state = process_state(worker_);
     return state == 'R' ? 100 : state == 'D' ? 3 : 1;
@@ -380,7 +379,7 @@ int supervise_program(double seconds, std::uint64_t bytes, const std::string& sc
   if (program == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != self) _exit(0);
-    setsid();  // as for code that is loaded
+    setsid();  // as in become_loader
     drop_rights();
     execvp(words[0], words);
     fmt::print(stderr, "{}\n", std::strerror(errno));

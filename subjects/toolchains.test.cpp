@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Toolchains: their files, their lanes, and what the assembly shows. Those that are missing here are skipped.
+// Tests of toolchains: their files, their lanes, and contractions in their assembly. Missing toolchains are skipped.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -103,8 +103,9 @@ TEST_F(Toolchains, AreSelectedByNameAndByFile) {
   EXPECT_THROW(selected_toolchains(""), UsageError);
 }
 
-// With every operation rounded, each compiler and processor gives the same verdicts. This shows that the protocol, the
-// emulator's arithmetic and the sources are right. With contraction or excess precision some verdicts differ.
+// If every operation is rounded, all compilers and processors give the same verdicts. This test shows that the
+// protocol, the emulator's arithmetic and the sources are right. With contraction or excess precision, some verdicts
+// differ.
 TEST_F(Toolchains, OfPublishedAlgorithmsDifferOnlyWhereTheyDoNotRound) {
   open_published("interval_overlap", "x86-gcc,x86-gcc-v3,x86-clang-v3-off,x87,arm64-gcc,arm64-gcc-off,wasm");
   int compared = 0;
@@ -116,7 +117,7 @@ TEST_F(Toolchains, OfPublishedAlgorithmsDifferOnlyWhereTheyDoNotRound) {
       const Lane* lane = find_lane(of + name);
       ASSERT_TRUE(lane) << name;
       if (!lane->decide) {
-        std::printf("not here: %s: %s\n", name, lane->evidence.c_str());
+        std::printf("not installed: %s: %s\n", name, lane->evidence.c_str());
         EXPECT_FALSE(lane->evidence.empty());
         continue;
       }
@@ -126,11 +127,11 @@ TEST_F(Toolchains, OfPublishedAlgorithmsDifferOnlyWhereTheyDoNotRound) {
       EXPECT_EQ(verdicts_of(lane->decide, pairs) == ours, toolchain->rounding == Rounding::rounded) << lane->id;
     }
   }
-  EXPECT_GE(compared, 4);  // of GCC, which builds Graze
+  EXPECT_GE(compared, 4);  // with GCC, which builds Graze
 }
 
-// In the assembly, rounds the products of every line in which the compiler fuses some, one line after the other. The
-// result agrees with the strict build on all pairs.
+// Rounds, in the assembly, the products of each line at which the compiler fuses products. The resulting program agrees
+// with the strict build on all pairs.
 TEST_F(Toolchains, TheAssemblyShowsEveryFusedProduct) {
   open_published("moller_1997", "x86-gcc-v3,arm64-gcc,arm64-clang,x86-clang-v3-fast");
   int checked = 0;
@@ -201,7 +202,7 @@ run = "true"
   EXPECT_TRUE(record({"separating_axes/f32/cpu"}).is_null());
 }
 
-// Foreign code in a toolchain's program fails only on its own pairs, and what it prints is not an answer.
+// Foreign code in a toolchain's program fails only on its bad pairs, and its own output is not an answer.
 TEST_F(Toolchains, ProgramsThatFailLoseOnlyTheirPair) {
   Wanted wanted = parse_subject("fails=" + write("fails.cpp", R"(
 #include <cstdio>

@@ -56,7 +56,8 @@ std::uint64_t bytes_in(const fs::path& file, std::initializer_list<std::string_v
   return kib << 10;
 }
 
-// The folder in /proc that shows a process's memory: that of another thread, if the first has ended and others run.
+// The folder in /proc that shows a process's memory. If the first thread has ended, the folder of another thread shows
+// it.
 fs::path memory_folder(pid_t process) {
   const fs::path folder = "/proc/" + std::to_string(process);
   std::error_code error;
@@ -69,11 +70,11 @@ fs::path memory_folder(pid_t process) {
   return folder;
 }
 
-// Memory that several processes can map, such as MAP_SHARED | MAP_ANONYMOUS: its inode and bytes. It stays while any
-// part of it is mapped, even if no page table shows it.
+// Memory that several processes can map, such as MAP_SHARED | MAP_ANONYMOUS: bytes by inode. All such memory remains
+// allocated while any part of it is mapped, even if no page table shows it.
 using Shared = std::map<std::uint64_t, std::uint64_t>;
 
-// The device of the file system that has this memory. It is the same for memfd_create.
+// The device of the file system that contains shared memory. Files of memfd_create are on the same device.
 dev_t shared_device() {
   struct stat file {};
   const int fd = memfd_create("graze-device", MFD_CLOEXEC);
@@ -82,7 +83,7 @@ dev_t shared_device() {
   return file.st_dev;
 }
 
-// Adds what the process maps of shared memory.   Returns: the bytes that were not in `shared` before.
+// Counts the shared memory that the process maps in `shared`.   Returns: the bytes that were not counted before.
 std::uint64_t add_shared(std::ifstream& maps, const fs::path& folder, Shared& shared) {
   static const dev_t device = shared_device();
   std::uint64_t more = 0;
@@ -94,7 +95,7 @@ std::uint64_t add_shared(std::ifstream& maps, const fs::path& folder, Shared& sh
                     &inode) != 7 ||
         flags[3] != 's' || makedev(of_major, of_minor) != device)
       continue;
-    // Only root may ask for the bytes in use. For others, the end of what is mapped counts, used or not.
+    // Only root may ask for the bytes in use. For other users, all bytes up to the end of the mapping count.
     struct stat file {};
     char name[64];
     std::snprintf(name, sizeof name, "map_files/%lx-%lx", from, to);
@@ -108,8 +109,8 @@ std::uint64_t add_shared(std::ifstream& maps, const fs::path& folder, Shared& sh
   return more;
 }
 
-// Memory of a process, including its page tables but not shared memory. Counts whole pages of files first, which is
-// fast; if that exceeds `most`, counts shares of them.
+// The memory of a process with its page tables, without shared memory. Counting each page of a file fully is fast. If
+// the sum exceeds `most`, counts the process's share of each such page.
 std::uint64_t bytes_of(const fs::path& folder, std::uint64_t most) {
   const std::uint64_t whole = bytes_in(folder / "status", {"RssAnon:", "RssFile:", "VmSwap:", "VmPTE:"});
   if (whole <= most) return whole;
@@ -147,7 +148,7 @@ Activity activity_of_descendants(std::uint64_t most) {
 }
 
 Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processes) {
-  // Counts the processes first: against a thousand that run, there is no time to read the memory of each.
+  // Counts the processes first, because reading the memory of a thousand running processes would take too long.
   const std::vector<pid_t> all = descendants(most_processes);
   Usage usage{all.size(), 0};
   Shared shared;
@@ -155,11 +156,11 @@ Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processe
     if (usage.processes > most_processes || usage.bytes > most_bytes) break;
     const fs::path folder = memory_folder(process);
     std::ifstream maps(folder / "maps");
-    if (!maps && errno == EACCES) {  // a process that hides its pages counts with all its addresses
+    if (!maps && errno == EACCES) {  // a process that hides its mappings counts with its whole address space
       usage.bytes += bytes_in(folder / "status", {"VmSize:", "VmSwap:", "VmPTE:"});
     } else {
       usage.bytes += add_shared(maps, folder, shared);
-      // Counts shares of the pages of files once whole pages would exceed the limit.
+      // Counts only shares of files' pages if full pages would use more than half of the remaining limit.
       usage.bytes += bytes_of(folder, most_bytes > usage.bytes ? (most_bytes - usage.bytes) / 2 : 0);
     }
   }

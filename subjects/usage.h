@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The processes and the memory of all descendants of this process, from /proc.
+// The number, memory and processor time of this process's descendants, from /proc.
 #pragma once
 
 #include <sys/types.h>
@@ -9,14 +9,16 @@
 
 namespace graze::subjects {
 
-std::vector<pid_t> own_children();  // of the calling thread
+// The children of the calling thread.
+std::vector<pid_t> own_children();
 
-// All descendants except those of one child, or a little more than `most` of them.
+// All descendants except the child `except` and its descendants. The search stops once there are more than `most`.
 std::vector<pid_t> descendants(std::uint64_t most, pid_t except = -1);
 
-double processor_seconds(pid_t process);  // that the process has used; 0 if it is not there
+// The processor time that the process has used, in seconds; 0 if there is no such process.
+double processor_seconds(pid_t process);
 
-// Whether some descendant runs or waits for a processor, and the processor time of all that exist, in seconds.
+// Whether some descendant runs or waits for a processor, and the processor time of all descendants, in seconds.
 struct Activity {
   bool wants_processor = false;
   double seconds = 0;
@@ -24,10 +26,11 @@ struct Activity {
 Activity activity_of_descendants(std::uint64_t most);
 
 struct Usage {
-  std::uint64_t processes,
-      bytes;  // of memory and page tables; shared memory counts once, and each process has its share of pages of files
+  std::uint64_t processes;
+  // Memory and page tables. Shared memory counts once. A page of a file counts in part for each process that maps it.
+  std::uint64_t bytes;
 };
-// Current usage of all descendants. Stops counting a little beyond `most_bytes` or `most_processes`.
+// The current usage of all descendants. Counting stops soon after the usage exceeds `most_bytes` or `most_processes`.
 Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processes);
 
 }  // namespace graze::subjects

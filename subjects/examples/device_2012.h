@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Float arithmetic of CUDA devices of 2012, as a scalar type for the published algorithms. Multiply-adds follow the PTX
-// ISA (mad.f32 and fma.f32). Division, square root and the choice of products are models, because no document gives
-// their bits.
+// The float arithmetic of CUDA devices of 2012, as a scalar type for the published algorithms. Multiply-adds follow the
+// PTX ISA (mad.f32 and fma.f32). Division, square root and the choice of the fused product are models, because no
+// document states their bits.
 #pragma once
 
 #include <bit>
@@ -15,7 +15,7 @@ namespace graze::device_2012 {
 enum class Mad {
   none,        // a product is rounded before it is added
   truncating,  // mad.f32 on devices of compute capability 1.x
-  fused,       // fma.rn.f32; also mad.f32 of such code, compiled for later devices
+  fused,       // fma.rn.f32, or mad.f32 on devices of compute capability 2.0 and later
 };
 enum class Fuses { left, right };  // which product of a * b + c * d is fused into the sum; the other is rounded
 enum class Division {
@@ -30,26 +30,27 @@ struct Device {
   Division division;
 };
 
-// a * b + c: the product cut to 24 significant bits with an exponent of any size, then one rounded addition.
+// a * b + c with a truncated product. The product is cut to 24 significant bits, with an exponent of any size. The
+// addition rounds once.
 inline float truncating_mad(float a, float b, float c) {
   if (c == 0) return a * b + c;
   constexpr std::uint64_t kCut = (std::uint64_t{1} << (DBL_MANT_DIG - FLT_MANT_DIG)) - 1;
   const double product = std::bit_cast<double>(std::bit_cast<std::uint64_t>(double{a} * double{b}) & ~kCut);
   const float in_range = static_cast<float>(product);
   if (double{in_range} == product) return in_range + c;
-  int exponent;  // it may be beyond the range of float, so fma adds the product of two floats
+  int exponent;  // the product may be beyond the range of float, so fma adds a product of two floats
   const auto mantissa = static_cast<float>(std::frexp(product, &exponent));
   return std::fma(std::ldexp(mantissa, exponent / 2), std::ldexp(1.0f, exponent - exponent / 2), c);
 }
 
-// Moves x by -2 to 2 ulps. Its bits determine by how many, as if by chance.
+// Moves x by -2 to 2 ulps. A hash of x selects the number of ulps.
 inline float off_by_ulps(float x) {
   const auto bits = std::bit_cast<std::uint32_t>(x);
   return std::isnormal(x) ? std::bit_cast<float>(bits + (bits * 0x9e3779b9u >> 16) % 5 - 2) : x;
 }
 
-// A product remembers its factors, and the next sum may fuse them: across statements, as nvcc does, and even if the
-// product has other uses.
+// A number of the device. A product keeps its factors, so that the next sum may fuse them: across statements, as nvcc
+// does, and even if the product has other uses.
 template <Device kDevice>
 class Number {
  public:

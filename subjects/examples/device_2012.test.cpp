@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the arithmetic of devices of 2012 with exact arithmetic and, without its peculiarities, with floats.
+// Compares the arithmetic of devices of 2012 with exact arithmetic. Without its peculiarities, the arithmetic must
+// equal that of float.
 #include "subjects/examples/device_2012.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +25,7 @@ constexpr Device kTruncating{Mad::truncating, Fuses::left, Division::reciprocal}
 
 std::mt19937 bits(2012);
 
-float any_float() {  // all exponents are equally likely, including those of subnormal numbers
+float any_float() {  // every exponent has the same probability, including those of subnormal numbers
   for (;;) {
     const auto x = std::bit_cast<float>(static_cast<std::uint32_t>(bits()));
     if (std::isfinite(x)) return x;
@@ -46,9 +47,10 @@ Exact exact_mad(float a, float b, float c) {
   return ldexp(trunc(ldexp(mantissa, FLT_MANT_DIG)), exponent - FLT_MANT_DIG) + Exact(c);
 }
 
-// Whether x is the float nearest to `exact`; if two are, the one with an even mantissa.
+// Whether x is the float nearest to `exact`, or, of two nearest floats, the one with an even mantissa.
 bool is_rounded(float x, const Exact& exact) {
-  const Exact most = ldexp(Exact(2) - ldexp(Exact(1), -FLT_MANT_DIG), FLT_MAX_EXP - 1);  // from here on infinite
+  const Exact most =
+      ldexp(Exact(2) - ldexp(Exact(1), -FLT_MANT_DIG), FLT_MAX_EXP - 1);  // larger numbers round to infinity
   if (std::isinf(x) || abs(exact) >= most) return std::isinf(x) && abs(exact) >= most && (x > 0) == (exact > 0);
   const Exact error = abs(Exact(x) - exact);
   for (const float to : {-INFINITY, INFINITY}) {
@@ -83,7 +85,7 @@ TEST(Device2012, TruncatesProductsAsExactArithmeticDoes) {
 }
 
 TEST(Device2012, RoundsAProductToWhichZeroIsAdded) {
-  const float a = 0x1.000002p0f, b = 1.75f;  // the product is nearer to the float above it
+  const float a = 0x1.000002p0f, b = 1.75f;  // the exact product is nearer to the next float above than below
   EXPECT_EQ(truncating_mad(a, b, 0), a * b);
   EXPECT_EQ(truncating_mad(a, b, -0.0f), a * b);
   EXPECT_LT(truncating_mad(a, b, 0x1p-149f), a * b);
@@ -96,7 +98,7 @@ TEST(Device2012, SumsTakeTheChosenProduct) {
   EXPECT_EQ(difference(Number<kLeft>(a), Number<kLeft>(b)), std::fma(a, b, -(a * b)));
   EXPECT_EQ(difference(Number<kRight>(a), Number<kRight>(b)), std::fma(-a, b, a * b));
   EXPECT_EQ(difference(Number<kTruncating>(a), Number<kTruncating>(b)), truncating_mad(a, b, -(a * b)));
-  const Number<kLeft> kept = Number<kLeft>(a) * Number<kLeft>(b);  // in another statement
+  const Number<kLeft> kept = Number<kLeft>(a) * Number<kLeft>(b);  // fused in a later statement
   EXPECT_EQ(value(Number<kLeft>(1) - kept), std::fma(-a, b, 1.0f));
   EXPECT_EQ(value(kept), a * b);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two algorithms of the 2012 thesis (Maffina 2012, sections 3.1 and 3.2) in OpenCL C: the same operations in the same
-// order as in core/algorithms/projected_sat.h and interval_overlap.h. REAL is float or double; see
-// subjects/opencl/runner.cpp. A file in OpenCL C includes no other, so both stand here.
+// The two algorithms of the 2012 thesis (Maffina 2012, sections 3.1 and 3.2) in OpenCL C. They have the same operations
+// in the same order as core/algorithms/projected_sat.h and interval_overlap.h. REAL is float or double; see
+// subjects/opencl/runner.cpp. Both are in this file, because a subject in OpenCL C includes no other files.
 //   --subject thesis=subjects/examples/thesis.cl:interval_overlap
 typedef struct {
   REAL3 normal, point;
@@ -41,7 +41,7 @@ bool strictly_one_side(const REAL* distance) {
          (distance[0] < 0 && distance[1] < 0 && distance[2] < 0);
 }
 
-// The range of direction . v over a triangle's vertices.
+// The range of the dot product of `direction` with a triangle's vertices.
 Range project(REAL3 direction, const REAL3* v) {
   const REAL first = dot3(direction, v[0]);
   Range range = {first, first};
@@ -58,7 +58,7 @@ bool separated(REAL3 direction, const REAL3* a, const REAL3* b) {
   return s.hi < t.lo || t.hi < s.lo;
 }
 
-// Projects both triangles onto the plane and separates them along the six in-plane edge normals.
+// Projects both triangles onto the plane, and tests whether one of the six edge normals in the plane separates them.
 bool projections_intersect(const REAL3* a, const REAL3* b, const Plane* plane) {
   const REAL3 n = normalised(plane->normal);
   REAL3 pa[3], pb[3];
@@ -90,8 +90,8 @@ Line common_line(const Plane* p, const Plane* q, REAL3 direction) {
   return line;
 }
 
-// The vertex that is alone on its side, or a vertex on the line. Exception: if the other two are on opposite sides, the
-// vertex on the line must not be last.
+// The vertex that is alone on its side, or else a vertex on the line. If the other two vertices are on opposite sides,
+// the vertex on the line must not be last.
 int vertex_to_put_last(const REAL* distance) {
   int positive = 0, negative = 0, first_positive = 2, first_negative = 2, first_zero = 2;
   for (int i = 2; i >= 0; --i) {

@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze-subject-opencl answers for a subject in OpenCL C, as graze/program.h describes. Graze starts it, not a person:
+// graze-subject-opencl answers for a subject in OpenCL C, as graze/program.h describes. Graze starts this program:
 //   graze-subject-opencl FILE.cl FUNCTION f32|f64|any MODE [PLATFORM]
 // A person can list the devices:
 //   graze-subject-opencl --platforms
-// FILE.cl defines int FUNCTION(const REAL* a, const REAL* b), where each triangle is nine numbers in private memory. It
-// is compiled once with -DREAL=float -DREAL3=float3 and once with -DREAL=double -DREAL3=double3, and answers for those
-// of the two that compile. So a function that takes only float* or double* works too. Files are OpenCL C 1.2, without
-// #include of other files.
-// MODE of the compiler:
-//   default  contracts as it does by default
-//   nofma    #pragma OPENCL FP_CONTRACT OFF, before the source
+// FILE.cl defines int FUNCTION(const REAL* a, const REAL* b), where each triangle is nine numbers in private memory.
+// The file is compiled once with -DREAL=float -DREAL3=float3 and once with -DREAL=double -DREAL3=double3. The program
+// answers for each type whose compilation succeeds. So a function that takes only float* or double* works too. FILE.cl
+// is in OpenCL C 1.2, and includes no other files.
+// MODE sets the freedom of the compiler:
+//   default  The compiler contracts as it does by default.
+//   nofma    #pragma OPENCL FP_CONTRACT OFF precedes the source.
 //   mad      -cl-mad-enable
 //   fast     -cl-fast-relaxed-math
-// In all modes but `fast`, division and square root are rounded correctly if the device can do this. Subnormal numbers
-// are as on the device. PLATFORM: a part of its name; else the first platform with a GPU, else the first with a device.
-// The environment's GRAZE_OPENCL names the library to load: a driver loader, or a driver such as
-// libnvidia-opencl.so.1; else libOpenCL.so.1.
+// In all modes but `fast`, division and square root are rounded correctly if the device can do so. The device decides
+// how to treat subnormal numbers.
+// PLATFORM is a part of a platform's name. Without PLATFORM, the first platform with a GPU answers, or else the
+// first platform with a device.
+// The environment variable GRAZE_OPENCL names the library to load: a driver loader, or a driver such as
+// libnvidia-opencl.so.1. The default is libOpenCL.so.1.
 // Exit status: 1 a call failed; 2 wrong use; 3 no library, or no device; 4 the source does not compile.
 #define GRAZE_PROGRAM_TYPES_ONLY
 #include <fcntl.h>
@@ -51,20 +53,21 @@ int print_platforms() {
   return 0;
 }
 
-// The subject, and how to compile it.
+// A subject: its source, its function and the mode of the compiler.
 struct Subject {
   std::string file, function, mode, source;
 };
 
-// Source text that names the file in the compiler's messages.
+// Source text that makes the compiler's messages name this file.
 std::string line_1_of(const std::string& file) {
   std::string name;
   for (const char c : file) name += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
   return "#line 1 \"" + name + "\"\n";
 }
 
-// The function is called before it is declared. If it is missing, the call is an error; if its types differ, the
-// declaration is one. In C a call with pointers to another type only gets a warning.
+// The subject's source, followed by a kernel that calls the function. The kernel calls the function before it declares
+// it. If the function is missing, the call is an error. If the function has other types, the declaration is an error.
+// In C, a call with pointers to another type gets only a warning.
 std::string with_kernel(const Subject& subject, bool in_double) {
   std::string text;
   if (in_double) text += "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n";
@@ -95,7 +98,7 @@ std::string options(const Subject& subject, const Device& device, bool in_double
   return device.rounds_correctly() ? text + " -cl-fp32-correctly-rounded-divide-sqrt" : text;
 }
 
-// The first line of the compiler's output that is about an error; else its first line.
+// The first line of the compiler's output with the word "error", or else its first line.
 std::string first_error(const std::string& log) {
   std::istringstream lines(log);
   std::string first;
@@ -106,7 +109,7 @@ std::string first_error(const std::string& log) {
   return first;
 }
 
-// While it exists, nothing is written to standard error: compilers count their errors there.
+// While an object of this class exists, standard error is /dev/null, because compilers also write there.
 class Quiet {
  public:
   Quiet() : kept_(dup(2)) {
@@ -125,7 +128,7 @@ class Quiet {
   int kept_;
 };
 
-// The subject on a device.
+// The subject, compiled for a device.
 class OnDevice {
  public:
   OnDevice(const Subject& subject, const Device& device) : subject_(subject), device_(device) {
@@ -142,8 +145,8 @@ class OnDevice {
 
   bool has(bool in_double) const { return kernels_[in_double].id != nullptr; }
 
-  // Compiles the subject for float or double. Some devices compile when a kernel first runs, so it runs once, for no
-  // pair: a call of the subject could fail.
+  // Compiles the subject for float or double. Some devices compile a kernel only when it first runs, so this function
+  // runs it once. The first run has no pair, because a call of the subject could fail.
   // Returns: the first error of the source; empty if there is none.
   std::string compile(bool in_double) {
     if (in_double && !device_.has_double()) return device_.text(CL_DEVICE_NAME) + " has no double";
@@ -168,13 +171,13 @@ class OnDevice {
     kernel.group_size = std::min<std::size_t>(kernel.group_size, 64);
     launch(0, in_double);
     cl_int unread = 0;
-    read(&unread, sizeof unread);  // waits
+    read(&unread, sizeof unread);  // waits until the kernel has run
     return "";
   }
 
-  // Returns: an answer to each of the pairs.   Requires: has(in_double), 0 < count <= kWords.
+  // Returns: the answers for the pairs.   Requires: has(in_double); 0 < count <= kWords.
   std::vector<cl_int> answer(const void* pairs, cl_uint count, bool in_double) const {
-    constexpr cl_int kNone = 2;  // stays if the kernel does not run
+    constexpr cl_int kNone = 2;  // remains in an answer that the kernel does not write
     std::vector<cl_int> answers(count, kNone);
     write(pairs_, pairs, 18 * (in_double ? sizeof(double) : sizeof(float)) * count);
     write(answers_, answers.data(), count * sizeof(cl_int));
@@ -188,10 +191,10 @@ class OnDevice {
  private:
   struct Kernel {
     cl_kernel id = nullptr;
-    std::size_t group_size = 0;  // always the same, because some devices compile for each size
+    std::size_t group_size = 0;  // the same for all runs, because some devices compile for each size
   };
 
-  // Starts the kernel on the pairs that were written, in whole groups.
+  // Starts the kernel, in whole groups, on the pairs in the device's memory.
   void launch(cl_uint count, bool in_double) const {
     const Kernel& kernel = kernels_[in_double];
     const std::size_t groups = std::max<std::size_t>(1, (count + kernel.group_size - 1) / kernel.group_size);
@@ -231,7 +234,7 @@ void write_all(std::FILE* out, const void* from, std::size_t bytes) {
     throw Failure(1, std::string("cannot write answers: ") + std::strerror(errno));
 }
 
-// Answers questions until there are no more.
+// Answers questions until the input ends.
 void serve(const OnDevice& subject, std::FILE* out) {
   const graze_hello hello{
       {'g', 'r', 'a', 'z', 'e', ' ', '1', '\n'}, 1, (subject.has(false) ? 1u : 0u) | (subject.has(true) ? 2u : 0u)};
@@ -242,8 +245,8 @@ void serve(const OnDevice& subject, std::FILE* out) {
   while (std::fread(&asked, sizeof asked, 1, stdin) == 1) {
     const bool in_double = asked.is_double;
     const std::size_t size = 18 * (in_double ? sizeof(double) : sizeof(float));
-    if (asked.count > kWords) throw Failure(1, "a question about too many pairs");
-    if (!subject.has(in_double)) throw Failure(1, "a question about numbers of a type that the subject does not have");
+    if (asked.count > kWords) throw Failure(1, "a question has too many pairs");
+    if (!subject.has(in_double)) throw Failure(1, "a question has numbers of a type that the subject does not take");
     if (std::fread(places.data(), sizeof places[0], asked.count, stdin) != asked.count ||
         std::fread(pairs.data(), size, asked.count, stdin) != asked.count)
       throw Failure(1, "a question is incomplete");
@@ -267,7 +270,7 @@ int run(const std::vector<std::string>& arguments) {
   if (arguments[1].find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") !=
       std::string::npos)
     throw Failure(2, "expected the name of a function, found " + arguments[1]);
-  // What drivers and kernels print is not an answer.
+  // Sends the output of drivers and kernels to standard error, so that it is not read as an answer.
   std::FILE* out = fdopen(dup(1), "wb");
   if (!out || dup2(2, 1) < 0) throw Failure(1, std::string("cannot write answers: ") + std::strerror(errno));
   Subject subject{arguments[0], arguments[1], arguments[3], ""};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bullet's two triangle tests, without margins. A Bullet build uses either float or double, so this is built with each.
+// Bullet's two triangle tests, without margins. Bullet uses either float or double in a build, so scripts/league builds
+// this adapter once with each.
 #include <BulletCollision/Gimpact/btTriangleShapeEx.h>
 #include <BulletCollision/Gimpact/gim_tri_collision.h>
 #include <graze/subject.h>
@@ -22,7 +23,7 @@ int hard_test(const btScalar a[9], const btScalar b[9]) {
   return make<GIM_TRIANGLE>(a).collide_triangle_hard_test(make<GIM_TRIANGLE>(b), contact);
 }
 
-// As in btGImpactCollisionAlgorithm: planes first, then the quick test, then clipping.
+// The steps of btGImpactCollisionAlgorithm: computing the planes, the quick test, and clipping.
 int clip_method(const btScalar a[9], const btScalar b[9]) {
   auto first = make<btPrimitiveTriangle>(a), second = make<btPrimitiveTriangle>(b);
   first.buildTriPlane();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// FCL's separating axis test of two triangles. The library contains the double version; float is instantiated here.
+// FCL's separating axis test of two triangles. The library contains the test for double; this file instantiates it for
+// float.
 #include <fcl/config.h>
 #include <fcl/narrowphase/detail/traversal/collision/intersect.h>
 #include <graze/subject.h>

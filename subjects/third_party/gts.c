@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0
- * GTS' search for pairs of faces that intersect, on a surface of two triangles. */
+ * GTS's search for pairs of faces that intersect, on a surface of two triangles. */
 #include <graze/subject.h>
 #include <gts.h>
 
@@ -21,7 +21,7 @@ static int intersects(const double a[9], const double b[9]) {
   gts_surface_add_face(surface, face(a));
   gts_surface_add_face(surface, face(b));
   const int any = gts_surface_foreach_intersecting_face(surface, found, NULL);
-  gts_object_destroy(GTS_OBJECT(surface)); /* and its faces, edges and vertices */
+  gts_object_destroy(GTS_OBJECT(surface)); /* destroys its faces, edges and vertices too */
   return any;
 }
 

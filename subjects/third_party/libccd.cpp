@@ -29,7 +29,7 @@ int intersects(const double a[9], const double b[9]) {
   CCD_INIT(&ccd);
   ccd.support1 = ccd.support2 = support;
   ccd.center1 = ccd.center2 = center;
-  ccd.max_iterations = 100;  // as in the library's own example; with its default the iteration does not end
+  ccd.max_iterations = 100;  // as in the library's own example; the default does not limit the iteration
   return kTest(a, b, &ccd);
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0
- * ODE's collision of two triangle meshes: is there a contact? Each mesh has its triangle twice: a mesh of one has no
- * tree, and dCollide reads through its null pointer. */
+ * ODE's collision of two triangle meshes. They intersect if there is a contact. Each mesh has its triangle twice: a
+ * mesh of one triangle has no tree, and dCollide reads through the null pointer to it. */
 #include <graze/subject.h>
 #include <ode/ode.h>
 
@@ -32,7 +32,7 @@ static int collides(const double a[9], const double b[9]) {
   return count > 0;
 }
 
-/* The library has no macro for its version; the package's is given by scripts/league. */
+/* The library has no version macro; scripts/league passes the package's version. */
 GRAZE_SUBJECT(trimesh_trimesh) = {
     .abi = GRAZE_SUBJECT_ABI,
     .version = DEBIAN_VERSION,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// TetGen's test of two triangles with Shewchuk's exact predicates. It throws an int in a case that it does not handle.
+// TetGen's test of two triangles with Shewchuk's exact predicates. The test throws an int in a case that it does not
+// handle.
 #define TETLIBRARY
 #include <graze/subject.h>
 #include <tetgen.h>
@@ -8,8 +9,8 @@
 namespace {
 
 int intersects(const double a[9], const double b[9]) {
-  // Once, as TetGen does before its first test. The static filter is off, because it needs the extent of the whole
-  // input.
+  // Initialises the predicates once, as TetGen does before its first test. The static filter is off, because it needs
+  // the extent of the whole input.
   static const bool kReady = (exactinit(0, 0, 1, 1, 1, 1), true);
   (void)kReady;
   double v[18];

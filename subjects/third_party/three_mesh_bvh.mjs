@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // three-mesh-bvh's ExtendedTriangle.intersectsTriangle (MIT, https://github.com/gkjohnson/three-mesh-bvh), over the
-// line protocol: each line has 18 hexadecimal numbers, the answer is 0 or 1. Convention: nothing stated.
+// line protocol. Each line has 18 hexadecimal numbers, and the answer is 0 or 1. The library states no convention.
 import { ExtendedTriangle } from 'three-mesh-bvh';
 
 const kHex = /^(-?)0x([0-9a-f]+)\.?([0-9a-f]*)p([+-]?\d+)$/i;
@@ -10,7 +10,7 @@ function number(text) {
   if (!match) return Number(text);
   const [, sign, whole, fraction, exponent] = match;
   const power = Number(exponent) - 4 * fraction.length;
-  // In two exact steps, because 2 ** power alone underflows to 0 for some nonzero results.
+  // Multiplies in two exact steps, because 2 ** power alone underflows to 0 for some nonzero results.
   const value = parseInt(whole + fraction, 16) * 2 ** Math.max(-1000, power) * 2 ** Math.min(0, power + 1000);
   return sign ? -value : value;
 }

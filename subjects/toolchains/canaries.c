@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0
- * Canaries: small computations whose bits show what a compiler and a processor do with them. C11 or C++17.
- * Each prints one line: its name, its type, and its results in hexadecimal. canaries.cpp judges them.
+ * Canaries: small computations whose bits show how a compiler and a processor treat them. C11 or C++17.
+ * Each canary prints one line: its name, its type, and its results in hexadecimal. canaries.cpp judges the results.
  * The file includes itself, once for float and once for double, so compilers need its absolute path.
  */
 #ifndef REAL
@@ -74,7 +74,7 @@ int main(void) {
   return 0;
 }
 
-#else /* for one type */
+#else /* the canaries for one type */
 
 /* 2^exponent, for an exponent of a normal number. */
 static REAL T(power)(int exponent) {
@@ -84,7 +84,7 @@ static REAL T(power)(int exponent) {
   return x;
 }
 
-/* The same number, rounded to its type and hidden from the compiler. */
+/* The number x, rounded to its type and hidden from the compiler. */
 static REAL T(hidden)(REAL x) {
   volatile REAL stored = x;
   return stored;
@@ -101,7 +101,7 @@ static void T(begin)(const char* name) { printf("\n%s %s", name, TEXT_OF(TYPE));
 static void T(whole)(uint64_t number) { printf(" %llx", (unsigned long long)number); }
 static void T(result)(REAL x) { T(whole)(T(bits)(x)); }
 
-/* 1 + n h, where h is so small that (1 + n h)(1 - n h) = 1 - (n h)^2 rounds to 1, for |n| at most 2. */
+/* The number 1 + n h. h is so small that (1 + n h)(1 - n h) = 1 - (n h)^2 rounds to 1, for |n| at most 2. */
 static REAL T(factor)(int n) { return T(hidden)(1 + (REAL)n * T(power)(-(DIGITS + 1) / 2 - 2)); }
 
 static REAL T(times)(REAL a, REAL b) { return a * b; }
@@ -135,7 +135,7 @@ static void T(dot)(void) {
 static void T(loop)(void) {
   volatile int count = 128; /* hidden, so that the loop stays a loop */
   const int n = count;
-  /* The two products belong to one partial sum, if there are 64 or fewer of them. */
+  /* If there are 64 or fewer partial sums, the two products belong to the same one. */
   REAL x[128], y[128], sum = 0;
   for (int i = 0; i < 128; ++i) {
     x[i] = i == 0 ? T(factor)(1) : i == 64 ? -T(factor)(2) : T(hidden)(0);
@@ -171,7 +171,7 @@ static void T(sum3)(REAL x, REAL y, REAL z) {
   T(result)(a + b + c);
 }
 
-/* Terms that are lost when added to 1, unless more digits are kept. */
+/* Adds a term to 1 that is lost, unless more digits are kept. */
 static void T(sum)(void) {
   T(begin)("sum");
   T(sum3)(1, T(power)(-DIGITS - 6), -1);
@@ -217,7 +217,7 @@ static void T(nearest)(void) {
   T(sum2)(1, half * (1 + ulp));
 }
 
-/* A product beyond the largest number, divided by one of its factors. */
+/* Divides a product beyond the largest number by one of its factors. */
 static void T(range)(void) {
   const int exponent = DIGITS == 24 ? 100 : 1000;
   const REAL a = T(hidden)(T(power)(exponent)), b = T(hidden)(a), c = T(hidden)(a);
@@ -267,13 +267,14 @@ static uint64_t T(digits_of)(BITS bits) {
 }
 static int T(exponent_of)(BITS bits) { return (int)(bits >> (DIGITS - 1)) - BIAS; }
 
-/* Whether x / y is rounded to nearest.   Requires: 1/2 <= x / y < 2; whole numbers below 2^DIGITS. */
+/* Whether x / y is rounded to nearest.   Requires: 1/2 <= x / y < 2; x and y below 2^DIGITS. */
 static int T(is_quotient)(uint64_t x, uint64_t y) {
   const REAL a = T(hidden)((REAL)x), b = T(hidden)((REAL)y);
   const BITS bits = T(bits)(a / b);
   const int shift = DIGITS - 1 - T(exponent_of)(bits); /* the quotient is digits / 2^shift */
   if (shift != DIGITS - 1 && shift != DIGITS) return 0;
-  /* At most half of y remains, and never exactly half: x would be a multiple of an odd number of DIGITS + 1 digits. */
+  /* The remainder is at most half of y, and never exactly half: x would then be a multiple of an odd number of DIGITS
+   * + 1 digits. */
   return is_within(difference(product(x, (uint64_t)1 << shift), product(T(digits_of)(bits), y)), (y - 1) / 2,
                    (y - 1) / 2);
 }
@@ -290,15 +291,16 @@ static int T(is_root)(uint64_t x, int odd) {
   return is_within(difference(product(x, (uint64_t)1 << (odd + even)), product(digits, digits)), digits - 1, digits);
 }
 
-/* Half of the quotients are the nearest ones to the middle between two numbers: x / y = (middle +- 1 / y) / 2^(DIGITS +
- * 1) with an odd `middle` of DIGITS + 1 digits. So y is its inverse modulo 2^(DIGITS + 1), or minus that. */
+/* Half of the quotients are as near as possible to the middle between two numbers: x / y = (middle +- 1 / y) /
+ * 2^(DIGITS + 1) with an odd `middle` of DIGITS + 1 digits. So y is the inverse of `middle` modulo 2^(DIGITS + 1), or
+ * minus it. */
 static void T(division)(void) {
   const uint64_t unit = (uint64_t)1 << (DIGITS + 1), least = unit >> 2;
   unsigned wrong = 0, asked = 0;
   while (asked < 16384) {
     const uint64_t x = T(random_digits)(), y = T(random_digits)(),
                    middle = next_random() >> (63 - DIGITS) | unit >> 1 | 1;
-    uint64_t inverse = middle; /* to 3 digits; each step doubles them */
+    uint64_t inverse = middle; /* correct to 3 binary digits; each step doubles their number */
     for (int i = 0; i < 5; ++i) inverse *= 2 - middle * inverse;
     inverse &= unit - 1;
     const uint64_t divisor = inverse < unit - inverse ? inverse : unit - inverse;
@@ -315,8 +317,9 @@ static void T(division)(void) {
   T(whole)(asked);
 }
 
-/* The roots are near the middle between two numbers: 4 x 2^shift is middle^2 - d, with a small d and an odd `middle` of
- * DIGITS + 1 digits. So `middle` is a root of d modulo 2^(shift + 2); d is 1 modulo 8, and has four such roots. */
+/* Half of the roots are near the middle between two numbers: 4 x 2^shift is middle^2 - d, with a small d and an odd
+ * `middle` of DIGITS + 1 digits. So `middle` is a root of d modulo 2^(shift + 2). As d is 1 modulo 8, it has four such
+ * roots. */
 static void T(root)(void) {
   unsigned wrong = 0, asked = 0;
   for (uint64_t i = 1; asked < 4096; ++i) {
@@ -350,9 +353,9 @@ static void T(fma3)(REAL x, REAL y, REAL z) {
 
 static void T(fused)(void) {
   const REAL half = T(power)(-DIGITS), ulp = 2 * half, tiny = T(power)(-100), most = T(power)(BIAS);
-  /* The product of these is in the middle between two numbers. */
+  /* The product a b is in the middle between two numbers. */
   const REAL a = 1 + T(power)(-(DIGITS / 2)), b = 1 + T(power)(-(DIGITS - DIGITS / 2));
-  const REAL least = T(power)(1 - BIAS) * ulp; /* subnormal */
+  const REAL least = T(power)(1 - BIAS) * ulp; /* the least subnormal number */
   const int down = (BIAS + DIGITS - 2) / 2;    /* least = 2^-(BIAS + DIGITS - 2) */
   T(begin)("fma");
   T(fma3)(T(factor)(1), T(factor)(-1), -1);
@@ -384,7 +387,7 @@ static void T(subnormal_result)(void) {
   T(result)(other - least);
 }
 
-/* A product a little below the middle between the least subnormal and the next number. */
+/* A product a little below the middle between the least subnormal number and the next number. */
 static void T(subnormal_nearest)(void) {
   const REAL g = T(power)(3 - DIGITS);
   const int half = (BIAS + DIGITS - 1) / 2;

@@ -17,22 +17,22 @@ namespace {
 
 constexpr std::uint64_t kQuotients = 16384, kRoots = 4096;  // as in canaries.c
 
-// A result: its bits, or any NaN, because the sign and the payload of a NaN depend on the processor.
+// The bits of a result. kNan stands for every NaN, because a NaN's sign and payload depend on the processor.
 using Expected = std::optional<std::uint64_t>;
 constexpr Expected kNan = std::nullopt;
 
-// A result other than the one that rounds as written.
+// Results of a canary that are not rounded as written.
 struct Other {
   Rounding rounding;
   std::string words;
   std::vector<Expected> results;
-  bool partly = false;  // some of the results may be as written
+  bool partly = false;  // some of the results may be rounded as written
 };
 
 struct Canary {
   std::string name, code;
-  Rounding least;       // the least that permits other results
-  bool across = false;  // whether it must be permitted across statements
+  Rounding least;       // the strictest rounding that permits other results
+  bool across = false;  // whether that rounding must be permitted across statements
   std::vector<Expected> as_written;
   std::vector<Other> others = {};
 };
@@ -40,9 +40,9 @@ struct Canary {
 template <class Real>
 using BitsOf = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
 
-// The canaries for one type. All numbers here are exact: sums of few powers of two. u is half an ulp of 1, and h is as
-// in canaries.c: 4 h^2 is at most u / 4, and half an ulp below 1 is u / 2. So (1 + h)(1 - h) and (1 + 2h)(1 - 2h) round
-// to 1.
+// The canaries for one type. All numbers here are exact: each is a sum of few powers of two. u is half an ulp of 1.
+// h is the same as in canaries.c: 4 h^2 is at most u / 4, and half an ulp below 1 is u / 2. So (1 + h)(1 - h) and
+// (1 + 2h)(1 - 2h) round to 1.
 template <class Real>
 std::vector<Canary> canaries() {
   using enum Rounding;
@@ -59,17 +59,18 @@ std::vector<Canary> canaries() {
              most = std::ldexp(Real{1}, std::numeric_limits<Real>::max_exponent - 1);
   const Real denormal = std::numeric_limits<Real>::denorm_min();
   const Real large = std::ldexp(Real{1}, digits == 24 ? 100 : 1000);
-  // In canaries.c's `fma`, the product a*b = low + u, between low and low + 2u; the last digit of low is 0.
+  // In the canary `fma`, the product a*b is low + u. This product lies in the middle between low and low + 2u, and the
+  // last digit of low is 0.
   const Real low = 1 + std::ldexp(Real{1}, -(digits / 2)) + std::ldexp(Real{1}, -(digits - digits / 2));
   // The exact product a*b is 1 - hh, so a*b - 1 is -hh unless the product is rounded.
   const std::vector<Other> not_rounded = {{contracted, "fused", all({-hh})}};
-  // Sequentially, the terms between 2^100 and -2^100 are lost and 47 remain. Partial sums keep some of the other 15.
+  // A sequential sum loses the terms between 2^100 and -2^100, and is 47. Partial sums keep some of the other 15 terms.
   std::vector<Other> regrouped;
   for (int kept = 48; kept <= 62; ++kept) regrouped.push_back({fast, "regrouped", all({static_cast<Real>(kept)})});
   regrouped.push_back({fast, "regrouped", all({0})});
   return {
       {"expression", "a*b + c", contracted, false, all({0}), not_rounded},
-      // a*b = 1 - hh and c*d = 1 - 4hh.
+      // Here a*b = 1 - hh and c*d = 1 - 4hh.
       {"difference",
        "a*b - c*d",
        contracted,
@@ -78,7 +79,7 @@ std::vector<Canary> canaries() {
        {{contracted, "left fused", all({-hh})},
         {contracted, "right fused", all({4 * hh})},
         {excess, "excess digits", all({3 * hh})}}},
-      // The same products: the first two of the three, then the last two.
+      // The same products are the first two terms of the dot product, and then the last two.
       {"dot",
        "dot product of 3",
        contracted,
@@ -121,7 +122,7 @@ std::vector<Canary> canaries() {
        all({1, 0, 0}),
        {{fast, "regrouped", all({0, 1, 0})}, {fast, "regrouped", all({0, 0, 1})}}},
       {"order_in_loop", "order of sum += a[i]", fast, false, all({47}), regrouped},
-      // 1 + u and 1 + 3u lie in the middle between two numbers; 1 + u (1 + 2u) lies above, as little as possible.
+      // The sums 1 + u and 1 + 3u lie in the middle between two numbers. 1 + u (1 + 2u) lies just above such a middle.
       {"nearest",
        "a + b",
        excess,
@@ -132,7 +133,8 @@ std::vector<Canary> canaries() {
       {"range_assigned", "t = a*b; t / c", excess, true, all({infinity}), {{excess, "excess range", all({large})}}},
       {"range_called", "(*times)(a, b) / c", excess, true, all({infinity}), {{excess, "excess range", all({large})}}},
       {"range_stored", "a*b stored; a*b / c", fast, false, all({infinity}), {{excess, "excess range", all({large})}}},
-      // 1 / 41 in float and 1 / 49 in double round so that 41 or 49 times the rounded number rounds to 1 - u.
+      // The divisor is 41 for float and 49 for double. The rounded reciprocal of the divisor, times the
+      // divisor, rounds to 1 - u.
       {"reciprocal",
        "a/d, b/d, c/d",
        fast,
@@ -141,8 +143,9 @@ std::vector<Canary> canaries() {
        {{fast, "times 1/d", all({1 - u, 1 - u, 1 - u, 1 - u}), true}}},
       {"division", "a / b, hard cases", excess, false, {0, kQuotients}},
       {"root", "sqrt(a), hard cases", excess, false, {0, kRoots}},
-      // In order: (1 - hh) - 1; the product low + u to even, up, down, and with 2u to even; u (1 - 4uu) added to 1 +
-      // 2u; a product beyond the range; half of the least subnormal and a little more, added to two; zeros.
+      // The results in order: (1 - hh) - 1; the product low + u rounded to even, up, down, and with 2u added, to even;
+      // u (1 - 4uu) added to 1 + 2u; a product beyond the range; a little more than half of the least subnormal number,
+      // added to twice that number; zeros.
       {"fma", "fma(a, b, c)", fast, false,
        all({-hh, low, low + 2 * u, low, low + 4 * u, 1 + 2 * u, most, 3 * denormal, 0, -Real{0}})},
       {"identities",
@@ -163,7 +166,7 @@ std::vector<Canary> canaries() {
        false,
        all({denormal}),
        {{excess, "rounded twice", all({2 * denormal})}, {fast, "flushed to 0", all({0})}}},
-      // The number is three times the least subnormal.
+      // The input is three times the least subnormal number.
       {"subnormal_input",
        "subnormal input",
        fast,
@@ -186,7 +189,7 @@ bool is_nan(std::uint64_t bits, bool is_float) {
                   : std::isnan(std::bit_cast<double>(bits));
 }
 
-// The results in the lines "NAME f32 HEX HEX …"; none for a name that occurs twice or with anything else.
+// The results in the lines "NAME f32 HEX HEX …". A name that occurs twice, or with other words, has no results.
 std::map<std::string, std::vector<std::uint64_t>> results_in(std::string_view output) {
   std::map<std::string, std::vector<std::uint64_t>> results;
   std::istringstream lines{std::string(output)};
@@ -207,7 +210,8 @@ std::map<std::string, std::vector<std::uint64_t>> results_in(std::string_view ou
   return results;
 }
 
-// Sets what was found.   in_excess: whether other canaries show registers of another width than the type's.
+// Judges the bits of a result, and sets `rounding` and `found`.   in_excess: whether other canaries show registers of
+// another width than the type's.
 void judge(const Canary& canary, bool is_float, bool in_excess, CanaryResult& result) {
   const auto equal = [&](std::uint64_t found, const Expected& expected) {
     return expected ? found == *expected : is_nan(found, is_float);
@@ -227,7 +231,7 @@ void judge(const Canary& canary, bool is_float, bool in_excess, CanaryResult& re
                fmt::format("{} of {} wrong", result.bits[0], result.bits[1]));
   }
   if (canary.name == "fma") return set(Rounding::fast, fmt::format("{} of {} wrong", wrong, count));
-  // Excess digits may look like terms that were regrouped.
+  // In these canaries, excess digits may look like regrouped terms.
   const bool has_both = canary.name.starts_with("sum") || canary.name == "subnormal_nearest";
   for (const Other& other : canary.others) {
     bool matches = true;
@@ -260,7 +264,7 @@ std::vector<CanaryResult> judge_canaries(std::string_view output) {
       if (!result.bits.empty()) judge(canary, is_float, in_excess, result);
       return result;
     };
-    // These two tell wider registers from everything else.
+    // The canaries `range` and `nearest` distinguish wider registers from everything else.
     const bool in_excess = std::any_of(all.begin(), all.end(), [&](const Canary& canary) {
       return (canary.name == "range" || canary.name == "nearest") &&
              result_of(canary, false).rounding == Rounding::excess;

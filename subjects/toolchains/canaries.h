@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Canaries: small computations whose bits show what a toolchain does with floating-point code (canaries.c). They are
-// judged by these bits alone, never by what a flag says.
+// Canaries: small computations whose bits show how a toolchain treats floating-point code (canaries.c). These functions
+// judge a canary by its bits alone, never by flags.
 #pragma once
 
 #include <cstdint>
@@ -16,21 +16,22 @@ namespace graze::subjects {
 
 struct CanaryResult {
   std::string name, scalar;          // "statements", "f32"
-  std::string code;                  // what it computes: "t = a*b; t + c"
-  std::vector<std::uint64_t> bits;   // its results; empty without an answer
-  std::string found;                 // "as written", "fused"
-  std::optional<Rounding> rounding;  // the least that explains the bits; nothing without an answer
+  std::string code;                  // the computation: "t = a*b; t + c"
+  std::vector<std::uint64_t> bits;   // of the results; empty without an answer
+  std::string found;                 // the judgement: "as written", "fused"
+  std::optional<Rounding> rounding;  // the strictest rounding that explains the bits; nothing without an answer
 };
 
 // The results of all canaries, for float and then for double.
-// output: what the program printed, which is not trusted. A line that is missing, occurs twice, or does not have
-// as many numbers as expected, is not an answer.
+// output: what the program of the canaries printed. The output is not trusted: a canary whose line is missing, occurs
+// twice, or does not have the expected number of results, has no answer.
 std::vector<CanaryResult> judge_canaries(std::string_view output);
 
-// What all canaries together show; nothing if one has no answer. Omits fma(), which belongs to the library.
+// The strictest rounding that explains all canaries; nothing if a canary has no answer. Omits fma(), which belongs to
+// the library.
 std::optional<Rounding> measured_rounding(const std::vector<CanaryResult>& results);
 
-// Whether a result is what the documentation says; no_claim: it leaves several results open.
+// Whether a result is as documented. no_claim: the documentation permits several results.
 enum class Documented { holds, does_not_hold, no_claim };
 Documented compared(const CanaryResult& result, const Claim& claim);
 std::string_view name(Documented documented);

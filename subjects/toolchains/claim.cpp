@@ -15,8 +15,8 @@
 namespace graze::subjects {
 namespace {
 
-// Flags that permit the compiler to rewrite operations, to approximate them, or to flush subnormals, each with its
-// opposite.
+// Flags that permit the compiler to rewrite or approximate operations, or to flush subnormal numbers. The second flag
+// of each row is the opposite of the first.
 constexpr std::pair<std::string_view, std::string_view> kFast[] = {
     {"-ffast-math", "-fno-fast-math"},
     {"-funsafe-math-optimizations", "-fno-unsafe-math-optimizations"},
@@ -46,7 +46,7 @@ struct Flags {
   std::set<std::string> fast;
   std::string contract;  // off, on or fast; empty: not given
   std::string excess;    // standard or fast; empty: not given
-  bool iso_c = false;    // -std=c11 and the like
+  bool iso_c = false;    // -std=c11 or another ISO dialect of C
 };
 
 Flags flags_of(std::string_view command) {
@@ -60,7 +60,7 @@ Flags flags_of(std::string_view command) {
     if (word.starts_with("-mrecip=") || word.starts_with("-fdenormal-fp-math")) flags.fast.insert(word);
     if (word.starts_with("-O") || word == "-fno-fast-math") flags.fast.erase("-Ofast");
     if (word == "-Ofast") flags.fast.insert(word);
-    if (word == "-Ofast" || word == "-ffast-math") flags.contract.clear();  // clang's implies that of contraction
+    if (word == "-Ofast" || word == "-ffast-math") flags.contract.clear();  // clang's flag also sets contraction
     if (word.starts_with("-ffp-model=")) {
       flags.fast.erase("-ffast-math");
       if (word == "-ffp-model=fast" || word == "-ffp-model=aggressive") flags.fast.insert("-ffast-math");
@@ -81,7 +81,7 @@ std::optional<Claim> documented_claim(std::string_view command, std::string_view
   const std::map<std::string, std::string> values = values_of(macros);
   const auto has = [&](const char* name) { return values.contains(name); };
   const auto value_of = [&](const char* name) { return has(name) ? values.at(name) : ""; };
-  // These define __GNUC__ or __clang__ too, and have other defaults.
+  // These compilers define __GNUC__ or __clang__ too, and have other defaults.
   for (const char* other : {"__INTEL_LLVM_COMPILER", "__INTEL_COMPILER", "__NVCOMPILER", "__ibmxl__", "_MSC_VER"}) {
     if (has(other)) return std::nullopt;
   }
@@ -93,7 +93,7 @@ std::optional<Claim> documented_claim(std::string_view command, std::string_view
         Rounding::fast, true,
         fmt::format("{}{}", fmt::join(flags.fast, " "), off ? ", without contraction (-ffp-contract=off)" : ""), !off};
   }
-  // 0: of the type itself. 16: only _Float16 is kept in float.
+  // 0: operations have the precision of their type. 16: only _Float16 is evaluated in float.
   const std::string method = value_of("__FLT_EVAL_METHOD__");
   if (!method.empty() && method != "0" && method != "16") {
     // Annex F of C removes excess precision when a value is assigned or returned.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the manuals of GCC and clang promise about the arithmetic of code that a command compiles.
+// The promises of the manuals of GCC and clang about the arithmetic of code that a command compiles.
 #pragma once
 
 #include <optional>
@@ -11,16 +11,16 @@
 namespace graze::subjects {
 
 struct Claim {
-  Rounding rounding = Rounding::rounded;  // the most that the compiler may do
-  // Whether it may fuse, or keep excess precision, across statements and calls, or only within an expression.
+  Rounding rounding = Rounding::rounded;  // the greatest freedom that the compiler has
+  // Whether the compiler may fuse, or keep excess precision, across statements and calls.
   bool across_statements = true;
-  std::string because = {};  // in words: "-ffp-contract=off"
-  bool contraction = true;   // false: excluded, although other rewriting is permitted
+  std::string because = {};  // the reason, in words: "-ffp-contract=off"
+  bool contraction = true;   // false: contraction is excluded, although other rewriting is permitted
 };
 
-// Returns: nothing for compilers other than GCC and clang. Among opposite flags the last one counts. If the
-// manual allows two readings, the claim is the one that permits more.
-// macros: what the command prints with -dM -E for a source without text.
+// The claim for code that the command compiles. Among opposite flags the last one counts. If the manual allows two
+// readings, the claim is the one that permits more.   macros: the command's output with -dM -E for an empty source.
+// Returns: nothing for compilers other than GCC and clang.
 std::optional<Claim> documented_claim(std::string_view command, std::string_view macros);
 
 }  // namespace graze::subjects

@@ -5,7 +5,7 @@
 
 namespace graze::subjects {
 
-// The command that runs the program in the file: in `run`, the file takes the place of each {}, or follows at the end.
+// The command that runs the program in the file: `run` with the file in place of each {}, else at the end.
 inline std::string command_of(const std::string& run, const std::string& file) {
   if (run.empty()) return file;
   if (run.find("{}") == run.npos) return run + ' ' + file;

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0
- * The main function of a program that answers for a subject: on another processor, under an emulator, on another
- * machine. Graze compiles it with a subject's source for a toolchain. C11 or C++, little-endian.
+ * The main function of a program that answers for a subject on another processor, under an emulator, or on another
+ * machine. Graze compiles it together with a subject's source for a toolchain. C11 or C++, little-endian.
  *
  * Include this after the definition of `const struct graze_subject graze_subject`.
  *
- * On standard output the program first writes struct graze_hello. Then it reads questions from standard input until
- * that ends. A question is a struct graze_question, `count` place numbers (uint32_t each), and `count` pairs of 18
- * float or double each. The answer to it is `count` words of uint64_t: graze_word of each place, in this order.
+ * On standard output the program first writes a struct graze_hello. Then it reads questions from standard input until
+ * the input ends. A question is a struct graze_question, `count` place numbers (uint32_t each), and `count` pairs of 18
+ * float or double each. The answer to a question is `count` words of uint64_t: graze_word of each place, in this order.
  *
- * With GRAZE_PROGRAM_TYPES_ONLY defined, this header has no main function, and needs no subject.
+ * If GRAZE_PROGRAM_TYPES_ONLY is defined, this header has no main function and needs no subject.
  */
 #ifndef GRAZE_PROGRAM_H
 #define GRAZE_PROGRAM_H
@@ -36,13 +36,13 @@ struct graze_question {
   uint32_t is_double; /* 0 or 1 */
 };
 
-/* For each pair of a block of 1,024, forward and backward. */
+/* Two places for each pair of a block of 1,024: forward and backward. */
 #define GRAZE_MOST_ASKED 2048
 
 #ifndef GRAZE_PROGRAM_TYPES_ONLY
 
-/* place: the pair's number, times 2, plus 1 in the backward pass. The words of answers in shared memory have the same
- * form (subjects/channel.h). */
+/* The word of an answer. place: twice the pair's number, plus 1 in the backward pass. Words of answers in shared memory
+ * have the same form (subjects/channel.h). */
 static uint64_t graze_word(uint64_t nonce, uint32_t place, int answer) {
   const uint64_t content = (uint64_t)place << 2 | (uint64_t)((answer < 0 ? -1 : answer > 0) + 2);
   uint64_t check = (nonce ^ content) * UINT64_C(0x9e3779b97f4a7c15);
@@ -51,7 +51,7 @@ static uint64_t graze_word(uint64_t nonce, uint32_t place, int answer) {
   return (check ^ check >> 31) << 16 | content;
 }
 
-/* An answer that a block's function does not write differs between the two passes. */
+/* The answer for pair i. If a block's function writes no answer, the two passes give different answers. */
 static int graze_answer(const void* pairs, uint32_t i, uint32_t place, int is_double) {
   signed char answer = place & 1 ? GRAZE_DISJOINT : GRAZE_DECLINED;
   if (is_double) {
@@ -74,7 +74,7 @@ int main(void) {
   struct graze_question question;
   FILE* out = stdout;
 #ifndef __wasi__
-  /* What the subject prints is not an answer. */
+  /* Sends the subject's own output to standard error, so that it is not read as an answer. */
   out = fdopen(dup(1), "wb");
   if (!out || dup2(2, 1) < 0) return 1;
 #endif

@@ -18,9 +18,10 @@ constexpr int kBlocksAtOnce = 3;
 
 // The memory of one block. Several blocks run at once, because the last pairs of a block keep only a few threads busy.
 struct Buffers {
-  cudaStream_t stream;
-  cudaEvent_t done;     // recorded after the last block
-  std::uint32_t* left;  // pairs that all blocks so far have left to the host; pinned memory
+  Stream stream;
+  Event done{cudaEventDisableTiming};  // recorded after the last block
+  PinnedArray<std::uint32_t> pinned;
+  std::uint32_t* left = pinned.at_least(1);  // pairs that all blocks so far have left to the host
   DeviceExact exact;
   DeviceArray<float> coordinates;
   DeviceArray<double> doubles;
@@ -30,17 +31,6 @@ struct Buffers {
   DeviceArray<LaneWords> lanes;
   DeviceArray<const std::uint32_t*> changed_for_lane;
   std::vector<LaneWords> lanes_on_host;  // the same on the host
-
-  Buffers() {
-    check(cudaStreamCreate(&stream));
-    check(cudaEventCreateWithFlags(&done, cudaEventDisableTiming));
-    check(cudaMallocHost(&left, sizeof *left));
-  }
-  ~Buffers() {
-    cudaStreamDestroy(stream);
-    cudaEventDestroy(done);
-    cudaFreeHost(left);
-  }
 };
 
 template <class Block>
@@ -247,13 +237,8 @@ class CudaEngine final : public DeviceEngine {
 }  // namespace
 
 std::vector<std::unique_ptr<DeviceEngine>> open_engines(std::span<const Lane* const> cuda_lanes) {
-  int devices = 0;
-  if (cudaGetDeviceCount(&devices) != cudaSuccess) {
-    cudaGetLastError();  // clears it
-    devices = 0;
-  }
   std::vector<std::unique_ptr<DeviceEngine>> engines;
-  for (int ordinal = 0; ordinal < devices; ++ordinal)
+  for (int ordinal = 0; ordinal < count_devices(); ++ordinal)
     engines.push_back(std::make_unique<CudaEngine>(ordinal, cuda_lanes));
   return engines;
 }

@@ -208,9 +208,7 @@ class CudaDevice final : public Device {
 }  // namespace
 
 std::unique_ptr<Device> open_device(std::string& why_not) {
-  int count = 0;
-  if (cudaGetDeviceCount(&count) != cudaSuccess || count == 0) {
-    cudaGetLastError();  // clears it
+  if (count_devices() == 0) {
     why_not = "no device";
     return nullptr;
   }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cuda/lanes/device_costs.h"
 
-#include <algorithm>
-#include <functional>
+#include <vector>
 
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/exact_kernels.cuh"
@@ -13,86 +12,38 @@ namespace {
 
 constexpr int kLaunches = 4;  // timed together, to make the few microseconds of a launch negligible
 
-class Stream {
- public:
-  Stream() {
-    check(cudaStreamCreate(&stream_));
-    check(cudaEventCreate(&start_));
-    check(cudaEventCreate(&stop_));
+// The first kernel that `work` submits to the stream. It does not run.   Requires: `work` allocates nothing.
+template <class Work>
+const void* first_kernel(cudaStream_t stream, const Work& work) {
+  cudaGraph_t graph;
+  check(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal));
+  work();
+  check(cudaStreamEndCapture(stream, &graph));
+  std::size_t count = 0;
+  check(cudaGraphGetNodes(graph, nullptr, &count));
+  std::vector<cudaGraphNode_t> nodes(count);
+  check(cudaGraphGetNodes(graph, nodes.data(), &count));
+  const void* kernel = nullptr;
+  for (const cudaGraphNode_t node : nodes) {
+    cudaGraphNodeType type;
+    check(cudaGraphNodeGetType(node, &type));
+    if (kernel || type != cudaGraphNodeTypeKernel) continue;
+    cudaKernelNodeParams parameters;
+    check(cudaGraphKernelNodeGetParams(node, &parameters));
+    kernel = parameters.func;
   }
-  Stream(const Stream&) = delete;
-  Stream& operator=(const Stream&) = delete;
-  ~Stream() {
-    cudaEventDestroy(start_);
-    cudaEventDestroy(stop_);
-    cudaStreamDestroy(stream_);
-  }
-  operator cudaStream_t() const { return stream_; }
+  check(cudaGraphDestroy(graph));
+  return kernel;
+}
 
-  // Nanoseconds that the work submitted by `work` takes on the stream.
-  double time(const std::function<void()>& work) const {
-    check(cudaEventRecord(start_, stream_));
-    work();
-    check(cudaEventRecord(stop_, stream_));
-    check(cudaEventSynchronize(stop_));
-    float milliseconds = 0;
-    check(cudaEventElapsedTime(&milliseconds, start_, stop_));
-    return double{milliseconds} * 1e6;
-  }
-
-  // The first kernel that `work` submits to the stream. It does not run.   Requires: `work` allocates nothing.
-  const void* first_kernel(const std::function<void()>& work) const {
-    cudaGraph_t graph;
-    check(cudaStreamBeginCapture(stream_, cudaStreamCaptureModeThreadLocal));
-    work();
-    check(cudaStreamEndCapture(stream_, &graph));
-    std::size_t count = 0;
-    check(cudaGraphGetNodes(graph, nullptr, &count));
-    std::vector<cudaGraphNode_t> nodes(count);
-    check(cudaGraphGetNodes(graph, nodes.data(), &count));
-    const void* kernel = nullptr;
-    for (const cudaGraphNode_t node : nodes) {
-      cudaGraphNodeType type;
-      check(cudaGraphNodeGetType(node, &type));
-      if (kernel || type != cudaGraphNodeTypeKernel) continue;
-      cudaKernelNodeParams parameters;
-      check(cudaGraphKernelNodeGetParams(node, &parameters));
-      kernel = parameters.func;
-    }
-    check(cudaGraphDestroy(graph));
-    return kernel;
-  }
-
- private:
-  cudaStream_t stream_;
-  cudaEvent_t start_, stop_;
-};
-
-// Pinned memory, so that copies run at the speed of the link.
-class Pinned {
- public:
-  explicit Pinned(std::size_t bytes) { check(cudaMallocHost(&data_, bytes)); }
-  Pinned(const Pinned&) = delete;
-  Pinned& operator=(const Pinned&) = delete;
-  ~Pinned() { cudaFreeHost(data_); }
-  template <class T>
-  T* as() const {
-    return static_cast<T*>(data_);
-  }
-
- private:
-  void* data_ = nullptr;
-};
-
-// Pairs in pinned memory and on the device, in the layout of the kernels.
+// Pairs in pinned memory, so that copies run at the speed of the link, and on the device, in the layout of the kernels.
 template <class Real, class Pairs>
 class Columns {
  public:
-  explicit Columns(const std::vector<BasicPair<Real>>& pairs)
-      : count_(pairs.size()), bytes_(count_ * sizeof(BasicPair<Real>)), columns_(bytes_ + 1) {
+  explicit Columns(const std::vector<BasicPair<Real>>& pairs) : count_(pairs.size()) {
+    Real* columns = columns_.at_least(count_ * kCoordinates);
     for (std::size_t i = 0; i < count_; ++i) {
-      for (std::size_t c = 0; c < kCoordinates; ++c)
-        columns_.template as<Real>()[c * count_ + i] = coordinates(pairs[i])[c];
+      for (std::size_t c = 0; c < kCoordinates; ++c) columns[c * count_ + i] = coordinates(pairs[i])[c];
     }
     on_device_.at_least(count_ * kCoordinates);
   }
@@ -100,13 +51,13 @@ class Columns {
     return {on_device_.at_least(0), static_cast<std::uint32_t>(count_), static_cast<std::uint32_t>(count_)};
   }
   void bring(cudaStream_t stream) {
-    check(
-        cudaMemcpyAsync(on_device_.at_least(0), columns_.template as<Real>(), bytes_, cudaMemcpyHostToDevice, stream));
+    check(cudaMemcpyAsync(on_device_.at_least(0), columns_.at_least(0), count_ * sizeof(BasicPair<Real>),
+                          cudaMemcpyHostToDevice, stream));
   }
 
  private:
-  std::size_t count_, bytes_;
-  Pinned columns_;
+  std::size_t count_;
+  PinnedArray<Real> columns_;
   DeviceArray<Real> on_device_;
 };
 
@@ -127,7 +78,8 @@ DeviceCosts measure_on_device(std::span<const Lane* const> lanes, const strata::
   DeviceCosts costs{properties.name, properties.maxThreadsPerMultiProcessor, std::vector<DeviceCost>(lanes.size())};
   const std::size_t count = pairs.size();
   const std::size_t words = (count + kThreads - 1) / kThreads * (kThreads / 32);
-  const Pinned verdicts(2 * words * sizeof(std::uint32_t));
+  PinnedArray<std::uint32_t> pinned;
+  std::uint32_t* verdicts = pinned.at_least(2 * words);
   const Stream stream;
   Columns<float, DevicePairs> floats(pairs.floats);
   Columns<double, DeviceDoubles> doubles(pairs.doubles);
@@ -144,21 +96,20 @@ DeviceCosts measure_on_device(std::span<const Lane* const> lanes, const strata::
     bring(*lanes[l]);
     decide(*lanes[l]);  // allocates
     check(cudaStreamSynchronize(stream));
-    costs.of[l].needs = needs_of(stream.first_kernel([&] { decide(*lanes[l]); }));
+    costs.of[l].needs = needs_of(first_kernel(stream, [&] { decide(*lanes[l]); }));
   }
   for (int pass = 0; pass < passes; ++pass) {
     for (std::size_t l = 0; l < lanes.size(); ++l) {
-      const double resident = stream.time([&] {
+      const double resident = timed(stream, [&] {
         for (int k = 0; k < kLaunches; ++k) decide(*lanes[l]);
       });
-      const double with_copies = stream.time([&] {
+      const double with_copies = timed(stream, [&] {
         bring(*lanes[l]);
         decide(*lanes[l]);
-        check(cudaMemcpyAsync(verdicts.as<void>(), intersects, 2 * words * sizeof *intersects, cudaMemcpyDeviceToHost,
-                              stream));
+        check(cudaMemcpyAsync(verdicts, intersects, 2 * words * sizeof *intersects, cudaMemcpyDeviceToHost, stream));
       });
-      costs.of[l].resident.push_back(resident / kLaunches / static_cast<double>(count));
-      costs.of[l].with_copies.push_back(with_copies / static_cast<double>(count));
+      costs.of[l].resident.push_back(resident * 1e6 / kLaunches / static_cast<double>(count));
+      costs.of[l].with_copies.push_back(with_copies * 1e6 / static_cast<double>(count));
     }
   }
   return costs;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Owners of device memory, and the check of every CUDA call. Device code only.
+// Owners of memory, streams and events, and the check of every CUDA call. Device code only.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -20,29 +20,81 @@ inline void check(cudaError_t error, std::source_location where = std::source_lo
   }
 }
 
-// Device memory that grows and is freed with its owner.
-template <class T>
-class DeviceArray {
+// The number of CUDA devices; 0 if CUDA cannot tell.
+inline int count_devices() {
+  int count = 0;
+  if (cudaGetDeviceCount(&count) == cudaSuccess) return count;
+  cudaGetLastError();  // clears it
+  return 0;
+}
+
+// Memory that grows and is freed with its owner: device memory, or pinned host memory.
+template <class T, bool pinned>
+class GrowingArray {
  public:
-  DeviceArray() = default;
-  DeviceArray(const DeviceArray&) = delete;
-  DeviceArray& operator=(const DeviceArray&) = delete;
-  ~DeviceArray() { cudaFree(data_); }
+  GrowingArray() = default;
+  GrowingArray(const GrowingArray&) = delete;
+  GrowingArray& operator=(const GrowingArray&) = delete;
+  ~GrowingArray() { release(); }
 
   T* at_least(std::size_t count) {
     if (count > count_) {
-      check(cudaFree(data_));
+      check(release());
       data_ = nullptr;
       count_ = 0;
-      check(cudaMalloc(&data_, count * sizeof(T)));
+      check(pinned ? cudaMallocHost(&data_, count * sizeof(T)) : cudaMalloc(&data_, count * sizeof(T)));
       count_ = count;
     }
     return data_;
   }
 
  private:
+  cudaError_t release() { return pinned ? cudaFreeHost(data_) : cudaFree(data_); }
+
   T* data_ = nullptr;
   std::size_t count_ = 0;
 };
+
+template <class T>
+using DeviceArray = GrowingArray<T, false>;
+template <class T>
+using PinnedArray = GrowingArray<T, true>;
+
+class Stream {
+ public:
+  explicit Stream(unsigned flags = cudaStreamDefault) { check(cudaStreamCreateWithFlags(&stream_, flags)); }
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+  ~Stream() { cudaStreamDestroy(stream_); }
+  operator cudaStream_t() const { return stream_; }
+
+ private:
+  cudaStream_t stream_ = nullptr;
+};
+
+class Event {
+ public:
+  explicit Event(unsigned flags = cudaEventDefault) { check(cudaEventCreateWithFlags(&event_, flags)); }
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+  ~Event() { cudaEventDestroy(event_); }
+  operator cudaEvent_t() const { return event_; }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+// Milliseconds that the work submitted by `work` takes on the stream.
+template <class Work>
+double timed(cudaStream_t stream, const Work& work) {
+  const Event start, stop;
+  check(cudaEventRecord(start, stream));
+  work();
+  check(cudaEventRecord(stop, stream));
+  check(cudaEventSynchronize(stop));
+  float milliseconds = 0;
+  check(cudaEventElapsedTime(&milliseconds, start, stop));
+  return double{milliseconds};
+}
 
 }  // namespace graze::cuda

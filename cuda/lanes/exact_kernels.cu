@@ -14,18 +14,13 @@ void DeviceExact::empty_lists(std::uint32_t pairs, cudaStream_t stream) {
   check(cudaMemsetAsync(counts, 0, std::size(left_) * sizeof *counts, stream));
 }
 
-void DeviceExact::decide_listed(DevicePairs pairs, std::uint32_t* intersects, unsigned long long* stages,
-                                cudaStream_t stream) {
-  launch_exact_steps(pairs, left_, intersects, stages, stream);
-}
-
 void DeviceExact::decide(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined,
                          unsigned long long* stages, cudaStream_t stream) {
   if (pairs.count == 0) return;
   empty_lists(pairs.count, stream);
   decide_most<3>
       <<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, left_[0], left_[1], intersects, declined, stages);
-  decide_listed(pairs, intersects, stages, stream);
+  launch_exact_steps(pairs, left_, intersects, stages, stream);
 }
 
 void DeviceExact::decide_declined(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined,
@@ -33,7 +28,7 @@ void DeviceExact::decide_declined(DevicePairs pairs, std::uint32_t* intersects, 
   if (pairs.count == 0) return;
   empty_lists(pairs.count, stream);
   list_declined<<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, left_[0], left_[1], intersects, declined);
-  decide_listed(pairs, intersects, nullptr, stream);
+  launch_exact_steps(pairs, left_, intersects, nullptr, stream);
 }
 
 }  // namespace graze::cuda

@@ -61,7 +61,6 @@ class DeviceExact {
 
  private:
   void empty_lists(std::uint32_t pairs, cudaStream_t stream);
-  void decide_listed(DevicePairs pairs, std::uint32_t* intersects, unsigned long long* stages, cudaStream_t stream);
 
   DeviceArray<std::uint32_t> places_[kExactLists], counts_;
   PairList left_[kExactLists];

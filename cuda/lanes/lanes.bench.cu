@@ -4,9 +4,8 @@
 // each) and writes a bit. Before measuring, the exact lane must give the same bits as the host on a sample. Without a
 // device, prints a line and succeeds.
 #include <benchmark/benchmark.h>
+#include <tbb/parallel_for.h>
 
-#include <algorithm>
-#include <atomic>
 #include <bit>
 #include <chrono>
 #include <cmath>
@@ -15,7 +14,6 @@
 #include <iostream>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
 #include "build_info.h"
@@ -24,7 +22,6 @@
 #include "core/lanes/lanes.h"
 #include "cuda/engine/sweep.h"
 #include "cuda/lanes/device.h"
-#include "cuda/lanes/device_event.cuh"
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/exact_kernels.cuh"
 #include "cuda/lanes/kernels.cuh"
@@ -43,14 +40,9 @@ constexpr int kLaunches = 4;  // timed together, to make the few microseconds of
 std::span<const strata::StratumInfo> strata_of(float) { return strata::kStrata; }
 std::span<const strata::StratumInfo> strata_of(double) { return strata::kDoubleStrata; }
 
-void draw(const strata::StratumInfo& stratum, std::uint64_t first, float* to) {
-  launch_generate(to, kPairs, 1, static_cast<int>(stratum.stratum), first, nullptr);
-  check(cudaGetLastError());
-}
-
-// Draws on all CPU cores, then copies.
-void draw(const strata::StratumInfo& stratum, std::uint64_t first, double* to) {
-  const std::string name = std::string(stratum.id) + std::string(strata::kInDoubles);
+template <class Real>
+void draw(const strata::StratumInfo& stratum, std::uint64_t first, Real* to) {
+  const std::string name = std::string(stratum.id) + std::string(sizeof(Real) == 8 ? strata::kInDoubles : "");
   Drawing().draw(strata::named_sources(1, kPairs, {name}).front(), first, kPairs, to, nullptr);
 }
 
@@ -89,17 +81,13 @@ __global__ void read_pairs(Block pairs, std::uint32_t* bits) {
 // Reports items (pairs) and bytes for each launch.
 template <class Launch>
 void measure(benchmark::State& state, double items, double bytes, const Launch& launch) {
-  const Event start, stop;
   launch();  // the first one allocates
   check(cudaDeviceSynchronize());
   for (auto _ : state) {
-    check(cudaEventRecord(start));
-    for (int i = 0; i < kLaunches; ++i) launch();
-    check(cudaEventRecord(stop));
-    check(cudaEventSynchronize(stop));
-    float milliseconds = 0;
-    check(cudaEventElapsedTime(&milliseconds, start, stop));
-    state.SetIterationTime(milliseconds / 1000.0);
+    const double milliseconds = timed(nullptr, [&] {
+      for (int i = 0; i < kLaunches; ++i) launch();
+    });
+    state.SetIterationTime(milliseconds / 1000);
   }
   const double launches = static_cast<double>(state.iterations()) * kLaunches;
   state.SetItemsProcessed(static_cast<std::int64_t>(launches * items));
@@ -154,8 +142,8 @@ bool device_is_host(std::uint64_t first, std::uint64_t end) {
     return fnv1a({reinterpret_cast<const char*>(bits.data()), bits.size() * sizeof bits[0]}, hash);
   };
   Resident<Real> resident;
-  Real* columns;
-  check(cudaMallocHost(&columns, kNumbers * sizeof(Real)));
+  PinnedArray<Real> pinned;
+  Real* columns = pinned.at_least(kNumbers);
   bool same = true;
   for (const strata::StratumInfo& stratum : strata_of(Real())) {
     std::uint64_t differ = 0, hash_of_device = fnv1a(""), hash_of_host = fnv1a("");
@@ -166,15 +154,8 @@ bool device_is_host(std::uint64_t first, std::uint64_t end) {
       fetch(resident, kPairs, columns);
       constexpr std::size_t kPart = 1 << 16;
       std::vector<Bits> parts(kPairs / kPart);
-      std::atomic<std::size_t> next = 0;
-      std::vector<std::jthread> threads;
-      for (unsigned t = 0; t < std::max(1u, std::thread::hardware_concurrency()); ++t) {
-        threads.emplace_back([&] {
-          for (std::size_t p = next++; p < parts.size(); p = next++)
-            parts[p] = by_host(host, columns, kPairs, p * kPart, kPart);
-        });
-      }
-      threads.clear();
+      tbb::parallel_for(std::size_t{0}, parts.size(),
+                        [&](std::size_t p) { parts[p] = by_host(host, columns, kPairs, p * kPart, kPart); });
       Bits of_host;
       for (const Bits& part : parts) of_host.insert(of_host.end(), part.begin(), part.end());
       Bits of_device(kPairs / 64);  // counts declined pairs as differences, because there must be none
@@ -190,7 +171,6 @@ bool device_is_host(std::uint64_t first, std::uint64_t end) {
               << hash_of_device << ' ' << hash_of_host << std::dec << std::endl;
     same = same && differ == 0 && hash_of_device == hash_of_host;
   }
-  check(cudaFreeHost(columns));
   return same;
 }
 

@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "cuda/lanes/device_event.cuh"
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/exact_kernels.cuh"
 #include "cuda/query/query_kernels.cuh"
@@ -24,43 +23,6 @@ namespace {
 
 constexpr std::uint64_t kFirstOfAny = 1 << 12, kFirstOfAll = 1 << 20, kFirstResident = 1 << 25, kGrowth = 8;
 constexpr std::uint64_t kMostResident = 1 << 27, kMostStreamed = 1 << 20, kMostOfLane = 1 << 20;
-
-// Pinned host memory that grows and is freed with its owner.
-template <class T>
-class PinnedArray {
- public:
-  PinnedArray() = default;
-  PinnedArray(const PinnedArray&) = delete;
-  PinnedArray& operator=(const PinnedArray&) = delete;
-  ~PinnedArray() { cudaFreeHost(data_); }
-
-  T* at_least(std::size_t count) {
-    if (count > count_) {
-      check(cudaFreeHost(data_));
-      data_ = nullptr;
-      count_ = 0;
-      check(cudaMallocHost(&data_, count * sizeof(T)));
-      count_ = count;
-    }
-    return data_;
-  }
-
- private:
-  T* data_ = nullptr;
-  std::size_t count_ = 0;
-};
-
-class Stream {
- public:
-  Stream() { check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking)); }
-  Stream(const Stream&) = delete;
-  Stream& operator=(const Stream&) = delete;
-  ~Stream() { cudaStreamDestroy(stream_); }
-  operator cudaStream_t() const { return stream_; }
-
- private:
-  cudaStream_t stream_ = nullptr;
-};
 
 // The outputs of a chunk's kernels.
 struct Verdicts {
@@ -72,7 +34,7 @@ struct Verdicts {
 };
 
 struct Slot {
-  Stream stream;
+  Stream stream{cudaStreamNonBlocking};
   Event start, stop, done;
   Verdicts verdicts;
   PinnedArray<char> triangles;
@@ -320,12 +282,8 @@ class CudaQueryDevice final : public QueryDevice {
 }  // namespace
 
 int count_query_devices(std::string& why_not) {
-  int count = 0;
-  if (cudaGetDeviceCount(&count) != cudaSuccess || count == 0) {
-    cudaGetLastError();  // clears it
-    why_not = "no device";
-    return 0;
-  }
+  const int count = count_devices();
+  if (count == 0) why_not = "no device";
   return count;
 }
 

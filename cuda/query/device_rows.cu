@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "cuda/lanes/device_event.cuh"
 #include "cuda/lanes/device_memory.cuh"
 
 namespace graze::cuda {
@@ -48,18 +47,9 @@ class Memory final : public DeviceMemory {
 
 template <class Copy>
 double best_seconds(const Copy& copy) {
-  const Event start, stop;
-  float best = 1e9f;
-  for (int k = 0; k < 6; ++k) {
-    float milliseconds;
-    check(cudaEventRecord(start));
-    copy();
-    check(cudaEventRecord(stop));
-    check(cudaEventSynchronize(stop));
-    check(cudaEventElapsedTime(&milliseconds, start, stop));
-    best = std::min(best, milliseconds);
-  }
-  return best / 1000.0;
+  double best = 1e9;
+  for (int k = 0; k < 6; ++k) best = std::min(best, timed(nullptr, copy));
+  return best / 1000;
 }
 
 }  // namespace
@@ -73,12 +63,11 @@ DeviceSpeeds measure_speeds(int device, std::size_t bytes) {
   DeviceSpeeds speeds;
   speeds.copy = 2 * static_cast<double>(bytes) /
                 best_seconds([&] { check(cudaMemcpyAsync(to.data, from.data, bytes, cudaMemcpyDeviceToDevice)); });
-  void* pinned = nullptr;
+  PinnedArray<char> pinned;
   const std::size_t some = std::min<std::size_t>(bytes, std::size_t{1} << 28);
-  check(cudaMallocHost(&pinned, some));
+  const char* host = pinned.at_least(some);
   speeds.to_device = static_cast<double>(some) /
-                     best_seconds([&] { check(cudaMemcpyAsync(to.data, pinned, some, cudaMemcpyHostToDevice)); });
-  check(cudaFreeHost(pinned));
+                     best_seconds([&] { check(cudaMemcpyAsync(to.data, host, some, cudaMemcpyHostToDevice)); });
   return speeds;
 }
 

@@ -159,10 +159,6 @@ __global__ void __launch_bounds__(kThreads)
 
 std::uint32_t blocks_for(std::uint32_t things) { return (things + kThreads - 1) / kThreads; }
 
-}  // namespace
-
-namespace {
-
 // Each list reuses the memory of the list before the previous one, which is no longer needed.
 struct QueryLists {
   PairList left[kQueryLists];

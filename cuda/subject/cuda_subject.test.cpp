@@ -72,7 +72,7 @@ TEST_F(CudaSubject, HasFourBuilds) {
   EXPECT_NE(builds[1].hash, builds[3].hash);
   const TwinLibrary contracted(builds[1].twin, Scalar::f32);
   ASSERT_EQ(contracted.sites().size(), 1u);
-  EXPECT_EQ(contracted.sites()[0].line, 1);
+  EXPECT_EQ(contracted.sites()[0].at.line, 1);
   EXPECT_THROW(TwinLibrary(builds[1].twin, Scalar::f64), std::runtime_error);
 }
 

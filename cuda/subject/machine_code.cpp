@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
+#include "core/plain_file.h"
 #include "core/programs/run_program.h"
 
 namespace graze::cuda {
@@ -26,15 +26,11 @@ T read(const std::string& file, std::size_t at) {
   return value;
 }
 
-std::string content(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 }  // namespace
 
 std::map<std::string, std::string> read_cubin(const fs::path& path) {
-  const std::string file = content(path);
+  std::string why;
+  const std::string file = plain_file(path, why).value_or("");
   const auto sections = read<std::uint64_t>(file, 0x28);
   const auto size = read<std::uint16_t>(file, 0x3a), count = read<std::uint16_t>(file, 0x3c),
              names = read<std::uint16_t>(file, 0x3e);

@@ -114,7 +114,7 @@ std::string Nvrtc::ptx(const std::string& source, const std::string& name,
 std::string Nvrtc::compiled(const std::string& source, const std::string& name,
                             const std::vector<std::string>& options) const {
   std::vector<const char*> texts, names, words;
-  for (const StubHeader& header : stub_headers()) {
+  for (const StubHeader& header : kStubHeaders) {
     texts.push_back(header.text);
     names.push_back(header.name);
   }

@@ -171,9 +171,9 @@ void expect_unfused_is_without_contraction(const std::string& style) {
     wrong += with.decide_fusing(pairs[i], none) != plain[i];
   }
   EXPECT_EQ(wrong, 0);
-  for (const TwinSite& site : with.sites()) {
-    EXPECT_EQ(fs::path(site.file).filename(), style + ".cu");
-    EXPECT_GT(site.line, 1);
+  for (const ContractionSite& site : with.sites()) {
+    EXPECT_EQ(fs::path(site.at.file).filename(), style + ".cu");
+    EXPECT_GT(site.at.line, 1);
   }
 }
 

@@ -5,19 +5,12 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
+
+#include "core/plain_file.h"
 
 namespace graze::cuda {
-namespace {
 
 namespace fs = std::filesystem;
-
-std::string content(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-}  // namespace
 
 void write_styles(const fs::path& styles, const fs::path& folder) {
   fs::remove_all(folder);
@@ -42,11 +35,11 @@ void write_styles(const fs::path& styles, const fs::path& folder) {
 std::vector<StyleBuild> read_styles(const fs::path& folder) {
   std::vector<StyleBuild> all;
   std::ifstream list(folder / "list");
-  std::string style, variant, scalar, toolkit, hash, twin, identical;
+  std::string style, variant, scalar, toolkit, hash, twin, identical, why;
   while (list >> style >> variant >> scalar >> toolkit >> hash >> twin >> identical) {
     CudaBuild build{variant_of_name(variant).value(),
                     scalar == "f32" ? Scalar::f32 : Scalar::f64,
-                    content(folder / fmt::format("{}.{}.ptx", style, variant)),
+                    plain_file(folder / fmt::format("{}.{}.ptx", style, variant), why).value_or(""),
                     toolkit,
                     hash,
                     folder / twin,

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cuda/subject/subject_device.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <chrono>
 #include <stdexcept>
-#include <thread>
 
 #include "cuda/lanes/device.h"
-#include "cuda/lanes/device_event.cuh"
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/stratum_kernels.cuh"
 #include "cuda/twin/twin_library.h"
@@ -101,16 +101,9 @@ template <class Real>
 void fetch(const Real* on_device, std::vector<BasicPair<Real>>& pairs) {
   std::vector<Real> columns(pairs.size() * kCoordinates);
   check(cudaMemcpy(columns.data(), on_device, columns.size() * sizeof(Real), cudaMemcpyDeviceToHost));
-  const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
-  std::vector<std::thread> workers;
-  for (std::size_t t = 0; t < threads; ++t) {
-    workers.emplace_back([&, t] {
-      for (std::size_t i = pairs.size() * t / threads; i < pairs.size() * (t + 1) / threads; ++i) {
-        for (std::size_t c = 0; c < kCoordinates; ++c) coordinates(pairs[i])[c] = columns[c * pairs.size() + i];
-      }
-    });
-  }
-  for (std::thread& worker : workers) worker.join();
+  tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
+    for (std::size_t c = 0; c < kCoordinates; ++c) coordinates(pairs[i])[c] = columns[c * pairs.size() + i];
+  });
 }
 
 template <class Real>
@@ -153,17 +146,13 @@ SubjectCosts time_subjects(std::span<const CudaBuild> builds, std::uint32_t coun
     subjects.back()->launch(from.back(), count);  // allocates and loads
   }
   check(cudaDeviceSynchronize());
-  const Event start, stop;
   SubjectCosts costs{device->name, std::vector<std::vector<double>>(builds.size())};
   for (int pass = 0; pass < passes; ++pass) {
     for (std::size_t b = 0; b < builds.size(); ++b) {
-      check(cudaEventRecord(start));
-      for (int k = 0; k < kLaunches; ++k) subjects[b]->launch(from[b], count);
-      check(cudaEventRecord(stop));
-      check(cudaEventSynchronize(stop));
-      float milliseconds = 0;
-      check(cudaEventElapsedTime(&milliseconds, start, stop));
-      costs.nanoseconds[b].push_back(double{milliseconds} * 1e6 / kLaunches / count);
+      const double milliseconds = timed(nullptr, [&] {
+        for (int k = 0; k < kLaunches; ++k) subjects[b]->launch(from[b], count);
+      });
+      costs.nanoseconds[b].push_back(milliseconds * 1e6 / kLaunches / count);
     }
   }
   return costs;

@@ -80,11 +80,7 @@ extern "C" {
 using namespace graze::cuda;
 
 int graze_twin_site_count(void) { return ptx::Kernel::kSiteCount; }
-const char* graze_twin_site_file(int site) { return ptx::Kernel::kSites[site].at.file; }
-int graze_twin_site_line(int site) { return ptx::Kernel::kSites[site].at.line; }
-const char* graze_twin_site_from_file(int site) { return ptx::Kernel::kSites[site].from.file; }
-int graze_twin_site_from_line(int site) { return ptx::Kernel::kSites[site].from.line; }
-int graze_twin_site_by_ptxas(int site) { return ptx::Kernel::kSites[site].by_ptxas; }
+const ContractionSite* graze_twin_sites(void) { return ptx::Kernel::kSites; }
 void graze_twin_decide_block(const ptx::Real* pairs, std::size_t count, signed char* answers) {
   ptx::decide_block(pairs, count, answers);
 }

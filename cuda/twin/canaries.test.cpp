@@ -18,12 +18,6 @@ extern const TwinTable kTwinTable;  // contracts the right-hand product first
 
 namespace {
 
-Verdict decide(DecideBlock block, const Pair& pair) {
-  std::uint64_t intersects = 0, declined = 0;
-  block(&pair, 1, &intersects, &declined);
-  return intersects ? Verdict::intersects : declined ? Verdict::declined : Verdict::disjoint;
-}
-
 const std::string& text(const corpus::Entry& entry, const char* key) {
   const std::string* value = corpus::field(entry, key);
   if (!value) throw std::runtime_error("a canary without " + std::string(key));
@@ -33,15 +27,12 @@ const std::string& text(const corpus::Entry& entry, const char* key) {
 // The lane "ALGORITHM/SCALAR" of the canary in this variant.
 const Lane& lane_of(const corpus::Entry& canary, Variant variant) {
   const std::string id = text(canary, "lane") + "/" + std::string(name(variant));
-  for (const Lane& lane : lanes()) {
-    if (lane.id == id) return lane;
-  }
+  if (const Lane* lane = find_lane(id)) return *lane;
   throw std::runtime_error("no lane " + id);
 }
 
 Verdict twin_says(const corpus::Entry& canary, Variant variant) {
-  const Lane& lane = lane_of(canary, variant);
-  return decide(twin_block(lane), canary.pair);
+  return decide_one(twin_block(lane_of(canary, variant)), canary.pair);
 }
 
 std::vector<corpus::Entry> canaries(const std::string& kind) {
@@ -74,7 +65,7 @@ TEST(Canaries, AWrongContractionRuleIsCaught) {
     const TwinRow& wrong =
         twin_wrong::kTwinTable.rows[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)];
     EXPECT_EQ(name(twin_says(canary, Variant::cuda_fma)), text(canary, "cuda_fma")) << text(canary, "name");
-    EXPECT_NE(decide(wrong.decide, canary.pair), twin_says(canary, Variant::cuda_fma)) << text(canary, "name");
+    EXPECT_NE(decide_one(wrong.decide, canary.pair), twin_says(canary, Variant::cuda_fma)) << text(canary, "name");
   }
 }
 
@@ -90,7 +81,7 @@ TEST(Canaries, CpuFmaAndCudaFmaDiffer) {
   for (const corpus::Entry& canary : all) {
     EXPECT_EQ(name(twin_says(canary, Variant::cuda_fma)), text(canary, "cuda_fma")) << text(canary, "name");
     differ[text(canary, "lane")] +=
-        decide(lane_of(canary, Variant::cpu_fma).decide, canary.pair) != twin_says(canary, Variant::cuda_fma);
+        decide_one(lane_of(canary, Variant::cpu_fma).decide, canary.pair) != twin_says(canary, Variant::cuda_fma);
   }
   int lanes_that_differ = 0;
   for (const auto& [lane, count] : differ) {
@@ -109,8 +100,8 @@ TEST(Canaries, CpuFmaAndCpuDiffer) {
     for (const corpus::Entry& canary : canaries(kind)) {
       if (!runs_on_this_cpu(lane_of(canary, Variant::cpu_fma)))
         GTEST_SKIP() << "this processor has no FMA instructions";
-      differ[text(canary, "lane")] += decide(lane_of(canary, Variant::cpu_fma).decide, canary.pair) !=
-                                      decide(lane_of(canary, Variant::cpu).decide, canary.pair);
+      differ[text(canary, "lane")] += decide_one(lane_of(canary, Variant::cpu_fma).decide, canary.pair) !=
+                                      decide_one(lane_of(canary, Variant::cpu).decide, canary.pair);
     }
   }
   EXPECT_EQ(differ.size(), std::size_t{2} * kAlgorithmCount);  // every lane has canaries

@@ -4,7 +4,6 @@
 #include <map>
 #include <memory>
 #include <stdexcept>
-#include <vector>
 
 #include "cuda/twin/twin.h"
 #include "cuda/twin/twin_library.h"
@@ -16,7 +15,6 @@ namespace {
 // Twins of users' CUDA code, by lane id.
 struct ForeignTwin {
   std::unique_ptr<TwinLibrary> library;
-  std::vector<ContractionSite> sites;
   double most_seconds = 0;
 };
 
@@ -31,8 +29,6 @@ void add_foreign_twin(const Lane& lane, const std::string& twin, double most_sec
   ForeignTwin& added = foreign_twins()[lane.id];
   added.most_seconds = most_seconds;
   added.library = std::make_unique<TwinLibrary>(twin, lane.scalar);
-  for (const TwinSite& site : added.library->sites())
-    added.sites.push_back({{site.file.c_str(), site.line}, {site.from_file.c_str(), site.from_line}, site.by_ptxas, 0});
 }
 
 double most_seconds(const Lane& lane) { return foreign_twins().at(lane.id).most_seconds; }
@@ -40,7 +36,7 @@ double most_seconds(const Lane& lane) { return foreign_twins().at(lane.id).most_
 std::span<const ContractionSite> contraction_sites(const Lane& lane) {
   if (!lane.foreign) return twin_row(lane).sites;
   const auto found = foreign_twins().find(lane.id);
-  return found == foreign_twins().end() ? std::span<const ContractionSite>() : found->second.sites;
+  return found == foreign_twins().end() ? std::span<const ContractionSite>() : found->second.library->sites();
 }
 
 std::span<const ContractionSite> contraction_sites(const Lane& lane, const AnyPair& pair) {

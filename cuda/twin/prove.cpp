@@ -7,26 +7,22 @@
 namespace graze::cuda {
 namespace {
 
-template <class Count>
-std::uint64_t total(const LaneProof& lane, Count count) {
+template <class... Field>
+std::uint64_t total(const LaneProof& lane, Field... field) {
   std::uint64_t sum = 0;
-  for (const StratumProof& stratum : lane.strata) sum += count(stratum);
+  for (const StratumProof& stratum : lane.strata) sum += ((stratum.*field) + ...);
   return sum;
 }
 
 }  // namespace
 
-std::uint64_t LaneProof::pairs() const {
-  return total(*this, [](const StratumProof& s) { return s.pairs; });
-}
+std::uint64_t LaneProof::pairs() const { return total(*this, &StratumProof::pairs); }
 std::uint64_t LaneProof::differences() const {
-  return total(*this, [](const StratumProof& s) { return s.verdict_differences + s.trace_differences; });
+  return total(*this, &StratumProof::verdict_differences, &StratumProof::trace_differences);
 }
-std::uint64_t LaneProof::twin_pairs() const {
-  return total(*this, [](const StratumProof& s) { return s.twin_pairs; });
-}
+std::uint64_t LaneProof::twin_pairs() const { return total(*this, &StratumProof::twin_pairs); }
 std::uint64_t LaneProof::twin_differences() const {
-  return total(*this, [](const StratumProof& s) { return s.twin_verdict_differences + s.twin_trace_differences; });
+  return total(*this, &StratumProof::twin_verdict_differences, &StratumProof::twin_trace_differences);
 }
 bool ProofRecord::verified() const {
   return !lanes.empty() &&

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cuda/twin/prove.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <chrono>
 #include <map>
 #include <memory>
-#include <thread>
 
-#include "core/lanes/lanes.h"
+#include "core/lanes/verdicts.h"
 #include "cuda/lanes/device.h"
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/kernels.cuh"
@@ -17,7 +18,6 @@
 #include "cuda/twin/explicit_ptx.h"
 #include "cuda/twin/twin_table.h"
 #include "strata/pair_source.h"
-#include "strata/strata.h"
 
 namespace graze::cuda {
 namespace {
@@ -58,8 +58,7 @@ struct LaneRun {
 struct OfFloats {
   using Real = float;
   using Block = DevicePairs;
-  static constexpr std::span<const strata::StratumInfo> kStrata{strata::kStrata};
-  static constexpr std::string_view kSuffix = "";
+  static constexpr PairTypes kTypes = PairTypes::f32;
 
   static const TwinFunctions<Pair>& twin(const Lane& lane) { return twin_row(lane); }
   static void launch(const Lane& lane, const Block& block, std::uint32_t* yes, std::uint32_t* no_answer,
@@ -68,17 +67,12 @@ struct OfFloats {
     kernels_of(lane.variant).decide[a][s](block, yes, no_answer, nullptr);
     kernels_of(lane.variant).trace[a][s](block, hashes, nullptr);
   }
-  void draw(std::uint64_t seed, std::size_t s, std::uint64_t first, std::uint32_t n, float* to) {
-    launch_generate(to, n, seed, static_cast<int>(s), first, nullptr);
-    check(cudaGetLastError());
-  }
 };
 
 struct OfDoubles {
   using Real = double;
   using Block = DeviceDoubles;
-  static constexpr std::span<const strata::StratumInfo> kStrata{strata::kDoubleStrata};
-  static constexpr std::string_view kSuffix = strata::kInDoubles;
+  static constexpr PairTypes kTypes = PairTypes::f64;
 
   static const TwinFunctions<DoublePair>& twin(const Lane& lane) { return twin_row(lane).doubles; }
   static void launch(const Lane& lane, const Block& block, std::uint32_t* yes, std::uint32_t* no_answer,
@@ -87,20 +81,12 @@ struct OfDoubles {
     kernels_of(lane.variant).decide_doubles[a](block, yes, no_answer, nullptr);
     kernels_of(lane.variant).trace_doubles[a](block, hashes, nullptr);
   }
-  void draw(std::uint64_t seed, std::size_t s, std::uint64_t first, std::uint32_t n, double* to) {
-    const std::string name = std::string(kStrata[s].id) + std::string(kSuffix);
-    drawing_.draw(strata::named_sources(seed, 1, {name}).front(), first, n, to, nullptr);
-  }
-
- private:
-  Drawing drawing_;
 };
 
 template <class Coordinates>
 class Prover {
   using Real = typename Coordinates::Real;
   using Block = typename Coordinates::Block;
-  static constexpr std::size_t kStrataCount = Coordinates::kStrata.size();
 
  public:
   explicit Prover(const ProofOptions& options) : options_(options) {
@@ -108,8 +94,7 @@ class Prover {
       const auto& twin = Coordinates::twin(lane);
       if (!twin.decide || !matches_any(options.lanes, lane.id)) continue;
       lanes_.push_back(&lane);
-      record_.lanes.push_back({lane.id, twin.hash, twin.trace_hash, std::vector<StratumProof>(kStrataCount)});
-      for (std::size_t s = 0; s < kStrataCount; ++s) record_.lanes.back().strata[s].stratum = name_of(s);
+      record_.lanes.push_back({lane.id, twin.hash, twin.trace_hash, {}});
       auto& module = explicit_[lane.variant];
       if (!module) module = std::make_unique<ExplicitKernels>(lane.variant, options.wrong_rule);
     }
@@ -121,44 +106,45 @@ class Prover {
     record_.driver = device.driver;
     record_.toolkit = device.toolkit;
     record_.seed = options_.seed;
-    for (std::size_t s = 0; s < kStrataCount; ++s) {
-      const auto count = [&](std::uint64_t all) { return all / kStrataCount + (s < all % kStrataCount); };
-      const std::uint64_t pairs = count(options_.pairs), twin_pairs = std::min(pairs, count(options_.twin_pairs));
+    const std::vector<strata::PairSource> sources = of_strata(options_.pairs), samples = of_strata(options_.twin_pairs);
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      const std::uint64_t pairs = sources[s].pairs, twin_pairs = std::min(pairs, samples[s].pairs);
+      for (LaneProof& lane : record_.lanes) lane.strata.push_back({sources[s].id});
       for (std::uint64_t first = 0; first < pairs; first += kBlockPairs) {
         const auto n = static_cast<std::uint32_t>(std::min<std::uint64_t>(kBlockPairs, pairs - first));
         const std::uint64_t sample = first < twin_pairs ? std::min<std::uint64_t>(n, twin_pairs - first) : 0;
-        prove_block(s, first, n, static_cast<std::uint32_t>(sample));
+        prove_block(sources[s], first, n, static_cast<std::uint32_t>(sample));
       }
       record_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      if (options_.progress) options_.progress(progress_line(s));
+      if (options_.progress) options_.progress(progress_line(sources[s].id));
     }
     return std::move(record_);
   }
 
  private:
-  static std::string name_of(std::size_t s) {
-    return std::string(Coordinates::kStrata[s].id) + std::string(Coordinates::kSuffix);
+  std::vector<strata::PairSource> of_strata(std::uint64_t pairs) const {
+    return strata::stratum_sources(options_.seed, pairs, {}, Coordinates::kTypes);
   }
 
-  std::string progress_line(std::size_t s) const {
+  std::string progress_line(const std::string& stratum) const {
     std::uint64_t differences = 0, twin_differences = 0;
     for (const LaneProof& lane : record_.lanes) {
-      const StratumProof& row = lane.strata[s];
+      const StratumProof& row = lane.strata.back();
       differences += row.verdict_differences + row.trace_differences;
       twin_differences += row.twin_verdict_differences + row.twin_trace_differences;
     }
-    return name_of(s) + ": " + std::to_string(differences) + " differences on the device, " +
+    return stratum + ": " + std::to_string(differences) + " differences on the device, " +
            std::to_string(twin_differences) + " from the twin, " + std::to_string(static_cast<int>(record_.seconds)) +
            " s";
   }
 
-  void prove_block(std::size_t s, std::uint64_t first, std::uint32_t n, std::uint32_t sample) {
+  void prove_block(const strata::PairSource& source, std::uint64_t first, std::uint32_t n, std::uint32_t sample) {
     Real* on_device = coordinates_.at_least(std::size_t{n} * kCoordinates);
-    drawing_.draw(options_.seed, s, first, n, on_device);
+    drawing_.draw(source, first, n, on_device, nullptr);
     const Block block{on_device, n, n};
     if (sample) fetch_pairs(n, sample);
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      StratumProof& row = record_.lanes[l].strata[s];
+      StratumProof& row = record_.lanes[l].strata.back();
       run_lane(*lanes_[l], block);
       compare_on_device(row, first, n);
       if (sample) compare_with_twin(*lanes_[l], row, first, sample);
@@ -224,34 +210,24 @@ class Prover {
     const auto& twin = Coordinates::twin(lane);
 
     constexpr std::size_t kPart = 1 << 14;
-    std::atomic<std::size_t> next = 0;
     std::atomic<std::uint64_t> verdicts = 0, traces = 0;
     std::vector<std::uint64_t> examples(kExamples);
     std::atomic<std::size_t> example_count = 0;
-    const auto differs = [&](std::size_t i) {
-      if (const std::size_t e = example_count++; e < kExamples) examples[e] = first + i;
-    };
-    const auto work = [&] {
-      std::vector<std::uint64_t> twin_yes(kPart / 64), twin_no_answer(kPart / 64), twin_hashes(kPart);
-      for (std::size_t at = next.fetch_add(kPart); at < sample; at = next.fetch_add(kPart)) {
-        const std::size_t n = std::min<std::size_t>(kPart, sample - at);
-        twin.decide(pairs_.data() + at, n, twin_yes.data(), twin_no_answer.data());
-        twin.trace(pairs_.data() + at, n, twin_hashes.data());
-        for (std::size_t i = 0; i < n; ++i) {
-          const auto bit = [&](const std::vector<std::uint64_t>& words64, std::size_t place) {
-            return words64[place / 64] >> (place % 64) & 1;
-          };
-          const bool verdict = bit(twin_yes, i) != bit(yes, at + i) || bit(twin_no_answer, i) != bit(no_answer, at + i);
-          const bool hash = twin_hashes[i] != hashes[at + i];
-          verdicts += verdict;
-          traces += hash;
-          if (verdict || hash) differs(at + i);
-        }
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sample, kPart), [&](const auto& part) {
+      const std::size_t n = part.size(), at = part.begin();
+      std::vector<std::uint64_t> twin_yes((n + 63) / 64), twin_no_answer(twin_yes.size()), twin_hashes(n);
+      twin.decide(pairs_.data() + at, n, twin_yes.data(), twin_no_answer.data());
+      twin.trace(pairs_.data() + at, n, twin_hashes.data());
+      for (std::size_t i = 0; i < n; ++i) {
+        const bool verdict = test_bit(twin_yes, i) != test_bit(yes, at + i) ||
+                             test_bit(twin_no_answer, i) != test_bit(no_answer, at + i);
+        const bool hash = twin_hashes[i] != hashes[at + i];
+        verdicts += verdict;
+        traces += hash;
+        if (!verdict && !hash) continue;
+        if (const std::size_t e = example_count++; e < kExamples) examples[e] = first + at + i;
       }
-    };
-    std::vector<std::thread> threads;
-    for (unsigned t = 0; t < std::max(1u, std::thread::hardware_concurrency()); ++t) threads.emplace_back(work);
-    for (std::thread& thread : threads) thread.join();
+    });
     row.twin_pairs += sample;
     row.twin_verdict_differences += verdicts;
     row.twin_trace_differences += traces;
@@ -264,7 +240,7 @@ class Prover {
   std::vector<const Lane*> lanes_;
   std::map<Variant, std::unique_ptr<ExplicitKernels>> explicit_;
   LaneRun run_;
-  Coordinates drawing_;
+  Drawing drawing_;
   DeviceArray<Real> coordinates_;
   DeviceArray<Differences> differences_;
   std::vector<BasicPair<Real>> pairs_;

@@ -32,7 +32,7 @@ struct StratumProof {
 
 struct LaneProof {
   std::string lane;
-  std::string hash, trace_hash;  // of the two kernels; see twin_hash
+  std::string hash, trace_hash;  // of the two kernels; see TwinFunctions in twin_table.h
   std::vector<StratumProof> strata;
 
   std::uint64_t pairs() const;

@@ -10,17 +10,15 @@
 namespace graze::cuda {
 namespace {
 
-bool no_device(std::string& why) { return open_device(why) == nullptr; }
-
 TEST(ProveTwin, FindsNoDifference) {
-  if (std::string why; no_device(why)) GTEST_SKIP() << why;
+  if (std::string why; !open_device(why)) GTEST_SKIP() << why;
   const ProofRecord record = prove_twin({.pairs = 2'000'000, .twin_pairs = 200'000});
   for (const LaneProof& lane : record.lanes) EXPECT_TRUE(lane.verified()) << lane.lane;
   EXPECT_EQ(record.lanes.size(), 20u);
 }
 
 TEST(ProveTwin, CatchesTheRightProductFirst) {
-  if (std::string why; no_device(why)) GTEST_SKIP() << why;
+  if (std::string why; !open_device(why)) GTEST_SKIP() << why;
   const ProofRecord record =
       prove_twin({.pairs = 2'000'000, .twin_pairs = 20'000, .lanes = {"*/cuda-fma"}, .wrong_rule = true});
   for (const LaneProof& lane : record.lanes) EXPECT_GT(lane.differences(), 0u) << lane.lane;

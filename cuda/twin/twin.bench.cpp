@@ -3,7 +3,7 @@
 // without contraction gives the same verdicts as the cpu lane.
 #include <benchmark/benchmark.h>
 
-#include "core/lanes/lanes.h"
+#include "core/lanes/verdicts.h"
 #include "cuda/twin/twin.h"
 #include "strata/strata.h"
 
@@ -18,23 +18,15 @@ std::vector<Pair> pairs_of(strata::Stratum stratum) {
   return pairs;
 }
 
-struct Bits {
-  std::vector<std::uint64_t> intersects = std::vector<std::uint64_t>(kPairs / 64),
-                             declined = std::vector<std::uint64_t>(kPairs / 64);
-  friend bool operator==(const Bits&, const Bits&) = default;
-};
-
-Bits run(DecideBlock decide, const std::vector<Pair>& pairs) {
-  Bits bits;
-  decide(pairs.data(), pairs.size(), bits.intersects.data(), bits.declined.data());
-  return bits;
-}
-
 void measure(benchmark::State& state, DecideBlock decide, strata::Stratum stratum, const Lane* same_as) {
   const std::vector<Pair> pairs = pairs_of(stratum);
-  if (same_as && run(decide, pairs) != run(same_as->decide, pairs))
+  if (same_as && verdicts_of(decide, pairs) != verdicts_of(same_as->decide, pairs))
     return state.SkipWithError("the twin differs from the cpu lane");
-  for (auto _ : state) benchmark::DoNotOptimize(run(decide, pairs));
+  VerdictBits bits;
+  for (auto _ : state) {
+    graze::decide(decide, pairs, bits);
+    benchmark::DoNotOptimize(bits);
+  }
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * kPairs));
 }
 

@@ -25,18 +25,6 @@ struct TwinTables {
   const TwinTable *table = nullptr, *portable = nullptr, *policies = nullptr, *records = nullptr;
 };
 
-#define GRAZE_TABLES_no_twin_rounded(name) \
-  {}
-#define GRAZE_TABLES_no_twin_contracted(name) \
-  {}
-#define GRAZE_TABLES_no_twin_fast(name) \
-  {}
-#define GRAZE_TABLES_no_twin_flushed(name) \
-  {}
-#define GRAZE_TABLES_no_twin_exact(name) \
-  {}
-#define GRAZE_TABLES_no_twin_unknown(name) \
-  {}
 #ifdef GRAZE_WITHOUT_POLICY_TWINS  // cuda/CMakeLists.txt explains when
 #define GRAZE_POLICIES(name) nullptr
 constexpr bool kHasPolicyTwins = false;
@@ -49,19 +37,22 @@ constexpr bool kHasPolicyTwins = true;
 #else
 #define GRAZE_RECORDS(name) &record_twin_##name::kTwinTable
 #endif
-#define GRAZE_TABLES_twin_rounded(name) \
+#define GRAZE_TABLES_rounded(name) \
   { &twin_##name::kTwinTable, &twin_##name::kTwinTable, GRAZE_POLICIES(name), GRAZE_RECORDS(name) }
 #ifdef __wasm__  // wasm has no FMA instructions, so there is one table
-#define GRAZE_TABLES_twin_contracted(name) \
+#define GRAZE_TABLES_contracted(name) \
   { nullptr, &twin_##name##_portable::kTwinTable, GRAZE_POLICIES(name), GRAZE_RECORDS(name) }
 #elif defined(GRAZE_WITHOUT_PORTABLE_TWINS)
-#define GRAZE_TABLES_twin_contracted(name) \
+#define GRAZE_TABLES_contracted(name) \
   { &twin_##name::kTwinTable, nullptr, GRAZE_POLICIES(name), GRAZE_RECORDS(name) }
 #else
-#define GRAZE_TABLES_twin_contracted(name) \
+#define GRAZE_TABLES_contracted(name) \
   { &twin_##name::kTwinTable, &twin_##name##_portable::kTwinTable, GRAZE_POLICIES(name), GRAZE_RECORDS(name) }
 #endif
-#define GRAZE_VARIANT(name, id, runs_on, arithmetic, twin, ...) GRAZE_TABLES_##twin##_##arithmetic(name),
+#define GRAZE_TABLES_no_twin(name, arithmetic) \
+  {}
+#define GRAZE_TABLES_twin(name, arithmetic) GRAZE_TABLES_##arithmetic(name)
+#define GRAZE_VARIANT(name, id, runs_on, arithmetic, twin, ...) GRAZE_TABLES_##twin(name, arithmetic),
 constexpr TwinTables kTables[] = {
 #include "core/variants.inc"
 };
@@ -111,13 +102,12 @@ const TwinRow& twin_row(const Lane& lane) {
 }
 
 DecideBlock::Function twin_block(const Lane& lane) { return twin_row(lane).decide; }
-DecideFunction<DoublePair> twin_of_doubles(const Lane& lane) { return twin_row(lane).doubles.decide; }
 
 DecideBlock block_on_host(const Lane& lane) {
   if (lane.decide) return lane.decide;
   if (lane.foreign) return nullptr;
   if (lane.under) return policy_twin(lane);
-  if (!lane.exact) return {{twin_block(lane)}, {twin_of_doubles(lane)}};
+  if (!lane.exact) return {{twin_row(lane).decide}, {twin_row(lane).doubles.decide}};
   const Lane* on_cpu = counterpart(lane, Variant::cpu);
   return on_cpu ? on_cpu->decide : nullptr;
 }
@@ -150,15 +140,6 @@ bool has_policy_twins() { return kHasPolicyTwins; }
 
 TraceBlock twin_trace(const Lane& lane) { return twin_row(lane).trace; }
 TraceFunction<DoublePair> twin_trace_of_doubles(const Lane& lane) { return twin_row(lane).doubles.trace; }
-const char* twin_hash(const Lane& lane) { return twin_row(lane).hash; }
-const char* twin_trace_hash(const Lane& lane) { return twin_row(lane).trace_hash; }
-
-const char* twin_toolkit() {
-  for (const VariantInfo& row : kVariants) {
-    if (const TwinTable* table = twin_table(row.variant)) return table->toolkit;
-  }
-  return "";
-}
 
 std::string evidence(const TwinProof& proof) {
   const auto count = [](double pairs) {

@@ -9,19 +9,13 @@
 namespace graze::cuda {
 namespace {
 
-int code(const DecideBlock& decide, const Pair& pair) {
-  std::uint64_t intersects = 0, declined = 0;
-  decide(&pair, 1, &intersects, &declined);
-  return static_cast<int>(intersects + 2 * declined);
-}
-
 const RegisterFuzzTarget kTwin("twin", [](std::string_view bytes) {
   const Pair pair = pair_of(bytes);
   std::size_t compared = 0;
   for (const Lane& lane : lanes()) {
     if (lane.variant != Variant::cuda_nofma || !twin_block(lane)) continue;
-    const int twin = code(twin_block(lane), pair);
-    must_hold(twin == code(counterpart(lane, Variant::cpu)->decide, pair),
+    const Verdict twin = decide_one(twin_block(lane), pair);
+    must_hold(twin == decide_one(counterpart(lane, Variant::cpu)->decide, pair),
               "a twin without contraction decides as the host does");
     reached(4 * compared++ + static_cast<std::size_t>(twin));
   }

@@ -15,7 +15,6 @@ namespace graze::cuda {
 
 // The twin of a published CUDA lane; null when there is none.
 DecideBlock::Function twin_block(const Lane& lane);
-DecideFunction<DoublePair> twin_of_doubles(const Lane& lane);  // of a lane in double
 
 // The function that gives the lane's verdicts on the host: the lane's own, or the twin of a CUDA lane. For the exact
 // CUDA lane it is the exact CPU lane, which is built from the same source. Null when there is none.
@@ -34,13 +33,6 @@ RecordFunction<DoublePair> twin_record_of_doubles(const Lane& lane);  // of a la
 
 // Whether lanes with tolerances have twins; they have none in builds of scripts/campaign.
 bool has_policy_twins();
-
-// The toolkit whose PTX the twins replay: "13.0.88".
-const char* twin_toolkit();
-
-// Hash of the kernel's PTX and its contractions. A record in cuda/proofs is valid for this hash. Empty without a twin.
-const char* twin_hash(const Lane& lane);
-const char* twin_trace_hash(const Lane& lane);
 
 // The result of `graze prove-twin` for one lane; see LaneProof in prove.h.
 struct TwinProof {

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <vector>
 
+#include "core/lanes/verdicts.h"
 #include "cuda/lanes/trace.h"
 #include "cuda/twin/twin_table.h"
 #include "strata/strata.h"
@@ -30,17 +31,6 @@ const std::vector<Pair>& sample() {
     return all;
   }();
   return pairs;
-}
-
-struct Bits {
-  std::vector<std::uint64_t> intersects, declined;
-  friend bool operator==(const Bits&, const Bits&) = default;
-};
-
-Bits run(DecideBlock decide, const std::vector<Pair>& pairs) {
-  Bits bits{std::vector<std::uint64_t>((pairs.size() + 63) / 64), std::vector<std::uint64_t>((pairs.size() + 63) / 64)};
-  decide(pairs.data(), pairs.size(), bits.intersects.data(), bits.declined.data());
-  return bits;
 }
 
 std::string test_name(const std::string& id) {
@@ -73,11 +63,11 @@ TEST_P(Twin, EveryCudaLaneHasOne) {
   for (Variant variant : {Variant::cuda_fma, Variant::cuda_nofma}) {
     EXPECT_NE(twin(variant), nullptr);
     EXPECT_NE(twin_trace(sibling(variant)), nullptr);
-    EXPECT_EQ(std::strlen(twin_hash(sibling(variant))), 16u);
+    EXPECT_EQ(std::strlen(twin_row(sibling(variant)).hash), 16u);
     EXPECT_TRUE(twin_evidence(sibling(variant)).starts_with("twin"));
   }
   EXPECT_EQ(twin(Variant::cpu), nullptr);
-  EXPECT_STRNE(twin_hash(sibling(Variant::cuda_fma)), twin_hash(sibling(Variant::cuda_nofma)));
+  EXPECT_STRNE(twin_row(sibling(Variant::cuda_fma)).hash, twin_row(sibling(Variant::cuda_nofma)).hash);
 }
 
 // Compares the evidence with the record: pairs decided by GPU and twin, and pairs decided by two builds on the GPU.
@@ -86,10 +76,9 @@ TEST_P(Twin, EvidenceSaysWhatTheRecordSays) {
       nlohmann::json::parse(std::ifstream(GRAZE_SOURCE_DIR "/cuda/proofs/nvidia_h100_nvcc_13.0.88.json"));
   int told = 0;
   for (Variant variant : {Variant::cuda_fma, Variant::cuda_nofma}) {
+    const TwinRow& row = twin_row(sibling(variant));
     for (const auto& proven : record.at("lanes")) {
-      if (proven.at("hash") != twin_hash(sibling(variant)) ||
-          proven.at("trace_hash") != twin_trace_hash(sibling(variant)))
-        continue;
+      if (proven.at("hash") != row.hash || proven.at("trace_hash") != row.trace_hash) continue;
       std::ostringstream words;
       words << "twin, verified on " << record.at("device").get<std::string>() << ", nvcc "
             << record.at("toolkit").get<std::string>() << ": GPU and twin agree on "
@@ -112,7 +101,7 @@ TEST(TwinEvidence, IsOfWhatWasCompared) {
 
 TEST_P(Twin, WithoutContractionIsTheCpuLane) {
   ASSERT_GE(sample().size(), 100'000u);
-  EXPECT_TRUE(run(twin(Variant::cuda_nofma), sample()) == run(sibling(Variant::cpu).decide, sample()));
+  EXPECT_TRUE(verdicts_of(twin(Variant::cuda_nofma), sample()) == verdicts_of(sibling(Variant::cpu).decide, sample()));
 }
 
 // The trace of the cpu lane's algorithm, compiled without contraction on this processor.
@@ -155,22 +144,20 @@ TEST_P(Twin, ContractionChangesIntermediateBits) {
 
 TEST_P(Twin, WithFmaFromTheLibraryIsTheSame) {
   const auto a = static_cast<std::size_t>(lane().algorithm), s = static_cast<std::size_t>(lane().scalar);
-  EXPECT_TRUE(run(twin_cuda_fma_portable::kTwinTable.rows[a][s].decide, sample()) ==
-              run(twin(Variant::cuda_fma), sample()));
+  EXPECT_TRUE(verdicts_of(twin_cuda_fma_portable::kTwinTable.rows[a][s].decide, sample()) ==
+              verdicts_of(twin(Variant::cuda_fma), sample()));
 }
 
 TEST_P(Twin, FusingAllSitesIsCudaFmaAndNoneIsCudaNofma) {
   const std::size_t sites = contraction_sites(lane()).size();
   ASSERT_GT(sites, 0u);
   const std::vector<std::uint64_t> none((sites + 63) / 64, 0), all((sites + 63) / 64, ~std::uint64_t{0});
-  const Bits fused = run(twin(Variant::cuda_fma), sample()), unfused = run(twin(Variant::cuda_nofma), sample());
+  const std::vector<Verdict> fused = verdicts_of(twin(Variant::cuda_fma), sample()),
+                             unfused = verdicts_of(twin(Variant::cuda_nofma), sample());
   int wrong = 0;
   for (std::size_t i = 0; i < sample().size(); ++i) {
-    const auto says = [&](const Bits& bits) {
-      return bits.intersects[i / 64] >> (i % 64) & 1 ? Verdict::intersects : Verdict::disjoint;
-    };
-    wrong += decide_fusing(lane(), sample()[i], all) != says(fused);
-    wrong += decide_fusing(lane(), sample()[i], none) != says(unfused);
+    wrong += decide_fusing(lane(), sample()[i], all) != fused[i];
+    wrong += decide_fusing(lane(), sample()[i], none) != unfused[i];
   }
   EXPECT_EQ(wrong, 0);
 }

@@ -157,7 +157,7 @@ constexpr void enter(TwinTable& table) {
 
 template <class... Kernel>
 constexpr TwinTable table_of(const std::tuple<Kernel...>*) {
-  TwinTable table{kToolkit, {}};
+  TwinTable table{};
   (enter<Kernel>(table), ...);
   return table;
 }

@@ -2,11 +2,12 @@
 #include "cuda/twin/twin_library.h"
 
 #include <dlfcn.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
-#include <algorithm>
-#include <atomic>
 #include <stdexcept>
-#include <thread>
+#include <string>
+#include <vector>
 
 namespace graze::cuda {
 namespace {
@@ -27,20 +28,11 @@ void decide_part(void* block, Scalar scalar, std::span<const Pair> pairs, signed
   decide_part(block, scalar, wide, answers);
 }
 
-// Splits the pairs among threads, which call decide(pairs, answers).
-template <class AnyPair, class Decide>
-void on_all_cores(std::span<const AnyPair> pairs, std::int8_t* answers, const Decide& decide) {
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t at = next.fetch_add(kPart); at < pairs.size(); at = next.fetch_add(kPart))
-      decide(pairs.subspan(at, std::min(kPart, pairs.size() - at)), answers + at);
-  };
-  const std::size_t parts = (pairs.size() + kPart - 1) / kPart;
-  std::vector<std::thread> threads;
-  for (std::size_t t = 1; t < std::min<std::size_t>(parts, std::thread::hardware_concurrency()); ++t)
-    threads.emplace_back(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
+template <class AnyPair>
+void decide_on_all_cores(void* block, Scalar scalar, std::span<const AnyPair> pairs, std::int8_t* answers) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pairs.size(), kPart), [&](const auto& part) {
+    decide_part(block, scalar, pairs.subspan(part.begin(), part.size()), answers + part.begin());
+  });
 }
 
 }  // namespace
@@ -57,24 +49,22 @@ TwinLibrary::TwinLibrary(const std::filesystem::path& file, Scalar scalar)
     throw std::runtime_error(file.string() + ": expected a twin in " + std::string(name(scalar)));
   block_ = symbol("graze_twin_decide_block");
   fusing_ = symbol("graze_twin_decide_fusing");
+  const auto number = [&](const char* name) {
+    return static_cast<std::size_t>(reinterpret_cast<int (*)()>(symbol(name))());
+  };
   comparisons_ = {reinterpret_cast<const ComparisonSite* (*)()>(symbol("graze_twin_comparisons"))(),
-                  static_cast<std::size_t>(reinterpret_cast<int (*)()>(symbol("graze_twin_comparison_count"))())};
-  const int count = reinterpret_cast<int (*)()>(symbol("graze_twin_site_count"))();
-  for (int s = 0; s < count; ++s) {
-    const auto text = [&](const char* name) { return reinterpret_cast<const char* (*)(int)>(symbol(name))(s); };
-    const auto number = [&](const char* name) { return reinterpret_cast<int (*)(int)>(symbol(name))(s); };
-    sites_.push_back({text("graze_twin_site_file"), number("graze_twin_site_line"), text("graze_twin_site_from_file"),
-                      number("graze_twin_site_from_line"), number("graze_twin_site_by_ptxas") != 0});
-  }
+                  number("graze_twin_comparison_count")};
+  sites_ = {reinterpret_cast<const ContractionSite* (*)()>(symbol("graze_twin_sites"))(),
+            number("graze_twin_site_count")};
 }
 
 TwinLibrary::~TwinLibrary() { dlclose(library_); }
 
 void TwinLibrary::decide(std::span<const Pair> pairs, std::int8_t* answers) const {
-  on_all_cores(pairs, answers, [&](auto part, auto* to) { decide_part(block_, scalar_, part, to); });
+  decide_on_all_cores(block_, scalar_, pairs, answers);
 }
 void TwinLibrary::decide(std::span<const DoublePair> pairs, std::int8_t* answers) const {
-  on_all_cores(pairs, answers, [&](auto part, auto* to) { decide_part(block_, scalar_, part, to); });
+  decide_on_all_cores(block_, scalar_, pairs, answers);
 }
 
 int TwinLibrary::decide_fusing(const AnyPair& pair, std::span<const std::uint64_t> fused, std::span<Comparison> made,

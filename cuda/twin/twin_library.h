@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "core/any_pair.h"
 #include "core/lanes/lanes.h"
@@ -15,15 +13,6 @@
 #include "cuda/twin/twin.h"
 
 namespace graze::cuda {
-
-// A place where the kernel rounds once and its source rounds twice; see ContractionSite in cuda/twin/twin.h.
-struct TwinSite {
-  std::string file;
-  int line = 0;
-  std::string from_file;  // file of the line into which that function is inlined; empty when it is not inlined
-  int from_line = 0;
-  bool by_ptxas = false;
-};
 
 // The library stays loaded as long as its owner lives. Its functions may run in several threads at once. An endless
 // loop or an invalid memory access in the user's code happens in this process too.
@@ -40,8 +29,7 @@ class TwinLibrary {
   // Requires: a twin in double.
   void decide(std::span<const DoublePair> pairs, std::int8_t* answers) const;
 
-  const std::vector<TwinSite>& sites() const { return sites_; }
-
+  std::span<const ContractionSite> sites() const { return sites_; }
   std::span<const ComparisonSite> comparisons() const { return comparisons_; }
 
   // The answer when sites whose bit is not set round twice. Bit i % 64 of word i / 64 belongs to site i. `made`
@@ -56,8 +44,8 @@ class TwinLibrary {
   Scalar scalar_;
   void* block_ = nullptr;
   void* fusing_ = nullptr;
-  std::vector<TwinSite> sites_;
-  std::span<const ComparisonSite> comparisons_;  // in the library
+  std::span<const ContractionSite> sites_;  // in the library, like comparisons_
+  std::span<const ComparisonSite> comparisons_;
 };
 
 }  // namespace graze::cuda

@@ -9,6 +9,7 @@
 
 #include "core/discrepancy/count.h"
 #include "core/discrepancy/questions.h"
+#include "core/lanes/verdicts.h"
 #include "cuda/lanes/trace.h"
 #include "cuda/twin/twin_table.h"
 #include "strata/strata.h"
@@ -28,15 +29,7 @@ const std::vector<DoublePair>& double_sample() {
   return pairs;
 }
 
-std::vector<Verdict> verdicts_in_double(const DecideBlock& decide) {
-  const std::vector<DoublePair>& pairs = double_sample();
-  std::vector<std::uint64_t> yes((pairs.size() + 63) / 64), declined(yes.size());
-  decide(pairs.data(), pairs.size(), yes.data(), declined.data());
-  std::vector<Verdict> verdicts;
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    verdicts.push_back(verdict_of_bits(yes[i / 64] >> i % 64 & 1, declined[i / 64] >> i % 64 & 1));
-  return verdicts;
-}
+std::vector<Verdict> verdicts_in_double(const DecideBlock& decide) { return verdicts_of(decide, double_sample()); }
 
 class TwinOfDoubles : public testing::TestWithParam<const Lane*> {
  protected:
@@ -260,7 +253,7 @@ TEST_P(TwinOfDoubles, EvidenceSaysWhatTheRecordSays) {
 }
 
 TEST(TwinOfDoubles, LanesInFloatHaveNone) {
-  EXPECT_EQ(twin_of_doubles(*find_lane("moller_1997/f32/cuda-fma")), nullptr);
+  EXPECT_EQ(twin_row(*find_lane("moller_1997/f32/cuda-fma")).doubles.decide, nullptr);
   EXPECT_FALSE(block_on_host(*find_lane("moller_1997/f32/cuda-fma")).decides_doubles());
   EXPECT_EQ(twin_record_of_doubles(*find_lane("moller_1997/f32/cuda-fma")), nullptr);
   EXPECT_TRUE(record_sites_of_doubles(*find_lane("moller_1997/f32/cuda-fma")).empty());

@@ -22,6 +22,7 @@ struct TwinFunctions {
   RecordFunction<AnyPair> record = nullptr;
   void (*record_fusing)(const AnyPair* pairs, std::size_t count, const Records& to,
                         const std::uint64_t* fused) = nullptr;
+  // Hashes of the kernels' PTX and contractions, for which a record in cuda/proofs is valid. Empty without a twin.
   const char* hash = "";
   const char* trace_hash = "";
   const char* symbol = "";  // name of the kernel that it replays
@@ -34,26 +35,20 @@ struct TwinRow : TwinFunctions<Pair> {
 };
 
 struct TwinTable {
-  const char* toolkit;
   std::array<std::array<TwinRow, 2>, kAlgorithmCount> rows;
 };
 
 // twin_NAME for the variants with a twin; twin_NAME_portable for those with contraction. On all processors:
-// policy_twin_NAME for lanes with tolerances, record_twin_NAME for those that record.
+// policy_twin_NAME for lanes with tolerances, record_twin_NAME for those that record. Other names are never defined.
 #define GRAZE_DECLARE(name)          \
   namespace name {                   \
   extern const TwinTable kTwinTable; \
   }
-#define GRAZE_DECLARE_no_twin_rounded(name)
-#define GRAZE_DECLARE_no_twin_contracted(name)
-#define GRAZE_DECLARE_no_twin_fast(name)
-#define GRAZE_DECLARE_no_twin_flushed(name)
-#define GRAZE_DECLARE_no_twin_exact(name)
-#define GRAZE_DECLARE_no_twin_unknown(name)
-#define GRAZE_DECLARE_twin_rounded(name) \
-  GRAZE_DECLARE(twin_##name) GRAZE_DECLARE(policy_twin_##name) GRAZE_DECLARE(record_twin_##name)
-#define GRAZE_DECLARE_twin_contracted(name) GRAZE_DECLARE_twin_rounded(name) GRAZE_DECLARE(twin_##name##_portable)
-#define GRAZE_VARIANT(name, id, runs_on, arithmetic, twin, ...) GRAZE_DECLARE_##twin##_##arithmetic(name)
+#define GRAZE_VARIANT(name, ...)    \
+  GRAZE_DECLARE(twin_##name)        \
+  GRAZE_DECLARE(policy_twin_##name) \
+  GRAZE_DECLARE(record_twin_##name) \
+  GRAZE_DECLARE(twin_##name##_portable)
 #include "core/variants.inc"
 #undef GRAZE_VARIANT
 

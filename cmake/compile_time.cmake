@@ -1,25 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-# Shortens release builds. Other builds compile each file by itself, so that each file has to include what it uses. The
-# lanes, twins, kernels, core, strata, oracle and cuda are compiled that way in every build.
+# Makes release builds faster. Other builds compile each file alone, so that each file must include the headers that it
+# uses. In every build, the lanes, twins, kernels, core, strata, oracle and cuda are compiled alone.
 set(is_release FALSE)
 if(CMAKE_BUILD_TYPE STREQUAL Release)
   set(is_release TRUE)
 endif()
 
-# A campaign's build turns warnings off, to compile faster; other builds show them.
+# A campaign's build turns warnings off, because it then compiles faster. Other builds show the warnings.
 if(GRAZE_CAMPAIGN)
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-w>)
 endif()
 
-# graze_cold(file…): files of this folder that no pair of a campaign passes through.
+# graze_cold(file…): compiles files of the current folder with -O1 in a campaign's build. Their code must not run for
+# each pair.
 function(graze_cold)
   if(GRAZE_CAMPAIGN)
     set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -O1)
   endif()
 endfunction()
 
-# Library headers, precompiled once for many targets. There are two sets, because GCC requires the same flags where a
-# set is used.
+# Library headers, precompiled once for many targets. There are two sets, because GCC requires that a target has the
+# flags of the set that it uses.
 set(has_precompiled FALSE)
 if(is_release AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   set(has_precompiled TRUE)
@@ -38,25 +39,26 @@ if(is_release AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   endforeach()
 endif()
 
-# graze_precompiled(LEVEL TARGET…): LEVEL is O3, or O1 for code that takes longer to compile than it ever runs. The
-# targets use fmt.
+# graze_precompiled(LEVEL TARGET…): precompiled headers for targets that use fmt. LEVEL is O3, or O1 for code that takes
+# longer to compile than to run.
 function(graze_precompiled level)
   if(GRAZE_CAMPAIGN)
     set(level O1)
   endif()
   foreach(target IN LISTS ARGN)
     if(has_precompiled)
-      # -fPIC: programs are compiled with -fPIE by default, and then GCC rejects headers precompiled for libraries.
+      # By default, programs are compiled with -fPIE, for which GCC rejects headers precompiled with -fPIC for
+      # libraries.
       target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-${level}$<SEMICOLON>-fPIC>)
       target_precompile_headers(${target} REUSE_FROM graze_precompiled_${level})
     endif()
   endforeach()
 endfunction()
 
-# graze_together(TARGET [ALONE file…] [MUTATED file…]): unity build of nine sources at a time, or eighteen for a
-# campaign. ALONE files are left out because their private names clash with other files'. MUTATED files are left out
-# because scripts/mutate compiles them itself, except in a campaign's build. A file that is compiled alone spends
-# seconds on CLI11, our own headers and its copy of the JSON library.
+# graze_together(TARGET [ALONE file…] [MUTATED file…]): a unity build of nine sources at a time, or eighteen in a
+# campaign's build. It saves the seconds that each file spends on CLI11, our own headers and its copy of the JSON
+# library. ALONE files are left out because their private names clash with those of other files. MUTATED files are left
+# out, except in a campaign's build, because scripts/mutate compiles them alone.
 function(graze_together target)
   cmake_parse_arguments(arg "" "" "ALONE;MUTATED" ${ARGN})
   set(batch 9)

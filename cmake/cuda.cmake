@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-# Finds nvcc. Without it, CMAKE_CUDA_COMPILER is false.
+# Finds nvcc. Without nvcc, CMAKE_CUDA_COMPILER is false.
 include(CheckLanguage)
-# Without a device, a campaign needs no nvcc: it runs on twins, whose PTX is stored.
+# Without a device, a campaign needs no nvcc, because it runs on twins, whose PTX is stored.
 file(GLOB devices /dev/nvidia[0-9]* /dev/dxg)
 if(devices OR NOT GRAZE_CAMPAIGN)
   check_language(CUDA)
 endif()
 if(CMAKE_CUDA_COMPILER)
-  # Machine code for sm_90. For other devices from sm_75 on, the driver compiles the same PTX when it loads it.
+  # nvcc makes machine code for sm_90 and PTX. On other devices from sm_75 on, the driver compiles the PTX.
   if(NOT CMAKE_CUDA_ARCHITECTURES)
     set(CMAKE_CUDA_ARCHITECTURES 75-virtual 90-real)
   endif()
   set(CMAKE_CUDA_STANDARD 20)
   enable_language(CUDA)
-  if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)  # CMake 3.25.1 does not know that nvcc has it
+  if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)  # CMake 3.25.1 does not know that nvcc supports C++20
     set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION -std=c++20)
     set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION -std=c++20)
   endif()

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-# The Debian packages that `cpack` makes from a full build: graze, libgraze, libgraze-dev and python3-graze.
-# scripts/debs makes and checks them.
+# The Debian packages that `cpack` makes from a full build: graze, libgraze, libgraze-dev and python3-graze. The script
+# scripts/debs makes and checks the packages.
 if(GRAZE_CAMPAIGN OR GRAZE_PORTABLE)
   return()
 endif()
 
-# The program looks for its helpers in its own folder.
+# The program graze looks for its helper programs in its own folder.
 foreach(program graze graze-subject-host graze-subject-device graze-subject-opencl)
   if(TARGET ${program})
     install(TARGETS ${program} RUNTIME DESTINATION lib/graze COMPONENT program)
@@ -37,7 +37,7 @@ Comment:
  contain parts of CGAL that are under the GPL, version 3 or newer, so each of
  them as a whole is under that license.
 ]])
-# Installs the licenses of header-only libraries, by Debian package.
+# Installs the licenses of header-only libraries. Each Debian package has its own list of libraries.
 function(install_licenses component name)
   foreach(library IN LISTS ARGN)
     install(FILES /usr/share/doc/${library}/copyright DESTINATION share/doc/${name} RENAME copyright.${library} COMPONENT ${component} OPTIONAL)
@@ -69,7 +69,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/staged.cmake)
 set(CPACK_COMPONENTS_ALL program libraries query test exact python)
 
-# package(NAME COMPONENTS… SECTION section DEPENDS text WHAT line MORE text)
+# package(NAME COMPONENTS… SECTION section DEPENDS text WHAT line MORE text) describes one Debian package.
 macro(package name)
   cmake_parse_arguments(package "" "SECTION;DEPENDS;WHAT;MORE" "COMPONENTS" ${ARGN})
   string(TOUPPER ${name} upper)

@@ -1,38 +1,39 @@
 # SPDX-License-Identifier: Apache-2.0
-# Tests that run scripts, and the scripts' own tests.
+# The tests that run scripts, and the scripts' own tests.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 add_test(NAME scripts.IncludeDirection COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/check_includes.py ${PROJECT_SOURCE_DIR})
 foreach(script check_includes findings league measurements mutate near_models same_results speed_table torture update_generated verdicts_apart)
   add_test(NAME scripts.test.${script} COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/${script}.test.py)
 endforeach()
-# Formatters: clang-format, black and prettier. Both tests are skipped if one is missing; the message names it.
+# Two tests of the format, with clang-format, black and prettier. Both tests are skipped if a formatter is missing; the
+# message names the formatter.
 add_test(NAME scripts.Format COMMAND ${PROJECT_SOURCE_DIR}/scripts/format --check --build ${CMAKE_BINARY_DIR})
 set_tests_properties(scripts.Format PROPERTIES SKIP_RETURN_CODE 77)
 add_test(NAME scripts.test.format COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/format.test.py ${CMAKE_BINARY_DIR})
 set_tests_properties(scripts.test.format PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped")
 add_test(NAME scripts.AuditExplanations COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/audit_explanations.test.py $<TARGET_FILE:graze>)
-# To run by hand, in a fresh system: scripts/debs --try and scripts/container.
+# To test in a fresh system, run scripts/debs --try and scripts/container by hand.
 add_test(NAME packaging.Containerfile COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/container --print)
 if(CMAKE_BINARY_DIR STREQUAL ${PROJECT_SOURCE_DIR}/build)
   add_test(NAME scripts.Debs COMMAND ${PROJECT_SOURCE_DIR}/scripts/debs --out ${CMAKE_BINARY_DIR}/debs-test)
   set_tests_properties(scripts.Debs PROPERTIES SKIP_RETURN_CODE 77)
 endif()
-# Both are skipped if something they need is missing; the message names it.
+# The next two tests are skipped if a program that they need is missing; the message names the program.
 add_test(NAME scripts.test.npm_package COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/npm_package.test.py ${CMAKE_BINARY_DIR})
 add_test(NAME packaging.Action COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/packaging/action.test.py $<TARGET_FILE:graze>)
 set_tests_properties(scripts.test.npm_package packaging.Action PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped")
 # Without the viewer, the test of the web site is skipped.
 add_test(NAME scripts.test.results COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/results.test.py $<TARGET_FILE:graze>)
 set_tests_properties(scripts.test.results PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped")
-# Takes a minute on an idle machine. To run it by hand for an hour: scripts/torture --minutes 60. The seed changes with
-# each commit, so ten commits kill campaigns and minimisations a hundred times, at different moments.
+# This test takes a minute on an idle machine. To run it by hand for an hour: scripts/torture --minutes 60. The seed
+# changes with each commit, so ten commits kill campaigns and minimisations a hundred times, at different moments.
 add_test(NAME scripts.Torture COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/torture --rounds 2 --kills 10 --seed commits --graze $<TARGET_FILE:graze>)
 set_tests_properties(scripts.Torture PROPERTIES TIMEOUT 1500)
-# Defects planted in our own sources. Each is compiled with this build's Ninja commands.
+# Tests that the tests catch defects planted in our own sources. This build's Ninja commands compile each defect.
 if(CMAKE_GENERATOR STREQUAL Ninja)
   add_test(NAME scripts.PlantedDefects COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/mutate --planted --build ${CMAKE_BINARY_DIR} --out ${CMAKE_BINARY_DIR}/planted)
 endif()
-# To run it by hand with a thousand shards: scripts/simulate_shards.
+# To simulate a thousand shards, run scripts/simulate_shards by hand.
 add_test(NAME scripts.SimulateShards COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/simulate_shards --graze $<TARGET_FILE:graze>
   --shards 12 --pairs 12000 --strata near_*,degenerate --lanes */f32/cpu --kill 0.5)
 add_test(NAME scripts.Slurm COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/slurm/campaign.test.py $<TARGET_FILE:graze>)
@@ -41,8 +42,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   add_test(NAME scripts.test.odr COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/odr.test.py ${CMAKE_CXX_COMPILER})
 endif()
 add_test(NAME scripts.test.campaign COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/campaign.test.py ${CMAKE_BINARY_DIR} ${CMAKE_CXX_COMPILER})
-# Takes three seconds for each fuzz target, with another seed each time, plus build time. To run it by hand for an hour:
-# scripts/fuzz --seconds 400.
+# This test takes build time plus three seconds for each fuzz target, with another seed each time. To run it by hand for
+# an hour: scripts/fuzz --seconds 400.
 add_test(NAME scripts.Fuzz COMMAND ${PROJECT_SOURCE_DIR}/scripts/fuzz --seconds 3 --build ${CMAKE_BINARY_DIR}/fuzz-targets)
 set_tests_properties(scripts.Fuzz PROPERTIES TIMEOUT 900 SKIP_RETURN_CODE 77)
 # Tests of a minute or more start first.

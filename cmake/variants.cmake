@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Reads core/variants.inc. Sets `variants` (the names) and, for each NAME, variant_NAME_runs_on, _arithmetic, _twin and
-# _flags (a list; without -m… on processors other than x86).
+# Reads core/variants.inc. Sets `variants` (the names) and, for each NAME, the variables variant_NAME_runs_on,
+# variant_NAME_arithmetic, variant_NAME_twin and variant_NAME_flags (a list; without -m… on processors other than x86).
 set(variants_file ${CMAKE_CURRENT_LIST_DIR}/../core/variants.inc)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${variants_file})
 file(STRINGS ${variants_file} rows REGEX "^GRAZE_VARIANT\\(")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Replaces device.cu in builds without nvcc: there is no device, and CUDA lanes run on their twins.
+// Replaces the device code in builds without nvcc. These builds have no device, and run CUDA lanes on their twins.
 #include "cuda/lanes/device.h"
 
 #include <stdexcept>

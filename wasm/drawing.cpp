@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same construction as in oracle/common_set.cpp: one polygon is clipped by the half-spaces of the other's hull.
-// Numbers are rounded, so a point near a plane counts as on it. The exact decision gives the kind of the common set.
+// The same construction as in oracle/common_set.cpp: the half-spaces of one triangle's hull clip the other's polygon.
+// Numbers are rounded, so a point near a plane counts as on the plane. The exact decision gives the kind of the common
+// set.
 #include "wasm/drawing.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ using Real = long double;
 using Point = Vec3<Real>;
 using Polygon = std::vector<Point>;
 
-constexpr Real kNearly = 0x1p-90L;  // values smaller than this times the sum of their terms count as zero
+constexpr Real kNearly = 0x1p-90L;  // a value below kNearly times the sum of its terms' sizes counts as zero
 
 Point widened(const Vec3<double>& v) { return {v.x, v.y, v.z}; }
 bool is_zero(const Point& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
@@ -91,7 +92,7 @@ Polygon section(const Point (&p)[3], const HalfSpace& plane) {
   return ends.size() > 2 ? Polygon{} : ends;  // the whole hull lies in the plane
 }
 
-// The part of the line where the planes meet that is within the box around the points, enlarged by half.
+// The line in which the planes meet, cut to the box around the points, which is enlarged by half.
 Polygon line_of(const Point (&a)[3], const Point (&b)[3], const Point& na, const Point& nb) {
   const Point along = cross(na, nb);
   const Point at = (cross(nb, along) * dot(na, a[0]) + cross(along, na) * dot(nb, b[0])) * (1 / dot(along, along));
@@ -115,7 +116,7 @@ Polygon line_of(const Point (&a)[3], const Point (&b)[3], const Point& na, const
 
 struct Connection {
   Real squared = INFINITY;
-  Point p, q;  // in a, in b
+  Point p, q;  // a point of a, a point of b
   int feature_a = -1, feature_b = -1;
 };
 
@@ -148,7 +149,7 @@ Connection of_edges(const Point (&a)[3], int i, const Point (&b)[3], int j) {
   return {square(q - p), p, q, feature_at(s, i), feature_at(t, j)};
 }
 
-// The connection from the vertex to its foot in the face, if the foot lies in the face.
+// The connection from the vertex to the foot of its perpendicular on the face's plane, if the foot is in the face.
 Connection to_face(const Point& vertex, const Point (&face)[3]) {
   const Point normal = normal_of(face);
   if (is_zero(normal)) return {};
@@ -171,7 +172,7 @@ Connection nearest(const Point (&a)[3], const Point (&b)[3]) {
   return best;
 }
 
-// The shortest translation along a normal or a cross product of edges that separates the triangles. p is the origin.
+// The shortest translation that separates the triangles, along a normal or a cross product of edges. `p` is the origin.
 Connection push(const Point (&a)[3], const Point (&b)[3]) {
   Connection best;
   const auto along = [&](const Point& axis, int feature_a, int feature_b) {
@@ -194,7 +195,7 @@ Connection push(const Point (&a)[3], const Point (&b)[3]) {
   return best;
 }
 
-// sign: 1 for a gap, -1 for a push.
+// Writes the connection as the witness. sign: 1 for a gap, -1 for a push.
 void add_witness(Drawing& result, const Connection& found, int sign, const Point& from, const Point (&a)[3],
                  const Point (&b)[3]) {
   if (!(found.squared > 0) || !std::isfinite(found.squared)) return;
@@ -207,7 +208,7 @@ void add_witness(Drawing& result, const Connection& found, int sign, const Point
   }
   result.low_a = static_cast<double>(low[0] - high[0]);
   result.high_a = 0;
-  // The direction of a tiny gap is too imprecise to use the difference of low[1] and high[0].
+  // For a tiny gap, the axis is too imprecise for the difference of low[1] and high[0].
   result.low_b = static_cast<double>(sign * length);
   result.high_b = static_cast<double>(sign * length + (high[1] - low[1]));
   result.witness_count = write({found.p + from, found.q + from}, result.witness, 2);

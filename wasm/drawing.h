@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the viewer draws besides the two triangles, constructed with 113 bits and rounded to double.
+// The points that the viewer draws besides the two triangles. They are computed with 113 bits and rounded to double.
 #pragma once
 
 #include <cstdint>
@@ -10,24 +10,25 @@
 namespace graze::wasm {
 
 struct Drawing {
-  static constexpr int kMost = 9;  // extreme points of a common set
+  static constexpr int kMost = 9;  // the most extreme points of a common set
   std::int32_t contact_count, line_count, section_a_count, section_b_count;
   Vec3<double> contact[kMost];  // the common set's extreme points, in order around it
-  Vec3<double> line[2];         // the line where the planes meet, within the box around the pair, enlarged by half
-  Vec3<double> section_a[2], section_b[2];  // the part of that line in each triangle
-  // What the margin measures. For a disjoint pair, the nearest points of a and b. For an intersecting pair, the
-  // shortest translation of b that separates it, drawn from the middle of the contact. None if an arbitrarily short
-  // translation separates the pair, or if 113 bits show no gap.
+  Vec3<double> line[2];         // the line in which the planes meet, cut to the box around the pair, enlarged by half
+  Vec3<double> section_a[2], section_b[2];  // the parts of that line in the triangles a and b
+  // The distance that the margin measures. For a disjoint pair, it joins the nearest points of a and b. For an
+  // intersecting pair, it is the shortest translation of b that separates the pair, drawn from the middle of the
+  // contact. There is no witness if an arbitrarily short translation separates the pair, or if 113 bits show no gap.
   Vec3<double> witness[2];
   // The extents of a and b along the witness, measured from the end of a: high_a is 0, and low_b is the gap or minus
   // the depth.
   double low_a, high_a, low_b, high_b;
   std::int32_t witness_count;
-  std::int32_t feature_a,
-      feature_b;  // the nearest ones, or those that give the push its direction: 0 vertex 0, 3 edge 01, 6 face, -1 none
+  // The nearest features of a and b, or the features that determine the push's direction. 0 to 2: vertices; 3 to 5:
+  // edges (3 is edge 01); 6: the face; -1: none.
+  std::int32_t feature_a, feature_b;
 };
 
-// relation: the pair's own.   Requires: finite coordinates.
+// The drawing of a pair with this relation.   Requires: finite coordinates.
 Drawing drawing_of(const DoublePair& pair, const Relation& relation);
 
 }  // namespace graze::wasm

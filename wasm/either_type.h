@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Functions for pairs of each coordinate type, used by the modules and by the native side of the comparison with them.
+// Functions for pairs of each coordinate type. The modules use them, and so does reference.cpp.
 #pragma once
 
 #include <algorithm>
@@ -20,9 +20,9 @@ inline void draw(DoublePair& pair, std::uint64_t seed, strata::Stratum stratum, 
   pair = strata::generate_doubles(seed, stratum, index);
 }
 
-// Certified bounds of |margin| in the unit of the coordinates. For doubles they are 0 and infinity if the numbers of
-// core/margin cannot hold the coordinates' exponents.
-// Requires: finite coordinates; verdict is the pair's true verdict, not declined.
+// Certified bounds of |margin| in the unit of the coordinates. For doubles, the bounds are 0 and infinity if the
+// exponents of the coordinates are too far apart for the numbers of core/margin. Requires: finite coordinates;
+// `verdict` is the pair's true verdict, not declined.
 inline MarginBounds bounds_of(const Pair& pair, Verdict verdict) { return margin_bounds(pair, verdict); }
 inline MarginBounds bounds_of(const DoublePair& pair, Verdict verdict) {
   const ScaledPair scaled(pair);
@@ -38,7 +38,7 @@ inline MarginBounds bounds_of(const DoublePair& pair, Verdict verdict) {
   return bounds;
 }
 
-// The trace hash of a lane with a twin on what it sees of a pair.
+// The trace hash of a lane with a twin on a pair, which a lane in float rounds to float32.
 inline std::uint64_t trace_of(const Lane& lane, const AnyPair& pair) {
   std::uint64_t hash = 0;
   const AnyPair seen = analysis::seen_by(lane, pair);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An exact triangle test in Node.   node example.mjs [graze.wasm]
+// Tests triangles exactly in Node.   Usage: node example.mjs [graze.wasm]
 import { readFileSync } from 'node:fs';
 import { load } from './graze.js';
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze.wasm and graze_f64.wasm for JavaScript and TypeScript: exact triangle-triangle intersection, and the verdicts of
-// published algorithms on the same pair. The algorithms run in float32 and float64, on the CPU and, through their twins,
-// on the GPU. It has no dependencies and runs in Node 18 or newer and in browsers since 2021.
+// graze.wasm and graze_f64.wasm for JavaScript and TypeScript: exact triangle-triangle intersection, and the verdicts
+// of published algorithms on the same pair. The algorithms run in float32 and float64, as on the CPU and, through their
+// twins, as on the GPU. This file has no dependencies. It runs in Node 18 or newer and in browsers since 2021.
 
-/** 18 coordinates, a[0] to a[2], then b[0] to b[2]; graze.wasm rounds each to float32, graze_f64.wasm decides the doubles. @typedef {ArrayLike<number>} Pair */
+/** The 18 coordinates of a[0] to a[2], then of b[0] to b[2]. graze.wasm rounds each coordinate to float32; graze_f64.wasm decides the doubles. @typedef {ArrayLike<number>} Pair */
 /** @typedef {'disjoint' | 'intersects' | 'declined'} Verdict declined: a coordinate is not finite, or a lane cannot decide. */
 /** @typedef {'none' | 'point' | 'segment' | 'area'} Contact */
-/** @typedef {{ verdict: Verdict, contact: Contact, coplanar: boolean, dimensions: [number, number] }} Truth dimensions: of the two hulls, 0 point, 1 segment, 2 triangle. */
-/** @typedef {{ sign: -1 | 0 | 1, least: number, most: number, ulp: number }} Margin sign 1: disjoint, at least `least` and at most `most` apart. -1: intersecting, that deep. 0: they touch. ulp: that of the largest coordinate. */
+/** @typedef {{ verdict: Verdict, contact: Contact, coplanar: boolean, dimensions: [number, number] }} Truth dimensions: those of the two hulls; 0: point, 1: segment, 2: triangle. */
+/** @typedef {{ sign: -1 | 0 | 1, least: number, most: number, ulp: number }} Margin sign 1: the triangles are disjoint, and the distance is `least` to `most`. -1: they intersect, and the depth is `least` to `most`. 0: they touch. ulp: the ulp of the largest coordinate. */
 /** @typedef {[number, number, number]} Point */
-/** @typedef {{ contact: Point[], line: Point[], sections: [Point[], Point[]], witness: Point[], along: [number, number][], features: [string, string] }} Drawing line: where the planes meet; sections: its parts in a and in b. witness: what the margin measures, which is the nearest points of a and b or the shortest push of b that separates them; along: the extents of a and b along it, with a's end at 0; features: those of a and b that it joins or that give the push its direction. */
-/** @typedef {{ line: string, site: string, relation: string, held: boolean, holds: boolean, result: number, left: number, right: number, exactLeft: number, exactRight: number }} Step relation '': only a value, left. held: the outcome in the lane; holds: with 113 bits. result: the index of left among the run's computed numbers, -1 if it is none. */
-/** @typedef {{ line: string, from: string }} Site An operation with one rounding where the source has two, and the place that it is inlined into. */
-/** @typedef {{ decide: (pairs: number, count: number, verdicts: number) => void }} Host What the module calls: a function that sets the verdicts of pairs; both are at these addresses. */
+/** @typedef {{ contact: Point[], line: Point[], sections: [Point[], Point[]], witness: Point[], along: [number, number][], features: [string, string] }} Drawing line: the line in which the planes meet; sections: the parts of the line in a and in b. witness: the distance that the margin measures, between the nearest points of a and b or along the shortest push of b that separates the triangles; along: the extents of a and b along the witness, with the end of a at 0; features: the features of a and b that the witness joins, or that determine the push's direction. */
+/** @typedef {{ line: string, site: string, relation: string, held: boolean, holds: boolean, result: number, left: number, right: number, exactLeft: number, exactRight: number }} Step relation '': the step has only a value, left. held: the outcome in the lane; holds: the outcome with 113 bits. result: the index of left among the numbers that the run computed, or -1. */
+/** @typedef {{ line: string, from: string }} Site An operation that is rounded once although the source has two operations, and the place into which it is inlined. */
+/** @typedef {{ decide: (pairs: number, count: number, verdicts: number) => void }} Host The function that the module calls. It sets the verdicts of `count` pairs; both are at these addresses. */
 /** @typedef {ReturnType<typeof graze_of>} Graze */
 
 /** @type {readonly Verdict[]} */
@@ -33,7 +33,7 @@ const feature_at = (of, feature) =>
         : `face ${of}`;
 
 /**
- * The functions that use an instance of the module.
+ * Makes the functions that use an instance of the module.
  * @param {any} exports @param {Host} host
  */
 function graze_of(exports, host) {
@@ -44,7 +44,7 @@ function graze_of(exports, host) {
   /** Numbers of the pairs' type in the module's memory. @param {number} at @param {number} count */
   const numbers_at = (at, count) =>
     in_doubles ? new Float64Array(memory.buffer, at, count) : new Float32Array(memory.buffer, at, count);
-  const view = () => new DataView(memory.buffer); // made for each use, because a memory that grows detaches old views
+  const view = () => new DataView(memory.buffer); // a new view for each use, because growing memory detaches old views
 
   /** @param {number} at */
   function text_at(at) {
@@ -75,7 +75,7 @@ function graze_of(exports, host) {
     );
   }
 
-  /** From the repository's root: "core/vec3.h". @param {number} at */
+  /** The file's path from the repository's root: "core/vec3.h". @param {number} at */
   const file_at = (at) => text_at(at).replace(/^.*?(?=core\/)/, '');
 
   const lanes = Array.from({ length: exports.lane_count() }, (_, i) => text_at(exports.lane_id(i)));
@@ -108,9 +108,9 @@ function graze_of(exports, host) {
     lanes,
     /** The strata's names; those of doubles end in "/f64". */
     strata,
-    /** How many pairs fit into one call of the functions below that take several. */
+    /** The most pairs in one call of the functions below that take several pairs. */
     room: /** @type {number} */ (exports.room()),
-    /** For those who know them: the module's own functions, its texts and numbers, and the function that it calls. */
+    /** For experts: the module's own functions, its texts and numbers, and the function that the module calls. */
     exports,
     text_at,
     set_text,
@@ -150,7 +150,7 @@ function graze_of(exports, host) {
     },
 
     /**
-     * The exact verdict, for any finite coordinates.
+     * The exact verdict and relation of a pair with finite coordinates.
      * @param {Pair} pair @returns {Truth}
      */
     truth(pair) {
@@ -161,9 +161,9 @@ function graze_of(exports, host) {
     },
 
     /**
-     * How far from touching the pair is: certified bounds of the distance of disjoint triangles, or of the smallest
-     * translation that separates intersecting ones. They are 0 and infinity for doubles whose sizes differ by more than
-     * about 2^250.
+     * The pair's margin: certified bounds of the distance of disjoint triangles, or of the smallest translation that
+     * separates intersecting triangles. For doubles whose sizes differ by a factor of more than about 2^250, the bounds
+     * are 0 and infinity.
      * @param {Pair} pair @returns {Margin}
      */
     margin(pair) {
@@ -194,7 +194,7 @@ function graze_of(exports, host) {
     },
 
     /**
-     * The float32, or the double, nearest to a decimal or hex float, rounded once; null if the text is not such a number.
+     * The float32, or the double, nearest to a decimal or hex float, rounded once; null if the text is not a number.
      * @param {string} text @returns {number | null}
      */
     parse(text) {
@@ -204,7 +204,7 @@ function graze_of(exports, host) {
     },
 
     /**
-     * The pair of a stratum, with the same bits as everywhere.
+     * A pair of a stratum. It has the same bits on every machine.
      * @param {string} stratum @param {bigint} seed @param {bigint} index @returns {Float32Array | Float64Array}
      */
     generate(stratum, seed, index) {
@@ -224,8 +224,9 @@ function graze_of(exports, host) {
     },
 
     /**
-     * One row of an ulp map: x rises by `step` ulps from cell to cell and has the pair's own value in the middle; y is
-     * `up` ulps above the pair's. Returns the truth's verdicts, then each lane's; 2 is declined. Null: no such policy.
+     * One row of an ulp map. Coordinate x rises by `step` ulps from cell to cell, and the middle cell has the pair's
+     * own x. Coordinate y is `up` ulps above the pair's. Returns the exact verdicts, then each lane's verdicts, as
+     * indices in kVerdicts; null for a lane that cannot have the policy.
      * @param {Pair} pair @param {number} x @param {number} y @param {number} up @param {number} columns @param {number} step
      * @param {string[]} of @returns {(Uint8Array | null)[]}
      */
@@ -238,7 +239,7 @@ function graze_of(exports, host) {
     },
 
     /**
-     * What to draw besides the two triangles.
+     * The points to draw besides the two triangles.
      * @param {Pair} pair @returns {Drawing}
      */
     drawing(pair) {
@@ -265,11 +266,11 @@ function graze_of(exports, host) {
     },
 
     /**
-     * The comparisons of a lane without a policy on what it sees of the pair, in order, and the values that a policy
-     * would see; null if they are not known.
-     * own: whether the values are known to be the lane's; otherwise they come from a rule of contraction that gives the
+     * The steps of a lane without a policy, in order: its comparisons, and the values that a policy would receive. A
+     * lane in f32 rounds the pair to float32 first. Null if the steps are not known.
+     * own: true if the values are known to be the lane's; false if they come from a rule of contraction that gives the
      * lane's verdict.
-     * with_113_bits: what the algorithm says if it computes with such numbers throughout.
+     * with_113_bits: the algorithm's verdict if every operation has 113 bits.
      * @param {Pair} pair @param {string} id @returns {{ own: boolean, steps: Step[], with_113_bits: Verdict } | null}
      */
     steps(pair, id) {
@@ -301,7 +302,8 @@ function graze_of(exports, host) {
     },
 
     /**
-     * The contractions that make a cuda-fma lane without a policy decide differently from cuda-nofma, if it does.
+     * The contractions because of which a cuda-fma lane without a policy decides differently from cuda-nofma. Empty if
+     * the verdicts are equal.
      * @param {Pair} pair @param {string} id @returns {Site[]}
      */
     contractions(pair, id) {
@@ -319,7 +321,7 @@ function graze_of(exports, host) {
 }
 
 /**
- * Makes the module ready.
+ * Compiles and starts the module.
  * @param {BufferSource | WebAssembly.Module} bytes of graze.wasm or graze_f64.wasm @returns {Promise<Graze>}
  */
 export async function load(bytes) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares a module with the native build, and tests its interface.   node graze.test.mjs REFERENCE MODULE PAIRS
+// Compares a module with the native build, and tests graze.js.   Usage: node graze.test.mjs REFERENCE MODULE PAIRS
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
@@ -81,7 +81,7 @@ function steps(lane, few) {
   });
 }
 
-// Computes the number in the native line.
+// Computes the hash that the native build prints for this block.
 function compute(what, stratum, block, count) {
   const draw = () => exports.generate(graze.strata.indexOf(stratum), kSeed, BigInt(block * kBlock), count);
   draw();
@@ -107,15 +107,15 @@ function compute(what, stratum, block, count) {
   return new Hash().add(bytes(exports.verdicts(), count)).value;
 }
 
-// The fused multiply-add in exact arithmetic: x, y and z are integers times 2^-149.
+// The fused multiply-add, computed in exact arithmetic. x, y and z are integers times 2^-149.
 function fused_exactly(x, y, z) {
-  const whole = (v) => BigInt(v * 2 ** 149); // exact: v < 2^128 stays a double
+  const whole = (v) => BigInt(v * 2 ** 149); // exact, because v < 2^128
   let sum = whole(x) * whole(y) + (whole(z) << 149n); // times 2^-298
   if (sum === 0n) return 0;
   const negative = sum < 0n;
   if (negative) sum = -sum;
   const bits = BigInt(sum.toString(2).length);
-  const drop = bits - 24n > 149n ? bits - 24n : 149n; // below the 24th bit, or below 2^-149
+  const drop = bits - 24n > 149n ? bits - 24n : 149n; // bits below the 24th, or below 2^-149
   let kept = sum >> drop;
   const rest = sum - (kept << drop),
     half = 1n << (drop - 1n);
@@ -127,7 +127,7 @@ function fused_exactly(x, y, z) {
 function check_fused() {
   let state = 1;
   const below = (n) => {
-    state = (Math.imul(state, 1664525) + 1013904223) >>> 0; // Numerical Recipes; enough for this
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0; // the generator of Numerical Recipes is random enough here
     return Math.floor((state / 2 ** 32) * n);
   };
   let halfway = 0;
@@ -147,12 +147,12 @@ function check_fused() {
 function check_interface_of_doubles() {
   assert.equal(graze.parse('0.1'), 0.1);
   assert.equal(graze.parse('-0x1.8000000000001p+1'), -3 - 2 ** -51);
-  // Between two doubles.
+  // This number lies between two doubles.
   assert.equal(graze.parse('1.0000000000000001110223024625156540424'), 1 + 2 ** -52);
   for (const text of ['', 'x', '1e309', '1 2', '0x']) assert.equal(graze.parse(text), null, text);
   assert.equal(graze.nudged(0, -1), -(2 ** -1074));
   assert.equal(graze.nudged(1, 1), 1 + 2 ** -52);
-  // Two parallel triangles of a model in metres, which are apart as doubles and coincide in float32.
+  // Two parallel triangles of a model in metres. They are apart as doubles, and coincide in float32.
   const at = (x) => [x, 0, 0, x, 1, 0, x, 0, 1],
     apart = [...at(1000000.01), ...at(1000000.02)];
   assert.equal(graze.truth(apart).verdict, 'disjoint');
@@ -162,7 +162,7 @@ function check_interface_of_doubles() {
   assert.ok(sign === 1 && least <= gap && most >= gap && most - least < 1e-12 * gap);
   const said = graze.decide(apart);
   for (const id of graze.lanes) assert.equal(said[id], id.includes('/f32/') ? 'intersects' : 'disjoint', id);
-  // Margins at the ends of the range of doubles.
+  // The margins are certified even near the ends of the range of doubles.
   for (const exponent of [-1060, -500, 900, 1020]) {
     const scale = 2 ** exponent,
       { least, most } = graze.margin([...at(1), ...at(1.5)].map((x) => x * scale));
@@ -175,13 +175,13 @@ function check_interface_of_doubles() {
 function check_interface() {
   assert.equal(graze.parse('0.1'), Math.fround(0.1));
   assert.equal(graze.parse('-0x1.8p+1'), -3);
-  // Between two floats; rounding to double first would give the other one.
+  // This number lies between two floats. If it were rounded to double first, the result would be the other float.
   assert.equal(graze.parse('1.000000059604644775390626'), 1 + 2 ** -23);
   for (const text of ['', 'x', '1e39', '1 2', '0x']) assert.equal(graze.parse(text), null, text);
   assert.equal(graze.nudged(0, -1), -(2 ** -149));
   assert.throws(() => graze.set_policy('abs:x'), /expected abs:E/);
   assert.throws(() => graze.decide([1, 2]), /expected the 18 coordinates/);
-  const case_1 = [0, -2, 6, 0, 5, 0, 0, -3, 0, -2, -2, 0, 2, -3, 0, 3, -1, 0]; // of 2012
+  const case_1 = [0, -2, 6, 0, 5, 0, 0, -3, 0, -2, -2, 0, 2, -3, 0, 3, -1, 0]; // case 1 of thesis_2012.pairs
   assert.deepEqual(graze.truth(case_1), {
     verdict: 'intersects',
     contact: 'segment',
@@ -189,7 +189,7 @@ function check_interface() {
     dimensions: [2, 2],
   });
   const { contact, sections } = graze.drawing(case_1);
-  assert.deepEqual(contact.map(([, y]) => y).sort(), [-1.6, -2.5]); // worked out by hand in corpus/classic/thesis_2012.pairs
+  assert.deepEqual(contact.map(([, y]) => y).sort(), [-1.6, -2.5]); // computed by hand in corpus/classic/thesis_2012.pairs
   assert.equal(
     sections.every((ends) => ends.length === 2),
     true,
@@ -206,7 +206,8 @@ function check_interface() {
   assert.match(output, /cuda-fma: disjoint\n$/);
 }
 
-// The witness is as long as the margin, up to the bounds and the rounding of its ends. The named features separate.
+// The witness is as long as the margin, up to the margin's bounds and the rounding of the ends. For a gap, its
+// direction separates the triangles.
 function check_witness() {
   const found = { gap: 0, push: 0 };
   for (const stratum of graze.strata) {
@@ -223,7 +224,7 @@ function check_witness() {
         length = Math.hypot(...axis),
         size = Math.max(...pair.map(Math.abs), ...p.map(Math.abs)),
         slack = 1e-9 * most + 8 * 2 ** -52 * size;
-      if (!Number.isFinite(most)) continue; // bounds that say nothing
+      if (!Number.isFinite(most)) continue; // infinite bounds allow any length
       assert.ok(
         length >= least - slack && length <= most + slack,
         `${where}: ${length}, margin between ${least} and ${most}`,
@@ -236,7 +237,7 @@ function check_witness() {
         const along = Array.from({ length: 6 }, (_, v) =>
           axis.reduce((sum, x, k) => sum + (x / length) * (pair[3 * v + k] - p[k]), 0),
         );
-        const turned = (32 * 2 ** -52 * size * size) / most; // due to the rounding of the ends
+        const turned = (32 * 2 ** -52 * size * size) / most; // error due to the rounding of the ends
         if (most > 1e-6 * size)
           assert.ok(Math.max(...along.slice(0, 3)) <= turned && Math.min(...along.slice(3)) >= least - turned, where);
         assert.ok(features.every(Boolean), where);

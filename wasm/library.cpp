@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Replacements for parts that the module does not take from elsewhere: correct fused multiply-adds, stubs for lanes
-// that it cannot build, backends without descriptions, and the parts of twin.h that concern users' libraries.
+// Replacements for parts of the native build: correct fused multiply-adds, empty tables for lanes that the module does
+// not have, backends without descriptions, and the functions of twin.h that would load users' libraries.
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -12,8 +12,8 @@
 #include "cuda/twin/twin_table.h"
 
 // wasi-libc's fmaf is wrong if the result is subnormal and halfway between two numbers. Here the product is exact in
-// double, and the sum is rounded to odd (Boldo and Melquiond 2008). The sum's last bit records whether anything was
-// lost, so the second rounding gives the same result as a single one.
+// double, and the sum is rounded to odd (Boldo and Melquiond 2008). The sum's last bit shows whether the sum was
+// inexact, so the second rounding gives the same result as one rounding.
 extern "C" float fmaf(float x, float y, float z) {
   const double product = double{x} * double{y}, addend = z;
   const double sum = product + addend, part = sum - product;
@@ -24,26 +24,26 @@ extern "C" float fmaf(float x, float y, float z) {
   return static_cast<float>(std::bit_cast<double>(bits));
 }
 
-// wasi-libc's fma, except if z is zero: it would add the rounded product and lose the sign of a product that rounds to
-// -0. The linker (--wrap) calls this function for fma.
+// Calls wasi-libc's fma unless z is zero. Then wasi-libc would add the rounded product, and lose the sign of a product
+// that rounds to -0. The linker (--wrap) replaces calls of fma with calls of this function.
 extern "C" double __real_fma(double x, double y, double z);
 extern "C" double __wrap_fma(double x, double y, double z) {
   return z == 0 && x != 0 && y != 0 ? x * y : __real_fma(x, y, z);
 }
 
-// There are no exceptions: a throw ends the call with a trap, which JavaScript catches. The module's functions never
-// pass arguments that would cause a throw.
+// The module has no exceptions: a throw ends the call with a trap, which JavaScript catches. The module's functions
+// never pass arguments for which a function throws.
 extern "C" void* __cxa_allocate_exception(std::size_t) { __builtin_trap(); }
 extern "C" void __cxa_throw(void*, void*, void (*)(void*)) { __builtin_trap(); }
 
-// The module needs nothing of its host's system. There is no environment, and nothing is printed; only snprintf brings
-// in functions for files.
+// The module needs no system functions of its host. It reads no environment and prints nothing. It links functions for
+// files only because snprintf does.
 extern "C" char* getenv(const char*) { return nullptr; }
 extern "C" int __imported_wasi_snapshot_preview1_fd_close(int) { __builtin_trap(); }
 extern "C" int __imported_wasi_snapshot_preview1_fd_seek(int, std::int64_t, int, int) { __builtin_trap(); }
 extern "C" int __imported_wasi_snapshot_preview1_fd_write(int, int, int, int) { __builtin_trap(); }
 
-// The only thread never ends.
+// The module's only thread never ends, so destructors at its end are not called.
 extern "C" int __cxa_thread_atexit(void (*)(void*), void*, void*) { return 0; }
 
 namespace graze {
@@ -55,7 +55,7 @@ extern const HostDoublePolicyBlocks kHostDoublePolicyBlocks{};
 }  // namespace cpu
 #endif
 
-// These lanes exist only in the native build, because another compiler contracts differently.
+// These lanes exist only in the native build, because clang contracts differently from the native compiler.
 namespace cpu_fma {
 extern const HostBlocks kHostBlocks{};
 extern const HostDoubleBlocks kHostDoubleBlocks{};
@@ -84,7 +84,7 @@ Verdict decide_fusing(const Lane& lane, const AnyPair& pair, std::span<const std
 
 }  // namespace cuda
 
-// Without the descriptions of lanes, which would need output streams.
+// These backends have no descriptions of lanes, which would need output streams.
 namespace backends {
 const Backend& backend_of(const Lane& lane) {
   constexpr auto own_code = [](const Lane& of) { return of.decide; };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze.wasm, with pairs of float32, and graze_f64.wasm, with pairs of doubles: they decide for the viewer. The
-// functions work on the module's own buffers; graze.js calls them.
+// The exported functions of graze.wasm, for pairs of float32, and of graze_f64.wasm, for pairs of doubles. They read
+// and write the module's own buffers. graze.js calls them.
 #include <algorithm>
 #include <cstring>
 #include <vector>
@@ -22,8 +22,8 @@
 namespace graze::wasm {
 namespace {
 
-constexpr std::size_t kRoom = 1024;   // pairs in one call
-constexpr std::size_t kText = 65536;  // bytes of a text
+constexpr std::size_t kRoom = 1024;   // the most pairs in one call
+constexpr std::size_t kText = 65536;  // bytes of the buffer for texts
 
 #ifdef GRAZE_FLOAT32_ALONE
 using Coordinate = float;
@@ -42,7 +42,7 @@ std::uint64_t hashes_out[kRoom];
 
 struct TruthOut {
   std::int32_t verdict, contact, margin_sign, dimension_a, dimension_b, coplanar, log2_ulp, unused;
-  double least, most;  // of |margin|, certified
+  double least, most;  // certified bounds of |margin|
 } truth_out;
 
 struct StepOut {
@@ -61,7 +61,7 @@ struct SiteOut {
 };
 std::vector<SiteOut> sites_out;
 
-// A lane that the module can run, and its function under the policy that was set last.
+// A lane that the module can run, and the lane's function under the current policy.
 struct Decider {
   const Lane* lane;
   DecideBlock decide;
@@ -82,7 +82,7 @@ std::vector<Decider>& deciders() {
   return all;
 }
 
-// Null if the lane cannot have the policy. Exact lanes have no policy and stay as they are.
+// The lane's function under the policy; null if the lane cannot have the policy. Exact lanes ignore the policy.
 DecideBlock block_under(const Lane& lane, std::string_view policy) {
   if (policy.empty() || lane.exact) return backends::on_host(lane);
   const bool by_bounds = policy == "bound" || policy == "filtered";
@@ -127,15 +127,15 @@ GRAZE_EXPORT(generate) void generate(int stratum, std::uint64_t seed, std::uint6
     draw(pairs_in[i], seed, kModuleStrata[stratum].stratum, first + static_cast<std::uint64_t>(i));
 }
 
-// Parses the number in the text, rounded once to the type.   Returns: whether the text is a number.
+// Parses the text as a number, rounded once to the type of coordinates.   Returns: whether the text is a number.
 GRAZE_EXPORT(parse) int parse(int coordinate) {
   const std::optional<Coordinate> value = number_in(text_in, Coordinate{});
   if (value) coordinates(pairs_in[0])[coordinate] = *value;
   return value.has_value();
 }
 
-// Sets the policy in the text for all lanes until the next call; empty: none.   Requires: abs:E, rel:K, bound or
-// filtered.
+// Sets the policy of all lanes to the policy in the text, until the next call. Requires: abs:E, rel:K, bound, filtered,
+// or an empty text for no policy.
 GRAZE_EXPORT(set_policy) void set_policy() {
   for (Decider& decider : deciders()) decider.decide = block_under(*decider.lane, text_in);
 }
@@ -163,10 +163,10 @@ GRAZE_EXPORT(trace) int trace(int lane, int count) {
   return true;
 }
 
-// x y + z, rounded once as in the twins; for the test.
+// x * y + z, rounded once as in the twins. Only the test uses this function.
 GRAZE_EXPORT(fused) float fused(float x, float y, float z) { return __builtin_fmaf(x, y, z); }
 
-// The truth of the first pair. Exact, except for the margin's bounds; a bound of 0 is exact.
+// The truth of the first pair. It is exact except for the bounds of the margin; a margin of 0 is exact.
 GRAZE_EXPORT(truth) const TruthOut* truth() {
   const OwnPair& pair = pairs_in[0];
   truth_out = {};
@@ -185,8 +185,8 @@ GRAZE_EXPORT(truth) const TruthOut* truth() {
 // Raises a coordinate of the first pair by this many ulps.
 GRAZE_EXPORT(nudge) void nudge(int coordinate, int ulps) { nudge_in(pairs_in[0], coordinate, ulps); }
 
-// Writes the pairs of one row of an ulp map (analysis/ulp_map.h) around the pair in `centre`. Between neighbours, x
-// rises by `step` ulps; y is `up` ulps above the centre's.
+// Writes the pairs of one row of an ulp map (analysis/ulp_map.h) around the pair in `centre`. From each pair to the
+// next, coordinate x rises by `step` ulps. Coordinate y is `up` ulps above that of the centre.
 GRAZE_EXPORT(centre) OwnPair* centre() { return &map_centre; }
 GRAZE_EXPORT(map_row) void map_row(int x, int y, int up, int columns, int step) {
   for (int i = 0; i < columns; ++i) {
@@ -196,8 +196,9 @@ GRAZE_EXPORT(map_row) void map_row(int x, int y, int up, int columns, int step) 
   }
 }
 
-// Computes the lane's comparisons on what it sees of the first pair, the values passed to its policy, and the same path
-// with 113 bits. Returns: the number of steps; -1 if nothing shows that they are the lane's own.
+// Computes the steps of the lane on the first pair, which a lane in float rounds to float32: the comparisons, the
+// values passed to the lane's policy, and the same path with 113 bits. Returns: the number of steps; -1 without
+// evidence that they are the lane's own.
 GRAZE_EXPORT(steps) int steps(int lane) {
   const Lane& of = *deciders()[lane].lane;
   steps_out.clear();
@@ -221,12 +222,12 @@ GRAZE_EXPORT(steps) int steps(int lane) {
 }
 // The evidence that the steps are the lane's own, as in analysis::Evidence.
 GRAZE_EXPORT(evidence) int evidence() { return steps_evidence; }
-// The algorithm's verdict with 113 bits throughout, on the path that these take.
+// The algorithm's verdict if every operation has 113 bits; its path may differ from the lane's.
 GRAZE_EXPORT(with_113_bits) int with_113_bits() { return static_cast<int>(verdict_of_quads); }
 GRAZE_EXPORT(steps_at) const StepOut* steps_at() { return steps_out.data(); }
 
-// Finds the contractions that make the lane's verdict on the first pair differ from the same source without
-// contraction; see analysis/blame.h.   Returns: how many.
+// Finds the contractions because of which the lane's verdict on the first pair differs from that of the same source
+// without contraction; see analysis/blame.h.   Returns: the number of contractions.
 GRAZE_EXPORT(contractions) int contractions(int lane) {
   sites_out.clear();
   const Lane& of = *deciders()[lane].lane;
@@ -238,7 +239,7 @@ GRAZE_EXPORT(contractions) int contractions(int lane) {
 }
 GRAZE_EXPORT(contractions_at) const SiteOut* contractions_at() { return sites_out.data(); }
 
-// Draws the first pair.
+// Computes the drawing of the first pair.
 GRAZE_EXPORT(draw) const Drawing* drawing() {
   drawing_out = drawing_of(AnyPair(pairs_in[0]).doubles, relation_of(pairs_in[0]));
   return &drawing_out;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The compiler's long double with an error bound, as a number type for the algorithms. In WebAssembly it is implemented
-// in software, with 113 bits and numbers up to 2^16383. Numbers count as equal if the bounds cannot tell them apart, as
-// in oracle/multiprecision.h.
+// The compiler's long double with an error bound, as a number type for the algorithms. In WebAssembly, software
+// implements long double, with 113 bits and numbers up to 2^16383. Two numbers count as equal if their error bounds
+// overlap, as in oracle/multiprecision.h.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace graze::wasm {
 
 struct Quad {
-  static constexpr long double kUnit = 0x1p-112L;  // twice the unit roundoff, to cover the rounding of the bounds
+  static constexpr long double kUnit = 0x1p-112L;  // twice the unit roundoff, because the bounds are rounded too
 
   long double value = 0, error = 0;
 

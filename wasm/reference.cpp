@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The native side of the comparison with graze.wasm and graze_f64.wasm. For blocks of pairs of every stratum, prints
-// hashes of every lane's results. graze.test.mjs computes the same with the module.   Usage: reference PAIRS f32|f64
+// Prints hashes of every lane's results in the native build, for blocks of pairs of every stratum. graze.test.mjs
+// computes the same hashes with graze.wasm or graze_f64.wasm, and compares them.   Usage: reference PAIRS f32|f64
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -62,8 +62,8 @@ Hash truths(const std::vector<OwnPair>& pairs) {
   return hash;
 }
 
-// Hashes one lane's steps, which the viewer uses for explanations. Compilers evaluate the arguments of a call in
-// different orders, so the hash does not depend on the order of the steps.
+// Hashes one lane's steps, which the viewer explains. Compilers evaluate the arguments of a call in different orders,
+// so the hash does not depend on the order of the steps.
 template <class OwnPair>
 Hash steps(const Lane& lane, const std::vector<OwnPair>& pairs) {
   Hash hash;
@@ -106,7 +106,7 @@ void print_block(const std::string& of, std::uint64_t block, const std::vector<O
       for (const OwnPair& pair : pairs) hash.add_value(wasm::trace_of(lane, pair));
       print(("trace:" + lane.id).c_str(), of.c_str(), block, hash);
     }
-    if (block > 0) continue;  // once for each stratum
+    if (block > 0) continue;  // the rest runs once for each stratum
     if (lane.algorithm >= 0) print(("steps:" + lane.id).c_str(), of.c_str(), block, steps(lane, few));
     for (const char* policy : kPolicies) {
       const bool by_bounds = policy[0] == 'b' || policy[0] == 'f';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The test of a JavaScript function: <graze/test.h> with a function from JavaScript. packaged.js calls it.
+// Tests a JavaScript function with <graze/test.h>. test_function.js calls the exported function.
 #include <graze/test.h>
 
 #include <cstring>
@@ -7,7 +7,7 @@
 extern "C" {
 char* text();  // in module.cpp
 
-// Implemented in JavaScript: sets the verdict of each pair.
+// Sets the verdict of each pair. JavaScript implements this function.
 [[clang::import_module("graze"), clang::import_name("decide")]] void decide_in_javascript(const graze::Pair* pairs,
                                                                                           std::size_t count,
                                                                                           graze::Verdict* verdicts);
@@ -26,8 +26,8 @@ struct TestOut {
 
 }  // namespace
 
-// Tests the function. The text has its name, a zero byte, and the strata. either: bits 0 to 3 accept both answers on
-// touching, coplanar, degenerate and shared pairs.   Requires: strata that exist, 0 <= max_wrong <= 1.
+// Tests the function. The text has the function's name, a zero byte, and the strata. either: bits 0 to 3 accept both
+// answers on touching, coplanar, degenerate and shared pairs.   Requires: strata that exist, 0 <= max_wrong <= 1.
 extern "C" [[clang::export_name("test_function")]] const TestOut* test_function(std::uint64_t pairs, std::uint64_t seed,
                                                                                 double max_wrong, int either) {
   const std::string name = text(), strata = text() + name.size() + 1;

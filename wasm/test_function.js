@@ -2,32 +2,33 @@
 // Tests a function of two triangles on pairs of the strata, as <graze/test.h> does for C++.
 
 /**
- * Whether two triangles, each of 9 coordinates, intersect; a number below 0 declines.
+ * A function that returns whether two triangles, each of 9 coordinates, intersect. A number below 0 declines.
  * @typedef {(a: Float32Array, b: Float32Array) => boolean | number} Overlap
  */
 /**
- * Pairs that only touch, lie in one plane, have a segment or a point in place of a triangle, or share a vertex.
+ * A kind of pairs: pairs that only touch, lie in one plane, have a segment or a point in place of a triangle, or share
+ * a vertex.
  * @typedef {'touching' | 'coplanar' | 'degenerate' | 'shared'} Kind
  */
 /**
  * @typedef {object} TestOptions
- * @property {string} [name] of the function, for the message
+ * @property {string} [name] the function's name in the message; default: its own
  * @property {string | string[]} [strata] names with * and ?, separated by commas; "!x" leaves out x; default: "*"
- * @property {number} [pairs] how many, divided equally among the strata; default: 100,000
- * @property {number} [seed] of the pairs; default: 1
+ * @property {number} [pairs] the number of pairs, divided equally among the strata; default: 100,000
+ * @property {number} [seed] the seed of the pairs; default: 1
  * @property {number} [max_wrong] the accepted share of wrong answers; default: 0
  * @property {Kind | Kind[]} [either] kinds of pairs on which both answers are accepted; default: none
  */
 /**
  * @typedef {object} TestResult
  * @property {boolean} passed
- * @property {string} summary how many answers are wrong, by stratum; empty if it passed
- * @property {string} fault what is wrong with the answer on the smallest pair
+ * @property {string} summary the numbers of wrong answers, by stratum; empty if the test passed
+ * @property {string} fault the error in the answer on the smallest pair
  * @property {number} pairs
  * @property {number} wrong
  * @property {number} declined
- * @property {{ a: number[], b: number[] } | null} smallest a wrong pair, shrunk while truth and answer stay the same
- * @property {unknown} thrown what the function threw first, which counts as a wrong answer; null if it threw nothing
+ * @property {{ a: number[], b: number[] } | null} smallest a wrong pair, shrunk without a change of truth or answer
+ * @property {unknown} thrown the first error that the function threw; each throw is a wrong answer; null: none
  */
 
 /** @type {readonly Kind[]} */
@@ -76,8 +77,8 @@ function expect_function_and_options(overlap, options) {
 }
 
 /**
- * Draws pairs from the strata, asks the function, and compares its answers with the exact ones. The simplest wrong pair
- * is then made smaller with at most 50,000 calls, without changing the true relation or the wrong answer.
+ * Draws pairs from the strata, calls the function, and compares its answers with the exact answers. Then it shrinks the
+ * simplest wrong pair with at most 50,000 calls, without a change of the true relation or the wrong answer.
  * Throws: RangeError for an option that is not valid, TypeError for an answer that is neither boolean nor number.
  * @param {import('./graze.js').Graze} graze @param {Overlap} overlap
  * @param {TestOptions} [options] @returns {TestResult}
@@ -100,7 +101,7 @@ export function test_function(graze, overlap, options = {}) {
   /** @type {unknown} */
   let thrown = null;
   /** @type {TypeError | null} */
-  let no_answer = null; // thrown only after the module has returned, because the module does not unwind
+  let no_answer = null; // thrown after the module has returned, because the module does not unwind its stack
   /** @param {Float32Array} a @param {Float32Array} b */
   function verdict(a, b) {
     if (no_answer) return kDeclined;
@@ -145,7 +146,7 @@ export function test_function(graze, overlap, options = {}) {
 }
 
 /**
- * The number in an environment variable in Node; otherwise `otherwise`.
+ * The number in an environment variable in Node; without the variable, `otherwise`.
  * @param {string} variable @param {number | undefined} otherwise
  */
 function of_environment(variable, otherwise) {
@@ -159,8 +160,8 @@ function of_environment(variable, otherwise) {
 const list = (nine) => `[${nine.map((x) => (Object.is(x, -0) ? '-0' : String(x))).join(', ')}]`;
 
 /**
- * Throws an error with the counts and the smallest wrong pair, unless the function is right on all pairs or wrong on no
- * more than max_wrong allows. In Node, the environment's GRAZE_PAIRS and GRAZE_SEED replace the options' numbers.
+ * Throws an error with the counts and the smallest wrong pair if the share of wrong answers is above max_wrong. In Node,
+ * the environment's GRAZE_PAIRS and GRAZE_SEED replace the options' numbers.
  * @param {import('./graze.js').Graze} graze @param {Overlap} overlap
  * @param {TestOptions} [options] @returns {TestResult}
  */

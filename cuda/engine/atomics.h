@@ -8,7 +8,7 @@
 
 namespace graze::cuda {
 
-// Reads a published value. Everything that the publishing thread wrote before is visible too.
+// Reads a published value. This thread then also sees everything that the publishing thread wrote before.
 GRAZE_HD inline std::uint64_t load_published(const std::uint64_t* at) {
 #ifdef __CUDA_ARCH__
   std::uint64_t value;
@@ -19,7 +19,7 @@ GRAZE_HD inline std::uint64_t load_published(const std::uint64_t* at) {
 #endif
 }
 
-// Writes a value. Threads that read it also see what this thread wrote before.
+// Writes a value. Threads that read the value with load_published also see what this thread wrote before.
 GRAZE_HD inline void publish(std::uint64_t* at, std::uint64_t value) {
 #ifdef __CUDA_ARCH__
   asm volatile("st.release.gpu.u64 [%0], %1;" : : "l"(at), "l"(value) : "memory");
@@ -28,7 +28,7 @@ GRAZE_HD inline void publish(std::uint64_t* at, std::uint64_t value) {
 #endif
 }
 
-// Reads without any memory order.
+// Reads a value. The read does not order other memory accesses.
 GRAZE_HD inline std::uint64_t load_relaxed(const std::uint64_t* at) {
 #ifdef __CUDA_ARCH__
   return *const_cast<const volatile std::uint64_t*>(at);
@@ -37,7 +37,7 @@ GRAZE_HD inline std::uint64_t load_relaxed(const std::uint64_t* at) {
 #endif
 }
 
-// Replaces `from` with `to`.   Returns: whether the value was `from`.
+// Writes `to` if the value is `from`.   Returns: whether the value was `from`.
 GRAZE_HD inline bool replace(std::uint64_t* at, std::uint64_t from, std::uint64_t to) {
 #ifdef __CUDA_ARCH__
   return atomicCAS(reinterpret_cast<unsigned long long*>(at), from, to) == from;
@@ -46,7 +46,7 @@ GRAZE_HD inline bool replace(std::uint64_t* at, std::uint64_t from, std::uint64_
 #endif
 }
 
-// Returns: the previous value.
+// Writes the value if it is less than the old value.   Returns: the old value.
 GRAZE_HD inline std::uint64_t lower_to(std::uint64_t* at, std::uint64_t value) {
 #ifdef __CUDA_ARCH__
   return atomicMin(reinterpret_cast<unsigned long long*>(at), value);
@@ -66,7 +66,7 @@ GRAZE_HD inline void add(std::uint64_t* at, std::uint64_t value) {
 #endif
 }
 
-// Returns: the previous value.
+// Adds 1.   Returns: the old value.
 GRAZE_HD inline std::uint32_t add_one(std::uint32_t* at) {
 #ifdef __CUDA_ARCH__
   return atomicAdd(at, 1u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled without contraction: only then do the counts have the host's bits.
+// This file is compiled without contraction, because only then the counts are equal to those of the host.
 #include "cuda/engine/discrepancy.h"
 
 #include <tbb/blocked_range.h>
@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::uint32_t kPairsAtOnce = 1u << 20;
 
-// If several threads of a warp add to one counter, one atomic operation adds their sum.
+// The counters in device memory. If several threads of a warp add to one counter, one atomic operation adds their sum.
 struct DeviceSink {
   std::uint64_t *counts, *maxima;
 
@@ -46,7 +46,7 @@ struct DeviceRecords {
   const void* values;
   std::uint64_t stride;
   const RecordedPath* paths;
-  const std::uint32_t *intersects, *declined;  // of the lane itself
+  const std::uint32_t *intersects, *declined;  // the verdicts of the lane itself
 };
 
 template <int algorithm, class Real, class Pairs>
@@ -86,14 +86,14 @@ void launch_compare(Pairs pairs, const DeviceRecords& first, const DeviceRecords
       <<<(pairs.count + 127) / 128, 128>>>(pairs, first, second, degrees, axis, counts, maxima, unlike);
 }
 
-// Pairs of doubles are compared only in double, so their entries for float are never called.
+// Only lanes in double decide pairs of doubles, so the entries for float and pairs of doubles are never called.
 template <class Pairs, int... algorithm>
 constexpr DeviceKernels<LaunchCompare<Pairs>> launchers(std::integer_sequence<int, algorithm...>) {
   return {std::array<LaunchCompare<Pairs>, 2>{launch_compare<algorithm, typename Pairs::Real, Pairs>,
                                               launch_compare<algorithm, double, Pairs>}...};
 }
 
-// Each thread hashes one pair: its path and the values of its questions.
+// Each thread hashes the records of one pair: the path and the values of the questions.
 template <class Word>
 __global__ void hash_runs(const Word* values, std::uint64_t stride, const RecordedPath* paths, std::uint32_t count,
                           std::uint64_t two_values, std::uint64_t* hashes) {
@@ -101,10 +101,10 @@ __global__ void hash_runs(const Word* values, std::uint64_t stride, const Record
   if (i < count) hashes[i] = run_hash(values + i, stride, paths[i], two_values);
 }
 
-// The CUDA lane whose kernels compute this lane's values.
+// The CUDA lane whose kernels compute this lane's values: the lane itself, or cuda-nofma for a host lane.
 const Lane& on_device(const Lane& lane) { return lane.is_cuda() ? lane : *counterpart(lane, Variant::cuda_nofma); }
 
-// The set of questions about two values, one bit for each question.
+// The questions that compare two values, as a set of bits: one bit for each question.
 std::uint64_t two_values_of(int algorithm) {
   std::uint64_t bits = 0;
   const std::vector<Question>& questions = questions_of(algorithm);
@@ -137,7 +137,7 @@ class DeviceRun {
   DeviceArray<std::uint32_t> bits_;
 };
 
-// Draws the source in blocks and calls with_block(pairs).
+// Draws the source's pairs in blocks and calls with_block(pairs) for each block.
 template <class Pairs, class WithBlock>
 void for_each_block(const strata::PairSource& source, const WithBlock& with_block) {
   check(cudaSetDevice(0));
@@ -152,7 +152,7 @@ void for_each_block(const strata::PairSource& source, const WithBlock& with_bloc
   }
 }
 
-// Like count_discrepancies, but for a source of pairs in this layout.
+// Implements count_discrepancies for a source of pairs in this layout.
 template <class Pairs>
 void count_on_device(const Lane& first, const Lane& second, const strata::PairSource& source,
                      const DiscrepancySums& to) {
@@ -183,7 +183,7 @@ void count_on_device(const Lane& first, const Lane& second, const strata::PairSo
     check(cudaMemcpy(parts[p].data(), places[p], parts[p].size_bytes(), cudaMemcpyDeviceToHost));
 }
 
-// Like count_different_runs. record: the function that records the host lane on such pairs.
+// Implements count_different_runs for pairs in this layout. record: the function that records the host lane on them.
 template <class Pairs>
 std::uint64_t different_runs(const Lane& host, RecordFunction<BasicPair<typename Pairs::Real>> record,
                              const Lane& device, const strata::PairSource& source) {

@@ -16,10 +16,10 @@ namespace {
 constexpr EngineLimits kLimits;
 constexpr int kBlocksAtOnce = 3;
 
-// The memory of one block. Several blocks run at once, because the last pairs of a block keep only a few threads busy.
+// The memory of one block. Several blocks are in progress, because the last pairs of a block use only a few threads.
 struct Buffers {
   Stream stream;
-  Event done{cudaEventDisableTiming};  // recorded after the last block
+  Event done{cudaEventDisableTiming};  // recorded after the last block that used this memory
   PinnedArray<std::uint32_t> pinned;
   std::uint32_t* left = pinned.at_least(1);  // pairs that all blocks so far have left to the host
   DeviceExact exact;
@@ -30,7 +30,7 @@ struct Buffers {
   DeviceArray<std::uint16_t> relations;
   DeviceArray<LaneWords> lanes;
   DeviceArray<const std::uint32_t*> changed_for_lane;
-  std::vector<LaneWords> lanes_on_host;  // the same on the host
+  std::vector<LaneWords> lanes_on_host;  // the contents of `lanes`
 };
 
 template <class Block>
@@ -43,7 +43,7 @@ class CudaEngine final : public DeviceEngine {
         lanes_(lanes.begin(), lanes.end()),
         groups_{lane_groups(lanes, false), lane_groups(lanes, true)} {
     check(cudaSetDevice(ordinal_));
-    check(cudaSetDeviceFlags(cudaDeviceLmemResizeToMax));  // otherwise kernels with different stack sizes wait
+    check(cudaSetDeviceFlags(cudaDeviceLmemResizeToMax));  // otherwise a kernel with a larger stack waits
     for (std::unique_ptr<Buffers>& buffers : buffers_) buffers = std::make_unique<Buffers>();
     for (const bool of_doubles : {false, true}) {
       const std::vector<LaneGroup>& of = groups_[of_doubles];
@@ -85,7 +85,7 @@ class CudaEngine final : public DeviceEngine {
     return result;
   }
 
-  // Zeroes the counters that add up over blocks.
+  // A block without memory of its own pairs. Sets the counters, which all blocks of a run share, to zero.
   template <class Block>
   Block begin(Axis axis) {
     const std::vector<LaneGroup>& groups = groups_[kOfDoubles<Block>];
@@ -125,7 +125,7 @@ class CudaEngine final : public DeviceEngine {
     check(cudaMemset(none, 0, words * sizeof *none));
     buffers.lanes_on_host.clear();
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      if (lanes_[l]->exact) {  // the exact lane is the truth and declines nothing
+      if (lanes_[l]->exact) {  // the exact lane has the true verdicts, and declines no pair
         buffers.lanes_on_host.push_back({block.truth, none});
       } else {
         buffers.lanes_on_host.push_back({of_lanes + 2 * words * l, of_lanes + 2 * words * l + words});
@@ -163,8 +163,8 @@ class CudaEngine final : public DeviceEngine {
     block.changed_for_lane = for_lane;
   }
 
-  // Starts drawing the pairs and deciding them, exactly and with the lanes. Pairs are finite, so nothing is declined.
-  // `wrong` receives the unused declined bits, and is overwritten later.
+  // Starts to draw the pairs, and to decide them exactly and with the lanes. The pairs are finite, so the exact
+  // decision declines none. `wrong` receives these unused bits; a later step overwrites them.
   void decide(const EngineBlock& block, Buffers& buffers, const strata::PairSource& source) {
     drawing_.draw(source, block.first, block.pairs.count, buffers.coordinates.at_least(0), buffers.stream);
     buffers.exact.decide(block.pairs, buffers.truth.at_least(0), block.wrong, nullptr, buffers.stream);
@@ -199,7 +199,7 @@ class CudaEngine final : public DeviceEngine {
     check(cudaEventRecord(buffers.done, stream));
   }
 
-  // An upper bound on the number of pairs left so far; does not wait for blocks in progress.
+  // An upper bound on the number of pairs left to the host so far. The function does not wait for blocks in progress.
   std::uint32_t may_be_left(std::uint32_t block_pairs) const {
     std::uint32_t most = 0;
     for (const std::unique_ptr<Buffers>& buffers : buffers_) {
@@ -226,7 +226,7 @@ class CudaEngine final : public DeviceEngine {
 
   int ordinal_;
   std::vector<const Lane*> lanes_;
-  std::vector<LaneGroup> groups_[2];  // on pairs of float32, and on doubles
+  std::vector<LaneGroup> groups_[2];  // for pairs of float32, and for doubles
   Drawing drawing_;
   std::unique_ptr<Buffers> buffers_[kBlocksAtOnce];
   DeviceArray<LaneGroup> groups_on_device_[2];

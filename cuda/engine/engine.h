@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine on a device, as the host sees it. The device draws pairs of a stratum, with or without a scene, or takes
-// pairs from the host. It decides them with the lanes, judges them exactly, and measures and counts them. Only counts
-// and chosen cases come back. This header needs no CUDA header, and building it needs no nvcc.
+// The host's interface to the engine on a device. The device draws pairs of a stratum, with or without a scene, or
+// takes pairs from the host. The lanes and the exact decision decide the pairs, and the engine measures and counts
+// them. It returns only counts and chosen cases. This header includes no CUDA header, and compiles without nvcc.
 #pragma once
 
 #include <cstdint>
@@ -17,44 +17,45 @@
 
 namespace graze::cuda {
 
-inline constexpr int kEngineCases = 4;  // kept for each signature
+inline constexpr int kEngineCases = 4;  // cases kept for each signature
 
-// Consecutive lanes of one subject: the engine's lanes [first, first + count).
+// A group of consecutive lanes of one subject: the engine's lanes [first, first + count).
 struct LaneGroup {
   std::uint32_t first, count;
 };
 
-// The groups of these lanes. On pairs of float32, exact lanes never fail, so they are in no group. On doubles, exact
-// lanes of float32 fail where storing a pair changes its verdict.   Requires: lanes in table order.
+// The groups of these lanes. On pairs of float32, exact lanes never fail, so they are in no group. On doubles, an exact
+// lane of float32 fails if storing the pair as float32 changes its verdict.   Requires: lanes in the order of lanes().
 std::vector<LaneGroup> lane_groups(std::span<const Lane* const> lanes, bool of_doubles = false);
 
 // The number of counters of each lane in an EngineResult.
 constexpr std::uint32_t counters_of_lane(bool of_doubles) { return of_doubles ? 4 : 3; }
 
-// The signature of one subject's failures, and the pairs that have it.
+// One signature of a subject's failures, and the pairs with this signature.
 struct EngineSignature {
   Relation relation;
   Nesting nesting = Nesting::none;
   Bucket bucket = 0;
   LaneGroup lanes{};
-  std::vector<Verdict> verdicts;  // of each lane of the group
+  std::vector<Verdict> verdicts;  // one for each lane of the group
   std::uint64_t count = 0;
-  std::vector<std::uint64_t> cases;  // the smallest indices, sorted, at most kEngineCases
+  std::vector<std::uint64_t> cases;  // the smallest indices of such pairs, sorted, at most kEngineCases
 };
 
-// The result of a run. Pairs whose bucket the device cannot decide are listed in `undecided` and counted nowhere else.
+// The result of a run. If the device cannot decide a pair's bucket, `undecided` lists the pair, and no count has it.
 struct EngineResult {
-  std::uint64_t done = 0;  // pairs judged; fewer than requested when `undecided` was about to overflow
-  // Indexed by bucket + kBucketMost. In order: pairs; intersecting pairs; then for each lane its false positives, false
-  // negatives and declined pairs, and on doubles its wrong verdicts counted as `stored` (analysis/tally.h).
+  std::uint64_t done = 0;  // pairs judged; fewer than requested if `undecided` might have overflowed
+  // Counters, each an array that is indexed by bucket + kBucketMost: pairs, intersecting pairs, then for each lane its
+  // false positives, false negatives and declined pairs. On doubles, each lane also has its wrong verdicts with the
+  // cause `stored` (analysis/tally.h).
   std::vector<std::uint64_t> counts;
-  std::vector<std::uint64_t> extreme_counts;  // same, by place_on_axis + kBucketMost; empty without an axis
+  std::vector<std::uint64_t> extreme_counts;  // counters by place_on_axis + kBucketMost; empty without an axis
   std::vector<EngineSignature> signatures;
-  std::vector<std::uint64_t> undecided;  // indices, sorted
+  std::vector<std::uint64_t> undecided;  // indices of pairs, sorted
   std::uint64_t disagreements = 0;
 };
 
-// One device. Not thread-safe.
+// The engine on one device. Not thread-safe.
 class DeviceEngine {
  public:
   virtual ~DeviceEngine() = default;
@@ -64,7 +65,7 @@ class DeviceEngine {
   virtual EngineResult run(const strata::PairSource& source, std::uint64_t first, std::uint64_t count) = 0;
 };
 
-// An engine for each CUDA device; none without a device.   Requires: CUDA lanes.
+// One engine for each CUDA device; empty without a device.   Requires: CUDA lanes.
 std::vector<std::unique_ptr<DeviceEngine>> open_engines(std::span<const Lane* const> cuda_lanes);
 
 }  // namespace graze::cuda

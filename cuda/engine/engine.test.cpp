@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the engine's steps on the host and compares them with a direct computation: the oracle's bucket of each pair,
-// then sums.
+// Runs the engine's steps on the host and compares the result with a direct computation: the oracle's bucket of each
+// pair, and sums over the pairs.
 #include "cuda/engine/engine.h"
 #include "core/counts.h"
 
@@ -29,7 +29,7 @@ Verdict truth_of(const Pair& pair) {
   return exact::intersects(coordinates(pair), coordinates(pair) + 9) ? Verdict::intersects : Verdict::disjoint;
 }
 
-// A lane that is wrong on about one pair in 40. Each such lane is wrong on different pairs.
+// The verdict of a lane that declines or is wrong on one pair in 40 on average. Each lane does so on other pairs.
 Verdict wrong_at_times(const Pair& pair, std::uint64_t lane) {
   std::uint64_t hash = lane;
   for (int k = 0; k < kCoordinates; ++k)
@@ -53,7 +53,7 @@ void decide_wrongly(const Pair* pairs, std::size_t count, std::uint64_t* interse
   }
 }
 
-// Lanes in three groups, of 3, 71 and 2 lanes, and an exact one.
+// Three groups of 3, 71 and 2 lanes, and an exact lane.
 class EngineTest : public testing::Test {
  protected:
   static constexpr std::size_t kGroups[] = {3, 71, 2};
@@ -100,7 +100,7 @@ struct Found {
 
 TEST_F(EngineTest, AnyNumberOfLanesCountsAsThePlainWay) {
   EngineLimits limits;
-  limits.block_pairs = 1000;  // not a multiple of 64, and the last block is shorter
+  limits.block_pairs = 1000;  // this is not a multiple of 64, and the last block is shorter
   constexpr std::uint64_t kFirst = 77, kCount = 3333;
   for (const strata::Stratum stratum : {strata::Stratum::degenerate, strata::Stratum::far_from_origin}) {
     const EngineResult result = run(stratum, kFirst, kCount, limits);
@@ -169,7 +169,7 @@ TEST_F(EngineTest, GroupsAreRunsOfOneAlgorithmWithoutTheExactLanes) {
   EXPECT_EQ(key_words({}), 1u);
 }
 
-// On doubles, exact lanes of float32 fail where storing a pair changes its verdict.
+// On doubles, an exact lane of float32 fails if storing the pair as float32 changes its verdict.
 TEST_F(EngineTest, GroupsOnDoublesHoldTheExactLanes) {
   const std::vector<LaneGroup> groups = lane_groups(lanes_, true);
   ASSERT_EQ(groups.size(), 4u);
@@ -177,7 +177,7 @@ TEST_F(EngineTest, GroupsOnDoublesHoldTheExactLanes) {
   EXPECT_EQ(groups[3].count, 1u);
 }
 
-// The counts of lanes in float and in double, and of both exact lanes.
+// Checks the counts of a lane in float, of a lane in double, and of both exact lanes.
 TEST(EngineOnDoubles, CountsAsThePlainWayAndLeavesFewPairs) {
   constexpr std::uint64_t kCount = 1000;
   constexpr const char* kLanes[] = {"moller_1997/f32/cpu", "moller_1997/f64/cpu", "exact/f32/cpu", "exact/f64/cpu"};
@@ -240,7 +240,7 @@ TEST_F(EngineTest, AFullSignatureTableIsAnError) {
   EngineLimits limits;
   limits.signatures = 64;
   EXPECT_EQ(error_of([&] { run(strata::Stratum::degenerate, 0, 2000, limits); }),
-            "the engine found more signatures than it can hold");
+            "the engine found more signatures than its table has rows");
 }
 
 // A stratum whose first 20,000 pairs include some that the bounds leave open.
@@ -250,12 +250,12 @@ TEST_F(EngineTest, MoreUndecidedPairsThanTheListHoldsAreAnError) {
   EngineLimits limits;
   const std::size_t left = run(kLeavesSome, 0, 20'000, limits).undecided.size();
   ASSERT_GT(left, 2u);
-  EXPECT_LT(left, 60u);  // double-double bounds decide the others
+  EXPECT_LT(left, 60u);  // double-double bounds decide all other pairs
   limits.undecided = static_cast<std::uint32_t>(left);
   EXPECT_EQ(run(kLeavesSome, 0, 20'000, limits).undecided.size(), left);
   --limits.undecided;
   EXPECT_EQ(error_of([&] { run(kLeavesSome, 0, 20'000, limits); }),
-            "the engine left too many pairs to the host; run fewer at once");
+            "the engine left too many pairs to the host; run fewer pairs at once");
 }
 
 TEST_F(EngineTest, StopsBeforeTheUndecidedPairsOverflow) {

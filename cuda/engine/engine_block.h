@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A block of pairs between the engine's steps, in device or host memory, and the keys of its signatures.
+// The data of a block of pairs that the engine's steps share, in device or host memory, and the keys of signatures.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace graze::cuda {
 
-inline constexpr std::int8_t kUndecided = 127;  // a bucket or an extreme that is not known
+inline constexpr std::int8_t kUndecided = 127;  // marks a bucket or an extreme that is not known
 
 // A lane's verdicts: bit i % 32 of word i / 32 belongs to pair i.
 struct LaneWords {
@@ -26,21 +26,21 @@ struct LaneTable {
   std::uint32_t group_count;
 };
 
-// Indices of pairs for the host. `count` keeps counting beyond `size`; such indices are not stored.
+// Indices of the pairs that are left to the host. `indices` has room for `size`; `count` also counts further indices.
 struct IndexList {
   std::uint64_t* indices;
   std::uint32_t size;
   std::uint32_t* count;
 };
 
-// The lists of pairs that one step leaves to a later one:
+// The lists of pairs that one step leaves to a later step:
 // - kOpenGaps, kOpenDepths: disjoint and intersecting pairs whose bucket single precision does not decide.
 // - kTies: disjoint pairs whose bucket double precision does not decide either.
-// - kCloseTies: those of kTies whose bucket is still open after double bounds along all directions.
-// - kRelated: pairs that need their relation. kByBounds: those of kRelated with large grids.
-// - kByDoubles to kByWide: pairs that need all axes, by the number type that holds them.
+// - kCloseTies: pairs of kTies whose bucket is still open after double bounds along all directions.
+// - kRelated: pairs whose relation is needed. kByBounds: pairs of kRelated with large grids.
+// - kByDoubles to kByWide: pairs whose relation needs all axes, by the number type that represents them.
 // - kDepths: intersecting pairs with a nonzero margin whose bucket double precision does not decide.
-// - kCloseDepths: those of kDepths whose bucket is still open after double bounds along all axes.
+// - kCloseDepths: pairs of kDepths whose bucket is still open after double bounds along all axes.
 enum EngineList {
   kOpenGaps,
   kOpenDepths,
@@ -66,26 +66,26 @@ struct EngineBlock {
   const std::uint32_t* truth;
   std::uint32_t* wrong;  // pairs on which some lane is wrong
   std::int8_t* buckets;
-  std::uint16_t* relations;  // packed with nestings; in the end, those of every pair on which some lane is wrong
+  std::uint16_t* relations;  // with nestings; in the end, known for every pair on which some lane is wrong
   LaneTable lanes;
   PairList lists[kEngineLists];
   SignatureTable signatures;
   IndexList undecided;
-  std::uint64_t* counts;  // see EngineResult
+  std::uint64_t* counts;  // in the order of EngineResult::counts
   Axis axis;
-  std::int8_t* extremes;  // written and counted unless axis is none
+  std::int8_t* extremes;  // written and counted unless `axis` is none
   std::uint64_t* extreme_counts;
   std::uint64_t* disagreements;
 };
 
-// A block of doubles. `pairs` holds the pairs as float32 stores them; everything else belongs to the doubles.
+// A block of pairs of doubles. `pairs` has these pairs rounded to float32; all other members concern the doubles.
 struct DoubleEngineBlock : EngineBlock {
   static constexpr std::uint32_t kCountersOfLane = counters_of_lane(true);
 
   DeviceDoubles doubles;
-  LaneWords stored;        // the exact verdicts of the stored pairs; declined: beyond float32's range
-  std::uint32_t* changed;  // pairs whose verdict storing changes, or which float32 cannot store
-  const std::uint32_t* const* changed_for_lane;  // `changed` for lanes that decide the stored pairs; null for others
+  LaneWords stored;        // the exact verdicts of the stored pairs; declined: beyond the range of float32
+  std::uint32_t* changed;  // pairs that float32 cannot store, or whose verdict changes when float32 stores them
+  const std::uint32_t* const* changed_for_lane;  // `changed` for lanes in float32, null for lanes in double
 };
 
 inline constexpr std::uint32_t kCountersOfPairs = 2;
@@ -97,7 +97,7 @@ GRAZE_HD constexpr std::size_t engine_counters(std::size_t lanes) {
 
 GRAZE_HD inline bool bit(const std::uint32_t* words, std::uint32_t i) { return words[i / 32] >> (i % 32) & 1; }
 
-// A lane's verdict compared with the truth; two bits of a key.
+// The result of comparing a lane's verdict with the truth: two bits of a key.
 enum class Mark : std::uint8_t { right, false_positive, false_negative, declined };
 inline constexpr std::uint32_t kMarksOfWord = 32;
 
@@ -107,7 +107,7 @@ GRAZE_HD inline Mark mark_of(const LaneWords& lane, std::uint32_t i, bool truth)
   return says == truth ? Mark::right : says ? Mark::false_positive : Mark::false_negative;
 }
 
-// Whether some mark in this word of a key is a wrong verdict; `declined` is not wrong.
+// Whether a mark in this word of a key is a wrong verdict. `declined` is not wrong.
 GRAZE_HD constexpr bool any_wrong(std::uint64_t marks) { return ((marks ^ marks >> 1) & 0x5555555555555555u) != 0; }
 static_assert(static_cast<int>(Mark::right) == 0 && static_cast<int>(Mark::declined) == 3);
 
@@ -118,10 +118,10 @@ constexpr Verdict verdict_of(Mark mark, Verdict truth) {
                                         : Verdict::disjoint;
 }
 
-// The number of words that hold the marks of a group.
+// The number of words for the marks of a group with this many lanes.
 constexpr std::uint32_t mark_words(std::uint32_t lanes) { return (lanes + kMarksOfWord - 1) / kMarksOfWord; }
 
-// The first word of a signature's key: everything but the marks. `group` is the index of the lanes' group.
+// The first word of a signature's key, which has everything except the marks. group: the index of the lanes' group.
 GRAZE_HD constexpr std::uint64_t packed(std::uint32_t group, std::uint16_t relation, Bucket bucket) {
   return static_cast<std::uint64_t>(bucket + kBucketMost) | std::uint64_t{relation} << 8 | std::uint64_t{group} << 32;
 }
@@ -140,7 +140,7 @@ constexpr SignatureHead unpacked(std::uint64_t word) {
           unpacked_nesting(relation), bucket};
 }
 
-// The marks that up to 32 lanes of the group get for pair i, starting at lane 32 * word.
+// The marks for pair i of up to 32 lanes of the group, from the group's lane 32 * word on.
 GRAZE_HD inline std::uint64_t marks(const EngineBlock& block, const LaneGroup& group, std::uint32_t word,
                                     std::uint32_t i, bool truth) {
   const std::uint32_t from = word * kMarksOfWord;
@@ -150,8 +150,8 @@ GRAZE_HD inline std::uint64_t marks(const EngineBlock& block, const LaneGroup& g
   return result;
 }
 
-// The key of pair i's signature for one group of lanes, some of them wrong. Marks after the first word are computed
-// again at each use, so that the registers needed do not depend on the number of lanes.
+// The key of pair i's signature for one group of lanes. The marks after the first word are computed again at each use,
+// so that the number of registers does not depend on the number of lanes.
 struct SignatureKey {
   const EngineBlock& block;
   LaneGroup group;

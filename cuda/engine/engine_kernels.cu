@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps of cuda/engine/engine_steps.h as kernels: one thread for each pair; in the tally, one warp for each word.
+// The steps of cuda/engine/engine_steps.h as kernels with one thread for each pair. The tally has one warp for each
+// word.
 #include "cuda/engine/engine_kernels.cuh"
 
 #include "cuda/engine/engine_steps.h"
@@ -55,7 +56,8 @@ __global__ void __launch_bounds__(kThreads, Step::kThreadBlocks) for_listed(Bloc
   }
 }
 
-// Counts one pair for each thread in the mask; all of these threads call this. One thread counts all pairs of a key.
+// Counts one pair for each thread in the mask; all these threads call this function. One thread counts all pairs of a
+// key.
 __device__ void add_together(const SignatureTable& table, const SignatureKey& key, std::uint64_t index, unsigned mask) {
   const unsigned like = __match_any_sync(mask, hash_of(key, table.key_words));
   const int first = __ffs(static_cast<int>(like)) - 1;
@@ -85,7 +87,7 @@ __global__ void __launch_bounds__(kThreads) add_signatures(EngineBlock block, En
     const unsigned threads = __ballot_sync(0xffffffffu, has_some);
     if (threads == 0) continue;
     const std::uint32_t some = __shfl_sync(0xffffffffu, i, __ffs(static_cast<int>(threads)) - 1);
-    if (!has_some) i = some;  // its key is read but not added
+    if (!has_some) i = some;  // the key of a pair with signatures is read, but not added
     for (std::uint32_t g = 0; g < block.lanes.group_count; ++g) {
       const SignatureKey key(block, g, i);
       const bool adds = has_some && key.any_wrong();
@@ -97,13 +99,13 @@ __global__ void __launch_bounds__(kThreads) add_signatures(EngineBlock block, En
 }
 
 constexpr unsigned kBlocks = 1024;
-constexpr std::size_t kSharedBytes = 48 << 10;  // available to a thread block on every device
+constexpr std::size_t kSharedBytes = 48 << 10;  // shared memory that a thread block has on every device
 template <class Block>
 constexpr std::uint32_t kLanesAtOnce =
     (kSharedBytes / sizeof(std::uint32_t) / kBucketCount - kCountersOfPairs) / Block::kCountersOfLane;
 
-// Counts by bucket or by extreme. One warp for each word: the first thread of each bucket counts all pairs of that
-// bucket. Blocks with the same y take the same range of lanes, as many as shared memory has counters for.
+// Counts pairs by bucket or by extreme. One warp counts a word; for each bucket, its first thread counts all pairs of
+// that bucket. Thread blocks with the same y count the same lanes, as many as shared memory has counters for.
 template <class Block>
 __global__ void __launch_bounds__(kThreads) tally(Block block, bool by_extreme) {
   extern __shared__ std::uint32_t counts[];

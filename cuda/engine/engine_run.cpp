@@ -57,8 +57,8 @@ std::uint64_t run_blocks(const EngineLimits& limits, std::uint64_t first, std::u
 
 EngineResult result_of(EngineTotals totals, const SignatureTable& table, std::span<const LaneGroup> groups, Axis axis) {
   if (totals.left > totals.undecided.size())
-    throw std::runtime_error("the engine left too many pairs to the host; run fewer at once");
-  if (totals.full) throw std::runtime_error("the engine found more signatures than it can hold");
+    throw std::runtime_error("the engine left too many pairs to the host; run fewer pairs at once");
+  if (totals.full) throw std::runtime_error("the engine found more signatures than its table has rows");
   EngineResult result;
   const auto middle = totals.counts.begin() + static_cast<std::ptrdiff_t>(totals.counts.size() / 2);
   result.counts.assign(totals.counts.begin(), middle);

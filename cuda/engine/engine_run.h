@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of an engine run that do not depend on where it is computed: its limits, the loop over blocks, and its
-// result from the accumulated totals.
+// The parts of an engine run that are the same on device and host: its limits, the loop over blocks, and the result
+// from the accumulated totals.
 #pragma once
 
 #include <cstdint>
@@ -13,25 +13,26 @@
 namespace graze::cuda {
 
 struct EngineLimits {
-  std::uint32_t block_pairs = 1u << 22;  // pairs decided together
-  std::uint32_t signatures = 1u << 18;   // rows; a power of two. A million pairs of all strata need about 6,000
-  std::uint32_t undecided = 1u << 26;    // pairs left to the host
+  std::uint32_t block_pairs = 1u << 22;  // pairs of a block
+  std::uint32_t signatures = 1u << 18;   // rows, a power of two. A million pairs of all strata need about 6,000 rows
+  std::uint32_t undecided = 1u << 26;    // most pairs left to the host
 };
 
-// The number of words in a key that has room for the marks of any of these groups.
+// The number of words in a key with room for the marks of the largest of these groups.
 std::uint32_t key_words(std::span<const LaneGroup> groups);
 
 // Calls judge(b, first, count) for blocks b = 0, 1, … of pairs [first, first + count). After each block it calls
-// left(), which returns how many pairs may have been left to the host so far.
-// Returns: the number of pairs judged, less than `count` when the pairs left to the host might soon exceed the limit.
+// left(), which returns an upper bound on the number of pairs left to the host so far.
+// Returns: the number of pairs judged. It is less than `count` if the next block might leave too many pairs to the
+// host.
 std::uint64_t run_blocks(const EngineLimits& limits, std::uint64_t first, std::uint64_t count,
                          const std::function<void(int, std::uint64_t, std::uint32_t)>& judge,
                          const std::function<std::uint32_t()>& left);
 
-// The totals that all blocks of a run have added to, in host memory.
+// The totals over all blocks of a run, in host memory.
 struct EngineTotals {
   std::uint32_t left = 0, full = 0;      // pairs left to the host; whether a signature found no free row
-  std::vector<std::uint64_t> undecided;  // the first of their indices, as many as fit
+  std::vector<std::uint64_t> undecided;  // the indices of pairs left to the host, as many as fit
   std::vector<std::uint64_t> rows;       // rows of the SignatureTable
   std::vector<std::uint64_t> counts;     // counts by bucket, counts by extreme, then the disagreements
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The engine's steps on a block of pairs: the same code on a device, where each step is a kernel, and on the host.
-// Every pair gets its margin's bucket from the cheapest bounds that decide it. Each step lists the pairs that it leaves
-// to the next, so that a warp does not wait for one hard pair in 32. The relation is computed only if a lane is wrong
-// or the margin may be zero. Then everything is counted.
+// The cheapest sufficient bounds decide the bucket of each pair's margin. Each step lists the pairs that it leaves
+// open, so that a warp does not wait for one hard pair in 32. The relation is computed only if a lane is wrong or the
+// margin may be zero. The last steps count the pairs.
 #pragma once
 
 #include <type_traits>
@@ -21,7 +21,7 @@
 namespace graze::cuda {
 inline namespace GRAZE_FP {
 
-// kThreadBlocks: how many blocks of threads a multiprocessor should hold at once, which limits the step's registers.
+// kThreadBlocks: the number of thread blocks that a multiprocessor should run at once; it limits the step's registers.
 
 struct MarkWrong {
   GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t word) const {
@@ -74,7 +74,7 @@ GRAZE_HD inline void leave_to_host(const EngineBlock& block, std::uint32_t i) {
   if (n < block.undecided.size) block.undecided.indices[n] = block.first + i;
 }
 
-// The bucket, if the bounds allow only one, or kUndecided. ulp: log2 of the pair's ulp.   Requires: a nonzero margin.
+// The bucket if the bounds allow only one, else kUndecided. ulp: log2 of the pair's ulp.   Requires: a nonzero margin.
 template <class Coordinate>
 GRAZE_HD Bucket bucket_within(const Coordinate* c, const MarginBounds& bounds, Verdict verdict, int ulp) {
   const int upper = floor_log2(bounds.hi);
@@ -84,7 +84,8 @@ GRAZE_HD Bucket bucket_within(const Coordinate* c, const MarginBounds& bounds, V
   return are_apart_by(c, c + 9, bounds.direction, upper) ? make_bucket(1, upper - ulp) : kUndecided;
 }
 
-// The bucket from all axes and features in numbers of this type, or kUndecided.   Requires: the margin is not zero.
+// The bucket from bounds along all axes and between all features, computed in numbers of this type; kUndecided if they
+// do not decide it.   Requires: a nonzero margin.
 template <class Real>
 GRAZE_HD Bucket bucket_by_bounds(const float* c, Verdict verdict) {
   const Pair pair = pair_of(c);
@@ -100,13 +101,13 @@ struct BreakTie {
   }
 };
 
-// Whether the pair's signatures are counted here. Pairs without a known bucket go to the host.
+// Whether the engine counts the pair's signatures. A pair without a known bucket is left to the host.
 GRAZE_HD inline bool has_signatures(const EngineBlock& block, std::uint32_t i) {
   return bit(block.wrong, i) && block.buckets[i] != kUndecided;
 }
 
-// The nesting of a pair on which some lane is wrong; for others it is not needed.
-// Returns: false if rounding leaves it in doubt.
+// Finds the nesting of a pair on which a lane is wrong. For other pairs, no step needs the nesting.
+// Returns: false if rounding leaves the nesting in doubt.
 template <class Real>
 GRAZE_HD bool nest_quickly(const EngineBlock& block, std::uint32_t i, const Real* c, const Relation& r,
                            Nesting& nesting) {
@@ -114,7 +115,7 @@ GRAZE_HD bool nest_quickly(const EngineBlock& block, std::uint32_t i, const Real
   return !bit(block.wrong, i) || exact::detail::nesting_quickly(c, c + 9, r, nesting);
 }
 
-// Uses the known relation to complete the bucket of an intersecting pair, or leaves that to the next step.
+// Stores the relation. If the bucket of an intersecting pair is open, sets it for a margin of zero, or lists the pair.
 GRAZE_HD inline void settle(const EngineBlock& block, std::uint32_t i, const Relation& r, Nesting nesting) {
   block.relations[i] = packed(r, nesting);
   if (block.buckets[i] != kUndecided || !r.intersects()) return;
@@ -122,12 +123,12 @@ GRAZE_HD inline void settle(const EngineBlock& block, std::uint32_t i, const Rel
   block.buckets[i] = 0;
 }
 
-// The exact kinds of numbers that are fastest on a device.
+// The kinds of exact numbers that are fastest on a device.
 using RelatingNumbers =
     exact::detail::NumberKinds<exact::detail::DoubleNumbers, exact::detail::ResidueNumbers, exact::detail::IntNumbers,
                                exact::detail::LongNumbers, exact::detail::WideNumbers>;
 
-// The list for a pair: each list belongs to the smallest kind of these numbers that holds the pair.
+// The list of the smallest kind of these numbers that represents the pair.
 GRAZE_HD inline int list_by_numbers(const float* c) {
   return kByDoubles + RelatingNumbers::place(exact::detail::grid_of(c, c + 9));
 }
@@ -179,7 +180,7 @@ struct SettleDepth {
   }
 };
 
-// The last attempt, in double-double numbers. Pairs that stay undecided go to the host.
+// The last attempt, in double-double numbers. Pairs that remain undecided are left to the host.
 template <Verdict verdict>
 struct MeasureClosely {
   static constexpr int kThreadBlocks = 1;
@@ -189,7 +190,7 @@ struct MeasureClosely {
   }
 };
 
-// The extreme of a pair whose bucket is known.
+// Finds the extreme of a pair whose bucket is known.
 struct PlaceExtreme {
   static constexpr int kThreadBlocks = 1;
   GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
@@ -197,9 +198,9 @@ struct PlaceExtreme {
   }
 };
 
-// The steps for blocks of doubles. In single precision they use the stored pair, which shows wide margins. Bounds in
-// double-double numbers measure the others. Pairs that neither decides go to the host, and so do pairs whose relation
-// needs more bits than `RelatingDoubles` holds.
+// The steps for blocks of doubles. Single precision measures wide margins on the pair rounded to float32. Bounds in
+// double-double numbers measure other margins. If neither decides the bucket, the pair is left to the host. The same
+// applies if the relation needs more bits than the numbers `RelatingDoubles` have.
 using RelatingDoubles = exact::detail::LongNumbers;
 
 struct FindChanged {
@@ -247,7 +248,7 @@ struct MeasureDoubles {
       bucket = bucket_within(&scaled.pair.a[0].x, bounds, verdict, scaled.ulp);
       if (bucket == kUndecided) return leave_to_host(block, i);
     } else if (!bucket_from_bounds(bounds, verdict, scaled.ulp, bucket)) {
-      bucket = kUndecided;  // the margin may be zero
+      bucket = kUndecided;  // possibly, the margin is zero
     }
     block.buckets[i] = bucket;
     if (bucket == kUndecided || bit(block.wrong, i)) block.lists[kRelated].add(i);
@@ -296,8 +297,9 @@ struct PlaceExtremeOfDoubles {
   }
 };
 
-// Calls add(counter, pairs) for each counter of lanes [from, to) to which pairs of the word contribute. same: the pairs
-// to count, all in one bucket. Counters are laid out as in EngineResult, starting with lane `from`.
+// Calls add(counter, pairs) for each counter of the pairs and of lanes [from, to). `pairs` has a bit for each pair of
+// the word that counts. same: the pairs to count, all in one bucket. The counters have the order of EngineResult and
+// start with lane `from`.
 template <class Block, class Add>
 GRAZE_HD void count_word(const Block& block, std::uint32_t word, std::uint32_t same, std::uint32_t from,
                          std::uint32_t to, const Add& add) {
@@ -318,10 +320,11 @@ GRAZE_HD void count_word(const Block& block, std::uint32_t word, std::uint32_t s
   }
 }
 
-// Runs all steps in order. Run has these members: words(step) runs a step on the block's words, pairs(step) on its
-// pairs, pairs_by_verdict(step) on its pairs sorted by verdict if possible, and listed(step, list) on listed pairs.
-// add_signatures(list) adds the signatures of those listed pairs that have them. tally(by_extreme) counts all pairs by
-// bucket, or by extreme.
+// Runs all steps in order. The type Run has these members:
+// - words(step) runs a step on the block's words, pairs(step) on its pairs, listed(step, list) on listed pairs;
+// - pairs_by_verdict(step) runs a step on the block's pairs, sorted by verdict if possible;
+// - add_signatures(list) adds the signatures of the listed pairs; tally(by_extreme) counts pairs by bucket or by
+// extreme.
 template <class Run>
 void run_steps(const EngineBlock& block, const Run& run) {
   using namespace exact::detail;

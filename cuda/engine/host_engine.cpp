@@ -53,7 +53,7 @@ struct HostRun {
     std::uint64_t* into = by_extreme ? block.extreme_counts : block.counts;
     for (std::uint32_t word = 0; word < word_count(); ++word) {
       const std::uint32_t begin = word * 32, end = std::min(begin + 32, block.pairs.count);
-      std::uint32_t open = 0;  // pairs of known buckets that are not counted yet
+      std::uint32_t open = 0;  // pairs with a known bucket that are not counted yet
       for (std::uint32_t i = begin; i < end; ++i) open |= std::uint32_t{buckets[i] != kUndecided} << (i - begin);
       if (!by_extreme) add(block.disagreements, static_cast<std::uint64_t>(std::popcount(block.wrong[word] & open)));
       while (open) {
@@ -132,7 +132,7 @@ class HostEngine final : public DeviceEngine {
     lanes_.clear();
     for (std::size_t l = 0; l < on_host_.size(); ++l) {
       if (row_of_[l]->exact) {
-        lanes_.push_back({words(kTruth), words(kNone)});  // the exact lane declines nothing
+        lanes_.push_back({words(kTruth), words(kNone)});  // the exact lane declines no pair
       } else {
         lanes_.push_back({words(of_lane(l)), words(of_lane(l) + 1)});
       }
@@ -157,7 +157,7 @@ class HostEngine final : public DeviceEngine {
     block.changed_for_lane = changed_for_lane_.data();
   }
 
-  // The columns of bits_; two more for each lane.
+  // The columns of bits_. Each lane has two more columns after these.
   enum { kTruth, kWrong, kNone, kStored, kBeyond, kChanged, kColumns };
   static std::size_t of_lane(std::size_t l) { return kColumns + 2 * l; }
   std::uint64_t* column(std::size_t k) { return &bits_[k * words_]; }
@@ -207,7 +207,7 @@ class HostEngine final : public DeviceEngine {
     }
   }
 
-  // Decides with those lanes that `which` accepts.
+  // Decides the pairs with the lanes that `which` accepts.
   template <class AnyPair, class Which>
   void decide_by_lanes(const std::vector<AnyPair>& pairs, const Which& which) {
     for (std::size_t l = 0; l < on_host_.size(); ++l) {

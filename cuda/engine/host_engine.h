@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An engine that runs the steps of cuda/engine/engine_steps.h on one thread of the CPU, in the same order. It tests the
-// engine's logic without a device.
+// An engine that runs the steps of cuda/engine/engine_steps.h on one thread of the CPU, in the same order. Tests use it
+// to check the engine's logic without a device.
 #pragma once
 
 #include <memory>
@@ -12,8 +12,8 @@
 
 namespace graze::cuda {
 
-// on_host[i] decides pairs with lanes[i]. It is not called for exact lanes. For sources of doubles, it decides the
-// doubles if the lane is in double.
+// on_host[i] decides pairs with lanes[i]; it is not called for exact lanes. On a source of doubles, lanes in double
+// decide the doubles, and lanes in float decide the pairs rounded to float32.
 std::unique_ptr<DeviceEngine> make_host_engine(std::span<const Lane* const> lanes, std::span<const DecideBlock> on_host,
                                                const EngineLimits& limits = {});
 

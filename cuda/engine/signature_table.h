@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A hash table of signatures with open addressing, used by many threads at once, on host and device. All keys of a
-// table have the same number of 64-bit words. The first word of a row says whether the row is free, being written by
-// the thread that claimed it, or published, so no thread reads an incomplete key. A thread that finds a row being
-// written waits. On a device this needs independent thread scheduling (sm_70 and later).
+// table have the same number of 64-bit words. The first word of a row is its state: free, being written by the thread
+// that claimed it, or published. So no thread reads an incomplete key. A thread that finds a row being written waits.
+// On a device, this wait needs independent thread scheduling (sm_70 and later).
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 namespace graze::cuda {
 
 struct SignatureTable {
-  std::uint64_t* rows;      // each of row_words() words: state, key, count, the smallest indices
+  std::uint64_t* rows;      // a row has row_words() words: state, key, count, the smallest indices
   std::uint32_t size;       // rows; a power of two
   std::uint32_t key_words;  // one word for the shape, then the marks
   std::uint32_t* full;      // becomes 1 when a key finds no free row
@@ -25,11 +25,11 @@ struct SignatureTable {
   GRAZE_HD std::uint64_t* cases(std::uint64_t* row) const { return row + 2 + key_words; }
 };
 
-// A row's state: free, or the hash of its key with one of these in its two lowest bits.
+// A row's state is kFree, or the hash of its key with kBeingWritten or kPublished in the two lowest bits.
 inline constexpr std::uint64_t kFree = 0, kBeingWritten = 1, kPublished = 3, kStateBits = 3;
 inline constexpr std::uint64_t kNoCase = ~std::uint64_t{0};
 
-// The hash of a key of `words` words; the two lowest bits are zero. key.word(k) is word k.
+// The hash of a key of `words` words, of which word k is key.word(k). The two lowest bits of the hash are zero.
 template <class Key>
 GRAZE_HD std::uint64_t hash_of(const Key& key, std::uint32_t words) {
   std::uint64_t hash = 0;
@@ -48,7 +48,7 @@ GRAZE_HD bool holds(const SignatureTable& table, const std::uint64_t* row, const
   return true;
 }
 
-// The row of the key. Claims a row if the key has none.   Returns: null when no row is free.
+// The row of the key. Claims a free row if the key has no row.   Returns: null if no row is free.
 template <class Key>
 GRAZE_HD std::uint64_t* find_row(const SignatureTable& table, const Key& key) {
   const std::uint64_t hash = hash_of(key, table.key_words);
@@ -74,7 +74,7 @@ GRAZE_HD std::uint64_t* find_row(const SignatureTable& table, const Key& key) {
 GRAZE_HD inline void keep(const SignatureTable& table, std::uint64_t* row, std::uint64_t index) {
   std::uint64_t* cases = table.cases(row);
   if (index >= load_relaxed(&cases[kEngineCases - 1])) return;
-  // The larger index moves on to the next place. So the smallest ones end up here, in ascending order.
+  // The larger index moves to the next place. So these places receive the smallest indices, in ascending order.
   for (int k = 0; k < kEngineCases; ++k) {
     const std::uint64_t old = lower_to(&cases[k], index);
     index = old > index ? old : index;

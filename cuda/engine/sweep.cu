@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kPairsAtOnce = 1u << 22;
 constexpr std::uint32_t kWords = kPairsAtOnce / 32;
 
-// A lane's verdicts; bit i % 32 of word i / 32 belongs to pair i.
+// A lane's verdicts: bit i % 32 of word i / 32 belongs to pair i.
 struct Bits {
   std::uint32_t *intersects, *declined;
 };
@@ -34,14 +34,14 @@ __device__ void add(std::uint64_t* to, std::uint64_t* least, std::uint32_t bits,
   }
 }
 
-// A thread for each word.
+// Each thread counts the errors in one word of verdicts.
 __global__ void __launch_bounds__(kThreads)
     add_errors(Bits truth, Bits zero, Bits lane, std::uint32_t pairs, std::uint64_t first, ErrorCounts* counts) {
   const std::uint32_t w = blockIdx.x * kThreads + threadIdx.x;
   JudgedBits<std::uint32_t> now{}, before{};
   if (w * 32 < pairs) {
     const std::uint32_t in_range = pairs - w * 32 >= 32 ? ~0u : (1u << (pairs - w * 32)) - 1;
-    const std::uint32_t judged = in_range & ~truth.declined[w];  // a pair that is not finite is not counted
+    const std::uint32_t judged = in_range & ~truth.declined[w];  // pairs that are not finite are not counted
     now = judge(lane.intersects[w], lane.declined[w], truth.intersects[w], judged);
     before = judge(zero.intersects[w], zero.declined[w], truth.intersects[w], judged);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The device lanes with the policy `bound`. Compiled once for each device variant that keeps error bounds, with its
-// flags and in its own namespace GRAZE_FP. Define nothing else here, or the linker would mix the variants. These lanes
-// have no twins, because their verdict is the exact one and their PTX is ten times as long.
+// The device lanes with the policy `bound`. This file is compiled once for each device variant with valid error bounds,
+// with its flags and in its own namespace GRAZE_FP. Define nothing else here, or the linker would mix the variants.
+// These lanes have no twins: each verdict is exact or declined, and their PTX is ten times as long.
 #include "core/lanes/decide_under.h"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/vote.cuh"
@@ -21,7 +21,7 @@ void launch_bound(Pairs pairs, std::uint32_t* intersects, std::uint32_t* decline
   bound_pairs<algorithm, Real><<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, intersects, declined);
 }
 
-// Null for algorithms that would be wrong even without rounding.
+// The launcher; null for algorithms that would be wrong even without rounding.
 template <int algorithm, class Real, class Pairs>
 constexpr auto launch() -> decltype(&launch_bound<algorithm, Real, Pairs>) {
   if constexpr (std::tuple_element_t<algorithm, Algorithms>::kInfo.right_without_rounding) {

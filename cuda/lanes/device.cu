@@ -74,13 +74,13 @@ Launch of_lane(const DeviceKernels<Launch>& table, const Lane& lane) {
   return table[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)];
 }
 
-// A block's coordinates in the layout of the kernels, on the host and on the device.
+// The coordinates of a block of pairs in the layout of the kernels, on the host and on the device.
 template <class Real>
 struct Columns {
   std::vector<Real> staging;
   DeviceArray<Real> coordinates;
 
-  // The pairs in device memory, as 18 arrays of `stride`.
+  // Copies the pairs to device memory.   Returns: 18 arrays of `stride` coordinates.
   const Real* copied(std::span<const BasicPair<Real>> pairs, std::size_t stride) {
     staging.resize(stride * kCoordinates);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -100,7 +100,7 @@ const VariantKernels& kernels_of(Variant variant) { return *tables_of(variant).k
 
 namespace {
 
-// The kernels of a lane for pairs of one coordinate type.
+// Starts the kernel for the lane's policy: `decide`, `within` or `bound`, all for pairs of one coordinate type.
 template <class Decide, class Within, class Pairs>
 void launch(const Lane& lane, Decide decide, Within within, Decide bound, DeviceExact& exact, Pairs pairs,
             std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream) {
@@ -169,8 +169,8 @@ class CudaDevice final : public Device {
     bits.resize(cuda_lanes.size());
     const std::size_t size = std::max(pairs.size(), doubles.size());
     if (size == 0) return;
-    check(cudaSetDevice(0));  // an engine of another device may have left that one current
-    // Whole thread blocks, so that each writes whole words.
+    check(cudaSetDevice(0));  // an engine may have made another device current
+    // The stride is a whole number of thread blocks, because each block writes whole words.
     const std::size_t stride = (size + kThreads - 1) / kThreads * kThreads;
     const auto stride32 = static_cast<std::uint32_t>(stride), count = static_cast<std::uint32_t>(size);
     const DevicePairs block{pairs.empty() ? nullptr : floats_.copied(pairs, stride), stride32, count};

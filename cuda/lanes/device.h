@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The device lanes, as the host sees them. This header needs no CUDA header, and building it needs no nvcc.
+// The host's interface to the device lanes. This header includes no CUDA header, and compiles without nvcc.
 #pragma once
 
 #include <cstddef>
@@ -19,9 +19,8 @@ class Device {
   virtual ~Device() = default;
 
   // Decides the pairs with each lane; bits[k] has the verdicts of cuda_lanes[k]. If `doubles` is not empty, lanes in
-  // double decide the doubles, and `pairs` holds them as float32 stores them, or nothing if all lanes are in double.
-  // Requires: CUDA lanes.
-  // Throws: std::runtime_error on any CUDA error.
+  // double decide `doubles`. Then `pairs` has the same pairs rounded to float32, or is empty if all lanes are in
+  // double. Requires: CUDA lanes. Throws: std::runtime_error on any CUDA error.
   virtual void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,
                       std::vector<VerdictBits>& bits, std::span<const DoublePair> doubles = {}) = 0;
 

@@ -10,9 +10,9 @@
 namespace graze::cuda {
 namespace {
 
-constexpr int kLaunches = 4;  // timed together, to make the few microseconds of a launch negligible
+constexpr int kLaunches = 4;  // launches timed together, because each launch costs a few microseconds
 
-// The first kernel that `work` submits to the stream. It does not run.   Requires: `work` allocates nothing.
+// The first kernel that `work` submits to the stream; no kernel runs.   Requires: `work` allocates nothing.
 template <class Work>
 const void* first_kernel(cudaStream_t stream, const Work& work) {
   cudaGraph_t graph;
@@ -36,7 +36,7 @@ const void* first_kernel(cudaStream_t stream, const Work& work) {
   return kernel;
 }
 
-// Pairs in pinned memory, so that copies run at the speed of the link, and on the device, in the layout of the kernels.
+// Pairs in the layout of the kernels, in device memory and in pinned memory, from which copies have the link's speed.
 template <class Real, class Pairs>
 class Columns {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cost of lanes on a device: nanoseconds, and the resources that the compiler gave their kernels.
+// The cost of lanes on a device: nanoseconds per pair, and the resources of their kernels.
 #pragma once
 
 #include <span>
@@ -11,30 +11,30 @@
 
 namespace graze::cuda {
 
-// Resources of a lane's kernel. For the exact lane and `filtered` this is the filter, the kernel that decides every
-// pair first.
+// Resources of a lane's kernel. The exact lane and lanes under the policy `filtered` have several kernels; the numbers
+// are those of the first kernel, which sees every pair.
 struct KernelNeeds {
-  int threads = 0;  // of a block
+  int threads = 0;  // threads of a block
   int registers = 0;
   int local_bytes = 0;     // bytes of local memory for each thread: spilled registers and arrays
-  int active_threads = 0;  // most threads that a multiprocessor runs at once
+  int active_threads = 0;  // most threads of this kernel that a multiprocessor runs at once
 };
 
-// Nanoseconds per pair, one value for each pass. In a pass all lanes take turns.
+// Nanoseconds per pair, one value for each pass. Each pass measures all lanes, one after another.
 struct DeviceCost {
   std::vector<double> resident;     // pairs and verdicts stay in device memory
-  std::vector<double> with_copies;  // pairs come from pinned host memory, verdicts go back
+  std::vector<double> with_copies;  // includes copies of the pairs from pinned host memory, and of the verdicts back
   KernelNeeds needs;
 };
 
 struct DeviceCosts {
   std::string device;          // "NVIDIA H100 80GB HBM3"
   int threads_at_once = 0;     // most threads that a multiprocessor can run at once
-  std::vector<DeviceCost> of;  // for each lane
+  std::vector<DeviceCost> of;  // the cost of each lane
 };
 
-// Lanes in double decide pairs of doubles as they are; other lanes decide them as float32 stores them.
-// Requires: CUDA lanes, pairs.   Throws: std::runtime_error on any CUDA error, or without a device.
+// Measures the lanes on the first device. Of pairs of doubles, lanes in float decide the pairs rounded to float32.
+// Requires: CUDA lanes; at least one pair.   Throws: std::runtime_error on any CUDA error, or without a device.
 DeviceCosts measure_on_device(std::span<const Lane* const> lanes, const strata::PairBlock& pairs, int passes);
 
 }  // namespace graze::cuda

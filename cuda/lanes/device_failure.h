@@ -6,7 +6,7 @@
 
 namespace graze::cuda {
 
-// A CUDA call failed. out_of_memory: device memory or pinned host memory ran out.
+// The failure of a CUDA call. out_of_memory: there was not enough device memory or pinned host memory.
 struct DeviceFailure : std::runtime_error {
   DeviceFailure(const std::string& what, bool out) : std::runtime_error(what), out_of_memory(out) {}
   bool out_of_memory;

@@ -11,7 +11,7 @@
 
 namespace graze::cuda {
 
-// Throws: DeviceFailure with CUDA's message and the place of the call.
+// Throws: DeviceFailure with CUDA's message and the source location of the call.
 inline void check(cudaError_t error, std::source_location where = std::source_location::current()) {
   if (error != cudaSuccess) {
     throw DeviceFailure(std::string("CUDA: ") + cudaGetErrorString(error) + " (" + where.file_name() + ":" +
@@ -20,7 +20,7 @@ inline void check(cudaError_t error, std::source_location where = std::source_lo
   }
 }
 
-// The number of CUDA devices; 0 if CUDA cannot tell.
+// The number of CUDA devices; 0 without a driver.
 inline int count_devices() {
   int count = 0;
   if (cudaGetDeviceCount(&count) == cudaSuccess) return count;
@@ -84,7 +84,7 @@ class Event {
   cudaEvent_t event_ = nullptr;
 };
 
-// Milliseconds that the work submitted by `work` takes on the stream.
+// The milliseconds from the start to the end of the work that `work` submits to the stream.
 template <class Work>
 double timed(cudaStream_t stream, const Work& work) {
   const Event start, stop;

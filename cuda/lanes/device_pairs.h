@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The layouts of a block of pairs in device memory. They are the first parameter of the kernels and of their twins.
+// The layouts of a block of pairs in device memory. A block is the first parameter of the kernels and of their twins.
 #pragma once
 
 #include <cstdint>
 
 namespace graze::cuda {
 
-// A block of pairs: 18 arrays of `stride` floats, ax0[] ay0[] … bz2[], of which `count` are in use.
+// A block of `count` pairs of float32: 18 arrays of `stride` floats, ax0[] ay0[] … bz2[].
 struct DevicePairs {
   using Real = float;
   const float* coordinates;
@@ -14,7 +14,7 @@ struct DevicePairs {
   std::uint32_t count;
 };
 
-// The same for pairs of doubles.
+// A block of pairs of doubles, in the same layout.
 struct DeviceDoubles {
   using Real = double;
   const double* coordinates;

@@ -8,7 +8,8 @@ namespace {
 
 using namespace exact::detail;
 
-// Decides with a bound for each determinant. Determinants that it leaves open are computed in multiword integers.
+// Decides with an error bound for each determinant. If the bound leaves a determinant's sign open, multiword integers
+// compute the determinant.
 template <class Kinds>
 __global__ void __launch_bounds__(kThreads) decide_each_closely(ArrayPairs pairs, PairList from, PairList left,
                                                                 std::uint32_t* intersects, unsigned long long* stages) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exact lane on the device. Device code only; see cuda/lanes/device.h.
+// The exact lane on the device. Device code only; cuda/lanes/device.h is the host's interface.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -19,7 +19,8 @@ struct Lane;
 
 namespace graze::cuda {
 
-// Pairs of doubles: pair i is triangle first + i of a (or the reference if a is empty) and triangle first + i of b.
+// Pairs of doubles from arrays of triangles. Pair i has triangle first + i of a, or the reference if a is empty, and
+// triangle first + i of b.
 struct ArrayPairs {
   using Real = double;
   TriangleArray a, b;
@@ -36,26 +37,26 @@ __device__ inline void load(const ArrayPairs& pairs, std::uint32_t i, double* c)
   pairs.b.load(pairs.first + i, c + 9);
 }
 
-// Decides the pairs of the first list, which the filter left open. The other lists must be empty: the steps fill them.
+// Decides the pairs of lists[0], which the filter left open. lists[1] to lists[3] must be empty: the steps fill them.
 inline constexpr int kDoubleLists = 4;
 void launch_double_steps(const ArrayPairs& pairs, const PairList* lists, std::uint32_t* intersects,
                          unsigned long long* stages, cudaStream_t stream);
 
-// Lists of pairs: two that the filter leaves open, and those that a step of the exact decision leaves to a later one.
+// The filter fills two lists of pairs. The others are for pairs that a step leaves to the next step.
 inline constexpr int kExactLists = 6;
 
-// The exact decision of blocks of pairs, with the memory for the lists between its stages.
+// The exact decision of blocks of pairs, with the memory for the lists between its steps.
 class DeviceExact {
  public:
-  // Starts kernels that write bit i % 32 of word i / 32 of `intersects` and `declined`. They write the words of whole
-  // thread blocks. Unless `stages` is null, adds to stages[s] the number of pairs that stage s decided.
+  // Starts kernels that write bit i % 32 of word i / 32 of `intersects` and `declined` for pair i. They write the words
+  // of whole thread blocks. Unless `stages` is null, they add to stages[s] the number of pairs that stage s decided.
   void decide(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, unsigned long long* stages,
               cudaStream_t stream);
-  // The same for pairs of doubles.
+  // Does the same for pairs of doubles.
   void decide(DeviceDoubles pairs, std::uint32_t* intersects, std::uint32_t* declined, unsigned long long* stages,
               cudaStream_t stream);
-  // Decides only the pairs whose bit in `declined` is set: those that a filter left open. Pairs that are not finite
-  // stay declined.
+  // Decides only the pairs whose bit in `declined` is set, which a filter left open. Pairs with a coordinate that is
+  // not finite remain declined.
   void decide_declined(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream);
   void decide_declined(DeviceDoubles pairs, std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps of the exact decision after the filter. The first steps take the pairs whose determinants fit in floats or
-// in doubles. The next ones use residues, then 128-bit integers or tighter bounds, then wide integers. Each step lists
-// the pairs that it cannot decide, so that a warp does not wait for one hard pair in 32. Pairs is any type with
+// The filter and the later steps of the exact decision. The first steps take the pairs whose determinants fit in floats
+// or in doubles. The next steps use residues, then 128-bit integers or tighter bounds, then wide integers. Each step
+// lists the pairs that it cannot decide, so that a warp does not wait for one hard pair in 32. Pairs is any type with
 // load(pairs, i, coordinates), whose coordinates are of type Real. Device code only.
 #pragma once
 
@@ -27,7 +27,7 @@ __device__ void count(unsigned long long* stages, Stage stage, std::uint32_t pai
   if (stages && pairs) atomicAdd(&stages[static_cast<int>(stage)], static_cast<unsigned long long>(pairs));
 }
 
-// Adds up what the threads of a warp have counted. All threads of the warp call this.
+// Adds the counts of all threads of a warp. All threads of the warp call this function.
 __device__ void count_of_warp(unsigned long long* stages, Stage stage, std::uint32_t pairs) {
   for (int far = 16; far > 0; far /= 2) pairs += __shfl_xor_sync(0xffffffffu, pairs, far);
   if (threadIdx.x % 32 == 0) count(stages, stage, pairs);
@@ -35,11 +35,12 @@ __device__ void count_of_warp(unsigned long long* stages, Stage stage, std::uint
 
 __device__ void set_bit(std::uint32_t* words, std::uint32_t i) { atomicOr(&words[i / 32], 1u << i % 32); }
 
-// Whether floats hold the pair. Equivalent to SingleNumbers::holds on the pair's grid, in fewer instructions.
+// Whether floats represent the pair's numbers exactly. Gives the same result as SingleNumbers::holds on the pair's
+// grid, in fewer instructions.
 __device__ bool floats_hold(const float* c) {
   float most = 0;
   for (int i = 0; i < kCoordinates; ++i) most = fmaxf(most, fabsf(c[i]));
-  // coordinates * 2^-exponent are less than 2^kSingleBits.
+  // All coordinates * 2^-exponent are less than 2^kSingleBits.
   const int exponent = static_cast<int>(exact::detail::bits_of(most) >> 23) - 126 - exact::detail::kSingleBits;
   if (exponent < -30 || exponent > 30) return false;
   const float scale = __uint_as_float(static_cast<unsigned>(127 - exponent) << 23);
@@ -51,11 +52,11 @@ __device__ bool floats_hold(const float* c) {
   return whole;
 }
 
-// The list for a pair that the filter leaves open: 0 if floats hold it (not tested for doubles), else 1.
+// The list for a pair that the filter leaves open: 0 if floats represent its numbers, else 1. Doubles are not tested.
 __device__ int list_of(const float* c) { return floats_hold(c) ? 0 : 1; }
 __device__ int list_of(const double*) { return 1; }
 
-// The filter, with one thread for each pair, and the test for a shared vertex. Lists the pairs that it leaves open.
+// Runs the filter and the test for a shared vertex, with one thread for each pair. Lists the pairs that remain open.
 template <int kThreadBlocks, class Pairs>
 __global__ void __launch_bounds__(kThreads, kThreadBlocks)
     decide_most(Pairs pairs, PairList in_floats, PairList left, std::uint32_t* intersects, std::uint32_t* declined,
@@ -132,7 +133,7 @@ __device__ void decide_listed(const Pairs& pairs, const PairList& from, const Pa
   for (int s = 0; s < exact::kStages; ++s) count_of_warp(stages, static_cast<Stage>(s), decided[s]);
 }
 
-// Decides pairs that floats hold.
+// Decides pairs whose numbers floats represent exactly.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads, 3)
     decide_by_floats(Pairs pairs, PairList from, std::uint32_t* intersects, unsigned long long* stages) {
@@ -142,8 +143,8 @@ __global__ void __launch_bounds__(kThreads, 3)
   });
 }
 
-// Decides with the smallest number type of Kinds that holds a pair's grid. kThreadBlocks: the number of thread blocks
-// that a multiprocessor should run at once, which limits the registers.
+// Decides with the smallest number type of Kinds that holds a pair's grid. kThreadBlocks is the number of thread blocks
+// that a multiprocessor should run at once; it limits the registers.
 template <class Kinds, int kThreadBlocks, class Pairs>
 __global__ void __launch_bounds__(kThreads, kThreadBlocks)
     decide_by(Pairs pairs, PairList from, PairList left, std::uint32_t* intersects, unsigned long long* stages) {
@@ -157,7 +158,7 @@ __global__ void __launch_bounds__(kThreads, kThreadBlocks)
   });
 }
 
-// Decides in 128-bit integers if they hold the pair, else with one error bound for each determinant.
+// Decides in 128-bit integers if they represent the pair's numbers, else with one error bound for each determinant.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads, 2)
     decide_on_int128(Pairs pairs, PairList from, PairList left, std::uint32_t* intersects, unsigned long long* stages) {
@@ -174,11 +175,11 @@ __global__ void __launch_bounds__(kThreads, 2)
   });
 }
 
-// Whether double-double numbers hold a pair's determinants without over- or underflow.
+// Whether double-double numbers represent a pair's determinants without overflow or underflow.
 __device__ bool is_moderate(const float*) { return true; }
 __device__ bool is_moderate(const double* c) { return exact::detail::is_moderate(exact::detail::grid_of(c, c + 9)); }
 
-// Decides with tighter bounds, in double-double precision.
+// Decides with tighter error bounds, in double-double precision.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads, 2)
     decide_closely(Pairs pairs, PairList from, PairList left, std::uint32_t* intersects, unsigned long long* stages) {
@@ -190,7 +191,7 @@ __global__ void __launch_bounds__(kThreads, 2)
   });
 }
 
-// Decides with the same bounds; determinants that they leave open are computed in wide integers.
+// Decides with double-double bounds. If they leave a determinant's sign open, wide integers compute the determinant.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads) decide_one_by_one(Pairs pairs, PairList from, PairList left,
                                                               std::uint32_t* intersects, unsigned long long* stages) {
@@ -205,8 +206,8 @@ __global__ void __launch_bounds__(kThreads) decide_one_by_one(Pairs pairs, PairL
 
 constexpr int kBlocksForLeft = 1024;
 
-// Decides pairs whose grid is too large for the small number types. `left` has four lists: the pairs to decide, then
-// three empty lists for pairs that a step leaves to the next.
+// Decides pairs whose grid is too large for the small number types. left[0] lists the pairs to decide. left[1] to
+// left[3] must be empty: each is for the pairs that a step leaves to the next step.
 template <class Pairs>
 void launch_large_steps(const Pairs& pairs, const PairList* left, std::uint32_t* intersects, unsigned long long* stages,
                         cudaStream_t stream) {
@@ -218,8 +219,8 @@ void launch_large_steps(const Pairs& pairs, const PairList* left, std::uint32_t*
   check(cudaGetLastError());
 }
 
-// Decides the pairs of the first two lists; floats hold those of the first. The other lists must be empty: the steps
-// fill them.
+// Decides the pairs of the first two lists; floats represent the numbers of left[0]. The other lists must be empty: the
+// steps fill them.
 template <class Pairs>
 void launch_exact_steps(const Pairs& pairs, const PairList (&left)[kExactLists], std::uint32_t* intersects,
                         unsigned long long* stages, cudaStream_t stream) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kernels that draw pairs of one coordinate type, one for each stratum: a single kernel would need the registers and
-// stack of the most expensive stratum. Compiled with -fmad=false: without contraction the strata have the same bits as
-// on the host.
+// Kernels that draw pairs, one kernel for each stratum and coordinate type. A single kernel would need the registers
+// and the stack of the most expensive stratum. The kernels are compiled with -fmad=false, because the pairs have the
+// same bits as on the host only without contraction.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -17,7 +17,7 @@
 namespace graze::cuda {
 inline namespace GRAZE_FP {
 
-// Draws pair draw(first + i) in thread i. Writes the pairs as 18 arrays of `count`.
+// Thread i draws pair draw(first + i). The pairs are written as 18 arrays of `count` coordinates.
 template <class Real, class Draw>
 __device__ void generate_with(Real* coordinates, std::uint32_t count, std::uint64_t first, const Draw& draw) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
@@ -43,7 +43,7 @@ __global__ void generate_pairs_in(const __grid_constant__ strata::Scene scene, R
                 [&](std::uint64_t index) { return strata::generate_one<stratum, DrawsOf<Real>>(seed, scene, index); });
 }
 
-// Draws pairs of a stratum; in an array of them, the index is the stratum's number in kStrata.
+// A kernel that draws pairs of a stratum. In an array of such kernels, the index is the stratum's number in kStrata.
 template <class Real>
 using Generate = void (*)(Real*, std::uint32_t, std::uint64_t, std::uint64_t);
 template <class Real, std::size_t... kStratum>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The device lanes, and the same algorithms with a trace of their intermediate values. Compiled once for each device
-// variant, with its flags and in its own namespace GRAZE_FP. Define nothing else here, or the linker would mix the
-// variants. The twins are generated from the PTX of this file: see cuda/twin/twin.h.
+// The device lanes, and the same algorithms with a trace of their intermediate values. This file is compiled once for
+// each device variant, with its flags and in its own namespace GRAZE_FP. Define nothing else here, or the linker would
+// mix the variants. The twins are generated from the PTX of this file: see cuda/twin/twin.h.
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/trace.h"
 #include "cuda/lanes/vote.cuh"
@@ -9,7 +9,7 @@
 namespace graze::cuda {
 inline namespace GRAZE_FP {
 
-// One thread for each pair. `algorithm` is an index in Algorithms, so the twin generator can find a kernel by its name.
+// Each thread decides one pair. The twin generator finds the algorithm in the kernel's name: an index in Algorithms.
 template <int algorithm, class Real>
 __global__ void decide_pairs(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined) {
   vote<Real>(pairs, intersects, declined,
@@ -31,7 +31,7 @@ __global__ void trace_pairs(DevicePairs pairs, std::uint64_t* hashes) {
   trace<algorithm, Real>(pairs, hashes);
 }
 
-// The same for pairs of doubles, which lanes in double decide. Real is double.
+// The kernels for pairs of doubles, which only lanes in double decide. Real is double.
 template <int algorithm, class Real>
 __global__ void decide_double_pairs(DeviceDoubles pairs, std::uint32_t* intersects, std::uint32_t* declined) {
   vote<Real>(pairs, intersects, declined,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels of the device lanes, in tables [algorithm][scalar]. Each device variant has a table in its own namespace.
+// Tables [algorithm][scalar] of the device lanes' kernels. Each device variant has its tables in its own namespace.
 // Device code only; see cuda/lanes/device.h.
 #pragma once
 
@@ -18,25 +18,26 @@ namespace graze::cuda {
 
 inline constexpr int kThreads = 256;
 
-// Starts a kernel that writes bit i % 32 of word i / 32 of `intersects` and `declined`. It writes the words of whole
-// thread blocks.
+// Starts a kernel that writes bit i % 32 of word i / 32 of `intersects` and `declined` for pair i. The kernel writes
+// the words of whole thread blocks.
 using LaunchDecide = void (*)(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined,
                               cudaStream_t stream);
 // Starts a kernel that writes each pair's trace hash; see cuda/lanes/trace.h.
 using LaunchTrace = void (*)(DevicePairs pairs, std::uint64_t* hashes, cudaStream_t stream);
 
-// Like LaunchDecide, for lanes with tolerances.
+// Starts a kernel like LaunchDecide, but for lanes with tolerances.
 using LaunchWithin = void (*)(const Epsilons& epsilons, DevicePairs pairs, std::uint32_t* intersects,
                               std::uint32_t* declined, cudaStream_t stream);
 
-// The same for pairs of doubles.
+// The launchers for pairs of doubles.
 using LaunchDecideDoubles = void (*)(DeviceDoubles pairs, std::uint32_t* intersects, std::uint32_t* declined,
                                      cudaStream_t stream);
 using LaunchTraceDoubles = void (*)(DeviceDoubles pairs, std::uint64_t* hashes, cudaStream_t stream);
 using LaunchWithinDoubles = void (*)(const Epsilons& epsilons, DeviceDoubles pairs, std::uint32_t* intersects,
                                      std::uint32_t* declined, cudaStream_t stream);
 
-// Starts a kernel that records the values of each pair; see core/lanes/records.h. `values` are the lane's scalars.
+// Starts a kernel that records the values of each pair; see core/lanes/records.h. The values have the lane's scalar
+// type.
 using LaunchValues = void (*)(DevicePairs pairs, void* values, std::uint64_t stride, RecordedPath* paths,
                               cudaStream_t stream);
 using LaunchValuesDoubles = void (*)(DeviceDoubles pairs, void* values, std::uint64_t stride, RecordedPath* paths,
@@ -56,7 +57,7 @@ struct VariantKernels {
   DoubleKernels<LaunchTraceDoubles> trace_doubles;
 };
 
-// For pairs of both coordinate types.
+// The kernels for pairs of both coordinate types.
 template <class Launch, class LaunchDoubles>
 struct KernelsOfBoth {
   DeviceKernels<Launch> floats;

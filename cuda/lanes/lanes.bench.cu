@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs per second of each CUDA lane, by stratum, on pairs in device memory: of float32, and of doubles for lanes in
-// double. For comparison, the limits set by memory: a copy, and a kernel that only reads the pairs (72 or 144 bytes
-// each) and writes a bit. Before measuring, the exact lane must give the same bits as the host on a sample. Without a
-// device, prints a line and succeeds.
+// Measures the pairs per second of each CUDA lane, by stratum, on pairs in device memory. Lanes in double also decide
+// pairs of doubles. Two benchmarks show the limits of the memory: a copy, and a kernel that only reads the pairs (72 or
+// 144 bytes each) and writes one bit for each. Before it is measured, the exact lane must give the host's verdicts on a
+// sample. Without a device, the program prints a line and succeeds.
 #include <benchmark/benchmark.h>
 #include <tbb/parallel_for.h>
 
@@ -35,7 +35,7 @@ namespace {
 constexpr std::uint32_t kPairs = 1u << 24;
 constexpr std::size_t kNumbers = std::size_t{kPairs} * kCoordinates;
 constexpr std::uint32_t kSample = 1u << 16;
-constexpr int kLaunches = 4;  // timed together, to make the few microseconds of a launch negligible
+constexpr int kLaunches = 4;  // launches timed together, because each launch costs a few microseconds
 
 std::span<const strata::StratumInfo> strata_of(float) { return strata::kStrata; }
 std::span<const strata::StratumInfo> strata_of(double) { return strata::kDoubleStrata; }
@@ -46,7 +46,7 @@ void draw(const strata::StratumInfo& stratum, std::uint64_t first, Real* to) {
   Drawing().draw(strata::named_sources(1, kPairs, {name}).front(), first, kPairs, to, nullptr);
 }
 
-// The pairs of one stratum, and the memory to which the lanes write.
+// The pairs of one stratum in device memory, and the memory to which the lanes write.
 template <class Real>
 struct Resident {
   using Block = std::conditional_t<std::is_same_v<Real, float>, DevicePairs, DeviceDoubles>;
@@ -78,10 +78,10 @@ __global__ void read_pairs(Block pairs, std::uint32_t* bits) {
   if (threadIdx.x % 32 == 0) bits[i / 32] = word;
 }
 
-// Reports items (pairs) and bytes for each launch.
+// Measures the launch. `items` (pairs) and `bytes` are the amounts that one launch processes.
 template <class Launch>
 void measure(benchmark::State& state, double items, double bytes, const Launch& launch) {
-  launch();  // the first one allocates
+  launch();  // the first launch allocates memory
   check(cudaDeviceSynchronize());
   for (auto _ : state) {
     const double milliseconds = timed(nullptr, [&] {
@@ -132,11 +132,11 @@ void decide(Resident<Real>& resident, unsigned long long (&stages)[exact::kStage
   check(cudaMemcpy(stages, counts, sizeof stages, cudaMemcpyDeviceToHost));
 }
 
-// Compares device and host on rounds [first, end) of every stratum, kPairs pairs in each. Prints a line for each, with
-// hashes of the verdicts.   Returns: whether there is no difference.
+// Compares device and host on rounds [first, end) of every stratum; a round has kPairs pairs. Prints a line for each
+// stratum, with hashes of the verdicts.   Returns: whether all verdicts are equal.
 template <class Real>
 bool device_is_host(std::uint64_t first, std::uint64_t end) {
-  if (first >= end) throw std::invalid_argument("expected FIRST below END");
+  if (first >= end) throw std::invalid_argument("the rounds are empty: expected FIRST below END");
   const Lane& host = *find_lane(std::is_same_v<Real, float> ? "exact/f32/cpu" : "exact/f64/cpu");
   const auto hashed = [](const Bits& bits, std::uint64_t hash) {
     return fnv1a({reinterpret_cast<const char*>(bits.data()), bits.size() * sizeof bits[0]}, hash);
@@ -158,7 +158,7 @@ bool device_is_host(std::uint64_t first, std::uint64_t end) {
                         [&](std::size_t p) { parts[p] = by_host(host, columns, kPairs, p * kPart, kPart); });
       Bits of_host;
       for (const Bits& part : parts) of_host.insert(of_host.end(), part.begin(), part.end());
-      Bits of_device(kPairs / 64);  // counts declined pairs as differences, because there must be none
+      Bits of_device(kPairs / 64);  // no pair may be declined, so declined pairs count as differences
       check(cudaMemcpy(of_device.data(), resident.declined_bits(), kPairs / 8, cudaMemcpyDeviceToHost));
       for (const std::uint64_t declined : of_device) differ += static_cast<std::uint64_t>(std::popcount(declined));
       of_device = by_device(resident, kPairs);
@@ -194,7 +194,7 @@ void measure_lane(benchmark::State& state, Resident<Real>& resident, const strat
   });
 }
 
-// The total time of a sweep over 64 tolerances, including drawing and judging the pairs.
+// Measures the total time of a sweep over 64 tolerances, which includes the time to draw and judge the pairs.
 void measure_sweep(benchmark::State& state, const Lane& lane, const std::string& form) {
   strata::PairSource source = strata::stratum_sources(1, 1u << 28, {"near_edge_edge"}).front();
   std::vector<Lane> under;
@@ -218,7 +218,7 @@ void add(const std::string& name, Function function) {
   benchmark::RegisterBenchmark(name.c_str(), function)->UseManualTime()->Unit(benchmark::kMicrosecond);
 }
 
-// suffix: appended to the benchmarks' names.
+// Registers the benchmarks on pairs of one type. suffix: the end of their names.
 template <class Real>
 void add_of(Resident<Real>& resident, const std::string& suffix) {
   const std::span<const strata::StratumInfo> all = strata_of(Real());
@@ -258,8 +258,8 @@ void add_sweeps() {
 }  // namespace
 }  // namespace graze::cuda
 
-// `graze_device_bench compare FIRST END` compares the exact lanes of device and host instead of measuring; `compare_f64
-// FIRST END` does the same on pairs of doubles.
+// `graze_device_bench compare FIRST END` does not measure: it compares the exact lanes of device and host.
+// `graze_device_bench compare_f64 FIRST END` does the same on pairs of doubles.
 int main(int argc, char** argv) try {
   if (argc == 4 && std::string_view(argv[1]) == "compare")
     return graze::cuda::device_is_host<float>(std::stoull(argv[2]), std::stoull(argv[3])) ? 0 : 1;

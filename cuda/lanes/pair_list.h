@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists of pairs that one step leaves to another, and access to a pair's coordinates; for host and device.
+// Lists of pairs that one step leaves to a later step, and access to a pair's coordinates, for host and device.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@ struct PairList {
   std::uint32_t* at;
   std::uint32_t* count;
 
-  // On a device: one atomic operation for all threads of a warp that add to this list, because they all use the same
-  // counter. On the host: not thread-safe.
+  // Adds an index. On a device, one atomic operation adds the indices of all threads of a warp, because they share the
+  // list's counter. On the host, the function is not thread-safe.
   GRAZE_HD void add(std::uint32_t place) const {
 #ifdef __CUDA_ARCH__
     const unsigned together = __match_any_sync(__activemask(), reinterpret_cast<unsigned long long>(count));
@@ -32,9 +32,9 @@ struct PairList {
 };
 
 #ifdef __CUDACC__
-// Adds the indices of a thread block to two lists; `which` is 0 or 1, or -1 for neither. All threads of the block call
-// this. It makes one atomic operation for each block and list, because one counter takes only one such operation every
-// 0.7 ns.
+// Adds the indices of a thread block to two lists. `which` is 0 or 1, the list for this thread's index, or -1 for
+// neither. All threads of the block call this function. It makes one atomic operation for each block and list, because
+// a device performs only one atomic operation on a counter every 0.7 ns.
 __device__ inline void add_of_block(const PairList& first, const PairList& second, int which, std::uint32_t place) {
   __shared__ std::uint32_t begins[2][32];
   if (!__syncthreads_or(which >= 0)) return;
@@ -42,7 +42,7 @@ __device__ inline void add_of_block(const PairList& first, const PairList& secon
   const unsigned thread = threadIdx.x % 32, warp = threadIdx.x / 32;
   if (thread == 0) begins[0][warp] = static_cast<unsigned>(__popc(in_first) | __popc(in_second) << 16);
   __syncthreads();
-  if (warp == 0) {  // both counts in one word
+  if (warp == 0) {  // each word has both counts
     const unsigned added = thread < blockDim.x / 32 ? begins[0][thread] : 0;
     unsigned end = added;
     for (unsigned step = 1; step < 32; step *= 2) {
@@ -61,7 +61,7 @@ __device__ inline void add_of_block(const PairList& first, const PairList& secon
 }
 #endif
 
-// The coordinates of pair i.
+// Reads the coordinates of pair i.
 template <class Pairs, class Real>
 GRAZE_HD void load(const Pairs& pairs, std::uint32_t i, Real* c) {
   for (std::uint32_t k = 0; k < kCoordinates; ++k) c[k] = pairs.coordinates[std::size_t{k} * pairs.stride + i];

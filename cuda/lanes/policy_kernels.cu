@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The device lanes with tolerances: policies abs, rel and paper. Compiled once for each device variant, with its flags
-// and in its own namespace GRAZE_FP. Define nothing else here, or the linker would mix the variants. The twins are
-// generated from the PTX of this file.
+// The device lanes with tolerances: policies abs, rel and paper. This file is compiled once for each device variant,
+// with its flags and in its own namespace GRAZE_FP. Define nothing else here, or the linker would mix the variants. The
+// twins are generated from the PTX of this file.
 #include "core/lanes/decide_under.h"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/vote.cuh"
@@ -9,7 +9,7 @@
 namespace graze::cuda {
 inline namespace GRAZE_FP {
 
-// One thread for each pair. `algorithm` is an index in Algorithms, so the twin generator can find a kernel by its name.
+// Each thread decides one pair. The twin generator finds the algorithm in the kernel's name: an index in Algorithms.
 template <int algorithm, class Real>
 __global__ void absolute_pairs(DevicePairs pairs, Tolerances<Real> tolerances, std::uint32_t* intersects,
                                std::uint32_t* declined) {
@@ -26,7 +26,7 @@ __global__ void relative_pairs(DevicePairs pairs, Tolerances<Real> tolerances, s
   });
 }
 
-// The same for pairs of doubles. Real is double.
+// The kernels for pairs of doubles. Real is double.
 template <int algorithm, class Real>
 __global__ void absolute_double_pairs(DeviceDoubles pairs, Tolerances<Real> tolerances, std::uint32_t* intersects,
                                       std::uint32_t* declined) {

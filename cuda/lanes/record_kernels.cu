@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The device lanes that also record every value that their comparisons see. Compiled once for each device variant, with
-// its flags and in its own namespace GRAZE_FP. Define nothing else here, or the linker would mix the variants. The
-// twins are generated from the PTX of this file.
+// The device lanes that also record every value that their comparisons see. This file is compiled once for each device
+// variant, with its flags and in its own namespace GRAZE_FP. Define nothing else here, or the linker would mix the
+// variants. The twins are generated from the PTX of this file.
 #include "core/algorithms/recording.h"
 #include "core/lanes/lanes.h"
 #include "cuda/lanes/kernels.cuh"
@@ -18,13 +18,13 @@ __device__ void record_one(const Pairs& pairs, const Recorded<Real>& to, Recorde
   paths[i] = record<std::tuple_element_t<algorithm, Algorithms>>(t.a, t.b, Recorded<Real>{to.values + i, to.stride});
 }
 
-// One thread for each pair. `algorithm` is an index in Algorithms, so the twin generator can find a kernel by its name.
+// Each thread records one pair. The twin generator finds the algorithm in the kernel's name: an index in Algorithms.
 template <int algorithm, class Real>
 __global__ void record_pairs(DevicePairs pairs, Recorded<Real> to, RecordedPath* paths) {
   record_one<algorithm>(pairs, to, paths);
 }
 
-// The same for pairs of doubles, which lanes in double decide. Real is double.
+// The kernel for pairs of doubles, which only lanes in double decide. Real is double.
 template <int algorithm, class Real>
 __global__ void record_double_pairs(DeviceDoubles pairs, Recorded<Real> to, RecordedPath* paths) {
   record_one<algorithm>(pairs, to, paths);

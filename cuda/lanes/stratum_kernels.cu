@@ -11,7 +11,7 @@ namespace graze::cuda {
 inline namespace GRAZE_FP {
 namespace {
 
-// Draws pair(first), …, pair(first + count - 1) on all CPU cores, as 18 arrays of `count`.
+// Draws pair(first), …, pair(first + count - 1) on all CPU cores, as 18 arrays of `count` coordinates.
 template <class Real, class Draw>
 void draw_on_cores(const Draw& pair, std::uint64_t first, std::uint32_t count, std::vector<Real>& to) {
   to.resize(std::size_t{count} * kCoordinates);
@@ -69,7 +69,7 @@ void Drawing::draw(const strata::PairSource& source, std::uint64_t first, std::u
     launch_generate(to, count, source.seed, source.stratum, first, stream);
   } else {
     draw_on_cores(source.pair, first, count, brought_);
-    // The memory is not pinned, so the copy has read it when this returns.
+    // The source is not pinned, so cudaMemcpyAsync has read it when it returns.
     check(cudaMemcpyAsync(to, brought_.data(), brought_.size() * sizeof(float), cudaMemcpyHostToDevice, stream));
   }
   check(cudaGetLastError());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A policy that compares exactly and keeps a hash of every value it is asked about: signed distances, orientations,
-// components of the normals' cross product, interval ends. Two runs with the same hash had the same intermediate bits.
+// A policy that compares exactly and hashes every value that it receives: signed distances, orientations, components of
+// the normals' cross product, and interval ends. Two runs with the same hash computed the same intermediate bits.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // An array of triangles in its owner's layout: rows of nine coordinates with a stride, nine columns, or an indexed
-// mesh. The array lies in host or device memory and can be read in either. Its reader must know whether its coordinates
-// are floats or doubles.
+// mesh. The array is in host memory or in device memory. The type does not say whether the coordinates are floats or
+// doubles; the caller of load must know it.
 #pragma once
 
 #include <cstddef>
@@ -16,10 +16,10 @@ enum class Layout : std::uint8_t { rows, columns, mesh };
 
 struct TriangleArray {
   Layout layout = Layout::rows;
-  const char* rows = nullptr;      // nine coordinates each
+  const char* rows = nullptr;      // rows of nine coordinates
   const char* columns[9] = {};     // x, y, z of each vertex
-  const char* vertices = nullptr;  // three coordinates each
-  const char* faces = nullptr;     // three std::uint32_t each
+  const char* vertices = nullptr;  // vertices of three coordinates
+  const char* faces = nullptr;     // faces of three indices, each a std::uint32_t
   std::size_t stride = 36;         // bytes between consecutive rows, elements of a column, or faces
   std::size_t vertex_stride = 12;
   std::uint64_t vertex_count = 0;
@@ -30,7 +30,7 @@ struct TriangleArray {
     return *reinterpret_cast<const Real*>(at);
   }
 
-  // A face with a vertex index that is out of range gets NaN coordinates.   Requires: Real is the coordinates' type.
+  // Reads triangle i. A vertex whose index is out of range becomes NaN.   Requires: Real is the coordinates' type.
   template <class Real>
   GRAZE_HD void load(std::uint64_t i, Real* t) const {
     if (layout == Layout::rows) {
@@ -49,7 +49,7 @@ struct TriangleArray {
     }
   }
 
-  // Rows without gaps, of coordinates of this size.
+  // Whether the triangles are rows without gaps. size: the bytes of a coordinate.
   bool packed(std::size_t size) const { return layout == Layout::rows && stride == 9 * size; }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decides a pair in each thread and writes a bit for its verdict. In its build variant's namespace. Device code only.
+// Decides a pair in each thread and writes its verdict as bits. Each build variant has its own namespace. Device code.
 #pragma once
 
 #include "core/vec3.h"
@@ -24,7 +24,7 @@ __device__ Triangles<Real> widened(const Pairs& pairs, std::uint32_t i) {
   return {{vertex(0), vertex(1), vertex(2)}, {vertex(3), vertex(4), vertex(5)}};
 }
 
-// Decides pair i of this thread and writes bit i % 32 of word i / 32 of `intersects` and `declined`.
+// Decides pair i, where i is the thread's number. Writes bit i % 32 of word i / 32 of `intersects` and `declined`.
 template <class Real, class Pairs, class Decide>
 __device__ void vote(const Pairs& pairs, std::uint32_t* intersects, std::uint32_t* declined, const Decide& decide) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;

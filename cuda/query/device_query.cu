@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Queries on a device. Chunks go through two or three slots, each with its own stream. So the host's work on one chunk
-// (packing, taking results) overlaps with the copies of another and the kernels of a third. Triangles in device memory
-// are read in place; those in host memory come through pinned memory.
+// Queries on a device. Chunks take turns in two or three slots, each with its own stream. So the host's work on one
+// chunk (packing triangles, taking results) overlaps with the copies of another chunk and the kernels of a third.
+// Kernels read triangles in device memory in place. Triangles in host memory are copied through pinned memory.
 #include "cuda/query/device_query.h"
 
 #include <cuda_runtime.h>
@@ -30,7 +30,7 @@ struct Verdicts {
   DeviceArray<float> columns;
   DeviceArray<char> triangles;
   DeviceArray<QueryCounts> found;
-  DeviceExact exact;  // for a lane with a filter
+  DeviceExact exact;  // for a lane under the policy `filtered`
 };
 
 struct Slot {
@@ -40,10 +40,10 @@ struct Slot {
   PinnedArray<char> triangles;
   PinnedArray<std::uint64_t> hits, declined;
   PinnedArray<QueryCounts> found;
-  std::optional<QueryRange> range;  // the range in progress
+  std::optional<QueryRange> range;  // the range in progress, if any
 };
 
-// Copies or packs the triangles into memory from which a device copies fast.
+// Writes the triangles, as rows without gaps, to pinned memory, from which a device copies fast.
 template <class Real>
 void pack(const TriangleArray& array, std::uint64_t first, std::uint64_t count, Real* to) {
   constexpr std::uint64_t kPart = 1 << 14, kEach = 9 * sizeof(Real);
@@ -80,8 +80,8 @@ class Run {
     most_ = std::max<std::uint64_t>(1 << 12, most_ / references_.size() / 64 * 64);
     std::size_t free = 0, all = 0;
     check(cudaMemGetInfo(&free, &all));
-    // Bytes per triangle in all slots: lists, verdicts and, where copied, the triangles. Chunks use at most half of the
-    // free memory.
+    // The bytes per triangle in all slots: lists, verdicts, and the triangles unless they are in device memory already.
+    // Chunks use at most half of the free memory.
     const std::size_t bytes =
         (resident_ ? 32 : 3 * (24 + 9 * real_)) + references_.size() + (question.lane->exact ? 0 : 3 * 76);
     while (most_ > 1 << 12 && most_ * bytes > free / 2) most_ /= 2;
@@ -91,7 +91,7 @@ class Run {
     chunk_ = std::min(most_, question.any ? kFirstOfAny : at_leisure ? kFirstResident : kFirstOfAll);
   }
 
-  // However a run ends, none of its work may still be in progress, because the caller frees the memory.
+  // When a run ends, even by an exception, none of its work may be in progress, because the caller frees the memory.
   ~Run() {
     bool busy = false;
     for (int k = 0; k < kSlots; ++k) busy = std::exchange(slots_[k].range, std::nullopt) || busy;
@@ -107,7 +107,7 @@ class Run {
       if (!work_.next(resident_ ? device_ : -1, chunk_, range)) break;
       start(slots_[k], question_.stream && resident_ ? slots_[0] : slots_[k], range);
     }
-    for (int left = 1; left < slots; ++left) finish(slots_[(k + left) % slots]);  // the oldest first
+    for (int left = 1; left < slots; ++left) finish(slots_[(k + left) % slots]);  // the oldest chunk first
     return record_;
   }
 
@@ -121,10 +121,10 @@ class Run {
     for (int k = 0; k < kSlots; ++k) check(cudaStreamWaitEvent(slots_[k].stream, slots_[0].start));
   }
 
-  // On the caller's stream chunks run one after another, so slots can share the kernels' outputs. On our streams the
-  // last steps of a chunk, which do little work, overlap with the first steps of the next.
+  // On the caller's stream, chunks run one after another, so slots can share the kernels' outputs. On our streams, the
+  // last steps of a chunk, which do little work, overlap with the first steps of the next chunk.
   void start(Slot& slot, Slot& shared, const QueryRange& range) {
-    failed_ = true;  // until everything is started
+    failed_ = true;  // until all work of the chunk is started
     const auto count = static_cast<std::uint32_t>(range.count);
     const cudaStream_t stream =
         resident_ && question_.stream ? static_cast<cudaStream_t>(question_.stream) : cudaStream_t{shared.stream};
@@ -216,7 +216,7 @@ class Run {
     const double seconds = milliseconds / 1000.0;
     record_.longest = std::max(record_.longest, seconds);
     ++record_.chunks;
-    // The next chunk may grow as long as it would take less than half of the time limit for a launch.
+    // The next chunk may be larger if it would take less than half of the time limit for a launch.
     const double fitting = static_cast<double>(range.count) * question_.launch_seconds / 2 / std::max(seconds, 1e-9);
     const std::uint64_t wanted = std::min(most_, std::max(chunk_, range.count * kGrowth));
     chunk_ = fitting < static_cast<double>(wanted) ? static_cast<std::uint64_t>(fitting) : wanted;
@@ -251,7 +251,7 @@ class Current {
   Current(const Current&) = delete;
   Current& operator=(const Current&) = delete;
   ~Current() {
-    cudaGetLastError();  // clears a failure in this run, which the next check would report
+    cudaGetLastError();  // clears a failure of this run; otherwise the next check would report it
     cudaSetDevice(before_);
   }
 

@@ -29,9 +29,9 @@ class Memory final : public DeviceMemory {
     std::size_t done = std::min(block, bytes);
     char* to = static_cast<char*>(data);
     check(cudaMemcpy(to, from, done, cudaMemcpyHostToDevice));
-    for (; done < bytes; done += std::min(done, bytes - done))  // whole blocks except at the end
+    for (; done < bytes; done += std::min(done, bytes - done))  // copies whole blocks except at the end
       check(cudaMemcpy(to + done, to, std::min(done, bytes - done), cudaMemcpyDeviceToDevice));
-    check(cudaDeviceSynchronize());  // a copy from pageable memory returns before the data has arrived
+    check(cudaDeviceSynchronize());  // cudaMemcpy from pageable memory returns before the data has arrived
   }
 
   void fetch(void* to, std::size_t count) const override {

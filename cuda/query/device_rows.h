@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Device memory for benchmarks and tests that do not include CUDA. Also measures what limits a query: copies within the
-// device, copies from the host, and the resources of its kernel.
+// Device memory for benchmarks and tests that do not include CUDA headers. Also measures the limits of a query: the
+// speed of copies within the device and from the host, and the resources of the query's kernel.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace graze::cuda {
 class DeviceMemory {
  public:
   virtual ~DeviceMemory() = default;
-  // Copies `bytes` bytes to the start of the memory, then repeats them up to its end.   Throws: DeviceFailure.
+  // Fills the memory with repetitions of these `bytes` bytes; the last one may be cut.   Throws: DeviceFailure.
   virtual void fill(const void* from, std::size_t bytes) = 0;
   // Copies the first `bytes` bytes back to the host.   Throws: DeviceFailure.
   virtual void fetch(void* to, std::size_t bytes) const = 0;
@@ -26,14 +26,14 @@ class DeviceMemory {
 std::unique_ptr<DeviceMemory> device_memory(int device, std::size_t bytes);
 
 struct DeviceSpeeds {
-  double copy = 0;       // bytes read plus bytes written, per second
-  double to_device = 0;  // bytes from pinned host memory, per second
+  double copy = 0;       // bytes read and bytes written per second, within the device
+  double to_device = 0;  // bytes per second from pinned host memory to the device
 };
 
-// The best of a few copies of `bytes` bytes.   Throws: DeviceFailure.
+// The speeds of the fastest of six copies of `bytes` bytes, from the host of at most 2^28.   Throws: DeviceFailure.
 DeviceSpeeds measure_speeds(int device, std::size_t bytes);
 
-// The resources of the kernel that sees every triangle of an exact query.   Throws: DeviceFailure.
+// The resources of the kernel that reads every triangle in an exact query.   Throws: DeviceFailure.
 KernelNeeds needs_of_exact_query(int device);
 
 }  // namespace graze::cuda

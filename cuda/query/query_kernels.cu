@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps after the slabs: pairs on small grids, the filter in doubles, the exact decision and counts. Also writes
-// pairs for other lanes.
+// The steps of a query after the slabs: pairs on small grids, the filter in doubles, the exact decision, and counts.
+// Other kernels here write pairs for other lanes.
 #include "cuda/query/query_kernels.cuh"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace graze::cuda {
 namespace {
 
-// The pairs as the steps of the exact decision read them.
+// The pairs of the reference and each triangle, in the form that the steps of the exact decision read.
 struct QueryPairs {
   using Real = float;
   exact::PreparedTriangle reference;
@@ -22,8 +22,8 @@ __device__ void load(const QueryPairs& pairs, std::uint32_t i, float* c) {
   pairs.chunk.array.load(pairs.chunk.first + i, c + 9);
 }
 
-// Decides the listed triangles whose grid is small, as it often is where triangles touch. Triangles that are not finite
-// are declined.
+// Decides the listed triangles whose grid is small, which is often so if triangles touch. Declines triangles with a
+// coordinate that is not finite.
 __global__ void __launch_bounds__(kThreads, 2)
     decide_on_grid(const __grid_constant__ QueryPairs pairs, PairList from, PairList left, std::uint32_t* hits,
                    std::uint32_t* declined) {
@@ -47,7 +47,7 @@ __global__ void __launch_bounds__(kThreads, 2)
   }
 }
 
-// The filter in doubles, for the triangles that decide_on_grid leaves open.
+// Runs the filter in doubles on the triangles that decide_on_grid leaves open.
 __global__ void __launch_bounds__(kThreads, 3)
     filter_listed(const __grid_constant__ QueryPairs pairs, PairList from, PairList left, std::uint32_t* hits) {
   for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *from.count; n += gridDim.x * kThreads) {
@@ -60,7 +60,8 @@ __global__ void __launch_bounds__(kThreads, 3)
   }
 }
 
-// Tests triangles of doubles, relative to the reference's first vertex, against its slabs. Lists those beyond no slab.
+// Tests triangles of doubles, relative to the reference's first vertex, against the reference's slabs. Lists the
+// triangles that are beyond no slab.
 __global__ void __launch_bounds__(kThreads)
     decide_doubles_by_slabs(const __grid_constant__ exact::PreparedTriangle seen,
                             const __grid_constant__ ArrayPairs pairs, std::uint32_t count, PairList left,
@@ -83,7 +84,7 @@ __global__ void __launch_bounds__(kThreads)
   add_of_block(left, left, open && finite ? 0 : -1, i);
 }
 
-// The filter in doubles, and the test for a shared vertex.
+// Runs the filter in doubles, and the test for a shared vertex.
 __global__ void __launch_bounds__(kThreads, 2)
     filter_doubles(const __grid_constant__ ArrayPairs pairs, PairList from, PairList left, std::uint32_t* hits) {
   decide_listed(pairs, from, left, hits, nullptr, [](const double* c, bool& yes) {
@@ -159,7 +160,7 @@ __global__ void __launch_bounds__(kThreads)
 
 std::uint32_t blocks_for(std::uint32_t things) { return (things + kThreads - 1) / kThreads; }
 
-// Each list reuses the memory of the list before the previous one, which is no longer needed.
+// Each list uses the memory of the list two before it, which is no longer needed.
 struct QueryLists {
   PairList left[kQueryLists];
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each warp takes tiles of triangles and prefetches them into shared memory with asynchronous copies. Memory bandwidth
-// limits the kernel. The reference's slabs decide most triangles. The others are queued until there are 32 or their
-// tile is about to be overwritten; then the filter in floats decides them together. It leaves about one in a hundred,
-// which are listed.
+// limits the kernel. The reference's slabs decide most triangles. The other triangles are queued until there are 32 of
+// them or their tile will be overwritten; then the filter in floats decides them together. The filter leaves about one
+// triangle in a hundred open, and the kernel lists these triangles.
 #include <cuda_pipeline_primitives.h>
 
 #include <algorithm>
@@ -17,9 +17,10 @@ namespace {
 using exact::detail::Finding;
 
 constexpr std::uint32_t kEach = 4, kTile = 32 * kEach, kTileFloats = 9 * kTile;  // kEach: triangles for each thread
-// Tiles: prefetched ones, the current one, and earlier ones that may still have queued triangles.
+// Shared memory has room for kStages tiles: prefetched tiles, the current tile, and a tile that may have queued
+// triangles.
 constexpr std::uint32_t kAhead = 2, kKept = 1, kStages = kAhead + 1 + kKept, kQueue = 256, kUnsure = 64;
-constexpr std::uint32_t kWarps = 6, kBlocks = 2;  // kBlocks: for each multiprocessor, as its shared memory allows
+constexpr std::uint32_t kWarps = 6, kBlocks = 2;  // kBlocks: thread blocks that fit into a multiprocessor
 constexpr std::uint32_t kAll = 0xffffffffu;
 
 struct WarpMemory {
@@ -29,7 +30,7 @@ struct WarpMemory {
   std::uint16_t queue[kQueue];  // stage * kTile + index in the tile; first in, first out
 };
 
-// Starts to fetch a tile. Triangles beyond the end become zeros.
+// Starts to fetch a tile. Triangles beyond the end of the chunk become zeros.
 __device__ void fetch(const QueryChunk& chunk, bool by_vectors, std::uint32_t tile, float* to) {
   const std::uint32_t lane = threadIdx.x % 32;
   const std::uint64_t at = std::uint64_t{tile} * kTile;
@@ -54,7 +55,7 @@ __device__ std::uint32_t lanes_before(std::uint32_t lanes) {
 // Queues the triangles of a tile that the slabs leave open.   Returns: the queue's new end.
 __device__ std::uint32_t queue_open(const exact::PreparedTriangle& reference, WarpMemory& warp, std::uint32_t stage,
                                     std::uint32_t end) {
-  // Each thread reads nine vectors of 4 kEach bytes. Nine is odd, so no two threads read from one bank at once.
+  // Each thread reads nine vectors of 4 * kEach bytes. Nine is odd, so no two threads read from one bank at once.
   struct alignas(4 * kEach) Vector {
     float v[kEach];
   };
@@ -111,7 +112,7 @@ __global__ void __launch_bounds__(kWarps * 32, kBlocks)
     __pipeline_wait_prior(kAhead);
     __syncwarp();
     for (std::uint32_t k = kKept; k > 1; --k) due[k] = due[k - 1];
-    due[1] = end;  // decide what was queued kKept tiles ago, because the next fetch overwrites its memory
+    due[1] = end;  // triangles queued kKept tiles ago are due: the next fetch overwrites their tile
     end = queue_open(reference, warp, stage, end);
     const bool last = tile + step >= tiles;
     __syncwarp();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Error messages about users' files; builds are cached and reproducible.
+// Tests the builds of users' CUDA files, the error messages, and the cache of reproducible builds.
 #include "cuda/subject/cuda_subject.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ class CudaSubject : public testing::Test {
                                const std::vector<std::string>& flags = {}) const {
     return build_cuda_subject(file(text), function, flags, scratch_.path() / "cache");
   }
-  // The error message about the text, without the folder.
+  // The error message about the source text, without the folder's path.
   std::string complaint(const std::string& text, const std::string& function = "intersects") const {
     try {
       build(text, function);
@@ -123,7 +123,7 @@ TEST_F(CudaSubject, InDoubleDecidesDoublesAsTheyAre) {
     const TwinLibrary twin(one.twin, Scalar::f64);
     std::int8_t answers[2] = {};
     twin.decide(std::span(doubles), answers);
-    EXPECT_EQ(answers[0], fuses);  // rounded, the product equals the other operand
+    EXPECT_EQ(answers[0], fuses);  // a rounded product equals the other operand
     EXPECT_EQ(answers[1], 1);
     const std::uint64_t all = ~std::uint64_t{0}, none = 0;
     EXPECT_EQ(twin.decide_fusing(doubles[0], {&all, 1}), fuses);
@@ -136,7 +136,7 @@ TEST_F(CudaSubject, InDoubleDecidesDoublesAsTheyAre) {
   const TwinLibrary twin(in_float[0].twin, Scalar::f32);
   const std::uint64_t none = 0;
   std::int8_t answers[2] = {};
-  EXPECT_EQ(twin.decide_fusing(doubles[1], {&none, 1}), 0);  // as float32 stores the pair
+  EXPECT_EQ(twin.decide_fusing(doubles[1], {&none, 1}), 0);  // float32 rounds both operands to 1
   EXPECT_THROW(twin.decide(std::span(doubles), answers), std::logic_error);
 }
 
@@ -175,7 +175,7 @@ TEST_F(CudaSubject, HasTwinsOfWhatPeopleWrite) {
         build(before + "\n__device__ bool intersects(const float a[9], const float b[9]) { " + body + " }");
     return builds[0].why_no_twin + builds[1].why_no_twin + builds[3].why_no_twin;
   };
-  // Vector types, another kernel of the file, a host function.
+  // The file has vector types, another kernel and a host function.
   EXPECT_EQ(
       why("const float3 c = cross(make_float3(a[0], a[1], a[2]), make_float3(b[0], b[1], b[2])); return c.x > c.y * "
           "c.z;",
@@ -184,7 +184,7 @@ TEST_F(CudaSubject, HasTwinsOfWhatPeopleWrite) {
           "u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x); }\n__global__ void other(float* x) { x[0] = __sinf(x[1]); }\n"
           "int main() { return 0; }"),
       "");
-  // Math functions that the toolkit computes in full precision, with their own tables and loops.
+  // The toolkit computes these math functions in full precision, with tables and loops.
   EXPECT_EQ(why("return cosf(a[0]) < b[0] && atan2f(a[1], b[1]) < 1 && sinf(a[2]) < hypotf(b[2], 1);"), "");
   EXPECT_EQ(why("return nextafterf(a[3], 1) < lroundf(b[3]) && fdimf(a[0], b[0]) < scalbnf(b[1], 3);"), "");
   // Other math functions consist of approximate operations.
@@ -192,12 +192,12 @@ TEST_F(CudaSubject, HasTwinsOfWhatPeopleWrite) {
   EXPECT_NE(why("return cbrtf(a[2]) < b[2];").find("cannot be replayed: lg2.approx.f32"), std::string::npos);
   EXPECT_NE(why("return pow((double)a[0], 2.0) < b[0];").find("cannot be replayed: rcp.approx.ftz.f64"),
             std::string::npos);
-  // Inline assembly with a scope.
+  // Inline assembly may have a scope.
   EXPECT_EQ(
       why("int is; asm(\"{ .reg .pred q; setp.gt.f32 q, %1, %2; selp.s32 %0, 1, 0, q; }\" : \"=r\"(is) : \"f\"(a[0]), "
           "\"f\"(b[0])); return is;"),
       "");
-  // A union, and an array of structs that is sorted.
+  // The function uses a union, and sorts an array of structs.
   EXPECT_EQ(why("E e[3]; for (int i = 0; i < 3; ++i) { e[i].at.f = a[3 * i] * b[i]; e[i].i = i; }\n"
                 "for (int i = 0; i < 2; ++i) for (int j = 0; j < 2 - i; ++j) if (e[j + 1].at.f < e[j].at.f) { E t = "
                 "e[j]; e[j] = e[j + 1]; "
@@ -237,7 +237,7 @@ TEST_F(CudaSubject, KeepsWhatItBuilds) {
   for (const auto& entry : fs::directory_iterator(scratch_.path() / "cache"))
     EXPECT_TRUE(entry.path().filename().string().starts_with("twin-") ||
                 entry.path().filename().string().starts_with("code-"));
-  // A damaged file in the cache is built again.
+  // The next build replaces a damaged file in the cache.
   fs::resize_file(first[1].twin, fs::file_size(first[1].twin) - 100);
   EXPECT_EQ(build(kSimple)[1].twin, first[1].twin);
   EXPECT_EQ(content(elsewhere[1].twin), content(first[1].twin));

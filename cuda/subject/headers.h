@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stand-ins for standard headers that device code often includes. NVRTC does not have them; their device functions are
-// built into NVRTC or defined here.
+// Stand-ins for standard headers that device code often includes and NVRTC lacks. Their device functions are built into
+// NVRTC or defined here.
 #pragma once
 
 namespace graze::cuda {

@@ -51,7 +51,7 @@ fs::path find_ptxas(const fs::path& library) {
   }
   std::error_code none;
   folders.push_back(fs::weakly_canonical(library, none).parent_path() / "../bin");
-  // …/targets/x86_64-linux/lib
+  // The library may be in …/targets/x86_64-linux/lib.
   folders.push_back(fs::weakly_canonical(library, none).parent_path() / "../../../bin");
   std::istringstream path(std::getenv("PATH") ? std::getenv("PATH") : "");
   for (std::string folder; std::getline(path, folder, ':');) folders.push_back(folder);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Replaces cuda_subject.cpp and everything that it needs in builds of scripts/campaign. Every build links
-// graze_campaign with this file. If a function of cuda_subject.h were missing here, the linker would take it from
-// cuda_subject.cpp, and then refuse the others because they are defined twice.
+// Replaces cuda_subject.cpp and the files that it needs in builds of scripts/campaign. Every build links graze_campaign
+// with this file. If a function of cuda_subject.h were missing here, the linker would add cuda_subject.cpp, and then
+// report all other functions as defined twice.
 #include "core/error.h"
 #include "cuda/subject/cuda_subject.h"
 

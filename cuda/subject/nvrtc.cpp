@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> places() {
-  std::vector<fs::path> all = {""};  // the library path
+  std::vector<fs::path> all = {""};  // "" stands for the library path
   for (const char* variable : {"CUDA_HOME", "CUDA_PATH"}) {
     if (const char* home = std::getenv(variable)) all.push_back(fs::path(home) / "lib64");
   }
@@ -34,9 +34,9 @@ std::vector<fs::path> places() {
   return all;
 }
 
-// Runs the work in a child process and returns its result, because NVRTC may compile forever, crash, or catch signals
-// itself.
-// Throws: what the work throws, as CompileError or std::runtime_error; Stopped, within 0.1 s of the request.
+// Runs the work in a child process, because NVRTC may compile forever, crash, or catch signals.
+// Returns: the work's result.   Throws: CompileError or std::runtime_error, if the work does; Stopped, within 0.1 s of
+// the request.
 std::string in_child(const std::function<std::string()>& work) {
   const StopSignals stops;
   Child child([&](int pipe) {
@@ -69,7 +69,9 @@ std::string in_child(const std::function<std::string()>& work) {
 template <class Function>
 void find(void* library, const char* name, Function& function) {
   function = reinterpret_cast<Function>(dlsym(library, name));
-  if (!function) throw std::runtime_error(fmt::format("expected {} in NVRTC, found none", name));
+  if (!function)
+    throw std::runtime_error(
+        fmt::format("this NVRTC has no function {}; install NVRTC of the CUDA Toolkit 12 or 13", name));
 }
 
 }  // namespace
@@ -83,7 +85,7 @@ Nvrtc::Nvrtc() {
   }
   if (!library)
     throw std::runtime_error(
-        "expected NVRTC of the CUDA Toolkit (libnvrtc.so.13 or .12), found none; install the toolkit, or its package "
+        "cannot find NVRTC of the CUDA Toolkit (libnvrtc.so.13 or .12); install the toolkit, or its package "
         "cuda-nvrtc, and set CUDA_HOME if it is in an unusual folder");
   int (*get_version)(int*, int*) = nullptr;
   find(library, "nvrtcVersion", get_version);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// NVRTC, the CUDA Toolkit's compiler as a library, loaded at first use. Building this needs neither nvcc nor CUDA
-// headers; programs that do not compile CUDA run without NVRTC.
+// NVRTC, the CUDA Toolkit's compiler as a library, loaded at first use. This file compiles without nvcc and CUDA
+// headers. Programs that do not compile CUDA run without NVRTC.
 #pragma once
 
 #include <stdexcept>
@@ -9,7 +9,7 @@
 
 namespace graze::cuda {
 
-// The compiler refused a source; what() is its whole log.
+// The compiler refused a source; what() is the whole log of the compiler.
 struct CompileError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -17,15 +17,15 @@ struct CompileError : std::runtime_error {
 class Nvrtc {
  public:
   // The first NVRTC found on the library path, below CUDA_HOME, CUDA_PATH and /usr/local/cuda*, or beside this program.
-  // Throws: std::runtime_error when there is none; one line that says what to install.
+  // Throws: std::runtime_error if NVRTC is not found, with one line that says what to install.
   static const Nvrtc& get();
 
-  // Compiles the source to PTX, in a process of its own. `name` is the source's name in messages and line tables.
+  // Compiles the source to PTX in a separate process. `name` is the source's name in messages and line tables.
   // Throws: CompileError; Stopped; std::runtime_error if NVRTC crashes.
   std::string ptx(const std::string& source, const std::string& name, const std::vector<std::string>& options) const;
 
   const std::string& version() const { return version_; }  // "13.0"
-  const std::string& library() const { return library_; }  // path of its file
+  const std::string& library() const { return library_; }  // path of the loaded file
 
  private:
   Nvrtc();

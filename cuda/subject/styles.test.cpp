@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Twenty predicates in different styles (cuda/subject/styles). Each has a twin that equals the same source compiled by
-// the host's compiler, or is refused by name. Skipped without NVRTC.
+// Tests of twenty predicates in different styles (cuda/subject/styles). Each predicate has a twin with the verdicts of
+// the same source compiled by the host's compiler, or graze refuses it with the reason. Skipped without NVRTC.
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 const fs::path kStyles = fs::path(GRAZE_SOURCE_DIR) / "cuda/subject/styles";
 
-// Why a style has no twin, as a part of the message; empty if it has a twin.
+// For each style, the part of the message that says why it has no twin; empty for a style with a twin.
 const std::map<std::string, std::string> kStyleTwins = {
     {"approximate", "cannot be replayed: rsqrt.approx.f32"},
     {"bit_tricks", ""},
@@ -51,7 +51,7 @@ const std::map<std::string, std::string> kStyleTwins = {
     {"templates", ""},
 };
 
-// One folder for all tests of this process.
+// A cache for all tests of this process.
 const fs::path& cache() {
   static const Scratch folder(fs::temp_directory_path());
   return folder.path();
@@ -82,8 +82,8 @@ std::vector<Pair> pairs_of_all_strata(std::uint64_t each) {
   return pairs;
 }
 
-// The style compiled by the host's compiler with every operation rounded. cuda/subject/styles/host.h replaces CUDA's
-// functions.
+// The answers of the style compiled by the host's compiler, which rounds every operation. cuda/subject/styles/host.h
+// replaces CUDA's functions.
 std::vector<std::int8_t> on_host(const std::string& style, Scalar scalar, const std::vector<Pair>& pairs) {
   const Scratch scratch(cache());
   const fs::path in = scratch.path() / "host.cpp", out = scratch.path() / "host.so";
@@ -143,7 +143,7 @@ void expect_twin_equals_host(const std::string& style) {
   std::map<int, int> answers;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     ++answers[found[i]];
-    // The style copies the sign of a difference. An operation's NaN is negative on x86, but not on a GPU or in a twin.
+    // min_max copies the sign of a difference. If that is NaN, it is negative on x86, but not on a GPU or in a twin.
     const Vec3<float>&p = pairs[i].a[0], &q = pairs[i].b[0];
     if (style == "min_max" && std::isnan(p.y * q.y - p.z * q.z)) continue;
     if (found[i] != expected[i] && wrong++ < 3)
@@ -179,7 +179,7 @@ void expect_unfused_is_without_contraction(const std::string& style) {
 
 class Style : public testing::TestWithParam<std::pair<const std::string, std::string>> {};
 
-// One test for each style, because its three builds take most of the time.
+// One test checks all properties of a style, because the style's builds take most of the time.
 TEST_P(Style, HasATwinThatEqualsTheHostCompilerOrIsRefusedByName) {
   if (std::string why; no_nvrtc(why)) GTEST_SKIP() << why;
   const auto& [style, refusal] = GetParam();

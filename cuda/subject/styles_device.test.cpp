@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares device and twin of every style and variant, on GRAZE_PAIRS pairs of all strata (default: one million).
-// The builds are in the folder `styles` beside this program: cmake --build … --target graze_device_styles.
+// Compares device and twin of every style and variant, on GRAZE_PAIRS pairs of all strata (default: one million). The
+// builds are in the folder `styles` beside this program; `cmake --build … --target graze_device_styles` makes them.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -42,7 +42,7 @@ TEST_F(StylesOnADevice, EqualTheirTwins) {
         std::cout << lane.lane << ": differs on " << row.stratum << " " << index << "\n";
     }
   }
-  if (const char* file = std::getenv("GRAZE_PROOF")) {  // writes the record
+  if (const char* file = std::getenv("GRAZE_PROOF")) {  // the file for the proof record
     EXPECT_TRUE((std::ofstream(file) << to_json(record).dump(1) << "\n").flush());
   }
 }
@@ -59,12 +59,12 @@ TEST_F(StylesOnADevice, EqualTheirTwinsOnDoubles) {
   }
 }
 
-TEST_F(StylesOnADevice, AWrongTwinShows) {  // the twin of another variant
+TEST_F(StylesOnADevice, AWrongTwinShows) {  // the wrong twin is that of another variant
   const auto of = [&](const std::string& name) {
     for (const StyleBuild& style : styles_) {
       if (style.name == name) return style.build;
     }
-    throw std::runtime_error("expected the style " + name);
+    throw std::runtime_error("no build of the style " + name);
   };
   CudaBuild build = of("edge_loops/f32/cuda-fma");
   build.twin = of("edge_loops/f32/cuda-nofma").twin;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stores the builds of cuda/subject/styles in a folder: PTX, twin and a line about both. With them, tests can run on a
-// machine that has a device but neither NVRTC nor a compiler.
+// Stores the builds of cuda/subject/styles in a folder: PTX, twin and a line about both. With these files, tests can
+// run on a machine that has a device but neither NVRTC nor a compiler.
 #pragma once
 
 #include <filesystem>
@@ -16,10 +16,10 @@ struct StyleBuild {
   CudaBuild build;
 };
 
-// Builds every style and writes the builds that have a twin.
+// Builds every style, and writes the builds with a twin to the folder.
 void write_styles(const std::filesystem::path& styles, const std::filesystem::path& folder);
 
-// Reads those builds; empty when the folder has none.
+// Reads the builds that write_styles has written; empty if the folder has none.
 std::vector<StyleBuild> read_styles(const std::filesystem::path& folder);
 
 }  // namespace graze::cuda

@@ -19,7 +19,7 @@ namespace {
 
 constexpr unsigned kBlock = 1u << 22;  // pairs in one block: 302 MB of float coordinates
 constexpr unsigned kThreadsOfBlock = 256;
-constexpr std::size_t kStackBytes = 16384;  // of each thread, for recursion
+constexpr std::size_t kStackBytes = 16384;  // stack of each thread, for recursion
 
 __global__ void widen(const float* from, double* to, std::size_t count) {
   const std::size_t i = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
@@ -44,14 +44,14 @@ class Subject final : public SubjectOnDevice {
     decide_all(pairs, doubles_, answers);
   }
 
-  // coordinates: device memory, 18 arrays of n.
+  // Decides n pairs. coordinates: 18 arrays of n coordinates in device memory.
   template <class Real>
   void decide_block(const Real* coordinates, unsigned n, std::int8_t* answers) {
     launch(in_its_type(coordinates, n), n);
     check(cudaMemcpy(answers, answers_.at_least(n), n, cudaMemcpyDeviceToHost));
   }
 
-  // The coordinates in the kernel's type: unchanged, or converted to doubles.
+  // The coordinates in the type of the kernel's function: unchanged, or converted to doubles.
   const void* in_its_type(const float* coordinates, unsigned n) {
     if (scalar_ == Scalar::f32) return coordinates;
     const std::size_t count = std::size_t{n} * kCoordinates;
@@ -96,7 +96,7 @@ class Subject final : public SubjectOnDevice {
   DeviceArray<signed char> answers_;
 };
 
-// Copies the block's pairs from the device, as its kernels saw them.
+// Copies the pairs of a block from the device, which the kernels have decided.
 template <class Real>
 void fetch(const Real* on_device, std::vector<BasicPair<Real>>& pairs) {
   std::vector<Real> columns(pairs.size() * kCoordinates);
@@ -130,7 +130,7 @@ std::unique_ptr<SubjectOnDevice> open_on_device(const CudaBuild& build) {
 }
 
 SubjectCosts time_subjects(std::span<const CudaBuild> builds, std::uint32_t count, int passes) {
-  constexpr int kLaunches = 4;  // timed together, to make the few microseconds of a launch negligible
+  constexpr int kLaunches = 4;  // launches timed together, because each launch costs a few microseconds
   std::string why_not;
   const auto device = open_device(why_not);
   if (!device) throw std::runtime_error(why_not);
@@ -143,7 +143,7 @@ SubjectCosts time_subjects(std::span<const CudaBuild> builds, std::uint32_t coun
   for (const CudaBuild& build : builds) {
     subjects.push_back(std::make_unique<Subject>(build));
     from.push_back(subjects.back()->in_its_type(coordinates, count));
-    subjects.back()->launch(from.back(), count);  // allocates and loads
+    subjects.back()->launch(from.back(), count);  // the first launch allocates memory and loads the kernel
   }
   check(cudaDeviceSynchronize());
   SubjectCosts costs{device->name, std::vector<std::vector<double>>(builds.size())};

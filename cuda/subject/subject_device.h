@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds of a user's CUDA source on a device, and the proof that their twins give the same answers.
+// Runs builds of a user's CUDA source on a device, and proves that their twins give the same answers.
 #pragma once
 
 #include <cstdint>
@@ -19,28 +19,28 @@ class SubjectOnDevice {
  public:
   virtual ~SubjectOnDevice() = default;
 
-  // Answers for each pair: -1 declined, 0 disjoint, 1 intersects.
-  // Throws: std::runtime_error on any CUDA error. After an error that the user's code causes, this process can no
-  // longer use the device.
+  // Writes an answer for each pair: -1 for declined, 0 for disjoint, 1 for intersects.
+  // Throws: std::runtime_error on any CUDA error. After an error in the user's code, this process can no longer use the
+  // device.
   virtual void decide(std::span<const Pair> pairs, std::int8_t* answers) = 0;
-  // Requires: a kernel of doubles.
+  // Requires: a function of doubles.
   virtual void decide(std::span<const DoublePair> pairs, std::int8_t* answers) = 0;
 };
 
 // Throws: std::runtime_error without a device, when built without CUDA, or when the driver refuses the PTX.
 std::unique_ptr<SubjectOnDevice> open_on_device(const CudaBuild& build);
 
-// Nanoseconds per pair for each build's kernel, on `count` pairs of the stratum `uniform` that are already in device
-// memory, one value for each pass. In a pass all builds take turns. Only `scalar` and `ptx` of a build are read.
-// Throws: as open_on_device; std::runtime_error if the device does not answer.
+// Measures each build's kernel on `count` pairs of the stratum `uniform` in device memory, in nanoseconds per pair.
+// Each pass measures all builds, one after another. Only `scalar` and `ptx` of a build are read. Throws: as
+// open_on_device; std::runtime_error if the device does not answer.
 struct SubjectCosts {
   std::string device;                            // "NVIDIA H100 80GB HBM3"
-  std::vector<std::vector<double>> nanoseconds;  // of each build
+  std::vector<std::vector<double>> nanoseconds;  // for each build, one value for each pass
 };
 SubjectCosts time_subjects(std::span<const CudaBuild> builds, std::uint32_t count, int passes);
 
-// Compares each build that has a twin with that twin, on `options.twin_pairs` pairs over all strata. Only functions of
-// doubles can take pairs of doubles. In the record, the twin decided all counted pairs, and there are no trace hashes.
+// Compares each build with its twin, if it has one, on `options.twin_pairs` pairs over all strata. Only functions of
+// doubles can take pairs of doubles. The record has no trace hashes, and its twin decided all counted pairs.
 // Throws: as open_on_device.
 struct NamedBuild {
   std::string lane;  // "mine/f32/cuda-fma"

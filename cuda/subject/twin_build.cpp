@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The text of subject.h, the twins' operations and twin_exports.inl, concatenated, in pieces.
+// The concatenated text of subject.h, the twins' operations and twin_exports.inl, cut into pieces.
 constexpr const char* kTwinText[] = {
 #include "cuda/generated/twin_text.inc"
 };
@@ -36,13 +36,13 @@ std::string compiler() {
   return named && *named ? named : "c++";
 }
 
-// A line that identifies the compiler.
+// The first line that the compiler prints about its version.
 std::string version_of(const std::string& program, const fs::path& cache) {
   const Scratch scratch(cache);
   std::string said;
   if (run_program({{program, "--version"}}, scratch.path(), said) != 0)
-    throw std::runtime_error(fmt::format("expected a C++ compiler, '{}' ($CXX, else c++), for the twin: {}", program,
-                                         said.substr(0, said.find('\n'))));
+    throw std::runtime_error(fmt::format("cannot run the C++ compiler '{}' ($CXX, else c++), which builds the twin: {}",
+                                         program, said.substr(0, said.find('\n'))));
   return said.substr(0, said.find('\n'));
 }
 
@@ -76,15 +76,14 @@ fs::path build_twin(const twin::Module& module, Scalar scalar, bool contracted, 
 
   const Scratch scratch(cache);
   const fs::path in = scratch.path() / "twin.cpp", out = scratch.path() / "twin.so";
-  if (!(std::ofstream(in, std::ios::binary) << source).flush())
-    throw std::runtime_error(in.string() + ": cannot be written");
+  if (!(std::ofstream(in, std::ios::binary) << source).flush()) throw std::runtime_error("cannot write " + in.string());
   words.insert(words.end(), {"-o", out.string(), in.string()});
   std::string said;
   if (run_program({words}, scratch.path(), said) != 0) {
     const auto error = said.find("error");
-    const auto start = error == said.npos ? 0 : said.rfind('\n', error) + 1;  // npos + 1 is 0
-    throw std::runtime_error(fmt::format("the twin does not compile with {}: {}", compiler(),
-                                         said.substr(start, said.find('\n', start) - start)));
+    const auto start = error == said.npos ? 0 : said.rfind('\n', error) + 1;  // 0 without a newline
+    throw std::runtime_error(
+        fmt::format("{} cannot compile the twin: {}", compiler(), said.substr(start, said.find('\n', start) - start)));
   }
   keep_file(out, library);
   return library;

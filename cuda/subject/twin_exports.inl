@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The source of a twin's shared library, after cuda/twin/twin_ops*.h and subjects/include/graze/subject.h: the kernels
-// that the generator writes, and the functions that others call; see cuda/twin/twin_library.h. The kernel is the one
-// that wrapper.cpp appends.
+// The last part of the source of a twin's shared library. Before it come subjects/include/graze/subject.h and
+// cuda/twin/twin_ops*.h. It has the kernels that the generator writes, and the exported functions; see
+// cuda/twin/twin_library.h. The kernel is graze_subject_kernel, which wrapper.cpp appends to the user's source.
 #include <cstddef>
 #include <iterator>
 #include <string_view>
@@ -23,7 +23,7 @@ struct ComparisonSite {
   SourceLine at, from;
   int ptx_line;
 };
-struct Comparison {  // as in cuda/twin/twin.h
+struct Comparison {  // the same struct as in cuda/twin/twin.h
   double left, right;
   int ptx_line, outcome;
 };
@@ -36,7 +36,7 @@ namespace {
 
 using Kernel = std::tuple_element_t<0, Kernels>;
 
-// Keeps the first `most` comparisons.
+// Fuses some sites, and stores the first `most` comparisons.
 struct Watched : SomeFused {
   Comparison* made;
   std::size_t most;
@@ -49,9 +49,9 @@ struct Watched : SomeFused {
   }
 };
 
-constexpr int kNoAnswer = 2;  // the kernel ended before it wrote an answer
+constexpr int kNoAnswer = 2;  // means that the kernel ended before it wrote an answer
 
-// One pair, as a block of one: stride 1, so that its coordinates are the 18 arrays.
+// Decides one pair as a block of one pair. With stride 1, the pair's coordinates are the 18 arrays.
 template <class Fuse>
 int decide(const Real* pair, const Fuse& fuse) {
   const u32 one = 1;

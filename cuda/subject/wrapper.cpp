@@ -33,7 +33,7 @@ extern "C" __global__ void graze_subject_kernel(const {0}* coordinates, unsigned
 }}
 )";
 
-// The first error in a log, as "FILE:LINE: what".
+// The first error in the compiler's log, as "FILE:LINE: message".
 std::string first_error(const std::string& log) {
   static const std::regex kError(R"(([^\n]*?)\((\d+)\): (?:catastrophic )?error: ([^\n]*))"),
       kOther("[^\n]*error[^\n]*");
@@ -75,7 +75,7 @@ Scalar scalar_of(const std::string& text, const fs::path& source, const std::str
   } catch (const CompileError& error) {
     throw UsageError(first_error(error.what()));
   }
-  try {  // finds its type in the error message about an undefined template
+  try {  // the error message about an undefined template has the function's type
     compile(with_lines(text, source) + fmt::format("\ntemplate <class T> struct graze_found;\n"
                                                    "graze_found<decltype(&{})> graze_type;\n",
                                                    function));

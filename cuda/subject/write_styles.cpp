@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze_write_styles FOLDER writes the builds of cuda/subject/styles, to be copied to a machine with a device.
+// `graze_write_styles FOLDER` writes the builds of cuda/subject/styles to a folder, for a machine with a device.
 #include <exception>
 #include <iostream>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs on which lanes must differ; see cuda/twin/canaries.pairs.
+// Tests that builds differ on the pairs of cuda/twin/canaries.pairs.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -13,14 +13,14 @@
 namespace graze::cuda {
 
 namespace twin_wrong {
-extern const TwinTable kTwinTable;  // contracts the right-hand product first
+extern const TwinTable kTwinTable;  // twins that contract the right product first
 }
 
 namespace {
 
 const std::string& text(const corpus::Entry& entry, const char* key) {
   const std::string* value = corpus::field(entry, key);
-  if (!value) throw std::runtime_error("a canary without " + std::string(key));
+  if (!value) throw std::runtime_error("a canary has no field " + std::string(key));
   return *value;
 }
 
@@ -86,14 +86,14 @@ TEST(Canaries, CpuFmaAndCudaFmaDiffer) {
   int lanes_that_differ = 0;
   for (const auto& [lane, count] : differ) {
     lanes_that_differ += count > 0;
-#ifdef GRAZE_RELEASE_BUILD  // what the host compiler contracts depends on the optimisation level
+#ifdef GRAZE_RELEASE_BUILD  // the host compiler's contractions depend on the optimisation level
     EXPECT_GT(count, 0) << lane;
 #endif
   }
   EXPECT_GT(lanes_that_differ, 0);
 }
 
-// If the compiler contracts like nvcc, cpu-fma must still differ from cpu.
+// Even if the host's compiler contracts like nvcc, cpu-fma must differ from cpu.
 TEST(Canaries, CpuFmaAndCpuDiffer) {
   std::map<std::string, int> differ;
   for (const char* kind : {"cuda_nofma", "cpu_fma_gcc", "cpu_fma_clang", "right_first"}) {

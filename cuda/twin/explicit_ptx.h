@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels' PTX with every contraction written out, as text that the driver assembles; see cuda/twin/prove.h.
+// The kernels' PTX with every contraction written out, as text for the driver to assemble; see cuda/twin/prove.h.
 #pragma once
 
 #include <string>
@@ -8,7 +8,8 @@
 
 namespace graze::cuda {
 
-// Throws: std::invalid_argument for a variant without a twin.
+// The text for the variant. wrong_rule: with wrong contractions.   Throws: std::invalid_argument for a variant without
+// a twin.
 std::string explicit_ptx(Variant variant, bool wrong_rule);
 
 }  // namespace graze::cuda

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twins of users' CUDA code, which are libraries of cuda/subject, and the functions common to them and our own
-// twins.
+// The twins of users' CUDA code, which cuda/subject builds as libraries, and the functions common to these twins and
+// our own twins.
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -12,7 +12,7 @@
 namespace graze::cuda {
 namespace {
 
-// Twins of users' CUDA code, by lane id.
+// The twin of a user's CUDA code. foreign_twins() has these twins by lane id.
 struct ForeignTwin {
   std::unique_ptr<TwinLibrary> library;
   double most_seconds = 0;
@@ -59,7 +59,7 @@ Verdict decide_fusing(const Lane& lane, const AnyPair& pair, std::span<const std
   if (lane.foreign) return decide_comparing(lane, pair, fused, {}, none);
   const auto decide = [&](const auto& twin, const auto& own) {
     if (!twin.decide_fusing || fused.size() * 64 < twin.sites.size())
-      throw std::invalid_argument("decide_fusing: no such twin, or too few bits for its sites");
+      throw std::invalid_argument("decide_fusing: the lane has no such twin, or there are too few bits for its sites");
     return twin.decide_fusing(own, fused.data());
   };
   const TwinRow& row = twin_row(lane);

@@ -22,7 +22,7 @@
 namespace graze::cuda {
 namespace {
 
-constexpr std::uint32_t kBlockPairs = 1u << 23;  // 604 MB of coordinates in float32
+constexpr std::uint32_t kBlockPairs = 1u << 23;  // pairs in one block: 604 MB of coordinates in float32
 
 // The explicit PTX, assembled by the driver for this device.
 class ExplicitKernels {
@@ -48,7 +48,7 @@ class ExplicitKernels {
   cudaLibrary_t library_;
 };
 
-// The results of a lane on a block, from the default build and from the explicit PTX.
+// The results of a lane on a block: [0] from the default build, [1] from the explicit PTX.
 struct LaneRun {
   DeviceArray<std::uint32_t> intersects[2], declined[2];
   DeviceArray<std::uint64_t> hashes[2];
@@ -187,7 +187,7 @@ class Prover {
     }
   }
 
-  // Copies the first pairs of the block from the device, as its kernels saw them.
+  // Copies the first pairs of the block from the device, which the kernels have decided.
   void fetch_pairs(std::uint32_t n, std::uint32_t sample) {
     std::vector<Real> column(sample);
     pairs_.resize(sample);

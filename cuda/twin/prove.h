@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Verifies the twins on a device, over all strata, for every CUDA lane. It compares verdicts and trace hashes of the
-// default build with those of the explicit PTX, in which every contraction is written out and which the driver
-// assembles. It compares a sample with the twin, which is generated from the explicit PTX.
+// Proves the twins on a device, over all strata, for every CUDA lane. The proof compares verdicts and trace hashes of
+// the default build with those of the explicit PTX. In the explicit PTX, every contraction is written out; the driver
+// assembles it. A sample of the pairs is also compared with the twin, which is generated from the explicit PTX.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,16 @@
 namespace graze::cuda {
 
 struct ProofOptions {
-  std::uint64_t pairs = 10'000'000'000;    // for each lane, over all strata
-  std::uint64_t twin_pairs = 100'000'000;  // how many of them also run on the twin
+  std::uint64_t pairs = 10'000'000'000;    // pairs for each lane, over all strata
+  std::uint64_t twin_pairs = 100'000'000;  // the number of these pairs that the twin decides too
   std::uint64_t seed = 1;
-  bool of_doubles = false;              // pairs of doubles and the lanes in double; else pairs of float32
-  std::vector<std::string> lanes = {};  // shell patterns; all CUDA lanes when empty
-  bool wrong_rule = false;  // the explicit PTX contracts the right product first, which must give differences
+  bool of_doubles = false;              // true: pairs of doubles and lanes in double; false: pairs of float32
+  std::vector<std::string> lanes = {};  // shell patterns of names; empty: all CUDA lanes
+  bool wrong_rule = false;  // the explicit PTX contracts the right product first, and differences must appear
   std::function<void(const std::string& line)> progress = nullptr;  // called after each stratum
 };
 
-// Pairs compared, and differences in verdict or trace hash.
+// The numbers of pairs compared, and of differences in verdicts and in trace hashes.
 struct StratumProof {
   std::string stratum;
   std::uint64_t pairs = 0, verdict_differences = 0, trace_differences = 0;  // default build against explicit PTX
@@ -32,7 +32,7 @@ struct StratumProof {
 
 struct LaneProof {
   std::string lane;
-  std::string hash, trace_hash;  // of the two kernels; see TwinFunctions in twin_table.h
+  std::string hash, trace_hash;  // hashes of the two kernels; see TwinFunctions in twin_table.h
   std::vector<StratumProof> strata;
 
   std::uint64_t pairs() const;
@@ -48,7 +48,7 @@ struct ProofRecord {
   double seconds = 0;
   std::vector<LaneProof> lanes;
 
-  bool verified() const;  // every lane
+  bool verified() const;  // whether every lane is verified
 };
 
 // Throws: std::runtime_error without a device, or on any CUDA error.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stored PTX, from which the twins are built without nvcc, equals nvcc's current output.
+// Tests that the stored PTX, from which builds without nvcc make the twins, equals nvcc's current output.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -17,7 +17,7 @@ std::vector<std::string> lines_of(const std::string& path) {
   return lines;
 }
 
-// The first difference between the files, with a few lines of each.
+// The first difference between the files, with a few lines of each file.
 std::string difference(const std::vector<std::string>& stored, const std::vector<std::string>& made) {
   std::size_t at = 0;
   while (at < stored.size() && at < made.size() && stored[at] == made[at]) ++at;
@@ -34,7 +34,7 @@ class StoredPtx : public testing::TestWithParam<const char*> {};
 TEST_P(StoredPtx, IsWhatNvccWrites) {
   const std::string folder = GRAZE_STORED_PTX, file = std::string(GetParam()) + ".ptx";
   if (folder.empty()) GTEST_SKIP() << "built without nvcc";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the repository keeps no PTX of this nvcc: " << folder;
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the repository has no PTX of this nvcc: " << folder;
   const std::string differs = difference(lines_of(folder + "/" + file), lines_of(GRAZE_GENERATED_DIR "/" + file));
   EXPECT_EQ(differs, "")
       << "core/ or cuda/lanes/kernels.cu changed: store the new PTX with the build target graze_update_ptx";

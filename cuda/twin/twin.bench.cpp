@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Speed of the twins and of the `cpu` lanes, on uniform and on near-touching pairs. Each run first checks that the twin
-// without contraction gives the same verdicts as the cpu lane.
+// Measures the speed of the twins and of the `cpu` lanes, on uniform and on near-touching pairs. Before it is measured,
+// a twin without contraction must give the verdicts of the cpu lane.
 #include <benchmark/benchmark.h>
 
 #include "core/lanes/verdicts.h"

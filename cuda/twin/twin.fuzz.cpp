@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs with arbitrary bits: without contraction, each CUDA lane's twin gives the same verdict as the host's lane.
+// On pairs with arbitrary bits, the twin of each CUDA lane without contraction gives the verdict of the host's lane.
 #include "cuda/twin/twin.h"
 
 #include "core/fuzz_pair.h"

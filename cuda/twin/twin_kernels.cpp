@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twins' block functions with the generated kernels (GRAZE_TWIN_KERNELS). Compiled once for each variant in its own
-// namespace GRAZE_FP, without contraction by the host compiler. Define nothing else here, or the linker would mix the
-// variants.
+// The twins' block functions with the generated kernels (GRAZE_TWIN_KERNELS). This file is compiled once for each
+// variant in its own namespace GRAZE_FP, without contraction by the host's compiler. Define nothing else here, or the
+// linker would mix the variants.
 #include <string_view>
 #include <tuple>
 #include <type_traits>
@@ -10,7 +10,7 @@
 #include "cuda/lanes/device_pairs.h"
 #include "cuda/twin/twin_ops_bits.h"
 #include "cuda/twin/twin_table.h"
-#ifndef __wasm__  // wasm only rounds to nearest, as the published algorithms do
+#ifndef __wasm__  // WebAssembly only rounds to nearest, which is enough for the published algorithms
 #include "cuda/twin/twin_ops_rounding.h"
 #endif
 
@@ -27,7 +27,7 @@ namespace ptx {
 
 const unsigned char* bytes(const void* object) { return static_cast<const unsigned char*>(object); }
 
-// The kernels' parameters in the device's layout: addresses have 64 bits, even on a processor with shorter ones.
+// A kernel's parameters have the device's layout: addresses have 64 bits, even on a processor with shorter addresses.
 u64 address(const void* object) { return reinterpret_cast<std::uintptr_t>(object); }
 struct Block {
   u64 coordinates;
@@ -37,8 +37,8 @@ struct Block {
 };
 static_assert(sizeof(Block) == 16 && ((sizeof(DevicePairs) == 16 && sizeof(DeviceDoubles) == 16) || sizeof(void*) < 8));
 
-// Decides one pair as a block of one. With stride 1 its coordinates are the 18 arrays. `more`: the kernel's parameters
-// between the block and the output words.
+// Decides one pair as a block of one pair. With stride 1, the pair's coordinates are the 18 arrays. `more` are the
+// kernel's parameters between the block and the output words.
 template <class Kernel, class Real, class Fuse, class... More>
 Verdict decide_one(const BasicPair<Real>& pair, const Fuse& fuse, const More&... more) {
   const Block block(pair);

@@ -12,7 +12,7 @@
 namespace graze::cuda {
 namespace {
 
-constexpr std::size_t kPart = 1 << 13;  // pairs that a thread takes at a time
+constexpr std::size_t kPart = 1 << 13;  // the most pairs that a thread takes at a time
 
 using Block32 = void (*)(const float*, std::size_t, signed char*);
 using Block64 = void (*)(const double*, std::size_t, signed char*);
@@ -42,11 +42,11 @@ TwinLibrary::TwinLibrary(const std::filesystem::path& file, Scalar scalar)
   if (!library_) throw std::runtime_error(dlerror());
   const auto symbol = [&](const char* name) {
     void* found = dlsym(library_, name);
-    if (!found) throw std::runtime_error(file.string() + ": expected a twin, found no " + name);
+    if (!found) throw std::runtime_error(file.string() + " is not a twin: it has no symbol " + name);
     return found;
   };
   if (reinterpret_cast<int (*)()>(symbol("graze_twin_is_f64"))() != (scalar == Scalar::f64))
-    throw std::runtime_error(file.string() + ": expected a twin in " + std::string(name(scalar)));
+    throw std::runtime_error(file.string() + " is not a twin in " + std::string(name(scalar)));
   block_ = symbol("graze_twin_decide_block");
   fusing_ = symbol("graze_twin_decide_fusing");
   const auto number = [&](const char* name) {

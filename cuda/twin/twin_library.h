@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A twin of a user's kernel, loaded into this process. It gives answers and contraction sites.
+// A twin of a user's kernel, loaded into this process. It has answers, contraction sites and comparisons.
 #pragma once
 
 #include <cstddef>
@@ -14,17 +14,18 @@
 
 namespace graze::cuda {
 
-// The library stays loaded as long as its owner lives. Its functions may run in several threads at once. An endless
-// loop or an invalid memory access in the user's code happens in this process too.
+// The destructor unloads the library. The library's functions may run in several threads at once. An endless loop or an
+// invalid memory access in the user's code affects this process.
 class TwinLibrary {
  public:
-  // Throws: std::runtime_error when the file is not a twin.
+  // Throws: std::runtime_error if the file is not a twin for this scalar.
   TwinLibrary(const std::filesystem::path& file, Scalar scalar);
   TwinLibrary(const TwinLibrary&) = delete;
   TwinLibrary& operator=(const TwinLibrary&) = delete;
   ~TwinLibrary();
 
-  // Answers for each pair: -1 declined, 0 disjoint, 1 intersects. Uses several threads if there are many pairs.
+  // Writes an answer for each pair: -1 for declined, 0 for disjoint, 1 for intersects. Uses several threads for many
+  // pairs. If the kernel ends without an answer for a pair, the pair's answer is not written.
   void decide(std::span<const Pair> pairs, std::int8_t* answers) const;
   // Requires: a twin in double.
   void decide(std::span<const DoublePair> pairs, std::int8_t* answers) const;
@@ -32,10 +33,9 @@ class TwinLibrary {
   std::span<const ContractionSite> sites() const { return sites_; }
   std::span<const ComparisonSite> comparisons() const { return comparisons_; }
 
-  // The answer when sites whose bit is not set round twice. Bit i % 64 of word i / 64 belongs to site i. `made`
+  // The answer if only the sites whose bit is set are fused. Bit i % 64 of word i / 64 belongs to site i. `made`
   // receives the first comparisons that the kernel makes, as many as fit, and `count` their number. A twin in float
-  // decides a pair of doubles as float32 stores it.
-  // Throws: std::invalid_argument for too few bits.
+  // decides a pair of doubles rounded to float32. Throws: std::invalid_argument for too few bits.
   int decide_fusing(const AnyPair& pair, std::span<const std::uint64_t> fused, std::span<Comparison> made = {},
                     std::size_t* count = nullptr) const;
 

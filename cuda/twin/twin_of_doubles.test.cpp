@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twins of the kernels that decide pairs of doubles.
+// Tests of the twins of the kernels that decide pairs of doubles.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -54,7 +54,7 @@ TEST_P(TwinOfDoubles, WithoutContractionIsTheCpuLane) {
               verdicts_in_double(sibling(Variant::cpu).decide));
 }
 
-// The trace of the cpu lane's algorithm, compiled without contraction on this processor.
+// The trace hash of the cpu lane's algorithm, compiled for this processor without contraction.
 template <class... Algorithm>
 std::uint64_t traced_in_double(int algorithm, const DoublePair& pair, const std::tuple<Algorithm...>*) {
   using Trace = std::uint64_t (*)(const DoublePair&);
@@ -151,7 +151,7 @@ struct BlockRun {
       : values(2 * questions_of(lane.algorithm).size() * pairs), paths(pairs) {
     record(Records{values.data(), pairs, paths.data()});
   }
-  // The number of pairs in which the path or some value's bits differ. All NaNs count as equal.
+  // The number of pairs for which the path or the bits of a value differ. All NaNs count as equal.
   std::size_t differences(const BlockRun& other) const {
     std::size_t count = 0;
     for (std::size_t i = 0; i < paths.size(); ++i) {
@@ -164,7 +164,7 @@ struct BlockRun {
   }
 };
 
-// Records all pairs of the sample in blocks and calls with_block(pairs of the block, index of its first pair).
+// Splits the sample into blocks, and calls with_block(the block's pairs, the index of its first pair) for each block.
 template <class WithBlock>
 void for_each_block(const WithBlock& with_block) {
   const std::span<const DoublePair> pairs = double_sample();
@@ -206,7 +206,7 @@ TEST_P(TwinOfDoubles, RecordsFusingAllSitesAreThoseOfCudaFmaAndNoneThoseOfCudaNo
   ASSERT_GT(sites, 0u);
   const std::vector<std::uint64_t> none((sites + 63) / 64, 0), all(none.size(), ~std::uint64_t{0});
   for_each_block([&](std::span<const DoublePair> pairs, std::size_t first) {
-    if (first % 5'000 != 0) return;  // some of each stratum
+    if (first % 5'000 != 0) return;  // take only one block of each stratum
     for (const auto& [variant, mask] : {std::pair(Variant::cuda_fma, all), {Variant::cuda_nofma, none}}) {
       const BlockRun run = recorded(sibling(variant), pairs, twin_record_of_doubles(sibling(variant)));
       const BlockRun fusing(lane(), pairs.size(),
@@ -232,7 +232,7 @@ TEST_P(TwinOfDoubles, RecordsOfFloatsAreThoseOfTheTwinOfFloats) {
   EXPECT_EQ(recorded(lane(), doubles, twin_record_of_doubles(lane())).differences(of_floats), 0u);
 }
 
-// The evidence comes from the record of these kernels, not of those for float32.
+// The evidence comes from the record of the kernels for doubles, not for float32.
 TEST_P(TwinOfDoubles, EvidenceSaysWhatTheRecordSays) {
   const auto record =
       nlohmann::json::parse(std::ifstream(GRAZE_SOURCE_DIR "/cuda/proofs/nvidia_h200_nvcc_13.0.88_f64.json"));

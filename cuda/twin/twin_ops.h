@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// PTX operations on the CPU, one function for each; generated twins consist of calls to them. IEEE 754 binary32 and
-// binary64, round to nearest even. Sign and payload of a NaN are not replayed.
-// Requires: compiled with -ffp-contract=off, with a separate namespace GRAZE_FP for each instruction set.
-// Reference: NVIDIA, PTX ISA 9.0, chapter 9.7.
+// PTX operations on the CPU, one function for each operation. Generated twins call these functions. Numbers are IEEE
+// 754 binary32 and binary64, rounded to nearest even. The sign and the payload of a NaN are not replayed. Requires:
+// compilation with -ffp-contract=off, and a separate namespace GRAZE_FP for each instruction set. Reference: NVIDIA,
+// PTX ISA 9.0, chapter 9.7.
 #pragma once
 
 #include <bit>
@@ -33,15 +33,15 @@ template <class T>
 using Bits = std::conditional_t<sizeof(T) == 1, u8,
                                 std::conditional_t<sizeof(T) == 2, u16, std::conditional_t<sizeof(T) == 4, u32, u64>>>;
 
-// The bits of a register. A device's float32 operations return a different NaN from those of x86, which shows when the
-// bits are read. Float64 operations return the same NaN.
+// The bits of a register. Float32 operations return one NaN on a device and another on x86, which matters if the bits
+// are read. Float64 operations return the same NaN on both.
 constexpr u32 bits_of(f32 x) {
   const u32 bits = std::bit_cast<u32>(x);
   return bits == 0xffc00000u ? 0x7fffffffu : bits;
 }
 constexpr u64 bits_of(f64 x) { return std::bit_cast<u64>(x); }
 
-// The register's bits as another type of the same size. Integers of another size are extended or truncated.
+// The register's bits as another type of the same size. An integer of another size is extended or truncated.
 template <class T, class From>
 constexpr T as(From x) {
   if constexpr (std::is_integral_v<T> && std::is_integral_v<From>) {
@@ -102,7 +102,7 @@ bool is_subnormal(T x) {
   return x != 0 && abs(x) < std::numeric_limits<T>::min();
 }
 
-// .ftz: a subnormal becomes a zero of the same sign.
+// .ftz: a subnormal number becomes a zero of the same sign.
 inline f32 flushed(f32 x) { return is_subnormal(x) ? copysign(x, 0.0f) : x; }
 
 // .sat: clamps to [0, 1]; NaN becomes +0.
@@ -147,9 +147,9 @@ T div(T a, T b) {
   return a / b;
 }
 
-// .ftz checks a result that is rounded to 24 bits with unlimited exponent range. IEEE arithmetic rounds results below
-// the least normal number to fewer bits, so it would round the largest flushed results up to that number. (Measured on
-// an H100.) Sums and differences are exact there, so only products and quotients are affected.
+// .ftz decides about the result rounded to 24 bits with unlimited exponent range, as measured on an H100. IEEE
+// arithmetic rounds results below the least normal number to fewer bits, so it would round the largest flushed results
+// up to that number. Sums and differences of this size are exact, so only products and quotients are affected.
 constexpr f64 kFlushBelow = 0x1p-126 - 0x1p-151;
 
 inline f32 mul_ftz(f32 a, f32 b) {
@@ -165,7 +165,7 @@ inline f32 fma_ftz(f32 a, f32 b, f32 c) {
   return flushes ? static_cast<f32>(copysign(sum, 0.0)) : fma(flushed(a), flushed(b), flushed(c));
 }
 
-// Double precision cannot round a quotient of floats onto the limit: their relative distance is at least 2^-49.
+// Double precision cannot round a quotient of floats to the limit, because their relative distance is at least 2^-49.
 inline f32 div_ftz(f32 a, f32 b) {
   const f64 quotient = f64{flushed(a)} / f64{flushed(b)};
   return abs(quotient) < kFlushBelow ? static_cast<f32>(copysign(quotient, 0.0)) : flushed(a) / flushed(b);
@@ -181,7 +181,7 @@ T sqrt(T x) {
     return __builtin_sqrt(x);
 }
 
-// If one operand is NaN, returns the other; -0 is less than +0.
+// If one operand is NaN, the result is the other operand. -0 is less than +0.
 template <class T>
 T min(T a, T b) {
   if constexpr (std::is_floating_point_v<T>) {
@@ -202,7 +202,7 @@ T max(T a, T b) {
   return a < b ? b : a;
 }
 
-// .NaN: returns NaN if either operand is NaN.
+// .NaN: the result is NaN if either operand is NaN.
 template <class T>
 T min_nan(T a, T b) {
   return is_nan(a) || is_nan(b) ? std::numeric_limits<T>::quiet_NaN() : min(a, b);
@@ -215,7 +215,7 @@ T max_nan(T a, T b) {
 
 // ---- contractions ----
 
-// Rounds once at every contraction site, as the kernel does.
+// Fuses every contraction site, as the kernel does.
 struct AllFused {
   template <class T>
   T operator()(int, T a, T b, T c) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests every PTX operation that the generator replays on special values. cuda/twin/generator/semantics.ptx, translated
-// by the generator and compiled, is compared with the standard library or the text of the PTX ISA.
+// Tests every PTX operation that the generator replays, on special values. The generator translates
+// cuda/twin/generator/semantics.ptx; its results are compared with the standard library or the text of the PTX ISA.
 #include "cuda/twin/twin_ops_bits.h"
 #include "cuda/twin/twin_ops_rounding.h"
 
@@ -35,8 +35,8 @@ Real flush(Real x) {
   return std::fpclassify(x) == FP_SUBNORMAL ? std::copysign(Real(0), x) : x;
 }
 
-// A .ftz result: rounded once to 24 bits with unlimited exponent, then flushed. The exact value has more bits than long
-// double only for sums far from the limit.
+// A .ftz result: rounded once to 24 bits with unlimited exponent, then flushed. Only sums far from the limit have more
+// bits than long double.
 f32 flushed_result(long double exact, f32 rounded) {
   return std::fabs(exact) < 0x1p-126L - 0x1p-151L ? std::copysign(0.0f, static_cast<f32>(exact)) : rounded;
 }
@@ -56,8 +56,8 @@ Real greatest(Real a, Real b) {
   return a == 0 && b == 0 ? (std::signbit(a) ? b : a) : std::fmax(a, b);
 }
 
-// The integer of the type nearest to an integral value. PTX ISA, cvt: NaN gives 0, or 2^63 where either type has 64
-// bits and the other does not allow 0.
+// The integer of the type nearest to an integral value. By the PTX ISA (cvt), NaN becomes 0; if either type has 64
+// bits, it becomes the integer with only the top bit.
 template <class To, class Real>
 To nearest_integer(Real x, To of_nan) {
   if (std::isnan(x)) return of_nan;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PTX operations on the CPU, continued: bits, bit fields and bytes of integers.
+// More PTX operations on the CPU: bits, bit fields and bytes of integers.
 #pragma once
 
 #include "cuda/twin/twin_ops_logic.h"
@@ -25,7 +25,7 @@ T brev(T x) {
   return result;
 }
 
-// Index of the highest set bit; for a negative number, the highest clear bit. All ones when there is none.
+// The index of the highest set bit, or of the highest clear bit of a negative number. All ones if there is no such bit.
 template <class T>
 u32 bfind(T x) {
   const Bits<T> bits = static_cast<Bits<T>>(x < 0 ? ~x : x);
@@ -39,15 +39,15 @@ u32 bfind_shift(T x) {
   return place == ~u32{0} ? place : static_cast<u32>(8 * sizeof(T)) - 1 - place;
 }
 
-// Position or size of a bit field. For 32-bit values only the low byte counts, for 64-bit values all 32 bits do, as
-// measured on a device.
+// The position or size of a bit field. For 32-bit values, only the low byte counts. For 64-bit values, all 32 bits
+// count, as measured on a device.
 template <class T>
 u64 field(u32 number) {
   return sizeof(T) == 4 ? number & 0xff : number;
 }
 
-// Bits [at, at + count). Signed types are sign-extended from the field's highest bit, or from the value's if the field
-// exceeds it.
+// Bits [at, at + count) of the value. Signed types are sign-extended from the field's highest bit, or from the value's
+// highest bit if the field exceeds the value.
 template <class T>
 T bfe(T x, u32 from, u32 size) {
   constexpr u32 kMost = 8 * sizeof(T) - 1;
@@ -62,7 +62,7 @@ T bfe(T x, u32 from, u32 size) {
   return static_cast<T>(result);
 }
 
-// b with bits [at, at + count) replaced by the low bits of a.
+// Returns b with bits [at, at + count) replaced by the low bits of a.
 template <class T>
 T bfi(T a, T b, u32 from, u32 size) {
   const u64 at = field<T>(from), count = field<T>(size);
@@ -73,7 +73,7 @@ T bfi(T a, T b, u32 from, u32 size) {
   return b;
 }
 
-// Selects four of the eight bytes of (b, a) by four bits each. The highest of these replicates the byte's sign bit.
+// Selects four of the eight bytes of (b, a). Four bits select each byte; the highest of them replicates its sign bit.
 inline u32 prmt(u32 a, u32 b, u32 choice) {
   const u64 all = u64{b} << 32 | a;
   u32 result = 0;
@@ -90,11 +90,11 @@ inline u32 prmt(u32 a, u32 b, u32 choice) {
 inline u32 wrap(u32 by) { return by & 31; }
 inline u32 clamp(u32 by) { return by < 32 ? by : 32; }
 
-// (b, a) shifted: the upper half after a left shift, the lower half after a right shift.
+// Shifts (b, a) and returns the upper half after a left shift, or the lower half after a right shift.
 inline u32 shf_l(u32 a, u32 b, u32 by) { return static_cast<u32>((u64{b} << 32 | a) << by >> 32); }
 inline u32 shf_r(u32 a, u32 b, u32 by) { return static_cast<u32>((u64{b} << 32 | a) >> by); }
 
-// Each result bit is the bit of the table whose index consists of the three operands' bits.
+// Each bit of the result is a bit of the table. The three operands' bits at this place are its index.
 inline u32 lop3(u32 a, u32 b, u32 c, u32 table) {
   u32 result = 0;
   for (u32 k = 0; k < 8; ++k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Operations on integers and their bits, tables, scopes, calls and jumps: generator/semantics_bits.ptx.
+// Tests operations on integers and their bits, tables, scopes, calls and jumps (generator/semantics_bits.ptx).
 #include "cuda/twin/twin_ops_bits.h"
 
 #include <gtest/gtest.h>
@@ -37,21 +37,21 @@ u64 pair_of(u32 low, u32 high) { return u64{high} << 32 | low; }
 s32 sign(u32 x) { return static_cast<s32>(x); }
 s64 sign(u64 x) { return static_cast<s64>(x); }
 
-// The quotient or remainder, computed in wide integers.
+// The quotient or the remainder, computed in wide integers.
 template <class T>
 T divided(T a, T b, bool rest) {
   const __int128 x = a, y = b;
   return static_cast<T>(rest ? x % y : x / y);
 }
 
-// The bits of a field's position or size that count. The PTX ISA does not say that 64-bit numbers use all bits; an H200
-// does.
+// The bits of a field's position or size that count. The PTX ISA does not say that all bits count for 64-bit numbers,
+// but on an H200 they do.
 template <class T>
 s64 counted(u32 number) {
   return sizeof(T) == 4 ? number & 255 : number;
 }
 
-// Computed bit by bit from the text of the PTX ISA.
+// The bit field, computed bit by bit as the text of the PTX ISA says.
 template <class T>
 T field(T x, u32 at, u32 count) {
   const s64 most = 8 * sizeof(T) - 1, p = counted<T>(at), n = counted<T>(count);

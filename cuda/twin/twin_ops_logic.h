@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PTX operations on the CPU, continued: integers, comparisons, conversions.
+// More PTX operations on the CPU: integers, comparisons, conversions.
 #pragma once
 
 #include "cuda/twin/twin_ops.h"
@@ -38,7 +38,7 @@ T mul_hi(T a, T b) {
   }
 }
 
-// PTX does not define division by zero. Devices return all ones as quotient and the dividend as remainder.
+// PTX does not define division by zero. Devices return all ones as the quotient, and the dividend as the remainder.
 template <class T>
 T quotient(T a, T b) {
   if (b == 0) return static_cast<T>(-1);
@@ -70,7 +70,7 @@ T shr(T x, u32 by) {
   return by < 8 * sizeof(T) ? static_cast<T>(x >> by) : x < 0 ? static_cast<T>(-1) : T{0};
 }
 
-// ---- comparisons; for a NaN those with u are true, the others false ----
+// ---- comparisons; with a NaN, comparisons with u are true and all others are false ----
 
 template <class T>
 bool eq(T a, T b) {
@@ -159,7 +159,7 @@ bool test_subnormal(T x) {
 
 // ---- conversions ----
 
-// Floating-point to integral floating-point: nearest even, toward zero, down, up. A zero keeps its sign.
+// Round a number to an integral number: to nearest even, toward zero, down, up. A zero keeps its sign.
 template <class T>
 T rni(T x) {
   return std::nearbyint(x);
@@ -177,8 +177,8 @@ T rpi(T x) {
   return std::ceil(x);
 }
 
-// Converts an integral floating-point number to the nearest integer of the type. NaN gives 0, or only the top bit if
-// either type has 64 bits.
+// Converts an integral floating-point number to the nearest integer of the type. NaN becomes 0, or the integer with
+// only the top bit if either type has 64 bits.
 template <class To, class From>
 To to_integer(From x) {
   if (is_nan(x))

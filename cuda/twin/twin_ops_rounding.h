@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PTX operations on the CPU, continued: rounding toward zero, down and up. f32 operations round the exact result, which
-// is a double and the sign of its remainder. f64 operations set the processor's rounding mode.
+// More PTX operations on the CPU, which round toward zero, down and up. f32 operations round the exact result: a double
+// and the sign of its remainder. f64 operations set the processor's rounding mode.
 #pragma once
 
 #include <cfenv>
@@ -30,8 +30,8 @@ inline f32 next_to(f32 x, bool up) {
   return std::nextafter(x, up ? std::numeric_limits<f32>::infinity() : -std::numeric_limits<f32>::infinity());
 }
 
-// With Flush, a result below the least normal number becomes zero. The comparison uses the result rounded to 24 bits,
-// as in twin_ops.h.
+// With Flush, a result below the least normal number becomes zero. The result rounded to 24 bits decides, as in
+// twin_ops.h.
 template <Rounding R, bool Flush>
 f32 narrowed(Exact x) {
   if (is_nan(x.near) || abs(x.near) == std::numeric_limits<f64>::infinity()) return static_cast<f32>(x.near);
@@ -49,7 +49,7 @@ f32 narrowed(Exact x) {
   return result;
 }
 
-// Runs an f64 operation in another rounding mode. The result is volatile because compilers assume the default mode.
+// Runs an f64 operation in a rounding mode. The result is volatile, because compilers assume the default mode.
 template <Rounding R, class Operation>
 auto in_mode(Operation operation) {
   std::fesetround(R == Rounding::rz ? FE_TOWARDZERO : R == Rounding::rm ? FE_DOWNWARD : FE_UPWARD);
@@ -128,14 +128,14 @@ T rounded_sqrt(T a) {
   }
 }
 
-// cvt.f32.f64
+// Converts a double to a float (cvt.f32.f64).
 template <Rounding R, bool Flush>
 f32 rounded_narrow(f64 x) {
   if (x == 0) return static_cast<f32>(x);
   return narrowed<R, Flush>({x, 0});
 }
 
-// cvt of an integer to floating point
+// Converts an integer to a floating-point number (cvt).
 template <Rounding R, class To, class From>
 To rounded_integer(From x) {
   const volatile From integer = x;

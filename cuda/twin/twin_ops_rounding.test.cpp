@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reciprocals, and operations that round toward zero, down and up (generator/semantics_rounding.ptx). Compared with the
-// exact result in quadruple precision and the sign of its error.
+// Tests reciprocals, and operations that round toward zero, down and up (generator/semantics_rounding.ptx). The results
+// are compared with results in quadruple precision and the signs of their errors.
 #include "cuda/twin/twin_ops_rounding.h"
 
 #include <gtest/gtest.h>
@@ -64,7 +64,7 @@ Real directed(const std::string& mode, Nearest<Real> x) {
   return x.value;
 }
 
-// An exact sum of zero is negative when rounding down, unless both operands are positive.
+// If rounding is down, an exact sum of zero is negative unless both operands are positive.
 template <class Real>
 Real directed_sum(const std::string& mode, Quad a, Quad b, Real nearest) {
   if (nearest == 0 && a + b == 0) {
@@ -80,7 +80,7 @@ template <class Real>
 Real directed_quotient(const std::string& mode, Real a, Real b) {
   const Real nearest = a / b;
   if (b == 0 || !finite(a) || !finite(b)) return nearest;
-  // When the quotient overflows, nearest is infinite and its error has the other sign.
+  // If the quotient overflows, the nearest result is infinite, and its error has the other sign.
   const int left =
       std::isinf(nearest) ? (nearest > 0 ? -1 : 1) : sign_of_quad(Quad(a) - Quad(nearest) * Quad(b)) * (b < 0 ? -1 : 1);
   return directed<Real>(mode, {nearest, left});
@@ -103,8 +103,8 @@ Real directed_root(const std::string& mode, Real a) {
 
 f32 flush_subnormal(f32 x) { return std::fpclassify(x) == FP_SUBNORMAL ? std::copysign(0.0f, x) : x; }
 
-// With .ftz: rounds the exact result to 24 bits with unlimited exponent range. The result is zero if that is below
-// 2^-126.
+// The result with .ftz: the exact result rounded to 24 bits with unlimited exponent range, or zero if the rounded
+// result is below 2^-126.
 f32 flushed_to_zero(const std::string& mode, Quad exact, int rest, f32 otherwise) {
   const Quad size = exact < 0 ? -exact : exact;
   const bool below = size < Quad(0x1p-126) || (size == Quad(0x1p-126) && (exact < 0 ? rest > 0 : rest < 0));
@@ -197,7 +197,7 @@ std::vector<Slot<f64>> f64_slots() {
   return joined<f64>(parts);
 }
 
-// Operands are normal numbers, so that only the result is flushed.
+// The operands are normal numbers, so that only the result is flushed.
 TEST(TwinOps, SumsBelowTheLeastNormalNumberAreFlushed) {
   EXPECT_EQ((rounded_add<Rounding::rz, true, f32>(0x1.8p-126f, -0x1p-126f)), 0);
   EXPECT_EQ((rounded_sub<Rounding::rp, true, f32>(-0x1.8p-126f, -0x1p-126f)), 0);

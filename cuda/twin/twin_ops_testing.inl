@@ -4,8 +4,8 @@
 template <class Real>
 using Limits = std::numeric_limits<Real>;
 
-// Zeros, subnormals, neighbours of 1 and of powers of two, halves, limits of integers, the largest, infinity, NaN; and
-// factors whose product or quotient is just below the least normal number.
+// The operands: zeros, subnormals, neighbours of 1 and of powers of two, halves, limits of integers, the largest
+// number, infinity, NaN, and factors whose product or quotient is just below the least normal number.
 template <class Real>
 std::vector<Real> special_values() {
   const Real tiny = Limits<Real>::denorm_min(), least = Limits<Real>::min(), most = Limits<Real>::max(), one = 1,
@@ -29,7 +29,7 @@ std::vector<Real> special_values() {
                               1 / least,
                               most,
                               Limits<Real>::infinity()};
-  if (sizeof(Real) == 8) {  // values that become the least normal float, or just do not
+  if (sizeof(Real) == 8) {  // values that round to the least normal float, and values slightly too small for it
     for (double x : {0x1p-126 - 0x1p-151, 0x1p-126 - 0x1p-150, 0x1p-126 - 0x1p-170, 0x1p-126, 0x1p-140}) {
       values.push_back(static_cast<Real>(x));
     }
@@ -40,7 +40,7 @@ std::vector<Real> special_values() {
   return values;
 }
 
-// A result: the slot's bytes as the expected type; any NaN is the same.
+// A result: the slot's bytes as the expected type. All NaNs are equal.
 template <class T>
 bool same(std::uint64_t slot, T expected) {
   T found;
@@ -51,7 +51,7 @@ bool same(std::uint64_t slot, T expected) {
   return std::bit_cast<Bits<T>>(found) == std::bit_cast<Bits<T>>(expected);
 }
 
-// One slot of a kernel: what it should hold for (a, b, c).
+// One slot of a kernel, and its expected value for (a, b, c).
 template <class In>
 struct Slot {
   std::string name;
@@ -107,7 +107,7 @@ void check(const std::vector<Slot<In>>& slots, const std::vector<In>& values) {
 }
 
 #ifdef GRAZE_HAS_NVCC
-// Whether both are NaN: as doubles, or as floats where the upper halves are zero.
+// Whether both slots are NaN, as doubles, or as floats if their upper halves are zero.
 bool both_nan(std::uint64_t a, std::uint64_t b) {
   if (is_nan(std::bit_cast<f64>(a)) && is_nan(std::bit_cast<f64>(b))) return true;
   return a >> 32 == 0 && b >> 32 == 0 && is_nan(std::bit_cast<f32>(static_cast<u32>(a))) &&
@@ -115,7 +115,7 @@ bool both_nan(std::uint64_t a, std::uint64_t b) {
 }
 #endif
 
-// Compares the same kernel on a device, slot by slot.
+// Runs the same kernel on a device, and compares the results slot by slot.
 template <class Kernel, class In>
 void check_on_device(const std::string& ptx_file, const std::vector<Slot<In>>& slots, const std::vector<In>& values) {
 #ifdef GRAZE_HAS_NVCC

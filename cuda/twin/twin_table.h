@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The twins' functions: a table [algorithm][scalar] for each variant with a twin, in its own namespace. Contracted
-// kernels are compiled twice, for processors with and without FMA instructions. Both give the same verdicts at
-// different speeds.
+// kernels are compiled twice, for processors with and without FMA instructions. Both compilations give the same
+// verdicts at different speeds.
 #pragma once
 
 #include <array>
@@ -15,23 +15,23 @@ namespace graze::cuda {
 template <class AnyPair>
 struct TwinFunctions {
   DecideFunction<AnyPair> decide = nullptr;
-  DecideWithin<AnyPair> absolute = nullptr, relative = nullptr;  // with absolute tolerances; also with relative ones
+  DecideWithin<AnyPair> absolute = nullptr, relative = nullptr;  // only absolute tolerances; relative tolerances too
   TraceFunction<AnyPair> trace = nullptr;
   Verdict (*decide_fusing)(const AnyPair& pair, const std::uint64_t* fused) = nullptr;
-  // The functions of the kernel that records, in a table of its own whose `sites` are those of this kernel.
+  // The functions of the kernel that records. This kernel has a separate table, with its own `sites`.
   RecordFunction<AnyPair> record = nullptr;
   void (*record_fusing)(const AnyPair* pairs, std::size_t count, const Records& to,
                         const std::uint64_t* fused) = nullptr;
   // Hashes of the kernels' PTX and contractions, for which a record in cuda/proofs is valid. Empty without a twin.
   const char* hash = "";
   const char* trace_hash = "";
-  const char* symbol = "";  // name of the kernel that it replays
+  const char* symbol = "";  // name of the kernel that the twin replays
   const char* trace_symbol = "";
   std::span<const ContractionSite> sites = {};
 };
 
 struct TwinRow : TwinFunctions<Pair> {
-  TwinFunctions<DoublePair> doubles;  // of lanes in double
+  TwinFunctions<DoublePair> doubles;  // for lanes in double
 };
 
 struct TwinTable {
@@ -52,7 +52,7 @@ struct TwinTable {
 #include "core/variants.inc"
 #undef GRAZE_VARIANT
 
-// The lane's row for this processor. A lane without a twin has a row without functions.
+// The lane's row for this processor. The row of a lane without a twin has no functions.
 const TwinRow& twin_row(const Lane& lane);
 
 }  // namespace graze::cuda

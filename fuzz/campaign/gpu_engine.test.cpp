@@ -97,10 +97,10 @@ TEST_F(GpuEngineTest, SaysWhenItsMemoryIsNotEnough) {
   };
   cuda::EngineLimits few;
   few.signatures = 16;
-  EXPECT_EQ(error("signatures", few), "the engine found more signatures than it can hold");
+  EXPECT_EQ(error("signatures", few), "the engine found more signatures than its table has rows");
   few = {};
   few.undecided = 1;
-  EXPECT_EQ(error("undecided", few), "the engine left too many pairs to the host; run fewer at once");
+  EXPECT_EQ(error("undecided", few), "the engine left too many pairs to the host; run fewer pairs at once");
   EXPECT_EQ(error("enough", {}), "");
 }
 

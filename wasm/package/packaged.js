@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the package exports, given a function that reads graze.wasm.
+// The functions that the package exports. They need a function that reads graze.wasm.
 import { load } from './graze.js';
 import { expect_right } from './test_function.js';
 
@@ -17,8 +17,8 @@ export function packaged(read) {
   const ready = () => (loaded ??= read().then(load));
 
   /**
-   * Tests a function of two triangles on pairs that nearly touch, are degenerate or are coplanar. Rejects with the
-   * counts and the smallest wrong pair, unless the function is right on all pairs, or on as many as max_wrong requires.
+   * Tests a function of two triangles on pairs that nearly touch, are degenerate or are coplanar. If the share of wrong
+   * answers is above max_wrong, the promise rejects with the counts and the smallest wrong pair.
    * @param {Overlap} overlap @param {TestOptions} [options] @returns {Promise<TestResult>}
    */
   const testOverlap = async (overlap, options) => expect_right(await ready(), overlap, options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// operator<=> for std::array, which libc++ 14 lacks. Included before everything else.
+// operator<=> for std::array, which libc++ 14 lacks. The compiler includes this header before all others.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// std::from_chars for floating-point numbers, which libc++ 14 lacks. Included before everything else. Uses strtod and
-// strtof of wasi-libc, which round once.
+// std::from_chars for floating-point numbers, which libc++ 14 lacks. The compiler includes this header before all
+// others. The functions call strtod and strtof of wasi-libc, which round once.
 #pragma once
 
 #include <charconv>

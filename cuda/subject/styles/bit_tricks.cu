@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Integer work on the bits of floats: signs, exponents, masks, permuted bytes.
+// A predicate that works on the bits of floats as integers: signs, exponents, masks, permuted bytes.
 __device__ int ordered(float x) {
   const int bits = __float_as_int(x);
   return bits ^ ((bits >> 31) & 0x7fffffff);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Divisions of floats and of integers, with remainders of signed and unsigned numbers.
+// A predicate with divisions of floats and integers, and remainders of signed and unsigned integers.
 __device__ bool intersects(const float a[9], const float b[9]) {
   int steps = (int)fminf(fmaxf(a[0] * 37.0f, -1e6f), 1e6f), parts = (int)fminf(fmaxf(b[0] * 11.0f, -1e3f), 1e3f) | 1;
   const int quotient = steps / parts, rest = steps % parts;

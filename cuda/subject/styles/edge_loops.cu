@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Separating axes, as loops over edges that the compiler unrolls.
+// A test of separating axes, with loops over edges that the compiler unrolls.
 __device__ bool separated(const float axis[3], const float a[9], const float b[9]) {
   float a_min = 1e30f, a_max = -1e30f, b_min = 1e30f, b_max = -1e30f;
   for (int v = 0; v < 3; ++v) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All in double.
+// A predicate whose parameters and operations are in double.
 __device__ double volume(const double* p, const double* q, const double* r, const double* s) {
   const double ax = p[0] - s[0], ay = p[1] - s[1], az = p[2] - s[2];
   const double bx = q[0] - s[0], by = q[1] - s[1], bz = q[2] - s[2];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boxes and projections with fminf, fmaxf, copysignf, signbit, isnan and isfinite.
+// A predicate on boxes and projections, with fminf, fmaxf, copysignf, signbit, isnan and isfinite.
 __device__ float least(const float* t, int k) { return fminf(fminf(t[k], t[k + 3]), t[k + 6]); }
 __device__ float most(const float* t, int k) { return fmaxf(fmaxf(t[k], t[k + 3]), t[k + 6]); }
 

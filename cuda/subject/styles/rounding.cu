@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rounds to a grid with roundf, floorf, rintf, ceilf and truncf, and computes bounds rounded down or up.
+// A predicate that rounds to a grid with roundf, floorf, rintf, ceilf and truncf, and rounds bounds down or up.
 __device__ float bounded(float x) { return fminf(fmaxf(x, -1e6f), 1e6f); }  // fits into an int
 
 __device__ bool intersects(const float a[9], const float b[9]) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unit normals and distances, with square roots and divisions.
+// A predicate on unit normals and distances, with square roots and divisions.
 __device__ void normal(const float* t, float n[3]) {
   const float e[3] = {t[3] - t[0], t[4] - t[1], t[5] - t[2]}, f[3] = {t[6] - t[0], t[7] - t[1], t[8] - t[2]};
   n[0] = e[1] * f[2] - e[2] * f[1];

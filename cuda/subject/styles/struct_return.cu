@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Functions that take and return structs, each in its own memory.
+// A predicate with functions that take and return structs.
 struct Vector {
   float x, y, z;
 };

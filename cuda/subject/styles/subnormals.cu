@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The decision depends on products that may be subnormal, which -ftz=true flushes.
+// A predicate whose result depends on products that may be subnormal, which -ftz=true flushes to zero.
 __device__ float area(const float* p, const float* q, const float* r) {
   return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
 }

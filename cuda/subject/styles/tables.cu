@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables in constant and in global memory, of floats, integers and bytes.
+// A predicate with tables of floats, integers and bytes in constant and global memory.
 __constant__ unsigned char kNext[3] = {1, 2, 0};
 __constant__ float kAxes[7][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}, {0.25f, -0.5f, 1}};
 __device__ const short kFirst[] = {0, -3, 6};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Templates, over the axis and the number of vertices.
+// A predicate with templates over the axis and the number of vertices.
 template <int Axis, class Real>
 __device__ Real area(const Real* p, const Real* q, const Real* r) {
   constexpr int u = (Axis + 1) % 3, v = (Axis + 2) % 3;

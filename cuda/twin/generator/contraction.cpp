@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What nvcc contracts, and where. The front end (cicc) turns a*b + c into fma.rn. It leaves a*b - c*d and x - a*b as
+// The rule by which nvcc contracts. The front end (cicc) turns a*b + c into fma.rn. It writes a*b - c*d and x - a*b as
 // mul and sub without a rounding suffix, which ptxas at -O1 and above may contract. The rule of ptxas, for m = a*b:
 //
 //   PTX, all in one block                 machine code                  row
@@ -19,16 +19,16 @@
 //   .ftz on one but not the other         add, mul                      not fused
 //   .sat on the addition                  fma.sat                       fused
 //
-// The order in which ptxas takes the additions matters only where products are shared. It first takes additions with a
-// product that has one use, then the others in program order. Of two products it takes the one with fewer uses, or else
-// the left one.
+// The order in which ptxas contracts the additions matters only if additions share products. It first contracts
+// additions with a product that has one use, then the other additions in program order. If both operands are products,
+// it fuses the product with fewer uses, or the left product if their uses are equal.
 //
 // Evidence, with ptxas 13.0.88:
-// - The machine code of each row for sm_90, f32 and f64, disassembled and read.
+// - The machine code of each row for sm_90, in f32 and f64, was disassembled and read.
 // - Random straight-line programs give the same machine code, instruction for instruction, after this pass has written
 //   their contractions out. So do most of the project's kernels. All kernels have the same counts of fused and unfused
 //   operations (static_check.test.cpp).
-// - Verdicts and intermediate bits of an H100 (cuda/proofs).
+// - The twins have the verdicts and the intermediate bits of an H100 and an H200 (cuda/proofs).
 #include "cuda/twin/generator/contraction.h"
 
 #include <algorithm>
@@ -54,11 +54,11 @@ bool is_copy(const Instruction& i) {
 }
 
 struct Product {
-  std::size_t uses = 0;         // in additions
-  bool used_otherwise = false;  // including as the addend of a fusion
+  std::size_t uses = 0;         // uses in additions
+  bool used_otherwise = false;  // has another use, such as the addend of a fusion
 };
 
-// The operands of an addition that are products, as indices in Kernel::body.
+// The operands of an addition: for each operand that is a product, the product's index in Kernel::body.
 struct Operands {
   std::optional<std::size_t> product[2];
   bool negated[2] = {false, false};
@@ -71,7 +71,7 @@ struct Fusion {
   bool negated;
 };
 
-// The products and additions of one block, and which of them are fused.
+// Finds the products and additions of one block, and fuses them by the rule.
 class BlockPass {
  public:
   BlockPass(const Kernel& kernel, const Block& block, Rule rule) : kernel_(kernel), block_(block), rule_(rule) {
@@ -112,7 +112,7 @@ class BlockPass {
       for (const std::string& name : registers_written(i)) {
         if (i.guard.empty()) {
           holds.erase(name);
-        } else if (const auto at = holds.find(name); at != holds.end()) {  // may still hold it
+        } else if (const auto at = holds.find(name); at != holds.end()) {  // the register may still hold the product
           products_[at->second.product].used_otherwise = true;
         }
       }
@@ -181,7 +181,7 @@ class BlockPass {
   std::map<std::size_t, Fusion> result_;
 };
 
-// Rewrites the kernel with the fusions.
+// Rewrites the kernel: writes out the fusions, and rounds all other operations.
 class Rewriter {
  public:
   Rewriter(const Module& module, const Kernel& kernel, const std::map<std::size_t, Fusion>& fusions,
@@ -224,7 +224,7 @@ class Rewriter {
         }
       }
     }
-    if (product.operands[0] == names[0] || product.operands[0] == names[1]) {  // m = m * b overwrites its own factor
+    if (product.operands[0] == names[0] || product.operands[0] == names[1]) {  // as in m = m * b, which overwrites m
       for (std::size_t f = 0; f < 2; ++f) {
         if (names[f] == product.operands[0]) {
           copies_[fusion.product].push_back({fresh(product.op.back()), names[f]});
@@ -254,7 +254,7 @@ class Rewriter {
     return name;
   }
 
-  // d = ±a*b ± c. A sub negates its second operand, which may be the product or the addend.
+  // Writes d = ±a*b ± c. A sub negates its second operand, which may be the product or the addend.
   void write_fused(const Instruction& addition, const Fusion& fusion) {
     const bool subtracts = addition.op[0] == "sub";
     auto factors = factors_.at(fusion.product);
@@ -277,7 +277,7 @@ class Rewriter {
     Instruction i = kernel_.body[place];
     if (is_float(i) && (i.op[0] == "mul" || i.op[0] == "add" || i.op[0] == "sub") && !is_rounded(i))
       i.op.insert(i.op.begin() + 1, "rn");
-    if (i.has("approx") || i.has("full"))  // ptxas expands it and contracts within the expansion
+    if (i.has("approx") || i.has("full"))  // ptxas expands the instruction, and contracts the expansion
       throw PtxError(module_.path + ":" + std::to_string(i.line) + ": cannot be replayed: " + text(i));
     if (is_float(i) && i.op[0] == "mad")
       throw PtxError(module_.path + ":" + std::to_string(i.line) + ": mad leaves the rounding open: " + text(i));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The contraction pass rewrites a kernel so that it has no floating-point operation that ptxas may contract. Every
-// contraction that ptxas would make is written out. The rule was measured; see the table in contraction.cpp.
+// The contraction pass writes out every contraction that ptxas would make. The rewritten kernel has no floating-point
+// operation that ptxas may contract. The rule of ptxas was measured; see the table in contraction.cpp.
 #pragma once
 
 #include <vector>
@@ -10,14 +10,14 @@
 namespace graze::cuda::twin {
 
 enum class Rule {
-  ptxas,        // what ptxas does at -O1 and above
-  none,         // only the front end's fma.rn
-  right_first,  // wrong on purpose: contracts the right one of two products. Tests show that the checks notice.
+  ptxas,        // the contractions of ptxas at -O1 and above
+  none,         // no contraction except the front end's fma.rn
+  right_first,  // wrong on purpose: fuses the right one of two products. Tests show that the checks detect it.
 };
 
-// An operation with one rounding where the source has two.
+// An operation that is rounded once although the source has two operations.
 struct Site {
-  bool by_ptxas = false;  // otherwise the front end wrote fma.rn
+  bool by_ptxas = false;  // false: the front end wrote fma.rn
   int line = 0;           // line of the addition or fma in the PTX file
   Source source = {};
 };
@@ -27,7 +27,7 @@ struct Contracted {
   std::vector<Site> sites;
 };
 
-// Throws: PtxError for a rounding mode or an operation that the pass cannot write out.
+// Throws: PtxError for an operation or a rounding mode that the pass cannot write out.
 Contracted contract(const Module& module, const Kernel& kernel, Rule rule = Rule::ptxas);
 
 }  // namespace graze::cuda::twin

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each row of the table in contraction.cpp, in f32 and f64.
+// Tests each row of the table in contraction.cpp, in f32 and f64.
 #include "cuda/twin/generator/contraction.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace graze::cuda::twin {
 namespace {
 
-// A module of one kernel with these instructions, in which T stands for the type.
+// A module of one kernel with these instructions. In the text, T stands for the type.
 Module module_of(std::string body, const std::string& type) {
   for (auto at = body.find(".T"); at != std::string::npos; at = body.find(".T")) body.replace(at, 2, "." + type);
   std::istringstream in(
@@ -75,13 +75,13 @@ TEST_P(Contraction, LeftBeforeRight) {
 }
 
 TEST_P(Contraction, ProductOfOneUseBeforeOthers) {
-  // m1 is in both sums. The pass fuses m2 and m3, and rounds m1.
+  // The product m1 is in both sums. The pass fuses m2 and m3, and rounds m1.
   EXPECT_EQ(contracted("mul.T %f1, %a1, %a2;\nmul.T %f2, %a3, %a4;\nmul.T %f3, %a5, %a6;\nadd.T %f4, %f1, %f2;\nadd.T "
                        "%f5, %f1, %f3;\n",
                        GetParam()),
             "mul.rn.T %f1, %a1, %a2\nmul.rn.T %f2, %a3, %a4\nmul.rn.T %f3, %a5, %a6\nfma.rn.T %f4, %a3, %a4, "
             "%f1\nfma.rn.T %f5, %a5, %a6, %f1\n");
-  // m1 - x comes first, but m1 becomes the addend of m2's fusion.
+  // In program order m1 - x is first, but the pass first fuses m2, whose addend is m1.
   EXPECT_EQ(
       fused("mul.T %f1, %a1, %a2;\nmul.T %f2, %a3, %a4;\nsub.T %f4, %f1, %a7;\nsub.T %f5, %f1, %f2;\n", GetParam()), 1);
 }
@@ -95,7 +95,7 @@ TEST_P(Contraction, SharedByAdditionsAloneIsDuplicated) {
                        GetParam()),
             "mul.rn.T %f1, %a1, %a2\nmul.rn.T %f2, %a3, %a4\nmul.rn.T %f3, %a5, %a6\n"
             "fma.rn.T %f4, %a1, %a2, %f2\nfma.rn.T %f5, %a5, %a6, %f2\nfma.rn.T %f6, %a5, %a6, %f1\n");
-  // Fuses the product with fewer uses: m2 has two, m1 three.
+  // The pass fuses the product with fewer uses: m2 has two uses, and m1 has three.
   EXPECT_EQ(fused("mul.T %f1, %a1, %a2;\nmul.T %f2, %a3, %a4;\nsub.T %f4, %f1, %f2;\nadd.T %f5, %f1, %f2;\nadd.T %f6, "
                   "%f1, %a7;\n",
                   GetParam()),
@@ -131,7 +131,7 @@ TEST_P(Contraction, NotAcrossBlocks) {
       0);
   // A label with an unconditional jump as its only predecessor does not end a block.
   EXPECT_EQ(fused("mul.T %f1, %a1, %a2;\nbra $L;\n$L:\nsub.T %f2, %f1, %a3;\n", GetParam()), 1);
-  // The product is invariant in the loop, but in another block.
+  // The product does not change in the loop, but it is in another block.
   EXPECT_EQ(fused("mul.T %f1, %a1, %a2;\n$L:\nsub.T %f2, %f1, %f2;\n@%p1 bra $L;\n", GetParam()), 0);
   EXPECT_EQ(fused("$L:\nmul.T %f1, %a1, %f2;\nsub.T %f2, %f1, %a3;\n@%p1 bra $L;\n", GetParam()), 1);
 }
@@ -162,7 +162,7 @@ TEST_P(Contraction, FactorsOverwrittenInBetweenAreKept) {
             "mov.T %t_0, %a1\nmul.rn.T %f1, %a1, %a2\nmov.T %a1, %a5\nfma.rn.T %f2, %t_0, %a2, %a3\n");
   EXPECT_EQ(contracted("mul.T %f1, %f1, %a2;\nadd.T %f2, %f1, %a3;\n", GetParam()),
             "mov.T %t_0, %f1\nmul.rn.T %f1, %f1, %a2\nfma.rn.T %f2, %t_0, %a2, %a3\n");
-  // The same for the second factor.
+  // The pass also keeps the second factor.
   EXPECT_EQ(contracted("mul.T %f1, %a1, %a2;\nmov.T %a2, %a5;\nadd.T %f2, %f1, %a3;\n", GetParam()),
             "mov.T %t_0, %a2\nmul.rn.T %f1, %a1, %a2\nmov.T %a2, %a5\nfma.rn.T %f2, %a1, %t_0, %a3\n");
   EXPECT_EQ(contracted("mul.T %f1, %a1, %f1;\nadd.T %f2, %f1, %a3;\n", GetParam()),

@@ -6,7 +6,7 @@
 namespace graze::cuda::twin {
 namespace {
 
-// "rn", "rz", "rm", "rp", or empty.
+// The rounding mode: "rn", "rz", "rm", "rp", or empty.
 std::string rounding_of(const Instruction& i) {
   for (const char* mode : {"rn", "rz", "rm", "rp"}) {
     if (i.has(mode)) return mode;
@@ -30,7 +30,7 @@ std::string rounded_operation(const Operands& o, const std::string& arguments) {
   return ftz && one_of(op, {"add", "sub"}) ? fmt::format("flushed({})", result) : result;
 }
 
-// mul, mad: the low half, the high half, or the whole product.
+// Writes mul or mad of integers, with the low half, the high half or the whole product.
 std::string product(const Operands& o) {
   const Instruction& i = o.instruction();
   const std::string& type = o.type();
@@ -47,7 +47,7 @@ std::string product(const Operands& o) {
   return o.assign(result_type, result);
 }
 
-// Operations on bits. Returns an empty text for other operations.
+// Writes an operation on bits.   Returns: an empty text for other operations.
 std::string bit_statement(const Operands& o) {
   const Instruction& i = o.instruction();
   const std::string &op = i.op[0], &type = o.type();

@@ -8,7 +8,7 @@
 
 namespace graze::cuda::twin {
 
-// Throws: PtxError for an unknown instruction or one that cannot be replayed.
+// Throws: PtxError for an instruction that is unknown or cannot be replayed.
 std::string floating_statement(const Operands& operands);
 std::string integer_statement(const Operands& operands);
 

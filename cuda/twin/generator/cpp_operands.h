@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The operands of one PTX instruction in C++; shared by the writers of statements.
+// The operands of one PTX instruction as C++ expressions, for the writers of statements.
 #pragma once
 
 #include <initializer_list>
@@ -13,11 +13,11 @@ namespace graze::cuda::twin {
 // "%f32" becomes "f32_", because f32 is a type. "$L__BB0_3" becomes "L__BB0_3".
 std::string identifier(std::string name);
 
-// The C++ type of a PTX type; an untyped one becomes unsigned. Empty when there is none.
+// The C++ type of a PTX type; types of untyped bits (b32) become unsigned (u32). Empty if C++ has no such type.
 std::string cpp_type(const std::string& type);
 
 bool one_of(const std::string& word, std::initializer_list<const char*> words);
-int bytes(const std::string& type);  // size of a PTX type
+int bytes(const std::string& type);  // the size of a PTX type
 
 class Operands {
  public:
@@ -34,14 +34,14 @@ class Operands {
   std::size_t count() const { return instruction_.operands.size(); }
   const std::string& operand(std::size_t o) const;
 
-  // An operand, given by index or text, as a value of the type. Not for memory operands.
+  // An operand, given by index or text, as a value of the type.   Requires: not a memory operand.
   std::string value(std::size_t o, const std::string& type) const { return value(operand(o), type); }
   std::string value(const std::string& name, const std::string& type) const;
 
   // The C++ name of a register.
   std::string reg(const std::string& name) const;
 
-  // "d = expression;", where the expression has the type. A wider register gets the value extended as that type.
+  // "d = expression;" for an expression of the type. A wider register receives the value, extended as this type.
   std::string assign(const std::string& destination, const std::string& type, const std::string& expression) const;
   std::string assign(const std::string& type, const std::string& expression) const {
     return assign(operand(0), type, expression);
@@ -50,10 +50,10 @@ class Operands {
   // The address in "[%rd1+8]".
   std::string address(const std::string& memory) const;
 
-  // The elements of "{%r1,%r2}"; for any other operand, the operand itself.
+  // The elements of a list such as "{%r1,%r2}"; any other operand is its only element.
   static std::vector<std::string> elements(const std::string& name);
 
-  // Throws: PtxError when a modifier between the operation and its type is not among these.
+  // Throws: PtxError if a modifier between the operation and its type is not in the list.
   void only(std::initializer_list<const char*> known) const;
 
  private:

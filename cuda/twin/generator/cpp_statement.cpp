@@ -19,7 +19,7 @@ std::string memory(const Operands& o) {
   const bool loads = i.op[0] == "ld";
   std::string where = o.address(o.operand(loads ? 1 : 0)), result;
   const Names elements = Operands::elements(o.operand(loads ? 0 : 1));
-  if (elements.size() > 1) {  // one of them may be the register of the address
+  if (elements.size() > 1) {  // one element may be the register of the address
     result = fmt::format("const u64 at = {}; ", where);
     where = "at";
   }
@@ -138,7 +138,7 @@ std::string move(const Operands& o) {
                                     cpp_type(type), o.value(parts[0], half), o.value(parts[1], half), shift));
 }
 
-// The elements of "(param0,param1)".
+// The elements of a list such as "(param0,param1)".
 Names arguments(const std::string& list) {
   return list == "()" ? Names() : Operands::elements('{' + list.substr(1, list.size() - 2) + '}');
 }

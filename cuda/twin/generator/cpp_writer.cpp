@@ -21,14 +21,15 @@ void declare(std::ostream& out, const Module& module, const Kernel& kernel, cons
              const std::string& type, int count) {
   const std::string spelled = cpp_type(type);
   if (spelled.empty())
-    throw PtxError(fmt::format("{}:{}: registers of unknown type .{}: {}", module.path, kernel.line, type, prefix));
+    throw PtxError(
+        fmt::format("{}:{}: registers have the unknown type .{}: {}", module.path, kernel.line, type, prefix));
   Names names;
   for (int r = 0; r < count; ++r) names.push_back(identifier(fmt::format("{}{}", prefix, r)) + "{}");
   if (count == 0) names.push_back(identifier(prefix) + "{}");
   out << fmt::format("    [[maybe_unused]] {} {};\n", spelled, fmt::join(names, ", "));
 }
 
-// A directive in a body: scopes, and the memory for a call's arguments.
+// A directive in a body as C++: scopes, and the memory for a call's arguments.
 std::string cpp_directive(const std::string& directive) {
   if (directive == "{" || directive == "}") return directive;
   const auto memory = parameter(directive.substr(0, directive.size() - 1));
@@ -36,7 +37,8 @@ std::string cpp_directive(const std::string& directive) {
 }
 
 void write_body(std::ostream& out, const Module& module, const Kernel& kernel) {
-  if (!kernel.local.empty())  // zeros: a device may read memory that was never written; the twin is deterministic
+  // A device may read memory that was never written. In a twin it is zero, so that the results are deterministic.
+  if (!kernel.local.empty())
     out << fmt::format("    alignas({}) unsigned char {}[{}] = {{}};\n", std::max(kernel.local_align, 8),
                        identifier(kernel.local), kernel.local_bytes);
   for (const auto& [prefix, row] : kernel.registers) declare(out, module, kernel, prefix, row.first, row.second);
@@ -78,7 +80,7 @@ std::string spelled(const Module& module, const Place& place) {
   return fmt::format("{{\"{}\", {}}}", file == module.files.end() ? "" : file->second, place.line);
 }
 
-// The parts of a kernel's name: template<int, class> NAME<7, float>, or a plain name.
+// The parts of a kernel's name. The kernel is NAME<integer, float or double>, or no template.
 struct KernelName {
   std::string name;
   int integer = -1;
@@ -92,7 +94,7 @@ KernelName parsed(const std::string& mangled) {
   return {match[1], std::stoi(match[2]), match[3].str()[0]};
 }
 
-// The comparisons of numbers, in the order of the PTX.
+// Writes the comparisons of numbers, in the order of the PTX.
 void write_comparisons(std::ostream& out, const Module& module, const Kernel& of) {
   for (const Kernel& kernel : module.kernels) {
     if (!kernel.is_function && &kernel != &of) continue;
@@ -123,7 +125,7 @@ void write_cpp(std::ostream& out, const Module& module, Rule rule) {
   for (const Kernel& kernel : module.kernels) {
     if (kernel.is_function) continue;
     const Contracted contracted = contract(module, kernel, rule);
-    std::vector<Site> sites = contracted.sites;  // the kernel's sites, then those of the functions
+    std::vector<Site> sites = contracted.sites;  // the kernel's sites, then the functions' sites
     const KernelName name = parsed(kernel.name);
     all.push_back(name.integer < 0
                       ? name.name

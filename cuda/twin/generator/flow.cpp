@@ -28,7 +28,7 @@ bool leaves(const Instruction& i) {
 }
 bool jumps(const Instruction& i) { return i.is_operation() && (i.op[0] == "bra" || i.op[0] == "brx"); }
 
-// The target labels of a jump: one, or the labels of its list.
+// The target labels of a jump: its label, or the labels of its list.
 std::vector<std::string> targets(const Kernel& kernel, const Instruction& i) {
   if (i.op[0] == "bra") return {i.operands.at(0)};
   const auto list = kernel.branch_targets.find(i.operands.at(1));
@@ -73,7 +73,7 @@ void merge_chains(std::vector<Block>& all) {
   for (const Block& block : all) {
     for (std::size_t s : block.successors) ++predecessors[s];
   }
-  predecessors[0] += 1;  // the kernel's entry
+  predecessors[0] += 1;  // the entry of the kernel precedes the first block
   for (std::size_t b = 0; b < all.size(); ++b) {
     while (all[b].successors.size() == 1 && all[b].successors[0] != b && predecessors[all[b].successors[0]] == 1) {
       Block& next = all[all[b].successors[0]];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The basic blocks of a kernel and the registers alive at their ends, for the contraction pass.
+// The basic blocks of a kernel, and the registers that are alive at their ends, for the contraction pass.
 #pragma once
 
 #include <set>
@@ -10,7 +10,8 @@
 
 namespace graze::cuda::twin {
 
-// The registers that an instruction reads and writes. The registers in a memory operand are read.
+// The registers that an instruction reads, and those that it writes. An instruction reads the registers of a memory
+// operand.
 std::vector<std::string> registers_read(const Instruction& instruction);
 std::vector<std::string> registers_written(const Instruction& instruction);
 
@@ -20,7 +21,7 @@ struct Block {
   std::set<std::string> alive_at_end;     // registers that a successor may read before writing them
 };
 
-// The kernel's basic blocks. A block is merged with its only successor if that has no other predecessor.
+// The kernel's basic blocks. A block is merged with its only successor if the successor has no other predecessor.
 // Throws: PtxError for a jump to an unknown label.
 std::vector<Block> blocks(const Module& module, const Kernel& kernel);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reader and the writers: their output for PTX, and the PTX that they refuse. twin_ops.test.cpp checks values.
+// Tests the reader and the writers: their output, and the PTX that they refuse. twin_ops.test.cpp tests the values.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ Module module_of(const std::string& body) {
   return read_ptx(in, "test.ptx");
 }
 
-// The writer's error for a kernel with this instruction on line 13; empty if the writer accepts it.
+// The writer's error message for a kernel with this instruction on line 13; empty if there is no error.
 std::string complaint(const std::string& instruction) {
   try {
     std::ostringstream out;
@@ -204,7 +204,7 @@ TEST(TwinGenerator, KeepsTheKernelThatCounts) {
   write_explicit(ptx, small, Rule::ptxas);
   for (const char* kept : {".pragma \"nounroll\";", ".const .align 4 .b8 table[8]", "mul.rn.f32", ".branchtargets"})
     EXPECT_NE(ptx.str().find(kept), std::string::npos) << kept;
-  std::istringstream again(ptx.str());  // its own reader accepts it
+  std::istringstream again(ptx.str());  // the reader accepts the explicit PTX
   EXPECT_EQ(read_ptx(again, "again.ptx").kernels.size(), 2u);
 }
 

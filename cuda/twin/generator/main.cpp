@@ -17,7 +17,7 @@ constexpr char kUsage[] =
     "usage: graze_twin_generator [--rule ptxas|none|right_first] PTX FORM OUT [FORM OUT …]\n"
     "  --cpp OUT              C++ for the CPU, with the contractions of ptxas\n"
     "  --explicit OUT         the PTX with every contraction written out\n"
-    "  --stored ROOT OUT      the PTX as the repository keeps it, paths relative to ROOT\n"
+    "  --stored ROOT OUT      the PTX in the form stored in the repository, with paths relative to ROOT\n"
     "  --embedded OUT         the explicit PTX as C++ string literals, for inclusion\n"
     "usage: graze_twin_generator --text OUT FILE …   the files as C++ string literals, without their own includes\n"
     "usage: graze_twin_generator --proofs OUT [RECORD …]\n";
@@ -28,7 +28,7 @@ void write_literal(std::ostream& out, const std::string& text) {
   for (std::size_t at = 0; at < text.size(); at += kPiece) out << "R\"ptx(" << text.substr(at, kPiece) << ")ptx\",\n";
 }
 
-// The text of a file without its includes of project headers, whose text comes before it.
+// The text of a file without its includes of project headers. The text of these headers comes first.
 std::string without_own_includes(const std::string& path) {
   std::ifstream in(path);
   if (!in) throw PtxError(path + ":0: cannot be read");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Proof records (cuda/proofs/*.json, written by `graze prove-twin`) as rows of a C++ table for twin_evidence.
+// Converts proof records (cuda/proofs/*.json, written by `graze prove-twin`) to rows of a C++ table for twin_evidence.
 #pragma once
 
 #include <iosfwd>
@@ -10,7 +10,7 @@ namespace graze::cuda::twin {
 
 // Writes a row {"hash", "trace hash", {"device", "toolkit", pairs, twin_pairs}} for each recorded lane without
 // differences.
-// Throws: PtxError for a file that is not a record.
+// Throws: PtxError for a file that is not a proof record.
 void write_proofs(std::ostream& out, const std::vector<std::string>& records);
 
 }  // namespace graze::cuda::twin

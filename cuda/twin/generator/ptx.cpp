@@ -17,7 +17,7 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1));
 }
 
-// Splits at the separator, except within brackets and braces.
+// Splits the text at separators that are not within brackets or braces.
 std::vector<std::string> split(std::string_view text, char separator) {
   std::vector<std::string> parts;
   int depth = 0;
@@ -40,7 +40,7 @@ std::string without_spaces(std::string text) {
   return text;
 }
 
-constexpr std::size_t kMostEntries = 1 << 20;  // of a table
+constexpr std::size_t kMostEntries = 1 << 20;  // entries of a table
 
 class Reader {
  public:
@@ -49,7 +49,7 @@ class Reader {
   Module read() {
     try {
       read_lines();
-    } catch (const std::out_of_range&) {  // from std::stoi and similar functions
+    } catch (const std::out_of_range&) {  // std::stoi and similar functions throw it
       fail("expected numbers within range");
     }
     if (kernel_ != nullptr) fail("the file ends within a kernel");
@@ -74,8 +74,8 @@ class Reader {
     throw PtxError(module_.path + ":" + std::to_string(line_) + ": " + why + (text_.empty() ? "" : ": " + text_));
   }
 
-  // Reads the next line without its comment. Two comments have information that PTX lacks: nvcc's version and our "//
-  // from".
+  // Reads the next line without its comment. Two comments have information that is nowhere else in the PTX: nvcc's
+  // version, and our "// from".
   bool next_line() {
     static const std::regex kVersion(R"(// Cuda compilation tools, release [0-9.]+, V([0-9.]+))"),
         kFrom(R"(// from (\d+) (\d+) (\d+))");
@@ -98,7 +98,7 @@ class Reader {
     return {std::stoi(match[at]), std::stoi(match[at + 1]), std::stoi(match[at + 2])};
   }
 
-  // Joins the following lines up to the semicolon.
+  // Joins this line and the following lines up to a semicolon.
   void join_lines() {
     const int first = line_;
     std::string whole = text_;
@@ -129,7 +129,7 @@ class Reader {
     } else if (std::regex_match(text_, match, kFile)) {
       module_.files[std::stoi(match[1])] = match[2];
     } else if (text_.starts_with(".section")) {
-      in_debug_section_ = true;  // to the end of the file
+      in_debug_section_ = true;  // the rest of the file is debug information
     } else if (std::regex_match(text_, match, kEntry)) {
       module_.kernels.emplace_back();
       kernel_ = &module_.kernels.back();
@@ -153,7 +153,7 @@ class Reader {
     }
   }
 
-  // .const .align 4 .b8 NAME[12] = {0, 0, 128, 63, …}; .global .align 4 .u32 NAME = 7;
+  // Reads a table, such as .const .align 4 .b8 NAME[12] = {0, 0, 128, 63, …}; or .global .align 4 .u32 NAME = 7;
   void read_table() {
     static const std::regex kTable(
         R"((?:\.visible |\.weak )?\.(?:const|global)\s+\.align\s+(\d+)\s+\.([busf])(\d+)\s+([\w$]+)(?:\[(\d+)\])?(?:\s*=\s*(.*))?)");
@@ -175,7 +175,7 @@ class Reader {
       } else if (std::regex_match(value, kNumber)) {
         bits = value[0] == '-' ? 0 - std::stoull(value.substr(1)) : std::stoull(value);
       } else {
-        fail("expected a table of numbers");  // such as addresses of other tables or of functions
+        fail("expected a table of numbers");  // a table may have addresses of tables or functions
       }
       for (std::size_t b = 0; b < size; ++b) table.bytes.push_back(static_cast<std::uint8_t>(bits >> (8 * b)));
     }
@@ -205,7 +205,7 @@ class Reader {
     }
   }
 
-  // A line of a body, usually one statement. Inline assembly may have several statements and scopes.
+  // Reads a line of a body, usually one statement. A line of inline assembly may have several statements and scopes.
   void read_statements() {
     if ((text_.starts_with("call") || text_.starts_with('@') || text_.find(".branchtargets") != text_.npos) &&
         !text_.ends_with(';') && (text_.find("call") != text_.npos || text_.find(".branchtargets") != text_.npos))
@@ -272,7 +272,7 @@ class Reader {
       kernel_->local = match[2];
       kernel_->local_align = std::stoi(match[1]);
       kernel_->local_bytes = std::stoi(match[3]);
-    } else if (text_.starts_with(".pragma")) {  // "nounroll": without it ptxas unrolls the loop
+    } else if (text_.starts_with(".pragma")) {  // such as "nounroll", without which ptxas unrolls the loop
       add_directive(text_);
     } else if (text_.starts_with(".param") && !scopes_.empty() &&
                parameter(text_.substr(0, text_.size() - 1))) {  // parameter of a call
@@ -282,10 +282,10 @@ class Reader {
     }
   }
 
-  // Turns a scope's register into a register of the kernel with a unique name.
+  // Makes a scope's register a register of the kernel with a unique name.
   void declare_in_scope(const std::smatch& match) {
-    if (match[3].matched) fail("expected a register with a name of its own");
-    if (match[2] == "temp_param_reg") return;  // nvcc declares it for each call and never uses it
+    if (match[3].matched) fail("expected a single register, found a range of registers");
+    if (match[2] == "temp_param_reg") return;  // nvcc declares this register for each call, and never uses it
     std::string name = match[2];
     std::erase(name, '%');
     name = "%scope" + std::to_string(scope_count_) + "_" + name;
@@ -293,7 +293,7 @@ class Reader {
     scopes_.back()[match[2]] = name;
   }
 
-  // The operand, with the names of scopes' registers replaced.
+  // The operand with the new names of scopes' registers.
   std::string resolved(const std::string& operand) const {
     if (std::all_of(scopes_.begin(), scopes_.end(), [](const auto& scope) { return scope.empty(); })) return operand;
     static const std::regex kName(R"([%\w$]+)");
@@ -342,9 +342,9 @@ class Reader {
   Kernel* kernel_ = nullptr;
   bool in_body_ = false;
   bool in_debug_section_ = false;
-  std::set<std::string> declared_;                          // functions
+  std::set<std::string> declared_;                          // declared functions
   std::vector<std::map<std::string, std::string>> scopes_;  // registers declared in each scope, with their new names
-  int scope_count_ = 0;                                     // of scopes in the file
+  int scope_count_ = 0;                                     // the number of scopes in the file so far
   Source source_;
   Place inlined_at_;
   std::string text_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // PTX for the twin generator: tables, kernels and functions with their parameters, registers, local memory and
-// instructions. Supports the part of the grammar that nvcc writes for kernels without shared memory. Reference: NVIDIA,
+// instructions. The reader supports the grammar that nvcc writes for kernels without shared memory. Reference: NVIDIA,
 // PTX ISA 9.0.
 #pragma once
 
@@ -27,7 +27,7 @@ struct Place {
   friend bool operator==(const Place&, const Place&) = default;
 };
 
-// The origin of an instruction: its source line, and the line into which that code was inlined (file 0: not inlined).
+// The origin of an instruction: its source line, and the line into which this line was inlined (file 0: not inlined).
 // PTX does not identify further levels of inlining reliably.
 struct Source {
   Place at;
@@ -47,14 +47,14 @@ struct Instruction {
   int line = 0;                            // line in the PTX file
   Source source = {};
   bool by_hand = false;  // an fma written in the source, so not a contraction
-  int site = -1;         // of a contraction: index in Contracted::sites
+  int site = -1;         // the index in Contracted::sites if the instruction is a contraction
 
   bool is_label() const { return !label.empty(); }
   bool is_operation() const { return !op.empty(); }
   bool has(std::string_view modifier) const;
 };
 
-// An instruction as PTX spells it, without the semicolon.
+// An instruction in the syntax of PTX, without the semicolon.
 std::string text(const Instruction& instruction);
 
 struct Parameter {
@@ -63,25 +63,25 @@ struct Parameter {
   int bytes = 0;
 };
 
-// Parses a declaration ".param .b32 NAME"; nullopt when it is not one.
+// Parses a declaration such as ".param .b32 NAME".   Returns: nullopt for another text.
 std::optional<Parameter> parameter(const std::string& declaration);
 
 // A table in constant or global memory.
 struct Table {
-  std::string declaration;  // as in the file, without the semicolon
+  std::string declaration;  // the text of the file, without the semicolon
   std::string name;
   int align = 0;
   std::vector<std::uint8_t> bytes;
 };
 
-// A kernel, or a function called by kernels.
+// A kernel, or a function that kernels call.
 struct Kernel {
   std::string name;
   int line = 0;
   bool is_function = false;
   bool declared_before = false;     // a function that is declared before its definition
-  std::string linkage;              // of a function: "", ".visible ", ".weak "
-  std::vector<Parameter> returned;  // of a function
+  std::string linkage;              // a function's: "", ".visible ", ".weak "
+  std::vector<Parameter> returned;  // a function's result
   std::vector<Parameter> parameters;
   std::map<std::string, std::pair<std::string, int>>
       registers;      // prefix, such as "%f", to type and count; a count of 0 means a single register
@@ -92,7 +92,7 @@ struct Kernel {
   std::vector<Instruction> body;
 };
 
-// The type of a register of the kernel ("f32", "pred"); empty when there is no register of that name.
+// The type of a register of the kernel ("f32", "pred"); empty if the kernel has no register of that name.
 std::string register_type(const Kernel& kernel, std::string_view name);
 
 struct Module {
@@ -102,12 +102,12 @@ struct Module {
   std::string toolkit;  // "13.0.88", from nvcc's comment; may be empty
   std::map<int, std::string> files;
   std::vector<Table> tables;
-  std::vector<Kernel> kernels;  // and functions
+  std::vector<Kernel> kernels;  // kernels and functions
 };
 
-// Reads PTX. `path` is the name of the stream in messages.
-// Throws: PtxError for syntax that this reader does not support. It accepts unknown instructions; the writers reject
+// Reads PTX. `path` is the name of the stream in messages. The reader accepts unknown instructions; the writers reject
 // them.
+// Throws: PtxError for syntax that the reader does not support.
 Module read_ptx(std::istream& in, const std::string& path);
 
 }  // namespace graze::cuda::twin

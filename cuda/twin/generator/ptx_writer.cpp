@@ -11,7 +11,7 @@
 namespace graze::cuda::twin {
 namespace {
 
-// ".visible .entry NAME(…)", ".func (…) NAME(…)"
+// Writes ".visible .entry NAME(…)" for a kernel, or ".func (…) NAME(…)" for a function.
 void write_signature(std::ostream& out, const Kernel& kernel) {
   if (kernel.is_function) {
     out << "\n" << kernel.linkage << ".func ";
@@ -47,7 +47,7 @@ void write_declarations(std::ostream& out, const Kernel& kernel) {
   }
 }
 
-// Path within the repository. For a system header, only the file name, because its folder differs between machines.
+// The path within the repository. Of a system header, only the file name, because its folder differs between machines.
 std::string relative(std::string path, const std::string& root) {
   if (!path.starts_with(root + "/")) return path.substr(path.rfind('/') + 1);
   path.erase(0, root.size() + 1);
@@ -55,7 +55,7 @@ std::string relative(std::string path, const std::string& root) {
   return path;
 }
 
-// Whether the instruction is or may become a contraction. Source lines are written only for these.
+// Whether the instruction is or may become a contraction. Only such instructions need source lines.
 bool may_contract(const Instruction& i) {
   return i.is_operation() && i.op.back()[0] == 'f' &&
          (i.op[0] == "fma" || ((i.op[0] == "add" || i.op[0] == "sub") && !i.has("rn")));
@@ -98,7 +98,7 @@ void write_explicit(std::ostream& out, const Module& module, Rule rule) {
 }
 
 std::string kernel_hash(const Kernel& kernel, const Contracted& contracted) {
-  // Names that contain the kernel's number in its module.
+  // These names contain the kernel's number in its module.
   static const std::regex kPlace(R"((\$L__BB|__local_depot)\d+)");
   std::uint64_t hash = fnv1a("");
   for (const Kernel* form : {&kernel, &contracted.kernel}) {

@@ -11,15 +11,15 @@
 
 namespace graze::cuda::twin {
 
-// Writes the module in a form that is the same on every machine. Paths are relative to `root`; nvcc's comments and the
-// mangled names of inlined functions are left out. The source lines of operations that may be contracted are kept.
+// Writes the module in a form that is the same on every machine. Paths are relative to `root`. nvcc's comments and the
+// mangled names of inlined functions are left out. Operations that may be contracted keep their source lines.
 void write_stored(std::ostream& out, const Module& module, const std::string& root);
 
-// Writes the module after the contraction pass, which leaves ptxas no choice.
+// Writes the module after the contraction pass, so that ptxas cannot contract further.
 void write_explicit(std::ostream& out, const Module& module, Rule rule);
 
-// Hash of a kernel's instructions, both as they stand and as the pass contracts them. File names, lines and the
-// kernel's own name do not count. 16 hexadecimal digits (FNV-1a, 64 bits).
+// The hash of a kernel's instructions before and after the contraction pass: 16 hexadecimal digits (FNV-1a, 64 bits).
+// File names, lines and the kernel's own name do not change the hash.
 std::string kernel_hash(const Kernel& kernel, const Contracted& contracted);
 
 }  // namespace graze::cuda::twin

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds exactly which triangles of two three.js geometries meet. Apply a mesh's matrix first:
+// Finds the triangles of two three.js geometries that meet, by exact tests. Apply a mesh's matrix first:
 // geometry.clone().applyMatrix4(mesh.matrixWorld).
 import { ready } from 'graze-wasm';
 

@@ -17,7 +17,7 @@ GITHUB = {"runner.os": "Linux", "runner.arch": "X64", "github.run_id": "1", "git
 
 
 class Run:
-    def __init__(self, action, given, workspace, say=print):
+    def __init__(self, action, given, workspace):
         unknown = set(given) - set(action["inputs"])
         if unknown:
             raise ValueError(f"unknown input {sorted(unknown)[0]}; there are {', '.join(action['inputs'])}")
@@ -26,8 +26,8 @@ class Run:
             if description.get("required") and name not in given:
                 raise ValueError(f"the input {name} is missing")
             self.values[f"inputs.{name}"] = given.get(name, description.get("default", ""))
-        self.action, self.workspace, self.say = action, workspace, say
-        self.status, self.used, self.path = 0, [], os.environ["PATH"]
+        self.action, self.workspace = action, workspace
+        self.status, self.path = 0, os.environ["PATH"]
 
     def value(self, name):
         if re.fullmatch(r"steps\.\w+\.outputs\.\w+", name):
@@ -51,12 +51,12 @@ class Run:
         if not self.runs(step.get("if")):
             return
         if "uses" in step:
-            self.used.append((step["uses"], {key: self.text(value) for key, value in step["with"].items()}))
-            self.say(f"== {step['name']}: not run here: {step['uses']} {self.used[-1][1]}")
+            inputs = {key: self.text(value) for key, value in step["with"].items()}
+            print(f"== {step['name']}: not run here: {step['uses']} {inputs}", flush=True)
             return
         if step["shell"] != "bash":
             raise ValueError(f"{step['name']}: only bash is known here")
-        self.say(f"== {step['name']}")
+        print(f"== {step['name']}", flush=True)
         with tempfile.TemporaryDirectory() as folder:
             outputs, paths = pathlib.Path(folder, "outputs"), pathlib.Path(folder, "paths")
             outputs.touch()
@@ -98,8 +98,7 @@ def main():
     parser.add_argument("inputs", nargs="*", metavar="NAME=VALUE")
     arguments = parser.parse_args()
     action = yaml.safe_load((ROOT / "action.yml").read_text(encoding="utf-8"))
-    say = lambda text: print(text, flush=True)
-    return Run(action, dict(given.split("=", 1) for given in arguments.inputs), arguments.workspace, say).all()
+    return Run(action, dict(given.split("=", 1) for given in arguments.inputs), arguments.workspace).all()
 
 
 if __name__ == "__main__":

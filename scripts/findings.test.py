@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """scripts/findings accepts only a page that shows its program's output. Every page of docs/findings has all parts."""
-import importlib.machinery
-import importlib.util
 import os
 import pathlib
 import subprocess
@@ -9,6 +7,8 @@ import sys
 import tempfile
 import unittest
 import unittest.mock
+
+from loaded import loaded
 
 SCRIPT = pathlib.Path(__file__).with_name("findings")
 PAGES = SCRIPT.parent.parent / "docs/findings"
@@ -45,13 +45,6 @@ NPM = """case $1 in
 esac
 """
 NODE = 'cat node_modules/installed; tail -n +2 "$1"\n'
-
-
-def loaded():
-    loader = importlib.machinery.SourceFileLoader("findings", str(SCRIPT))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("findings", loader))
-    loader.exec_module(module)
-    return module
 
 
 class Findings(unittest.TestCase):
@@ -119,9 +112,9 @@ class Findings(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = self.path_with(folder, {"npm": NPM})
             with unittest.mock.patch.dict(os.environ, PATH=path):
-                self.assertEqual(loaded().registry(), "export npm_config_registry='the registry of npm'\n")
+                self.assertEqual(loaded("findings").registry(), "export npm_config_registry='the registry of npm'\n")
         with unittest.mock.patch.dict(os.environ, PATH=""):
-            self.assertEqual(loaded().registry(), "")
+            self.assertEqual(loaded("findings").registry(), "")
 
     def test_every_page_has_its_parts(self):
         pages = list(PAGES.glob("*.md"))

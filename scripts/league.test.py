@@ -1,17 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The table of scripts/league, the adapters and their README agree. The four pairs detect subjects that are used
 wrongly."""
-import importlib.machinery
-import importlib.util
 import pathlib
 import subprocess
 import tempfile
 import unittest
 
-SCRIPT = pathlib.Path(__file__).with_name("league")
-loader = importlib.machinery.SourceFileLoader("league", str(SCRIPT))
-league = importlib.util.module_from_spec(importlib.util.spec_from_loader("league", loader))
-loader.exec_module(league)
+from loaded import loaded
+
+league = loaded("league")
 
 SUBJECT = """#include <graze/subject.h>
 #include <stdlib.h>

@@ -20,7 +20,7 @@ GRAZE = pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else None
 sys.path.insert(0, str(HERE))
 import measurements  # noqa: E402
 from presenting import figures, page, records, site  # noqa: E402
-from presenting.claims import RESULTS, results  # noqa: E402
+from presenting.page import RESULTS, results  # noqa: E402
 from presenting.records import Records, Unsupported, digits, plain, unbacked  # noqa: E402
 
 DOCS = ROOT / "docs"

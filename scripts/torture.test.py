@@ -3,20 +3,18 @@
 one."""
 import contextlib
 import io
-import importlib.machinery
-import importlib.util
 import pathlib
 import subprocess
 import sys
 import tempfile
 import types
 import unittest
+from unittest import mock
+
+from loaded import loaded
 
 SCRIPT = pathlib.Path(__file__).with_name("torture")
-sys.path.insert(0, str(SCRIPT.parent))
-loader = importlib.machinery.SourceFileLoader("torture", str(SCRIPT))
-torture = importlib.util.module_from_spec(importlib.util.spec_from_loader("torture", loader))
-loader.exec_module(torture)
+torture = loaded("torture")
 
 # A campaign of eight rows, 50 ms each. MODE selects its misbehaviour.
 GRAZE = r"""#!%(python)s -BS
@@ -159,10 +157,9 @@ class Torture(unittest.TestCase):
         file.chmod(0o755)
         return file
 
-    def attack(self, mode, kind, rounds=1):
+    def attack(self, graze, kind, rounds=1):
         """Runs up to `rounds` rounds, until one finds something. Returns: its counts and the output."""
-        graze = self.graze(mode)
-        bench = torture.Bench(graze, 1, self.folder / f"{mode}-{kind}")
+        bench = torture.Bench(graze, 1, self.folder / f"{graze.name}-{kind}")
         said = io.StringIO()
         for number in range(rounds):
             with contextlib.redirect_stdout(said):
@@ -177,7 +174,7 @@ class Torture(unittest.TestCase):
         }  # the stand-in has none of these verbs
         for kind in sorted(torture.KINDS.keys() - of_results):
             with self.subTest(kind):
-                counts, said = self.attack("good", kind)
+                counts, said = self.attack(self.graze("good"), kind)
                 self.assertEqual(said, "")
                 self.assertGreater(sum(counts.values()), 0)
 
@@ -203,9 +200,8 @@ class Torture(unittest.TestCase):
             ("outputs", "replaces", "found otherwise"),
         ):
             with self.subTest(f"{kind} {mode}"):
-                counts, said = self.attack(
-                    mode, kind, rounds=50 if mode in ("loses", "collides") else 1
-                )  # depends on when
+                rounds = 50 if mode in ("loses", "collides") else 1  # whether it does depends on when it is killed
+                counts, said = self.attack(self.graze(mode), kind, rounds)
                 self.assertEqual(counts["violations"], 1)
                 self.assertRegex(said, f"^VIOLATION in {kind}:[0-9]+: ")
                 self.assertIn(what, said)
@@ -242,22 +238,11 @@ class Torture(unittest.TestCase):
                 graze = self.folder / f"graze-{kind}"
                 graze.write_text(f"#!/bin/bash\n{wrong}\n")
                 graze.chmod(0o755)
-                bench = torture.Bench(graze, 1, self.folder / f"bench-{kind}")
-                said = io.StringIO()
-                for number in range(6):
-                    with contextlib.redirect_stdout(said):
-                        torture.attack(bench, kind, number, types.SimpleNamespace(graze=graze, seed=1))
-                    if said.getvalue():
-                        break
-                self.assertIn(what, said.getvalue())
+                self.assertIn(what, self.attack(graze, kind, rounds=6)[1])
 
     def test_one_that_hangs(self):
-        bench = sys.modules["torture_attacks.bench"]
-        before, bench.SECONDS = bench.SECONDS, 2
-        try:
-            self.assertIn("expected an end within 2 s, and ", self.attack("hangs", "meshes")[1])
-        finally:
-            bench.SECONDS = before
+        with mock.patch("torture_attacks.bench.SECONDS", 2):
+            self.assertIn("expected an end within 2 s, and ", self.attack(self.graze("hangs"), "meshes")[1])
 
     def test_exit_status_and_table(self):
         def run(mode):
@@ -281,40 +266,27 @@ class Torture(unittest.TestCase):
             list(self.folder.glob("graze-torture-*/meshes-3")), [pathlib.Path(said.split("kept:  ")[1].split("\n")[0])]
         )
 
-    def test_kills_go_on_until_there_are_enough(self):
-        kinds, torture.KINDS = torture.KINDS, {name: torture.KINDS[name] for name in torture.KILLS}
-        arguments, sys.argv = sys.argv, [
-            "torture",
-            "--graze",
-            str(self.graze("good")),
-            "--rounds",
-            "1",
-            "--kills",
-            "6",
-            "--seed",
-            "commits",
-        ]
+    def main_with(self, kinds, *options):
+        """Runs torture's main with these kinds of attack. Returns: its status and output."""
+        command = ["torture", "--graze", str(self.graze("good")), "--rounds", "1", *options]
         said = io.StringIO()
-        try:
+        with mock.patch.object(torture, "KINDS", kinds), mock.patch.object(sys, "argv", command):
             with contextlib.redirect_stdout(said):
-                self.assertEqual(torture.main(), 0, said.getvalue())
-        finally:
-            torture.KINDS, sys.argv = kinds, arguments
+                return torture.main(), said.getvalue()
+
+    def test_kills_go_on_until_there_are_enough(self):
+        kinds = {name: torture.KINDS[name] for name in torture.KILLS}
+        status, said = self.main_with(kinds, "--kills", "6", "--seed", "commits")
+        self.assertEqual(status, 0, said)
         for kind in torture.KILLS:
-            attempts = int(said.getvalue().split(f"| {kind} | ")[1].split(" | ")[1])
+            attempts = int(said.split(f"| {kind} | ")[1].split(" | ")[1])
             self.assertGreaterEqual(attempts, 6)
-        self.assertRegex(said.getvalue(), r"^Seed [1-9][0-9]*, ")
+        self.assertRegex(said, r"^Seed [1-9][0-9]*, ")
 
     def test_nothing_attempted_is_a_failure(self):
-        kinds, torture.KINDS = torture.KINDS, {"idle": lambda turn: None}
-        arguments, sys.argv = sys.argv, ["torture", "--graze", str(self.graze("good")), "--rounds", "1"]
-        said = io.StringIO()
-        try:
-            with contextlib.redirect_stdout(said):
-                self.assertEqual(torture.main(), 1)
-        finally:
-            torture.KINDS, sys.argv = kinds, arguments
-        self.assertIn("expected at least 1 attempts of idle, found 0", said.getvalue())
+        status, said = self.main_with({"idle": lambda turn: None})
+        self.assertEqual(status, 1)
+        self.assertIn("expected at least 1 attempts of idle, found 0", said)
 
 
 if __name__ == "__main__":

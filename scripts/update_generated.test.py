@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """scripts/update_generated puts what tests print into strata/golden.h and cuda/twin/contracted_otherwise.inc, and
 changes nothing else."""
-import importlib.machinery
-import importlib.util
 import pathlib
 import sys
 import unittest
 
 sys.dont_write_bytecode = True
+from loaded import loaded  # noqa: E402
+
 ROOT = pathlib.Path(__file__).parent.parent
-loader = importlib.machinery.SourceFileLoader("update_generated", str(ROOT / "scripts/update_generated"))
-update = importlib.util.module_from_spec(importlib.util.spec_from_loader("update_generated", loader))
-loader.exec_module(update)
+update = loaded("update_generated")
 
 
 class Goldens(unittest.TestCase):

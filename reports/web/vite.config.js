@@ -6,34 +6,23 @@ import { readFileSync, readdirSync } from 'node:fs';
 import { defineConfig } from 'vite';
 import { viteSingleFile } from 'vite-plugin-singlefile';
 
-// The source lines at which lanes take their steps.
-const kSources = [
-  'core/vec3.h',
-  ...(process.env.GRAZE_VIEWER
-    ? readdirSync(`${process.env.GRAZE_SOURCE}/core/algorithms`).map((name) => `core/algorithms/${name}`)
-    : []),
-];
+// The source lines at which lanes take their steps, by file. Without a viewer, none are needed.
+function source_lines() {
+  const root = process.env.GRAZE_SOURCE;
+  if (!process.env.GRAZE_VIEWER) return {};
+  const files = ['core/vec3.h', ...readdirSync(`${root}/core/algorithms`).map((name) => `core/algorithms/${name}`)];
+  const lines = (file) => readFileSync(`${root}/${file}`, 'utf8').split('\n');
+  return Object.fromEntries(
+    files
+      .filter((file) => !/(algorithms?|traced)\.h$/.test(file))
+      .map((file) => [file, lines(file).map((line) => line.trim())]),
+  );
+}
 const sources = {
   name: 'graze-sources',
   enforce: 'pre',
   resolveId: (id) => (id === 'graze.sources' ? '\0graze.sources' : null),
-  load: (id) =>
-    id === '\0graze.sources'
-      ? `export default ${JSON.stringify(
-          process.env.GRAZE_VIEWER
-            ? Object.fromEntries(
-                kSources
-                  .filter((file) => !/(algorithms?|traced)\.h$/.test(file))
-                  .map((file) => [
-                    file,
-                    readFileSync(`${process.env.GRAZE_SOURCE}/${file}`, 'utf8')
-                      .split('\n')
-                      .map((line) => line.trim()),
-                  ]),
-              )
-            : {},
-        )}`
-      : null,
+  load: (id) => (id === '\0graze.sources' ? `export default ${JSON.stringify(source_lines())}` : null),
 };
 
 export default defineConfig(({ mode }) => ({

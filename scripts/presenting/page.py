@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/results/README.md: the results as Markdown, and their figures as files."""
+"""docs/results/README.md: all results, in their order, as Markdown, and their figures as files."""
 import measurements
+from presenting.builds import fast_math, hosts, processors, riddle
+from presenting.inputs import stored
+from presenting.methods import epsilon, league, price, which
 from presenting.records import plain
+
+RESULTS = (riddle, hosts, price, which, fast_math, processors, stored, league, epsilon)
 
 # A paragraph of a Markdown file is one line.
 HEAD = (
@@ -23,6 +28,16 @@ TAIL = (
     "the page does not, or if the page has a number without a record. `scripts/results --site DIR` writes it as a "
     "web site, which shows some of the pairs in 3-D.\n"
 )
+
+
+def results(records):
+    """Returns: the results, each with the records that it uses. Throws: Unsupported."""
+    found = []
+    for write in RESULTS:
+        records.used = {}
+        found.append(write(records))
+        found[-1].records = records.used
+    return found
 
 
 def sources(result):

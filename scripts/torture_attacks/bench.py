@@ -35,6 +35,22 @@ def results_of(campaign):
     return {file.relative_to(campaign).as_posix(): file.read_bytes() for file in files if file.is_file()}
 
 
+def must_agree(found, expected, partial):
+    """Requires the same results by name, and no partial files."""
+    apart = [name for name in sorted({*found, *expected}) if found.get(name) != expected.get(name)]
+    if apart:
+        raise Violation(
+            f"expected the results of the undisturbed run, found that {len(apart)} files differ, the first {apart[0]}"
+        )
+    left = [file.name for file in partial]
+    if left:
+        raise Violation(f"expected nothing left behind, found {left}")
+
+
+def bytes_of(folder):
+    return {file: file.read_bytes() for file in folder.rglob("*") if file.is_file()}
+
+
 class Bench:
     """Shared by all rounds: the program, and the results of undisturbed campaigns."""
 
@@ -46,41 +62,19 @@ class Bench:
     def campaign(self, name):
         """The arguments of the campaign of that name, or of the hunt, except --out."""
         drawn = random.Random(f"{self.seed} {name}")
-        seed = str(drawn.randrange(1 << 32))
+        seed = drawn.randrange(1 << 32)
         if name == "hunt":
             coordinates = drawn.choice(["f32", "f64"])
-            return [
-                "hunt",
-                "--runs",
-                "12000",
-                "--seed",
-                seed,
-                "--coordinates",
-                coordinates,
-                "--lanes",
-                "interval_overlap/f32/cpu",
-                "--threads",
-                "2",
-            ]
+            command = f"hunt --runs 12000 --coordinates {coordinates}"
+            return f"{command} --seed {seed} --lanes interval_overlap/f32/cpu --threads 2".split()
         many = "near_edge_edge,degenerate,uniform,lattice,near_vertex_face,coplanar_wide"
         pairs, strata = {
             "large": ("240000", many),
             "small": ("600", many),
             "tiny": ("24", "near_edge_edge,degenerate"),
         }[name]
-        return [
-            "fuzz",
-            "--pairs",
-            pairs,
-            "--seed",
-            seed,
-            "--strata",
-            strata,
-            "--lanes",
-            "interval_overlap/f32/cpu",
-            "--threads",
-            "2",
-        ]
+        command = f"fuzz --pairs {pairs} --strata {strata}"
+        return f"{command} --seed {seed} --lanes interval_overlap/f32/cpu --threads 2".split()
 
     def reference(self, name, minimised=False, reported=False, shard=None):
         """The folder of the campaign after an undisturbed run. Do not change it."""
@@ -89,20 +83,19 @@ class Bench:
             folder = self.folder / "undisturbed" / "-".join(map(str, key)).replace("/", "of")
             if reported or minimised:
                 shutil.copytree(self.reference(name, minimised and reported), folder)
-            steps = (
-                [["report", folder]]
+            step = (
+                ["report", folder]
                 if reported
-                else [["minimize", folder]]
+                else ["minimize", folder]
                 if minimised
-                else [[*self.campaign(name), *(["--shard", shard] if shard else []), "--out", folder]]
+                else [*self.campaign(name), *(["--shard", shard] if shard else []), "--out", folder]
             )
             start = time.monotonic()
-            for step in steps:
-                turn = Round(self, "undisturbed", 0, self.folder / "undisturbed")
-                try:
-                    turn.must_succeed(turn.run(*step))
-                except Violation as error:
-                    raise Violation(f"{turn.commands[-1]}, which nothing disturbed: {error}") from None
+            turn = Round(self, "undisturbed", 0, self.folder / "undisturbed")
+            try:
+                turn.must_succeed(turn.run(*step))
+            except Violation as error:
+                raise Violation(f"{turn.commands[-1]}, which nothing disturbed: {error}") from None
             self.seconds[key] = time.monotonic() - start
             self.undisturbed[key] = folder
         return self.undisturbed[key]
@@ -112,15 +105,15 @@ class Round:
     """One round of an attack: its random numbers, its folder, its counts."""
 
     def __init__(self, bench, kind, number, folder):
-        self.bench, self.kind, self.number, self.folder = bench, kind, number, folder
+        self.bench, self.folder = bench, folder
         self.random = random.Random(f"{bench.seed} {kind} {number}")
         self.counts = collections.Counter()
         self.commands = []
         folder.mkdir(parents=True, exist_ok=True)
 
-    def count(self, outcome):
+    def count(self, outcome, times=1):
         """outcome: "same", "read" or "refused"."""
-        self.counts[outcome] += 1
+        self.counts[outcome] += times
 
     def start(self, *arguments, file_bytes=None):
         """Starts graze in the round's folder."""
@@ -207,12 +200,4 @@ class Round:
 
     def must_be_same(self, campaign, reference):
         """Requires results equal to the reference byte for byte, and no partial file."""
-        found, expected = results_of(campaign), results_of(reference)
-        apart = [name for name in sorted({*found, *expected}) if found.get(name) != expected.get(name)]
-        if apart:
-            raise Violation(
-                f"expected the results of the undisturbed run, found that {len(apart)} files differ, the first {apart[0]}"
-            )
-        left = [file.name for file in campaign.rglob("*.part*")]
-        if left:
-            raise Violation(f"expected nothing left behind, found {left}")
+        must_agree(results_of(campaign), results_of(reference), campaign.rglob("*.part*"))

@@ -7,7 +7,7 @@ import subprocess
 import time
 
 from torture_attacks import mutate
-from torture_attacks.bench import Violation
+from torture_attacks.bench import Violation, bytes_of
 
 
 def kill_repeatedly(turn, begin, arguments, seconds):
@@ -40,8 +40,7 @@ def kill_fuzz(turn):
             turn.must_succeed(turn.run(*command, "--discard-damaged"))
     turn.must_succeed(turn.run(*command))
     turn.must_be_same(campaign, reference)
-    for _ in range(kills):
-        turn.count("same")
+    turn.count("same", kills)
 
 
 def kill_hunt(turn):
@@ -63,8 +62,7 @@ def kill_hunt(turn):
         damaged.write_bytes(mutate.any_of(turn.random, damaged.read_bytes(), mutate.BINARY))
     turn.must_succeed(turn.run(*command))
     turn.must_be_same(campaign, reference)
-    for _ in range(kills):
-        turn.count("same")
+    turn.count("same", kills)
 
 
 def kill_minimize(turn):
@@ -78,8 +76,7 @@ def kill_minimize(turn):
     kills = kill_repeatedly(turn, begin, ["minimize", campaign], turn.bench.seconds["tiny", True, False])
     turn.must_succeed(turn.run("minimize", campaign))
     turn.must_be_same(campaign, reference)
-    for _ in range(kills):
-        turn.count("same")
+    turn.count("same", kills)
 
 
 @contextlib.contextmanager
@@ -103,25 +100,44 @@ def small_disk(folder, size):
             subprocess.run(["umount", folder], check=True)
 
 
+@contextlib.contextmanager
+def made_read_only(folder):
+    """The mounted folder is read-only meanwhile. Requires that nothing in it changes."""
+    before = bytes_of(folder)
+    remount = lambda how: subprocess.run(["mount", "-o", f"remount,{how}", folder], check=True, capture_output=True)
+    remount("ro")
+    try:
+        yield
+    finally:
+        remount("rw")
+    if bytes_of(folder) != before:
+        raise Violation("expected a folder that can only be read to stay as it is, found it changed")
+
+
+def finish_both(turn, first, second, pauses, name):
+    """Runs two commands at once, the second after one of these pauses. At least one must succeed, and a refusal must
+    contain the name.   Returns: whether one was refused."""
+    started = turn.start(*first)
+    time.sleep(turn.random.choice(pauses))
+    both = [turn.finish(other, judged=False) for other in (turn.start(*second), started)]
+    for ran in both:
+        turn.must_end(ran)
+    refused = [turn.is_refused(ran, name) for ran in both]
+    if all(refused):
+        raise Violation(f"expected one of two at once to go on, found both refused: {both[0].err!r} {both[1].err!r}")
+    return any(refused)
+
+
 def read_only(turn):
     """A killed campaign on a read-only file system. graze must refuse it in one line and change nothing."""
     campaign, reference = turn.folder / "disk" / "campaign", turn.bench.reference("large")
     command = [*turn.bench.campaign("large"), "--out", campaign]
     with small_disk(turn.folder / "disk", 64 << 20) as mounted:
         turn.run(*command, kill_after=turn.bench.seconds["large", False, False] * turn.random.random())
-        before = {file: file.read_bytes() for file in campaign.rglob("*") if file.is_file()}
         refused = False
         if mounted:
-            remount = lambda how: subprocess.run(
-                ["mount", "-o", f"remount,{how}", turn.folder / "disk"], check=True, capture_output=True
-            )
-            remount("ro")
-            try:
+            with made_read_only(turn.folder / "disk"):
                 refused = turn.is_refused(turn.run(*command), "campaign")
-            finally:
-                remount("rw")
-            if {file: file.read_bytes() for file in campaign.rglob("*") if file.is_file()} != before:
-                raise Violation("expected a folder that can only be read to stay as it is, found it changed")
         turn.must_succeed(turn.run(*command))
         turn.must_be_same(campaign, reference)
         turn.count("refused" if refused else "same")
@@ -182,15 +198,8 @@ def two_at_once(turn):
     )
     if minimised:
         shutil.copytree(turn.bench.reference("tiny"), campaign)
-    started = turn.start(*first)
-    time.sleep(turn.random.choice([0, 0, 0.01, 0.1, 0.5]))
-    both = [turn.finish(other, judged=False) for other in (turn.start(*second), started)]
-    for ran in both:
-        turn.must_end(ran)
-    refused = [turn.is_refused(ran, "campaign") for ran in both]
-    if all(refused):
-        raise Violation(f"expected one of two at once to go on, found both refused: {both[0].err!r} {both[1].err!r}")
+    refused = finish_both(turn, first, second, [0, 0, 0.01, 0.1, 0.5], "campaign")
     if minimised:
         turn.must_succeed(turn.run(*minimize))
     turn.must_be_same(campaign, turn.bench.reference(name, minimised=minimised))
-    turn.count("refused" if any(refused) else "same")
+    turn.count("refused" if refused else "same")

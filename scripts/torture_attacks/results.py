@@ -6,12 +6,12 @@ import json
 import os
 import shutil
 import stat
-import subprocess
 import time
 
 from torture_attacks import seal
-from torture_attacks.bench import Violation
-from torture_attacks.interruptions import small_disk
+from torture_attacks.bench import Violation, must_agree
+from torture_attacks.interruptions import finish_both, made_read_only, small_disk
+from torture_attacks.outputs import PAIR
 
 ATTEMPTS = 3  # verbs in a round
 TIMED = {
@@ -38,7 +38,6 @@ ASIDE = {
     "campaign.sqlite",
 }  # and the files that accompany a database
 SUBJECT = "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }\n"
-PAIR = "0.1 0.2 0.3  0.4 0.9 0.2  0.7 0.1 0.6   0.1 0.2 0.3  0.5 0.5 0.9  -0.3 0.8 0.4\n"
 
 
 def inputs(bench):
@@ -52,40 +51,16 @@ def inputs(bench):
     return folder
 
 
-def shards(bench):
-    return [bench.reference("small", shard=number + "/2") for number in ("1", "2")]
-
-
 def command(bench, verb, out):
     """The arguments of the verb."""
     folder = inputs(bench)
-    few = ["--strata", "near_edge_edge,degenerate"]
+    few = "--strata near_edge_edge,degenerate --pairs"
     return {
-        "tune": lambda: ["tune", "moller_1997/f32/cpu", *few, "--pairs", "2000", "--threads", "2", "--out", out],
-        "pareto": lambda: [
-            "pareto",
-            "--lanes",
-            "moller_1997/f32/cpu,exact/f32/cpu",
-            *few,
-            "--pairs",
-            "1000",
-            "--out",
-            out,
-        ],
-        "invariants": lambda: [
-            "invariants",
-            "--lanes",
-            "moller_1997/f32/cpu",
-            *few,
-            "--pairs",
-            "300",
-            "--threads",
-            "2",
-            "--out",
-            out,
-        ],
-        "league": lambda: ["league", "--subjects", folder / "subjects.txt", *few, "--pairs", "200", "--out", out],
-        "merge": lambda: ["merge", *shards(bench), "--out", out],
+        "tune": lambda: [*f"tune moller_1997/f32/cpu {few} 2000 --threads 2 --out".split(), out],
+        "pareto": lambda: [*f"pareto --lanes moller_1997/f32/cpu,exact/f32/cpu {few} 1000 --out".split(), out],
+        "invariants": lambda: [*f"invariants --lanes moller_1997/f32/cpu {few} 300 --threads 2 --out".split(), out],
+        "league": lambda: ["league", "--subjects", folder / "subjects.txt", *f"{few} 200 --out".split(), out],
+        "merge": lambda: ["merge", *(bench.reference("small", shard=shard) for shard in ("1/2", "2/2")), "--out", out],
         "report": lambda: ["report", out],
         "view": lambda: ["view", folder / "pair.txt", "--out", out / "view.html"],
     }[verb]()
@@ -169,15 +144,7 @@ def must_be_whole(out, expected, begun):
 def must_end_alike(turn, verb, out, expected):
     ran = turn.run(*command(turn.bench, verb, out))
     turn.must_succeed(ran)
-    found = snapshot(out)
-    apart = [name for name in sorted({*found, *expected}) if found.get(name) != expected.get(name)]
-    if apart:
-        raise Violation(
-            f"expected the results of the undisturbed {verb}, found that {len(apart)} files differ, the first {apart[0]}"
-        )
-    left = [file.name for file in [*out.rglob("*.part*"), *out.parent.glob(out.name + ".graze.part*")]]
-    if left:
-        raise Violation(f"expected nothing left behind, found {left}")
+    must_agree(snapshot(out), expected, [*out.rglob("*.part*"), *out.parent.glob(out.name + ".graze.part*")])
 
 
 def kill_results(turn):
@@ -220,44 +187,25 @@ def read_only_results(turn):
         with small_disk(disk, 64 << 20) as mounted:
             there = disk / verb
             begin(turn, verb, there)
-            before = {file: file.read_bytes() for file in disk.rglob("*") if file.is_file()}
-            refused = False
             if mounted:
-                remount = lambda how: subprocess.run(
-                    ["mount", "-o", f"remount,{how}", disk], check=True, capture_output=True
-                )
-                remount("ro")
-                try:
+                with made_read_only(disk):
                     ran = turn.run(*command(turn.bench, verb, there))
-                    refused = turn.is_refused(ran, verb)
-                    if not refused or "Read-only file system" not in ran.err:
+                    if not turn.is_refused(ran, verb) or "Read-only file system" not in ran.err:
                         raise Violation(f"expected the system's reason, Read-only file system, found {ran.err!r}")
-                finally:
-                    remount("rw")
-                if {file: file.read_bytes() for file in disk.rglob("*") if file.is_file()} != before:
-                    raise Violation("expected a folder that can only be read to stay as it is, found it changed")
             must_end_alike(turn, verb, there, expected)
-            turn.count("refused" if refused else "same")
+            turn.count("refused" if mounted else "same")
 
     each(turn, attack)
 
 
 def two_results(turn):
     def attack(turn, verb, out, expected):
-        started = turn.start(*command(turn.bench, verb, out))
-        time.sleep(turn.random.choice([0, 0, 0.01, 0.05]))
-        both = [turn.finish(other, judged=False) for other in (turn.start(*command(turn.bench, verb, out)), started)]
-        for ran in both:
-            turn.must_end(ran)
-        refused = [turn.is_refused(ran, verb) for ran in both]
-        if all(refused):
-            raise Violation(
-                f"expected one of two at once to go on, found both refused: {both[0].err!r} {both[1].err!r}"
-            )
+        same = command(turn.bench, verb, out)
+        refused = finish_both(turn, same, same, [0, 0, 0.01, 0.05], verb)
         if verb == "merge":
             shutil.rmtree(out)
         must_end_alike(turn, verb, out, expected)
-        turn.count("refused" if any(refused) else "same")
+        turn.count("refused" if refused else "same")
 
     each(turn, attack)
 

@@ -32,11 +32,14 @@ def dumps(value, **layout):
     return re.sub(r'"\\u0000([-+.0-9eE]+)"', r"\1", text)
 
 
+def fnv1a(data, start=0xCBF29CE484222325):
+    for byte in data:
+        start = (start ^ byte) * 0x100000001B3 & (1 << 64) - 1
+    return start
+
+
 def checksum(value):
-    found = 0xCBF29CE484222325
-    for byte in dumps(value, separators=(",", ":")).encode(errors="surrogatepass"):
-        found = (found ^ byte) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
-    return f"{found:016x}"
+    return f"{fnv1a(dumps(value, separators=(',', ':')).encode(errors='surrogatepass')):016x}"
 
 
 def read(file):

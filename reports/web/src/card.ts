@@ -2,7 +2,7 @@
 // The card of a kind of failure: its simplest case, every lane's verdict on it, the explanation, and how to reproduce
 // it.
 import { viewer_button } from './card_viewer';
-import { breakable, code_block, copy_button, h, lazy_details } from './dom';
+import { breakable, button, code_block, copy_button, h, head_row, lazy_details, list } from './dom';
 import { counted, figure } from './format';
 import { kind_facts, kind_lanes, kind_title } from './kind';
 import type { Report } from './report';
@@ -31,16 +31,7 @@ function coordinates({ pair }: Card) {
         'table',
         { class: 'plain' },
         h('caption', {}, 'Coordinates, decimal and hex'),
-        h(
-          'thead',
-          {},
-          h(
-            'tr',
-            {},
-            h('td', {}),
-            ['x', 'y', 'z'].map((axis) => h('th', { scope: 'col' }, axis)),
-          ),
-        ),
+        head_row(['x', 'y', 'z']),
         h(
           'tbody',
           {},
@@ -77,16 +68,7 @@ function verdicts(report: Report, card: Card) {
       'table',
       { class: 'plain verdicts' },
       h('caption', {}, 'Verdict of every lane, wrong ones marked'),
-      h(
-        'thead',
-        {},
-        h(
-          'tr',
-          {},
-          h('td', {}),
-          targets.map((target) => h('th', { scope: 'col' }, target)),
-        ),
-      ),
+      head_row(targets),
       h(
         'tbody',
         {},
@@ -150,32 +132,19 @@ function ulp_maps(maps: NonNullable<Card['maps']>) {
   );
 }
 
-// A card's programs, with the algorithm's source filled in, which the report stores only once.
-export const snippet_texts = (report: Report, card: Card) =>
-  card.snippets.map(({ label, text }) => ({
-    label,
-    text: text.replace('@SOURCE@', () => report.sources[card.kind.subject]),
-  }));
-
-// Shows one text at a time, chosen by its button.
+// The card's programs. Shows one at a time, chosen by its button. The report stores the algorithm's source only once.
 function snippets(report: Report, card: Card) {
   const shown = h('div', {});
-  const buttons = snippet_texts(report, card).map(({ label, text }) => {
-    const button = h(
-      'button',
-      {
-        type: 'button',
-        'aria-pressed': 'false',
-        onclick: () => {
-          const open = button.getAttribute('aria-pressed') === 'true';
-          buttons.forEach((other) => other.setAttribute('aria-pressed', 'false'));
-          button.setAttribute('aria-pressed', String(!open));
-          shown.replaceChildren(...(open ? [] : [code_block(text, `the ${label} snippet`)]));
-        },
-      },
-      label,
-    );
-    return button;
+  const buttons = card.snippets.map(({ label, text: without_source }) => {
+    const text = without_source.replace('@SOURCE@', () => report.sources[card.kind.subject]);
+    const press = () => {
+      const open = own.getAttribute('aria-pressed') === 'true';
+      buttons.forEach((other) => other.setAttribute('aria-pressed', 'false'));
+      own.setAttribute('aria-pressed', String(!open));
+      shown.replaceChildren(...(open ? [] : [code_block(text, `the ${label} snippet`)]));
+    };
+    const own = button(label, press, { 'aria-pressed': 'false' });
+    return own;
   });
   return h('div', { class: 'snippets' }, h('h4', {}, 'For a bug report'), h('div', { class: 'chips' }, buttons), shown);
 }
@@ -207,11 +176,7 @@ export function card_body(report: Report, card: Card, id: string) {
         'div',
         { class: 'card-facts' },
         h('p', { class: 'truth' }, h('b', {}, `Truth: ${verdict}`), truth.slice(verdict.length)),
-        h(
-          'ul',
-          { class: 'sentences' },
-          card.sentences.map((sentence) => h('li', {}, sentence)),
-        ),
+        list(card.sentences, { class: 'sentences' }),
         coordinates(card),
       ),
     ),
@@ -248,7 +213,7 @@ export function card_body(report: Report, card: Card, id: string) {
 export const kind_id = (place: number) => `kind-${place + 1}`;
 
 export function card_element(report: Report, card: Card, place: number) {
-  const { details, open } = lazy_details(
+  return lazy_details(
     [
       h('span', { class: 'card-number' }, String(place + 1)),
       h('span', { class: 'card-title' }, kind_title(card.kind)),
@@ -261,5 +226,4 @@ export function card_element(report: Report, card: Card, place: number) {
     () => card_body(report, card, kind_id(place)),
     { class: 'card', id: kind_id(place) },
   );
-  return { details, open };
 }

@@ -2,7 +2,7 @@
 // Shows a card's case in the viewer, in a dialog over the report. The page contains everything that the viewer needs,
 // and prepares it when the first case is opened. The address stores the pair and the card:
 // "#kind-7&p=…&by=moller_1997/f32/cuda-fma".
-import { h } from './dom';
+import { button, h } from './dom';
 import { kind_words, within } from './kind';
 import type { Report } from './report';
 import { choose, chosen, into_viewer, out_of_viewer, place_of_address, when_chosen } from './state';
@@ -43,11 +43,7 @@ function stored_verdicts(report: Report, { kind, verdicts }: Card) {
 
 export const viewer_button = (report: Report, card: Card, id: string) =>
   has_viewer() &&
-  h(
-    'button',
-    { type: 'button', class: 'in-viewer', onclick: () => into_viewer(id, bits_of(card), lane_of(report, card)) },
-    'Open in the viewer',
-  );
+  button('Open in the viewer', () => into_viewer(id, bits_of(card), lane_of(report, card)), { class: 'in-viewer' });
 
 // Opens the viewer whenever the address holds a pair, now and after every link, and closes it otherwise.
 export function follow_viewer(report: Report, id_of: (place: number) => string) {
@@ -67,7 +63,7 @@ export function follow_viewer(report: Report, id_of: (place: number) => string) 
     dialog = h(
       'dialog',
       { id: 'viewer', 'aria-label': 'Viewer' },
-      h('p', { class: 'back' }, h('button', { type: 'button', onclick: out_of_viewer }, '← Back to the report')),
+      h('p', { class: 'back' }, button('← Back to the report', out_of_viewer)),
       inside,
     );
   document.body.append(dialog);

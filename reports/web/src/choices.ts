@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The results of `graze pareto` and `graze tune`, if their files are in the campaign's folder.
 import * as Plot from '@observablehq/plot';
-import { kChartStyle, named } from './chart';
-import { breakable, choice, code_block, copy_button, h, on_width, section, sentence } from './dom';
-import { count, figure, noisy_mark, percent, percent_bound, power_of_two, spread_words } from './format';
+import { kChartStyle, named, shares_axis } from './chart';
+import { breakable, button, choice, code_block, copy_button, h, list, on_width, section, sentence } from './dom';
+import { count, noisy_mark, percent, percent_bound, power_of_two, spread_words } from './format';
 import type { Discrepancy, Errors, PolicyErrors, Report, Pareto, Tuned } from './report';
-import { sortable_table } from './sortable_table';
+import { table_of } from './sortable_table';
 import { cell_text } from './pairs_of_cell';
 import { go_to } from './state';
 
@@ -17,23 +17,6 @@ const cost = (offer: Offer) => (offer.resident ?? offer.in_cache)!;
 const far = (offer: Offer) => (offer.with_copies ?? offer.from_memory)!;
 const nanoseconds = (ns: number) => ns.toFixed(ns < 1 ? 4 : 1);
 const row_id = (lane: string) => `pareto-${lane.replace(/[^a-z0-9]+/gi, '-')}`;
-
-// The axis of shares: powers of ten, and below them a line for shares of zero.
-function shares_axis(shares: number[]) {
-  const floor = Math.floor(Math.log10(Math.min(0.01, ...shares.filter((s) => s > 0)))),
-    none = floor - 0.7;
-  const decades = Array.from({ length: -floor + 1 }, (_, i) => floor + i);
-  return {
-    y: (s: number) => (s > 0 ? Math.log10(s) : none),
-    options: {
-      domain: [none, 0],
-      ticks: [none, ...decades],
-      grid: true,
-      label: null,
-      tickFormat: (v: number) => (v === none ? 'none' : `${figure(100 * 10 ** v)} %`),
-    },
-  };
-}
 
 // The picture of the answer: lanes by cost and by their share of pairs without a correct verdict. A click leads to the
 // lane's row.
@@ -63,17 +46,17 @@ export function front(pareto: Pareto) {
         ticks: small ? 4 : 8,
         tickFormat: (v: number) => String(v),
       },
-      y: axis.options,
+      y: { ...axis.options, grid: true, label: null },
       marks: [
         Plot.line(kept, {
           x: (o: Offer) => cost(o).middle,
-          y: (o: Offer) => axis.y(share(o.errors)),
+          y: (o: Offer) => axis.place(share(o.errors)),
           stroke: 'currentColor',
           strokeOpacity: 0.35,
         }),
         Plot.dot(pareto.lanes, {
           x: (o: Offer) => cost(o).middle,
-          y: (o: Offer) => axis.y(share(o.errors)),
+          y: (o: Offer) => axis.place(share(o.errors)),
           r: (o: Offer) => (o.dominated ? 3 : 5.5),
           fill: (o: Offer) => (o.dominated ? '#999' : 'var(--series-0)'),
         }),
@@ -84,7 +67,7 @@ export function front(pareto: Pareto) {
                 kept.filter((_, i) => i % 2 === odd),
                 {
                   x: (o: Offer) => cost(o).middle,
-                  y: (o: Offer) => axis.y(share(o.errors)),
+                  y: (o: Offer) => axis.place(share(o.errors)),
                   text: 'lane',
                   dy: odd ? 14 : -12,
                   fontSize: 11,
@@ -95,7 +78,7 @@ export function front(pareto: Pareto) {
           pareto.lanes,
           Plot.pointer({
             x: (o: Offer) => cost(o).middle,
-            y: (o: Offer) => axis.y(share(o.errors)),
+            y: (o: Offer) => axis.place(share(o.errors)),
             title: words,
             maxRadius: 24,
           }),
@@ -132,14 +115,7 @@ export function pareto_section(report: Report, pareto: Pareto) {
       lane >= 0 && report.rates.some((rate) => rate.lane === lane && rate.stratum === null && rate.wrong.count > 0);
     return (
       shown &&
-      h(
-        'button',
-        {
-          type: 'button',
-          onclick: () => go_to('kinds', { cell: cell_text(report, { lane, stratum: null, kind: 'wrong' }) }),
-        },
-        'its failures',
-      )
+      button('its failures', () => go_to('kinds', { cell: cell_text(report, { lane, stratum: null, kind: 'wrong' }) }))
     );
   };
   const errors = (label: string, of: (e: Errors) => number) => ({
@@ -154,7 +130,7 @@ export function pareto_section(report: Report, pareto: Pareto) {
     cell: (o: Offer) => (of(o) === undefined ? '–' : count(of(o)!)),
     order: (o: Offer) => of(o) ?? 0,
   });
-  const table = sortable_table<Offer>(
+  const table = table_of<Offer>(
     [
       { label: 'Lane', cell: (o) => h('td', { id: row_id(o.lane) }, breakable(o.lane)), order: (o) => o.lane },
       {
@@ -207,13 +183,13 @@ export function pareto_section(report: Report, pareto: Pareto) {
         order: (o) => Number(!o.failure),
       },
     ],
+    pareto.lanes,
     {
       caption: `Errors on ${count(pareto.lanes[0]?.errors.pairs ?? 0)} pairs, and costs on ${pareto.machine}`,
       class: 'plain pareto',
       page: 60,
     },
   );
-  table.show(pareto.lanes);
   return section(
     'pareto',
     'Errors against cost',
@@ -222,12 +198,8 @@ export function pareto_section(report: Report, pareto: Pareto) {
       {},
       'How often each lane is wrong on the same pairs, and what a pair costs. Lanes on the front are those that no other lane beats in both. A lane without an error shows the bound of its error rate at 95 % confidence.',
     ),
-    table.element,
-    h(
-      'ul',
-      { class: 'answer' },
-      pareto.sentences.map((text) => h('li', {}, text)),
-    ),
+    table,
+    list(pareto.sentences, { class: 'answer' }),
   );
 }
 
@@ -289,7 +261,7 @@ export function tuned_section(tuned: Tuned) {
     ).map(([kind, stroke]) =>
       Plot.line(points, {
         x,
-        y: (e: PolicyErrors) => axis.y(e[kind] / e.pairs),
+        y: (e: PolicyErrors) => axis.place(e[kind] / e.pairs),
         stroke,
         strokeWidth: 2,
         strokeDasharray: kind === 'false_negative' ? '6 3' : '',
@@ -315,7 +287,7 @@ export function tuned_section(tuned: Tuned) {
         ticks: width < 560 ? 5 : 10,
         tickFormat: (v: number) => power_of_two(v),
       },
-      y: axis.options,
+      y: { ...axis.options, grid: true, label: null },
       marks: [
         ...lines,
         Plot.ruleX(chosen, { x, strokeDasharray: '4 3', strokeOpacity: 0.7 }),
@@ -347,11 +319,7 @@ export function tuned_section(tuned: Tuned) {
   return section(
     'tuning',
     `Which tolerance for ${tuned.lane}`,
-    h(
-      'ul',
-      { class: 'answer' },
-      tuned.sentences.map((text) => h('li', {}, text)),
-    ),
+    list(tuned.sentences, { class: 'answer' }),
     h(
       'div',
       { class: 'controls' },

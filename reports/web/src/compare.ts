@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The differences between two campaigns.
-import { breakable, h, section, sentence } from './dom';
+import { breakable, h, list, section, sentence } from './dom';
 import { count, in_full, percent } from './format';
 import type { Compare, Report, Share } from './report';
 import { build_words } from './run';
-import { sortable_table } from './sortable_table';
+import { sortable_table, table_of } from './sortable_table';
 
 type Change = Compare['rates'][number];
 type Seen = Compare['gained'][number];
@@ -17,7 +17,7 @@ const counted = (number: number | undefined) => (number === undefined ? 'not cou
 function verdicts_table(verdicts: Verdicts[]) {
   const changed = verdicts.filter((v) => v.known !== 'same' && v.most > 0);
   if (!changed.length) return h('p', {}, 'Every verdict is the same.');
-  const table = sortable_table<Verdicts>(
+  return table_of<Verdicts>(
     [
       { label: 'Lane', cell: (v) => breakable(v.lane), order: (v) => v.lane },
       { label: 'Stratum', cell: (v) => v.stratum, order: (v) => v.stratum },
@@ -30,10 +30,9 @@ function verdicts_table(verdicts: Verdicts[]) {
         order: (v) => v.smallest_broken ?? v.smallest_mended ?? '',
       },
     ],
+    changed,
     { caption: 'Verdicts that changed', class: 'plain', page: 60 },
   );
-  table.show(changed);
-  return table.element;
 }
 
 const cell = (share: Share) => h('td', { class: 'number', title: in_full(share) }, percent(share.share));
@@ -84,16 +83,16 @@ function rates_table(compare: Compare) {
 
 function kinds_table(caption: string, seen: Seen[]) {
   if (!seen.length) return h('div', {}, h('h3', {}, `${caption}: none`));
-  const table = sortable_table<Seen>(
+  const table = table_of<Seen>(
     [
       { label: 'Kind', cell: (s) => h('code', {}, ...breakable(s.key)), order: (s) => s.key },
       { label: 'Signatures', numeric: true, cell: (s) => count(s.signatures), order: (s) => s.signatures },
       { label: 'Pairs', numeric: true, cell: (s) => count(s.count), order: (s) => s.count },
     ],
+    seen,
     { caption, class: 'plain', page: 30 },
   );
-  table.show(seen);
-  return h('div', {}, h('h3', {}, `${caption}: ${count(seen.length)}`), table.element);
+  return h('div', {}, h('h3', {}, `${caption}: ${count(seen.length)}`), table);
 }
 
 export function compare_section(report: Report) {
@@ -110,12 +109,7 @@ export function compare_section(report: Report) {
     'compare',
     'Comparison',
     h('p', { class: 'headline' }, h('b', {}, compare.headline)),
-    compare.differences.length > 0 &&
-      h(
-        'ul',
-        { class: 'differences' },
-        compare.differences.map((text) => h('li', {}, sentence(text))),
-      ),
+    compare.differences.length > 0 && list(compare.differences.map(sentence), { class: 'differences' }),
     h('dl', { class: 'facts both' }, side('Before', compare.other), side('After', report.run)),
     compare.verdicts ? [h('h3', {}, 'Verdicts'), verdicts_table(compare.verdicts)] : null,
     h('h3', {}, 'Rates'),

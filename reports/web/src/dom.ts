@@ -24,6 +24,30 @@ function append(element: Element, children: Child[]) {
   }
 }
 
+// Creates a button that calls `press`.
+export const button = (content: Child, press: (event: Event) => unknown, props: Props = {}) =>
+  h('button', { type: 'button', ...props, onclick: press }, content);
+
+export const list = (items: Child[], props: Props = {}) =>
+  h(
+    'ul',
+    props,
+    items.map((item) => h('li', {}, item)),
+  );
+
+// The head of a table: an empty corner, then the titles of the columns.
+export const head_row = (titles: Child[]) =>
+  h(
+    'thead',
+    {},
+    h(
+      'tr',
+      {},
+      h('td', {}),
+      titles.map((title) => h('th', { scope: 'col' }, title)),
+    ),
+  );
+
 export function section(id: string, title: string, ...children: Child[]) {
   return h('section', { id, 'aria-labelledby': `${id}-title` }, h('h2', { id: `${id}-title` }, title), ...children);
 }
@@ -53,13 +77,13 @@ async function to_clipboard(text: string) {
 }
 
 export function copy_button(text: string, what: string) {
-  const button = h('button', { type: 'button', class: 'copy', 'aria-label': `Copy ${what}` }, 'Copy');
-  button.addEventListener('click', async () => {
+  const press = async () => {
     await to_clipboard(text);
-    button.textContent = 'Copied';
-    setTimeout(() => (button.textContent = 'Copy'), 1500);
-  });
-  return button;
+    copy.textContent = 'Copied';
+    setTimeout(() => (copy.textContent = 'Copy'), 1500);
+  };
+  const copy = button('Copy', press, { class: 'copy', 'aria-label': `Copy ${what}` });
+  return copy;
 }
 
 // A text to copy, on one scrolling line or with its own line breaks.

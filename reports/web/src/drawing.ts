@@ -39,37 +39,51 @@ export interface View {
 
 const kLongestToScale = 12; // axes whose extents differ by more than this are stretched to one length
 
+// For each axis, the length that is drawn as the width of the box from low to high. The box holds coordinates among `value`.
+export function drawn_sizes(low: number[], high: number[], value: ArrayLike<number>): Vec {
+  const extent = low.map((l, k) => high[k] - l);
+  const longest = Math.max(...extent) || Math.max(...Array.from(value, Math.abs)) || 1;
+  const stretch = extent.some((e) => e > 0 && longest / e > kLongestToScale);
+  return extent.map((e) => (stretch && e > 0 ? e : longest)) as Vec;
+}
+
+export function scale_note(sizes: Vec) {
+  const longest = Math.max(...sizes);
+  const factors = ['x', 'y', 'z'].flatMap((axis, k) =>
+    sizes[k] < 0.99 * longest ? [`${axis} × ${figure(longest / sizes[k])}`] : [],
+  );
+  return factors.length ? `not to scale: ${factors.join(', ')}` : 'to scale';
+}
+
 export function shape_of(card: Report['cards'][number], frame: Frame): Shape {
   const { value } = card.pair;
   const points = Array.from({ length: 6 }, (_, i) => value.slice(3 * i, 3 * i + 3) as Vec);
   const framed = frame === 'a' ? points.slice(0, 3) : frame === 'b' ? points.slice(3) : points;
   const low = [0, 1, 2].map((k) => Math.min(...framed.map((p) => p[k])));
   const high = [0, 1, 2].map((k) => Math.max(...framed.map((p) => p[k])));
-  const extent = low.map((l, k) => high[k] - l);
-  const longest = Math.max(...extent) || Math.max(...value.map(Math.abs)) || 1;
-  const stretch = extent.some((e) => e > 0 && longest / e > kLongestToScale);
-  const size = extent.map((e) => (stretch && e > 0 ? e : longest));
+  const size = drawn_sizes(low, high, value);
   const place = (p: readonly number[]) =>
     [0, 1, 2].map((k) => (p[k] - (low[k] / 2 + high[k] / 2)) / (size[k] / 2)) as Vec;
-  const factors = ['x', 'y', 'z'].flatMap((axis, k) =>
-    size[k] < 0.99 * longest ? [`${axis} × ${figure(longest / size[k])}`] : [],
-  );
   return {
     a: points.slice(0, 3).map(place),
     b: points.slice(3).map(place),
     contact: card.drawing.contact.map(place),
     line: card.drawing.planes_line.map(place),
     radius: (frame === 'both' ? 1 : 1.5) * Math.max(0.5, ...framed.map((p) => Math.hypot(...place(p)))), // the other one stays visible
-    note: factors.length ? `not to scale: ${factors.join(', ')}` : 'to scale',
+    note: scale_note(size),
   };
 }
 
-const dot = (p: Vec, q: Vec) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+export const dot = (p: Vec, q: Vec) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+export const minus = (p: Vec, q: Vec): Vec => [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+export const cross = (u: Vec, v: Vec): Vec => [
+  u[1] * v[2] - u[2] * v[1],
+  u[2] * v[0] - u[0] * v[2],
+  u[0] * v[1] - u[1] * v[0],
+];
 
 function normal([p, q, r]: Vec[]): Vec {
-  const u = q.map((c, k) => c - p[k]),
-    v = r.map((c, k) => c - p[k]);
-  const n: Vec = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+  const n = cross(minus(q, p), minus(r, p));
   const length = Math.hypot(...n);
   return length > 0 ? (n.map((c) => c / length) as Vec) : [0, 0, 0];
 }
@@ -97,10 +111,10 @@ export function good_view({ a, b }: Shape): View {
 
 // The smallest height of a triangle as drawn: 0 if it looks like a segment or a point.
 function height([p, q, r]: Vec[]): number {
-  const u = q.map((c, k) => c - p[k]),
-    v = r.map((c, k) => c - p[k]);
-  const area = Math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]);
-  const longest = Math.max(Math.hypot(...u), Math.hypot(...v), Math.hypot(...u.map((c, k) => c - v[k])));
+  const u = minus(q, p),
+    v = minus(r, p);
+  const area = Math.hypot(...cross(u, v));
+  const longest = Math.max(Math.hypot(...u), Math.hypot(...v), Math.hypot(...minus(u, v)));
   return longest > 0 ? area / longest : 0;
 }
 

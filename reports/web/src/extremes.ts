@@ -8,7 +8,7 @@ import { figure, in_full, percent, power_of_two } from './format';
 import { times_fill, times_legend } from './heat';
 import { lane_picker, type Picker } from './lane_picker';
 import type { Pareto, Report, Share, Times } from './report';
-import { sortable_table } from './sortable_table';
+import { sortable_table, table_of } from './sortable_table';
 
 type Kind = Report['extremes'][number]['kind'];
 interface Cell {
@@ -226,8 +226,8 @@ export function extremes_section(report: Report, pareto: Pareto | null) {
       h('div', { class: 'kept' }, h('h3', {}, title), h('p', {}, says), element),
       lazy_details(
         ['The numbers as a table'],
-        () => {
-          const table = sortable_table<Cell>(
+        () =>
+          table_of<Cell>(
             [
               { label: 'Lane', cell: (c) => c.name, order: (c) => c.lane },
               { label: 'From', numeric: true, cell: (c) => power_of_two(c.from), order: (c) => c.from },
@@ -235,11 +235,9 @@ export function extremes_section(report: Report, pareto: Pareto | null) {
               { label: 'Times the origin', numeric: true, cell: ratio, order: (c) => shown(c.times) },
               { label: 'In full', cell: (c) => in_full(c.wrong), order: (c) => c.wrong.count },
             ],
+            cells_of(report, kind, picker.lanes()),
             { caption: `${title}, for the lanes chosen when this was opened`, class: 'plain', page: 100 },
-          );
-          table.show(cells_of(report, kind, picker.lanes()));
-          return table.element;
-        },
+          ),
         { class: 'more-facts' },
       ).details,
     ]),

@@ -2,7 +2,7 @@
 // Failures: a card for each kind, and a table of the signatures behind the kinds. The same filters apply to both.
 import { card_element, kind_id } from './card';
 import { has_viewer } from './card_viewer';
-import { choice, code_block, h, section } from './dom';
+import { button, choice, code_block, h, section } from './dom';
 import { count, counted } from './format';
 import { kind_words } from './kind';
 import {
@@ -47,17 +47,10 @@ export function failure_sections(report: Report) {
   // The heading for a cell of the league table, above its cards and rows.
   function note(cell: Cell, rows: Signature[], left: number) {
     const words = cell_words(report, cell);
-    const clear = h(
-      'button',
-      {
-        type: 'button',
-        onclick: () => {
-          choose('cell', '');
-          update();
-        },
-      },
-      'Show all again',
-    );
+    const clear = button('Show all again', () => {
+      choose('cell', '');
+      update();
+    });
     cell_note.replaceChildren(
       ...(rows.length
         ? [
@@ -168,12 +161,7 @@ export function failure_sections(report: Report) {
           'div',
           { class: 'between cards-head' },
           card_count,
-          h(
-            'span',
-            {},
-            h('button', { type: 'button', onclick: all(true) }, 'Open all'),
-            h('button', { type: 'button', onclick: all(false) }, 'Close all'),
-          ),
+          h('span', {}, button('Open all', all(true)), button('Close all', all(false))),
         ),
         none,
         cards.map(({ details }) => details),

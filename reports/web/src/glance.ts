@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The picture beside the answer: each lane's errors by group of strata, and its cost.
 import * as Plot from '@observablehq/plot';
-import { kChartStyle, named } from './chart';
+import { kChartStyle, named, shares_axis } from './chart';
 import { h, on_width } from './dom';
-import { count, figure, in_full, is_noisy, nanoseconds, percent } from './format';
-import type { Costs, Report, Share } from './report';
+import { count, in_full, is_noisy, nanoseconds, percent } from './format';
+import type { Costs, Report } from './report';
 
 interface Row {
   lane: number;
@@ -54,14 +54,17 @@ export function glance_rows(report: Report, costs: Costs | null): Row[] {
 export function glance(report: Report, costs: Costs | null) {
   const rows = glance_rows(report, costs);
   const wrong = new Map(report.group_rates.map(({ lane, group, wrong }) => [`${lane}/${group}`, wrong]));
-  const shares = rows.flatMap((row) => report.groups.map((_, g) => wrong.get(`${row.lane}/${g}`)!));
-  const floor = Math.floor(Math.log10(Math.min(0.01, ...shares.filter((s) => s.count).map((s) => s.share))));
-  const none = floor - 0.7;
-  const x = (share: Share) => (share.count ? Math.log10(share.share) : none);
+  const shares = rows.flatMap((row) => report.groups.map((_, g) => wrong.get(`${row.lane}/${g}`)!.share));
+  const axis = shares_axis(shares);
   const dots: Dot[] = rows.flatMap((row) =>
     report.groups.map(({ id }, g) => {
       const share = wrong.get(`${row.lane}/${g}`)!;
-      return { name: row.name, group: id, x: x(share), words: `${row.name}\n${id} pairs: ${in_full(share)}` };
+      return {
+        name: row.name,
+        group: id,
+        x: axis.place(share.share),
+        words: `${row.name}\n${id} pairs: ${in_full(share)}`,
+      };
     }),
   );
   const of_type = report.groups.some(({ id }) => id === 'general/f64') ? ' of float32' : '';
@@ -81,7 +84,6 @@ export function glance(report: Report, costs: Costs | null) {
   on_width(element, (width) => {
     const small = width < 520,
       pitch = small ? 36 : 27;
-    const decades = Array.from({ length: -floor + 1 }, (_, i) => floor + i);
     const plot = Plot.plot({
       width,
       height: rows.length * pitch + 62,
@@ -91,9 +93,7 @@ export function glance(report: Report, costs: Costs | null) {
       marginBottom: 42,
       style: kChartStyle,
       x: {
-        domain: [none, 0],
-        ticks: [none, ...decades],
-        tickFormat: (v: number) => (v === none ? 'none' : `${figure(100 * 10 ** v)} %`),
+        ...axis.options,
         label: 'share of wrong verdicts',
         labelAnchor: 'center',
         labelArrow: 'none',
@@ -113,7 +113,7 @@ export function glance(report: Report, costs: Costs | null) {
           fillOpacity: 0.85,
         }),
         ...(small
-          ? [Plot.text(rows, { y: 'name', x: none, text: 'name', textAnchor: 'start', dy: -8, fontSize: 11 })]
+          ? [Plot.text(rows, { y: 'name', x: axis.none, text: 'name', textAnchor: 'start', dy: -8, fontSize: 11 })]
           : []),
         Plot.text(rows, {
           y: 'name',

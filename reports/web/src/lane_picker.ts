@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chooses lanes by algorithm, scalar and target; a lane is shown if all three rows of buttons allow it. If a choice
 // differs from the default, the URL stores it under `key`, as in "league-target=cpu,cpu-fma".
-import { h } from './dom';
+import { button, h } from './dom';
 import type { Report } from './report';
 import { choose, chosen, when_chosen } from './state';
 
@@ -28,22 +28,20 @@ export function lane_picker(
     const first = wanted?.length ? wanted : values;
     const listed = () => values.filter((value) => picked[part].has(value)).join(',');
     const buttons = values.map((value) =>
-      h(
-        'button',
-        {
-          type: 'button',
-          onclick: () => {
-            if (!picked[part].delete(value)) picked[part].add(value);
-            choose(
-              `${key}-${part}`,
-              listed() === values.filter((one) => first.includes(one)).join(',') ? '' : listed() || 'none',
-            );
-            show();
-            change();
-          },
+      button(
+        [
+          part === 'algorithm' && swatch ? h('i', { class: 'swatch', style: `background:${swatch(value)}` }) : null,
+          value,
+        ],
+        () => {
+          if (!picked[part].delete(value)) picked[part].add(value);
+          choose(
+            `${key}-${part}`,
+            listed() === values.filter((one) => first.includes(one)).join(',') ? '' : listed() || 'none',
+          );
+          show();
+          change();
         },
-        part === 'algorithm' && swatch ? h('i', { class: 'swatch', style: `background:${swatch(value)}` }) : null,
-        value,
       ),
     );
     const show = () =>

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A share of pairs against the exact margin, with a curve for each lane.
 import * as Plot from '@observablehq/plot';
-import { kChartStyle, named } from './chart';
+import { kChartStyle, named, series_colour, series_dash, series_width, shares_axis } from './chart';
 import { h } from './dom';
-import { count, figure, in_full, percent, percent_bound, power_of_two } from './format';
+import { count, in_full, percent, percent_bound, power_of_two } from './format';
 import type { Report, Share } from './report';
-import { series_colour, series_dash, series_width } from './series';
 
 type Point = Report['margins'][number]['points'][number];
 export interface Dot {
@@ -54,13 +53,7 @@ export function margin_chart(
   const place = (side: string, exponent: number | null) =>
     exponent === null || side === 'zero' ? 0 : (side === 'disjoint' ? 1 : -1) * (exponent - lowest + kGap);
   const reach = highest - lowest + kGap + 1;
-  const counted = report.margins.flatMap((row) =>
-    row.points.flatMap((p) => {
-      const share = p[what];
-      return share?.count ? [share.share] : [];
-    }),
-  );
-  const floor = Math.floor(Math.log10(Math.min(0.01, ...counted)));
+  const axis = shares_axis(report.margins.flatMap((row) => row.points.map((p) => p[what]?.share ?? 0)));
 
   function dots(): Dot[] {
     return lanes_shown()
@@ -80,8 +73,7 @@ export function margin_chart(
 
   const pooled = (lane: number) =>
     report.thresholds.find((t) => t.lane === lane && t.group === null && t.stratum === null);
-  const none = floor - 0.6; // position of a share of zero on the log axis
-  const y = (share: number) => (!log() ? 100 * share : share > 0 ? Math.max(none, Math.log10(share)) : none);
+  const y = (share: number) => (log() ? axis.place(share) : 100 * share);
 
   function draw(width: number) {
     const all = dots(),
@@ -90,12 +82,11 @@ export function margin_chart(
     for (let e = Math.ceil((lowest + (small ? 8 : 0)) / 16) * 16; e <= highest; e += small ? 16 : 8)
       ticks.push(place('disjoint', e), place('intersects', e));
     const exponent_at = (x: number) => Math.abs(x) + lowest - kGap;
-    const decades = Array.from({ length: -floor + 1 }, (_, i) => floor + i);
     const style = (lane: number) => report.lanes[lane];
     const lanes = [...new Set(all.map((dot) => dot.lane))];
     const marks: Plot.Markish[] = [
       Plot.ruleX([0], { stroke: 'currentColor', strokeOpacity: 0.12, strokeWidth: small ? 8 : 14 }),
-      Plot.ruleY([log() ? none : 0], { stroke: 'currentColor', strokeOpacity: 0.5 }),
+      Plot.ruleY([y(0)], { stroke: 'currentColor', strokeOpacity: 0.5 }),
     ];
     for (const lane of lanes) {
       const { algorithm, scalar, target } = style(lane);
@@ -120,7 +111,7 @@ export function margin_chart(
             strokeDasharray: dash,
             strokeLinejoin: 'round',
           }),
-          Plot.dot(log() ? own.filter((d) => !d.share.count) : [], { x: 'x', y: none, r: 1.6, fill: stroke }),
+          Plot.dot(log() ? own.filter((d) => !d.share.count) : [], { x: 'x', y: axis.none, r: 1.6, fill: stroke }),
         );
       }
       const zero = all.filter((dot) => dot.lane === lane && dot.side === 'zero');
@@ -149,7 +140,7 @@ export function margin_chart(
       marks.push(
         Plot.dot(seen, {
           x: 'x',
-          y: log() ? none : 0,
+          y: y(0),
           symbol: 'triangle',
           r: 6,
           dy: 0,
@@ -180,22 +171,12 @@ export function margin_chart(
         labelArrow: 'none',
         labelOffset: 42,
       },
-      y: log()
-        ? {
-            domain: [none, 0],
-            grid: true,
-            ticks: [none, ...decades],
-            tickFormat: (v: number) => (v === none ? 'none' : `${figure(100 * 10 ** v)} %`),
-            label,
-            labelArrow: 'none',
-          }
-        : {
-            domain: [0, 100],
-            grid: true,
-            tickFormat: (v: number) => `${v} %`,
-            label,
-            labelArrow: 'none',
-          },
+      y: {
+        ...(log() ? axis.options : { domain: [0, 100], tickFormat: (v: number) => `${v} %` }),
+        grid: true,
+        label,
+        labelArrow: 'none',
+      },
       marks,
     });
     const described = `${title}. ${lanes.map(lane_words).join('. ')}`;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Error against margin: the share of wrong verdicts by the exact margin in ulps, and the threshold at or above which no
 // error was seen.
+import { series_colour } from './chart';
 import { breakable, choice, h, lazy_details, on_width, section } from './dom';
 import { count, in_full, percent_bound, power_of_two } from './format';
 import { lane_picker, type Picker } from './lane_picker';
 import { margin_chart, type Dot } from './margin_chart';
 import type { Report, Threshold } from './report';
-import { series_colour } from './series';
-import { sortable_table } from './sortable_table';
+import { sortable_table, table_of } from './sortable_table';
 import { choose, chosen, when_chosen } from './state';
 
 type Row = Report['thresholds'][number];
@@ -146,18 +146,16 @@ export function margins_section(report: Report) {
     thresholds.element,
     lazy_details(
       ['The chart’s numbers as a table'],
-      () => {
-        const table = sortable_table<Dot>(
+      () =>
+        table_of<Dot>(
           [
             { label: 'Lane', cell: (d) => report.lanes[d.lane].id, order: (d) => d.lane },
             { label: 'Margin', cell: (d) => d.words.split('\n')[1], order: (d) => d.x },
             { label: 'Wrong', cell: (d) => in_full(d.share), order: (d) => d.share.share, descending_first: true },
           ],
+          chart.dots(),
           { caption: 'Share wrong by margin, for the lanes chosen when this was opened', class: 'plain', page: 100 },
-        );
-        table.show(chart.dots());
-        return table.element;
-      },
+        ),
       { class: 'more-facts' },
     ).details,
   );

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What was run, and the answer in sentences.
-import { breakable, code_block, h, lazy_details, section, sentence, type Child } from './dom';
+import { breakable, code_block, h, lazy_details, list, section, sentence, type Child } from './dom';
 import { count, nanoseconds, noisy_mark, percent, spread_words } from './format';
 import { front } from './choices';
 import { glance } from './glance';
 import type { Costs, Report, Pareto } from './report';
-import { sortable_table } from './sortable_table';
+import { table_of } from './sortable_table';
 
 // "20 lanes: twin, verified on …", one line for each kind of evidence.
 function executors(report: Report): Child[] {
@@ -18,7 +18,7 @@ function executors(report: Report): Child[] {
 }
 
 function strata_table(report: Report) {
-  const table = sortable_table<Report['strata'][number]>(
+  return table_of<Report['strata'][number]>(
     [
       { label: 'Stratum', cell: (s) => [s.id], order: (s) => report.strata.indexOf(s) },
       { label: 'What it draws', cell: (s) => [s.describes], order: (s) => s.describes },
@@ -30,14 +30,13 @@ function strata_table(report: Report) {
         order: (s) => s.intersects / s.pairs,
       },
     ],
+    report.strata,
     { caption: 'Strata of the campaign', class: 'plain' },
   );
-  table.show(report.strata);
-  return table.element;
 }
 
 function lanes_table(report: Report) {
-  const table = sortable_table<Report['lanes'][number]>(
+  return table_of<Report['lanes'][number]>(
     [
       { label: 'Lane', cell: (lane) => breakable(lane.id), order: (lane) => report.lanes.indexOf(lane) },
       { label: 'Reference', cell: (lane) => lane.paper, order: (lane) => lane.paper },
@@ -47,10 +46,9 @@ function lanes_table(report: Report) {
         order: (lane) => lane.evidence ?? '',
       },
     ],
+    report.lanes,
     { caption: 'Lanes of the campaign', class: 'plain' },
   );
-  table.show(report.lanes);
-  return table.element;
 }
 
 // A table with a row for each lane and a column for each group of strata.
@@ -72,19 +70,18 @@ function costs_table(report: Report, costs: Costs) {
     },
     order: (lane: number) => of(lane, group)?.middle ?? Infinity,
   });
-  const table = sortable_table<number>(
+  return table_of<number>(
     [
       { label: 'Lane', cell: (lane) => breakable(report.lanes[lane].id), order: (lane) => lane },
       column('all strata', null),
       ...report.groups.map(({ id }, group) => column(id, group)),
     ],
+    lanes,
     {
       caption: `Cost of a pair on one core, many pairs a call: medians of ${costs.passes} passes`,
       class: 'plain costs',
     },
   );
-  table.show(lanes);
-  return table.element;
 }
 
 export function build_words({ build }: Report['run']) {
@@ -144,16 +141,7 @@ export function run_section(report: Report, costs: Costs | null) {
         { class: 'more-facts' },
       ).details,
     report.missing.length > 0 &&
-      h(
-        'div',
-        { class: 'notice' },
-        h('strong', {}, 'What this report lacks'),
-        h(
-          'ul',
-          {},
-          report.missing.map((text) => h('li', {}, sentence(text))),
-        ),
-      ),
+      h('div', { class: 'notice' }, h('strong', {}, 'What this report lacks'), list(report.missing.map(sentence))),
   );
 }
 

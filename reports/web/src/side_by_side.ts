@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares two lanes of one algorithm: the effects of the compiler's contraction and of the precision.
+import { series_colour } from './chart';
 import { choice, h, on_width, section } from './dom';
 import { in_full, percent } from './format';
 import { heat_class } from './heat';
 import { lane_picker } from './lane_picker';
 import { margin_chart } from './margin_chart';
 import type { Report, Share } from './report';
-import { series_colour } from './series';
 import { sortable_table } from './sortable_table';
 
 type Side = Report['side_by_side'][number];

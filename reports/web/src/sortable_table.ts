@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A table that sorts by any column and shows rows in pages; arrow keys move between its cells.
-import { h, type Child } from './dom';
+import { button, h, type Child } from './dom';
 
 export interface Column<Row> {
   label: string;
@@ -36,7 +36,11 @@ export function sortable_table<Row>(columns: Column<Row>[], options: Options): T
     body,
   );
   const scroller = h('div', { class: 'scroller', role: 'region', 'aria-label': options.caption, tabindex: 0 }, table);
-  const more = h('button', { type: 'button', class: 'more' });
+  const show_more = () => {
+    limit += options.page ?? 0;
+    draw_body();
+  };
+  const more = button('', show_more, { class: 'more' });
   const element = h('div', { class: 'sortable' }, scroller, more);
   let rows: Row[] = [],
     sorted: Row[] = [],
@@ -61,22 +65,18 @@ export function sortable_table<Row>(columns: Column<Row>[], options: Options): T
     head.replaceChildren(
       ...columns.map((column, i) => {
         const state = i !== by ? 'none' : descending ? 'descending' : 'ascending';
-        const button = h(
-          'button',
-          {
-            type: 'button',
-            title: column.title ?? `Sort by ${column.label}`,
-            onclick: () => {
-              if (by === i) descending = !descending;
-              else [by, descending] = [i, column.descending_first ?? column.numeric ?? false];
-              draw();
-              (head.children[i].firstElementChild as HTMLElement).focus();
-            },
-          },
-          ...(column.heading ?? [column.label]),
-          h('span', { class: 'arrow', 'aria-hidden': 'true' }, ''),
+        const press = () => {
+          if (by === i) descending = !descending;
+          else [by, descending] = [i, column.descending_first ?? column.numeric ?? false];
+          draw();
+          (head.children[i].firstElementChild as HTMLElement).focus();
+        };
+        const title = [column.heading ?? column.label, h('span', { class: 'arrow', 'aria-hidden': 'true' }, '')];
+        return h(
+          'th',
+          { scope: 'col', 'aria-sort': state, class: column.numeric ? 'number' : '' },
+          button(title, press, { title: column.title ?? `Sort by ${column.label}` }),
         );
-        return h('th', { scope: 'col', 'aria-sort': state, class: column.numeric ? 'number' : '' }, button);
       }),
     );
   }
@@ -117,10 +117,6 @@ export function sortable_table<Row>(columns: Column<Row>[], options: Options): T
     draw_body();
   }
 
-  more.addEventListener('click', () => {
-    limit += options.page ?? 0;
-    draw_body();
-  });
   if (options.walk)
     body.addEventListener('keydown', (event) => {
       const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }[event.key];
@@ -150,4 +146,11 @@ export function sortable_table<Row>(columns: Column<Row>[], options: Options): T
       draw();
     },
   };
+}
+
+// The table for rows that stay the same.
+export function table_of<Row>(columns: Column<Row>[], rows: Row[], options: Options): HTMLElement {
+  const table = sortable_table(columns, options);
+  table.show(rows);
+  return table.element;
 }

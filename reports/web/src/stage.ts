@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The drawing of a card, which dragging and keys turn.
 import { orbit, view_of } from './camera';
-import { choice, h } from './dom';
+import { button, choice, h } from './dom';
 import { good_frame, good_view, shape_of, type Frame } from './drawing';
 import { svg_projection } from './projection';
 import type { Report } from './report';
@@ -93,20 +93,13 @@ export function stage(card: Report['cards'][number], truth: string): HTMLElement
 
   note.textContent = shape.note;
   draw_paper();
-  const button = (text: string, label: string, action: () => void) =>
-    h(
-      'button',
-      {
-        type: 'button',
-        'aria-label': label,
-        title: label,
-        onclick: () => {
-          action();
-          draw_paper();
-        },
-      },
-      text,
-    );
+  const tool = (text: string, label: string, action: () => void) => {
+    const press = () => {
+      action();
+      draw_paper();
+    };
+    return button(text, press, { 'aria-label': label, title: label });
+  };
   return h(
     'figure',
     { class: 'stage' },
@@ -124,9 +117,9 @@ export function stage(card: Report['cards'][number], truth: string): HTMLElement
         frame,
         (value) => look_at(value as Frame),
       ),
-      button('−', 'Zoom out', () => set({ zoom: camera.zoom / kZoom })),
-      button('+', 'Zoom in', () => set({ zoom: camera.zoom * kZoom })),
-      button('Reset', 'Reset the view', reset),
+      tool('−', 'Zoom out', () => set({ zoom: camera.zoom / kZoom })),
+      tool('+', 'Zoom in', () => set({ zoom: camera.zoom * kZoom })),
+      tool('Reset', 'Reset the view', reset),
     ),
     h(
       'figcaption',

@@ -8,6 +8,7 @@ let entered = false; // the viewer was opened from the history entry before this
 let values = new URLSearchParams();
 const kOfTheViewer = ['p', 'by'];
 const listeners: (() => void)[] = [];
+const announce = () => listeners.forEach((changed) => changed());
 
 // Our own history entries have a state, which distinguishes Back from a click on a link.
 const is_own = () => (history.state as { graze?: boolean } | null)?.graze === true;
@@ -38,12 +39,16 @@ export function choose(key: string, value: string) {
 // Calls back after a link or Back has changed the choices.
 export const when_chosen = (changed: () => void) => listeners.push(changed);
 
-// Shows the element with that id, as a click on a link does, and sets additional choices.
-export function go_to(id: string, more: Record<string, string> = {}) {
+function visit(id: string, more: Record<string, string>) {
   place = id;
   Object.entries(more).forEach(([key, value]) => values.set(key, value));
   write('pushState');
-  listeners.forEach((changed) => changed());
+  announce();
+}
+
+// Shows the element with that id, as a click on a link does, and sets additional choices.
+export function go_to(id: string, more: Record<string, string> = {}) {
+  visit(id, more);
   document.getElementById(id)?.scrollIntoView({ block: 'start' });
 }
 
@@ -51,18 +56,15 @@ export const place_of_address = () => place;
 
 // Opens a pair in the viewer over the element with that id; Back closes it.
 export function into_viewer(id: string, pair: string, lane: string) {
-  place = id;
-  [pair, lane].forEach((value, i) => values.set(kOfTheViewer[i], value));
-  write('pushState');
   entered = true;
-  listeners.forEach((changed) => changed());
+  visit(id, { p: pair, by: lane });
 }
 
 export function out_of_viewer() {
   if (entered) return history.back();
   kOfTheViewer.forEach((key) => values.delete(key));
   write('replaceState');
-  listeners.forEach((changed) => changed());
+  announce();
 }
 
 // Calls arrived(id) with the place in the fragment, now and after every link.
@@ -75,7 +77,7 @@ export function follow_fragment(arrived: (id: string) => void) {
     read();
     entered = false;
     write('replaceState');
-    listeners.forEach((changed) => changed());
+    announce();
     if (place && !(in_viewer && place === before)) arrived(place); // closing the viewer keeps the scroll position
   });
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the verdicts of each algorithm change with the compiler and the processor.
-import { breakable, choice, h, section, sentence } from './dom';
+import { breakable, choice, h, list, section, sentence } from './dom';
 import { in_full, percent } from './format';
 import { heat_class } from './heat';
 import type { Report, ToolchainMap } from './report';
@@ -46,11 +46,7 @@ export function toolchains_section(report: Report) {
     'toolchains',
     'Toolchains',
     h('p', {}, 'The same source, built for each compiler and processor. The cpu and cuda lanes are from this build.'),
-    h(
-      'ul',
-      {},
-      map.sentences.map((one) => h('li', {}, sentence(one))),
-    ),
+    list(map.sentences.map(sentence)),
     h(
       'div',
       { class: 'controls' },

@@ -3,11 +3,10 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { pathToFileURL } from 'node:url';
-import AxeBuilder from '@axe-core/playwright';
 import { test as unwatched, type Page } from '@playwright/test';
 import type { Report } from '../src/report';
 import type { Stored } from '../src/viewer/data';
-import { doubles_url, expect, open_card, test, url, without_webgl } from './page';
+import { doubles_url, expect, open_card, test, url, violations, without_webgl } from './page';
 
 test.skip(() => !process.env.GRAZE_VIEW, 'this build has no viewer');
 
@@ -127,11 +126,7 @@ test('a link leads into the viewer on a phone, changed pair and all, and from th
   await expect(viewer(page).locator('[data-coordinate="1"]')).toHaveValue(moved);
   await expect(viewer(page).locator('h1')).toHaveText('the pair of a link');
   expect(await viewer(page).evaluate((dialog) => dialog.scrollWidth)).toBeLessThanOrEqual(390);
-  expect(
-    (await new AxeBuilder({ page }).include('#viewer').analyze()).violations.map(
-      ({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(' ')}`,
-    ),
-  ).toEqual([]);
+  expect(await violations(page, '#viewer')).toEqual([]);
   await viewer(page).locator('button', { hasText: 'Back to the report' }).click();
   await expect(viewer(page)).toBeHidden();
   await expect(page.locator('#kind-1')).toHaveAttribute('open', '');

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page under test. In every test it must fetch nothing and leave the console clean.
 import { pathToFileURL } from 'node:url';
+import AxeBuilder from '@axe-core/playwright';
 import { expect, test as base, type Locator, type Page } from '@playwright/test';
 import type { Costs, Report } from '../src/report';
 
@@ -14,19 +15,11 @@ export const test = base.extend<{ webgl: boolean; report: Report; costs: Costs |
   watched: [
     async ({ page, webgl }, use) => {
       if (!webgl) await page.addInitScript(without_webgl);
-      const fetched: string[] = [],
-        said: string[] = [];
-      page.on('request', (request) => {
-        const asked = request.url().split('#')[0];
-        if (![url(), compare_url(), doubles_url()].includes(asked) && !/^(data|blob):/.test(asked)) fetched.push(asked);
-      });
-      page.on('console', (message) => said.push(`${message.type()}: ${message.text()}`));
-      page.on('pageerror', (error) => said.push(`error: ${error.message}`));
+      const expect_quiet = watch(page, [url(), compare_url(), doubles_url()]);
       await page.goto(url());
       await page.waitForSelector('#method');
       await use();
-      expect(fetched, 'fetched').toEqual([]);
-      expect(said, 'on the console').toEqual([]);
+      expect_quiet();
     },
     { auto: true },
   ],
@@ -39,6 +32,28 @@ export const test = base.extend<{ webgl: boolean; report: Report; costs: Costs |
 });
 
 export { expect };
+
+// Returns: a check that from now on the page fetches only these addresses and writes nothing to the console.
+export function watch(page: Page, addresses: string[]) {
+  const fetched: string[] = [],
+    said: string[] = [];
+  page.on('request', (request) => {
+    const asked = request.url().split('#')[0];
+    if (!addresses.includes(asked) && !/^(data|blob):/.test(asked)) fetched.push(asked);
+  });
+  page.on('console', (message) => said.push(`${message.type()}: ${message.text()}`));
+  page.on('pageerror', (error) => said.push(`error: ${error.message}`));
+  return () => {
+    expect(fetched, 'fetched').toEqual([]);
+    expect(said, 'on the console').toEqual([]);
+  };
+}
+
+// What axe finds on the page, or in a part of it.
+export async function violations(page: Page, part = 'html') {
+  const found = await new AxeBuilder({ page }).include(part).analyze();
+  return found.violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(' ')}`);
+}
 
 // For addInitScript.
 export function without_webgl() {

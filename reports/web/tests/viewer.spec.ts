@@ -4,18 +4,18 @@ import { execFileSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { pathToFileURL } from 'node:url';
-import AxeBuilder from '@axe-core/playwright';
 import type { Page } from '@playwright/test';
-import { pixels, without_webgl } from './page';
+import { pixels, violations, without_webgl } from './page';
 import {
-  checked,
   coordinate,
   expect,
+  expect_as_checked,
   expect_copies,
   file,
   name,
   paste,
   test,
+  to_another_pair,
   url,
   verdict,
   verdicts,
@@ -69,15 +69,9 @@ test('a notebook shows it in a frame that has no address', async ({ page }) => {
 
 test('it says what graze check says', async ({ viewer }) => {
   for (let pair = 0; pair < 3; ++pair) {
-    const native = await checked(viewer);
-    const shown = await verdicts(viewer);
-    for (const [lane, said] of Object.entries(shown)) expect(native.lanes[lane], lane).toBe(said);
-    await expect(viewer.locator('#truth')).toContainText(`Truth: ${native.truth.verdict}`);
-    if (native.truth.contact !== 'none')
-      await expect(viewer.locator('#truth')).toContainText(`contact: ${native.truth.contact}`);
-    const before = await name(viewer);
-    await viewer.keyboard.press('Shift+n'); // a pair that shows more
-    await expect.poll(() => name(viewer), { timeout: 30_000 }).not.toBe(before);
+    const { truth } = await expect_as_checked(viewer);
+    if (truth.contact !== 'none') await expect(viewer.locator('#truth')).toContainText(`contact: ${truth.contact}`);
+    await to_another_pair(viewer, () => viewer.keyboard.press('Shift+n')); // a pair that shows more
   }
 });
 
@@ -127,9 +121,7 @@ test('what it says of a contraction is what graze explain finds', async ({ viewe
   await viewer.getByLabel('Pairs of').selectOption('near_edge_edge');
   let compared = 0;
   for (let pair = 0; pair < 4; ++pair) {
-    const before = await name(viewer);
-    await viewer.locator('button', { hasText: 'Next where CPU and GPU differ' }).click();
-    await expect.poll(() => name(viewer), { timeout: 30_000 }).not.toBe(before);
+    await to_another_pair(viewer, () => viewer.locator('button', { hasText: 'Next where CPU and GPU differ' }).click());
     const chosen = (await viewer.locator('[data-lane][aria-pressed="true"]').getAttribute('data-lane'))!;
     const [subject, , variant] = chosen.split('/'),
       says = (await verdicts(viewer))[chosen];
@@ -137,18 +129,13 @@ test('what it says of a contraction is what graze explain finds', async ({ viewe
     await expect(viewer.locator('.because')).toContainText(
       new RegExp(`^${subject} in float(32|64) says \\w+ on the CPU \\((right|wrong)\\) and ${says} on the GPU`),
     );
-    const explained = JSON.parse(
-      execFileSync(process.env.GRAZE!, ['explain', (await name(viewer))!, '--lanes', chosen, '--json'], {
-        encoding: 'utf8',
-      }),
-    ) as { lanes: { lane: string; cause: string; contractions: { at: string }[] }[] };
+    const pair_name = (await name(viewer))!;
+    const explained = (lanes: string) =>
+      JSON.parse(
+        execFileSync(process.env.GRAZE!, ['explain', pair_name, '--lanes', lanes, '--json'], { encoding: 'utf8' }),
+      ).lanes as { lane: string; cause: string; contractions: { at: string }[] }[];
     // CPU lanes that are wrong because of their logic are reported as such, and no others are.
-    const causes = JSON.parse(
-      execFileSync(process.env.GRAZE!, ['explain', (await name(viewer))!, '--lanes', '*/cpu', '--json'], {
-        encoding: 'utf8',
-      }),
-    ) as typeof explained;
-    for (const { lane: wrong, cause } of causes.lanes.slice(0, 4)) {
+    for (const { lane: wrong, cause } of explained('*/cpu').slice(0, 4)) {
       await verdict(viewer, wrong).click();
       await expect(viewer.locator('#why-title')).toContainText(/^Why do(es)? /);
       if (/Why do CPU/.test((await viewer.locator('#why-title').textContent())!)) continue;
@@ -160,7 +147,7 @@ test('what it says of a contraction is what graze explain finds', async ({ viewe
     }
     await verdict(viewer, chosen).click();
     await expect(viewer.locator('#why-title')).toContainText('Why do CPU and GPU differ?');
-    const lane = explained.lanes.find((one) => one.lane === chosen);
+    const lane = explained(chosen).find((one) => one.lane === chosen);
     if (!lane) continue; // right on the GPU, wrong on the CPU
     expect(lane.cause, chosen).toBe('contraction');
     const said = viewer.locator('.because');
@@ -174,9 +161,7 @@ test('what it says of a contraction is what graze explain finds', async ({ viewe
 test('ranges on a line are those by which the lane decides, and the axis is the margin’s', async ({ viewer }) => {
   const seen: Record<string, number> = {};
   for (let pair = 0; pair < 2; ++pair) {
-    const before = await name(viewer);
-    await viewer.keyboard.press('Shift+n');
-    await expect.poll(() => name(viewer), { timeout: 30_000 }).not.toBe(before);
+    await to_another_pair(viewer, () => viewer.keyboard.press('Shift+n'));
     const said = await viewer.evaluate(async () => {
       const all: { lane: string; verdict: string; text: string }[] = [];
       for (const cell of document.querySelectorAll<HTMLElement>('[data-lane]')) {
@@ -383,9 +368,5 @@ test('without WebGL it draws an SVG, a phone shows all of it, axe finds nothing'
   await page.reload();
   await expect(page.locator('#board svg polygon.triangle-b')).toHaveCount(1);
   expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(390);
-  expect(
-    (await new AxeBuilder({ page }).analyze()).violations.map(
-      ({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(' ')}`,
-    ),
-  ).toEqual([]);
+  expect(await violations(page)).toEqual([]);
 });

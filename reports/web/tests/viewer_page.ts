@@ -3,7 +3,7 @@
 import { execFileSync } from 'node:child_process';
 import { pathToFileURL } from 'node:url';
 import { expect, test as base, type Page } from '@playwright/test';
-import { without_webgl } from './page';
+import { watch, without_webgl } from './page';
 
 export const file = () => process.env.GRAZE_VIEW!;
 export const url = () => pathToFileURL(file()).href;
@@ -17,19 +17,11 @@ export const test = base.extend<{ webgl: boolean; of_doubles: boolean; viewer: P
     if (!webgl) await page.addInitScript(without_webgl);
     test.skip(!file(), 'this build has no viewer');
     const address = of_doubles ? doubles_url() : url();
-    const fetched: string[] = [],
-      said: string[] = [];
-    page.on('request', (request) => {
-      const asked = request.url().split('#')[0];
-      if (asked !== address && !asked.startsWith('data:') && !asked.startsWith('blob:')) fetched.push(asked);
-    });
-    page.on('console', (message) => said.push(`${message.type()}: ${message.text()}`));
-    page.on('pageerror', (error) => said.push(`error: ${error.message}`));
+    const expect_quiet = watch(page, [address]);
     await page.goto(address);
     await page.waitForSelector('#replayed');
     await use(page);
-    expect(fetched, 'fetched').toEqual([]);
-    expect(said, 'on the console').toEqual([]);
+    expect_quiet();
   },
 });
 
@@ -62,6 +54,23 @@ export async function checked(page: Page) {
   return JSON.parse(
     execFileSync(process.env.GRAZE!, ['check', '-', '--json', '--executor', 'twin'], { input: line, encoding: 'utf8' }),
   ) as { truth: { verdict: string; contact: string }; lanes: Record<string, string>; coordinates?: string };
+}
+
+// The page's verdicts and truth are those of `graze check`.   Returns: what `graze check` says.
+export async function expect_as_checked(page: Page) {
+  const native = await checked(page);
+  const shown = Object.entries(await verdicts(page));
+  expect(shown.length).toBeGreaterThan(30);
+  for (const [lane, said] of shown) expect(native.lanes[lane], lane).toBe(said);
+  await expect(page.locator('#truth')).toContainText(`Truth: ${native.truth.verdict}`);
+  return native;
+}
+
+// Takes the step, and waits until another pair is shown.
+export async function to_another_pair(page: Page, step: () => Promise<void>) {
+  const before = await name(page);
+  await step();
+  await expect.poll(() => name(page), { timeout: 30_000 }).not.toBe(before);
 }
 
 // "Copy as" gives these texts, by kind.

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page on a phone, in dark mode, on paper, by keyboard, and with a screen reader.
-import AxeBuilder from '@axe-core/playwright';
 import type { Page } from '@playwright/test';
 import { nanoseconds, percent } from '../src/format';
-import { compare_url, expect, open_card, test, url } from './page';
+import { compare_url, expect, open_card, test, url, violations } from './page';
 
 const kPhone = { width: 390, height: 844 };
 
@@ -15,15 +14,6 @@ const brightness = (page: Page, property: 'color' | 'backgroundColor') =>
         .slice(0, 3)
         .reduce((sum, c) => sum + Number(c) / 765, 0),
     property,
-  );
-
-const violations = async (page: Page) =>
-  (await new AxeBuilder({ page }).analyze()).violations.map(
-    (v) =>
-      `${v.id}: ${v.nodes
-        .slice(0, 3)
-        .map((node) => node.target)
-        .join(', ')}`,
   );
 
 test('opens, and says how long it took', async ({ page }) => {

@@ -28,8 +28,7 @@ const kMoves: [string, number, number, string][] = [
 ];
 
 function keys_of_2012({ model, drawing, many, other_processor, toggle_help }: Parts): Key[] {
-  const show = (what: keyof Model['shows']) => () =>
-    model.set({ shows: { ...model.shows, [what]: !model.shows[what] } });
+  const show = (what: keyof Model['shows']) => () => model.toggle(what);
   const on_board: Key[] = [
     { keys: ['ArrowLeft'], shown: '←', does: 'turn left', press: () => drawing.turn(-1, 0) },
     { keys: ['ArrowRight'], shown: '→', does: 'turn right', press: () => drawing.turn(1, 0) },

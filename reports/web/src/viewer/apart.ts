@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Explains why a GPU lane decides differently from the same source on the CPU: the first comparison with different
 // outcomes, the values there, and the operations that nvcc fused.
-import { h, type Child } from '../dom';
+import { h, head_row, type Child } from '../dom';
 import { figure } from '../format';
 import type { Site, Step } from './graze.js';
 import type { Model } from './model';
@@ -117,16 +117,7 @@ function table(
   return h(
     'table',
     { class: 'plain parting' },
-    h(
-      'thead',
-      {},
-      h(
-        'tr',
-        {},
-        h('td', {}),
-        [one, other, asked, 'and so'].map((title) => title && h('th', { scope: 'col' }, title)),
-      ),
-    ),
+    head_row([one, other, asked, 'and so'].filter(Boolean)),
     h(
       'tbody',
       {},

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The drawing: dragging the background turns it; dragging a vertex changes the pair.
 import { orbit, view_of } from '../camera';
-import { choice, h } from '../dom';
+import { button, choice, h } from '../dom';
 import { axes, framed_half_height, good_view, project, type Vec } from '../drawing';
 import { svg_projection } from '../projection';
 import { has_webgl, picture, type Picture } from '../view3d';
@@ -185,26 +185,18 @@ export function board(model: Model, fields: () => Field | null) {
   new ResizeObserver(draw).observe(ground);
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', draw);
 
-  const button = (text: string, label: string, action: () => void) =>
-    h('button', { type: 'button', 'aria-label': label, title: label, onclick: action }, text);
+  const tool = (text: string, label: string, action: () => void) =>
+    button(text, action, { 'aria-label': label, title: label });
   const centre_choice = choice(
     'Centre',
     kCentres.map((centre) => [centre, centre]),
     model.centre,
     (centre) => model.set({ centre: centre as Centre }),
   );
-  const toggles = (['planes', 'axes', 'ids', 'coordinates'] as const).map((what) => {
-    const box = h(
-      'button',
-      {
-        type: 'button',
-        'data-shows': what,
-        onclick: () => model.set({ shows: { ...model.shows, [what]: !model.shows[what] } }),
-      },
-      what,
-    );
-    return { what, box };
-  });
+  const toggles = (['planes', 'axes', 'ids', 'coordinates'] as const).map((what) => ({
+    what,
+    box: button(what, () => model.toggle(what), { 'data-shows': what }),
+  }));
   const contact_key = h('span', { class: 'key-contact' }, 'contact'),
     line_key = h('span', { class: 'key-line' }, 'the line where the planes meet, with both sections');
   const b_key = h('span', { class: 'key-b' }, 'b'),
@@ -213,7 +205,7 @@ export function board(model: Model, fields: () => Field | null) {
       ['other', 'not hit'],
       ['bad', 'outlined: wrong'],
     ].map(([colour, text]) => h('span', { class: `key-${colour}` }, text));
-  const gap_button = button('Show the gap', 'Magnify what the margin measures', show_gap);
+  const gap_button = tool('Show the gap', 'Magnify what the margin measures', show_gap);
   const witness_key = h('span', { class: 'key-witness' }),
     shadow_key = h('span', { class: 'key-shadow' }, 'b projected onto the plane of a, as projected_sat sees it');
   const element = h(
@@ -225,9 +217,9 @@ export function board(model: Model, fields: () => Field | null) {
       { class: 'stage-tools' },
       centre_choice,
       gap_button,
-      button('÷16', 'Magnify less', () => magnify(1 / 16)),
-      button('×16', 'Magnify', () => magnify(16)),
-      button('Reset', 'Reset the view', reset),
+      tool('÷16', 'Magnify less', () => magnify(1 / 16)),
+      tool('×16', 'Magnify', () => magnify(16)),
+      tool('Reset', 'Reset the view', reset),
     ),
     h(
       'div',

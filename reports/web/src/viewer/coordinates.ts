@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The 18 coordinates, which can be chosen, typed, pasted and stepped.
-import { h } from '../dom';
+import { button, h, head_row, section } from '../dom';
 import { coordinate_name, decimal, hex_float, stored_as } from './data';
 import type { Model } from './model';
 
@@ -56,16 +56,15 @@ export function coordinates(model: Model, say: (text: string) => void) {
   }
 
   const exactly = h('p', { class: 'small', id: 'exactly' });
-  const step = (label: string, action: () => void) => h('button', { type: 'button', onclick: action }, label);
   const steps = h(
     'div',
     { class: 'chips', role: 'group', 'aria-label': 'Step the chosen coordinate' },
     kSteps.flatMap(([name, ulps]) => [
-      step(`− ${name}`, () => model.step(-ulps)),
-      step(`+ ${name}`, () => model.step(ulps)),
+      button(`− ${name}`, () => model.step(-ulps)),
+      button(`+ ${name}`, () => model.step(ulps)),
     ]),
-    step(`− ${kMove}`, () => model.change((pair) => (pair[model.chosen] -= kMove))),
-    step(`+ ${kMove}`, () => model.change((pair) => (pair[model.chosen] += kMove))),
+    button(`− ${kMove}`, () => model.change((pair) => (pair[model.chosen] -= kMove))),
+    button(`+ ${kMove}`, () => model.change((pair) => (pair[model.chosen] += kMove))),
   );
 
   const shown: number[] = [];
@@ -100,24 +99,14 @@ export function coordinates(model: Model, say: (text: string) => void) {
   return {
     take,
     update,
-    element: h(
-      'section',
-      { id: 'coordinates', 'aria-labelledby': 'coordinates-title' },
-      h('h2', { id: 'coordinates-title' }, 'Coordinates'),
+    element: section(
+      'coordinates',
+      'Coordinates',
       h(
         'table',
         { class: 'plain pair' },
         h('caption', {}, `In ${type}. Type a number, or paste 18 numbers into any field.`),
-        h(
-          'thead',
-          {},
-          h(
-            'tr',
-            {},
-            h('td', {}),
-            ['x', 'y', 'z'].map((axis) => h('th', { scope: 'col' }, axis)),
-          ),
-        ),
+        head_row(['x', 'y', 'z']),
         h('tbody', {}, [0, 1, 2, 3, 4, 5].map(row)),
       ),
       steps,

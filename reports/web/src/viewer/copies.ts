@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pair as text to paste elsewhere.
-import { copy_button, h } from '../dom';
+import { button, code_block, h, section } from '../dom';
 import { decimal, hex_float, type Coordinates } from './data';
 import type { Model } from './model';
 
@@ -39,34 +39,14 @@ export function copies(model: Model, link: (model: Model) => string) {
   let text = '',
     text_now: ((model: Model) => string) | null = null;
   const buttons = Object.entries({ ...kCopies, link }).map(([name, text_of]) =>
-    h(
-      'button',
-      {
-        type: 'button',
-        onclick: () => {
-          text = text_of(model);
-          text_now = text_of;
-          shown.replaceChildren(
-            h(
-              'div',
-              { class: 'code' },
-              h('pre', { tabindex: 0, 'aria-label': name }, h('code', {}, text)),
-              copy_button(text, `the ${name}`),
-            ),
-          );
-        },
-      },
-      name,
-    ),
+    button(name, () => {
+      text = text_of(model);
+      text_now = text_of;
+      shown.replaceChildren(code_block(text, `the ${name}`));
+    }),
   );
   return {
-    element: h(
-      'section',
-      { id: 'copies', 'aria-labelledby': 'copies-title' },
-      h('h2', { id: 'copies-title' }, 'Copy as'),
-      h('div', { class: 'chips' }, buttons),
-      shown,
-    ),
+    element: section('copies', 'Copy as', h('div', { class: 'chips' }, buttons), shown),
     // Hides a text that is out of date.
     update: () => {
       if (!text_now || text_now(model) === text) return;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Many triangles against the reference, as in 2012: random ones from the thesis's generator, its special cases, or
 // those of a mesh or a query.
-import { h } from '../dom';
-import { count } from '../format';
+import { button, h } from '../dom';
+import { count, counted } from '../format';
 import { from_bits, type Coordinates, type ViewData } from './data';
 import { special_cases, without_changed, type Model } from './model';
 import type { Field } from './shape';
@@ -34,7 +34,7 @@ export function field(model: Model, data: ViewData, say: (text: string) => void,
   function title() {
     const now = drawn();
     if (!now) return null;
-    const many = `${count(shown[now])} ${now === 'random' ? 'random ' : ''}triangle${shown[now] === 1 ? '' : 's'}`;
+    const many = counted(shown[now], now === 'random' ? 'random triangle' : 'triangle');
     const of = {
       given: `${data.title}: ${many}`,
       random: `${many} of 2012, seed ${seed}`,
@@ -110,28 +110,13 @@ export function field(model: Model, data: ViewData, say: (text: string) => void,
     told.replaceChildren(
       ...(current
         ? [
-            h(
-              'strong',
-              {},
-              `${count(triangles.length)} triangle${triangles.length === 1 ? '' : 's'} against a, the reference: `,
-            ),
+            h('strong', {}, `${counted(triangles.length, 'triangle')} against a, the reference: `),
             h('code', {}, model.lane),
             ` hits ${sum(current.hit)}, wrong on ${sum(current.wrong)} (outlined). The table shows one pair, ${model.name}; press a verdict to see its lane here. `,
             ...(current.hit.some(Boolean) || current.wrong.some(Boolean)
-              ? [
-                  h(
-                    'button',
-                    { type: 'button', onclick: take },
-                    current.wrong.some(Boolean) ? 'Take a wrong one' : 'Take a hit',
-                  ),
-                  ' ',
-                ]
+              ? [button(current.wrong.some(Boolean) ? 'Take a wrong one' : 'Take a hit', take), ' ']
               : []),
-            h(
-              'button',
-              { type: 'button', onclick: back },
-              left.at(-1)!.kind ? 'Back to the random triangles' : 'Back to the pair',
-            ),
+            button(left.at(-1)!.kind ? 'Back to the random triangles' : 'Back to the pair', back),
           ]
         : []),
     );

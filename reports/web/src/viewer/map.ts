@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ulp map: the verdicts around the pair as two of its coordinates move by ulps.
-import { choice, h } from '../dom';
+import { breakable, choice, h, section } from '../dom';
 import { coordinate_name } from './data';
 import type { Model } from './model';
 import { kSide, type MapPart, type MapRequest } from './map_worker';
@@ -104,11 +104,7 @@ export function map(model: Model, module: WebAssembly.Module) {
             'figure',
             {},
             h('div', { class: 'map-frame' }, canvas),
-            h(
-              'figcaption',
-              {},
-              i ? lanes[i - 1].split('/').map((part, k) => [k ? '/' : '', k ? h('wbr', {}) : '', part]) : 'truth',
-            ),
+            h('figcaption', {}, i ? breakable(lanes[i - 1]) : 'truth'),
           ),
         ),
       );
@@ -132,10 +128,9 @@ export function map(model: Model, module: WebAssembly.Module) {
     again();
   });
   let last_chosen = -1;
-  const element = h(
-    'section',
-    { id: 'map', 'aria-labelledby': 'map-title' },
-    h('h2', { id: 'map-title' }, 'Ulp map'),
+  const element = section(
+    'map',
+    'Ulp map',
     h('p', { class: 'small' }, 'The pair is in the middle; press a cell to take its pair.'),
     h(
       'div',

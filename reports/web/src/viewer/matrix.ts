@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The live verdicts of all lanes; changed verdicts are marked and announced.
-import { h, breakable, type Child } from '../dom';
+import { breakable, button, h, head_row, type Child } from '../dom';
 import type { Model } from './model';
 
 const kMostSaid = 3;
@@ -15,10 +15,7 @@ export function matrix(model: Model) {
     if (!variants.includes(column)) variants.push(column);
   }
   const cells = new Map(
-    model.graze.lanes.map((lane) => [
-      lane,
-      h('button', { type: 'button', 'data-lane': lane, onclick: () => model.set({ lane }) }),
-    ]),
+    model.graze.lanes.map((lane) => [lane, button('', () => model.set({ lane }), { 'data-lane': lane })]),
   );
   const told = h('p', { class: 'announced', 'aria-live': 'polite', id: 'flips' });
   const cell = (lanes: string[], variant: string) =>
@@ -35,16 +32,7 @@ export function matrix(model: Model) {
       'table',
       { class: 'plain lanes' },
       h('caption', {}, 'Verdicts of all lanes'),
-      h(
-        'thead',
-        {},
-        h(
-          'tr',
-          {},
-          h('td', {}),
-          variants.map((variant) => h('th', { scope: 'col' }, titles[variant] ?? variant, h('code', {}, variant))),
-        ),
-      ),
+      head_row(variants.map((variant) => [titles[variant] ?? variant, h('code', {}, variant)])),
       h(
         'tbody',
         {},

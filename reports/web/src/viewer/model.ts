@@ -128,6 +128,9 @@ export class Model {
     Object.assign(this, what);
     this.changed(false);
   }
+  toggle(what: keyof Model['shows']) {
+    this.set({ shows: { ...this.shows, [what]: !this.shows[what] } });
+  }
 
   wrong(lane: string) {
     const { verdicts, truth } = this.decided,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ranges on a line to which the test reduces: the intervals or projections that the chosen lane compared, beside
 // the same with 113 bits, and the ranges on the axis of the margin.
-import { choice, h, on_width, type Child } from '../dom';
+import { choice, h, on_width, section, type Child } from '../dom';
 import { figure } from '../format';
 import { differing } from './apart';
 import { chart, type Row } from './chart';
@@ -179,15 +179,6 @@ export function on_a_line(model: Model) {
   }
   return {
     update,
-    element: h(
-      'section',
-      { id: 'ranges', 'aria-labelledby': 'ranges-title' },
-      h('h2', { id: 'ranges-title' }, 'On a line'),
-      said,
-      choices,
-      picture,
-      truth_said,
-      truth_picture,
-    ),
+    element: section('ranges', 'On a line', said, choices, picture, truth_said, truth_picture),
   };
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the user's own code says about the pair. The page cannot run it, so the verdicts are those on the pair that was
 // written into the page.
-import { h } from '../dom';
+import { h, section } from '../dom';
 import { to_bits, type ViewData } from './data';
 import type { Model } from './model';
 
@@ -10,13 +10,7 @@ export function own_code(model: Model, data: ViewData) {
   const left_out = Object.entries(data.lanes_left_out?.why ?? {});
   const list = h('ul', { class: 'plain' }),
     told = h('p', { class: 'small' });
-  const element = h(
-    'section',
-    { id: 'own-code', 'aria-label': 'Your own code' },
-    h('h2', {}, 'Your own code'),
-    told,
-    list,
-  );
+  const element = section('own-code', 'Your own code', told, list);
   element.hidden = left_out.length === 0 && data.pairs.every((one) => !one.said?.length);
   let before = '';
 

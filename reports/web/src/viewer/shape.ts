@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pair as a shape to draw. Exact differences from the centre are magnified in double before they become float32, so
 // that a single ulp is visible. Parts far outside the drawing are cut off first.
-import type { Mark, Shape, Vec } from '../drawing';
+import { cross, dot, drawn_sizes, minus, scale_note, type Mark, type Shape, type Vec } from '../drawing';
 import { figure } from '../format';
 import { decimal, type Coordinates } from './data';
 import type { Drawing } from './graze.js';
 import type { Model } from './model';
 
 const kFar = 40; // distance in half-widths of the board beyond which polygons are cut
-const kLongestToScale = 12;
 
 export interface Placed {
   shape: Shape;
@@ -17,6 +16,7 @@ export interface Placed {
 } // unit: the length in coordinates that is 1 in the shape
 
 const vertex = (pair: Coordinates, v: number) => [pair[3 * v], pair[3 * v + 1], pair[3 * v + 2]] as Vec;
+const corners_of = (triangle: Coordinates) => [0, 1, 2].map((v) => vertex(triangle, v));
 
 // The part of a convex polygon or of a segment that is within the box.
 function cut(polygon: Vec[]): Vec[] {
@@ -43,16 +43,13 @@ const fan = (points: Vec[]) => points.slice(2).flatMap((q, i) => [points[0], poi
 
 function plane(corners: Vec[]): Vec[] {
   const [p, q, r] = corners,
-    u = q.map((c, k) => c - p[k]),
-    v = r.map((c, k) => c - p[k]);
-  const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    u = minus(q, p),
+    n = cross(u, minus(r, p));
   const length = Math.hypot(...n),
     size = Math.hypot(...u);
   if (!(length > 0) || !(size > 0)) return [];
   const e = u.map((c) => (2.2 * c) / size),
-    f = [n[1] * u[2] - n[2] * u[1], n[2] * u[0] - n[0] * u[2], n[0] * u[1] - n[1] * u[0]].map(
-      (c) => (2.2 * c) / (length * size),
-    );
+    f = cross(n, u).map((c) => (2.2 * c) / (length * size));
   const middle = corners[0].map((_, k) => (p[k] + q[k] + r[k]) / 3);
   return [
     [1, 1],
@@ -65,13 +62,11 @@ function plane(corners: Vec[]): Vec[] {
 // b's vertices projected onto a's plane, the only part of b that projected_sat compares. Empty if a has no plane.
 function shadow_of(points: Vec[]): Vec[] {
   const [p, q, r] = points,
-    u = q.map((c, k) => c - p[k]),
-    v = r.map((c, k) => c - p[k]);
-  const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]],
-    square = n.reduce((sum, c) => sum + c * c, 0);
+    n = cross(minus(q, p), minus(r, p)),
+    square = dot(n, n);
   if (!(square > 0) || !Number.isFinite(square)) return [];
   return points.slice(3).map((b) => {
-    const height = n.reduce((sum, c, k) => sum + c * (b[k] - p[k]), 0) / square;
+    const height = dot(n, minus(b, p)) / square;
     return b.map((c, k) => c - n[k] * height) as Vec;
   });
 }
@@ -92,7 +87,7 @@ const middle_of = (corners: Vec[]) => corners[0].map((_, k) => corners.reduce((s
 function names_of(field: Field, reference: Vec[], shows: Model['shows'], place: (p: readonly number[]) => Vec) {
   const from = middle_of(reference);
   const named = field.triangles.map((triangle, i) => {
-    const corners = [0, 1, 2].map((v) => vertex(triangle, v)),
+    const corners = corners_of(triangle),
       middle = middle_of(corners);
     return { corners, middle, i, away: field.hit[i] ? 0 : Math.hypot(...middle.map((c, k) => c - from[k])) };
   });
@@ -108,15 +103,11 @@ function names_of(field: Field, reference: Vec[], shows: Model['shows'], place: 
 export function placed(model: Model, drawing: Drawing, magnified: number, field: Field | null): Placed {
   const { pair, centre, shows } = model,
     points = [0, 1, 2, 3, 4, 5].map((v) => vertex(pair, v));
-  const all = field
-    ? [...points, ...field.triangles.flatMap((t) => [0, 3, 6].map((i) => [t[i], t[i + 1], t[i + 2]] as Vec))]
-    : points;
+  const all = field ? [...points, ...field.triangles.flatMap(corners_of)] : points;
   const low = [0, 1, 2].map((k) => all.reduce((least, p) => Math.min(least, p[k]), Infinity)),
     high = [0, 1, 2].map((k) => all.reduce((most, p) => Math.max(most, p[k]), -Infinity));
-  const extent = low.map((l, k) => high[k] - l),
-    longest = Math.max(...extent) || Math.max(...pair.map(Math.abs)) || 1;
-  const stretch = extent.some((e) => e > 0 && longest / e > kLongestToScale);
-  const unit = extent.map((e) => (stretch && e > 0 ? e : longest) / 2 / magnified) as Vec;
+  const size = drawn_sizes(low, high, pair),
+    unit = size.map((s) => s / 2 / magnified) as Vec;
   const { contact, witness } = drawing,
     common = contact.length ? contact : witness;
   const middle = (
@@ -164,7 +155,7 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
     for (let k = 0; k < 3; ++k) {
       const end = [0, 0, 0],
         origin = [0, 0, 0];
-      end[k] = longest / 2;
+      end[k] = Math.max(...size) / 2;
       marks.push({ colour: `--series-${k}`, lines: [cut([place(origin), place(end)])], width: 2 });
     }
   }
@@ -190,21 +181,14 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
     ] as const)
       marks.push({
         colour,
-        triangles: field.triangles.flatMap((t, i) =>
-          field.hit[i] === hit ? [0, 3, 6].map((k) => place([t[k], t[k + 1], t[k + 2]])) : [],
-        ),
+        triangles: field.triangles.flatMap((t, i) => (field.hit[i] === hit ? corners_of(t).map(place) : [])),
       });
     marks.push({
       colour: '--bad',
       width: 3,
-      lines: field.triangles.flatMap((t, i) =>
-        field.wrong[i] ? [[0, 3, 6, 0].map((k) => place([t[k], t[k + 1], t[k + 2]]))] : [],
-      ),
+      lines: field.triangles.flatMap((t, i) => (field.wrong[i] ? [[...corners_of(t), vertex(t, 0)].map(place)] : [])),
     });
   }
-  const factors = ['x', 'y', 'z'].flatMap((name, k) =>
-    unit[k] < 0.99 * Math.max(...unit) ? [`${name} × ${figure(Math.max(...unit) / unit[k])}`] : [],
-  );
   return {
     unit,
     middle,
@@ -215,7 +199,7 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
       line: field ? [] : cut(drawing.line.map(place)),
       radius,
       marks,
-      note: `${magnified > 1 ? `× ${figure(magnified)}, ` : ''}${factors.length ? `not to scale: ${factors.join(', ')}` : 'to scale'}`,
+      note: `${magnified > 1 ? `× ${figure(magnified)}, ` : ''}${scale_note(size)}`,
       names:
         shows.ids || shows.coordinates
           ? [...a, ...(field ? [] : b)].map((p, i) => ({

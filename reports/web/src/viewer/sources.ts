@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sources of pairs: the file from which the page was made, the special cases of 2012, or a stratum.
-import { choice, h } from '../dom';
+import { button, choice, h } from '../dom';
 import { from_bits, type Coordinates, type ViewData } from './data';
 import { special_cases, type Model } from './model';
 
@@ -91,10 +91,8 @@ export function sources(model: Model, data: ViewData, say: (text: string) => voi
     show(0);
   });
   function update() {
-    const of = Number.isFinite(length()) ? `${at + 1} of ${length()}` : `index ${at}, seed ${seed}`;
-    place.textContent = of;
+    place.textContent = Number.isFinite(length()) ? `${at + 1} of ${length()}` : `index ${at}, seed ${seed}`;
   }
-  const button = (text: string, action: () => void) => h('button', { type: 'button', onclick: action }, text);
   return {
     go,
     update,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The viewer: assembles the display.
 import './viewer.css';
-import { h } from '../dom';
+import { button, h, section } from '../dom';
 import { figure } from '../format';
 import { all_keys } from './all_keys';
 import { show_why } from './apart';
@@ -26,9 +26,8 @@ import { words } from './words';
 function margin_words({ decided: { truth, margin } }: Model): string {
   if (truth.verdict === 'declined') return 'a coordinate is not finite';
   if (margin.sign === 0) return 'margin exactly 0: an arbitrarily short push separates them';
-  const say = (x: number) => figure(x),
-    [least, most] = [say(margin.least), say(margin.most)];
-  const ulps = (x: number) => say(x / margin.ulp);
+  const [least, most] = [figure(margin.least), figure(margin.most)];
+  const ulps = (x: number) => figure(x / margin.ulp);
   if (margin.most === Infinity) return 'margin not settled here: the pair’s sizes are too far apart';
   const range =
     least === most
@@ -89,9 +88,8 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
     own = own_code(model, data),
     from = sources(model, data, say),
     copied = copies(model, around.link);
-  const tool = (text: string, action: () => void) => h('button', { type: 'button', onclick: action }, text);
-  const undo = tool('Undo', () => model.travel('past')),
-    redo = tool('Redo', () => model.travel('future'));
+  const undo = button('Undo', () => model.travel('past')),
+    redo = button('Redo', () => model.travel('future'));
   const name = h('h1', {}),
     truth = h('p', { class: 'truth', id: 'truth' }),
     summary = h('p', { id: 'summary' });
@@ -119,18 +117,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
           'CPU and GPU differ: ',
           apart.map((lane, i) => [
             i ? ', ' : '',
-            h(
-              'button',
-              {
-                type: 'button',
-                class: 'link',
-                onclick: () => {
-                  model.set({ lane });
-                  show_why();
-                },
-              },
-              lane.replace('/cuda-fma', ''),
-            ),
+            button(lane.replace('/cuda-fma', ''), () => (model.set({ lane }), show_why()), { class: 'link' }),
           ]),
           '. ',
         ],
@@ -207,9 +194,9 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
             { class: 'chips' },
             undo,
             redo,
-            tool('Switch CPU/GPU', other_processor),
-            tool('Random triangles', many.again),
-            tool('Keys (h)', () => pressed.toggle()),
+            button('Switch CPU/GPU', other_processor),
+            button('Random triangles', many.again),
+            button('Keys (h)', () => pressed.toggle()),
           ),
           from.element,
         ),
@@ -225,12 +212,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
         because.element,
         line.element,
         ulps.element,
-        h(
-          'section',
-          { id: 'policy', 'aria-labelledby': 'policy-title' },
-          h('h2', { id: 'policy-title' }, 'Tolerances'),
-          policy(model),
-        ),
+        section('policy', 'Tolerances', policy(model)),
         words(),
         h('p', { class: 'small', id: 'replayed' }, said),
         h('p', { class: 'small', id: 'evidence' }, `CUDA lanes: ${data.evidence}; here in WebAssembly.`),

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The steps of action.yml, run in order in a fresh folder with an empty HOME: a planted bug fails with its smallest
-pair and JUnit XML, correct code passes, and each wrong input is answered with what to do. Argument: the graze
+"""Runs the steps of action.yml in order, in a fresh folder with an empty HOME. A planted bug fails with its smallest
+pair and JUnit XML, and correct code passes. For each wrong input, the message says what to do. Argument: the graze
 program."""
 import contextlib
 import hashlib
@@ -17,7 +17,7 @@ import xml.etree.ElementTree
 ROOT = pathlib.Path(__file__).parent.parent
 GRAZE = pathlib.Path(sys.argv.pop()).resolve()
 BUGGY = "int meet(const float a[9], const float b[9]) { return a[0] <= b[0] + 100; }\n"
-# Right in every build except the one with -ffast-math, which the input `lanes` leaves out.
+# This code is right in every build except that with -ffast-math, which the input `lanes` leaves out.
 RIGHT = """#ifdef __FAST_MATH__
 bool meet(const float*, const float*) { return false; }
 #else
@@ -109,7 +109,7 @@ class Action(unittest.TestCase):
 
 
 class Steps(unittest.TestCase):
-    """The other tests rely on this: run_action.py rejects a step that no service would run like that."""
+    """run_action.py rejects steps that no CI service would run. The other tests rely on that."""
 
     def test_each_step_names_what_exists(self):
         sys.path.insert(0, str(ROOT / "packaging"))

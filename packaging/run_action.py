@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the shell steps of action.yml in order, as a CI service does: `bash -eo pipefail`, in a workspace, with files
 for outputs and the PATH. Steps that use another action are printed instead. Exit status: that of the first step that
-fails, 77 without PyYAML (Debian's package python3-yaml).
+fails, or 77 without PyYAML (Debian's package python3-yaml).
   run_action.py [--workspace DIR] [NAME=VALUE of an input]..."""
 import argparse
 import os
@@ -31,7 +31,7 @@ class Run:
 
     def value(self, name):
         if re.fullmatch(r"steps\.\w+\.outputs\.\w+", name):
-            return self.values.get(name, "")  # of a step that did not run
+            return self.values.get(name, "")  # empty for a step that did not run
         return self.values[name]
 
     def text(self, template):

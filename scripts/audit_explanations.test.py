@@ -11,7 +11,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 try:
     from auditing.sentences import audit
-except ImportError:  # numpy may be Debian's alone
+except ImportError:  # perhaps only Debian's Python has numpy
     if sys.executable == "/usr/bin/python3":
         raise
     os.execv("/usr/bin/python3", ["/usr/bin/python3", "-B", *sys.argv])

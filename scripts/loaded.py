@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""For tests: a script without the suffix .py as a module."""
+"""Loads a script without the suffix .py as a module, for the script's test."""
 import importlib.machinery
 import importlib.util
 import pathlib

@@ -115,7 +115,7 @@ def records(name, topic, machines):
             if record["machine"] not in machines:
                 raise Malformed(f"{where}: machine {record['machine']!r} is not in machines.toml")
             if found and record["date"] < found[-1]["date"]:
-                raise Malformed(f"{where}: runs must stand in the order of their dates, the newest last")
+                raise Malformed(f"{where}: runs must be in the order of their dates, the newest last")
             found.append(record)
     return found
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The npm package works for a new user, installed offline from its tarball into an empty project: its examples run, a
-wrong function fails under `node --test` with a smallest pair, a right one passes, and TypeScript accepts its types. If
-there is a Chromium, the three.js example runs in it too."""
+"""The npm package works for a new user, installed offline from its tarball into an empty project: its examples run,
+and TypeScript accepts its types. Under `node --test`, a wrong function fails with a smallest pair, and a right
+function passes. If there is a Chromium, the three.js example runs in it too."""
 import functools
 import http.server
 import os

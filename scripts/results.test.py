@@ -122,7 +122,7 @@ class Page(unittest.TestCase):
 
 
 class Sources(unittest.TestCase):
-    """Records that were taken from a page or a file agree with it."""
+    """Records that were taken from a page or a file agree with that source."""
 
     def setUp(self):
         self.records = Records()
@@ -144,7 +144,7 @@ class Sources(unittest.TestCase):
         for rate in data["rates"]:
             stratum = "all" if rate["stratum"] is None else strata[rate["stratum"]]
             if stratum not in ("uniform", "all"):
-                continue  # a group has the name of a stratum
+                continue  # other strata may have the same name as a group
             found[lanes[rate["lane"]]][stratum] = rate["wrong"]
             if stratum == "all" and rate["differs_from_cpu"]:
                 found[lanes[rate["lane"]]]["other than `cpu`"] = rate["differs_from_cpu"]

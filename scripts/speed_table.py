@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""speed_table.py HOST.json [DEVICE.json]: prints, as Markdown, what graze_fuzz_bench and graze_device_bench measured
-(JSON as Google Benchmark writes it; a figure is the median of its repetitions)."""
+"""speed_table.py HOST.json [DEVICE.json]: prints the results of graze_fuzz_bench and graze_device_bench as Markdown.
+The files are JSON from Google Benchmark. Each figure is the median of its repetitions."""
 import json
 import statistics
 import sys
@@ -40,7 +40,7 @@ def read(path):
             if isinstance(value, (int, float))
         }
     if not results:
-        sys.exit(f"speed_table: {path}: expected benchmark results, found none")
+        sys.exit(f"speed_table: {path}: the file has no benchmark results")
     context = document["context"]
     context["repetitions"] = max(len(runs) for runs in repetitions.values())
     return context, results, of_doubles
@@ -95,7 +95,7 @@ def host(context, results, of_doubles):
     return f"""## CPU: nanoseconds per pair on one core
 {context['processor']}, {context['num_cpus']} cores; {context['compiler']}, `{context['flags']}`; commit `{context['commit']}`.
 Median of {context['repetitions']} repetitions, CPU time, on the same pairs of each stratum (seed 1, at most {most:,.0f}). They are in the cache, so arithmetic and branches limit the speed, not memory.
-All exact decisions agreed with the oracle on every timed pair. CGAL's `do_intersect` (on triangles made beforehand) takes only pairs without degenerate triangles: its times, and EPICK / exact, cover only those, and the last column is their share.
+All exact decisions agreed with the oracle on every timed pair. CGAL's `do_intersect` (on triangles made beforehand) takes only pairs without degenerate triangles: its times, and EPICK / exact, cover only these pairs. The last column has their share.
 
 {table(["stratum", *BESIDE.values(), "exact / gd f64", "EPICK / exact", "not degenerate"], rows)}
 ### Every host lane, with CGAL and GMP for comparison

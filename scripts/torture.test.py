@@ -171,7 +171,7 @@ class Torture(unittest.TestCase):
     def test_nothing_of_one_that_does_what_it_must(self):
         of_results = {
             kind for kind, attack in torture.KINDS.items() if attack.__module__.endswith(".results")
-        }  # the stand-in has none of these verbs
+        }  # the stand-in does not have the verbs of these attacks
         for kind in sorted(torture.KINDS.keys() - of_results):
             with self.subTest(kind):
                 counts, said = self.attack(self.graze("good"), kind)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""verdicts_apart.py CAMPAIGN SUBJECT ROW,… COLUMN,…: prints, as Markdown, how often two lanes of a subject or an
-algorithm have different verdicts. Rows and columns are the rest of the lanes' names, such as f32/cpu. A cell N (A to B)
+"""verdicts_apart.py CAMPAIGN SUBJECT ROW,… COLUMN,…: prints how often two lanes of a subject have different
+verdicts, as Markdown. ROW and COLUMN are lane names without the subject, such as f32/cpu. A cell N (A to B)
 means that one in N pairs differs, with the 95 % interval from A to B, rounded outward. If none differs, the cell is
 0 (over A)."""
 import json

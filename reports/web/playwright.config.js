@@ -8,7 +8,7 @@ import { defineConfig } from '@playwright/test';
 
 const chromium = process.env.GRAZE_CHROMIUM ?? execSync('command -v chromium', { encoding: 'utf8' }).trim();
 
-// Without the sandbox, because root in a container cannot have one.
+// Chromium runs without its sandbox, because root in a container cannot have one.
 const launched = (...args) => ({ executablePath: chromium, args: ['--no-sandbox', ...args] });
 
 export default defineConfig({
@@ -20,7 +20,7 @@ export default defineConfig({
   timeout: 300_000,
   expect: { timeout: 60_000 },
   reporter: 'list',
-  // Drawing by a GPU that is emulated takes most of the processor time, so only the tests of WebGL have one.
+  // An emulated GPU takes most of the processor time, so only the tests of WebGL have one.
   projects: [
     { name: 'plain', grepInvert: /by WebGL/, use: { launchOptions: launched('--disable-gpu') } },
     {
@@ -30,8 +30,8 @@ export default defineConfig({
     },
   ],
   use: {
-    // A low window: parts out of view are not painted, which takes most of the processor time here, and their maps are
-    // not computed.
+    // The window is low, because painting takes most of the processor time: parts out of view are not painted, and
+    // their maps are not computed.
     viewport: { width: 1360, height: 480 },
     contextOptions: { permissions: ['clipboard-read', 'clipboard-write'] },
   },

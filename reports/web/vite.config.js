@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes one file that contains everything, with no chunk, style sheet or picture beside it, so that the page opens from
-// disk. The report is index.html; with --mode viewer it is view.html. GRAZE_VIEWER says whether there is a viewer,
-// which quotes source lines; graze writes the viewer's module into the page with the other data.
+// Bundles the page into one file, without chunks, style sheets or pictures beside it, so that it opens from disk. The
+// report is index.html; with --mode viewer, the page is view.html. GRAZE_VIEWER is set if there is a viewer, which
+// quotes source lines. graze writes the viewer's module into the page with the other data.
 import { readFileSync, readdirSync } from 'node:fs';
 import { defineConfig } from 'vite';
 import { viteSingleFile } from 'vite-plugin-singlefile';

@@ -82,7 +82,7 @@ class Run:
         return self.lead[i] if i < len(self.lead) else held
 
     def snap(self, x):
-        return Fused(x.v, self) if isinstance(x, Fused) else x  # no longer a product
+        return Fused(x.v, self) if isinstance(x, Fused) else x  # a snapped value is no longer a product
 
 
 def add(u, v):

@@ -62,7 +62,7 @@ class Root:
         return sp * ((square > 0) - (square < 0))
 
     def number(self):
-        """As a Fraction, with a relative error of at most 2^-100."""
+        """The number as a Fraction, with a relative error of at most 2^-100."""
         if not self.q:
             return Fraction(self.p)
         bits = 200
@@ -81,7 +81,7 @@ def floor_log2(n, d):
 
 
 def rounded(x, bits, lowest=None):
-    """The Fraction x rounded to `bits` bits, ties to even; to a multiple of 2^lowest if that is given."""
+    """The Fraction x rounded to `bits` bits, with ties to even. If `lowest` is given, the result is a multiple of 2^lowest."""
     if not x:
         return x
     n, d = x.numerator, x.denominator
@@ -95,7 +95,7 @@ def rounded(x, bits, lowest=None):
 
 
 class Real:
-    """Reals with a mantissa of `bits` bits, with or without exponent limits. For formats that numpy lacks."""
+    """Reals in formats that numpy lacks: with a mantissa of `bits` bits, with or without exponent limits."""
 
     __slots__ = ("v",)  # a Fraction, or nan or inf as a float
     bits, upper, lower = 24, None, None

@@ -57,8 +57,8 @@ class Audited:
         return Run(name, lambda x: Sized.made(Fraction(x)), self.fractions, lead, rule)
 
     def deciding(self, name, scalar, rule):
-        """The smallest set of comparisons whose correction gives the truth (the first of several): the number of each
-        comparison and the path that leads to it. None if it takes more than MOST_DECIDING."""
+        """The first of the smallest sets of comparisons whose correction gives the truth: the number of each comparison,
+        and the path that leads to it. None if such a set has more than MOST_DECIDING comparisons."""
         key = name, scalar, rule
         if key not in self.sets:
             for size in range(1, MOST_DECIDING + 1):
@@ -152,8 +152,8 @@ def contact_and_distance(c):
 
 
 def inside(c, contact, corners):
-    """How a sentence says that one triangle lies in the other; '' if none does. One lies in the other if all its ends
-    in the other's plane are corners of the common set."""
+    """The words for a triangle that lies in the other; '' if neither does. A triangle lies in the other if all its
+    ends in the other's plane are corners of the common set."""
     v = [c[i : i + 3] for i in range(0, 18, 3)]
     triangles = {"a": v[:3], "b": v[3:]}
     normals = {name: cross(sub(t[1], t[0]), sub(t[2], t[0])) for name, t in triangles.items()}

@@ -166,7 +166,7 @@ def check_sentence(pair, text, lanes, counts):
         rf"the comparison at ({LINE})(?: goes the wrong way|, which decides, goes the wrong way without that too)",
         reason,
     )
-    expect(first and first[1] == lines[0], f"the first comparison stands at {lines[0]}")
+    expect(first and first[1] == lines[0], f"the first comparison is at {lines[0]}")
     caused = by_cause(pair, name, scalar, rule, cause, i, path)
     expect(caused == ("without that too" not in reason), "whether the cause makes that comparison go wrong")
     later = re.search(
@@ -178,7 +178,7 @@ def check_sentence(pair, text, lanes, counts):
         named, distinct = re.findall(LINE, later[3]), list(dict.fromkeys(lines[1:]))
         expect(
             named == distinct[:3] and int(later[4] or 0) == len(distinct) - len(named),
-            f"the later ones stand at {lines[1:]}",
+            f"the later comparisons are at {lines[1:]}",
         )
         expect(
             (later[1], later[2])

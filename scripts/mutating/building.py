@@ -16,7 +16,7 @@ import threading
 from mutating import tokens
 
 NOT_SWITCHED = 98  # exit status, as in switches.h
-# Subscripts out of range end the test; otherwise it might read any value.
+# A subscript out of range ends the test, which might otherwise read any value.
 CHECKED = ["-w", "-D_GLIBCXX_ASSERTIONS", "-fsanitize=bounds-strict,object-size", "-fsanitize-undefined-trap-on-error"]
 MEMORY = 8 << 30  # bytes of address space for each compiler and test
 
@@ -30,7 +30,7 @@ class NotCompiled(Exception):
 
 
 class Commands:
-    """The finished build's compile and link commands, made faster: unoptimised, system headers precompiled, lld."""
+    """The finished build's compile and link commands, made faster: no optimisation, precompiled system headers, lld."""
 
     def __init__(self, root, build, programs, out):
         self.root, self.build, self.out = root, build, out
@@ -134,8 +134,9 @@ class Runner:
         )
 
     def stages(self, group, seeing):
-        """The tests in the order in which they run. First all tests that need no compilation, together, if they can see
-        the mutant at all. Then the tests that are compiled again, one by one, because most mutants die in the first."""
+        """The tests in the order in which they run. First come all tests that need no compilation, together, if they
+        can see the mutant at all. Then the tests that are compiled again, one by one, because most mutants die in the
+        first."""
         anew = [
             source
             for source in dict.fromkeys([*group["tests"], *seeing])

@@ -90,7 +90,7 @@ GRAZE_ASSIGNMENT(-=, +=)
 GRAZE_ASSIGNMENT(&=, |=)
 GRAZE_ASSIGNMENT(|=, &=)
 
-// Before a unary operator. They bind to its result more tightly than any binary operator.
+// Switches before a unary operator. ->* binds to the operator's result more tightly than the other binary operators.
 template <int id>
 struct Not {};
 template <int id>

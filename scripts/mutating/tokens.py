@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The mutants of a source: its replaceable tokens, each by itself or all behind switches (switches.h)."""
+"""The mutants of a source: its replaceable tokens, each replaced alone or all behind switches (switches.h)."""
 import re
 
 SWAPS = {

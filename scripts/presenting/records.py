@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Numbers for docs/results, from the records in docs/measurements. Each text that this module returns for a number
-carries marks around it, so that a number without a record is visible (`unbacked`)."""
+carries marks around it, so that `unbacked` finds numbers without a record."""
 import decimal
 import math
 import re
@@ -87,17 +87,17 @@ def word(x):
 
 
 def one_in(x, of=1):
-    """x of `of` as "1 in 3,270"."""
+    """The share x of `of`, as in "1 in 3,270"."""
     return backed(f"1 in {digits(float(of) / float(x))}")
 
 
 def times(x, towards=None):
-    """A factor, with two digits if it is a bound, else three."""
+    """A factor, with two digits if it is a bound, and otherwise with three."""
     return backed(f"{digits(float(x), 2 if towards else 3, towards)} times")
 
 
 def one_pair_in(x, what="pair "):
-    """One pair in x, as its record has x."""
+    """The text "1 pair in x"."""
     return backed(f"1 {what}in {x:,}")
 
 

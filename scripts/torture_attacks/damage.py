@@ -27,7 +27,7 @@ NUMBERS = [
     "-{0}",
 ]
 ROW = "WHERE id = (SELECT id FROM batch ORDER BY random() LIMIT 1)"
-# Each leaves a database that SQLite considers valid.
+# Each statement leaves a database that SQLite considers valid.
 STATEMENTS = [
     "DELETE FROM batch " + ROW,
     "DELETE FROM batch",
@@ -109,7 +109,7 @@ def refuses_another_seed(turn, campaign, command):
     has_rows = b"near_edge_edge" in before.get(pathlib.Path(DATABASE), b"")
     ran = turn.run(*other)
     if ran.status == 0 and (has_rows or (campaign / "cases").exists() and "summary.json" in map(str, before)):
-        raise Violation("expected another seed to be refused, found that it went on")
+        raise Violation("expected another seed to be refused, found that the campaign was resumed")
     if ran.status == 0:  # nothing was left of the campaign, so it started again; restores the files
         shutil.rmtree(campaign)
         for name, data in before.items():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Subjects that attack the process that runs them (subjects/hostile.c), in campaigns that end, are stopped or are
-killed, even while a subject is compiled. The campaign must end, the other lanes must have the verdicts of a campaign
+"""Runs subjects that attack their own process (subjects/hostile.c). Their campaigns end, are stopped, or are killed,
+also while a subject is compiled. The campaign must end, the other lanes must have the verdicts of a campaign
 without these subjects, and no process may be left."""
 import json
 import os
@@ -63,7 +63,7 @@ def must_end_while_it_compiles(turn):
     ran = turn.finish(started, kill_after=ENDS)
     if ran.late:
         raise Violation(f"expected an end within {ENDS} s of signal {way}, found none")
-    if ran.status not in (130, -way):  # stopped in order, or before it began
+    if ran.status not in (130, -way):  # graze was stopped in order, or before it began
         raise Violation(f"expected exit status 130, found {ran.status}: {ran.err[-500:]!r}")
     must_leave_nothing(turn)
     if way == signal.SIGKILL:  # if no compiler ran when it was killed, a later graze removes the files
@@ -105,7 +105,7 @@ def foreign(turn):
             time.sleep(turn.random.random() * 0.5)
             os.kill(
                 started[0].pid, signal.SIGTERM if way == "stopped" else signal.SIGKILL
-            )  # its id stays valid until it is waited for
+            )  # the process's id is valid until `finish` waits for it
             ran = turn.finish(started, kill_after=ENDS)
             if ran.late:
                 raise Violation(f"expected an end within {ENDS} s of SIGTERM, found none")
@@ -113,7 +113,7 @@ def foreign(turn):
                 0,
                 130,
                 -signal.SIGTERM,
-            ):  # it ended before; stopped in order; before it began
+            ):  # it had ended; it was stopped in order; it had not begun
                 raise Violation(f"expected exit status 130, found {ran.status}: {ran.err[-500:]!r}")
             must_leave_nothing(turn)
         turn.must_succeed(turn.run(*command))

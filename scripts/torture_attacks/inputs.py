@@ -127,7 +127,7 @@ def scenes(turn):
             if poses
             else turn.run("fuzz", "--scene", file, "--pairs", "200", *LANES, "--out", out)
         )
-        # Poses that separate the bodies leave no pairs; that message names the mesh.
+        # If poses separate the bodies, there are no pairs, and the message names the mesh.
         judge(turn, ran, name, "two.off")
         shutil.rmtree(out, ignore_errors=True)
         file.unlink()
@@ -218,6 +218,8 @@ def json(turn):
         command = turn.random.choice(commands)
         ran = turn.run(*command)
         judge(turn, ran, file.name)
-        if command[0] == "fuzz" and ran.status != 0 and file.name != "timings.json":  # which would be lost
+        if (
+            command[0] == "fuzz" and ran.status != 0 and file.name != "timings.json"
+        ):  # fuzz refuses a damaged timings.json, because its old runs would be lost
             raise Violation(f"expected fuzz to make its files anew, found {ran.err!r}")
         shutil.rmtree(campaign)

@@ -11,7 +11,7 @@ from torture_attacks.bench import Violation, bytes_of
 
 
 def kill_repeatedly(turn, begin, arguments, seconds):
-    """Kills the command one to three times, each time at another moment. `begin` makes it start from the beginning.
+    """Kills the command one to three times, at random moments. `begin` makes it start from the beginning.
     Returns: how often it was killed."""
     kills = 0
     for attempt in range(6):
@@ -102,7 +102,7 @@ def small_disk(folder, size):
 
 @contextlib.contextmanager
 def made_read_only(folder):
-    """The mounted folder is read-only meanwhile. Requires that nothing in it changes."""
+    """Mounts the folder read-only for the `with` block. Requires that nothing in it changes."""
     before = bytes_of(folder)
     remount = lambda how: subprocess.run(["mount", "-o", f"remount,{how}", folder], check=True, capture_output=True)
     remount("ro")
@@ -124,7 +124,9 @@ def finish_both(turn, first, second, pauses, name):
         turn.must_end(ran)
     refused = [turn.is_refused(ran, name) for ran in both]
     if all(refused):
-        raise Violation(f"expected one of two at once to go on, found both refused: {both[0].err!r} {both[1].err!r}")
+        raise Violation(
+            f"expected one of two processes to continue, found both refused: {both[0].err!r} {both[1].err!r}"
+        )
     return any(refused)
 
 
@@ -169,7 +171,7 @@ def full_disk(turn):
         else:
             limit = turn.random.randrange(
                 1024, largest + 1
-            )  # a smaller one would cut the message, which is kept in a file
+            )  # a smaller limit would cut graze's message, which goes to a file
         ran = turn.run(*command, file_bytes=limit)
         refused = turn.is_refused(ran, "campaign", "cases")
         (turn.folder / "disk" / "filler").unlink(missing_ok=True)
@@ -182,8 +184,8 @@ def full_disk(turn):
 
 
 def two_at_once(turn):
-    """Two processes in one campaign folder. The second must wait or be refused in one line; then the results must be
-    right."""
+    """Two processes in one campaign folder. The second must wait, or be refused in one line. Afterwards the results must
+    be right."""
     campaign = turn.folder / "campaign"
     fuzz = [*turn.bench.campaign("tiny"), "--out", campaign]
     large = [*turn.bench.campaign("large"), "--out", campaign]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A device, pipe, link or folder at the path of --out must stay what it is."""
+"""A device, pipe, link or folder at the path of --out must not be replaced."""
 import os
 import pathlib
 import stat
@@ -12,7 +12,7 @@ LANE = "guigue_devillers_2003/f32/cpu"
 
 
 def verbs(turn):
-    """Lists of arguments; the output file is to be appended to each."""
+    """Lists of arguments, to which the output file has to be appended."""
     (turn.folder / "pair.txt").write_text(PAIR)
     report = turn.bench.reference("tiny", reported=True) / "report.json"
     return [
@@ -88,7 +88,7 @@ def to_a_pipe(turn, verb, folder, expected):
 
 def to_links(turn, verb, folder, expected):
     target, link, dangling, loop = (folder / name for name in ("target.png", "link.png", "dangling.png", "loop.png"))
-    target.write_bytes(expected)  # made by graze; results.foreign_places tests other files
+    target.write_bytes(expected)  # a file that graze made; results.foreign_places tests other files
     link.symlink_to(target.name)
     dangling.symlink_to("made.png")
     loop.symlink_to("loop.png")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Verbs with results other than a campaign's: killed, with a full disk, on a read-only disk, and two at once. In the
-end the bytes must be those of an undisturbed run, except for timings, and no file may be partial. Also files that the
-verbs must not replace."""
+"""Attacks on verbs other than those of campaigns: kills, full disks, read-only disks, and two processes at once. In the
+end the bytes must be those of an undisturbed run, except for timings, and no file may be partial. Also checks that the
+verbs do not replace files of others."""
 import json
 import os
 import shutil
@@ -82,7 +82,7 @@ def without_times(value):
         return {key: without_times(inner) for key, inner in value.items() if key not in TIMED}
     if not isinstance(value, list):
         return value
-    if all(isinstance(inner, dict) and "lane" in inner for inner in value):  # the order depends on costs
+    if all(isinstance(inner, dict) and "lane" in inner for inner in value):  # the order of lanes depends on costs
         value = sorted(value, key=lambda inner: str(inner["lane"]))
     return [without_times(inner) for inner in value]
 
@@ -169,7 +169,9 @@ def full_results(turn):
     def attack(turn, verb, out, expected):
         begun = snapshot(out)
         largest = max(len(data) if isinstance(data, bytes) else len(json.dumps(data)) for data in expected.values())
-        limit = turn.random.randrange(1024, max(largest, 2048))  # less would cut the message, which is kept in a file
+        limit = turn.random.randrange(
+            1024, max(largest, 2048)
+        )  # a smaller limit would cut graze's message, which goes to a file
         ran = turn.run(*command(turn.bench, verb, out), file_bytes=limit)
         refused = turn.is_refused(ran, verb, "campaign.sqlite", "room", "memory with a subject", "cannot compile")
         must_be_whole(out, expected, begun)
@@ -234,7 +236,7 @@ def forged_summaries(turn):
         campaign = turn.folder / f"campaign-{attempt}"
         shutil.copytree(reported, campaign)
         name = turn.random.choice(["summary.json", "summary.json", "failures.json", "report.json"])
-        is_summary = name == "summary.json"  # checked against the database instead
+        is_summary = name == "summary.json"  # graze checks a summary against the database, not by a checksum
         value = json.loads((campaign / name).read_text()) if is_summary else seal.read(campaign / name)
         part = {
             "summary.json": ["strata", "signatures", "disagreements", "spec"],
@@ -340,7 +342,7 @@ def texts(value, place=()):
 
 
 def unsealed(turn):
-    """Changes a text, which no count contradicts. The checksum must reveal it in every kind of file."""
+    """Changes a text, so that no count contradicts the change. The checksum must reveal it in every kind of file."""
     reported = turn.bench.reference("tiny", minimised=True, reported=True)
     maps = turn.random.choice(sorted((reported / "cases").glob("*.maps.json"))).relative_to(reported).as_posix()
     page = ["report", "--from", "report.json", "--out", "page.html"]

@@ -8,7 +8,7 @@ from torture_attacks.bench import Violation
 
 
 class Number(float):
-    """A fraction as the file has it: graze writes some with more digits than Python would."""
+    """A fraction with the digits of the file, because graze writes some fractions with more digits than Python would."""
 
     def __new__(cls, text):
         number = super().__new__(cls, text)

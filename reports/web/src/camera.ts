@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera of a drawing. Dragging turns it about the centre with three.js's OrbitControls; everything else sets a
-// view.
+// The camera of a drawing. Dragging turns the camera about the centre with three.js's OrbitControls. Keys and buttons
+// set a view.
 import { MathUtils, OrthographicCamera } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { View } from './drawing';
 
 const kSteepest = 1e-3; // radians from straight above or below, where left and right become undefined
-const kFar = 1e4; // parts outside the frame may be far in front of it
+const kFar = 1e4; // parts outside the frame may be far in front of the framed part
 
 export function view_of({ position, zoom }: OrthographicCamera): View {
   return { azimuth: Math.atan2(position.y, position.x), elevation: Math.asin(position.z / position.length()), zoom };

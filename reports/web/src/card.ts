@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The card of a kind of failure: its simplest case, every lane's verdict on it, the explanation, and how to reproduce
-// it.
+// The card of a kind of failure: the simplest case, every lane's verdict on that case, the explanation, and the
+// commands that reproduce it.
 import { viewer_button } from './card_viewer';
 import { breakable, button, code_block, copy_button, h, head_row, lazy_details, list } from './dom';
 import { counted, figure } from './format';
@@ -43,7 +43,7 @@ function coordinates({ pair }: Card) {
     h(
       'p',
       { class: 'inline-copy' },
-      'All 18 as hex floats for ',
+      'All 18 coordinates as hex floats, for ',
       h('code', {}, 'graze check -'),
       ' ',
       copy_button(text, 'the coordinates'),
@@ -67,7 +67,7 @@ function verdicts(report: Report, card: Card) {
     h(
       'table',
       { class: 'plain verdicts' },
-      h('caption', {}, 'Verdict of every lane, wrong ones marked'),
+      h('caption', {}, 'Verdict of every lane; wrong verdicts are marked'),
       head_row(targets),
       h(
         'tbody',
@@ -132,7 +132,8 @@ function ulp_maps(maps: NonNullable<Card['maps']>) {
   );
 }
 
-// The card's programs. Shows one at a time, chosen by its button. The report stores the algorithm's source only once.
+// Buttons for the card's programs; each button shows or hides its program. The report stores the algorithm's source
+// only once, so the programs contain @SOURCE@ in its place.
 function snippets(report: Report, card: Card) {
   const shown = h('div', {});
   const buttons = card.snippets.map(({ label, text: without_source }) => {
@@ -160,7 +161,7 @@ function truth_words({ truth }: Card) {
   return `${truth.verdict}, ${where}${truth.margin === 0 ? '' : ` (${figure(Math.abs(truth.margin_ulps))} ulps)`}`;
 }
 
-// The contents of a card, made when it is opened.
+// Makes the contents of a card when the card is first opened.
 export function card_body(report: Report, card: Card, id: string) {
   const truth = truth_words(card),
     [verdict] = truth.split(',');
@@ -187,7 +188,7 @@ export function card_body(report: Report, card: Card, id: string) {
       h('div', { class: 'card-facts' }, h('h4', {}, 'Verdicts'), verdicts(report, card)),
       card.maps && ulp_maps(card.maps),
     ),
-    h('h4', {}, 'Again'),
+    h('h4', {}, 'Reproduce'),
     h(
       'div',
       { class: 'commands' },
@@ -200,10 +201,10 @@ export function card_body(report: Report, card: Card, id: string) {
     h(
       'p',
       { class: 'small' },
-      card.minimised ? `Minimised from ${card.from}; ` : `Not minimised: ${card.from} as drawn; `,
-      'stored in ',
+      card.minimised ? `Minimised from ${card.from}. ` : `Not minimised: this is ${card.from} as drawn. `,
+      'Stored in ',
       h('code', {}, card.file),
-      '; the kind ',
+      '. Kind: ',
       h('code', {}, ...breakable(card.kind.key)),
     ),
   );

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows a card's case in the viewer, in a dialog over the report. The page contains everything that the viewer needs,
-// and prepares it when the first case is opened. The address stores the pair and the card:
+// Shows a card's case in the viewer, in a dialog over the report. The page contains the viewer's module and data, and
+// unpacks them when the first case is opened. The address stores the card, the pair and the lane:
 // "#kind-7&p=…&by=moller_1997/f32/cuda-fma".
 import { button, h } from './dom';
 import { kind_words, within } from './kind';
@@ -13,7 +13,7 @@ import { viewer, type First } from './viewer/viewer';
 
 type Card = Report['cards'][number];
 
-// What the viewer needs, for the coordinate types of the cards.
+// The viewer's module and data, for each coordinate type of the cards.
 type Parts = Partial<Record<Scalar, Stored>>;
 let read: Parts | null | undefined;
 const parts = () =>
@@ -22,7 +22,7 @@ export const has_viewer = () => parts() !== null;
 
 const bits_of = ({ coordinates, pair }: Card) => to_bits(stored_as(coordinates, pair.value));
 
-// Returns a lane of the kind that is wrong on the pair shown, preferably one that the viewer can run.
+// Returns a lane of the card's kind that is wrong on the pair shown and that the viewer can run; '' if there is none.
 function lane_of(report: Report, { coordinates, kind, verdicts }: Card) {
   const lanes = parts()![coordinates]!.replay.lanes,
     wrong = verdicts
@@ -45,7 +45,7 @@ export const viewer_button = (report: Report, card: Card, id: string) =>
   has_viewer() &&
   button('Open in the viewer', () => into_viewer(id, bits_of(card), lane_of(report, card)), { class: 'in-viewer' });
 
-// Opens the viewer whenever the address holds a pair, now and after every link, and closes it otherwise.
+// Opens the viewer if the address contains a pair, and otherwise closes it: now, and whenever the address changes.
 export function follow_viewer(report: Report, id_of: (place: number) => string) {
   if (!has_viewer()) return;
   const names = report.cards.map((card, i) => `Card ${i + 1}: ${kind_words(card.kind)}`);
@@ -86,7 +86,7 @@ export function follow_viewer(report: Report, id_of: (place: number) => string) 
       name: names[place],
       note: lane_of(report, card)
         ? ''
-        : `${stored_verdicts(report, card)} These lanes are not in the viewer, because another compiler built it. It shows what the published lanes say.`,
+        : `${stored_verdicts(report, card)} These lanes are not in the viewer, because another compiler built it. The viewer shows the verdicts of the published lanes.`,
     };
   }
   async function start(first: First, type: Scalar) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Common parts of the charts, and the appearance of lanes in them: colour by algorithm (Okabe and Ito 2008; style.css has
-// shades for light and dark pages), dashes by target, width by scalar.
+// Common parts of the charts, and the appearance of lanes in them: colour by algorithm (Okabe and Ito 2008; style.css
+// has shades for light and dark pages), dashes by target, width by scalar.
 import { figure } from './format';
 import type { Report } from './report';
 
 export const kChartStyle = { background: 'none', fontFamily: 'inherit', fontSize: '12px' };
 
-// For a screen reader, a plot is one picture with the label `label`. The names that Plot gives to its parts are moved
-// to data-mark.
+// Makes the plot one picture with this label for screen readers. Moves the names that Plot gives to the plot's parts to
+// data-mark.
 export function named(plot: SVGSVGElement | HTMLElement, label: string) {
   for (const part of plot.querySelectorAll('[aria-label]')) {
     part.setAttribute('data-mark', part.getAttribute('aria-label')!);
@@ -18,7 +18,7 @@ export function named(plot: SVGSVGElement | HTMLElement, label: string) {
   return plot;
 }
 
-// The axis of shares: powers of ten, and below them a line for shares of zero.
+// A logarithmic axis for shares (powers of ten). Shares of zero lie on a line below the lowest power of ten.
 export function shares_axis(shares: number[]) {
   const floor = Math.floor(Math.log10(Math.min(0.01, ...shares.filter((s) => s > 0)))),
     none = floor - 0.7;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The results of `graze pareto` and `graze tune`, if their files are in the campaign's folder.
+// Sections for the results of `graze tune`, `graze pareto` and `graze discrepancy`, if the campaign's folder has them.
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named, shares_axis } from './chart';
 import { breakable, button, choice, code_block, copy_button, h, list, on_width, section, sentence } from './dom';
@@ -18,8 +18,8 @@ const far = (offer: Offer) => (offer.with_copies ?? offer.from_memory)!;
 const nanoseconds = (ns: number) => ns.toFixed(ns < 1 ? 4 : 1);
 const row_id = (lane: string) => `pareto-${lane.replace(/[^a-z0-9]+/gi, '-')}`;
 
-// The picture of the answer: lanes by cost and by their share of pairs without a correct verdict. A click leads to the
-// lane's row.
+// The chart beside the answer: each lane's cost against its share of pairs without a correct verdict. A click on a dot
+// scrolls to the lane's row.
 export function front(pareto: Pareto) {
   const axis = shares_axis(pareto.lanes.map((offer) => share(offer.errors)));
   const words = (offer: Offer) =>
@@ -102,7 +102,7 @@ export function front(pareto: Pareto) {
     h(
       'figcaption',
       {},
-      `Large dots: no lane costs less and errs less. Pairs ${pareto.lanes[0]?.resident ? 'on the device' : 'in cache, one core'}; ${pareto.machine}.`,
+      `Large dots: no other lane costs less and errs less. Costs: pairs ${pareto.lanes[0]?.resident ? 'on the device' : 'in cache, one core'}; ${pareto.machine}.`,
     ),
   );
 }
@@ -196,7 +196,7 @@ export function pareto_section(report: Report, pareto: Pareto) {
     h(
       'p',
       {},
-      'How often each lane is wrong on the same pairs, and what a pair costs. Lanes on the front are those that no other lane beats in both. A lane without an error shows the bound of its error rate at 95 % confidence.',
+      'The table compares the errors of all lanes on the same pairs, and the cost of a pair. No other lane beats a lane on the front in both. For a lane without an error, the table shows the upper bound of its error rate at 95 % confidence.',
     ),
     table,
     list(pareto.sentences, { class: 'answer' }),
@@ -236,13 +236,13 @@ export function tuned_section(tuned: Tuned) {
   });
   const curve = () => {
     const all = tuned.curves[shown];
-    return { ...all, points: all.points.filter((point) => tolerance(point) > 0) }; // the axis is logarithmic
+    return { ...all, points: all.points.filter((point) => tolerance(point) > 0) }; // a logarithmic axis cannot show 0
   };
 
   function tell() {
     const point = curve().points[at];
     const part = (n: number, what: string) => `${count(n)} ${what} (${percent(n / point.pairs)})`;
-    readout.textContent = `${point.policy}: ${part(point.false_negative, 'false negatives')}, ${part(point.false_positive, 'false positives')} of ${count(point.pairs)} pairs; fixes ${count(point.fixed)} and breaks ${count(point.broken)}${point.policy === tuned.chosen ? '. This one is chosen' : ''}.`;
+    readout.textContent = `${point.policy}: ${part(point.false_negative, 'false negatives')}, ${part(point.false_positive, 'false positives')} of ${count(point.pairs)} pairs; fixes ${count(point.fixed)} and breaks ${count(point.broken)}${point.policy === tuned.chosen ? '. This is the chosen tolerance' : ''}.`;
     slider.setAttribute('aria-valuetext', readout.textContent);
     policy.replaceChildren(
       code_block(policy_of(tuned, point), tuned.epsilon ? 'this value of the epsilon' : 'the lane under this policy'),
@@ -340,7 +340,7 @@ export function tuned_section(tuned: Tuned) {
       h('span', { style: 'color:var(--series-1)' }, '╌╌'),
       ' false negatives, ',
       h('span', { style: 'color:var(--series-0)' }, '──'),
-      ' false positives, on the pairs that the tolerance was chosen on. Dashed vertical line: the chosen tolerance.',
+      ' false positives, on the pairs used to choose the tolerance. Dashed vertical line: the chosen tolerance.',
     ),
   );
 }

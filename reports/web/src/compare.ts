@@ -58,7 +58,7 @@ function rates_table(compare: Compare) {
       },
       {
         label: 'Changed',
-        title: 'A larger change than chance explains; on the same pairs, any different count',
+        title: 'Yes if the change is larger than chance explains, or, on the same pairs, if any count differs',
         cell: (c) =>
           c.changed ? h('b', { title: errors_in_full(c) }, c.errors.map((e) => e.error).join(', ') || 'yes') : 'no',
         order: (c) => Number(c.changed),
@@ -75,7 +75,7 @@ function rates_table(compare: Compare) {
       'label',
       { class: 'check' },
       all,
-      ` also the ${count(compare.rates.filter((c) => !c.changed).length)} rates that did not change`,
+      ` show the ${count(compare.rates.filter((c) => !c.changed).length)} unchanged rates too`,
     ),
     table.element,
   ];

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elements, and small parts that several sections use.
+// Creates elements, and small components that several sections use.
 
 export type Child = Node | string | null | false | Child[];
 type Props = Record<string, string | number | boolean | null | ((event: never) => void)>;
 
-// Creates an element. Functions become listeners (`onclick`), true becomes an attribute without a value, false and null
-// are omitted.
+// Creates an element. Functions become listeners (`onclick`), and true becomes an attribute without a value. Properties
+// that are false or null are omitted.
 export function h<K extends keyof HTMLElementTagNameMap>(tag: K, props: Props, ...children: Child[]) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(props)) {
@@ -52,12 +52,12 @@ export function section(id: string, title: string, ...children: Child[]) {
   return h('section', { id, 'aria-labelledby': `${id}-title` }, h('h2', { id: `${id}-title` }, title), ...children);
 }
 
-// An identifier that may break after each underscore and slash.
+// An identifier with an optional line break after each underscore and slash.
 export function breakable(id: string): Child[] {
   return id.split(/(?<=[_/])/).flatMap((part, i) => (i ? [h('wbr', {}), part] : [part]));
 }
 
-// A sentence; text between backticks becomes code.
+// A sentence whose text between backticks becomes code.
 export function sentence(text: string): Child[] {
   return text.split('`').map((part, i) => (i % 2 ? h('code', {}, part) : part));
 }
@@ -66,7 +66,7 @@ async function to_clipboard(text: string) {
   try {
     await navigator.clipboard.writeText(text);
   } catch {
-    // some browsers do not treat a file on disk as a secure context
+    // some browsers offer no clipboard, because they do not treat a file on disk as a secure context
     const area = h('textarea', { class: 'hidden' });
     area.value = text;
     document.body.append(area);
@@ -86,7 +86,7 @@ export function copy_button(text: string, what: string) {
   return copy;
 }
 
-// A text to copy, on one scrolling line or with its own line breaks.
+// Shows a text with a copy button. Long lines scroll.
 export function code_block(text: string, what: string) {
   return h(
     'div',
@@ -109,7 +109,7 @@ export function lazy_details(summary: Child[], make: () => Child, props: Props =
   return { details, open: () => ((details.open = true), open()) };
 }
 
-// A labelled <select>; calls `change` with the chosen value.
+// A labelled <select> that calls `change` with the chosen value.
 export function choice(label: string, options: [string, string][], value: string, change: (value: string) => void) {
   const select = h(
     'select',

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Prepares a pair for drawing: fits it into a box of half-width 1, and projects it along a direction. All maps are
-// affine, so lines stay lines and contacts stay contacts. Uses double, because a card's coordinates range from 2^-149
+// affine, so straight lines and contacts are preserved. Uses double, because a card's coordinates range from 2^-149
 // to 2^128.
 import { figure } from './format';
 import type { Report } from './report';
@@ -16,13 +16,13 @@ export interface Shape {
   note: string;
   marks?: Mark[];
   names?: Name[];
-  many_names?: Name[][]; // the names of each of many triangles, the nearest triangle first
+  many_names?: Name[][]; // the names of each triangle of a field, the nearest triangle first
 }
 export interface Name {
   p: Vec;
   name: string;
 }
-// Additional marks in a colour of the style sheet: triangles, each with three corners, or polylines of a given width.
+// Triangles (three corners each) or polylines of a given width, in a colour of the style sheet.
 export interface Mark {
   colour: string;
   triangles?: Vec[];
@@ -37,9 +37,10 @@ export interface View {
   zoom: number;
 }
 
-const kLongestToScale = 12; // axes whose extents differ by more than this are stretched to one length
+const kLongestToScale = 12; // if extents differ by a larger factor than this, all axes are stretched to one length
 
-// For each axis, the length that is drawn as the width of the box from low to high. The box holds coordinates among `value`.
+// Returns, for each axis, the extent that fills the drawing. This is the longest extent of all axes, or each axis's own
+// extent if the extents differ much.
 export function drawn_sizes(low: number[], high: number[], value: ArrayLike<number>): Vec {
   const extent = low.map((l, k) => high[k] - l);
   const longest = Math.max(...extent) || Math.max(...Array.from(value, Math.abs)) || 1;
@@ -69,7 +70,7 @@ export function shape_of(card: Report['cards'][number], frame: Frame): Shape {
     b: points.slice(3).map(place),
     contact: card.drawing.contact.map(place),
     line: card.drawing.planes_line.map(place),
-    radius: (frame === 'both' ? 1 : 1.5) * Math.max(0.5, ...framed.map((p) => Math.hypot(...place(p)))), // the other one stays visible
+    radius: (frame === 'both' ? 1 : 1.5) * Math.max(0.5, ...framed.map((p) => Math.hypot(...place(p)))), // the other triangle stays visible
     note: scale_note(size),
   };
 }
@@ -88,7 +89,7 @@ function normal([p, q, r]: Vec[]): Vec {
   return length > 0 ? (n.map((c) => c / length) as Vec) : [0, 0, 0];
 }
 
-// The directions right, up, and towards the eye; the z axis points up.
+// Unit vectors to the right, up, and towards the eye. The z axis points up.
 export function axes({ azimuth, elevation }: View): { right: Vec; up: Vec; eye: Vec } {
   const [ca, sa, ce, se] = [Math.cos(azimuth), Math.sin(azimuth), Math.cos(elevation), Math.sin(elevation)];
   return { right: [-sa, ca, 0], up: [-se * ca, -se * sa, ce], eye: [ce * ca, ce * sa, se] };
@@ -118,7 +119,7 @@ function height([p, q, r]: Vec[]): number {
   return longest > 0 ? area / longest : 0;
 }
 
-// Frames both triangles, or only the one that would be too small or too thin beside the other.
+// Frames both triangles, or only one of them if it would look too small or too thin beside the other.
 export function good_frame(card: Report['cards'][number]): Frame {
   const kThin = 0.06;
   const both = shape_of(card, 'both');
@@ -131,7 +132,7 @@ export function good_frame(card: Report['cards'][number]): Frame {
 // Half of the visible height at zoom 1. The framed points fit from every direction.
 export const framed_half_height = (shape: Shape) => 1.12 * shape.radius;
 
-// The position of a point on a stage of this many pixels.
+// The position in pixels of a point on a stage of this width and height.
 export function project(
   shape: Shape,
   p: Vec,
@@ -144,10 +145,10 @@ export function project(
   return { x: width / 2 + scale * dot(p, right), y: height / 2 - scale * dot(p, up), depth: dot(p, eye) };
 }
 
-const kMostNumbers = 30, // triangles; more cannot be read
+const kMostNumbers = 30, // triangles with numbers; more would be unreadable
   kMostCoordinates = 10;
 
-// The names of the triangles that are in view; if these are too many, of the nearest ones.
+// The names of the triangles in view, or of only the nearest of these triangles if there are too many.
 function names_of_many(shape: Shape, view: View, width: number, height: number) {
   const inside = ({ x, y }: { x: number; y: number }) => x > 0 && y > 0 && x < width && y < height;
   const seen = (shape.many_names ?? [])
@@ -156,7 +157,7 @@ function names_of_many(shape: Shape, view: View, width: number, height: number) 
   return seen.slice(0, seen[0]?.length === 1 ? kMostNumbers : kMostCoordinates).flat();
 }
 
-// The labels. Names of vertices are pushed away from the centre of the drawing; coinciding vertices share one label.
+// The labels of the drawing. Vertex names lie outside the triangles, and coinciding vertices share one label.
 export function labels(shape: Shape, view: View, width: number, height: number) {
   const at = new Map<string, { x: number; y: number; text: string }>();
   const kAway = 14,

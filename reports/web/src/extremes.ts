@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Heat maps over the size of the coordinates and over a pair's distance from the origin: how many times as often a lane
-// errs as on the pairs nearest to 2^0. A table in words also has flatness and needles, which `graze pareto` measures.
+// Heat maps over the size of the coordinates and over a pair's distance from the origin. A cell shows how many times as
+// often a lane errs there as on the pairs nearest to 2^0. A table in words also covers flat triangles and needles,
+// which `graze pareto` measures.
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named } from './chart';
 import { breakable, h, lazy_details, on_width, section } from './dom';
@@ -27,7 +28,7 @@ const ratio = ({ times }: Cell) => `${times[0] === null ? 'at least ' : ''}${fig
 const bounds = ([, low, high]: Times) =>
   high === null ? `95 %: ${figure(low)} and more` : `95 %: ${figure(low)} to ${figure(high)}`;
 
-// A cell with fewer pairs is drawn as a line, because its rate may be due to chance.
+// A cell with fewer pairs than this is drawn thin, because its rate may be due to chance.
 const kFew = 100;
 const few = ({ wrong }: Cell) => wrong.of < kFew;
 
@@ -40,7 +41,7 @@ const kKinds: { kind: Kind; column: string; title: string; says: string; axis: s
       axis: 'largest coordinate',
       short: 'largest coordinate',
       what: 'largest coordinate',
-      says: 'By the largest coordinate’s power of two, from the smallest subnormal float32 to the largest number: products underflow to the left and overflow to the right.',
+      says: 'Columns: the power of two of the largest coordinate, from the smallest subnormal float32 to the largest float32. Products underflow on the left and overflow on the right.',
     },
     {
       kind: 'offset',
@@ -49,7 +50,7 @@ const kKinds: { kind: Kind; column: string; title: string; says: string; axis: s
       axis: 'largest coordinate, in sizes of the pair',
       short: 'largest coordinate / size',
       what: 'offset',
-      says: 'By a pair’s distance from the origin, in multiples of its own size: every doubling leaves float32 one bit less for its shape.',
+      says: 'Columns: a pair’s distance from the origin, in multiples of its own size. Each doubling leaves float32 one bit less for the pair’s shape.',
     },
     {
       kind: 'scale/f64',
@@ -58,7 +59,7 @@ const kKinds: { kind: Kind; column: string; title: string; says: string; axis: s
       axis: 'largest coordinate',
       short: 'largest coordinate',
       what: 'largest coordinate',
-      says: 'Pairs of doubles, by the largest coordinate’s power of two: lanes in float decide the pair that float32 stores, and float32 ends at 2^128.',
+      says: 'Pairs of doubles. Columns: the power of two of the largest coordinate. Lanes in float32 decide the pair as float32 stores it, and float32 ends at 2^128.',
     },
     {
       kind: 'offset/f64',
@@ -67,7 +68,7 @@ const kKinds: { kind: Kind; column: string; title: string; says: string; axis: s
       axis: 'largest coordinate, in sizes of the pair',
       short: 'largest coordinate / size',
       what: 'offset',
-      says: 'Pairs of doubles, by a pair’s distance from the origin in multiples of its own size.',
+      says: 'Pairs of doubles. Columns: a pair’s distance from the origin, in multiples of its own size.',
     },
   ];
 
@@ -95,7 +96,7 @@ function cells_of(report: Report, kind: Kind, lanes: number[]): Cell[] {
     );
 }
 
-// A table with a row for each lane: the words of the campaign's extremes and those of pareto.json.
+// A table with a row for each lane. Its cells are texts of the campaign's report and of pareto.json.
 function words_table(report: Report, pareto: Pareto | null, lanes: number[]) {
   const said = (lane: number, kind: Kind) =>
     report.extremes.find((row) => row.lane === lane && row.kind === kind)?.says ?? 'no pairs';
@@ -113,7 +114,7 @@ function words_table(report: Report, pareto: Pareto | null, lanes: number[]) {
           ]
         : []),
     ],
-    { caption: 'How far the chosen lanes are as right as on ordinary pairs', class: 'plain reach' },
+    { caption: 'Ranges in which the chosen lanes are as right as on ordinary pairs', class: 'plain reach' },
   );
   table.show(lanes);
   return table;
@@ -192,7 +193,7 @@ export function extremes_section(report: Report, pareto: Pareto | null) {
       const row = report.extremes.find((one) => one.kind === kind && report.lanes[one.lane].id === name)!;
       return `${name}: ${row.says}`;
     };
-    const label = `${title}: heat map of how many times as often lanes are wrong as at the origin. ${lanes.map(lane_words).join('. ')}. As a table below`;
+    const label = `${title}: a heat map of how many times as often lanes are wrong as at the origin. ${lanes.map(lane_words).join('. ')}. A table below has the numbers`;
     element.replaceChildren(cells.length ? named(plot, label) : h('p', { class: 'empty' }, 'No lane is chosen.'));
   }
 
@@ -209,7 +210,7 @@ export function extremes_section(report: Report, pareto: Pareto | null) {
     h(
       'p',
       {},
-      'How many times as often a lane is wrong on pairs that are very large, very small or far from the origin as on the pairs nearest to 2⁰, the origin of the map. Near contacts are hard at every scale, so the share alone would say little. Blank: the campaign has no pair there. ',
+      'The maps show pairs that are very large, very small or far from the origin. The colour of a cell shows how many times as often a lane is wrong there as on the pairs nearest to 2⁰, the origin of the map. Near contacts are hard at every scale, so the share of errors alone would say little. The campaign has no pairs in a blank cell. ',
       h('b', {}, 'A thin cell'),
       ` has fewer than ${kFew} pairs, so chance may have coloured it.`,
     ),
@@ -217,8 +218,10 @@ export function extremes_section(report: Report, pareto: Pareto | null) {
     h(
       'p',
       {},
-      'As right: errors on at most twice the share of pairs, or on at most 0.1 %, with 95 % confidence.',
-      pareto ? '' : ' graze pareto --out with the campaign’s folder also measures flatness and needles.',
+      '“As right” means that the lane errs on at most twice the share of pairs, or on at most 0.1 %, with 95 % confidence.',
+      pareto
+        ? ''
+        : ' To measure flat triangles and needles too, run graze pareto with --out and the campaign’s folder.',
     ),
     words.element,
     times_legend(),

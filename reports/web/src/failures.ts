@@ -44,7 +44,7 @@ export function failure_sections(report: Report) {
   const none = h('p', { class: 'empty' }, 'No card passes the filter.');
   const card_count = h('h3', {});
 
-  // The heading for a cell of the league table, above its cards and rows.
+  // Describes the chosen cell of the league table, above the cards and the table of signatures.
   function note(cell: Cell, rows: Signature[], left: number) {
     const words = cell_words(report, cell);
     const clear = button('Show all again', () => {
@@ -58,19 +58,22 @@ export function failure_sections(report: Report) {
               'p',
               {},
               h('b', {}, words),
-              `: ${counted(rows.length, 'signature')} ${rows.length === 1 ? 'keeps' : 'keep'} such pairs, of ${left ? counted(left, 'kind') : 'no kind'} with a card. `,
+              `: ${counted(rows.length, 'signature')} ${rows.length === 1 ? 'keeps' : 'keep'} such pairs, from ${left ? counted(left, 'kind') : 'no kind'} with a card. `,
               clear,
             ),
-            h('p', { class: 'label' }, 'One of them'),
-            code_block(repro_command(report, cell, kept_pairs(report, cell, rows[0])[0]), 'the command that shows one'),
+            h('p', { class: 'label' }, 'Show one such pair again'),
+            code_block(
+              repro_command(report, cell, kept_pairs(report, cell, rows[0])[0]),
+              'the command that shows one such pair',
+            ),
           ]
-        : [h('p', {}, h('b', {}, words), ': no pair listed here shows it. ', clear)]),
+        : [h('p', {}, h('b', {}, words), ': no pair listed here shows such a verdict. ', clear)]),
       h('p', { class: 'label' }, 'Find all such pairs of the campaign again'),
-      code_block(campaign_command(report, cell), 'the command that finds all'),
+      code_block(campaign_command(report, cell), 'the command that finds all such pairs'),
     );
   }
 
-  // A search for kinds looks at their properties and lanes; a search for signatures also looks at their kinds.
+  // The search for kinds matches their properties and lanes. The search for signatures also matches their kinds.
   const names_of = ({ kind }: Report['cards'][number]) => [kind.key, kind_words(kind), kind.line];
 
   function update() {
@@ -95,7 +98,8 @@ export function failure_sections(report: Report) {
     shown.textContent = `${count(rows.length)} shown, of ${listed} signatures.`;
     table.show(rows);
 
-    // A kind belongs to a cell if the cell's lane makes the cell's error in a signature with pairs of its strata.
+    // A card is shown for a cell if a listed signature belongs to its kind and the cell's lane is one of the kind's
+    // lanes. Kinds do not tell which lanes differ from the cpu lane, so that error needs only the signature.
     const of_cell = cell && new Set(rows.flatMap((s) => s.cards));
     const shows = (place: number) =>
       !of_cell ||
@@ -150,9 +154,9 @@ export function failure_sections(report: Report) {
       h(
         'p',
         {},
-        'Failures for the same reason: the algorithm, the cause, the source line of the comparison that decides, and whether the triangles are degenerate, contained (one in the other, in the same plane), coplanar or none of these. A pair on which lanes are wrong for different reasons belongs to several kinds. Graze examines one pair of each signature; in these counts it stands for all pairs of that signature.',
+        'A kind groups failures with the same algorithm, cause, deciding source line and shape. The shape is degenerate, contained (one triangle in the other, in the same plane), coplanar or general. A pair on which lanes are wrong for different reasons belongs to several kinds. Graze examines one pair of each signature; in these counts it represents all pairs of that signature.',
         !has_viewer() &&
-          ' Cards do not open in the viewer, because graze was built without the compiler for WebAssembly that it needs.',
+          ' Cards do not open in the viewer, because graze was built without the compiler for WebAssembly that the viewer needs.',
       ),
       h('div', { class: 'controls' }, h('label', { class: 'field' }, h('span', {}, 'Find'), search), by_algorithm),
       cell_note,
@@ -173,7 +177,7 @@ export function failure_sections(report: Report) {
       h(
         'p',
         {},
-        'Failures that look alike, counted together: how the triangles meet, how close the call was, and which lanes of the algorithm are wrong. The filters above the kinds of failure apply here too.',
+        'A signature counts failures that look alike: the same contact, a similar margin, and the same wrong lanes of the algorithm. The filters above the kinds of failure apply here too.',
       ),
       shown,
       table.element,

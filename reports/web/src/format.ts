@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formats numbers for readers. Always English, so that a report reads the same everywhere.
+// Formats numbers for readers, always in the English notation, so that a report looks the same everywhere.
 import type { Quartiles, Share } from './report';
 
 export const count = (n: number) => n.toLocaleString('en-US');
@@ -21,13 +21,13 @@ export function margin_words(margin: string): string {
   return `${power_of_two(Number(found[2]))} ulps${found[1] === '-' ? ' deep' : ''}`;
 }
 
-// Sort key: "-2^-3" before "0" before "2^4", by size.
+// A sort key for margin buckets, by signed size: "-2^-3" comes before "0", and "0" before "2^4".
 export function margin_order(margin: string) {
   const found = /^([-+]?)2\^(-?\d+)$/.exec(margin);
   return found ? (found[1] === '-' ? -1 : 1) * (Number(found[2]) + 200) : 0;
 }
 
-// Three significant digits; a power of ten instead of more than three zeros.
+// A number with three significant digits. Below 0.001, and from 10^6 upwards, it is written with a power of ten.
 export function figure(value: number): string {
   if (value === 0 || !Number.isFinite(value)) return String(value);
   const exponent = Math.floor(Math.log10(Math.abs(value)));
@@ -36,7 +36,7 @@ export function figure(value: number): string {
   return `${Number(digits)}·10${raised(Number(power))}`;
 }
 
-// Whether a cost's quartiles are further apart than a quarter of its median, as reports/cost_words.h has it.
+// Whether a cost's quartiles are further apart than a quarter of its median: the same rule as in reports/cost_words.h.
 export const is_noisy = (cost: Quartiles) => cost.high - cost.low > 0.25 * cost.middle;
 
 // "quartiles 8.4 to 8.9", for the title of a cost.
@@ -48,7 +48,7 @@ export const noisy_mark = (cost: Quartiles) => (is_noisy(cost) ? ' (noisy)' : ''
 // "42 ns", "8.5 ns"
 export const nanoseconds = (value: number) => `${value.toFixed(value < 10 ? 1 : 0)} ns`;
 
-// Decimals of a percentage.
+// The number of decimals of a percentage.
 const places = (percent: number) => (percent >= 10 ? 1 : percent >= 1 ? 2 : 3);
 
 // A share as a percentage without the sign: 47.8, 0.156, <0.001.
@@ -64,7 +64,7 @@ const small = (percent: number) => percent !== 0 && percent < 0.001;
 
 export const percent = (share: number) => `${small(100 * share) ? figure(100 * share) : bare_percent(share)} %`;
 
-// A bound in per cent, rounded outward: the printed number is never below an upper bound or above a lower one.
+// A bound in per cent, rounded outward: the printed number is never below an upper bound or above a lower bound.
 export function percent_bound(share: number, bound: 'lower' | 'upper'): string {
   const value = 100 * share,
     step = bound === 'upper' ? 1 : -1;

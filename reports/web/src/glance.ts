@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture beside the answer: each lane's errors by group of strata, and its cost.
+// The chart beside the answer: the errors of each lane by group of strata, and the lane's cost.
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named, shares_axis } from './chart';
 import { h, on_width } from './dom';
@@ -21,13 +21,14 @@ interface Dot {
 
 const kSymbols = ['circle', 'square', 'triangle', 'diamond2', 'star'] as const;
 
-// The group whose pairs are used to compare costs, as in the answer's sentences; null: all strata.
+// The group of strata whose costs are compared, the same as in the answer's sentences. Null stands for all strata.
 function cost_ground(report: Report) {
   const general = report.groups.findIndex((group) => group.id === 'general');
   return general < 0 ? null : general;
 }
 
-// One lane for each algorithm and precision, preferably the cpu lane; the least wrong lane comes first.
+// Chooses one lane for each algorithm and precision, preferably the cpu lane. Lanes with fewer wrong verdicts come
+// first.
 export function glance_rows(report: Report, costs: Costs | null): Row[] {
   const total = new Map(
     report.rates.filter((rate) => rate.stratum === null).map((rate) => [rate.lane, rate.wrong.count]),

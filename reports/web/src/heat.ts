@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The colours of shares: magma (van der Walt and Smith 2015), perceptually uniform and safe for the colour-blind. The
-// scale is the cube root, because both rates near one in 10^4 and rates near one in two must be distinguishable. Steps
-// are classes and custom properties, so that dark mode needs only CSS: the worst share is darkest on a white page and
-// brightest on a dark one.
+// scale is the cube root of the share, so that both rates near 10^-4 and rates near 1/2 can be told apart. Each step is
+// a class and a custom property, so that dark mode needs only CSS. The worst share is the darkest colour on a white
+// page, and the brightest on a dark page.
 import { interpolateMagma } from 'd3-scale-chromatic';
 import { h } from './dom';
 
 const kSteps = 26;
 
-// The step of a share; null for a share of zero, which has no colour.
+// The colour step of a share; null for a share of zero, which has no colour.
 export function heat_step(share: number): number | null {
   if (!(share > 0)) return null;
   return Math.round(Math.cbrt(share) * (kSteps - 1));
@@ -48,7 +48,7 @@ export function heat_styles() {
 }
 
 const kMostTimes = 32;
-// The colour for a share that is this many times another one: none up to 1, the darkest from kMostTimes upwards.
+// The colour of a ratio of shares: no colour up to 1, and the strongest colour from kMostTimes upwards.
 export const times_fill = (times: number) => heat_fill(Math.min(1, Math.log2(times) / Math.log2(kMostTimes)) ** 3);
 
 function legend(describes: string, none: string, marks: [number, string][]) {

@@ -24,7 +24,7 @@ export const kind_title = ({ subject, cause, line, shape }: FailureKind): Child[
 // Lane names without the algorithm: "f32/cpu, f64/cpu".
 export const within = (ids: string[]) => ids.map((id) => id.split('/').slice(1).join('/')).join(', ');
 
-// The lanes of the kind, those of them that are wrong on the pair shown, and whether the cause is settled.
+// Names the lanes of the kind and those that are wrong on the pair shown, and says for how many the cause is settled.
 export function kind_lanes(report: Report, { kind, verdicts }: Card) {
   const wrong = new Set(verdicts.filter((verdict) => verdict.wrong).map((verdict) => report.lanes[verdict.lane].id));
   const here = kind.lanes.filter((id) => wrong.has(id)),
@@ -103,7 +103,7 @@ function buckets_of(margins: FailureKind['margins']): string[] {
   return [...side('-'), '0', ...side('+')].sort((l, r) => margin_order(l) - margin_order(r));
 }
 
-// The buckets whose names are shown below their columns: 0, both ends, and as many others as there is room for.
+// The buckets whose names are shown below their columns: 0, both ends, and every fourth exponent where there is room.
 function ticks_of(bars: Bar[], column: number): string[] {
   const named = (i: number) => Number(bars[i].name.slice(3)) % 4 === 0;
   const wanted = [bars.findIndex((bar) => bar.name === '0'), 0, bars.length - 1, ...bars.keys()].filter(
@@ -124,7 +124,7 @@ function margins_histogram(kind: FailureKind) {
   const sides = [bars[0].name !== '0' && '← deep', bars[bars.length - 1].name !== '0' && 'apart →']
     .filter(Boolean)
     .join('      ');
-  return histogram('margins', `Margins of its ${counted(kind.pairs, 'pair')}, in ulps`, bars, (width) =>
+  return histogram('margins', `Margins of the ${counted(kind.pairs, 'pair')} of this kind, in ulps`, bars, (width) =>
     Plot.plot({
       width,
       height: 128,
@@ -159,8 +159,8 @@ function worst({ kind, pair, commands }: Card) {
   const margin =
     margin_ulps === 0 ? 'margin 0' : `${figure(Math.abs(margin_ulps))} ulps ${margin_ulps < 0 ? 'deep' : 'apart'}`;
   if (kind.worst.pair === pair.hex.join(' '))
-    return h('p', { class: 'worst' }, `The pair shown is also the worst of the examined ones: ${margin}.`);
-  // Reuses the card's own command, because it says where foreign code is.
+    return h('p', { class: 'worst' }, `The pair shown is also the worst examined pair: ${margin}.`);
+  // Reuses the card's own command, because that command says where foreign code is.
   const explain = commands
     .find(({ label }) => label === 'explain')!
     .text.replace(/^.*graze explain case.pairs/, 'graze explain worst.pairs');

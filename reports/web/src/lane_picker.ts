@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses lanes by algorithm, scalar and target; a lane is shown if all three rows of buttons allow it. If a choice
-// differs from the default, the URL stores it under `key`, as in "league-target=cpu,cpu-fma".
+// Chooses lanes by algorithm, scalar and target. A lane is shown if all three rows of buttons allow it. The URL stores
+// choices that differ from the default, with `key` in their names: "league-target=cpu,cpu-fma".
 import { button, h } from './dom';
 import type { Report } from './report';
 import { choose, chosen, when_chosen } from './state';

@@ -48,7 +48,7 @@ export function league_section(report: Report) {
 
   const readout = h('p', { class: 'readout', 'aria-live': 'polite' });
   const kHint =
-    'For counts and intervals, point at a cell, or move with the arrow keys; for the pairs behind it, click it or press Enter.';
+    'Point at a cell, or move to it with the arrow keys, to see its counts and intervals. Click it or press Enter to see its pairs.';
   readout.textContent = kHint;
 
   const part = (share: Share | null, kind: Kind) =>
@@ -62,7 +62,7 @@ export function league_section(report: Report) {
     const kind = (pressed ?? (show === 'both' ? 'wrong' : show)) as Kind;
     const cell = { lane: rate.lane, stratum: rate.stratum, kind };
     if (!rate[kind]?.count) {
-      readout.textContent = `${cell_words(report, cell)}: ${rate[kind] ? `none in ${in_full(rate[kind])}` : 'not counted'}, so no pair shows it.`;
+      readout.textContent = `${cell_words(report, cell)}: ${rate[kind] ? `none in ${in_full(rate[kind])}` : 'not counted'}, so there is no pair to show.`;
       return;
     }
     go_to('kinds', { cell: cell_text(report, cell) });
@@ -184,11 +184,11 @@ export function league_section(report: Report) {
     h(
       'p',
       {},
-      'In per cent. A ',
+      'All shares are in per cent. A ',
       h('b', {}, 'false positive'),
-      ' says “intersects” about triangles that are apart, and its share is of the pairs that are apart; a ',
+      ' is the verdict “intersects” on triangles that are apart. Its share is that among the pairs that are apart. A ',
       h('b', {}, 'false negative'),
-      ' misses a contact, and its share is of the pairs that intersect. Each cell has false positives above false negatives. A click on a column’s heading sorts by it.',
+      ' is the verdict “disjoint” on triangles that meet. Its share is that among the pairs that intersect. Each cell shows false positives above false negatives. Click a column’s heading to sort by that column.',
     ),
     h(
       'div',

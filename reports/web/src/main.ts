@@ -68,7 +68,8 @@ const data = (id: string) => document.getElementById(id)?.textContent?.trim() ??
 function start() {
   const page = document.getElementById('page')!;
   const text = data('report');
-  if (!text || text.startsWith('<!--')) page.textContent = 'This page is empty: graze report DIR writes one with data.';
+  if (!text || text.startsWith('<!--'))
+    page.textContent = 'This page has no data. To make a report with data, run: graze report DIR';
   else {
     const report = JSON.parse(text) as Report;
     if (report.format === 2)

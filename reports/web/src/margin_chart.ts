@@ -15,10 +15,10 @@ export interface Dot {
   words: string;
 }
 
-const kNearest = -33; // below every exponent: the position next to zero
-const kGap = 3; // on both sides of the zero column
+const kNearest = -33; // one below the lowest exponent of a bucket
+const kGap = 3; // units between the zero column and the nearest bucket, on both sides
 
-const kOutermost = [-32, 31]; // these buckets are open-ended
+const kOutermost = [-32, 31]; // the first and the last bucket, which are open-ended
 
 function bucket(exponent: number) {
   const [from, to] = [power_of_two(exponent), power_of_two(exponent + 1)];
@@ -34,7 +34,8 @@ function side_words({ side, exponent }: Point) {
   return side === 'disjoint' ? `${bucket(exponent)} apart` : `${bucket(exponent)} deep`;
 }
 
-// Draws into `element`. what: the share to draw; `title` and `label` name it, and `word` describes such a verdict.
+// Draws a chart into `element`. what: the share to draw; title and label: its names; word: the adjective for such a
+// verdict, as in "wrong".
 export function margin_chart(
   report: Report,
   element: HTMLElement,
@@ -49,7 +50,7 @@ export function margin_chart(
   const some = exponents.length > 0 ? exponents : [0]; // [0] if all pairs touch
   const lowest = Math.max(kNearest + 1, Math.min(...some)),
     highest = Math.max(...some);
-  // Disjoint pairs are to the right of zero, intersecting ones to the left.
+  // Disjoint pairs are to the right of zero, and intersecting pairs to the left.
   const place = (side: string, exponent: number | null) =>
     exponent === null || side === 'zero' ? 0 : (side === 'disjoint' ? 1 : -1) * (exponent - lowest + kGap);
   const reach = highest - lowest + kGap + 1;
@@ -181,7 +182,9 @@ export function margin_chart(
     });
     const described = `${title}. ${lanes.map(lane_words).join('. ')}`;
     element.replaceChildren(
-      all.length ? named(plot, described) : h('p', { class: 'empty' }, 'No lane is chosen, or it has no figures here.'),
+      all.length
+        ? named(plot, described)
+        : h('p', { class: 'empty' }, 'No lane is chosen, or the chosen lanes have no data here.'),
     );
   }
 

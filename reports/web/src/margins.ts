@@ -12,7 +12,7 @@ import { choose, chosen, when_chosen } from './state';
 
 type Row = Report['thresholds'][number];
 
-// "2³", or the reason why there is none.
+// "2³", or the reason why there is no threshold.
 const from_words = ({ exponent, largest }: Threshold) =>
   exponent !== null ? power_of_two(exponent) : largest === null ? 'no such pairs' : `wrong at ${power_of_two(largest)}`;
 
@@ -49,7 +49,7 @@ export function margins_section(report: Report) {
     { caption: 'Thresholds of the chosen lanes', class: 'plain thresholds' },
   );
 
-  // The strata of a threshold: a group, one stratum, or all.
+  // The strata of a threshold: a group of strata, one stratum, or all strata.
   const kinds: { id: string; label: string; is: (t: Row) => boolean }[] = [
     ...report.groups.map(({ id }, g) => ({ id, label: `${id} pairs`, is: (t: Row) => t.group === g })),
     { id: 'all', label: 'all strata together', is: (t: Row) => t.group === null && t.stratum === null },
@@ -113,7 +113,7 @@ export function margins_section(report: Report) {
     h(
       'p',
       {},
-      'How often a lane is wrong, against how close the call was: the exact distance or depth in ulps. Pairs on the right are apart (errors are false positives), pairs on the left intersect (errors are false negatives), and pairs in the middle touch.',
+      'The chart shows how often a lane is wrong at each margin, which is the exact distance or depth in ulps. Pairs on the right are apart, so errors are false positives. Pairs on the left intersect, so errors are false negatives. Pairs in the middle touch.',
     ),
     h(
       'div',
@@ -139,7 +139,7 @@ export function margins_section(report: Report) {
     h(
       'p',
       {},
-      'That depends on the pairs. For the chosen ones, the table shows the smallest margin, a power of two, from which upwards no error was seen, how many pairs lie beyond it, and a bound on the error rate there. The bound holds with 95 % confidence for a threshold that was fixed before the campaign. These thresholds come from the same data, so confirm them with another seed.',
+      'The answer depends on the pairs. For the chosen pairs, the table shows the smallest margin (a power of two) at or above which no error was seen. It also shows the number of pairs beyond that margin, and a bound on the error rate there. The bound holds with 95 % confidence for a threshold that was fixed before the campaign. These thresholds come from the same data, so confirm them with another seed.',
     ),
     h('div', { class: 'controls' }, trust),
     describes,

@@ -4,7 +4,7 @@ import { h, section, type Child } from './dom';
 
 const kTerms: [string, Child[]][] = [
   ['Pair', ['Two triangles, given by 18 float32 numbers. The stored bits are the input: nothing rounds them again.']],
-  ['Triangle', ['The closed convex hull of its three points, so a degenerate one is a segment or a point.']],
+  ['Triangle', ['The closed convex hull of its three points, so a degenerate triangle is a segment or a point.']],
   [
     'Intersects',
     [
@@ -32,14 +32,14 @@ const kTerms: [string, Child[]][] = [
   [
     'Twin',
     [
-      'A replay of a CUDA kernel’s PTX on the CPU, contractions and all, with the same bits. ',
-      '“Verified on” a GPU means that GPU and twin agreed on as many pairs as the first number says, in verdicts and in the numbers that decide. Explicit PTX is the kernel with every contraction written out. The twin is made from it, and it was compared on the GPU with what nvcc builds by default.',
+      'A replay of a CUDA kernel’s PTX on the CPU, including its contractions, with the same bits. ',
+      '“Verified on” a GPU means that the GPU and the twin had the same verdicts and the same deciding numbers, on as many pairs as the first number says. Explicit PTX is the kernel with every contraction written out. The twin is made from explicit PTX, which was compared on the GPU with nvcc’s default build.',
     ],
   ],
   [
     'Stratum',
     [
-      'A named generator of pairs, a pure function of seed and index. Each is hard in its own way. Shares over all strata depend on the mix of strata and say nothing about your data; shares within a stratum can.',
+      'A named generator of pairs: a pure function of seed and index. Each stratum is hard in its own way. Shares over all strata depend on the mix of strata and say nothing about your data. Shares within a stratum can be true of your data.',
     ],
   ],
   [
@@ -51,15 +51,15 @@ const kTerms: [string, Child[]][] = [
   [
     'False positive, false negative',
     [
-      'False positive: the lane says “intersects” about triangles that are apart. False negative: it says “disjoint” about triangles that meet. Their shares are of the pairs on which that error is possible; the share “wrong” is of all pairs. ',
+      'False positive: the lane says “intersects” about triangles that are apart. False negative: it says “disjoint” about triangles that meet. Each share counts only the pairs on which that error is possible; the share “wrong” counts all pairs. ',
       h('i', {}, 'Declined'),
-      ' is neither.',
+      ' is neither of these errors.',
     ],
   ],
   [
     'Margin',
     [
-      'How close the call was. For a disjoint pair it is the distance. For an intersecting one it is the length of the smallest translation that separates it, drawn to the left; it is 0 if an arbitrarily small one does, as for touching or coplanar pairs. It is computed exactly, then rounded once.',
+      'How far a pair is from changing its verdict. For a disjoint pair, the margin is the distance. For an intersecting pair, it is the length of the shortest translation that separates the triangles; charts show these pairs on the left. It is 0 if an arbitrarily short translation separates them, as for touching or coplanar pairs. The margin is computed exactly, then rounded once.',
     ],
   ],
   [
@@ -71,23 +71,23 @@ const kTerms: [string, Child[]][] = [
   [
     'Interval',
     [
-      'Wilson’s, at 95 %. If no error was seen in n pairs, the rate is below 1 − 0.05^(1/n), about 3/n, with 95 % confidence.',
+      'Wilson’s interval at 95 % confidence. If no error was seen in n pairs, the rate is below 1 − 0.05^(1/n), about 3/n, with 95 % confidence.',
     ],
   ],
   [
     'Kind of failure',
     [
-      'What signatures have in common: the algorithm, why it is wrong (rounding, overflow, underflow, contraction, fast math, or its own logic), the source line of the comparison that decides, and the shape: ',
+      'Signatures with the same algorithm, cause (rounding, overflow, underflow, contraction, fast math, or the algorithm’s own logic), source line of the comparison that decides, and shape. The shape is ',
       h('i', {}, 'degenerate'),
       ' if a triangle is a segment or a point, otherwise ',
       h('i', {}, 'contained'),
-      ' if one lies in the other in the same plane, ',
+      ' if one triangle lies in the other in the same plane, otherwise ',
       h('i', {}, 'coplanar'),
       ' or ',
       h('i', {}, 'general'),
       '. A cause is ',
       h('i', {}, 'settled'),
-      ' for a lane if the verdict becomes right without it and stays wrong with it alone.',
+      ' for a lane if the verdict becomes right without the cause and remains wrong with that cause alone.',
     ],
   ],
   [
@@ -107,13 +107,13 @@ const kTerms: [string, Child[]][] = [
   [
     'Minimised',
     [
-      'Made simpler step by step, as long as the same lanes fail in the same way, until no single step makes it simpler.',
+      'A minimised pair was made simpler step by step, while the same lanes failed in the same way, until no single step made it simpler.',
     ],
   ],
   [
     'Ulp map',
     [
-      'The verdicts around a case: two coordinates move by single ulps, one step a pixel, after Kettner, Mehlhorn, Pion, Schirra and Yap (Classroom examples of robustness problems in geometric computations, 2008). The picture of a lane that can be trusted is that of the truth.',
+      'The verdicts around a case: two coordinates move by single ulps, one step a pixel, after Kettner, Mehlhorn, Pion, Schirra and Yap (Classroom examples of robustness problems in geometric computations, 2008). A lane that is right on all these pairs has the same picture as the truth.',
     ],
   ],
 ];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Leads from a cell of the league table to pairs that show its error: the kept pairs of signatures in which the lane
-// fails in this way.
+// Finds pairs that show the error of a cell of the league table: the kept pairs of signatures in which the cell's lane
+// makes that error.
 import type { Report } from './report';
 
 type Signature = Report['signatures'][number];
@@ -23,7 +23,7 @@ export interface Cell {
 export const cell_text = (report: Report, { lane, stratum, kind }: Cell) =>
   [report.lanes[lane].id, stratum === null ? 'all' : report.strata[stratum].id, kind].join(',');
 
-// Null if the text does not name a cell of this report.
+// Returns null if the text does not name a cell of this report.
 export function cell_of(report: Report, text: string): Cell | null {
   const [id, where, kind] = text.split(',');
   const lane = report.lanes.findIndex((one) => one.id === id),
@@ -74,7 +74,7 @@ export function kept_pairs(report: Report, { lane, stratum, kind }: Cell, signat
 const twin = (report: Report, lane: number) =>
   report.lanes[lane].evidence?.startsWith('twin') ? ' --executor twin' : '';
 
-// The command that shows such a pair again, and the command that finds all of them.
+// The commands that show one pair of a cell again, and that find all its pairs.
 export const repro_command = (report: Report, { lane }: Cell, pair: string) =>
   `graze repro ${pair} --lanes '${report.lanes[lane].id}'${twin(report, lane)}`;
 

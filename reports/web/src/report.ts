@@ -9,7 +9,7 @@ export interface Share {
   share: number;
   low: number;
   high: number;
-} // Wilson, 95 %; six significant digits are enough; share, low and high are null if `of` is 0
+} // low and high: Wilson's 95 % interval; six significant digits are enough; share, low and high are null if `of` is 0
 
 export type Times = [number | null, number, number | null];
 
@@ -24,9 +24,9 @@ export interface Threshold {
   largest: number | null;
 }
 
-// costs.json: lane costs in nanoseconds a pair on one core. It is a separate file because it depends on the machine.
-// low, middle and high are the quartiles of the passes. A null group means all strata. answer: the report's answer with
-// costs.
+// costs.json: lane costs in nanoseconds per pair on one core. It is a separate file because costs depend on the
+// machine. low, middle and high are the quartiles of the passes. A null group means all strata. answer: the report's
+// answer with costs.
 export interface Costs {
   machine: string;
   passes: number;
@@ -49,7 +49,7 @@ export interface PolicyErrors extends Errors {
 
 // tune.json and pareto.json, if they are in the campaign's folder; docs/formats.md describes them.
 export interface Tuned {
-  epsilon?: { name: string; written: string; file: string; lines: number[]; chosen: string }; // of a user's own code
+  epsilon?: { name: string; written: string; file: string; lines: number[]; chosen: string }; // the epsilon of a user's own code
   lane: string;
   forbid: 'false_negative' | 'false_positive' | 'any';
   max_rate: number;
@@ -79,8 +79,8 @@ export interface Pareto {
   pairs: number;
   seed: number;
   machine: string;
-  // Lanes on one core have in_cache, from_memory and one_a_call. Lanes on a device have resident, with_copies and the resources of
-  // the kernels.
+  // Lanes on one core have in_cache, from_memory and one_a_call. Lanes on a device have resident, with_copies and the
+  // resources of the kernels.
   // failure: the smallest pair on which the lane is wrong, as input for `graze check`.
   lanes: {
     lane: string;
@@ -123,13 +123,13 @@ export interface Report {
     scene: string | null; // "arm.toml#0123456789abcdef"
     machine: string | null; // from timings.json only if deterministic; otherwise null
     subjects?: {
-      name: string; // foreign code, as the campaign recorded it
+      name: string; // a subject of foreign code, as the campaign recorded it
       what: string;
-      hash: string; // of everything that was compiled or run
-      source_hash?: string; // only of the source file
+      hash: string; // a hash of everything that was compiled or run
+      source_hash?: string; // a hash of the source file only
       compiler?: string;
       flags?: string[];
-      environment?: { [variable: string]: string }; // that chose the compiler or what it reads
+      environment?: { [variable: string]: string }; // the variables that chose the compiler or its inputs
       contraction?: { [toolchain: string]: { [scalar: string]: { plan: string; operations: number } } };
     }[];
   };
@@ -144,7 +144,7 @@ export interface Report {
     exact: boolean;
   }[];
   answer: string[]; // sentences, the most useful first; shown if costs are unknown
-  groups: { id: string; describes: string; strata: number[] }[]; // strata reported together, by index
+  groups: { id: string; describes: string; strata: number[] }[]; // strata that are reported together, by their index
   // One row for each lane and stratum that has pairs, and one for each lane over all strata (stratum null).
   rates: {
     lane: number;
@@ -168,7 +168,7 @@ export interface Report {
   toolchains?: ToolchainMap | null; // null: no toolchain ran
   // Error against margin over all strata (stratum null; margins.csv has each stratum). side: disjoint or intersecting
   // pairs. exponent e stands for margins in [2^e, 2^(e+1)) ulps; zero margins have an entry with exponent null. Buckets
-  // without pairs are absent. differs: from the lane’s cpu lane, if there is one.
+  // without pairs are absent. differs: the share that differs from the lane’s cpu lane, if there is one.
   margins: {
     lane: number;
     stratum: number | null;
@@ -189,9 +189,9 @@ export interface Report {
   }[];
   // kind scale: by the exponent of the largest coordinate; offset: by log2(largest coordinate / extent of the pair);
   // …/f64: the same on pairs of doubles. A cell stands for exponents [exponent, exponent + step); cells without pairs
-  // are absent. origin: the exponent nearest to 0 that has enough pairs to compare with; null if none has. says: how far
-  // the lane is as right as there. times, if the lane errs in the cell: the ratio of the cell's share to the origin's,
-  // and its lower and upper bound from both 95 % intervals; null where that would divide by 0.
+  // are absent. origin: the exponent nearest to 0 that has enough pairs to compare with; null if none has. says: the
+  // exponents up to which the lane is as right as at the origin. times, if the lane errs in the cell: the ratio of the
+  // cell's share to the origin's, with a lower and an upper bound from both 95 % intervals; null for a division by 0.
   extremes: {
     kind: 'scale' | 'offset' | 'scale/f64' | 'offset/f64';
     step: number;
@@ -200,7 +200,7 @@ export interface Report {
     origin: number | null;
     says: string;
   }[];
-  signature_count: number; // of all signatures; `signatures` has the most frequent ones
+  signature_count: number; // the number of all signatures; `signatures` has the most frequent signatures
   signatures: {
     // one for each signature that fits, most frequent first
     key: string;
@@ -248,8 +248,9 @@ export interface Report {
   compare: Compare | null;
 }
 
-// How verdicts change with the toolchain. A row has a cell for each variant that ran; differs: from the reference's
-// verdicts, null if not counted. agree: groups of variants with the same verdicts on every pair of every row.
+// How verdicts change with the toolchain. A row has a cell for each variant that ran; differs: the share
+// that differs from the reference's verdicts, null if not counted. agree: groups of variants with the same verdicts on
+// every pair of every row.
 export interface ToolchainMap {
   reference: string;
   variants: string[];
@@ -271,12 +272,12 @@ export interface FailureKind {
   line: string; // "core/algorithms/moller_1997.h:117"; empty if no comparison is to blame
   shape: 'general' | 'coplanar' | 'contained' | 'degenerate';
   pairs: number;
-  intersecting: number; // of these; their wrong verdicts are false negatives
+  intersecting: number; // pairs that intersect; wrong verdicts on these are false negatives
   signatures: number;
   lanes: string[]; // ids of the lanes that fail in this way on some pair of the kind
   settled: [number, number]; // lanes whose cause passed the audit, and lanes that the audit could check
   strata: { [id: string]: number }; // kept pairs by stratum; at most four for each signature
-  margins: { [bucket: string]: number }; // all its pairs by margin; "-2^-3", "0", "+2^4" ulps
+  margins: { [bucket: string]: number }; // all pairs of the kind by margin; "-2^-3", "0", "+2^4" ulps
   worst: { case: string; pair: string; from: string; margin_ulps: number }; // pair: 18 hex floats
 }
 
@@ -285,7 +286,7 @@ export interface ChangedVerdicts {
   stratum: string;
   pairs: number;
   known: string; // same, changed, unknown
-  least: number; // changed verdicts, at least and at most
+  least: number; // least and most: bounds of the number of changed verdicts
   most: number;
   broken?: number; // became wrong; only if both versions of the code decided the pairs again
   mended?: number; // became right
@@ -303,7 +304,7 @@ export interface Compare {
     stratum: string;
     before: Share; // wrong
     after: Share;
-    changed: boolean; // beyond chance; on the same pairs, by any amount
+    changed: boolean; // more than chance explains; on the same pairs, at all
     unseen?: number | null; // a smaller difference could pass for chance; absent on the same pairs
     errors: { error: string; before: Share; after: Share }[]; // kinds of error that changed: "false positives", …
   }[];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was run, and the answer in sentences.
+// The sections "What was run" and "The answer".
 import { breakable, code_block, h, lazy_details, list, section, sentence, type Child } from './dom';
 import { count, nanoseconds, noisy_mark, percent, spread_words } from './format';
 import { front } from './choices';
@@ -152,7 +152,7 @@ function advice(text: string): Child[] {
 }
 
 const kFirst = 2,
-  kBeside = 4; // sentences above the picture on a phone, and beside it if there is room
+  kBeside = 4; // on a phone, kFirst sentences are above the picture; on a wide page, kBeside sentences are beside it
 
 export function answer_section(report: Report, costs: Costs | null, pareto: Pareto | null) {
   const said = (costs?.answer ?? report.answer).map((text) => h('li', {}, advice(text)));

@@ -15,14 +15,18 @@ const kKinds: { kind: Side['kind']; title: string; says: string }[] = [
   {
     kind: 'cpu-nofma',
     title: 'CPU against CUDA without contraction',
-    says: 'Both round every operation, so they must be equal pair by pair.',
+    says: 'Both lanes round every operation, so their verdicts must be equal on every pair.',
   },
   {
     kind: 'nofma-fma',
     title: 'CUDA without and with contraction',
-    says: 'The same source; nvcc fuses products into additions, unless -fmad=false forbids it.',
+    says: 'Both lanes have the same source. nvcc fuses products into additions, unless -fmad=false forbids that.',
   },
-  { kind: 'f32-f64', title: 'float32 against float64', says: 'The same source in twice the precision, on one target.' },
+  {
+    kind: 'f32-f64',
+    title: 'float32 against float64',
+    says: 'Both lanes have the same source and target, but a different precision.',
+  },
 ];
 
 function share_cell(share: Share) {
@@ -45,7 +49,7 @@ const common = (report: Report, side: Side) => {
   return side.kind === 'f32-f64' ? `${left.algorithm}, ${left.target}` : `${left.algorithm}/${right.scalar}`;
 };
 
-// The curves of the lanes that the campaign compares with a cpu lane: how close are the calls on which they differ?
+// A chart of how often lanes differ from their cpu lane, against the margin.
 function by_margin(report: Report) {
   const compared = report.margins.filter((row) => row.points.some((p) => p.differs));
   if (!compared.length) return null;
@@ -73,11 +77,11 @@ function by_margin(report: Report) {
   );
   on_width(element, chart.draw);
   return [
-    h('h3', {}, 'How close are the calls on which they differ?'),
+    h('h3', {}, 'At which margins do lanes differ from the cpu lane?'),
     h(
       'p',
       {},
-      'How often a lane’s verdict differs from that of the cpu lane of its algorithm and precision, against the exact margin. CUDA without contraction equals cpu, so the curves of CUDA with contraction compare with both. f32 and f64 are not compared pair by pair.',
+      'The chart shows how often a lane’s verdict differs from that of the cpu lane of its algorithm and precision, against the exact margin. CUDA without contraction has the same verdicts as cpu, so the curves of CUDA with contraction compare with both. f32 and f64 are not compared pair by pair.',
     ),
     picker.element,
     element,
@@ -118,7 +122,7 @@ export function side_by_side_section(report: Report) {
           ? [
               {
                 label: 'Differ',
-                title: 'Pairs on which the two give different verdicts',
+                title: 'Pairs on which the two lanes have different verdicts',
                 numeric: true,
                 cell: (side: Side) => differs_cell(of(side)?.differs ?? null, equal),
                 order: (side: Side) => of(side)?.differs?.share ?? -1,

@@ -70,7 +70,7 @@ export function signature_table(report: Report, pair_of: (signature: Signature) 
       },
       {
         label: 'Kinds',
-        title: 'The kinds of failure that it belongs to and that have a card',
+        title: 'The kinds of failure, among those with a card, to which the signature belongs',
         cell: kinds,
         order: (s) => s.cards[0] ?? Infinity,
       },

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A table that sorts by any column and shows rows in pages; arrow keys move between its cells.
+// A table that sorts by any column and shows its rows in pages. Arrow keys move between its cells.
 import { button, h, type Child } from './dom';
 
 export interface Column<Row> {
   label: string;
   title?: string;
   numeric?: boolean;
-  heading?: Child[]; // instead of the label
+  heading?: Child[]; // shown instead of the label
   cell: (row: Row) => HTMLTableCellElement | Child;
   order: (row: Row) => number | string; // sort key
   descending_first?: boolean;
@@ -22,7 +22,7 @@ interface Options {
   caption: string;
   class?: string;
   page?: number; // rows shown at first; a button adds the same number
-  walk?: boolean; // whether cells can have the focus; the table is one tab stop
+  walk?: boolean; // whether the arrow keys move the focus between cells; the whole table is one tab stop
 }
 
 export function sortable_table<Row>(columns: Column<Row>[], options: Options): Table<Row> {
@@ -148,7 +148,7 @@ export function sortable_table<Row>(columns: Column<Row>[], options: Options): T
   };
 }
 
-// The table for rows that stay the same.
+// A table whose rows do not change.
 export function table_of<Row>(columns: Column<Row>[], rows: Row[], options: Options): HTMLElement {
   const table = sortable_table(columns, options);
   table.show(rows);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The drawing of a card, which dragging and keys turn.
+// The drawing of a card. Dragging and keys turn it.
 import { orbit, view_of } from './camera';
 import { button, choice, h } from './dom';
 import { good_frame, good_view, shape_of, type Frame } from './drawing';
@@ -10,7 +10,7 @@ import { has_webgl, picture, type Picture } from './view3d';
 const kTurn = Math.PI / 18;
 const kZoom = 1.25;
 
-// truth: describes the drawing in words.
+// truth: a description of the drawing, for screen readers.
 export function stage(card: Report['cards'][number], truth: string): HTMLElement {
   const frame = good_frame(card);
   let shape = shape_of(card, frame),

@@ -36,7 +36,7 @@ export function choose(key: string, value: string) {
   write('replaceState');
 }
 
-// Calls back after a link or Back has changed the choices.
+// Calls `changed` after a link or Back has changed the choices.
 export const when_chosen = (changed: () => void) => listeners.push(changed);
 
 function visit(id: string, more: Record<string, string>) {

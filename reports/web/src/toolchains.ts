@@ -45,7 +45,11 @@ export function toolchains_section(report: Report) {
   return section(
     'toolchains',
     'Toolchains',
-    h('p', {}, 'The same source, built for each compiler and processor. The cpu and cuda lanes are from this build.'),
+    h(
+      'p',
+      {},
+      'Each toolchain compiles the same source for its processor. The cpu and cuda lanes are from this build.',
+    ),
     list(map.sentences.map(sentence)),
     h(
       'div',

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws with WebGL. All cards share one renderer, because a browser allows only about 16 contexts. It draws off screen,
-// and each card copies its picture to its own canvas.
+// Draws with WebGL. All cards share one renderer, because a browser allows only about 16 contexts. The renderer draws
+// off screen, and each card copies its picture to its own canvas.
 import {
   AmbientLight,
   BufferGeometry,
@@ -99,7 +99,7 @@ export function picture(shape: Shape): Picture {
     coloured.push({ material, name });
     made.push(geometry, material);
     add_line(segments([...points], true), `${name}-edge`, 2, 'shown');
-    add_line(segments([...points], true), `${name}-edge`, 1.2, 'faint').renderOrder = 1; // even if the other triangle hides it
+    add_line(segments([...points], true), `${name}-edge`, 1.2, 'faint').renderOrder = 1; // drawn even where the other triangle hides it
   }
   for (const { colour, triangles, opacity, lines, width, dashed } of shape.marks ?? []) {
     if (triangles?.length) {
@@ -182,7 +182,7 @@ export function picture(shape: Shape): Picture {
     context.textAlign = 'center';
     context.textBaseline = 'middle';
     context.fillStyle = style_colour('--ink');
-    context.strokeStyle = style_colour('--raised'); // an outline, so that lines do not strike names through
+    context.strokeStyle = style_colour('--raised'); // an outline, which keeps names readable in front of lines
     context.lineWidth = 3;
     context.lineJoin = 'round';
     for (const { x, y, text } of labels(shape, view, width, height)) {

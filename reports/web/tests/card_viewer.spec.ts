@@ -30,7 +30,7 @@ async function expect_verdicts_of(page: Page, report: Report, number: number) {
     );
   const stored = verdicts
     .map(({ lane, verdict, wrong }) => [report.lanes[lane].id, `${wrong ? 'wrong' : 'right'}: ${verdict}`] as const)
-    .filter(([lane]) => lane in shown); // not cpu-fma and the like
+    .filter(([lane]) => lane in shown); // the viewer has no lanes cpu-fma, for example
   expect(stored.length).toBeGreaterThan(10);
   expect(shown).toMatchObject(Object.fromEntries(stored));
 }
@@ -63,10 +63,10 @@ test('a card opens in the viewer, says there what it says here, and back again',
   await expect(open_button(page, first)).toBeFocused();
   expect(await page.evaluate(() => scrollY)).toBe(scrolled);
   expect(page.url()).not.toContain('p=');
-  await page.keyboard.press('h'); // not while it is closed
+  await page.keyboard.press('h'); // keys do nothing while the viewer is closed
   await expect(page.locator('#help')).toBeHidden();
   if (without > 0) {
-    // another card, in the viewer that is already there
+    // opens another card in the same viewer
     await open_card(page, without);
     await open_button(page, without).click();
     await expect_verdicts_of(page, report, without);
@@ -142,7 +142,7 @@ unwatched('without the module no card has the button, and the page says so', asy
   await page.addInitScript(without_webgl);
   await page.goto(pathToFileURL(altered).href);
   await expect(page.locator('#kinds')).toContainText(
-    'Cards do not open in the viewer, because graze was built without the compiler for WebAssembly that it needs.',
+    'Cards do not open in the viewer, because graze was built without the compiler for WebAssembly that the viewer needs.',
   );
   await expect(page.locator('.card-body').first()).toBeVisible();
   await expect(page.locator('.in-viewer')).toHaveCount(0);

@@ -33,7 +33,7 @@ test('the slider tells what each tolerance does, and names the lane under it', a
     slider = page.locator('#tuning input[type=range]');
   await slider.scrollIntoViewIfNeeded();
   const first = await pixels(page.locator('#tuning-chart'));
-  await expect(readout).toContainText('This one is chosen');
+  await expect(readout).toContainText('This is the chosen tolerance');
   const curve = tuned.curves.find((one) => one.points.some((point) => point.policy === tuned.chosen))!;
   await slider.fill(String(curve.points.length - 1));
   const last = curve.points.at(-1)!;

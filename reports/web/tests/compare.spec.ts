@@ -50,7 +50,7 @@ test('two campaigns compared: what changed on top, rates, kinds gained and lost'
   expect(tops.slice(0, 3)).toEqual(['headline', 'differences', 'h3']);
   const changed = compare!.rates.filter((rate) => rate.changed).length;
   const rows = section.locator('table').first().locator('tbody tr');
-  await expect(rows).toHaveCount(Math.max(1, Math.min(60, changed))); // one row says that there are none
+  await expect(rows).toHaveCount(Math.max(1, Math.min(60, changed))); // without changed rates, one row says so
   await section.locator('input[type=checkbox]').check();
   await expect(rows).toHaveCount(Math.min(60, compare!.rates.length));
   expect(compare!.kinds_compared).toBe(true);

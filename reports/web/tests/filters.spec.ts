@@ -16,7 +16,7 @@ const cell_at = (page: Page, report: Report, { lane, stratum }: Cell) =>
     .locator('td')
     .nth(stratum === null ? 0 : stratum + 1);
 
-// The first cell with this kind of error for which `is` holds.
+// The first cell of false negatives for which `is` returns true.
 function find_cell(report: Report, is: (kept: number, count: number) => boolean): Cell | undefined {
   for (const { lane, stratum, false_negative } of report.rates) {
     const cell: Cell = { lane, stratum, kind: 'false_negative' };
@@ -53,7 +53,7 @@ test('the league table finds lanes by words and patterns, again after a reload',
   await expect(names(page)).toHaveText(kept);
   await expect(search).toHaveValue('*/f64/*');
   await expect(page.locator('#league select').first()).toHaveValue('false_negative');
-  await expect(page.locator('.league thead th')).toHaveCount(3); // lane, all strata, one
+  await expect(page.locator('.league thead th')).toHaveCount(3); // the lane, all strata, and one stratum
   await page.locator('nav a', { hasText: 'Extremes' }).click(); // a link within the page keeps the choices
   await expect(page).toHaveURL(/#extremes&/);
   await expect(names(page)).toHaveText(kept);
@@ -144,14 +144,14 @@ test('a cell without a kept pair gives the command, one without errors says so',
   const lost = find_cell(report, (kept, count) => kept === 0 && count > 0);
   if (lost) {
     await cell_at(page, report, lost).locator('[data-kind=false_negative]').click();
-    await expect(page.locator('.cell-note')).toContainText('no pair listed here shows it');
+    await expect(page.locator('.cell-note')).toContainText('no pair listed here shows such a verdict');
     await expect(page.locator('.cell-note')).toContainText(`graze fuzz --strata ${report.strata[lost.stratum!].id}`);
     await page.locator('.cell-note button', { hasText: 'Show all again' }).click();
     await expect(page.locator('.cell-note')).toBeEmpty();
   }
   const none = find_cell(report, (_, count) => count === 0)!;
   await cell_at(page, report, none).locator('[data-kind=false_negative]').click();
-  await expect(page.locator('#league .readout')).toContainText('so no pair shows it');
+  await expect(page.locator('#league .readout')).toContainText('so there is no pair to show');
   await expect(page.locator('.cell-note')).toBeEmpty();
   await cell_at(
     page,
@@ -181,8 +181,8 @@ test('where lanes of a device fail, a card has their program', async ({ report }
     );
   const has = (card: Report['cards'][number], program: string) => card.snippets.some(({ label }) => label === program);
   for (const card of report.cards) {
-    // On the pair shown, some lanes of the subject may fail for a reason other than the kind's. Then the card may lack a
-    // program.
+    // On the pair shown, some lanes of the subject may fail for a reason other than the kind's. Then the card may lack
+    // a program.
     const mixed = card.verdicts.some(
       ({ lane, wrong }) =>
         wrong && report.lanes[lane].algorithm === card.kind.subject && !card.kind.lanes.includes(report.lanes[lane].id),

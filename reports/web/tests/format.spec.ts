@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bounds are rounded outward: the printed number is never below an upper bound or above a lower one.
+// Bounds are rounded outward: the printed number is never below an upper bound or above a lower bound.
 import { expect, test } from '@playwright/test';
 import { interval, percent_bound } from '../src/format';
 

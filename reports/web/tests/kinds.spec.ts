@@ -4,8 +4,7 @@ import { expect, open_card, test } from './page';
 
 const place_of = (line: string) => line.split('/').at(-1)!;
 
-// There are cards with and without a source line, with an unsettled cause, and with lanes that are right on the pair
-// shown.
+// The report has cards with and without a source line, and cards with a settled and with an unsettled cause.
 test('the cards have all sorts of kinds', async ({ report }) => {
   const kinds = report.cards.map(({ kind }) => kind);
   expect(kinds.some(({ line }) => line) && kinds.some(({ line }) => !line)).toBe(true);
@@ -58,7 +57,7 @@ test('title, sentence, lanes and verdicts of a card do not contradict each other
     expect(first).toBe(sentences[0]);
     expect(first.startsWith(`${kind.subject}/`), first).toBe(true);
     expect(first).toContain(kind.line);
-    // Of the lanes in the title, the table marks exactly those that the card calls wrong on the pair shown.
+    // The table marks exactly those lanes of the kind that the card calls wrong on the pair shown.
     const said = card.all[0].split(', ').map((lane) => `${kind.subject}/${lane}`);
     expect(said).toEqual(kind.lanes);
     const claimed = card.here.length > 0 ? card.here[0].split(', ').map((lane) => `${kind.subject}/${lane}`) : said;
@@ -136,6 +135,6 @@ test('the worst pair is named, with a command that explains it', async ({ page, 
   const same = report.cards.findIndex(({ kind: one, pair }) => one.worst.pair === pair.hex.join(' '));
   if (same >= 0)
     await expect((await open_card(page, same + 1)).locator('.worst')).toHaveText(
-      /^The pair shown is also the worst of the examined ones/,
+      /^The pair shown is also the worst examined pair/,
     );
 });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the pages under test with the graze that GRAZE names: a real minimised campaign, and a smaller comparison with
-// the same parts but fewer rows. GRAZE_REPORT and GRAZE_COMPARE name existing pages to use instead.
+// Makes the pages under test with the graze that GRAZE names: a minimised campaign, a smaller comparison with the same
+// parts but fewer rows, a campaign with doubles, and pages of the viewer. GRAZE_REPORT and GRAZE_COMPARE name existing
+// pages to use instead.
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -11,11 +12,10 @@ const kStrata = 'thesis,near_edge_edge,coplanar_wide,exact_contact,far_from_orig
 export default function make_report() {
   const { GRAZE, GRAZE_REPORT } = process.env;
   if (GRAZE_REPORT) {
-    if (!existsSync(GRAZE_REPORT))
-      throw new Error(`GRAZE_REPORT: expected a report's page, found nothing at ${GRAZE_REPORT}`);
+    if (!existsSync(GRAZE_REPORT)) throw new Error(`GRAZE_REPORT: there is no page at ${GRAZE_REPORT}`);
     return;
   }
-  if (!GRAZE) throw new Error('GRAZE: expected the path of the graze binary, found nothing');
+  if (!GRAZE) throw new Error('set GRAZE to the path of the graze program');
   const folder = mkdtempSync(join(tmpdir(), 'graze-page-'));
   const run = (...args: string[]) => execFileSync(GRAZE, args, { cwd: folder, stdio: ['ignore', 'ignore', 'inherit'] });
   const campaign = (out: string, seed: string, pairs: string, lanes: string, ...more: string[]) => {
@@ -64,7 +64,7 @@ export default function make_report() {
     run('view', 'walls.obj', '--out', 'doubles.html');
     process.env.GRAZE_VIEW_DOUBLES = join(folder, 'doubles.html');
   } catch {
-    // a build without the viewer; cli/view.test.cpp tests whether it should have one
+    // this build has no viewer; cli/view.test.cpp tests whether it should have one
     process.env.GRAZE_VIEW = '';
   }
   process.env.GRAZE_REPORT = join(folder, 'campaign', 'report.html');

@@ -9,7 +9,7 @@ export const url = () => pathToFileURL(process.env.GRAZE_REPORT!).href;
 export const compare_url = () => pathToFileURL(process.env.GRAZE_COMPARE || process.env.GRAZE_REPORT!).href;
 export const doubles_url = () => pathToFileURL(process.env.GRAZE_DOUBLES || process.env.GRAZE_REPORT!).href;
 
-// Without WebGL, except in tests that ask for it, because it takes most of the time if there is no GPU.
+// Without WebGL, except in tests that need it, because WebGL takes most of the time if there is no GPU.
 export const test = base.extend<{ webgl: boolean; report: Report; costs: Costs | null; watched: void }>({
   webgl: [false, { option: true }],
   watched: [
@@ -33,7 +33,7 @@ export const test = base.extend<{ webgl: boolean; report: Report; costs: Costs |
 
 export { expect };
 
-// Returns: a check that from now on the page fetches only these addresses and writes nothing to the console.
+// Returns: a check that the page has fetched only these addresses and written nothing to the console since this call.
 export function watch(page: Page, addresses: string[]) {
   const fetched: string[] = [],
     said: string[] = [];

@@ -169,6 +169,6 @@ test('what goes on behind the right edge of the league table fades out there', a
   await expect.poll(mask).toContain('gradient');
   await table.evaluate((one) => one.scrollTo({ left: one.scrollWidth }));
   await expect.poll(mask).toBe('none');
-  await page.setViewportSize({ width: 2400, height: 844 }); // nothing is behind the edge
+  await page.setViewportSize({ width: 2400, height: 844 }); // nothing continues behind the edge
   await expect.poll(mask).toBe('none');
 });

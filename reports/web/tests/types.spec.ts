@@ -19,7 +19,7 @@ function parsed(file: string) {
 
 const read = (page: string) => parsed(page.replace(/html$/, 'json')) as Report;
 
-// The compiler's errors for each value, checked against its type. Checks all in one run, because a run takes seconds.
+// The compiler's errors for each value against its type. One run checks all values, because a run takes seconds.
 function complaints(values: Record<string, [type: string, value: unknown]>, info: TestInfo): Record<string, string> {
   const rows = Object.entries(values).map(
     ([name, [type, value]]) => `export const ${name}: ${type} = ${JSON.stringify(value)};\n`,
@@ -57,7 +57,7 @@ function complaints(values: Record<string, [type: string, value: unknown]>, info
       .filter((one) => one.startsWith(`reports.ts(${number},`))
       .join('');
   const found = Object.fromEntries(Object.keys(values).map((name, i) => [name, of_line(i + 2)]));
-  expect(Object.values(found).join('').length, said).toBe(said.length); // no message about another line
+  expect(Object.values(found).join('').length, said).toBe(said.length); // no message is about another line
   return found;
 }
 

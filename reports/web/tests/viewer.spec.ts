@@ -27,7 +27,7 @@ const kEndsApart =
 const kOverflow =
   'd01cb3ffcf1130a24fd0e03dd0111e894fc5fbfb4fb67a05cee82f564ea92d6bce58537dceb4244ccf02f27ccf8846bbcf581c374eb351f54dda496bcec4d16a4f5f9694ce41af95'; // extreme_scale:1:2
 
-// Changing only the hash would race with what the page writes there.
+// Opens the address as a new page, because a change of only the hash would race with the page's own changes of it.
 async function open_afresh(page: Page, address: string) {
   await page.goto('about:blank');
   await page.goto(address);
@@ -99,18 +99,18 @@ test('a pair on which CPU and GPU differ: which lane, and why', async ({ viewer 
     'Built with -fmad=false, the GPU says intersects.',
     'Both run the same source on the same numbers. The first comparison with a different outcome is at core/algorithms/guigue_devillers_2003.h:121',
     'if (db[0] * db[1] > zero && db[0] * db[2] > zero) return Verdict::disjoint;',
-    'more than 0 if both lie on the same side of it: on the CPU of 0 and -0.235, on the GPU of -1.11·10⁻¹⁸ and -0.235. With 113 bits the value is 0: any other value there is a rounding error, and its sign decides.',
+    'more than 0 if both vertices lie on the same side of the plane. The distances are 0 and -0.235 on the CPU, and -1.11·10⁻¹⁸ and -0.235 on the GPU. With 113 bits the value is 0: any other value there is a rounding error, and its sign decides.',
     'Fusing only here already gives the GPU’s verdict: core/vec3.h:48',
     'called at core/algorithms/guigue_devillers_2003.h:120',
   ])
     await expect(why).toContainText(said);
   expect(await viewer.locator('.parting tr').allInnerTexts()).toEqual([
-    expect.stringMatching(/value\s+> 0\?\s+and so/),
-    expect.stringMatching(/^CPU\s+-0\s+no\s+goes on, says intersects$/),
-    expect.stringMatching(/^GPU\s+2\.61·10⁻¹⁹\s+yes\s+goes on, says ✗ disjoint$/),
+    expect.stringMatching(/value\s+> 0\?\s+result/),
+    expect.stringMatching(/^CPU\s+-0\s+no\s+continues, then says intersects$/),
+    expect.stringMatching(/^GPU\s+2\.61·10⁻¹⁹\s+yes\s+continues, then says ✗ disjoint$/),
     expect.stringMatching(/^with 113 bits\s+0\s+no\s+as the CPU$/),
   ]);
-  await verdict(viewer, 'guigue_devillers_2003/f64/cpu').click(); // on the CPU lane the question is the same
+  await verdict(viewer, 'guigue_devillers_2003/f64/cpu').click(); // the CPU lane leads to the same question
   await expect(viewer.locator('#why-title')).toHaveText('Why do CPU and GPU differ?');
   await verdict(viewer, 'guigue_devillers_2003/f32/cpu').click();
   await expect(viewer.locator('#why-title')).toHaveText('Why does guigue_devillers_2003/f32/cpu say disjoint?');
@@ -134,7 +134,7 @@ test('what it says of a contraction is what graze explain finds', async ({ viewe
       JSON.parse(
         execFileSync(process.env.GRAZE!, ['explain', pair_name, '--lanes', lanes, '--json'], { encoding: 'utf8' }),
       ).lanes as { lane: string; cause: string; contractions: { at: string }[] }[];
-    // CPU lanes that are wrong because of their logic are reported as such, and no others are.
+    // The page blames the logic of a CPU lane if and only if the lane is wrong because of its logic.
     for (const { lane: wrong, cause } of explained('*/cpu').slice(0, 4)) {
       await verdict(viewer, wrong).click();
       await expect(viewer.locator('#why-title')).toContainText(/^Why do(es)? /);
@@ -148,7 +148,7 @@ test('what it says of a contraction is what graze explain finds', async ({ viewe
     await verdict(viewer, chosen).click();
     await expect(viewer.locator('#why-title')).toContainText('Why do CPU and GPU differ?');
     const lane = explained(chosen).find((one) => one.lane === chosen);
-    if (!lane) continue; // right on the GPU, wrong on the CPU
+    if (!lane) continue; // this lane is right on the GPU and wrong on the CPU
     expect(lane.cause, chosen).toBe('contraction');
     const said = viewer.locator('.because');
     await expect(said).toContainText('contraction');
@@ -179,7 +179,7 @@ test('ranges on a line are those by which the lane decides, and the axis is the 
     });
     for (const { lane, verdict, text } of said) {
       const subject = lane.split('/')[0];
-      if (!text) continue; // decided before it computed ranges, or compares none
+      if (!text) continue; // the lane decided before it computed ranges, or it compares none
       expect(text).toContain(`In ${lane} the two ranges `);
       expect(/^In \S+ the two ranges are \S+ apart;/.test(text), `${lane} says ${verdict}: ${text}`).toBe(
         verdict === 'disjoint',
@@ -354,11 +354,11 @@ test('the ulp map is drawn whole, and a cell gives its pair', async ({ viewer })
 test('tolerances are decided too: filtered is right everywhere but for logic', async ({ viewer }) => {
   await viewer.locator('button', { hasText: 'Next with a wrong verdict' }).click();
   await expect(viewer.locator('#summary')).toContainText('wrong', { timeout: 30_000 });
-  await viewer.getByLabel('Held for zero').selectOption('filtered');
+  await viewer.getByLabel('Treated as zero').selectOption('filtered');
   await expect(viewer.locator('#summary')).toContainText('under filtered');
   await expect(verdict(viewer, 'guigue_devillers_2003/f32/cpu')).not.toHaveClass(/bad/);
   await expect(verdict(viewer, 'moller_1997/f32/cuda-fma')).toHaveText('–');
-  await viewer.getByLabel('Held for zero').selectOption('abs');
+  await viewer.getByLabel('Treated as zero').selectOption('abs');
   await expect(viewer.locator('#summary')).toContainText('under abs:');
 });
 

@@ -85,7 +85,7 @@ test('maps, tolerances, many triangles and the drawing work on doubles', async (
   await expect(viewer.locator('#map-told')).toContainText(/^256 × 256 cells of \d lanes and the truth/, {
     timeout: 60_000,
   });
-  await viewer.getByLabel('Held for zero').selectOption('filtered');
+  await viewer.getByLabel('Treated as zero').selectOption('filtered');
   await expect(viewer.locator('#summary')).toContainText('under filtered');
   await expect(verdict(viewer, 'guigue_devillers_2003/f64/cpu')).toHaveText('disjoint');
   await viewer.locator('body').press('+');

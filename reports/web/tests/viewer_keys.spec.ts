@@ -12,7 +12,7 @@ test('every key does what the help says', async ({ viewer }) => {
   await board.focus();
   const looks = () => board.locator('svg').innerHTML();
   const value = (c: number) => coordinate(viewer, c).inputValue();
-  // Waits until earlier requests are drawn; otherwise two keys that undo each other would seem to do nothing.
+  // Waits until earlier changes are drawn. Otherwise two keys that undo each other would seem to do nothing.
   const drawn = () =>
     viewer.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   const changes = (of: () => Promise<unknown>) => async (key: string) => {
@@ -53,7 +53,7 @@ test('every key does what the help says', async ({ viewer }) => {
     [
       '+',
       async (key) => {
-        await viewer.keyboard.press('t'); // leaves the special cases, which stay ten
+        await viewer.keyboard.press('t'); // leaves the special cases, because their number is fixed
         await changes(field)(key);
       },
     ],
@@ -119,7 +119,7 @@ test('steps are of one ulp, of 256 with Shift, of 65,536 with Alt', async ({ vie
   }
 });
 
-test('t shows the special cases of 2012 at once, and they stay as they are', async ({ viewer }) => {
+test('t shows the special cases of 2012 at once, and they are fixed', async ({ viewer }) => {
   const before = await name(viewer);
   await viewer.keyboard.press('t');
   await expect(viewer.locator('h1')).toHaveText('the ten special cases of 2012');
@@ -127,7 +127,7 @@ test('t shows the special cases of 2012 at once, and they stay as they are', asy
   await expect(viewer.locator('#board svg polygon[style*="--hit"]')).toHaveCount(10); // all are meant to intersect
   for (const key of ['+', '-']) {
     await viewer.keyboard.press(key);
-    await expect(viewer.locator('.message')).toContainText('the special cases stay as they are');
+    await expect(viewer.locator('.message')).toContainText('the special cases are fixed');
     await expect(viewer.locator('#field')).toContainText('10 triangles against a');
   }
   await viewer.keyboard.press('w');

@@ -9,7 +9,7 @@ export const file = () => process.env.GRAZE_VIEW!;
 export const url = () => pathToFileURL(file()).href;
 export const doubles_url = () => pathToFileURL(process.env.GRAZE_VIEW_DOUBLES!).href;
 
-// Without WebGL, except in tests that ask for it, because it takes most of the time if there is no GPU.
+// Without WebGL, except in tests that need it, because WebGL takes most of the time if there is no GPU.
 export const test = base.extend<{ webgl: boolean; of_doubles: boolean; viewer: Page }>({
   webgl: [false, { option: true }],
   of_doubles: [false, { option: true }],
@@ -47,7 +47,7 @@ export const paste = (page: Page, text: string) =>
     field.dispatchEvent(new ClipboardEvent('paste', { clipboardData: data, cancelable: true, bubbles: true }));
   }, text);
 
-// What `graze check` says about the pair that is shown.
+// The output of `graze check` for the pair that is shown.
 export async function checked(page: Page) {
   await page.locator('#copies button', { hasText: 'check line' }).click();
   const line = (await page.locator('.copied code').textContent())!;
@@ -56,7 +56,7 @@ export async function checked(page: Page) {
   ) as { truth: { verdict: string; contact: string }; lanes: Record<string, string>; coordinates?: string };
 }
 
-// The page's verdicts and truth are those of `graze check`.   Returns: what `graze check` says.
+// Requires that the page's verdicts and truth are those of `graze check`.   Returns: the output of `graze check`.
 export async function expect_as_checked(page: Page) {
   const native = await checked(page);
   const shown = Object.entries(await verdicts(page));

@@ -45,7 +45,7 @@ for (const [name, ...what] of [
   try {
     for (const picture of pictures) execFileSync('convert', [picture, '+dither', '-colors', '64', `PNG8:${picture}`]);
   } catch {
-    // they are larger without ImageMagick
+    // without ImageMagick, the pictures are only larger
   }
 }
 rmSync(folder, { recursive: true });

@@ -110,7 +110,7 @@ test('the keyboard reaches the answer first, and shows where it is', async ({ pa
   expect(outline).toBe('solid');
 });
 
-// Uses the comparison page: it has all parts but fewer rows, each of which takes axe some time.
+// These tests use the comparison page, which has all parts but fewer rows. axe takes some time for each row.
 for (const [colorScheme, where] of [
   ['light', 'desk'],
   ['dark', 'phone'],

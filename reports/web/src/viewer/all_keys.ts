@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each key does. docs/viewer.md compares the keys with those of 2012.
+// The actions of all keys. docs/viewer.md compares the keys with those of 2012.
 import type { board } from './board';
 import { kMove } from './coordinates';
 import type { field } from './field';
@@ -17,7 +17,7 @@ interface Parts {
   toggle_help: () => void;
 }
 
-// As seen in the first view of 2012, which looked along -x: w moved the reference away, d moved it to the right.
+// The first view of 2012 looked along -x, where w moved the reference away and d moved it to the right.
 const kMoves: [string, number, number, string][] = [
   ['w', 0, -kMove, '−x'],
   ['s', 0, kMove, '+x'],
@@ -56,9 +56,9 @@ function keys_of_2012({ model, drawing, many, other_processor, toggle_help }: Pa
     })),
     { keys: ['o'], shown: 'o', does: 'axes', press: show('axes') },
     { keys: ['c'], shown: 'c', does: 'coordinates', press: show('coordinates') },
-    { keys: ['i'], shown: 'i', does: 'ids of the vertices; of many triangles, their numbers', press: show('ids') },
+    { keys: ['i'], shown: 'i', does: 'vertex ids, or the numbers of many triangles', press: show('ids') },
     { keys: ['p'], shown: 'p', does: 'planes', press: show('planes') },
-    { keys: ['t'], shown: 't', does: 'the ten special cases at once, and back', press: many.special },
+    { keys: ['t'], shown: 't', does: 'show or leave the ten special cases', press: many.special },
     { keys: ['g'], shown: 'g', does: 'switch the chosen lane between CPU and GPU', press: other_processor },
     { keys: ['+', '='], shown: '+', does: 'one more triangle against the first', press: () => many.add(1) },
     { keys: ['-'], shown: '-', does: 'one triangle fewer', press: () => many.add(-1) },
@@ -75,7 +75,7 @@ function new_keys({ model, drawing, from, say }: Parts): Key[] {
     {
       keys: ['n'],
       shown: 'n',
-      does: 'next pair; with Shift the next one on which CPU and GPU differ',
+      does: 'next pair; with Shift the next pair on which CPU and GPU differ',
       press: (event) => void from.go(1, event.shiftKey ? 'apart' : 'any'),
     },
     { keys: ['b'], shown: 'b', does: 'previous pair', press: () => void from.go(-1) },
@@ -88,20 +88,25 @@ function new_keys({ model, drawing, from, say }: Parts): Key[] {
     ...['x', 'y', 'z'].map((key, k) => ({
       keys: [key],
       shown: key,
-      does: `choose its ${key}`,
+      does: `choose the vertex’s ${key}`,
       press: () => model.set({ chosen: model.vertex + k }),
     })),
     {
       keys: ['['],
       shown: '[',
-      does: 'the chosen coordinate down by 1 ulp; with Shift 256, with Alt 65,536',
+      does: 'lower the chosen coordinate by 1 ulp; with Shift by 256, with Alt by 65,536',
       press: (event) => model.step(-ulps(event)),
     },
-    { keys: [']'], shown: ']', does: 'the same upwards', press: (event) => model.step(ulps(event)) },
+    {
+      keys: [']'],
+      shown: ']',
+      does: 'raise the chosen coordinate by the same steps',
+      press: (event) => model.step(ulps(event)),
+    },
     {
       keys: ['f'],
       shown: 'f',
-      does: 'what is in the middle: both triangles, the chosen vertex, or the contact or gap',
+      does: 'change the centre: both triangles, the chosen vertex, or the contact or gap',
       press: () => model.set({ centre: kCentres[(kCentres.indexOf(model.centre) + 1) % kCentres.length] }),
     },
     { keys: ['Home'], shown: 'Home', does: 'reset the view', on_board: true, press: () => drawing.reset() },

@@ -18,13 +18,13 @@ export function show_why() {
 
 const bold = (text: string) => h('strong', {}, text);
 
-// The GPU lane that differs from the CPU's: `lane` itself, or the counterpart of a CPU lane.
+// Returns the GPU lane that differs from the CPU lane: `lane` itself, or the counterpart of a CPU lane.
 export function differing(model: Model, lane: string): string | undefined {
   return [lane, model.counterpart(lane, 'cuda-fma')].find((one) => one !== undefined && model.differs(one));
 }
 
-// The indices, in both runs, of the first comparison that two runs decide differently; up to it they take the same
-// steps.
+// The indices in both runs of the first comparison with different outcomes. Up to that comparison, both runs take the
+// same steps.
 function parting(run: Step[], other: Step[]): [number, number] | null {
   const places = (steps: Step[]) => steps.flatMap((step, i) => (step.relation ? [i] : []));
   const [mine, theirs] = [places(run), places(other)];
@@ -32,7 +32,7 @@ function parting(run: Step[], other: Step[]): [number, number] | null {
   return at < 0 ? null : [mine[at], theirs[at]];
 }
 
-// Describes the compared quantity, if the values passed to the policy show it.
+// Describes the compared quantity, if the values that were passed to the policy identify it.
 function meaning(runs: [Step[], number][], scalar: string): Child {
   const [[run, at]] = runs,
     step = run[at];
@@ -63,7 +63,7 @@ function meaning(runs: [Step[], number][], scalar: string): Child {
       const j = d.findIndex((y, k) => k > i && round(d[i] * y) === steps[end].left);
       if (j < 0) continue;
       const [mine, theirs] = distances.map((all) => told_apart([all[i], all[j]]).join(' and '));
-      return `The value is the product of two vertices’ distances from the other triangle’s plane, more than 0 if both lie on the same side of it: on the CPU of ${theirs}, on the GPU of ${mine}. `;
+      return `The value is the product of two vertices’ distances from the other triangle’s plane. It is more than 0 if both vertices lie on the same side of the plane. The distances are ${theirs} on the CPU, and ${mine} on the GPU. `;
     }
   }
   return false;
@@ -73,7 +73,7 @@ function meaning(runs: [Step[], number][], scalar: string): Child {
 const six = (mine: Step, theirs: Step) =>
   told_apart([theirs.left, mine.left, mine.exactLeft, theirs.right, mine.right, mine.exactRight]);
 
-// For a comparison of two ranges' ends, the triangles that they belong to.
+// The triangles whose ranges' ends the step compares; null if it compares something else.
 function ends_of(run: Step[], { site, relation, left, right }: Step): [string, string] | null {
   if (site !== 'separation' || relation !== '<') return null;
   const line = intervals(run);
@@ -101,7 +101,7 @@ function table(
       ? [`${ends[0]} ends at`, `${ends[1]} begins at`, 'apart there?']
       : ['left', 'right', `left ${mine.relation} right?`];
   const so = (is_last: boolean, verdict: string) => [
-    is_last ? 'says ' : 'goes on, says ',
+    is_last ? 'says ' : 'continues, then says ',
     h('b', { class: verdict === right ? '' : 'bad' }, `${verdict === right ? '' : '✗ '}${verdict}`),
   ];
   const row = (name: string, i: number, held: boolean, then: Child) =>
@@ -117,7 +117,7 @@ function table(
   return h(
     'table',
     { class: 'plain parting' },
-    head_row([one, other, asked, 'and so'].filter(Boolean)),
+    head_row([one, other, asked, 'result'].filter(Boolean)),
     h(
       'tbody',
       {},
@@ -256,7 +256,7 @@ export function apart(model: Model, lane: string): { parts: Child[]; brief: Chil
         ),
       );
   } else {
-    parts.push(h('p', {}, 'Which comparison goes differently first is ', bold('not settled'), '.'));
+    parts.push(h('p', {}, 'Which comparison is the first with different outcomes is ', bold('not settled'), '.'));
   }
   if (sites.length) parts.push(places(sites));
   return { parts, brief };

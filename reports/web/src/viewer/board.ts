@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The drawing: dragging the background turns it; dragging a vertex changes the pair.
+// The drawing. Dragging the background turns it, and dragging a vertex changes the pair.
 import { orbit, view_of } from '../camera';
 import { button, choice, h } from '../dom';
 import { axes, framed_half_height, good_view, project, type Vec } from '../drawing';
@@ -10,13 +10,13 @@ import { placed, type Field, type Placed } from './shape';
 
 const kReach = 16; // pixels around a vertex within which it can be grabbed
 const kTurn = Math.PI / 18;
-const kFine = 1 / 64; // factor of a drag with Shift
-const kGapSeen = 0.5; // half-widths of the board that the gap takes after "Show the gap"
+const kFine = 1 / 64; // a drag with Shift moves a vertex by this share of the distance
+const kGapSeen = 0.5; // length of the gap after "Show the gap", in half-widths of the board
 const kFlat: Vec[] = [
   [0, 0, 0],
   [1, 0, 0],
   [0, 1, 0],
-]; // if there is no triangle
+]; // used for the view if no polygon is in the drawing
 
 export function board(model: Model, fields: () => Field | null) {
   let magnified = 1,
@@ -36,7 +36,8 @@ export function board(model: Model, fields: () => Field | null) {
   place();
   const { camera, set } = orbit(ground, best_view(), draw, draw);
 
-  // The first view of 2012 for its triangles; otherwise a direction from which the shown shapes are not edge-on.
+  // Triangles of 2012 get the first view of 2012. Other triangles are seen from a direction in which they are not
+  // edge-on.
   function best_view() {
     if (fields()?.of_2012) return { azimuth: 0, elevation: 0.56, zoom: 1 };
     const seen = [now.shape.a, now.shape.b].filter((polygon) => polygon.length > 2);
@@ -55,7 +56,7 @@ export function board(model: Model, fields: () => Field | null) {
       return paper.replaceChildren(svg_projection(now.shape, view_of(camera), ground.clientWidth, ground.clientHeight));
     drawn ??= picture(now.shape);
     drawn.draw(canvas, camera);
-    old?.dispose(); // only now: unused programs would have to be compiled again
+    old?.dispose(); // only now, because three.js deletes unused programs, which would be compiled again
     old = null;
   }
 
@@ -76,7 +77,7 @@ export function board(model: Model, fields: () => Field | null) {
     gap_button.hidden = witness_key.hidden;
     gap_button.textContent = truth.verdict === 'disjoint' ? 'Show the gap' : 'Show the depth';
     witness_key.textContent =
-      truth.verdict === 'disjoint' ? 'nearest points' : 'shortest push of b that separates them';
+      truth.verdict === 'disjoint' ? 'nearest points' : 'shortest push of b that separates the triangles';
     b_key.hidden = field !== null;
     field_keys.forEach((key) => (key.hidden = field === null));
     shadow_key.hidden = field !== null || !model.lane.startsWith('projected_sat/');
@@ -117,7 +118,7 @@ export function board(model: Model, fields: () => Field | null) {
     const box = ground.getBoundingClientRect();
     return { x: event.clientX - box.left, y: event.clientY - box.top, width: box.width, height: box.height };
   };
-  // The vertex under the pointer; if there are several, the frontmost.
+  // The vertex under the pointer, or the frontmost vertex if there are several.
   function taken(event: PointerEvent): number | null {
     const { x, y, width, height } = local(event);
     let best: { v: number; away: number; depth: number } | null = null;
@@ -176,7 +177,7 @@ export function board(model: Model, fields: () => Field | null) {
   ground.addEventListener(
     'wheel',
     (event) => {
-      if (document.activeElement !== ground) return; // otherwise the page scrolls
+      if (document.activeElement !== ground) return; // without the focus, the wheel scrolls the page
       event.preventDefault();
       magnify(2 ** (-event.deltaY / 200));
     },
@@ -237,7 +238,11 @@ export function board(model: Model, fields: () => Field | null) {
       witness_key,
       shadow_key,
       note,
-      h('span', {}, 'Drag a vertex to move it (with Shift for fine steps), or the background to turn.'),
+      h(
+        'span',
+        {},
+        'Drag a vertex to move it (with Shift for fine steps), or drag the background to turn the drawing.',
+      ),
     ),
   );
   return {

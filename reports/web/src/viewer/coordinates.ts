@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 18 coordinates, which can be chosen, typed, pasted and stepped.
+// The fields of the 18 coordinates: one can choose, type, paste and step a coordinate.
 import { button, h, head_row, section } from '../dom';
 import { coordinate_name, decimal, hex_float, stored_as } from './data';
 import type { Model } from './model';
@@ -9,9 +9,9 @@ export const kSteps = [
   ['256 ulps', 256],
   ['65,536 ulps', 65536],
 ] as const;
-export const kMove = 0.0625; // as in the thesis's viewer
+export const kMove = 0.0625; // the same step as in the thesis's viewer
 
-// Finds numbers in any notation, whatever stands between them.
+// Finds numbers in any notation, with any text between them.
 export function numbers_in(text: string): string[] {
   return text.match(/[-+]?(?:0x[0-9a-f.]+(?:p[-+]?\d+)?|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)/gi) ?? [];
 }

@@ -33,7 +33,7 @@ const kCopies: Record<string, (model: Model) => string> = {
     `# ${name}\n${Array.from({ length: 6 }, (_, v) => `v ${[0, 1, 2].map((k) => decimal(pair[3 * v + k], graze.coordinates)).join(' ')}`).join('\n')}\nf 1 2 3\nf 4 5 6\n`,
 };
 
-// link: the address that leads back to the pair.
+// link: returns the address of the page with this pair.
 export function copies(model: Model, link: (model: Model) => string) {
   const shown = h('div', { class: 'copied' });
   let text = '',

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The data that `graze view` writes into the page, and its pairs.
+// The data that `graze view` writes into the page, and conversions of its pairs.
 import type { Graze, Verdict } from './graze.js';
 import { kVerdicts } from './graze.js';
 
@@ -17,7 +17,8 @@ export interface Stored {
   evidence: string;
   replay: Replay;
 }
-// What a lane of the user's own code says about a pair; `stored`: the campaign stored it, because its code is gone.
+// The verdict of a lane of the user's own code on a pair. stored: it is from the campaign, because the code has
+// changed.
 export interface Said {
   lane: string;
   verdict: string;
@@ -31,7 +32,7 @@ export interface ViewData extends Stored {
   pairs: { name: string; bits: string; said?: Said[] }[];
   lanes_left_out?: { why: Record<string, string> }; // of the user's own code
   triangles: string[]; // of a mesh or a query, 9 words each; may be empty
-  ids?: number[]; // of these triangles; without it, they are numbered in order
+  ids?: number[]; // of these triangles; without ids, they are numbered in order
   opens?: 'pair' | 'triangles' | 'random'; // triangles: all at once, against the first triangle of the pair
   random?: number; // how many random triangles are shown first
 }
@@ -51,7 +52,7 @@ export function to_bits(pair: Coordinates): string {
     : Array.from(new Uint32Array(buffer), (word) => word.toString(16).padStart(8, '0')).join('');
 }
 
-// The coordinate type of a link's pair, found from its bits; null if they are not those of a pair.
+// The coordinate type of a pair in a link, from the length of its bits; null if the bits are not those of a pair.
 export const type_of_bits = (bits: string): Scalar | null =>
   /^([0-9a-f]{144}|[0-9a-f]{288})$/.test(bits) ? (bits.length === 288 ? 'f64' : 'f32') : null;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many triangles against the reference, as in 2012: random ones from the thesis's generator, its special cases, or
-// those of a mesh or a query.
+// Many triangles against the reference, as in 2012: random triangles from the thesis's generator, its special cases, or
+// the triangles of a mesh or a query.
 import { button, h } from '../dom';
 import { count, counted } from '../format';
 import { from_bits, type Coordinates, type ViewData } from './data';
@@ -24,7 +24,7 @@ export function field(model: Model, data: ViewData, say: (text: string) => void,
     ids: number[] = [],
     current: Field | null = null;
   const shown = { given: given.length, random: data.random || kFirst, special: special.length };
-  const left: { kind: Kind | null; name: string; pair: Coordinates }[] = []; // what was drawn before
+  const left: { kind: Kind | null; name: string; pair: Coordinates }[] = []; // the earlier drawings, to go back to
   const told = h('p', { class: 'small', id: 'field' });
 
   // Random triangles and special cases have their own reference, so showing another pair removes them.
@@ -62,7 +62,7 @@ export function field(model: Model, data: ViewData, say: (text: string) => void,
     if (kind !== 'given') face();
     make();
   }
-  // Sets the pair to the reference of these triangles and the first of them.
+  // Shows the pair of the reference and the first of these triangles.
   function face() {
     own = pair_of(0);
     model.show(own.pair, own.name);
@@ -134,9 +134,9 @@ export function field(model: Model, data: ViewData, say: (text: string) => void,
     model.show(pair, unchanged ? name : `${without_changed(name)}, changed`);
   }
 
-  // Which triangles +, - and space change: those of a mesh or a query if there are any, otherwise random ones.
+  // The triangles that +, - and space change: those of a mesh or a query if there are any, otherwise random triangles.
   const changing = given.length ? 'given' : 'random';
-  const special_stay = () => say('the special cases stay as they are; press t to leave them');
+  const special_stay = () => say('the special cases are fixed; press t to leave them');
   return {
     element: told,
     title,

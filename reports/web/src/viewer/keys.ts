@@ -45,7 +45,7 @@ export function keys(all: Key[], active: () => boolean) {
     h(
       'p',
       {},
-      'With mouse or finger: drag a vertex to move it, with Shift for fine steps; drag the background to turn. Keys act wherever the page has the focus, except in fields; arrows and space act only in the drawing.',
+      'Drag a vertex with mouse or finger to move it, with Shift for fine steps. Drag the background to turn the drawing. Keys work wherever the page has the focus, except in fields. Arrow keys and space work only in the drawing.',
     ),
     h(
       'table',

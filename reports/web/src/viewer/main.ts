@@ -24,7 +24,7 @@ async function start() {
   const page = document.getElementById('page')!,
     text = document.getElementById('view')?.textContent?.trim() ?? '';
   if (!text || text.startsWith('<!--'))
-    return void (page.textContent = 'This page is empty: graze view writes one with data.');
+    return void (page.textContent = 'This page has no data. To make a viewer with data, run: graze view');
   const data = JSON.parse(text) as ViewData;
   try {
     const shown = viewer(data, await make_ready(data), first_of(data), {

@@ -25,7 +25,7 @@ const kCells = [
 ] as const;
 const kWait = 40; // milliseconds without a change before the map is drawn again
 
-// The index in kPalette of a lane's verdict, given the truth.
+// The index in kPalette for a lane's verdict, given the truth.
 const cell_of = (verdict: number, truth: number) =>
   truth === 2 ? 5 : verdict === 2 ? 4 : verdict === truth ? truth : verdict === 1 ? 2 : 3;
 
@@ -178,7 +178,7 @@ export function map(model: Model, module: WebAssembly.Module) {
     element,
     update() {
       if (model.chosen !== last_chosen) {
-        // the chosen coordinate, and the next one of its vertex
+        // the map's axes become the chosen coordinate and the next coordinate of its vertex
         last_chosen = x = model.chosen;
         y = model.vertex + ((model.chosen + 1) % 3);
         across.querySelector('select')!.value = String(x);

@@ -22,7 +22,7 @@ export interface MapPart {
 }
 export const kSide = 256;
 const kLevels = [16, 4, 1]; // block sizes in columns and rows
-const kSlice = 12; // milliseconds, after which a newer request is served
+const kSlice = 12; // milliseconds after which a newer request is served
 
 let wanted: MapRequest | null = null;
 let graze: Graze | undefined;

@@ -97,7 +97,7 @@ export function matrix(model: Model) {
   const asked = h(
     'p',
     { class: 'small' },
-    'What each lane says. A lane is an algorithm in float32 (f32) or float64 (f64), built for CPU or GPU.',
+    'The verdict of each lane. A lane is an algorithm in float32 (f32) or float64 (f64), built for CPU or GPU.',
   );
   return { element: h('div', { class: 'verdicts-of-all' }, asked, table, key), told, update };
 }

@@ -6,8 +6,7 @@ import type { Graze, Margin, Truth, Verdict } from './graze.js';
 export type Centre = 'both triangles' | 'the chosen vertex' | 'the contact or gap';
 export const kCentres: Centre[] = ['both triangles', 'the chosen vertex', 'the contact or gap'];
 
-// The thesis's special cases, in its order: B against the reference triangle, one for each placement of the vertices
-// along the line.
+// The thesis's special cases, in the thesis's order: a triangle B for each case, against one reference triangle.
 const kReference = [0, -2, 6, 0, 5, 0, 0, -3, 0];
 const kSpecial = [
   ['across the line', -2, -2, 0, 2, -3, 0, 3, -1, 0],
@@ -21,7 +20,7 @@ const kSpecial = [
   ['B pierces the reference', 2, 0, 0.5, -2, 0, 1.5, 1, 0, 4],
   ['in the same plane', 0, 3, 1, 0, 1, 1.5, 0, 4, 3],
 ] as const;
-// In either type, their coordinates are float32 numbers.
+// The coordinates are float32 numbers, even in pairs of doubles.
 export const special_cases = (type: Scalar): { name: string; pair: Coordinates }[] =>
   kSpecial.map(([what, ...b], i) => ({
     name: `special case ${i + 1} of 2012: ${what}`,
@@ -137,8 +136,8 @@ export class Model {
       verdict = verdicts[lane];
     return verdict !== null && truth.verdict !== 'declined' && verdict !== truth.verdict;
   }
-  // Chooses the lane that is most likely of interest: a GPU lane that differs from the CPU, otherwise a wrong one. If
-  // there is neither, keeps the chosen one.
+  // Chooses the lane that is most likely of interest: a GPU lane that differs from the CPU, otherwise a wrong lane. If
+  // there is neither, the chosen lane remains.
   choose_telling() {
     const { lanes } = this.graze;
     this.set({ lane: lanes.find((lane) => this.differs(lane)) ?? lanes.find((lane) => this.wrong(lane)) ?? this.lane });
@@ -149,7 +148,7 @@ export class Model {
       other = `${subject}/${scalar}/${variant}`;
     return this.graze.lanes.includes(other) ? other : undefined;
   }
-  // Whether the lane decides differently from the CPU lane with every operation rounded as written.
+  // Whether the lane decides differently from its cpu lane, in which every operation is rounded as written.
   differs(lane: string) {
     const cpu = this.counterpart(lane, 'cpu'),
       { verdicts } = this.decided;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of a lane's steps, and their source lines.
+// Formats the numbers of a lane's steps, and quotes their source lines.
 import sources from 'graze.sources';
 import { h } from '../dom';
 import { figure } from '../format';
@@ -42,7 +42,7 @@ export function quoted(place: string) {
   const [file, line] = place.split(':'),
     lines = sources[file] ?? [];
   let text = lines[Number(line) - 1] ?? '';
-  for (let next = Number(line); /(\|\||&&|,|\()$/.test(text) && next < lines.length; ++next) text += ` ${lines[next]}`; // to the statement's end
+  for (let next = Number(line); /(\|\||&&|,|\()$/.test(text) && next < lines.length; ++next) text += ` ${lines[next]}`; // continues to the end of the statement
   return h(
     'span',
     { class: 'quoted' },

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ranges on a line to which the test reduces: the intervals or projections that the chosen lane compared, beside
-// the same with 113 bits, and the ranges on the axis of the margin.
+// Draws the ranges that the chosen lane compared on a line: intervals or projections. Beside them are the same ranges
+// with 113 bits, and the ranges on the axis of the margin.
 import { choice, h, on_width, section, type Child } from '../dom';
 import { figure } from '../format';
 import { differing } from './apart';
@@ -80,7 +80,7 @@ export function on_a_line(model: Model) {
     return gpu && (gpu === lane ? model.counterpart(lane, 'cpu') : gpu);
   };
 
-  // The ranges that the lane compared on a line, if it got that far.
+  // Shows the ranges that the lane compared on a line, if it had not decided before that.
   function of_the_lane() {
     const { lane, pair, graze } = model,
       run = graze.steps(pair, lane)?.steps ?? [],
@@ -103,7 +103,7 @@ export function on_a_line(model: Model) {
           'p',
           {},
           name === 'guigue_devillers_2003'
-            ? 'This algorithm compares no ranges; it asks only for signs.'
+            ? 'This algorithm compares no ranges, only signs.'
             : kIntervals[name] || name === 'projected_sat' || name === 'separating_axes'
               ? `The lane decided before it computed ${kIntervals[name] ? 'intervals' : 'projections'}.`
               : 'The exact decision compares no ranges.',
@@ -149,7 +149,7 @@ export function on_a_line(model: Model) {
       return truth_said.replaceChildren(
         truth.verdict === 'disjoint'
           ? 'The gap is too small for 113 bits to draw a separating axis.'
-          : 'They touch or lie in one plane: no axis separates them, but an arbitrarily short push does.',
+          : 'The triangles touch or lie in one plane. No axis separates them, but an arbitrarily short push does.',
       );
     truth_row = [{ name: 'with 113 bits', a: drawing.along[0], b: drawing.along[1] }];
     const [, high] = drawing.along[0],

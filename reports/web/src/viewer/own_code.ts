@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the user's own code says about the pair. The page cannot run it, so the verdicts are those on the pair that was
-// written into the page.
+// Shows the verdicts of the user's own code. The page cannot run that code, so it has verdicts only for the pairs that
+// were written into the page.
 import { h, section } from '../dom';
 import { to_bits, type ViewData } from './data';
 import type { Model } from './model';
@@ -21,10 +21,10 @@ export function own_code(model: Model, data: ViewData) {
     const lanes = said.get(bits);
     const stored = lanes?.some((one) => one.stored);
     told.textContent = !lanes
-      ? 'It ran only on the pairs of this page, not on this changed one.'
+      ? 'Your code ran only on the pairs of this page, not on this changed pair.'
       : stored
-        ? 'Its code has changed; these are the verdicts that the campaign stored.'
-        : 'These are its verdicts on this pair from when the page was written.';
+        ? 'Your code has changed since the campaign; these are the verdicts that the campaign stored.'
+        : 'These are the verdicts of your code on this pair when the page was written.';
     list.replaceChildren(
       ...(lanes ?? []).map(({ lane, verdict, wrong }) =>
         h('li', { class: wrong ? 'bad' : '' }, `${lane}: ${wrong ? '✗ ' : ''}${verdict}`),

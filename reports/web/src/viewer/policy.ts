@@ -33,13 +33,13 @@ export function policy(model: Model) {
     'div',
     { class: 'controls policy' },
     choice(
-      'Held for zero',
+      'Treated as zero',
       [
         ['', 'only zero, as published'],
-        ['abs', 'what is small (abs:E)'],
-        ['rel', 'what is small for its size (rel:K)'],
-        ['bound', 'nothing; if unsure, lanes decline (bound)'],
-        ['filtered', 'nothing; if unsure, lanes ask the exact one (filtered)'],
+        ['abs', 'small values (abs:E)'],
+        ['rel', 'values that are small for their size (rel:K)'],
+        ['bound', 'nothing; unsure lanes decline (bound)'],
+        ['filtered', 'nothing; unsure lanes use the exact decision (filtered)'],
       ],
       '',
       (value) => {

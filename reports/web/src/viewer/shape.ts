@@ -82,8 +82,8 @@ export interface Field {
 
 const middle_of = (corners: Vec[]) => corners[0].map((_, k) => corners.reduce((sum, p) => sum + p[k] / 3, 0));
 
-// The names of many triangles: their numbers in the middle, their coordinates at the vertices. Those that the lane hits
-// come first, then those whose middle is nearest to the reference's.
+// The names of many triangles: a number in the middle of each, and coordinates at its vertices. Triangles that the lane
+// hits come first, then the triangles nearest to the reference.
 function names_of(field: Field, reference: Vec[], shows: Model['shows'], place: (p: readonly number[]) => Vec) {
   const from = middle_of(reference);
   const named = field.triangles.map((triangle, i) => {
@@ -99,7 +99,7 @@ function names_of(field: Field, reference: Vec[], shows: Model['shows'], place: 
     ]);
 }
 
-// magnified: the factor beyond fitting the board.
+// magnified: the magnification relative to a drawing that fits the board.
 export function placed(model: Model, drawing: Drawing, magnified: number, field: Field | null): Placed {
   const { pair, centre, shows } = model,
     points = [0, 1, 2, 3, 4, 5].map((v) => vertex(pair, v));
@@ -120,7 +120,7 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
   const place = (p: readonly number[]) => [0, 1, 2].map((k) => (p[k] - middle[k]) / unit[k]) as Vec;
   const marks: Mark[] = [];
   const [a, b] = [points.slice(0, 3).map(place), points.slice(3).map(place)];
-  // The radius at which everything fits from every direction, before magnification.
+  // The radius within which everything fits from every direction, before magnification.
   const radius =
     Math.max(
       0.6,
@@ -159,7 +159,7 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
       marks.push({ colour: `--series-${k}`, lines: [cut([place(origin), place(end)])], width: 2 });
     }
   }
-  // The next values of the chosen coordinate, if the distance is visible.
+  // Marks the next values of the chosen coordinate, if the distances between them are visible.
   const chosen = pair[model.chosen],
     at = points[model.vertex / 3],
     axis = model.chosen % 3;

@@ -23,7 +23,7 @@ export function sources(model: Model, data: ViewData, say: (text: string) => voi
     at = Number(of_stratum?.[3] ?? 0),
     searching = 0;
 
-  // Next and Previous continue from this pair.
+  // Lets Next and Previous continue from this pair, if it is one of the given pairs.
   function find(pair: Coordinates) {
     const found = given.findIndex((one) => one.pair.every((x, c) => Object.is(x, pair[c])));
     if (found < 0 || of_stratum) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The viewer: assembles the display.
+// Assembles the viewer from its parts.
 import './viewer.css';
 import { button, h, section } from '../dom';
 import { figure } from '../format';
@@ -25,7 +25,7 @@ import { words } from './words';
 
 function margin_words({ decided: { truth, margin } }: Model): string {
   if (truth.verdict === 'declined') return 'a coordinate is not finite';
-  if (margin.sign === 0) return 'margin exactly 0: an arbitrarily short push separates them';
+  if (margin.sign === 0) return 'margin exactly 0: an arbitrarily short push separates the triangles';
   const [least, most] = [figure(margin.least), figure(margin.most)];
   const ulps = (x: number) => figure(x / margin.ulp);
   if (margin.most === Infinity) return 'margin not settled here: the pair’s sizes are too far apart';
@@ -36,14 +36,14 @@ function margin_words({ decided: { truth, margin } }: Model): string {
   return margin.sign > 0 ? `${range} apart` : `${range} deep`;
 }
 
-// What float32 stores of the pair, if the truth of that differs from the truth of the doubles.
+// The truth of the pair as float32 stores it, if it differs from the truth of the doubles.
 function stored_words({ decided: { truth, stored } }: Model): string {
   if (!stored || (stored.verdict === truth.verdict && stored.contact === truth.contact)) return '';
   if (stored.verdict === 'declined') return '; float32 cannot store it';
   return `; as float32 stores it: ${stored.verdict}${stored.contact === 'none' ? '' : `, contact: ${stored.contact}`}`;
 }
 
-// The page around the viewer. Its address stores the pair; keys work while the viewer is active.
+// The page around the viewer. The page's address stores the pair, and keys work while the viewer is active.
 export interface Around {
   keep: (model: Model) => void;
   link: (model: Model) => string;
@@ -223,7 +223,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
       model.show(next.pair, next.name);
       choose(next);
     },
-    // To be called once its elements are in the page.
+    // Call this when the elements are in the page.
     begin() {
       choose(first);
       if (data.opens === 'triangles' || data.opens === 'random') many.all();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Explains the chosen lane's verdict: where its run departs from that of the CPU, or from a run with 113 bits.
+// Explains the chosen lane's verdict: where its run differs from that of the CPU, or from a run with 113 bits.
 import { h, type Child } from '../dom';
 import { apart, differing } from './apart';
 import type { Graze, Step, Verdict } from './graze.js';
@@ -90,7 +90,7 @@ export function why(model: Model) {
     title = h('h2', { id: 'why-title' }),
     brief = h('p', { id: 'brief' });
 
-  // Explains a lane by itself.
+  // Explains a lane without comparing it with its counterpart.
   function alone(known: ReturnType<Graze['steps']>): Child[] {
     const { lane, decided, policy } = model,
       run = known?.steps,

@@ -230,7 +230,9 @@ std::vector<BasicPair<Real>> images(Invariant invariant, const BasicPair<Real>& 
       result = axes(pair);
       break;
     case Invariant::scale:
-      for (const std::size_t s : used_scales(pair)) result.push_back(scaled(pair, kScales[s]));
+      for (const int k : kScales) {
+        if (const auto image = exactly_scaled(pair, k)) result.push_back(*image);
+      }
       return result;
     case Invariant::translate:
       result = translated(pair);

@@ -14,6 +14,7 @@
 #include "fuzz/campaign/cpu_engine.h"
 #include "fuzz/campaign/rank_stores.h"
 #include "fuzz/campaign/recorded.h"
+#include "fuzz/campaign/sums.h"
 #include "fuzz/ranks/rank_campaign.h"
 #include "fuzz/sealed.h"
 #include "strata/mesh.h"

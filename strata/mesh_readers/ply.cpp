@@ -30,12 +30,12 @@ struct Property {
 bool is_coordinate(const Property& p) { return p.name == "x" || p.name == "y" || p.name == "z"; }
 bool is_corners(const Property& p) { return p.name == "vertex_indices" || p.name == "vertex_index"; }
 
-enum class Kind { vertices, faces, other };
+enum class ElementKind { vertices, faces, other };
 
 struct Element {
   std::string name;
   std::uint64_t count = 0;
-  Kind kind = Kind::other;
+  ElementKind kind = ElementKind::other;
   std::vector<Property> properties;
 
   // The index of the property, or the number of properties if none has that name.
@@ -76,9 +76,9 @@ void take_property(const Lines& lines, Header& header) {
     if (other.name == property.name || (corners && is_corners(other)))
       lines.fail("every property once", "a second " + shown(property.name));
   }
-  if (element.kind == Kind::vertices && is_coordinate(property) && (is_list || !property.type->is_float))
+  if (element.kind == ElementKind::vertices && is_coordinate(property) && (is_list || !property.type->is_float))
     lines.fail_at(1, "float or double as the type of a coordinate");
-  if (element.kind == Kind::faces && corners && (!is_list || property.type->is_float))
+  if (element.kind == ElementKind::faces && corners && (!is_list || property.type->is_float))
     lines.fail_at(1, "a list of integers as a face's vertices");
   element.properties.push_back(property);
 }
@@ -86,12 +86,12 @@ void take_property(const Lines& lines, Header& header) {
 void take_element(const Lines& lines, Header& header) {
   if (lines.words().size() != 3)
     lines.fail("an element's name and count", std::to_string(lines.words().size() - 1) + " words");
-  Element element{std::string(lines.words()[1]), lines.whole(2, "a count of elements"), Kind::other, {}};
-  if (element.name == "vertex" || element.name == "vertices") element.kind = Kind::vertices;
-  if (element.name == "face" || element.name == "faces") element.kind = Kind::faces;
+  Element element{std::string(lines.words()[1]), lines.whole(2, "a count of elements"), ElementKind::other, {}};
+  if (element.name == "vertex" || element.name == "vertices") element.kind = ElementKind::vertices;
+  if (element.name == "face" || element.name == "faces") element.kind = ElementKind::faces;
   if (element.name == "tristrips") lines.fail_at(1, "faces, not strips of triangles");
   for (const Element& other : header.elements) {
-    if (other.name == element.name || (other.kind == element.kind && other.kind != Kind::other))
+    if (other.name == element.name || (other.kind == element.kind && other.kind != ElementKind::other))
       lines.fail("every element once", "a second " + shown(element.name));
   }
   header.elements.push_back(std::move(element));
@@ -103,13 +103,13 @@ void check(const Lines& lines, const Header& header) {
       if (!holds) lines.fail(std::string(what) + " in the element " + element.name, "none");
     };
     expect(!element.properties.empty() || element.count == 0, "a property");
-    if (element.kind == Kind::vertices) {
+    if (element.kind == ElementKind::vertices) {
       for (const char* name : {"x", "y", "z"})
         expect(element.place(name) < element.properties.size(), "coordinates x, y and z");
       if (element.count > std::numeric_limits<std::uint32_t>::max())
         lines.fail("fewer than 2^32 vertices", std::to_string(element.count));
     }
-    if (element.kind == Kind::faces)
+    if (element.kind == ElementKind::faces)
       expect(std::min(element.place("vertex_indices"), element.place("vertex_index")) < element.properties.size(),
              "a list vertex_indices");
   }
@@ -280,7 +280,7 @@ Soup read_ply(const MeshBytes& file) {
   const Header header = take_header(lines);
   std::uint64_t vertices = 0;
   for (const Element& element : header.elements) {
-    if (element.kind == Kind::vertices) vertices = element.count;
+    if (element.kind == ElementKind::vertices) vertices = element.count;
   }
   Soup soup;
   Body body(file, lines, header.format);
@@ -289,20 +289,20 @@ Soup read_ply(const MeshBytes& file) {
     body.expect_room(element);
     for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
       body.begin_row(element);
-      if (element.kind == Kind::vertices) take_vertex(body, element, soup);
-      if (element.kind == Kind::faces) take_face(body, element, vertices, soup, face);
-      if (element.kind == Kind::other) {
+      if (element.kind == ElementKind::vertices) take_vertex(body, element, soup);
+      if (element.kind == ElementKind::faces) take_face(body, element, vertices, soup, face);
+      if (element.kind == ElementKind::other) {
         for (const Property& p : element.properties) {
           for (std::uint64_t n = p.count_type ? body.list_count(p) : 1; n > 0; --n) body.skip(*p.type);
         }
       }
       body.end_row();
     }
-    if (element.kind == Kind::other && element.count > 0)
+    if (element.kind == ElementKind::other && element.count > 0)
       soup.skipped["elements named " + printable(element.name)] = element.count;
     for (const Property& p : element.properties) {
-      const bool used = element.kind == Kind::vertices ? is_coordinate(p) : is_corners(p);
-      if (element.kind != Kind::other && !used && element.count > 0)
+      const bool used = element.kind == ElementKind::vertices ? is_coordinate(p) : is_corners(p);
+      if (element.kind != ElementKind::other && !used && element.count > 0)
         soup.skipped["values of " + printable(element.name + '.' + p.name)] = element.count;
     }
   }

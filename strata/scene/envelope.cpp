@@ -173,6 +173,7 @@ std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum) {
   }
   const auto row = std::find_if(std::begin(kDoubleStrata), std::end(kDoubleStrata),
                                 [&](const StratumInfo& info) { return info.stratum == stratum; });
+  if (row == std::end(kDoubleStrata)) return std::nullopt;
   const auto kind = static_cast<std::size_t>(row->kind);
   if (scene.mix[kind] == 0) return fmt::format("your mix has no pairs of the kind {}", kKindIds[kind]);
   return std::nullopt;

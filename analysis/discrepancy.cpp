@@ -60,7 +60,7 @@ void compare_block(std::span<const BasicPair<Coordinate>> pairs, const Records& 
   }
 }
 
-// Calls f<Algorithm, Real>() for the lane's algorithm and scalar.   Requires: pairs of doubles have a lane in double.
+// Calls f<Algorithm, Real>() for the lane's algorithm and scalar.   Requires: a lane in double, for doubles.
 template <class Coordinate, class F>
 void for_lane(const Lane& lane, const F& f) {
   const auto call = [&]<class... Algorithm>(const std::tuple<Algorithm...>*) {

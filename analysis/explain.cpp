@@ -105,7 +105,8 @@ Step step_of(const Seen<double>& seen, const oracle::ExactStep& exact) {
           exact.held};
 }
 
-// Returns a function that runs a path without the cause. Empty for rounding, because exact arithmetic shows that case.
+// Returns a function that runs the algorithm along a path with the cause removed. Empty for rounding, because exact
+// arithmetic shows that case.
 WithoutCause without(Cause cause, const Lane& lane, const AnyPair& pair, Contraction rule) {
   if (cause == Cause::contraction)
     return [&lane, &pair](const Path& path) { return run_led(lane, pair, Contraction::none, path); };

@@ -182,11 +182,11 @@ std::string remedy(const LaneExplanation& lane) {
                                ? fmt::format("no mantissa of up to {} bits is known to be enough", oracle::kMostBits)
                                : fmt::format("{} mantissa bits would be enough", lane.bits_needed);
   if (lane.cause == Cause::rounding) return bits;
-  if (lane.settled != Settled::not_without) return "with exponents without limits it is right";
+  if (lane.settled != Settled::not_without) return "with unlimited exponents it is right";
   if (lane.bits_needed == (lane.lane->scalar == Scalar::f32 ? 24 : 53))
-    return std::string("with exponents without limits") +
+    return std::string("with unlimited exponents") +
            (lane.rule == Contraction::none ? "" : ", and without contraction,") + " it is right";
-  return bits + (lane.bits_needed == 0 ? ", even with" : " with") + " exponents without limits";
+  return bits + (lane.bits_needed == 0 ? ", even with" : " with") + " unlimited exponents";
 }
 
 // "cuda-fma", "cpu/rel:8".

@@ -118,9 +118,9 @@ void write_report(const std::string& directory);
 // pack's. Returns: the exit status, 1 if something differs.
 int repro_pack(const std::string& file);
 
-// `graze toolchain hip`: lists the products that hipcc fuses for AMD's GPUs, and nvcc for NVIDIA's, in the subjects, or
-// in the published algorithms. json: a file for them, or empty.   Returns: the exit status, 1 if products stay fused
-// with -ffp-contract=off.
+// `graze toolchain hip`: lists the products that are fused by hipcc for AMD's GPUs and by nvcc for NVIDIA's, in the
+// subjects; if there are none, in the published algorithms. json: a file for them, or empty.   Returns: the exit
+// status, 1 if products stay fused with -ffp-contract=off.
 int list_hip_plans(const std::vector<std::string>& subjects, const std::vector<std::string>& flags,
                    const std::string& json);
 

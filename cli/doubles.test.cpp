@@ -803,7 +803,7 @@ TEST_F(Doubles, ASceneIsDrawnInItsDoubles) {
   expect_done(of_both.substr(0, of_both.find("--out")) + "--out b2 && cmp b/summary.json b2/summary.json");
 }
 
-// A mesh whose numbers float32 does not hold becomes a scene of doubles, which keeps the mesh's own pairs unrounded.
+// A mesh with numbers that float32 cannot hold becomes a scene of doubles, whose mesh pairs are not rounded.
 TEST_F(Doubles, AMeshOfDoublesBecomesASceneOfDoubles) {
   std::ofstream off(shell.folder / "site.off");
   off << "OFF\n36 50 0\n";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The output of `graze query --self` and `--between`. A hit of --self is a pair that pierces, because neighbours always
-// touch. A hit of --between is every pair that intersects.
+// The output of `graze query --self` and `--between`. With --self, a hit is a pair that pierces each other:
+// neighbours always touch. With --between, it is every pair that intersects.
 #include "cli/query_meshes.h"
 
 #include <fmt/format.h>

@@ -14,7 +14,7 @@ namespace graze::cli {
 reports::Screen output_screen();
 reports::Screen error_screen();
 
-// Prints the sentences, each wrapped at the columns of standard output.
+// Prints the sentences, each wrapped to the width of standard output.
 void print_wrapped(const std::vector<std::string>& sentences);
 
 // The most lines that a verb prints without --all.

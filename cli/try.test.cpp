@@ -350,7 +350,7 @@ TEST_F(TryCommand, NamesTheEpsilonAndTheCommandThatTunesIt) {
   EXPECT_EQ(shell("graze tune large/f32/cpu --from large").status, 2);
 }
 
-// The program sees the lock while it answers, once the campaign has written its results.
+// After the campaign has written its results, the program under test checks that the folder is still locked.
 TEST_F(TryCommand, NoOtherProcessMayUseTheFolderWhileItMinimises) {
   write("own.sh",
         "n=0\n"

@@ -83,8 +83,8 @@ std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
 void expect_errors_of(const std::string& directory, const fuzz::Json& campaign, const analysis::TuneSpec& spec,
                       const std::string& lane);
 
-// With --from: changes.csv, a row for each pair of the choice on which the lane is wrong without a tolerance ("wrong"),
-// and for each pair that the best tolerance of a curve fixes or breaks.
+// The text of changes.csv, for --from. Of the pairs that the tolerance was chosen on, it has a row for each on which
+// the lane is wrong without a tolerance ("wrong"), and for each that the best tolerance of a curve fixes or breaks.
 // own_code: the decider under a policy if the lane is a user's code; else null.
 inline constexpr const char* kChangesHeader = "stratum,seed,index,truth,tolerance,change\n";
 std::string changes_csv(const Lane& lane, const analysis::DecideUnder& own_code, const analysis::TuneSpec& spec,

@@ -26,7 +26,7 @@ inline bool may_replace_foreign = false;
 // file, is in cases/, or is behind a link. A file that is damaged further on may be replaced.
 void expect_own(const std::filesystem::path& file, const std::string& text);
 
-// Whether a killed write left the file: a file whose name ends in kPart.
+// Whether the file is left over from an interrupted write: its name ends in kPart.
 bool is_left_over(const std::filesystem::path& file);
 
 // Whether results may be written to the folder. It must be missing, hold one of the files `own`, or hold only empty

@@ -45,7 +45,7 @@ void sort_lanes(SelectedLanes& under_test, const Place& place) {
   under_test.on_host = std::move(sorted.on_host);
 }
 
-// In the table, lanes under a policy are at the end; this moves them to the other lanes of their subject.
+// The table has lanes under a policy at its end. This moves each next to the other lanes of its subject.
 void sort_by_subject(SelectedLanes& under_test) {
   std::map<const AlgorithmInfo*, std::size_t> places;
   for (const Lane* lane : under_test.lanes) places.emplace(lane->info, places.size());

@@ -31,8 +31,8 @@ struct Limited {
 // Requires: the scalar holds the coordinates.
 Limited decide_limited(int algorithm, Scalar scalar, const DoublePair& pair, Limits limits);
 
-// Like decide_limited, but traced, contracted by the rule, and led along the given path. Values beyond the range of
-// double are rounded to it.
+// Like decide_limited, but traced, contracted by the rule, and led along the given path. A value beyond the
+// range of double becomes infinite, and one below it zero or subnormal.
 Trace<double> run_limited(int algorithm, Scalar scalar, const DoublePair& pair, Limits limits, Contraction rule,
                           const Path& lead = {});
 

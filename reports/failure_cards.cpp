@@ -271,7 +271,7 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
   }
   if (rows.size() < count) {
     report["missing"].push_back(fmt::format(
-        "The table shows the most common {} of {} signatures; signatures.csv has all.", rows.size(), count));
+        "The table shows the {} most common of {} signatures; signatures.csv lists all of them.", rows.size(), count));
   }
   say_what_is_missing(report["missing"], lacking, cards.size());
   report["sources"] = Json::object();

@@ -135,8 +135,8 @@ std::string zero_words(const TuneQuestion& q, const Tuned& t) {
   const PolicyErrors &zero = points[0], &least = points[1];
   if (zero.false_negative == least.false_negative && zero.false_positive == least.false_positive) return "";
   return fmt::format(
-      "Zero does not act like a small value here: on the pairs that it was chosen on, {} has {}, but {}, the next "
-      "smallest, {}.",
+      "Zero behaves differently from the smallest tolerance: on the pairs that it was chosen on, {} has {}, and {} has "
+      "{}.",
       policy_words(q, zero.policy), errors(zero), policy_words(q, least.policy), errors(least));
 }
 

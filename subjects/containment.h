@@ -27,7 +27,7 @@ int open_process(pid_t process);
 // descriptor of open_process is open.
 bool is_descendant(pid_t process);
 
-// Kills all children except `except`, and their descendants. Calls `tell_alive` repeatedly meanwhile.
+// Kills all children but `except`, with their descendants. Calls `tell_alive` repeatedly meanwhile.
 // Returns: whether no child is left, except that one.
 bool end_children(pid_t except, void (*tell_alive)());
 
@@ -37,7 +37,7 @@ bool end_children(pid_t except, void (*tell_alive)());
 // they may make System V memory, semaphores and message queues.
 void forbid_calls(bool system_v);
 
-// Gives up all rights of root except the rights about files, users and low ports. The other rights bypass the limits:
+// Drops root's capabilities except those for files, users and low ports. The other capabilities bypass the limits:
 // tracing, mounting, lifting limits, rebooting, setting the clock, delaying the supervisor, and reaching files by
 // handles and disks.
 void drop_rights();

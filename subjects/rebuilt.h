@@ -56,7 +56,7 @@ std::vector<FusedLine> fused_lines_of(const Lane& lane);
 // Whether the lane is built from a C or C++ source whose file exists and is unchanged.
 bool has_source_as_built(const Lane& lane);
 
-// Whether the lane's source may have a small number or another epsilon; nothing if there is no readable source.
+// Whether the lane's source may have an epsilon, as a small number or by a name; nothing if no source can be read.
 std::optional<bool> may_have_epsilon(const Lane& lane);
 
 // The small numbers in a lane's source file. None if the file is missing, changed, or larger than 1 MiB.

@@ -400,8 +400,8 @@ Built build_source(const fs::path& source, const std::string& function, const Re
     reading.states = states_of_listed((fs::exists(included) ? listed_files(included, folder) : "") + assembled);
     return reading;
   };
-  // When it compiles, the compiler reads the files once more. If the readings before and after the compiler ran agree,
-  // it has compiled the code that was hashed.
+  // When it compiles, the compiler reads the files once more. If they were the same before and after it ran, it
+  // compiled the code that was hashed.
   for (int builds = 0; builds < kMostBuilds; ++builds) {
     const Reading before = read();
     Built built{folder / fmt::format("{:016x}{}", before.hash, recipe.is_program ? kProgram : kObject),

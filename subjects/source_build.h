@@ -47,12 +47,12 @@ Recipe recipe_of(const Toolchain& toolchain, const std::filesystem::path& source
 bool is_host_device(const std::filesystem::path& source, const std::string& function, const Recipe& recipe,
                     const std::vector<std::string>& flags);
 
-// Builds a shared object or a program with `function` of the source, or with the source's own descriptions (see
-// graze/subject.h). Compiles with the recipe's flags, then `flags`. The file name is a hash of the inputs: the
-// preprocessed source, the flags, the files that they name, the files that the assembler reports as read, the
-// compiler's version, and its parts. Uses a cached object if it is unchanged, the hash covers all its inputs, and the
-// assembler read no files for it. Builds again if a file has changed since it was read for the hash.
-// Throws: std::runtime_error with the compiler's first error, or when the files keep changing; Stopped.
+// Builds the source into a shared object or a program with the given `function`, or with the functions that the source
+// describes itself (see graze/subject.h). Compiles with the recipe's flags, then `flags`. The file name is a hash of
+// the inputs: the preprocessed source, the flags, the files that they name, the files that the assembler reports as
+// read, the compiler's version, and its parts. Uses a cached object if it is unchanged, the hash covers all its inputs,
+// and the assembler read no files for it. Builds again if a file has changed since it was read for the hash. Throws:
+// std::runtime_error with the compiler's first error, or when the files keep changing; Stopped.
 Built build_source(const std::filesystem::path& source, const std::string& function, const Recipe& recipe,
                    const std::vector<std::string>& flags);
 
@@ -68,7 +68,8 @@ Built build_assembly(std::string_view assembly, const Recipe& recipe, const std:
 // Throws: std::runtime_error if the build is no longer in the cache.
 Built kept_build(const std::string& name, bool is_program = false);
 
-// The environment variables that choose the compiler of a C or C++ source or the files that it reads, if they are set.
+// The set environment variables that affect which compiler builds a C or C++ source, and which files that compiler
+// reads.
 std::map<std::string, std::string> compiler_environment(const std::filesystem::path& source);
 
 }  // namespace graze::subjects

@@ -332,7 +332,7 @@ class Supervisor {
     over_limits_ = false;
   }
 
-  // Collects orphans that have ended.
+  // Reaps orphans that have ended.
   void reap() {
     while (waitpid(-1, nullptr, WNOHANG) > 0) {
     }

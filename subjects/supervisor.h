@@ -17,7 +17,7 @@ struct Limits {
 };
 
 // Answers blocks on kControlFd until graze closes that socket. After that, ends all processes that were started, and
-// exits. arguments: for the process that loads the code, which runs this program again.
+// exits. arguments: the command line of the process that loads the code. That process runs this program too.
 int supervise(const Limits& limits, char* const* arguments);
 
 // Runs a program, ends all processes that the program started, and sends its exit status to graze as an int. The status

@@ -130,8 +130,8 @@ TEST_F(Toolchains, OfPublishedAlgorithmsDifferOnlyWhereTheyDoNotRound) {
   EXPECT_GE(compared, 4);  // with GCC, which builds Graze
 }
 
-// Rounds, in the assembly, the products of each line at which the compiler fuses products. The resulting program agrees
-// with the strict build on all pairs.
+// If the assembly is edited so that every fused product is rounded first, the program agrees with the strict build on
+// all pairs.
 TEST_F(Toolchains, TheAssemblyShowsEveryFusedProduct) {
   open_published("moller_1997", "x86-gcc-v3,arm64-gcc,arm64-clang,x86-clang-v3-fast");
   int checked = 0;

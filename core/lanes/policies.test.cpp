@@ -40,7 +40,7 @@ Pair apart(float scale) {
   return scaled({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0.5f}, {1, 0, 0.5f}, {0, 1, 0.5f}}}, scale);
 }
 
-// b is upright above a; its lowest vertex is 2^-k of the size away from a's interior.
+// b stands upright above a. Its lowest vertex is 2^-k times their size above a's interior.
 Pair above(int k, float scale) {
   const float gap = std::ldexp(1.0f, -k);
   return scaled({{{0, 0, 0}, {3, 0, 1}, {0, 3, 1}}, {{0.75f, 0.75f, 0.5f + gap}, {1, 2, 4}, {2, 1, 4}}}, scale);

@@ -16,7 +16,7 @@ namespace {
 constexpr EngineLimits kLimits;
 constexpr int kBlocksAtOnce = 3;
 
-// The memory of one block. Several blocks are in progress, because the last pairs of a block use only a few threads.
+// The memory of one block. Several blocks run at once, because the last pairs of a block use only a few threads.
 struct Buffers {
   Stream stream;
   Event done{cudaEventDisableTiming};  // recorded after the last block that used this memory

@@ -26,7 +26,8 @@ struct LaneTable {
   std::uint32_t group_count;
 };
 
-// Indices of the pairs that are left to the host. `indices` has room for `size`; `count` also counts further indices.
+// Indices of the pairs that are left to the host. `indices` has room for `size`; `count` includes those that do not
+// fit.
 struct IndexList {
   std::uint64_t* indices;
   std::uint32_t size;

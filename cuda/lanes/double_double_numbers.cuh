@@ -20,7 +20,7 @@ __device__ inline void convert(double x, int, DoubleDouble& out) { out = x; }
 
 namespace cuda {
 
-// A difference or a sum of products, with `size`: the magnitude of the difference, or the sum of the products' sizes.
+// A difference, or a sum of products. size: the magnitude of the difference, or the sum of the products' magnitudes.
 struct DoubleDoubleSum {
   DoubleDouble value;
   double size;

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Anyone who may write to the disk, such as /tmp, knows the folder's name.
+// The folder's name can be guessed, so in /tmp another user may have made it first.
 // Throws: std::runtime_error if it is a link, or belongs to another user.
 void expect_own_folder(const fs::path& folder) {
   struct stat there {};

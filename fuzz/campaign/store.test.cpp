@@ -339,7 +339,7 @@ TEST_F(StoreTest, TheLogOfAnotherDatabaseIsRefused) {
   EXPECT_EQ(run(c), whole);
 }
 
-// Anyone who may write to the disk knows the folder's name.
+// The folder's name can be guessed, so another user may have made it first.
 TEST_F(StoreTest, AScratchThatIsALinkIsRefused) {
   Campaign c = campaign("shard");
   c.shard = {1, 2};

@@ -255,8 +255,8 @@ bool is_closed(const fs::path& database) {
   }
 }
 
-// The files beside the database that SQLite would read but did not write for this database. They are damaged, links, or
-// from other programs or databases. Throws: std::runtime_error for a pipe or a device.
+// The files beside the database that SQLite would read but did not write for this database. They are damaged, are
+// links, or belong to other programs or databases. Throws: std::runtime_error for a pipe or a device.
 std::vector<fs::path> unusable_files_of(const fs::path& database) {
   constexpr std::string_view kJournal = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", kLog = "\x37\x7f\x06",
                              kIndex = "\x18\xe2\x2d";

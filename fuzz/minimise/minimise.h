@@ -42,7 +42,7 @@ std::vector<Failure> failures_of(const SelectedLanes& under_test, const AnyPair&
 
 bool fails_alike(const Failure& failure, const AnyPair& pair);
 
-// The signature of a pair that fails alike, with the bucket of its own margin.
+// The signature of a pair that fails in the same way, with the bucket of its own margin.
 analysis::Signature signature_of(const Failure& failure, const AnyPair& pair);
 
 // Why a failure happens. Its lanes may be wrong for different reasons; only the reason of the first wrong lane in table

@@ -213,7 +213,7 @@ TEST_F(PackTest, TheListOfFilesIsChecked) {
   EXPECT_NE(packed([](Json&, auto&) {}, false), "");
 }
 
-// Subjects, meshes and scenes must be those that the campaign recorded, under other names.
+// A pack's subjects, meshes and scenes must be those that the campaign recorded; only their paths differ.
 TEST_F(PackTest, APackRunsItsOwnCampaign) {
   const Json spec = {
       {"subjects", {{{"name", "m"}, {"what", "/a/m.c"}, {"flags", {"-I/a"}}, {"environment", {{"CC", "x"}}}}}},

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Merges several stores into one campaign: shards, ranks, or campaigns that were merged before. The result has the same
-// bytes as one run of the whole, for any parts, order and executors. Shards of a hunt are separate searches: each kind
-// of failure counts once, with its first pair. The order of a hunt's parts does not matter either.
+// bytes as one run without shards, whatever the shards, their order and their executors. Shards of a hunt are separate
+// searches: each kind of failure counts once, with its first pair. The order of a hunt's parts does not matter either.
 #pragma once
 
 #include <filesystem>

@@ -19,7 +19,7 @@
 namespace graze::strata {
 
 // How many coordinates float32 cannot hold, and by how much rounding moved them. `beyond` counts coordinates that no
-// program would print for a float32, such as 1000000.01. It does not count 0.1, the shortest decimal of a float32.
+// program would print for a float32, such as 1000000.01. It does not count 0.1, which some float32 is printed as.
 struct Rounding {
   std::uint64_t coordinates = 0, rounded = 0, beyond = 0;
   double most = 0;  // no coordinate moved by more than this

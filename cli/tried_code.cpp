@@ -37,7 +37,7 @@ constexpr const char* kWritten =
     R"(# Written by graze try: answers lines of 18 numbers by a function of two triangles of three points each.
 # python3 THIS_FILE FILE FUNCTION
 )";
-constexpr char kVerdictOfPython[] = {
+constexpr std::pair<const char*, std::string_view> kVerdictOfPython[] = {
 #include "cli/verdict_py.inc"
 };
 constexpr const char* kCallsPython = R"(
@@ -84,8 +84,7 @@ TriedCode code_of_python(const std::string& file, const std::string& function, c
   if (function.empty() || !std::all_of(function.begin(), function.end(), fits))
     throw UsageError(fmt::format("expected FILE.py:FUNCTION, found {}", shown(file + ':' + function)));
   const std::string wrapper = out + ".py";
-  write_result(wrapper,
-               std::string(kWritten).append(std::begin(kVerdictOfPython), std::end(kVerdictOfPython)) + kCallsPython);
+  write_result(wrapper, std::string(kWritten).append(kVerdictOfPython[0].second) + kCallsPython);
   return {name_for(file), fmt::format("cmd:python3 {} {} {}", path_word(wrapper), path_word(file), function), true,
           wrapper};
 }

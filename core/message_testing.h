@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cctype>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,17 @@ inline testing::AssertionResult names(const std::string& message, const std::vec
   for (const std::string& word : words)
     if (!has_word(message, word)) return testing::AssertionFailure() << "no '" << word << "' in: " << message;
   return testing::AssertionSuccess();
+}
+
+// The message of the Error that act() throws; empty if it throws none.
+template <class Error = std::runtime_error, class Act>
+std::string error_of(const Act& act) {
+  try {
+    act();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
 }
 
 }  // namespace graze

@@ -34,6 +34,19 @@
 #include "strata/strata.h"
 
 namespace graze {
+
+struct graze_py_options {
+  const char* strata;
+  std::uint64_t pairs, seed;
+  double max_wrong;
+  int touching, coplanar, degenerate, shared;  // 1: both answers are accepted on such pairs
+};
+
+struct graze_py_result {
+  int passed, has_smallest;
+  Pair smallest;
+};
+
 namespace {
 
 constexpr std::size_t kBlock = 1024;  // pairs decided together; their verdict bits fill whole words
@@ -158,6 +171,18 @@ void find_intersections(Triangles<Real> first, Triangles<Real> second, const str
   found.clear();
   for (const auto& part : parts) found.insert(found.end(), part.begin(), part.end());
   std::sort(found.begin(), found.end());
+}
+
+TestOptions options_of(const graze_py_options& o) {
+  const auto answer = [](int either) { return either ? Answer::either : Answer::required; };
+  return {.strata = o.strata,
+          .pairs = o.pairs,
+          .seed = o.seed,
+          .max_wrong = o.max_wrong,
+          .touching = answer(o.touching),
+          .coplanar = answer(o.coplanar),
+          .degenerate = answer(o.degenerate),
+          .shared = answer(o.shared)};
 }
 
 }  // namespace
@@ -309,39 +334,6 @@ void graze_py_take(std::uint32_t* indices) {
   found = {};
 }
 
-struct graze_py_options {
-  const char* strata;
-  std::uint64_t pairs, seed;
-  double max_wrong;
-  int touching, coplanar, degenerate, shared;  // 1: both answers are accepted on such pairs
-};
-
-struct graze_py_result {
-  int passed, has_smallest;
-  std::uint64_t pairs, wrong;
-  Pair smallest;
-};
-
-}  // extern "C"
-
-namespace {
-
-TestOptions options_of(const graze_py_options& o) {
-  const auto answer = [](int either) { return either ? Answer::either : Answer::required; };
-  return {.strata = o.strata,
-          .pairs = o.pairs,
-          .seed = o.seed,
-          .max_wrong = o.max_wrong,
-          .touching = answer(o.touching),
-          .coplanar = answer(o.coplanar),
-          .degenerate = answer(o.degenerate),
-          .shared = answer(o.shared)};
-}
-
-}  // namespace
-
-extern "C" {
-
 // Decides `count` pairs; verdicts are numbers of the enum Verdict.   Returns: nonzero to end the test.
 typedef int (*graze_py_decide)(const Pair* pairs, std::uint64_t count, std::uint8_t* verdicts);
 
@@ -355,7 +347,7 @@ int graze_py_test(const char* name, graze_py_decide decide, const graze_py_optio
           if (decide(pairs, count, reinterpret_cast<std::uint8_t*>(verdicts)) != 0) throw Stopped();
         },
         options_of(*options));
-    *result = {r.passed, r.smallest.has_value(), r.pairs, r.counts.wrong(), r.smallest.value_or(Pair{})};
+    *result = {r.passed, r.smallest.has_value(), r.smallest.value_or(Pair{})};
     text = r.summary + '\n' + r.fault;
   });
 }

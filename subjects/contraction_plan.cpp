@@ -4,11 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cerrno>
-#include <fstream>
 #include <stdexcept>
 
-#include "core/cannot.h"
 #include "core/programs/kept_file.h"
 #include "core/programs/run_program.h"
 
@@ -48,10 +45,8 @@ Json kept_plan(const fs::path& file) {
 
 void keep_plan(const Json& plan, const fs::path& file) {
   const Scratch scratch(cache_folder());
-  const fs::path made = scratch.path() / "plan";
-  if (!(std::ofstream(made) << plan.dump() << '\n' << std::flush))
-    throw std::runtime_error(cannot("write", made, errno));
-  keep_file(made, file);
+  write_atomically(scratch.path() / "plan", plan.dump() + '\n');
+  keep_file(scratch.path() / "plan", file);
 }
 
 }  // namespace

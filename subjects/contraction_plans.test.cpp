@@ -152,14 +152,7 @@ TEST_F(ContractionPlans, AreRecordedAndNamedWhenABuildIsRefused) {
   EXPECT_TRUE(open_recorded(spec).empty());
   Json& toolchain = spec["subjects"][0]["toolchains"][0];
   toolchain["build"] = "0123456789abcdef";  // as another version of the compiler would build it
-  const auto refusal = [&] {
-    try {
-      open_recorded(spec);
-    } catch (const std::runtime_error& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
+  const auto refusal = [&] { return error_of([&] { open_recorded(spec); }); };
   EXPECT_NE(refusal().find("0123456789abcdef then"), std::string::npos) << refusal();
   EXPECT_EQ(refusal().find("fuses"), std::string::npos) << refusal();
   toolchain["contraction"]["f32"] = {{"plan", "3f2a3f2a3f2a3f2a"}, {"operations", 2}};

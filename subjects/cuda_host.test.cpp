@@ -43,10 +43,12 @@ struct CudaHost : testing::Test {
     return (folder / name).string();
   }
   // Opens the subject.   Returns: false without NVRTC.
-  bool opens(const std::string& subject, std::vector<std::string> flags = {}) {
+  bool opens(const std::string& subject, std::vector<std::string> flags = {}, std::vector<Toolchain> toolchains = {}) {
     try {
       Wanted wanted = parse_subject(subject);
       wanted.flags = std::move(flags);
+      wanted.timeout = 60;
+      wanted.toolchains = std::move(toolchains);
       open(wanted);
       return true;
     } catch (const std::runtime_error& error) {
@@ -97,15 +99,8 @@ TEST_F(CudaHost, HasTheLanesOfACppSource) {
 
 TEST_F(CudaHost, TakesToolchainsToo) {
   write("part.h", "#define LIMIT -1e30f\n");
-  Wanted wanted = parse_subject("tool=" + write("both.cu", "#include \"part.h\"\n" + std::string(kBoth)) + ":meet");
-  wanted.timeout = 60;
-  wanted.toolchains = selected_toolchains("x86-gcc");
-  try {
-    open(wanted);
-  } catch (const std::runtime_error& error) {
-    if (std::string(error.what()).find("cannot find NVRTC") == std::string::npos) throw;
-    GTEST_SKIP() << error.what();
-  }
+  const std::string file = write("both.cu", "#include \"part.h\"\n" + std::string(kBoth));
+  if (!opens("tool=" + file + ":meet", {}, selected_toolchains("x86-gcc"))) GTEST_SKIP() << "no NVRTC";
   const Lane *lane = find_lane("tool/f32/x86-gcc"), *cpu = find_lane("tool/f32/cpu");
   ASSERT_TRUE(lane && cpu);
   if (!lane->decide) GTEST_SKIP() << lane->evidence;

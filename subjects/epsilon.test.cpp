@@ -14,12 +14,7 @@ namespace {
 Epsilon found(std::string_view text, const std::string& name = "") { return epsilon_of("/a/mine.cpp", text, name); }
 
 std::string error_of(std::string_view text, const std::string& name = "") {
-  try {
-    found(text, name);
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "";
+  return graze::error_of<UsageError>([&] { found(text, name); });
 }
 
 TEST(Epsilon, IsTheConstantThatSoundsLikeOne) {
@@ -68,12 +63,8 @@ TEST(Epsilon, WhatIsNotObviousIsSaid) {
   EXPECT_TRUE(names(error_of("return x < 1e-6 && y < 1e-7;"), {"1e-6 at mine.cpp:1", "1e-7", "--epsilon"}));
   EXPECT_TRUE(names(error_of("int x = 4; x = 1e-3; y == 0.5;", "gap"), {"gap", "mine.cpp", "1e-3"}));
   EXPECT_TRUE(names(error_of("int main() { return 0; }"), {"no epsilon in mine.cpp", "--epsilon"}));
-  try {
-    epsilon_of("mi\033[1mne.cpp", "int main() { return 0; }", "");
-    FAIL();
-  } catch (const UsageError& error) {
-    EXPECT_TRUE(names(error.what(), {"no epsilon in mi\\x1b[1mne.cpp"}));
-  }
+  EXPECT_TRUE(names(graze::error_of<UsageError>([] { epsilon_of("mi\033[1mne.cpp", "int main() { return 0; }", ""); }),
+                    {"no epsilon in mi\\x1b[1mne.cpp"}));
   EXPECT_TRUE(names(error_of("f(a, gap = 1e-3); b, gap = 1e-3;", "gap"), {"gap", "no such constant", "1e-3"}));
   EXPECT_EQ(found("return x < 1e-6 && y < 1e-7;", "1e-7").value, 1e-7);
   EXPECT_EQ(found("float eps = 1e-6f; float gap = 0.5f;", "gap").value, 0.5);

@@ -15,12 +15,14 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <thread>
 
 #include "core/lanes/verdicts.h"
 #include "core/message_testing.h"
+#include "core/programs/child.h"
 #include "core/programs/process_state.h"
 #include "core/programs/run_program.h"
 #include "core/stop.h"
@@ -302,22 +304,12 @@ TEST_F(Hostile, ABombOfAUserWithoutANamespaceEnds) {
 
 // The memory of a child that does `work` and then waits, counted up to `most` bytes.
 std::uint64_t usage_after(const std::function<bool()>& work, std::uint64_t most = std::uint64_t{1} << 40) {
-  int ready[2];
-  EXPECT_EQ(pipe2(ready, O_CLOEXEC), 0);
-  const pid_t child = fork();
-  if (child == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (work() && write(ready[1], "y", 1) == 1) pause();
-    _exit(1);
-  }
-  close(ready[1]);
+  const Child child([&](int ready) {
+    if (work() && write(ready, "y", 1) == 1) pause();
+  });
   char said = 0;
-  EXPECT_EQ(read(ready[0], &said, 1), 1);
-  close(ready[0]);
-  const std::uint64_t bytes = usage_of_descendants(most, 64).bytes;
-  kill(child, SIGKILL);
-  waitpid(child, nullptr, 0);
-  return bytes;
+  EXPECT_EQ(read(child.pipe(), &said, 1), 1);
+  return usage_of_descendants(most, 64).bytes;
 }
 
 TEST_F(Hostile, PageTablesAreMemory) {
@@ -373,26 +365,18 @@ TEST_F(Hostile, SharedMemoryOfWhichAPartIsMappedIsMemory) {
 }
 
 TEST_F(Hostile, MemoryOfAProcessWhoseFirstThreadHasEndedIsMemory) {
-  int ready[2];
-  ASSERT_EQ(pipe2(ready, O_CLOEXEC), 0);
-  const pid_t child = fork();
-  if (child == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const Child child([](int ready) {
     written(MAP_PRIVATE);
-    std::thread([&] {
+    std::thread([ready] {
       while (process_state(getpid()) != 'Z') usleep(1000);
-      if (write(ready[1], "y", 1) == 1) pause();
+      if (write(ready, "y", 1) == 1) pause();
       _exit(1);
     }).detach();
     syscall(SYS_exit, 0);  // ends only this thread
-  }
-  close(ready[1]);
+  });
   char said = 0;
-  EXPECT_EQ(read(ready[0], &said, 1), 1);
-  close(ready[0]);
+  EXPECT_EQ(read(child.pipe(), &said, 1), 1);
   EXPECT_GE(usage_of_descendants(std::uint64_t{1} << 40, 64).bytes, kEaten);
-  kill(child, SIGKILL);
-  waitpid(child, nullptr, 0);
 }
 
 TEST_F(Hostile, ChildrenThatAreLeftInSilenceEndWithTheSubject) {
@@ -521,12 +505,8 @@ TEST_F(Hostile, AProgramWhoseFileChangesEndsTheRunWithItsName) {
   write("while read l; do echo 0; done\n");
   const std::unique_ptr<ForeignProcesses> later = subject.anew();
   for (ForeignProcesses* of : {&subject, later.get()}) {
-    try {
-      verdicts(*of);
-      ADD_FAILURE() << "expected an error";
-    } catch (const std::runtime_error& error) {
-      EXPECT_NE(std::string(error.what()).find(script.string()), std::string::npos) << error.what();
-    }
+    const std::string error = error_of([&] { verdicts(*of); });
+    EXPECT_NE(error.find(script.string()), std::string::npos) << error;
   }
   fs::remove(script);
   EXPECT_THROW(verdicts(subject), std::runtime_error);
@@ -634,8 +614,8 @@ TEST_F(Hostile, ASupervisorThatCannotEndIsEndedWithGraze) {
   if (!has_namespaces()) GTEST_SKIP() << "only a process namespace has a guardian";
   for (const bool program : {false, true}) {
     SCOPED_TRACE(program);
-    const pid_t asking = fork();
-    if (asking == 0) {
+    std::optional<Child> asking;
+    asking.emplace([&](int) {
       if (program) {
         const Scratch scratch(folder / "never");
         std::string said;
@@ -644,8 +624,7 @@ TEST_F(Hostile, ASupervisorThatCannotEndIsEndedWithGraze) {
       ForeignProcesses subject({"library", (folder / "libhostile.so").string(), "stops_itself", "f32", 3600},
                                Scalar::f32);
       verdicts(subject);
-      _exit(0);
-    }
+    });
     std::vector<pid_t> supervisors;  // each is process 1 of its namespace
     while (supervisors.empty()) {
       usleep(300'000);  // until the supervisor waits
@@ -657,8 +636,7 @@ TEST_F(Hostile, ASupervisorThatCannotEndIsEndedWithGraze) {
       }
     }
     for (const pid_t supervisor : supervisors) EXPECT_EQ(kill(supervisor, SIGSTOP), 0);
-    EXPECT_EQ(kill(asking, SIGKILL), 0);
-    EXPECT_EQ(waitpid(asking, nullptr, 0), asking);
+    asking.reset();  // kills it
     expect_nothing_left();
   }
 }
@@ -716,12 +694,12 @@ TEST_F(Hostile, FilesThatAKilledBuildLeftAreRemovedByTheNext) {
     }
     return found;
   };
-  const pid_t owner = fork();
-  if (owner == 0) {
+  std::optional<Child> owner;
+  owner.emplace([&](int) {
     const Scratch scratch(cache);
     fs::create_directories(scratch.path() / "part");
     for (;;) pause();
-  }
+  });
   while (unfinished().empty() || !fs::exists(*unfinished().begin() / "part")) usleep(1000);
   const fs::path of_owner = *unfinished().begin();
   fs::last_write_time(of_owner, fs::file_time_type::clock::now() - std::chrono::hours(25));
@@ -729,8 +707,7 @@ TEST_F(Hostile, FilesThatAKilledBuildLeftAreRemovedByTheNext) {
     const Scratch scratch(cache);
     EXPECT_EQ(unfinished(), (std::set{of_owner, scratch.path()}));
   }
-  EXPECT_EQ(kill(owner, SIGKILL), 0);
-  EXPECT_EQ(waitpid(owner, nullptr, 0), owner);
+  owner.reset();  // kills it
   EXPECT_EQ(unfinished(), std::set{of_owner});
   const Scratch scratch(cache);
   EXPECT_EQ(unfinished(), std::set{scratch.path()});
@@ -755,28 +732,24 @@ TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
     EXPECT_EQ(run_program({{"no-such-program"}, 600, namespaces}, scratch.path(), said), 127);
     EXPECT_EQ(said, "No such file or directory\n");
     EXPECT_THROW(run("setsid sleep 1000 & sleep 1001", 0.2), std::runtime_error);
-    try {  // tail keeps the last line, which has 300 MiB here, and then waits
+    const std::string error = error_of([&] {  // tail keeps the last line, which has 300 MiB here, and then waits
       run_program({{"sh", "-c", "{ head -c 300M /dev/zero; sleep 1000; } | tail -n 1"}, 600, namespaces, 100},
                   scratch.path(), said);
-      ADD_FAILURE() << "memory has no limit";
-    } catch (const std::runtime_error& error) {
-      EXPECT_TRUE(names(error.what(), {"head -c 300M", "100 MiB", "memory"})) << error.what();
-    }
+    });
+    EXPECT_TRUE(names(error, {"head -c 300M", "100 MiB", "memory"}));
     EXPECT_NE(run("truncate -s 2G large", 600), 0);  // a file without blocks
     EXPECT_FALSE(fs::exists("large") && fs::file_size("large") > (std::uint64_t{1} << 30));
     fs::remove("large");
-    const pid_t asking = fork();
-    if (asking == 0) {
-      const Scratch own(folder / "killed");
-      run_program({{"sh", "-c", "setsid sleep 1000 & echo > " + (folder / "started").string() + "; sleep 1001"},
-                   600,
-                   namespaces},
-                  own.path(), said);
-      _exit(0);
+    {
+      const Child asking([&](int) {
+        const Scratch own(folder / "killed");
+        run_program({{"sh", "-c", "setsid sleep 1000 & echo > " + (folder / "started").string() + "; sleep 1001"},
+                     600,
+                     namespaces},
+                    own.path(), said);
+      });
+      while (!fs::exists(folder / "started")) usleep(1000);
     }
-    while (!fs::exists(folder / "started")) usleep(1000);
-    kill(asking, SIGKILL);
-    waitpid(asking, nullptr, 0);
     expect_nothing_left();
     fs::remove(folder / "started");
     EXPECT_EQ(count_in(folder / "killed"), 0u);
@@ -813,18 +786,14 @@ TEST_F(Hostile, CodeThatStopsItsProcessGroupStopsOnlyItself) {
     expect_nothing_left();
 
     code.timeout = 3600;
-    const pid_t asking = fork();
-    if (asking == 0) {
-      ForeignProcesses(code, Scalar::f32).failure(*bad);
-      _exit(0);
-    }
     const auto one_is_stopped = [] {
       const std::set<pid_t> all = left_over();
       return std::any_of(all.begin(), all.end(), is_stopped);
     };
-    while (!one_is_stopped()) usleep(1000);
-    EXPECT_EQ(kill(asking, SIGKILL), 0);
-    EXPECT_EQ(waitpid(asking, nullptr, 0), asking);
+    {
+      const Child asking([&](int) { ForeignProcesses(code, Scalar::f32).failure(*bad); });
+      while (!one_is_stopped()) usleep(1000);
+    }
     expect_nothing_left();
   }
 }
@@ -927,15 +896,14 @@ TEST_F(Hostile, ProgramsThatEndAtOnceCrashOnEveryPair) {
 TEST_F(Hostile, NothingOutlivesTheProcessThatAsks) {
   for (const char* name : {"leaves_children_silently", "forks_without_end", "stops_itself"}) {
     for (const bool namespaces : {true, false}) {
-      const pid_t asking = fork();
-      if (asking == 0) {
-        ForeignProcesses subject(attack(name, namespaces, 3600), Scalar::f32);
-        verdicts(subject);
-        pause();
+      {
+        const Child asking([&](int) {
+          ForeignProcesses subject(attack(name, namespaces, 3600), Scalar::f32);
+          verdicts(subject);
+          pause();
+        });
+        usleep(300'000);
       }
-      usleep(300'000);
-      kill(asking, SIGKILL);
-      waitpid(asking, nullptr, 0);
       expect_nothing_left();
     }
   }

@@ -137,28 +137,26 @@ void LineProtocol::ask(const Question& question, const float* pairs, std::uint64
   expect_silence(kSilence);
 }
 
-std::string LineProtocol::first_line(const std::string& in_answer_to, double seconds) {
-  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  if (write(pipes_.to, in_answer_to.data(), in_answer_to.size()) < 0) return "";
-  close(pipes_.to);
-  pipes_.to = -1;
+std::string described_by(const std::string& command) {
+  const Pipes pipes = start_program(command);
+  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(kDescribeSeconds);
+  constexpr std::string_view kAsked = "describe\n";
+  if (write(pipes.to, kAsked.data(), kAsked.size()) < 0) return "";
+  close(pipes.to);
+  Lines lines;
   std::string line;
   std::size_t bytes = 0;
-  while (!lines_.take(line)) {
+  while (!lines.take(line)) {
     const std::chrono::duration<double> left = until - std::chrono::steady_clock::now();
-    pollfd ready{pipes_.from, POLLIN, 0};
+    pollfd ready{pipes.from, POLLIN, 0};
     if (left.count() <= 0 || poll(&ready, 1, static_cast<int>(1000 * left.count()) + 1) <= 0) return kNoAnswer;
     char some[4096];
-    const ssize_t count = read(pipes_.from, some, sizeof some);
+    const ssize_t count = read(pipes.from, some, sizeof some);
     if (count <= 0) return "";
     if ((bytes += static_cast<std::size_t>(count)) >= sizeof(Loaded::text)) return kLongAnswer;
-    lines_.add(some, static_cast<std::size_t>(count));
+    lines.add(some, static_cast<std::size_t>(count));
   }
   return line;
-}
-
-std::string described_by(const std::string& command) {
-  return LineProtocol(command).first_line("describe\n", kDescribeSeconds);
 }
 
 }  // namespace graze::subjects

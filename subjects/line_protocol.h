@@ -48,10 +48,6 @@ class LineProtocol {
   // Throws: std::runtime_error when the program ends, gives an invalid answer, or writes unexpected output.
   void ask(const Question& question, const float* pairs, std::uint64_t* words);
 
-  // Sends a line, closes the program's input, and returns the first line of its answer. Empty when the program ends
-  // without an answer; kLongAnswer if the answer does not fit into Loaded; kNoAnswer after `seconds`.
-  std::string first_line(const std::string& in_answer_to, double seconds);
-
  private:
   void send(const std::string& lines);
   void read_some();
@@ -63,8 +59,8 @@ class LineProtocol {
   Lines lines_;
 };
 
-// The program's answer to `describe`; kNoAnswer if it gives none in time and does not end; kLongAnswer if the answer is
-// too long.
+// The first line of the program's answer to `describe`. Empty when the program ends without an answer; kNoAnswer if it
+// gives none in time and does not end; kLongAnswer if the answer does not fit into Loaded.
 inline constexpr const char* kNoAnswer = "?no answer within 10 s";
 inline constexpr const char* kLongAnswer = "?an answer of 8 KiB or more";
 std::string described_by(const std::string& command);

@@ -26,20 +26,9 @@ namespace {
 constexpr std::size_t kMostFailuresKept = std::size_t{1} << 20;
 
 Verdict verdict_of(signed char answer) {
-  switch (answer) {
-    case kDisjoint:
-      return Verdict::disjoint;
-    case kIntersects:
-      return Verdict::intersects;
-    case kCrashed:
-      return Verdict::crashed;
-    case kTimedOut:
-      return Verdict::timed_out;
-    case kUnstable:
-      return Verdict::unstable;
-    default:
-      return Verdict::declined;
-  }
+  constexpr Verdict kVerdicts[] = {Verdict::disjoint, Verdict::intersects, Verdict::crashed, Verdict::timed_out,
+                                   Verdict::unstable};  // from kDisjoint to kUnstable
+  return answer < kDisjoint || answer > kUnstable ? Verdict::declined : kVerdicts[answer];
 }
 
 // A subject's text converted to valid UTF-8, as results require.

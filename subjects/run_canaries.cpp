@@ -3,12 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 
-#include "core/cannot.h"
 #include "core/programs/run_program.h"
 #include "core/text.h"
 #include "subjects/source_build.h"
@@ -19,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr unsigned char kSourceBytes[] = {
-#include "subjects/canaries_c.inc"
+constexpr std::pair<const char*, std::string_view> kSource[] = {
+#include "subjects/canaries.inc"
 };
 
 std::string complaint_in(const std::string& output) {
@@ -44,9 +41,7 @@ std::string run_canaries(const std::string& compiler, const std::string& run) {
   const Scratch scratch(cache_folder());
   const bool cxx = is_cxx(compiler);
   const fs::path source = scratch.path() / (cxx ? "canaries.cpp" : "canaries.c"), program = scratch.path() / "canaries";
-  std::ofstream out(source, std::ios::binary);
-  if (!out.write(reinterpret_cast<const char*>(kSourceBytes), sizeof kSourceBytes).flush())
-    throw std::runtime_error(cannot("write", source, errno));
+  write_atomically(source, kSource[0].second);
   // The standard for subjects, unless the command names a standard itself.
   const char* standard = compiler.find("-std=") != compiler.npos ? "" : cxx ? "-std=gnu++20" : "-std=gnu11";
   int status = 0;

@@ -28,22 +28,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr unsigned char kHeaderBytes[] = {
-#include "subjects/subject_h.inc"
-};
-constexpr unsigned char kProgramBytes[] = {
-#include "subjects/program_h.inc"
-};
-constexpr unsigned char kCudaHostBytes[] = {
-#include "subjects/cuda_host_h.inc"
-};
-constexpr const char* kCudaHost = "#include <graze/cuda_host.h>\n";
+constexpr std::string_view kCudaHost = "#include <graze/cuda_host.h>\n";
 // Headers below include/ in the cache folder. On the host, a CUDA source includes the headers in cuda/, not the
 // toolkit's.
-const std::pair<const char*, std::string> kHeaders[] = {
-    {"graze/subject.h", {std::begin(kHeaderBytes), std::end(kHeaderBytes)}},
-    {"graze/program.h", {std::begin(kProgramBytes), std::end(kProgramBytes)}},
-    {"graze/cuda_host.h", {std::begin(kCudaHostBytes), std::end(kCudaHostBytes)}},
+constexpr std::pair<std::string_view, std::string_view> kHeaders[] = {
+#include "subjects/headers.inc"
     {"cuda/cuda.h", kCudaHost},
     {"cuda/cuda_runtime.h", kCudaHost},
     {"cuda/cuda_runtime_api.h", kCudaHost},

@@ -35,14 +35,10 @@ using Json = nlohmann::ordered_json;
 // A subject that is open. The lane table points to entries, so they are never freed.
 struct Entry {
   Opened opened;
-  std::string source, coplanar, degenerate, order;
+  std::string source, coplanar, degenerate;  // of `info`
   AlgorithmInfo info;
-  struct Running {
-    std::string within_subject;  // "f64/cpu"
-    std::unique_ptr<ForeignProcesses> processes;
-  };
-  std::vector<Running> running;
-  std::vector<cuda::CudaBuild> builds;                   // of CUDA code: one for each lane
+  std::map<std::string, std::unique_ptr<ForeignProcesses>> running;  // by the lane's name within the subject: "f64/cpu"
+  std::vector<cuda::CudaBuild> builds;                               // of CUDA code: one for each lane
   std::vector<std::shared_ptr<const SealedCopy>> twins;  // one for each build; null if the build has no twin
   struct FromToolchain {
     Toolchain toolchain;
@@ -154,8 +150,7 @@ void describe_info(Entry& entry, const Description& description) {
   if (!description.version.empty()) entry.source += ", version " + description.version;
   entry.coplanar = says(description, kOutsideCoplanar, "not said");
   entry.degenerate = says(description, kOutsideDegenerate, "not said");
-  entry.order = "not said";
-  entry.info = {entry.opened.wanted.name, entry.source, entry.coplanar, entry.degenerate, entry.order, false};
+  entry.info = {entry.opened.wanted.name, entry.source, entry.coplanar, entry.degenerate, "not said", false};
 }
 
 // The row of a lane that has no processes yet.
@@ -164,9 +159,9 @@ Lane lane_row(const AlgorithmInfo* info, Scalar scalar, Variant variant, unsigne
 }
 
 void add_lane(Entry& entry, std::vector<Lane>& lanes, Code code, Lane lane) {
-  const auto& running = entry.running.emplace_back(lane.lane_name().within_subject(),
-                                                   std::make_unique<ForeignProcesses>(std::move(code), lane.scalar));
-  lane.decide = *running.processes;
+  std::unique_ptr<ForeignProcesses>& processes = entry.running[lane.lane_name().within_subject()];
+  processes = std::make_unique<ForeignProcesses>(std::move(code), lane.scalar);
+  lane.decide = *processes;
   lanes.push_back(std::move(lane));
 }
 
@@ -352,8 +347,8 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded,
       throw UsageError(
           fmt::format("--subject {0}: a published algorithm has the name {0}; choose another", wanted.name));
   }
-  entries().push_back({wish, "", "", "", "", {}, {}, {}, {}});
-  Entry& entry = entries().back();
+  Entry& entry = entries().emplace_back();
+  entry.opened = wish;
   try {
     if (wish.kind == kPublished || wish.kind == "opencl") {
       expect_code(wish, recorded);
@@ -502,10 +497,9 @@ const Toolchain* toolchain_of(const Lane& lane) {
 ForeignProcesses& processes_of(const Lane& lane) {
   const LaneName name = lane.lane_name();
   const Entry* const entry = find_entry(name.subject);
-  for (std::size_t i = 0; entry && i < entry->running.size(); ++i) {
-    if (entry->running[i].within_subject == name.within_subject()) return *entry->running[i].processes;
-  }
-  throw std::logic_error(lane.id + ": expected a lane of foreign code");
+  if (!entry || !entry->running.contains(name.within_subject()))
+    throw std::logic_error(lane.id + ": expected a lane of foreign code");
+  return *entry->running.at(name.within_subject());
 }
 
 namespace {
@@ -576,14 +570,6 @@ std::map<std::string, std::string> recorded_builds(const Json& row) {
   return builds;
 }
 
-// The contraction plan of a toolchain in a row of record(); null if it has none.
-Json recorded_contraction(const Json& row, const std::string& toolchain) {
-  for (const Json& of : row.value("toolchains", Json::array())) {
-    if (of.at("name") == toolchain) return of.value("contraction", Json());
-  }
-  return nullptr;
-}
-
 }  // namespace
 
 std::vector<std::string> open_recorded(const Json& spec, bool on_device, Changed changed) {
@@ -607,16 +593,16 @@ std::vector<std::string> open_recorded(const Json& spec, bool on_device, Changed
       if (changed == Changed::refused) throw std::runtime_error(what);
       differs.push_back(what);
     }
-    const std::map<std::string, std::string> builds = recorded_builds(row);
+    const Json toolchains = row.value("toolchains", Json::array());
     const Entry& entry = *find_entry(name);
     for (const Entry::FromToolchain& made : entry.from_toolchains) {
-      const auto then = builds.find(made.toolchain.name);
-      if (then == builds.end() || made.build.empty() || made.build == then->second) continue;
+      const auto then = std::find_if(toolchains.begin(), toolchains.end(),
+                                     [&](const Json& of) { return of.at("name") == made.toolchain.name; });
+      if (then == toolchains.end() || made.build.empty() || then->at("build") == made.build) continue;
       std::string what = fmt::format("{}: {} does not build the code that the campaign ran: {} then, {} now", name,
-                                     made.toolchain.name, then->second, made.build);
+                                     made.toolchain.name, then->at("build").get<std::string>(), made.build);
       const Json plan = plan_of(entry.opened, made.toolchain, made.build);
-      if (const std::string fused = plan_difference(recorded_contraction(row, made.toolchain.name), plan);
-          !fused.empty())
+      if (const std::string fused = plan_difference(then->value("contraction", Json()), plan); !fused.empty())
         what += "; " + fused;
       if (changed == Changed::refused) throw std::runtime_error(what);
       differs.push_back(what);

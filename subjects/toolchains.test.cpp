@@ -42,14 +42,6 @@ struct Toolchains : testing::Test {
     wanted.toolchains = selected_toolchains(list);
     open(wanted);
   }
-  static std::string error_of(const std::string& text) {
-    try {
-      parse_toolchains("mine.toml", text);
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "none";
-  }
 };
 
 TEST_F(Toolchains, FilesAreRead) {
@@ -88,7 +80,10 @@ TEST_F(Toolchains, BadFilesGetOneLine) {
       {"[[toolchain]]\nname = \"x\"\ncxx = \"c\"\n[[toolchain]]\nname = \"x\"\ncxx = \"c\"",
        "mine.toml:4: expected another name, found \"x\" again"},
       {"[[", "mine.toml:1: expected TOML, found "}};
-  for (const auto& [text, message] : cases) EXPECT_EQ(error_of(text).rfind(message, 0), 0u) << error_of(text);
+  for (const auto& [text, message] : cases) {
+    const std::string error = error_of([&] { parse_toolchains("mine.toml", text); });
+    EXPECT_TRUE(error.starts_with(message)) << error;
+  }
 }
 
 TEST_F(Toolchains, AreSelectedByNameAndByFile) {

@@ -106,9 +106,9 @@ std::string with_commas(std::uint64_t count) {
   return text;
 }
 
-std::string percent(std::uint64_t count, std::uint64_t of) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g %%", 100.0 * static_cast<double>(count) / static_cast<double>(of));
+std::string percent(double value, int digits) {
+  char text[32];  // not with to_chars, whose tables would enlarge the WebAssembly
+  std::snprintf(text, sizeof text, "%.*g %%", digits, value);
   return text;
 }
 
@@ -117,12 +117,6 @@ std::string in_words(Verdict verdict, const Relation& relation) {
   if (!relation.intersects()) return said + ", but the triangles are disjoint";
   return said + ", but the triangles meet in " + (relation.contact == Contact::area ? "an " : "a ") +
          std::string(name(relation.contact));
-}
-
-std::string shortest(double value) {
-  char text[32];  // not with to_chars, whose tables would enlarge the WebAssembly
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
 }
 
 struct Row {
@@ -230,8 +224,8 @@ TestResult tested_with(std::string_view name, const Tested& tested, const std::v
   result.smallest = smallest_like(simplest->first, tested);
   result.fault = in_words(tested.decide(*result.smallest), relation_of(*result.smallest));
   result.summary = std::string(name) + " is wrong on " + with_commas(wrong) + " of " + with_commas(result.pairs) +
-                   " pairs (" + percent(wrong, result.pairs) +
-                   (max_wrong > 0 ? "; " + shortest(100 * max_wrong) + " % are accepted" : "") +
+                   " pairs (" + percent(100.0 * static_cast<double>(wrong) / static_cast<double>(result.pairs), 3) +
+                   (max_wrong > 0 ? "; " + percent(100 * max_wrong, 6) + " are accepted" : "") +
                    "): " + counts_in_words(result.counts) + ".\n" + table(rows);
   result.message = result.summary + pair_in_words(name, *result.smallest, result.fault);
   return result;

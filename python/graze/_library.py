@@ -35,8 +35,6 @@ class Result(ctypes.Structure):
     _fields_ = [
         ("passed", ctypes.c_int),
         ("has_smallest", ctypes.c_int),
-        ("pairs", ctypes.c_uint64),
-        ("wrong", ctypes.c_uint64),
         ("smallest", ctypes.c_float * 18),
     ]
 

@@ -23,8 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr unsigned char kBuiltIn[] = {
-#include "subjects/toolchains/built_in_toml.inc"
+constexpr std::pair<const char*, std::string_view> kBuiltIn[] = {
+#include "subjects/toolchains/built_in.inc"
 };
 
 constexpr std::size_t kMostBytes = 1 << 20;
@@ -147,8 +147,7 @@ Toolchain toolchain_of_json(const nlohmann::ordered_json& row) {
 }
 
 const std::vector<Toolchain>& built_in_toolchains() {
-  static const std::vector<Toolchain> all =
-      parse_toolchains("built_in.toml", {reinterpret_cast<const char*>(kBuiltIn), sizeof kBuiltIn});
+  static const std::vector<Toolchain> all = parse_toolchains(kBuiltIn[0].first, kBuiltIn[0].second);
   return all;
 }
 

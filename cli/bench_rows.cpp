@@ -15,7 +15,7 @@
 #include "core/lanes/lanes.h"
 #include "cuda/query/device_query.h"
 #include "cuda/query/device_rows.h"
-#include "oracle/aabb_tree.h"
+#include "oracle/cgal_triangles.h"
 #include "strata/strata.h"
 #ifdef GRAZE_EMBREE
 #include "cli/embree_tree.h"

@@ -156,9 +156,8 @@ fuzz::Campaign campaign_of(const FuzzOptions& options, const fuzz::SelectedLanes
   Json mesh_spec;
   if (!options.mesh.empty()) {
     for (const std::string& file : options.mesh) expect_utf8("--mesh", file);
-    const auto mesh = std::make_shared<strata::MeshPairs>(strata::read_mesh_pairs(
-        options.mesh[0],
-        options.mesh.size() > 1 ? std::optional<std::filesystem::path>(options.mesh[1]) : std::nullopt));
+    const auto mesh = std::make_shared<strata::MeshPairs>(
+        strata::read_bodies(std::vector<std::filesystem::path>(options.mesh.begin(), options.mesh.end())));
     const bool rounds = options.coordinates != PairTypes::f64 || options.exact_input;
     say_notes(rounds ? mesh->notes : mesh->notes_of_doubles, mesh->rounding, options.exact_input);
     for (strata::PairSource& source : strata::mesh_sources(mesh, options.coordinates))

@@ -38,7 +38,7 @@ fuzz::SelectedLanes lanes_of_campaign(const FuzzOptions& options);
 
 // The campaign of these options. `left_out`: receives the strata that the scene cannot contain.
 // Requires: `under_test` outlives the campaign.
-// Throws: as drawn, strata::read_mesh_pairs and fuzz::choose_engines.
+// Throws: as drawn, strata::read_bodies and fuzz::choose_engines.
 fuzz::Campaign campaign_of(const FuzzOptions& options, const fuzz::SelectedLanes& under_test,
                            std::vector<strata::LeftOut>& left_out);
 

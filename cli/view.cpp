@@ -111,7 +111,7 @@ Verdict exact_verdict(const AnyPair& pair) {
 // has more digits than float32 holds, they are pairs of doubles.
 void add_mesh(const fs::path& file, bool exact_input, Viewed& viewed) {
   expect_utf8("the mesh", file.string());
-  const strata::MeshPairs mesh = strata::read_mesh_pairs(file);
+  const strata::MeshPairs mesh = strata::read_bodies({file});
   const bool in_doubles = mesh.rounding.beyond > 0;
   say_notes(in_doubles && !exact_input ? mesh.notes_of_doubles : mesh.notes, mesh.rounding, exact_input);
   const std::size_t shown = std::min(mesh.triangles.size(), reports::kMostViewedTriangles);

@@ -75,7 +75,7 @@ std::vector<PairsToTime<float>> make_sources() {
     sources.push_back(source_of(std::string(row.id), pairs));
   }
   if (const char* file = std::getenv("GRAZE_MESH"); file && *file) {
-    const strata::MeshPairs mesh = strata::read_mesh_pairs(file);
+    const strata::MeshPairs mesh = strata::read_bodies({file});
     pairs.resize(std::min(kPairs, mesh.size()));  // evenly spaced in the mesh
     for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = mesh.pair(i * mesh.size() / pairs.size());
     if (!pairs.empty()) sources.push_back(source_of("mesh", pairs));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh's triangles as CGAL triangles; `graze bench --between` compares CGAL's do_intersect with the exact decision.
+// Triangles as CGAL's triangles, for `graze bench`, which compares the exact decision with CGAL.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 
@@ -11,6 +12,7 @@
 
 namespace graze::oracle {
 
+// A mesh's triangles, for CGAL's do_intersect (`graze bench --between`).
 class CgalTriangles {
  public:
   using Triangle = std::array<Vec3<float>, 3>;
@@ -25,6 +27,20 @@ class CgalTriangles {
  private:
   struct Converted;
   std::unique_ptr<const Converted> converted_;
+};
+
+// CGAL's tree of bounding boxes over an array of triangles, for queries.
+class AabbTree {
+ public:
+  // Builds the tree without triangles that have no area, which CGAL's trees reject.   Requires: finite coordinates.
+  explicit AabbTree(std::span<const std::array<float, 9>> triangles);
+  ~AabbTree();
+  // How many of the tree's triangles intersect the reference, exactly.   Requires: the reference has an area.
+  std::uint64_t count(const std::array<float, 9>& reference) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
 };
 
 }  // namespace graze::oracle

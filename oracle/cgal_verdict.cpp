@@ -81,8 +81,9 @@ Verdict verdict_in(const Triangles& pair) {
   return hulls_intersect(hull<Kernel>(pair.a), hull<Kernel>(pair.b)) ? Verdict::intersects : Verdict::disjoint;
 }
 
-template <class Real>
-Verdict verdict_of_pair(const BasicPair<Real>& pair) {
+}  // namespace
+
+Verdict cgal_verdict(const DoublePair& pair) {
   const Grid grid = grid_of(pair);
   if (grid.is_small()) return verdict_in<SmallKernel>(small_integers(pair, grid));
   if (grid.exponent < -kWideExponents || grid.exponent + grid.bits > kWideExponents)
@@ -90,10 +91,6 @@ Verdict verdict_of_pair(const BasicPair<Real>& pair) {
   return verdict_in<WideKernel>(pair);
 }
 
-}  // namespace
-
-Verdict cgal_verdict(const Pair& pair) { return verdict_of_pair(pair); }
-Verdict cgal_verdict(const DoublePair& pair) { return verdict_of_pair(pair); }
 Verdict cgal_verdict(const LargePair& pair) { return verdict_in<LargeKernel>(pair); }
 
 }  // namespace graze::oracle

@@ -76,14 +76,12 @@ struct Hulls : BasicPair<mpq_class> {
 };
 
 Hulls hulls_of(const AnyPair& pair) {
-  return visit(pair, [](const auto& own) {
-    const Grid grid = grid_of(own);
-    const LargePair whole = large_integers(own, grid);
-    Hulls hulls;
-    hulls.exponent = grid.exponent;
-    for (int i = 0; i < kCoordinates; ++i) coordinates(hulls)[i] = coordinates(whole)[i];
-    return hulls;
-  });
+  const Grid grid = grid_of(pair.doubles);
+  const LargePair whole = large_integers(pair.doubles, grid);
+  Hulls hulls;
+  hulls.exponent = grid.exponent;
+  for (int i = 0; i < kCoordinates; ++i) coordinates(hulls)[i] = coordinates(whole)[i];
+  return hulls;
 }
 
 std::vector<Vec3<double>> rounded(const Polygon& points, int exponent) {

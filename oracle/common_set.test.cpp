@@ -11,7 +11,6 @@
 namespace graze::oracle {
 namespace {
 
-using oracle_test::hex;
 using oracle_test::PairSource;
 using Points = std::vector<Vec3<double>>;
 

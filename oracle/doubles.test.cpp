@@ -13,7 +13,6 @@
 namespace graze::oracle {
 namespace {
 
-using oracle_test::hex;
 using oracle_test::Kind;
 using Source = oracle_test::BasicPairSource<double>;
 

@@ -267,8 +267,9 @@ Contact contact_of_pair(Workspace<Number>& work) {
   return flat_with_triangle(work, b, a);
 }
 
-template <class Real>
-Contact contact_of_coordinates(const BasicPair<Real>& pair) {
+}  // namespace
+
+Contact gmp_contact(const DoublePair& pair) {
   const Grid grid = grid_of(pair);
   if (grid.is_small()) {
     Workspace<TwoLimbs> work;
@@ -286,11 +287,6 @@ Contact contact_of_coordinates(const BasicPair<Real>& pair) {
   }
   return contact_of_pair(work);
 }
-
-}  // namespace
-
-Contact gmp_contact(const Pair& pair) { return contact_of_coordinates(pair); }
-Contact gmp_contact(const DoublePair& pair) { return contact_of_coordinates(pair); }
 
 Contact gmp_contact(const LargePair& pair) {
   Workspace<Register> work;

@@ -33,16 +33,13 @@ Hulls hulls_of(const BasicPair<Integer>& pair) {
   return {dimension(a), dimension(b), coplanar};
 }
 
-template <class Real>
-Hulls hulls_of_pair(const BasicPair<Real>& pair) {
+}  // namespace
+
+Hulls hulls(const DoublePair& pair) {
   const Grid grid = grid_of(pair);
   return grid.is_small() ? hulls_of(widened(small_integers(pair, grid))) : hulls_of(large_integers(pair, grid));
 }
 
-}  // namespace
-
-Hulls hulls(const Pair& pair) { return hulls_of_pair(pair); }
-Hulls hulls(const DoublePair& pair) { return hulls_of_pair(pair); }
 Hulls hulls(const LargePair& pair) { return hulls_of(pair); }
 
 }  // namespace graze::oracle

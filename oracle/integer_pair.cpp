@@ -1,28 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Splits the bits of a float32 or double into mantissa and exponent; see integer_pair.h.
+// Splits the bits of a double into mantissa and exponent; see integer_pair.h.
 #include "oracle/integer_pair.h"
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 
 namespace graze::oracle {
 namespace {
 
-// |value| = mantissa * 2^exponent, mantissa < 2^24 or 2^53; subnormals share the exponent of the smallest normals.
+// |value| = mantissa * 2^exponent, mantissa < 2^53; subnormals share the exponent of the smallest normals.
 struct Parts {
   std::uint64_t mantissa;
   int exponent;
   bool negative;
 };
-
-Parts split(float value) {
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  const std::uint32_t biased = (bits >> 23) & 0xffu;
-  const std::uint32_t fraction = bits & 0x7fffffu;
-  const std::uint32_t hidden = biased != 0 ? 0x800000u : 0u;
-  return {fraction | hidden, static_cast<int>(std::max(biased, 1u)) - 150, (bits >> 31) != 0};
-}
 
 Parts split(double value) {
   const auto bits = std::bit_cast<std::uint64_t>(value);
@@ -41,8 +32,7 @@ std::int64_t shifted(const Parts& parts, int shift) {
 
 }  // namespace
 
-template <class Real>
-Grid grid_of(const BasicPair<Real>& pair) {
+Grid grid_of(const DoublePair& pair) {
   int lowest = 1 << 11, highest = -(1 << 11);
   for (int i = 0; i < kCoordinates; ++i) {
     const Parts parts = split(coordinates(pair)[i]);
@@ -53,8 +43,7 @@ Grid grid_of(const BasicPair<Real>& pair) {
   return highest < lowest ? Grid{} : Grid{lowest, highest - lowest};
 }
 
-template <class Real>
-SmallPair small_integers(const BasicPair<Real>& pair, const Grid& grid) {
+SmallPair small_integers(const DoublePair& pair, const Grid& grid) {
   SmallPair result;
   std::int64_t* out = &result.a[0].x;
   for (int i = 0; i < kCoordinates; ++i) {
@@ -65,19 +54,17 @@ SmallPair small_integers(const BasicPair<Real>& pair, const Grid& grid) {
   return result;
 }
 
-template <class Real>
-void set_integer(mpz_t out, Real coordinate, const Grid& grid) {
+void set_integer(mpz_t out, double coordinate, const Grid& grid) {
   const Parts parts = split(coordinate);
   const int shift = parts.exponent - grid.exponent;
   if (parts.mantissa == 0) return mpz_set_ui(out, 0);
-  if (shift < 63 - std::numeric_limits<Real>::digits) return mpz_set_si(out, shifted(parts, shift));
+  if (shift < 63 - 53) return mpz_set_si(out, shifted(parts, shift));  // a mantissa has 53 bits
   mpz_set_ui(out, parts.mantissa);
   mpz_mul_2exp(out, out, static_cast<mp_bitcnt_t>(shift));
   if (parts.negative) mpz_neg(out, out);
 }
 
-template <class Real>
-LargePair large_integers(const BasicPair<Real>& pair, const Grid& grid) {
+LargePair large_integers(const DoublePair& pair, const Grid& grid) {
   LargePair result;
   for (int i = 0; i < kCoordinates; ++i) {
     Vec3<mpz_class>& point = i < 9 ? result.a[i / 3] : result.b[(i - 9) / 3];
@@ -85,14 +72,5 @@ LargePair large_integers(const BasicPair<Real>& pair, const Grid& grid) {
   }
   return result;
 }
-
-template Grid grid_of(const Pair&);
-template Grid grid_of(const DoublePair&);
-template SmallPair small_integers(const Pair&, const Grid&);
-template SmallPair small_integers(const DoublePair&, const Grid&);
-template void set_integer(mpz_t, float, const Grid&);
-template void set_integer(mpz_t, double, const Grid&);
-template LargePair large_integers(const Pair&, const Grid&);
-template LargePair large_integers(const DoublePair&, const Grid&);
 
 }  // namespace graze::oracle

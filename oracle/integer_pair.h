@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair as integers: every coordinate, float32 or double, is an integer times one power of two that all 18 share. That
-// factor does not affect the signs of determinants. Lengths are multiplied by it at the end.
+// A pair as integers: every coordinate is an integer times one power of two that all 18 share. That factor does not
+// affect the signs of determinants. Lengths are multiplied by it at the end. A pair of float32 is taken as doubles.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +27,8 @@ struct Grid {
 };
 
 // Requires: finite coordinates.   Returns: the coarsest such grid.
-template <class Real>
-Grid grid_of(const BasicPair<Real>& pair);
+Grid grid_of(const DoublePair& pair);
+inline Grid grid_of(const Pair& pair) { return grid_of(in_doubles(pair)); }
 
 using SmallPair = BasicPair<std::int64_t>;
 using WidePair = BasicPair<__int128>;  // of at most kSmallBits bits, so that products of three differences fit
@@ -36,8 +36,8 @@ using LargePair = BasicPair<mpz_class>;
 
 // The pair's coordinates divided by 2^grid.exponent.
 // Requires: grid is the pair's, and is_small().   Exact: always.
-template <class Real>
-SmallPair small_integers(const BasicPair<Real>& pair, const Grid& grid);
+SmallPair small_integers(const DoublePair& pair, const Grid& grid);
+inline SmallPair small_integers(const Pair& pair, const Grid& grid) { return small_integers(in_doubles(pair), grid); }
 
 inline WidePair widened(const SmallPair& small) {
   WidePair wide;
@@ -47,12 +47,11 @@ inline WidePair widened(const SmallPair& small) {
 
 // Like small_integers, for one coordinate of any size. Stores the result in an initialised GMP integer.
 // Requires: grid is that of the coordinate's pair.   Exact: always.
-template <class Real>
-void set_integer(mpz_t out, Real coordinate, const Grid& grid);
+void set_integer(mpz_t out, double coordinate, const Grid& grid);
 
 // The pair's coordinates divided by 2^grid.exponent.
-template <class Real>
-LargePair large_integers(const BasicPair<Real>& pair, const Grid& grid);
+LargePair large_integers(const DoublePair& pair, const Grid& grid);
+inline LargePair large_integers(const Pair& pair, const Grid& grid) { return large_integers(in_doubles(pair), grid); }
 
 template <class Number>
 bool is_zero(const Vec3<Number>& v) {

@@ -5,9 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <random>
-#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -123,18 +121,6 @@ BasicPair<Real> turned(const BasicPair<Real>& pair, int way) {
     coordinates(result)[i] = (way / 6 >> i % 3 & 1) != 0 ? -c : c;
   }
   return result;
-}
-
-// For failure messages: the 18 coordinates as hex floats.
-template <class Real>
-std::string hex(const BasicPair<Real>& pair) {
-  std::string text;
-  char number[32];
-  for (int i = 0; i < kCoordinates; ++i) {
-    std::snprintf(number, sizeof number, " %a", static_cast<double>(coordinates(pair)[i]));
-    text += number;
-  }
-  return text;
 }
 
 }  // namespace graze::oracle_test

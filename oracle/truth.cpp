@@ -13,17 +13,6 @@ namespace graze::oracle {
 namespace {
 
 template <class Real>
-std::string hex_coordinates(const BasicPair<Real>& pair) {
-  std::string text;
-  char number[32];
-  for (int i = 0; i < kCoordinates; ++i) {
-    std::snprintf(number, sizeof number, " %a", static_cast<double>(coordinates(pair)[i]));
-    text += number;
-  }
-  return text;
-}
-
-template <class Real>
 Truth truth_of_pair(const BasicPair<Real>& pair) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   if (!is_finite(pair)) return {{Verdict::declined, Contact::unknown, 0, {}}, kNaN, kNaN};
@@ -31,7 +20,7 @@ Truth truth_of_pair(const BasicPair<Real>& pair) {
   const Contact contact = gmp_contact(pair);
   if ((verdict == Verdict::disjoint) != (contact == Contact::none)) {
     throw OracleMismatch("oracle: CGAL says " + std::string(name(verdict)) + ", GMP finds contact " +
-                         std::string(name(contact)) + " of" + hex_coordinates(pair));
+                         std::string(name(contact)) + " of" + hex(pair));
   }
   const Grid grid = grid_of(pair);
   const LargePair large = large_integers(pair, grid);
@@ -41,6 +30,16 @@ Truth truth_of_pair(const BasicPair<Real>& pair) {
 }
 
 }  // namespace
+
+std::string hex(const DoublePair& pair) {
+  std::string text;
+  char number[32];
+  for (int i = 0; i < kCoordinates; ++i) {
+    std::snprintf(number, sizeof number, " %a", coordinates(pair)[i]);
+    text += number;
+  }
+  return text;
+}
 
 std::string margin_words(double size) {
   using Limits = std::numeric_limits<double>;

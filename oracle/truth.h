@@ -32,22 +32,26 @@ inline Truth truth(const AnyPair& pair) {
   return visit(pair, [](const auto& own) { return oracle::truth(own); });
 }
 
+// For messages: the 18 coordinates as hex floats, each after a space.
+std::string hex(const DoublePair& pair);
+inline std::string hex(const Pair& pair) { return hex(in_doubles(pair)); }
+
 // A margin's size in words: "0.25", "less than 1e-323", "at least 1.79e308".
 std::string margin_words(double size);
 
 // CGAL's decision: its triangle test for proper triangles, and its tests of segments and points for degenerate ones.
 // Requires: finite coordinates.   Exact: always.
-Verdict cgal_verdict(const Pair& pair);
 Verdict cgal_verdict(const DoublePair& pair);
+inline Verdict cgal_verdict(const Pair& pair) { return cgal_verdict(in_doubles(pair)); }
 
 // The independent decision: the dimension of the common set, from signs of determinants of GMP integers.
 // Requires: finite coordinates.   Exact: always. The pair intersects if this is not Contact::none.
-Contact gmp_contact(const Pair& pair);
 Contact gmp_contact(const DoublePair& pair);
+inline Contact gmp_contact(const Pair& pair) { return gmp_contact(in_doubles(pair)); }
 
 // The hulls, by exact ranks of integer vectors.   Requires: finite coordinates.   Exact: always.
-Hulls hulls(const Pair& pair);
 Hulls hulls(const DoublePair& pair);
+inline Hulls hulls(const Pair& pair) { return hulls(in_doubles(pair)); }
 
 // The bucket of the exact margin. A certified double-precision estimate nearly always decides it; otherwise GMP does.
 // Requires: finite coordinates; verdict is the pair's true verdict.   Exact: always.

@@ -13,7 +13,6 @@
 namespace graze::oracle {
 namespace {
 
-using oracle_test::hex;
 using oracle_test::Kind;
 using oracle_test::pair_of;
 using oracle_test::PairSource;

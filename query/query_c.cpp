@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "core/stop.h"
-#include "cuda/query/device_query.h"
 #include "query/collector.h"
 #include "query/cpu.h"
 #include "query/question.h"
@@ -79,19 +78,6 @@ void graze_context::answer(const graze_query& query, graze_answer& answer) {
       failed = std::current_exception();
     }
   } else {
-    graze::cuda::DeviceQuestion asked{question.in_doubles,
-                                      question.references,
-                                      question.reference_count,
-                                      question.parts,
-                                      question.places,
-                                      &question.lane,
-                                      question.any,
-                                      nullptr,
-                                      nullptr,
-                                      question.triangles,
-                                      query.stream,
-                                      query.launch_seconds > 0 ? query.launch_seconds : 0.5};
-    if (query.outputs_on_device) asked.bytes = query.bytes, asked.bits = query.bits;
     std::mutex mutex;
     const auto run = [&](int number) noexcept {
       std::exception_ptr wrong;
@@ -101,7 +87,7 @@ void graze_context::answer(const graze_query& query, graze_answer& answer) {
         const std::lock_guard turn(device.turn);
         try {
           if (!device.open) device.open = graze::cuda::open_query_device(number);
-          record = device.open->run(asked, collector);
+          record = device.open->run(question, collector);
         } catch (...) {
           device.open.reset();  // the next query opens it again
           throw;

@@ -11,7 +11,6 @@
 
 #include "core/error.h"
 #include "core/text.h"
-#include "cuda/query/device_query.h"
 
 namespace graze::query {
 namespace {
@@ -237,6 +236,9 @@ Question question_of(const graze_query& query) {
          "lane: expected exact for doubles, found '" + question.lane.id + "'");
   check_outputs(query, question);
   choose_executor(query, question.lane.exact && !question.lane.is_cuda(), question);
+  if (query.outputs_on_device) question.bytes = query.bytes, question.bits = query.bits;
+  question.stream = query.stream;
+  if (query.launch_seconds > 0) question.launch_seconds = query.launch_seconds;
   return question;
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/lanes/lanes.h"
-#include "cuda/lanes/triangles.h"
+#include "cuda/query/device_query.h"
 #include "query/include/graze/query_c.h"
 
 namespace graze::query {
@@ -17,19 +17,12 @@ struct QueryError : std::runtime_error {
   graze_status status;
 };
 
-struct Question {
-  bool in_doubles = false;           // whether coordinates are doubles instead of floats
-  const void* references = nullptr;  // nine coordinates each
-  std::uint64_t reference_count = 0;
-  std::vector<cuda::TriangleArray> parts;
+// What a device needs, and for every executor also:
+struct Question : cuda::DeviceQuestion {
   std::vector<std::uint64_t> counts;  // the number of triangles in each part
-  std::vector<int> places;            // where each part is: a device, or -1 for the host
-  std::uint64_t triangles = 0;
-  bool any = false;  // stops at the first hit
   graze_executor executor = GRAZE_ONE_CORE;
   int threads = 1;           // used if cores do the work
   std::vector<int> devices;  // used if devices do the work
-  Lane lane;
 };
 
 // Returns the function that runs a lane on cores: the lane's own code. CUDA lanes have none, because the library has no

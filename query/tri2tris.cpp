@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The functions of the 2012 thesis, implemented with this library.
 #include <atomic>
+#include <bit>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <span>
 
 #include "query/include/graze/detect-tri2tris-intersection.h"
-#include "query/include/graze/query_c.h"
+#include "query/include/graze/query.h"
 
 namespace {
 
@@ -22,17 +24,10 @@ std::int8_t detect(const triangle_t& ref, const triangle_t* triangles, int count
   };
   if (count < 0) return fail("expected an array size of at least 0, found a negative size");
   if (!bytes && count > 0) return fail("expected an array for the results, found NULL");
-  graze_triangles part = {};
-  part.count = static_cast<std::uint64_t>(count);
-  part.device = -1;
-  part.rows = reinterpret_cast<const float*>(triangles);
-  graze_query query = {};
-  query.size = sizeof query;
-  query.references = &ref.p1.x;
-  query.reference_count = 1;
-  query.parts = &part;
-  query.part_count = 1;
-  query.mode = all ? GRAZE_ALL : GRAZE_ANY;
+  const auto reference = std::bit_cast<graze::query::Triangle>(ref);
+  const graze_triangles part = graze::query::rows_of(std::span(triangles, static_cast<std::size_t>(count)));
+  graze_query query = graze::query::query_of(reference, part);
+  if (!all) query.mode = GRAZE_ANY;
   query.executor = !on_gpu ? GRAZE_ALL_CORES : config & FORCE_SINGLE_GPU_COMPUTATION ? GRAZE_ONE_GPU : GRAZE_ALL_GPUS;
   if (all) query.bytes = bytes;
   if (config & NO_WDDM_TDR_WORKAROUND) query.launch_seconds = 1e9;

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -152,10 +151,8 @@ std::vector<Pose> read_poses(const std::filesystem::path& file, std::uint64_t& h
     Pose pose;
     for (std::size_t i = 0; i < pose.size(); ++i) {
       const std::string expected = "12 numbers, the rows of a matrix (R | t)";
-      lines.number(i, expected);
-      const std::string_view word = lines.words()[i].substr(lines.words()[i].starts_with('+'));
-      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), pose[i]);
-      if (error != std::errc{} || !std::isfinite(pose[i])) lines.fail_at(i, expected);
+      pose[i] = lines.number(i, expected);
+      if (!std::isfinite(pose[i])) lines.fail_at(i, expected);
     }
     if (lines.words().size() > pose.size()) lines.fail_at(pose.size(), "the end of the line after 12 numbers");
     poses.push_back(pose);
@@ -273,9 +270,5 @@ MeshPairs read_triangles(const std::filesystem::path& file, Coordinates coordina
 bool is_mesh(const std::filesystem::path& file) { return format_of(file) != nullptr; }
 
 std::string mesh_formats() { return listed(&MeshFormat::name); }
-
-MeshPairs read_mesh_pairs(const std::filesystem::path& file, const std::optional<std::filesystem::path>& other) {
-  return other ? read_bodies({file, *other}) : read_bodies({file});
-}
 
 }  // namespace graze::strata

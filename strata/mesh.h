@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,17 +45,13 @@ bool is_mesh(const std::filesystem::path& file);
 // "OFF, OBJ, STL or PLY"
 std::string mesh_formats();
 
-// The candidate pairs of a mesh against itself, or against the other mesh. A face with more than three vertices is cut
-// into a fan from its first vertex. Each coordinate is rounded once to float32; coordinates that change are counted.
-// Triangles that become degenerate are kept. The boxes enclose the rounded triangles, so no touching pair is
-// missed. The extension determines the format.
-// Throws: std::runtime_error with one line: the file, its line or byte, and what was expected and found.
-MeshPairs read_mesh_pairs(const std::filesystem::path& file,
-                          const std::optional<std::filesystem::path>& other = std::nullopt);
-
 // The candidate pairs of bodies: one body against itself, or several against each other. `poses` is a CSV
 // file with twelve numbers per row: the three rows of a pose's matrix (R | t). Each pose of a single mesh is a body.
+// A face with more than three vertices is cut into a fan from its first vertex. Each coordinate is rounded once to
+// float32; coordinates that change are counted. Triangles that become degenerate are kept. The boxes enclose the
+// rounded triangles, so no touching pair is missed. The extension determines the format.
 // Requires: at least one file; exactly one if there are poses.
+// Throws: std::runtime_error with one line: the file, its line or byte, and what was expected and found.
 MeshPairs read_bodies(const std::vector<std::filesystem::path>& files, const std::filesystem::path& poses = {});
 
 // Reads the triangles of a mesh, without pairs.

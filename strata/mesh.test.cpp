@@ -48,7 +48,7 @@ class MeshFile : public ::testing::Test {
   std::string error_of(const std::string& name) const {
     std::string message = "none";
     try {
-      read_mesh_pairs(folder_ / name);
+      read_bodies({folder_ / name});
     } catch (const std::runtime_error& error) {
       message = error.what();
     }
@@ -91,18 +91,18 @@ std::string binary_stl_of(const std::vector<Triangle>& triangles) {
 }
 
 TEST_F(MeshFile, EveryFormatReadsTheSameTriangles) {
-  const std::vector<Triangle> expected = read_mesh_pairs(write("t.off", kTetrahedron)).triangles;
+  const std::vector<Triangle> expected = read_bodies({write("t.off", kTetrahedron)}).triangles;
   ASSERT_EQ(expected.size(), 4u);
   EXPECT_EQ(expected[3], (Triangle{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}));
 
   const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1/1 3/2 4/3\nf -3 -2 -1\n";
-  EXPECT_EQ(read_mesh_pairs(write("t.obj", obj)).triangles, expected);
+  EXPECT_EQ(read_bodies({write("t.obj", obj)}).triangles, expected);
 
   const std::string ply =
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
       "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
       "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n";
-  EXPECT_EQ(read_mesh_pairs(write("t.ply", ply)).triangles, expected);
+  EXPECT_EQ(read_bodies({write("t.ply", ply)}).triangles, expected);
 
   std::string stl = "solid t\n";
   for (const Triangle& t : expected) {
@@ -112,8 +112,8 @@ TEST_F(MeshFile, EveryFormatReadsTheSameTriangles) {
     }
     stl += "endloop\nendfacet\n";
   }
-  EXPECT_EQ(read_mesh_pairs(write("t.STL", stl + "endsolid t\n")).triangles, expected);
-  EXPECT_EQ(read_mesh_pairs(write("binary.stl", binary_stl_of(expected))).triangles, expected);
+  EXPECT_EQ(read_bodies({write("t.STL", stl + "endsolid t\n")}).triangles, expected);
+  EXPECT_EQ(read_bodies({write("binary.stl", binary_stl_of(expected))}).triangles, expected);
 }
 
 // Campaigns refuse a vertex that is not finite, and queries read it: in OFF, OBJ and STL files.
@@ -134,7 +134,7 @@ TEST_F(MeshFile, VerticesThatAreNotFiniteAreReadOnRequest) {
 }
 
 TEST_F(MeshFile, AMeshAgainstItselfPairsEachTwoOnce) {
-  const MeshPairs pairs = read_mesh_pairs(write("t.off", kTetrahedron));
+  const MeshPairs pairs = read_bodies({write("t.off", kTetrahedron)});
   EXPECT_EQ(pairs.candidates, (std::vector<Index>{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}));
   const Pair pair = pairs.pair(2);
   EXPECT_EQ((Triangle{pair.a[0], pair.a[1], pair.a[2]}), pairs.triangles[0]);
@@ -144,13 +144,13 @@ TEST_F(MeshFile, AMeshAgainstItselfPairsEachTwoOnce) {
 // If one file has doubles, the other file's short decimals are kept as doubles too.
 TEST_F(MeshFile, HasTheDoublesOfDecimals) {
   const auto file = write("m.obj", "v 0.1 0 0\nv 1 0 0\nv 0 1 0\nv 0.1 0.7 0\nf 1 2 3\nf 1 2 4\n");
-  const MeshPairs one = read_mesh_pairs(file);
+  const MeshPairs one = read_bodies({file});
   EXPECT_EQ(one.double_pair(0).a[0].x, 0.1);
   EXPECT_EQ(one.double_pair(0).b[2].y, 0.7);
   EXPECT_EQ(one.pair(0).a[0].x, 0.1f);
   const auto far = write("far.obj", "v 0.1000000001 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  EXPECT_EQ(read_mesh_pairs(file, far).double_pair(0).a[0].x, 0.1);
-  EXPECT_EQ(read_mesh_pairs(file, far).double_pair(0).b[0].x, 0.1000000001);
+  EXPECT_EQ(read_bodies({file, far}).double_pair(0).a[0].x, 0.1);
+  EXPECT_EQ(read_bodies({file, far}).double_pair(0).b[0].x, 0.1000000001);
 }
 
 // Decimals that a program prints for a float32 do not count as beyond float32; decimals with more digits do.
@@ -188,11 +188,11 @@ TEST_F(MeshFile, CountsWhatDoublesRoundToo) {
 TEST_F(MeshFile, TwoMeshesPairAcrossOnly) {
   const std::string touching =
       "OFF\n3 1 0\n1 1 1\n2 1 1\n1 2 1\n3 0 1 2\n";  // its box touches the tetrahedron's box at one point
-  const MeshPairs pairs = read_mesh_pairs(write("t.off", kTetrahedron), write("u.off", touching));
+  const MeshPairs pairs = read_bodies({write("t.off", kTetrahedron), write("u.off", touching)});
   EXPECT_EQ(pairs.triangles.size(), 5u);
   EXPECT_EQ(pairs.candidates, (std::vector<Index>{{3, 4}}));
 
-  const MeshPairs twice = read_mesh_pairs(write("t.off", kTetrahedron), write("v.off", kTetrahedron));
+  const MeshPairs twice = read_bodies({write("t.off", kTetrahedron), write("v.off", kTetrahedron)});
   EXPECT_EQ(twice.size(), 16u);
   for (const auto& [first, second] : twice.candidates) EXPECT_TRUE(first < 4 && second >= 4);
 }
@@ -218,8 +218,8 @@ TEST_F(MeshFile, CandidatesEqualABruteForceSearch) {
     }
   }
   const auto file = write("first.off", off_of(first));
-  EXPECT_EQ(read_mesh_pairs(file).triangles, first);
-  EXPECT_EQ(read_mesh_pairs(file).candidates, expected);
+  EXPECT_EQ(read_bodies({file}).triangles, first);
+  EXPECT_EQ(read_bodies({file}).candidates, expected);
 
   expected.clear();
   for (std::uint32_t i = 0; i < first.size(); ++i) {
@@ -227,12 +227,12 @@ TEST_F(MeshFile, CandidatesEqualABruteForceSearch) {
       if (boxes_overlap(first[i], second[j])) expected.push_back({i, static_cast<std::uint32_t>(first.size()) + j});
     }
   }
-  EXPECT_EQ(read_mesh_pairs(file, write("second.off", off_of(second))).candidates, expected);
+  EXPECT_EQ(read_bodies({file, write("second.off", off_of(second))}).candidates, expected);
 }
 
 TEST_F(MeshFile, AFaceOfFiveVerticesBecomesAFan) {
   const std::string pentagon = "OFF\n5 1 0\n0 0 0\n2 0 0\n3 1 0\n2 2 0\n0 2 0\n5 0 1 2 3 4\n";
-  const MeshPairs pairs = read_mesh_pairs(write("pentagon.off", pentagon));
+  const MeshPairs pairs = read_bodies({write("pentagon.off", pentagon)});
   ASSERT_EQ(pairs.triangles.size(), 3u);
   EXPECT_EQ(pairs.triangles[2], (Triangle{{{0, 0, 0}, {2, 2, 0}, {0, 2, 0}}}));
   EXPECT_EQ(pairs.size(), 3u);
@@ -240,20 +240,20 @@ TEST_F(MeshFile, AFaceOfFiveVerticesBecomesAFan) {
 
 TEST_F(MeshFile, RoundsToFloat32AndKeepsWhatDegenerates) {
   const std::string thin = "OFF\n4 2 0\n0.1 0 0\n1 0 0\n1.00000000001 0 0\n0 1 0\n3 0 1 2\n3 0 1 3\n";
-  const MeshPairs pairs = read_mesh_pairs(write("thin.off", thin));
+  const MeshPairs pairs = read_bodies({write("thin.off", thin)});
   EXPECT_EQ(pairs.triangles[0], (Triangle{{{0.1f, 0, 0}, {1, 0, 0}, {1, 0, 0}}}));
   EXPECT_EQ(pairs.size(), 1u);
 }
 
 TEST_F(MeshFile, TheHashIsOfTheBytes) {
   const auto t = write("t.off", kTetrahedron), u = write("u.off", kTetrahedron + "\n");
-  EXPECT_EQ(read_mesh_pairs(t).content_hash, read_mesh_pairs(write("copy.off", kTetrahedron)).content_hash);
-  EXPECT_NE(read_mesh_pairs(t).content_hash, read_mesh_pairs(u).content_hash);
-  EXPECT_NE(read_mesh_pairs(t, u).content_hash, read_mesh_pairs(u, t).content_hash);
+  EXPECT_EQ(read_bodies({t}).content_hash, read_bodies({write("copy.off", kTetrahedron)}).content_hash);
+  EXPECT_NE(read_bodies({t}).content_hash, read_bodies({u}).content_hash);
+  EXPECT_NE(read_bodies({t, u}).content_hash, read_bodies({u, t}).content_hash);
 
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char c : kTetrahedron) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  EXPECT_EQ(read_mesh_pairs(t).content_hash, hash);
+  EXPECT_EQ(read_bodies({t}).content_hash, hash);
 }
 
 TEST_F(MeshFile, ErrorsNameTheFileAndSayWhy) {
@@ -276,9 +276,9 @@ TEST_F(MeshFile, ErrorsNameTheFileAndSayWhy) {
 
 // Content that is not used is always reported.
 TEST_F(MeshFile, SaysWhatItDoesNotUse) {
-  EXPECT_TRUE(read_mesh_pairs(write("t.off", kTetrahedron)).notes.empty());
+  EXPECT_TRUE(read_bodies({write("t.off", kTetrahedron)}).notes.empty());
   const auto file = write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nl 1 2\nvn 0 0 1\nl 3 4\nf 1 2 3\nf 1 2 4\n");
-  EXPECT_EQ(read_mesh_pairs(file).notes,
+  EXPECT_EQ(read_bodies({file}).notes,
             (std::vector<std::string>{file.string() + ": 2 triangles; not used: 2 lines, 1 normals"}));
 }
 
@@ -286,12 +286,12 @@ TEST_F(MeshFile, SaysWhatItDoesNotUse) {
 TEST_F(MeshFile, SaysWhereAFanFoldsOver) {
   const std::string quad = "OFF\n4 1 0\n0 4 0\n0 0 0\n4 0 0\n1 1 0\n4 ";
   const auto folded = write("folded.off", quad + "0 1 2 3\n");
-  ASSERT_EQ(read_mesh_pairs(folded).notes.size(), 1u);
-  EXPECT_TRUE(names(read_mesh_pairs(folded).notes[0], {"folded.off", "1 of 1 faces", "not convex"}));
-  EXPECT_EQ(read_mesh_pairs(folded).notes, read_mesh_pairs(folded).notes_of_doubles);
-  EXPECT_TRUE(read_mesh_pairs(write("covered.off", quad + "1 2 3 0\n")).notes.empty());
+  ASSERT_EQ(read_bodies({folded}).notes.size(), 1u);
+  EXPECT_TRUE(names(read_bodies({folded}).notes[0], {"folded.off", "1 of 1 faces", "not convex"}));
+  EXPECT_EQ(read_bodies({folded}).notes, read_bodies({folded}).notes_of_doubles);
+  EXPECT_TRUE(read_bodies({write("covered.off", quad + "1 2 3 0\n")}).notes.empty());
   const char* obj = "v 0 4 0\nv 0 0 0\nv 4 0 0\nv 1 1 0\nv 3 3 1\nf 1 2 3 4\nf 1 2 3\nf 1 2 3 5\n";
-  EXPECT_TRUE(names(read_mesh_pairs(write("two.obj", obj)).notes.at(0), {"two.obj", "1 of 2 faces"}));
+  EXPECT_TRUE(names(read_bodies({write("two.obj", obj)}).notes.at(0), {"two.obj", "1 of 2 faces"}));
 }
 
 // 1000000.01 is 2^-6 from its neighbours in float32, so it moves by 0.01; 0.5 does not move.
@@ -305,7 +305,7 @@ TEST_F(MeshFile, SaysWhatFloat32Rounds) {
       "1000000.01 0 0.5\n1 0 0\n0 1000000.01 0\n0 0 1\n3 0 1 2\n3 0 1 3\n";
   for (const auto& [name, text] : {std::pair{"r.off", off}, {"r.obj", obj}, {"r.ply", ply}}) {
     const auto file = write(name, text);
-    const MeshPairs mesh = read_mesh_pairs(file);
+    const MeshPairs mesh = read_bodies({file});
     EXPECT_EQ(mesh.notes, std::vector{file.string() + note});
     EXPECT_EQ(mesh.rounding.rounded, 2u);
     EXPECT_GE(mesh.rounding.most, 0.0099999);

@@ -76,6 +76,25 @@ Axis axis_of(std::string_view source) {
   return !row ? Axis::none : stratum_in_doubles(source) ? wide(row->axis) : row->axis;
 }
 
+std::vector<std::string> source_patterns(const std::vector<std::string>& globs, const std::vector<std::string>& ids,
+                                         const std::string& more) {
+  std::vector<std::string> patterns = globs;
+  for (const std::string& glob : globs) {
+    patterns.push_back(glob + std::string(kInDoubles));
+    const std::string wanted = glob.substr(glob.starts_with('!'));
+    const std::vector<std::string> either = {wanted, wanted + std::string(kInDoubles)};
+    if (std::none_of(ids.begin(), ids.end(), [&](const std::string& id) { return matches_any(either, id); }))
+      throw UsageError("no stratum matches '" + printable(glob) + "'; `graze strata` lists them" + more +
+                       did_you_mean(glob, ids));
+  }
+  if (std::none_of(ids.begin(), ids.end(), [&](const std::string& id) { return matches_any(patterns, id); })) {
+    std::string names;
+    for (const std::string& glob : globs) names += (names.empty() ? "" : ",") + glob;
+    throw UsageError("the patterns \"" + printable(names) + "\" leave no stratum; `graze strata` lists all strata");
+  }
+  return patterns;
+}
+
 std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs,
                                         PairTypes types) {
   std::vector<PairSource> all;
@@ -85,31 +104,12 @@ std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs,
   if (types != PairTypes::f32) {
     for (const StratumInfo& row : kDoubleStrata) all.push_back(double_source_of(seed, row));
   }
-  // A pattern with "/f64" appended matches the doubles of the strata that the pattern itself matches.
-  std::vector<std::string> patterns = globs;
-  for (const std::string& glob : globs) {
-    patterns.push_back(glob + std::string(kInDoubles));
-    const std::string wanted = glob.substr(glob.starts_with('!'));
-    const std::vector<std::string> either = {wanted, wanted + std::string(kInDoubles)};
-    if (std::none_of(all.begin(), all.end(),
-                     [&](const PairSource& source) { return matches_any(either, source.id); })) {
-      std::vector<std::string> ids;
-      for (const PairSource& source : all) ids.push_back(source.id);
-      throw UsageError("no stratum matches '" + printable(glob) + "'; `graze strata` lists them" +
-                       did_you_mean(glob, ids));
-    }
-  }
-  std::vector<PairSource> sources;
-  for (PairSource& source : all) {
-    if (matches_any(patterns, source.id)) sources.push_back(std::move(source));
-  }
-  if (sources.empty()) {
-    std::string names;
-    for (const std::string& glob : globs) names += (names.empty() ? "" : ",") + glob;
-    throw UsageError("the patterns \"" + printable(names) + "\" leave no stratum; `graze strata` lists all strata");
-  }
-  share_evenly(sources, pairs);
-  return sources;
+  std::vector<std::string> ids;
+  for (const PairSource& source : all) ids.push_back(source.id);
+  const std::vector<std::string> patterns = source_patterns(globs, ids);
+  std::erase_if(all, [&](const PairSource& source) { return !matches_any(patterns, source.id); });
+  share_evenly(all, pairs);
+  return all;
 }
 
 std::vector<PairSource> named_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& names) {

@@ -61,9 +61,14 @@ void expect_float32(std::span<const PairSource> sources, const char* verb);
 const StratumInfo* stratum_info(std::string_view source);
 Axis axis_of(std::string_view source);
 
+// The patterns that select sources among `ids`: each glob, and the glob with "/f64" appended. The latter matches the
+// doubles of the strata that the glob itself matches. more: sources other than strata, for the message.
+// Throws: UsageError if a glob matches no source, or if the globs together leave none.
+std::vector<std::string> source_patterns(const std::vector<std::string>& globs, const std::vector<std::string>& ids,
+                                         const std::string& more = "");
+
 // The strata whose names match (all for an empty list). They share `pairs` evenly; the first strata take the rest.
-// Throws: UsageError if a pattern matches no stratum, or if the patterns together leave none.
-// Patterns match a stratum of doubles with or without its "/f64".
+// Throws: what source_patterns throws.
 std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs,
                                         PairTypes types = PairTypes::f32);
 

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <random>
 #include <utility>
-#include <vector>
 
 namespace graze::exact {
 namespace {
@@ -156,25 +155,29 @@ TEST(Exact, KnowsContactsOfDoublesInAllOrdersAndScales) {
   }
 }
 
-// A far vertex, which does not affect the contact, widens the grid to 61, 90, 300 and all 2,098 bits.
-TEST(Exact, DecidesDoublesOnEveryGrid) {
-  using namespace detail;
-  std::vector<int> widths;
-  for (const auto& [tiny, huge] :
-       {std::pair{0x1p-8, 0x1p52}, {0x1p-37, 0x1p52}, {0x1p-200, 0x1p98}, {0x1p-1074, 0x1p1022}}) {
-    const double a[9] = {0, 0, 0, huge, 0, huge, 0, huge, huge};  // in z = x + y
-    for (const double height : {0.0, tiny, -tiny}) {
-      const double b[9] = {tiny, tiny, 2 * tiny + height, 1, 2, huge, 2, 1, huge};
-      Stage stage;
-      EXPECT_EQ(intersects(a, b, &stage), height <= 0) << tiny;
-      EXPECT_TRUE(height != 0 || stage == Stage::wide);
-      const Relation r = relation(a, b);
-      EXPECT_EQ(r.contact, height > 0 ? Contact::none : height < 0 ? Contact::segment : Contact::point) << tiny;
-      EXPECT_EQ(r.margin_sign, height > 0 ? 1 : height < 0 ? -1 : 0) << tiny;
-      widths.push_back(grid_of(a, b).bits);
-    }
+// A far vertex, which does not affect the contact, widens the grid to this many bits.
+template <class Real>
+void expect_decided_on_grid(int bits, Real tiny, Real huge) {
+  const Real a[9] = {0, 0, 0, huge, 0, huge, 0, huge, huge};  // in z = x + y
+  for (const Real height : {Real{0}, tiny, -tiny}) {
+    const Real b[9] = {tiny, tiny, 2 * tiny + height, 1, 2, huge, 2, 1, huge};
+    EXPECT_EQ(detail::grid_of(a, b).bits, bits);
+    Stage stage;
+    EXPECT_EQ(intersects(a, b, &stage), height <= 0) << tiny;
+    EXPECT_TRUE(height != 0 || stage == Stage::wide);
+    const Relation r = relation(a, b);
+    EXPECT_EQ(r.intersects(), height <= 0) << tiny;
+    EXPECT_EQ(r.contact, height > 0 ? Contact::none : height < 0 ? Contact::segment : Contact::point) << tiny;
+    EXPECT_EQ(r.margin_sign, height > 0 ? 1 : height < 0 ? -1 : 0) << tiny;
   }
-  EXPECT_EQ(widths, (std::vector<int>{61, 61, 61, 90, 90, 90, 299, 299, 299, 2097, 2097, 2097}));
+}
+
+TEST(Exact, DecidesOnEveryGrid) {
+  expect_decided_on_grid(277, 0x1p-149f, 0x1p127f);
+  expect_decided_on_grid(61, 0x1p-8, 0x1p52);
+  expect_decided_on_grid(90, 0x1p-37, 0x1p52);
+  expect_decided_on_grid(299, 0x1p-200, 0x1p98);
+  expect_decided_on_grid(2097, 0x1p-1074, 0x1p1022);
 }
 
 // The largest determinants of each kind of numbers for doubles, compared with those of a wider kind.
@@ -212,22 +215,6 @@ TEST(Exact, KindsForDoublesHoldWhatTheyPromise) {
   decided(MediumNumbers(), kMediumBits);
   decided(LongNumbers(), kLongBits);
   decided(LargeNumbers(), kLargeBits);
-}
-
-// A far vertex, which does not affect the contact, widens the grid to 250 bits.
-TEST(Exact, DecidesWhereNoMachineNumberReaches) {
-  const float tiny = 0x1p-149f, huge = 0x1p127f;
-  const float a[9] = {0, 0, 0, huge, 0, huge, 0, huge, huge};  // in z = x + y
-  for (const float height : {0.0f, tiny, -tiny}) {
-    const float b[9] = {tiny, tiny, 2 * tiny + height, 1, 2, huge, 2, 1, huge};
-    Stage stage;
-    EXPECT_EQ(intersects(a, b, &stage), height <= 0) << height;
-    EXPECT_TRUE(height != 0 || stage == Stage::wide);
-    const Relation r = relation(a, b);
-    EXPECT_EQ(r.intersects(), height <= 0);
-    EXPECT_EQ(r.contact, height > 0 ? Contact::none : height == 0 ? Contact::point : Contact::segment);
-    EXPECT_EQ(r.margin_sign, height > 0 ? 1 : height == 0 ? 0 : -1);
-  }
 }
 
 // Every kind of numbers that can hold a pair must give the same result.

@@ -76,17 +76,17 @@ class Run {
         !resident_ && std::all_of(question.parts.begin(), question.parts.end(), [this](const TriangleArray& part) {
           return part.count == 0 || (part.packed(real_) && is_pinned(part.rows));
         });
-    most_ = !question.lane->exact ? kMostOfLane : resident_ ? kMostResident : kMostStreamed;
+    most_ = !question.lane.exact ? kMostOfLane : resident_ ? kMostResident : kMostStreamed;
     most_ = std::max<std::uint64_t>(1 << 12, most_ / references_.size() / 64 * 64);
     std::size_t free = 0, all = 0;
     check(cudaMemGetInfo(&free, &all));
     // The bytes per triangle in all slots: lists, verdicts, and the triangles unless they are in device memory already.
     // Chunks use at most half of the free memory.
     const std::size_t bytes =
-        (resident_ ? 32 : 3 * (24 + 9 * real_)) + references_.size() + (question.lane->exact ? 0 : 3 * 76);
+        (resident_ ? 32 : 3 * (24 + 9 * real_)) + references_.size() + (question.lane.exact ? 0 : 3 * 76);
     while (most_ > 1 << 12 && most_ * bytes > free / 2) most_ /= 2;
     // The first chunks may be large unless the time limit for a launch is very short.
-    const bool at_leisure = resident_ && question.lane->exact && question.launch_seconds >= 0.05;
+    const bool at_leisure = resident_ && question.lane.exact && question.launch_seconds >= 0.05;
     if (resident_ && !question.stream) wait_for_default_stream();
     chunk_ = std::min(most_, question.any ? kFirstOfAny : at_leisure ? kFirstResident : kFirstOfAll);
   }
@@ -179,7 +179,7 @@ class Run {
   void decide(Verdicts& at, std::size_t r, const QueryChunk& chunk, std::uint32_t* hits, std::uint32_t* declined,
               cudaStream_t stream) {
     const exact::PreparedTriangle& reference = references_[r];
-    if (question_.lane->exact) {
+    if (question_.lane.exact) {
       std::uint32_t* lists = at.lists.at_least(2 * std::size_t{chunk.count});
       std::uint32_t* counts = at.counts.at_least(kQueryLists);
       if (question_.in_doubles)
@@ -190,7 +190,7 @@ class Run {
     float* columns = at.columns.at_least(std::size_t{words} * 32 * kCoordinates);
     std::uint32_t* not_finite = at.not_finite.at_least(words);
     launch_pair_up(reference, chunk, columns, not_finite, stream);
-    launch_lane(*question_.lane, at.exact, {columns, words * 32, chunk.count}, hits, declined, stream);
+    launch_lane(question_.lane, at.exact, {columns, words * 32, chunk.count}, hits, declined, stream);
     launch_decline(words, not_finite, hits, declined, stream);
   }
 

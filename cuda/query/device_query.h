@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/lanes/lanes.h"
 #include "cuda/lanes/device_failure.h"
@@ -50,10 +51,10 @@ struct DeviceQuestion {
   bool in_doubles = false;           // the coordinates are doubles, not floats
   const void* references = nullptr;  // nine coordinates for each reference
   std::uint64_t reference_count = 0;
-  std::span<const TriangleArray> parts;
-  std::span<const int> places;  // for each part: the device that has it in its memory; -1: the host
-  const Lane* lane = nullptr;   // a CUDA lane; for doubles, the exact lane
-  bool any = false;
+  std::vector<TriangleArray> parts;
+  std::vector<int> places;                          // for each part: the device that has it in its memory; -1: the host
+  Lane lane;                                        // on a device, a CUDA lane; for doubles, the exact lane
+  bool any = false;                                 // stops at the first hit
   unsigned char *bytes = nullptr, *bits = nullptr;  // results in device memory, a row for each reference; or null
   std::uint64_t triangles = 0;
   void* stream = nullptr;  // a cudaStream_t on the device of the only part; null: streams of our own

@@ -30,8 +30,8 @@ std::vector<strata::PairSource> recorded_sources(const Json& spec) {
   std::vector<strata::PairSource> of_mesh;
   if (spec.contains("mesh")) {
     const std::vector<std::string> files = spec["mesh"].at("files");
-    const auto mesh = std::make_shared<strata::MeshPairs>(strata::read_mesh_pairs(
-        files.at(0), files.size() > 1 ? std::optional<std::filesystem::path>(files[1]) : std::nullopt));
+    const auto mesh = std::make_shared<strata::MeshPairs>(files.size() > 1 ? strata::read_bodies({files[0], files[1]})
+                                                                           : strata::read_bodies({files.at(0)}));
     if (fmt::format("{:016x}", mesh->content_hash) != spec["mesh"].at("content").get<std::string>())
       throw std::runtime_error(
           cannot("draw the campaign's pairs from", files[0], "the mesh has changed since the campaign ran"));

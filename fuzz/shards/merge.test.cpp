@@ -227,7 +227,7 @@ TEST_F(MergeTest, CommandsNameTheMeshAndThePairsBesideIt) {
   fs::create_directories(root_);
   const std::string file = (root_ / "mesh.off").string();
   write_whole(file, "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n");
-  const strata::MeshPairs mesh = strata::read_mesh_pairs(file);
+  const strata::MeshPairs mesh = strata::read_bodies({file});
   ASSERT_EQ(mesh.size(), 6u);
   const Json of_mesh = {{"files", {file}}, {"content", fmt::format("{:016x}", mesh.content_hash)}};
   const auto command = [&](const char* strata, std::uint64_t pairs, bool with_mesh) {

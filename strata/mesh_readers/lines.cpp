@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cstdlib>
+#include <limits>
 #include <stdexcept>
 
 #include "core/text.h"
@@ -136,13 +137,14 @@ std::uint32_t Lines::vertex(std::size_t i, std::size_t vertices) const {
   return static_cast<std::uint32_t>(*value);
 }
 
-void Lines::number(std::size_t i, const std::string& expected) const {
+double Lines::number(std::size_t i, const std::string& expected) const {
   if (i >= words_.size()) fail_at(i, expected);
   std::string_view word = words_[i];
   if (word.starts_with('+')) word.remove_prefix(1);
-  double value;
+  double value = std::numeric_limits<double>::quiet_NaN();
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (end != word.data() + word.size() || error == std::errc::invalid_argument) fail_at(i, expected);
+  return value;
 }
 
 }  // namespace graze::strata

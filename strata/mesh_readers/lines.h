@@ -33,7 +33,7 @@ class Lines {
   Coordinate coordinate(std::size_t i, Rounding& rounding) const;
   std::uint64_t whole(std::size_t i, const std::string& expected) const;
   std::uint32_t vertex(std::size_t i, std::size_t vertices) const;
-  void number(std::size_t i, const std::string& expected) const;
+  double number(std::size_t i, const std::string& expected) const;  // NaN beyond the range of double
 
   // Throws: an error that names this line. fail_at reports word i as found, or the end of the line if there is none.
   [[noreturn]] void fail(const std::string& expected, const std::string& found) const;

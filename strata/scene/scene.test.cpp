@@ -55,9 +55,25 @@ double longest(const Vec3<float> (&v)[3]) {
   return std::max({length(edge(t, 0)), length(edge(t, 1)), length(edge(t, 2))});
 }
 
-bool is_on(const Grid& grid, float x) {
-  const double n = in_scene::number_of(grid, static_cast<double>(x));
-  return static_cast<float>(in_scene::point_of(grid, n)) == x;
+double longest(const Vec3<double> (&v)[3]) {
+  return std::max({length(v[1] - v[0]), length(v[2] - v[1]), length(v[0] - v[2])});
+}
+
+// Whether the pair is within the extent and on the grid, and no edge is longer than `most`.
+template <class Real>
+::testing::AssertionResult is_of_scene(const SceneFile& file, const Scene& scene, double most,
+                                       const BasicPair<Real>& pair) {
+  for (int k = 0; k < kCoordinates; ++k) {
+    const auto x = static_cast<double>(coordinates(pair)[k]);
+    const auto& [low, high] = file.extent[static_cast<std::size_t>(k % 3)];
+    if (!(as_stored(file, low) <= x && x <= as_stored(file, high)))
+      return ::testing::AssertionFailure() << x << " not in " << low << ' ' << high;
+    if (file.grid && as_stored(file, in_scene::point_of(scene.grid, in_scene::number_of(scene.grid, x))) != x)
+      return ::testing::AssertionFailure() << x << " is not on the grid";
+  }
+  if (!(longest(pair.a) <= most && longest(pair.b) <= most))
+    return ::testing::AssertionFailure() << longest(pair.a) << " or " << longest(pair.b) << " is longer than " << most;
+  return ::testing::AssertionSuccess();
 }
 
 TEST(Scene, EveryPairIsWithinTheExtentOnTheGridAndOfTheSizes) {
@@ -79,15 +95,7 @@ TEST(Scene, EveryPairIsWithinTheExtentOnTheGridAndOfTheSizes) {
       std::set<std::uint64_t> kinds;
       for (std::uint64_t i = 0; i < kPairs; ++i) {
         const Pair pair = generate(3, row.stratum, scene, i);
-        for (int k = 0; k < kCoordinates; ++k) {
-          const float x = coordinates(pair)[k];
-          const auto& [low, high] = file.extent[static_cast<std::size_t>(k % 3)];
-          ASSERT_TRUE(static_cast<float>(low) <= x && x <= static_cast<float>(high))
-              << name << ' ' << row.id << ':' << i << ' ' << x << " not in " << low << " " << high;
-          ASSERT_TRUE(!file.grid || is_on(scene.grid, x)) << name << ' ' << row.id << ':' << i << ' ' << x;
-        }
-        ASSERT_LE(longest(pair.a), most) << name << ' ' << row.id << ':' << i;
-        ASSERT_LE(longest(pair.b), most) << name << ' ' << row.id << ':' << i;
+        ASSERT_TRUE(is_of_scene(file, scene, most, pair)) << name << ' ' << row.id << ':' << i;
         if (i < 1000) kinds.insert(hash_bits(pair));
       }
       EXPECT_GT(kinds.size(), 900u) << name << ' ' << row.id;  // nearly all pairs differ
@@ -192,10 +200,6 @@ std::vector<std::pair<std::string, SceneFile>> double_scenes() {
   return scenes;
 }
 
-double longest(const Vec3<double> (&v)[3]) {
-  return std::max({length(v[1] - v[0]), length(v[2] - v[1]), length(v[0] - v[2])});
-}
-
 double largest_of(const SceneFile& file) {
   double largest = 0;
   for (const auto& [low, high] : file.extent) largest = std::max({largest, std::fabs(low), std::fabs(high)});
@@ -218,15 +222,7 @@ TEST(DoubleScene, EveryPairIsWithinTheExtentOnTheGridAndOfTheSizes) {
       int finer = 0;
       for (std::uint64_t i = 0; i < kPairs; ++i) {
         const DoublePair pair = generate_doubles(3, row.stratum, scene, i);
-        for (int k = 0; k < kCoordinates; ++k) {
-          const double x = coordinates(pair)[k];
-          const auto& [low, high] = file.extent[static_cast<std::size_t>(k % 3)];
-          ASSERT_TRUE(low <= x && x <= high) << name << ' ' << row.id << ':' << i << ' ' << x;
-          ASSERT_TRUE(!file.grid || in_scene::point_of(scene.grid, in_scene::number_of(scene.grid, x)) == x)
-              << name << ' ' << row.id << ':' << i << ' ' << x;
-        }
-        ASSERT_LE(longest(pair.a), most) << name << ' ' << row.id << ':' << i;
-        ASSERT_LE(longest(pair.b), most) << name << ' ' << row.id << ':' << i;
+        ASSERT_TRUE(is_of_scene(file, scene, most, pair)) << name << ' ' << row.id << ':' << i;
         if (i < 1000) kinds.insert(hash_bits(pair));
         finer += hash_bits(in_doubles(stored_in_float32(pair))) != hash_bits(pair);
       }
@@ -428,6 +424,7 @@ TEST(SceneSources, AreSharedByTheMix) {
   EXPECT_EQ(one.left_out.size(), 1u);
   EXPECT_THROW(scene_sources(file, "", 1, 7, {"nearly"}), UsageError);
   EXPECT_THROW(scene_sources(file, "", 1, 7, {"sliver", "mesh"}), UsageError);
+  EXPECT_THROW(scene_sources(file, "", 1, 7, {"sliver", "!sliver"}), UsageError);
 }
 
 class SceneMesh : public ::testing::Test {
@@ -571,7 +568,6 @@ TEST_F(SceneMesh, BodiesArePairedWithEachOtherOnly) {
   std::filesystem::copy(folder_ / "m.off", folder_ / "n.off");
   std::filesystem::copy(folder_ / "m.off", folder_ / "o.off");
   const MeshPairs two = read_bodies({folder_ / "m.off", folder_ / "n.off"});
-  EXPECT_EQ(two.candidates, read_mesh_pairs(folder_ / "m.off", folder_ / "n.off").candidates);
   const MeshPairs three = read_bodies({folder_ / "m.off", folder_ / "n.off", folder_ / "o.off"});
   EXPECT_EQ(three.candidates.size(), 3 * two.candidates.size());
   for (const auto& [i, j] : three.candidates) ASSERT_NE(i / 50, j / 50);

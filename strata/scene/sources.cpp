@@ -14,7 +14,6 @@
 #include "core/cannot.h"
 #include "core/error.h"
 #include "core/lanes/lanes.h"
-#include "core/text.h"
 #include "strata/mesh.h"
 #include "strata/scene/envelope.h"
 
@@ -199,22 +198,14 @@ std::vector<bool> types_of(const SceneFile& scene, std::optional<PairTypes> type
   return {*types == PairTypes::f64};
 }
 
-// Patterns that match the sources of doubles with or without "/f64".
+// The patterns that select the scene's sources.
 std::vector<std::string> patterns_of(const std::vector<std::string>& globs, const std::vector<bool>& types) {
-  std::vector<std::string> ids, patterns = globs;
+  std::vector<std::string> ids;
   for (const bool in_doubles : types) {
     for (const StratumInfo& row : strata_of(in_doubles)) ids.push_back(name_of(row.id, in_doubles));
     for (const std::string_view id : kMeshSources) ids.push_back(name_of(id, in_doubles));
   }
-  for (const std::string& glob : globs) {
-    patterns.push_back(glob + std::string(kInDoubles));
-    const auto is_meant = [&](const std::string& id) { return matches_any({glob, patterns.back()}, id); };
-    if (std::none_of(ids.begin(), ids.end(), is_meant))
-      throw UsageError("no stratum matches '" + printable(glob) +
-                       "'; `graze strata` lists them, and a scene has mesh, mesh_ulps and mesh_moved" +
-                       did_you_mean(glob, ids));
-  }
-  return patterns;
+  return source_patterns(globs, ids, ", and a scene has mesh, mesh_ulps and mesh_moved");
 }
 
 // Divides `pairs` among the sources by weight; the shares add up to `pairs`.

@@ -111,38 +111,6 @@ TEST(Query, OutputsTellTheSameOnOneCoreAndOnAll) {
   }
 }
 
-// Triangles in every layout, with coordinates of the given type.
-template <class Real>
-struct EveryLayout {
-  struct Wide {
-    std::array<Real, 9> triangle;
-    Real number;
-  };
-  std::vector<std::array<Real, 9>> rows;
-  std::vector<Wide> wide;
-  std::vector<Real> columns[9];
-  std::vector<std::array<Real, 3>> vertices;
-  std::vector<std::array<std::uint32_t, 3>> faces;
-
-  explicit EveryLayout(const std::vector<Triangle>& triangles) {
-    for (const Triangle& t : triangles) {
-      std::copy(t.begin(), t.end(), rows.emplace_back().begin());
-      wide.push_back({rows.back(), 1});
-      for (std::size_t k = 0; k < 9; ++k) columns[k].push_back(t[k]);
-      const auto v = static_cast<std::uint32_t>(vertices.size());
-      for (std::size_t k = 0; k < 9; k += 3) vertices.push_back({t[k], t[k + 1], t[k + 2]});
-      faces.push_back({v, v + 1, v + 2});
-    }
-  }
-
-  std::vector<graze_triangles> parts() const {
-    std::array<const Real*, 9> at;
-    for (std::size_t k = 0; k < 9; ++k) at[k] = columns[k].data();
-    return {rows_of(std::span<const std::array<Real, 9>>(rows)), rows_of(std::span<const Wide>(wide)),
-            columns_of(at, rows.size()), mesh_of(vertices, faces)};
-  }
-};
-
 TEST(Query, LayoutsTellTheSame) {
   const std::vector<Triangle> triangles = thesis_triangles(kCount);
   const Outputs rows = all_of(query_of(kThesisReference, part_of(triangles)), kCount, 0);

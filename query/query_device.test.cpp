@@ -12,6 +12,14 @@
 namespace graze::query {
 namespace {
 
+// A copy of the vector in the memory of device 0.
+template <class Element>
+std::unique_ptr<cuda::DeviceMemory> copied(const std::vector<Element>& host) {
+  auto memory = cuda::device_memory(0, host.size() * sizeof host[0]);
+  memory->fill(host.data(), memory->bytes);
+  return memory;
+}
+
 class QueryDevice : public testing::Test {
  protected:
   void SetUp() override {
@@ -63,16 +71,43 @@ class QueryDevice : public testing::Test {
     return memory;
   }
 
+  // Queries the triangles in each layout, streamed and resident. A face has an index out of range.
+  template <class Real>
+  void expect_every_layout(const std::vector<std::array<Real, 9>>& triangles, const std::array<Real, 9>& reference) {
+    EveryLayout<Real> layouts(triangles);
+    layouts.faces[70'000][2] = 4'000'000'000u;
+    const auto rows = copied(layouts.rows), wide = copied(layouts.wide), vertices = copied(layouts.vertices),
+               faces = copied(layouts.faces);
+    std::vector<graze_triangles> host = layouts.parts(), device = host;
+    for (graze_triangles& part : device) part.device = 0;
+    device[0].rows = rows->data;
+    device[1].rows = wide->data;
+    std::vector<std::unique_ptr<cuda::DeviceMemory>> columns;
+    for (std::size_t k = 0; k < 9; ++k) {
+      columns.push_back(copied(layouts.columns[k]));
+      device[2].columns[k] = columns[k]->data;
+    }
+    device[3].vertices = vertices->data;
+    device[3].faces = static_cast<const std::uint32_t*>(faces->data);
+    for (graze_triangles* part : {&host[0], &device[0]}) {
+      part->rows = static_cast<const Real*>(part->rows) + 9;  // not aligned for vector loads
+      --part->count;
+    }
+    for (std::size_t k = 0; k < host.size(); ++k) {
+      SCOPED_TRACE(k);
+      graze_query query = query_of(reference, host[k]);
+      query.executor = GRAZE_ALL_CORES;
+      const Found cores = all_of(query, host[k].count);
+      EXPECT_GT(cores.answer.hits, 1000u);
+      query.executor = GRAZE_ONE_GPU;
+      expect_same(all_of(query, host[k].count), cores);
+      query.parts = &device[k];
+      expect_same(all_of(query, host[k].count), cores);
+    }
+  }
+
   Context context_;
 };
-
-// A copy of the vector in the memory of device 0.
-template <class Element>
-std::unique_ptr<cuda::DeviceMemory> copied(const std::vector<Element>& host) {
-  auto memory = cuda::device_memory(0, host.size() * sizeof host[0]);
-  memory->fill(host.data(), memory->bytes);
-  return memory;
-}
 
 std::vector<Triangle> broken(std::vector<Triangle> triangles) {
   for (std::size_t i = 3; i < triangles.size(); i += 1001) triangles[i][i % 9] = i % 2 ? NAN : -INFINITY;
@@ -160,47 +195,7 @@ TEST_F(QueryDevice, ManyReferencesAreTheCores) {
   }
 }
 
-TEST_F(QueryDevice, LayoutsAreTheCores) {
-  const std::vector<Triangle> triangles = broken(thesis_triangles(100'003));
-  std::vector<float> columns(9 * triangles.size());
-  std::vector<std::array<float, 3>> vertices;
-  std::vector<std::array<std::uint32_t, 3>> faces;
-  std::vector<std::array<float, 10>> wide;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const Triangle& t = triangles[i];
-    for (std::size_t k = 0; k < 9; ++k) columns[k * triangles.size() + i] = t[k];
-    const auto v = static_cast<std::uint32_t>(vertices.size());
-    for (std::size_t k = 0; k < 9; k += 3) vertices.push_back({t[k], t[k + 1], t[k + 2]});
-    faces.push_back({v, v + 1, i == 70'000 ? 4'000'000'000u : v + 2});
-    wide.push_back({t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8], 1});
-  }
-  const auto of_columns = copied(columns), of_vertices = copied(vertices), of_faces = copied(faces),
-             of_wide = copied(wide), of_rows = copied(triangles);
-  std::array<const float*, 9> at;
-  for (std::size_t k = 0; k < 9; ++k) at[k] = columns.data() + k * triangles.size();
-  graze_triangles host[4] = {columns_of(at, triangles.size()), mesh_of(vertices, faces),
-                             rows_of(std::span<const std::array<float, 10>>(wide)), part_of(triangles)};
-  graze_triangles device[4] = {host[0], host[1], host[2], host[3]};
-  for (graze_triangles& part : device) part.device = 0;
-  for (std::size_t k = 0; k < 9; ++k)
-    device[0].columns[k] = static_cast<const float*>(of_columns->data) + k * triangles.size();
-  device[1].vertices = static_cast<const float*>(of_vertices->data);
-  device[1].faces = static_cast<const std::uint32_t*>(of_faces->data);
-  device[2].rows = static_cast<const float*>(of_wide->data);
-  device[3].rows = static_cast<const float*>(of_rows->data) + 9;  // not aligned for vector loads
-  device[3].count = host[3].count -= 1;
-  host[3].rows = static_cast<const float*>(host[3].rows) + 9;
-  for (int k = 0; k < 4; ++k) {
-    SCOPED_TRACE(k);
-    graze_query query = query_of(kThesisReference, host[k]);
-    query.executor = GRAZE_ALL_CORES;
-    const Found cores = all_of(query, host[k].count);
-    query.executor = GRAZE_ONE_GPU;
-    expect_same(all_of(query, host[k].count), cores);
-    query.parts = &device[k];
-    expect_same(all_of(query, host[k].count), cores);
-  }
-}
+TEST_F(QueryDevice, LayoutsAreTheCores) { expect_every_layout(broken(thesis_triangles(100'003)), kThesisReference); }
 
 // Queries doubles of all strata, streamed and resident, with few and with many references. Some coordinates are not
 // finite.
@@ -239,43 +234,9 @@ TEST_F(QueryDevice, DoublesOfAllStrataAreTheCores) {
 
 TEST_F(QueryDevice, DoublesInEveryLayoutAreTheCores) {
   std::vector<DoubleTriangle> triangles;
-  std::vector<std::array<double, 11>> wide;
-  std::vector<std::array<double, 3>> vertices;
-  std::vector<std::array<std::uint32_t, 3>> faces;
-  constexpr std::size_t kCount = 100'003;
-  std::vector<double> columns(9 * kCount);
-  for (std::size_t i = 0; i < kCount; ++i) {
-    const DoubleTriangle t = triangle(strata::generate_doubles(14, strata::Stratum::uniform, i).b);
-    const auto v = static_cast<std::uint32_t>(vertices.size());
-    wide.push_back({});
-    for (std::size_t k = 0; k < 9; ++k) columns[k * kCount + i] = wide.back()[k] = t[k];
-    for (std::size_t k = 0; k < 9; k += 3) vertices.push_back({t[k], t[k + 1], t[k + 2]});
-    faces.push_back({v, v + 1, i == 70'000 ? 4'000'000'000u : v + 2});
-  }
-  const DoubleTriangle reference = triangle(strata::generate_doubles(14, strata::Stratum::uniform, 0).a);
-  const auto of_columns = copied(columns), of_vertices = copied(vertices), of_faces = copied(faces),
-             of_wide = copied(wide);
-  std::array<const double*, 9> at;
-  for (std::size_t k = 0; k < 9; ++k) at[k] = columns.data() + k * kCount;
-  graze_triangles host[3] = {columns_of(at, kCount), mesh_of(vertices, faces),
-                             rows_of(std::span<const std::array<double, 11>>(wide))};
-  graze_triangles device[3] = {host[0], host[1], host[2]};
-  for (graze_triangles& part : device) part.device = 0;
-  for (std::size_t k = 0; k < 9; ++k) device[0].columns[k] = static_cast<const double*>(of_columns->data) + k * kCount;
-  device[1].vertices = of_vertices->data;
-  device[1].faces = static_cast<const std::uint32_t*>(of_faces->data);
-  device[2].rows = of_wide->data;
-  for (int k = 0; k < 3; ++k) {
-    SCOPED_TRACE(k);
-    graze_query query = query_of(reference, host[k]);
-    query.executor = GRAZE_ALL_CORES;
-    const Found cores = all_of(query, kCount);
-    EXPECT_GT(cores.answer.hits, 1000u);
-    query.executor = GRAZE_ONE_GPU;
-    expect_same(all_of(query, kCount), cores);
-    query.parts = &device[k];
-    expect_same(all_of(query, kCount), cores);
-  }
+  for (std::uint64_t i = 0; i < 100'003; ++i)
+    triangles.push_back(triangle(strata::generate_doubles(14, strata::Stratum::uniform, i).b));
+  expect_every_layout(triangles, triangle(strata::generate_doubles(14, strata::Stratum::uniform, 0).a));
 }
 
 TEST_F(QueryDevice, LanesAreThoseOfTheCores) {

@@ -40,13 +40,6 @@ struct Eight {
     query.executor = GRAZE_ONE_CORE;
     bytes = bytes_of(query, kTogether * kTogether);
   }
-
-  BasicPair<Real> pair(std::size_t r, std::size_t t) const {
-    BasicPair<Real> pair;
-    std::memcpy(pair.a, references[r].data(), sizeof pair.a);
-    std::memcpy(pair.b, triangles[t].data(), sizeof pair.b);
-    return pair;
-  }
 };
 
 // The slabs must not lose a hit, on any side of any triangle.
@@ -60,7 +53,7 @@ TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
       for (std::size_t r = 0; r < kTogether; ++r) {
         const exact::PreparedTriangle prepared = exact::prepare(references[r].data());
         for (std::size_t t = 0; t < kTogether; ++t) {
-          const Pair pair = eight.pair(r, t);
+          const Pair pair = pair_of(references[r], triangles[t]);
           const bool meets = oracle::cgal_verdict(pair) == Verdict::intersects;
           ASSERT_EQ(meets, oracle::gmp_contact(pair) != Contact::none);
           ASSERT_EQ(bytes[r * kTogether + t], meets) << row.id << " 7 " << begin + r << ' ' << begin + t;
@@ -97,7 +90,7 @@ TEST(QueryVerdicts, OfDoublesAreTheOraclesOverAllStrata) {
         };
         const exact::PreparedTriangle prepared = exact::prepare(seen_from(references[r]).data(), true);
         for (std::size_t t = 0; t < kTogether; ++t) {
-          const DoublePair pair = eight.pair(r, t);
+          const DoublePair pair = pair_of(references[r], triangles[t]);
           const bool meets = oracle::cgal_verdict(pair) == Verdict::intersects;
           ASSERT_EQ(meets, oracle::gmp_contact(pair) != Contact::none);
           ASSERT_EQ(bytes[r * kTogether + t], meets) << row.id << " 7 " << begin + r << ' ' << begin + t;
@@ -143,12 +136,8 @@ TEST(QueryVerdicts, HoldAtTheEndsOfTheDoubles) {
   const graze_triangles part = rows_of(std::span<const DoubleTriangle>(corners));
   for (const DoubleTriangle& reference : corners) {
     const std::vector<std::uint8_t> bytes = bytes_of(query_of(reference, part), 2);
-    for (std::size_t t = 0; t < 2; ++t) {
-      DoublePair pair;
-      std::memcpy(pair.a, reference.data(), sizeof pair.a);
-      std::memcpy(pair.b, corners[t].data(), sizeof pair.b);
-      EXPECT_EQ(bytes[t], oracle::cgal_verdict(pair) == Verdict::intersects);
-    }
+    for (std::size_t t = 0; t < 2; ++t)
+      EXPECT_EQ(bytes[t], oracle::cgal_verdict(pair_of(reference, corners[t])) == Verdict::intersects);
   }
 }
 
@@ -156,12 +145,10 @@ TEST(QueryVerdicts, AreTheOraclesOnTheThesissTriangles) {
   const std::vector<Triangle> triangles = thesis_triangles(300'000);
   const graze_triangles part = part_of(triangles);
   const std::vector<std::uint8_t> bytes = bytes_of(query_of(kThesisReference, part), triangles.size());
-  Pair pair;
-  std::memcpy(pair.a, kThesisReference.data(), sizeof pair.a);
   const exact::PreparedTriangle prepared = exact::prepare(kThesisReference.data());
   std::size_t beyond = 0, unsure = 0;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    std::memcpy(pair.b, triangles[i].data(), sizeof pair.b);
+    const Pair pair = pair_of(kThesisReference, triangles[i]);
     const bool meets = oracle::cgal_verdict(pair) == Verdict::intersects;
     ASSERT_EQ(meets, oracle::gmp_contact(pair) != Contact::none);
     ASSERT_EQ(bytes[i], meets) << i;
@@ -185,11 +172,8 @@ TEST(QueryVerdicts, AreThoseOfTheLane) {
     const LaneName name = *parse_lane_name(id);
     const Lane published = *find_lane(name.subject + '/' + name.scalar + '/' + name.variant);
     const Lane lane = name.policy.empty() ? published : lane_under(published, name.policy);
-    Pair pair;
-    std::memcpy(pair.a, kThesisReference.data(), sizeof pair.a);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
-      std::memcpy(pair.b, triangles[i].data(), sizeof pair.b);
-      const Verdict verdict = decide_one(lane.decide, pair);
+      const Verdict verdict = decide_one(lane.decide, pair_of(kThesisReference, triangles[i]));
       ASSERT_EQ(bytes[i], verdict == Verdict::declined ? 2 : verdict == Verdict::intersects) << id << ' ' << i;
     }
   }

@@ -83,14 +83,7 @@ TEST(CoplanarWide, IsExactAndWide) {
 }
 
 bool vertex_on_face(const Vec3<Int>& p, const Triangle<Int>& t) {
-  const Vec3<Int> n = normal(t);
-  int left = 0, right = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Int side = dot(n, cross(edge(t, i), p - t[i]));
-    left += side > 0;
-    right += side < 0;
-  }
-  return dot(n, p - t[0]) == 0 && (left == 3 || right == 3);
+  return dot(normal(t), p - t[0]) == 0 && side_of(p, t) > 0;
 }
 
 bool vertex_on_edge(const Vec3<Int>& p, const Vec3<Int>& start, const Vec3<Int>& e) {

@@ -15,18 +15,6 @@
 namespace graze::strata::testing {
 namespace {
 
-// The sign of the least signed area that p spans with an edge of t: positive inside, 0 on an edge or a vertex.
-// Requires: p lies in the plane of t.
-int side_of(const Vec3<Int>& p, const Triangle<Int>& t) {
-  const Vec3<Int> n = normal(t);
-  int least = 1;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Int area = dot(n, cross(edge(t, i), p - t[i]));
-    least = std::min(least, area > 0 ? 1 : area < 0 ? -1 : 0);
-  }
-  return least;
-}
-
 // How `inner` lies in `outer`. 1: strictly inside; 0: inside, touching the boundary; -1: not contained.
 int contained(const Triangle<Int>& inner, const Triangle<Int>& outer) {
   return std::min({side_of(inner[0], outer), side_of(inner[1], outer), side_of(inner[2], outer)});

@@ -71,6 +71,18 @@ inline bool is_coplanar(const Triangle<Int>& a, const Triangle<Int>& b) {
          dot(n, edge(b, 1)) == 0;
 }
 
+// The sign of the least signed area that p spans with an edge of t: positive inside, 0 on an edge or a vertex.
+// Requires: p lies in the plane of t.
+inline int side_of(const Vec3<Int>& p, const Triangle<Int>& t) {
+  const Vec3<Int> n = normal(t);
+  int least = 1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Int area = dot(n, cross(edge(t, i), p - t[i]));
+    least = std::min(least, area > 0 ? 1 : area < 0 ? -1 : 0);
+  }
+  return least;
+}
+
 inline double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
 
 template <class Real>

@@ -211,18 +211,14 @@ class Reader {
   void read_margins(const toml::node& node, SceneFile& scene) {
     const toml::table& margins = table(node, "a table of shares");
     std::vector<std::string> names;
-    std::map<std::string, Bucket, std::less<>> buckets;
-    for (int b = -kBucketMost; b <= kBucketMost; ++b) {
-      names.push_back(name_of_bucket(static_cast<Bucket>(b)));
-      buckets[names.back()] = static_cast<Bucket>(b);
-    }
+    for (int b = -kBucketMost; b <= kBucketMost; ++b) names.push_back(name_of_bucket(static_cast<Bucket>(b)));
     for (const auto& [key, share] : margins) {
-      const auto bucket = buckets.find(key.str());
-      if (bucket == buckets.end())
+      const auto name = std::find(names.begin(), names.end(), key.str());
+      if (name == names.end())
         strata::fail(fmt::format("{}:{}", name_, key.source().begin.line),
                      "a margin: \"0\", \"+2^5\" (ulps apart) or \"-2^5\" (ulps deep)",
                      shown(key.str()) + did_you_mean(key.str(), names));
-      scene.margins[bucket->second] = number(share, 0, 1);
+      scene.margins[static_cast<Bucket>(name - names.begin() - kBucketMost)] = number(share, 0, 1);
     }
   }
 

@@ -17,7 +17,7 @@ struct QueryError : std::runtime_error {
   graze_status status;
 };
 
-// What a device needs, and for every executor also:
+// A device's question, and what the cores and the collector need as well.
 struct Question : cuda::DeviceQuestion {
   std::vector<std::uint64_t> counts;  // the number of triangles in each part
   graze_executor executor = GRAZE_ONE_CORE;

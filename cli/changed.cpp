@@ -14,7 +14,7 @@
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/recorded.h"
 #include "fuzz/minimise/kinds.h"
-#include "reports/changed_verdicts.h"
+#include "reports/comparison.h"
 #include "subjects/subjects.h"
 
 namespace graze::cli {

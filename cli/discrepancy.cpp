@@ -20,7 +20,6 @@
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/sealed.h"
 #include "reports/discrepancy.h"
-#include "reports/discrepancy_page.h"
 #include "reports/recorded_code.h"
 #include "reports/verdicts_apart.h"
 #include "subjects/subjects.h"
@@ -243,7 +242,7 @@ int discrepancy(DiscrepancyOptions options) {
                           : !options.campaign.empty() ? options.campaign
                                                       : "discrepancy";
   const ResultFolder folder(out, "discrepancy.json");
-  const reports::DiscrepancyResults found{spec, analysis::discrepancies(spec), origins_of(spec)};
+  const fuzz::Json values = reports::discrepancy_json(spec, analysis::discrepancies(spec), origins_of(spec));
 
   fuzz::Json verdicts = fuzz::Json::array();
   std::optional<AnyPair> simplest;
@@ -269,8 +268,8 @@ int discrepancy(DiscrepancyOptions options) {
   }
 
   const reports::Screen screen = output_screen();
-  if (spec.lanes.size() <= kMostTables) fmt::print("{}", reports::discrepancy_tables(found, screen));
-  if (spec.lanes.size() > 1) fmt::print("{}", reports::comparisons_table(found, screen));
+  if (spec.lanes.size() <= kMostTables) fmt::print("{}", reports::discrepancy_tables(values, screen));
+  if (spec.lanes.size() > 1) fmt::print("{}", reports::comparisons_table(values, screen));
   fmt::print("{}", left_out);
   fuzz::Json json = {{"pairs", analysis::pairs_in(spec.sources)}, {"seed", seed}};
   const fuzz::Json build = fuzz::build_info({});
@@ -281,8 +280,8 @@ int discrepancy(DiscrepancyOptions options) {
         std::all_of(spec.sources.begin(), spec.sources.end(), std::mem_fn(&strata::PairSource::in_doubles));
     json["coordinates"] = all ? "f64" : "both";
   }
-  json.update(reports::discrepancy_json(found));
-  std::string csv = reports::discrepancy_csv(found);
+  json.update(values);
+  std::string csv = reports::discrepancy_csv(values);
   for (const fuzz::Json& of : verdicts) {
     fmt::print("{}", reports::verdicts_table(of, screen));
     csv += reports::verdicts_csv(of);

@@ -18,7 +18,7 @@
 #include "cuda/twin/twin.h"
 #include "fuzz/minimise/kinds.h"
 #include "reports/cost_words.h"
-#include "reports/side_by_side.h"
+#include "reports/discrepancy.h"
 #include "reports/terminal.h"
 #include "subjects/cuda_code.h"
 

@@ -69,9 +69,10 @@ void print_sufficient(const std::string& scene, double rate) {
   for (std::size_t c = 0; c < candidates.size(); ++c) candidates[c].cost = costs[c + 1];
   const strata::SceneSources last = drawn(scene, 3, pairs, {}, types);
   // Candidates were selected by their errors on earlier pairs, so fresh pairs must confirm the cheapest one.
-  for (int best; (best = reports::cheapest_sufficient(candidates)) >= 0;) {
-    Candidate& chosen = candidates[static_cast<std::size_t>(best)];
-    const Lane& lane = lanes[static_cast<std::size_t>(best)];
+  while (const Candidate* best = reports::cheapest_sufficient(candidates)) {
+    const std::ptrdiff_t place = best - candidates.data();
+    Candidate& chosen = candidates.begin()[place];
+    const Lane& lane = lanes.begin()[place];
     chosen.errors = analysis::host_sweep([&](const std::string&) { return lane.decide; })(
         std::vector<std::string>{lane.policy}, last.sources)[0];
     chosen.bound = analysis::upper_bound(chosen.errors.wrong(), chosen.errors.pairs);

@@ -78,8 +78,7 @@ std::string costs_in_words(const CallCosts& costs) {
 // own: the user's lane.
 std::string exact_in_words(const Lane& exact, const reports::ReportLane& own, const reports::CampaignCounts& counts) {
   const bool of_float32 = exact.scalar == Scalar::f32;
-  const std::uint64_t not_right =
-      counts.total.lanes[static_cast<std::size_t>(counts.find(exact.lane_name()))].not_right();
+  const std::uint64_t not_right = counts.total.lanes[counts.find(exact.lane_name()).value()].not_right();
   return fmt::format("Instead: {} is {}{}.", exact.id,
                      not_right == 0
                          ? fmt::format("right on all {} pairs", reports::grouped(counts.total.pairs))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reports/changed_verdicts.h"
+#include "reports/comparison.h"
 
 #include <fmt/format.h>
 

@@ -13,7 +13,6 @@
 
 #include "core/text.h"
 #include "fuzz/counts_json.h"
-#include "reports/changed_verdicts.h"
 #include "reports/discrepancy_reading.h"
 #include "reports/recorded_code.h"
 #include "reports/tables.h"
@@ -98,11 +97,7 @@ double chance_of_at_most(double count, double all, const double (&pairs)[2]) {
 // more unevenly.
 // Reference: Fisher 1935, the exact test; twice the smaller of the two tails.
 bool apart(const Json& l, const Json& r) {
-  double count[2], of[2];
-  for (const int i : {0, 1}) {
-    count[i] = (i == 0 ? l : r).at("count");
-    of[i] = (i == 0 ? l : r).at("of");
-  }
+  const double count[2] = {l.at("count"), r.at("count")}, of[2] = {l.at("of"), r.at("of")};
   if (of[0] == 0 || of[1] == 0) return false;
   const double all = count[0] + count[1], other_way[2] = {of[1], of[0]};
   const bool fewer = count[0] * of[1] <= count[1] * of[0];  // whether the first campaign has the lower rate

@@ -2,7 +2,10 @@
 // Compares two campaigns. Differences that chance alone explains are not reported.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 namespace graze::reports {
 
@@ -33,5 +36,21 @@ void add_comparison(nlohmann::ordered_json& report, const nlohmann::ordered_json
 // Whether both campaigns are complete and ran on the same pairs. If so, a different count means a different verdict.
 // False for hunts, because their pairs depend on the lanes.   Requires: two reports.
 bool same_pairs(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after);
+
+inline constexpr const char* kAllStrata = "all strata";  // the stratum of rates over all strata
+
+// Returns the start of a comparison's headline, which counts the changed verdicts and their lanes.
+std::string paired_headline(const nlohmann::ordered_json& verdicts);
+
+// Throws: std::runtime_error for rows whose counts are impossible in a campaign of this many pairs.
+// Requires: rows whose shape has been checked.
+void expect_possible_changes(const nlohmann::ordered_json& verdicts, std::uint64_t campaign);
+
+// Returns a sentence for each lane with changed verdicts, then one for each lane and stratum in which verdicts changed
+// or may have changed. The latter names the smallest case that became wrong, and the smallest that became right. If
+// there are more than kMostChanged such lanes and strata, the last sentence counts the rest.
+// Requires: "compare" of a report.
+inline constexpr std::size_t kMostChanged = 12;
+std::vector<std::string> changed_sentences(const nlohmann::ordered_json& compare);
 
 }  // namespace graze::reports

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "core/message_testing.h"
-#include "reports/changed_verdicts.h"
 #include "reports/tables.h"
 
 namespace graze::reports {

@@ -60,14 +60,14 @@ const std::map<std::string, Bucket>& buckets_by_name() {
   return buckets;
 }
 
-int CampaignCounts::find(const LaneName& name) const {
+std::optional<std::size_t> CampaignCounts::find(const LaneName& name) const {
   for (std::size_t l = 0; l < lanes.size(); ++l) {
-    if (lanes[l].name == name) return static_cast<int>(l);
+    if (lanes[l].name == name) return l;
   }
-  return -1;
+  return {};
 }
 
-int CampaignCounts::counterpart(std::size_t lane, std::string_view variant) const {
+std::optional<std::size_t> CampaignCounts::counterpart(std::size_t lane, std::string_view variant) const {
   LaneName name = lanes[lane].name;
   name.variant = variant;
   return find(name);

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +20,7 @@ struct ReportLane {
   LaneName name;
   const Lane* row = nullptr;  // the lane in this build's table; null if it has no such lane
   bool exact = false;
-  int cpu = -1;  // index of the cpu lane of the same algorithm and scalar; -1 if there is none, or if it is this lane
+  std::optional<std::size_t> cpu = {};  // index of the cpu lane of the same algorithm and scalar, if it is another lane
 };
 
 struct WrongCounts {
@@ -54,9 +55,9 @@ struct CampaignCounts {
   std::vector<GroupCounts> groups;  // groups that have pairs
   StratumCounts total;              // id empty
 
-  // Both return the index of a lane, or -1 if it is absent. counterpart: the same lane in another variant.
-  int find(const LaneName& name) const;
-  int counterpart(std::size_t lane, std::string_view variant) const;
+  // Both return the index of a lane if it is there. counterpart: the same lane in another variant.
+  std::optional<std::size_t> find(const LaneName& name) const;
+  std::optional<std::size_t> counterpart(std::size_t lane, std::string_view variant) const;
   const StratumCounts* stratum(std::string_view id) const;
   const GroupCounts* group(std::string_view id) const;
   std::vector<std::size_t> drawn() const;  // indices of the strata that have pairs

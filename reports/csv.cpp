@@ -89,7 +89,7 @@ std::string rates_csv(const Json& report) {
 std::string margins_csv(const CampaignCounts& counts, bool differs) {
   Table table("lane,stratum,side,exponent,count,of,share,low,high");
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
-    if (differs && counts.lanes[l].cpu < 0) continue;
+    if (differs && !counts.lanes[l].cpu) continue;
     for (const StratumCounts& stratum : counts.strata) {
       for (const auto& [bucket, found] : stratum.margins) {
         std::vector<Json> cells{counts.lanes[l].id, stratum.id, side_of(bucket),

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <bit>
 
 #include "core/discrepancy/count.h"
@@ -129,19 +128,6 @@ DiscrepancyCounts total(const LanesCompared& lanes, const std::vector<Discrepanc
   return sum;
 }
 
-// The number of differing values by the octave of their distance in ulps, summed over the question's values.
-Octaves octaves_of(const DiscrepancyCounts& of, int question, std::size_t values) {
-  using namespace value_counts;
-  Octaves octaves;
-  for (std::size_t v = 0; v < values; ++v) {
-    const int at = value_at(question, static_cast<int>(v));
-    for (int k = 0; k < kOctaves; ++k) {
-      for (const int side : {below, above}) octaves[k] += of.counts[static_cast<std::size_t>(at + side + k)];
-    }
-  }
-  return octaves;
-}
-
 // The quantile of the distances in ulps for this share of the differing values: "1", "≤ 63"; "-" if none differs.
 std::string ulps_of(const Octaves& octaves, double share) {
   const std::optional<int> k = quantile(octaves, share);
@@ -149,40 +135,24 @@ std::string ulps_of(const Octaves& octaves, double share) {
   return *k == 0 ? "1" : *k < 20 ? fmt::format("≤ {}", (std::uint64_t{2} << *k) - 1) : fmt::format("< 2^{}", *k + 1);
 }
 
-std::uint64_t sum_of(const DiscrepancyCounts& of, int question, std::size_t values, int field) {
-  std::uint64_t sum = 0;
-  for (std::size_t v = 0; v < values; ++v)
-    sum += of.counts[static_cast<std::size_t>(value_at(question, static_cast<int>(v)) + field)];
-  return sum;
-}
-
-// The lines, sorted by the number of verdicts that they change, then by the number of values.
-std::vector<const analysis::FusedLine*> by_weight(const analysis::Origins& origins) {
-  std::vector<const analysis::FusedLine*> lines;
-  for (const analysis::FusedLine& line : origins.lines) lines.push_back(&line);
-  std::stable_sort(lines.begin(), lines.end(), [](const analysis::FusedLine* l, const analysis::FusedLine* r) {
-    return std::pair(l->verdicts_fixed, l->values) > std::pair(r->verdicts_fixed, r->values);
-  });
-  return lines;
-}
-
 constexpr std::size_t kMostLines = 10;
 
-std::string origins_table(const analysis::Origins& origins, const Screen& screen) {
+std::string origins_table(const Json& origins, const Screen& screen) {
   TextTable table(
       {{"fused line", Align::left}, {"within", Align::left}, {"values"}, {"verdicts alone"}, {"verdicts fixed"}});
-  for (const analysis::FusedLine* line : by_weight(origins)) {
-    if (line->values + line->verdicts_alone + line->verdicts_fixed == 0) continue;
-    table.add({line_of(line->at), line_of(line->from), grouped(line->values),
-               Cell(grouped(line->verdicts_alone), line->verdicts_alone > 0),
-               Cell(grouped(line->verdicts_fixed), line->verdicts_fixed > 0)});
+  for (const Json* line : by_weight(origins)) {
+    const std::uint64_t values = number_at(*line, "values"), alone = number_at(*line, "verdicts_alone"),
+                        fixed = number_at(*line, "verdicts_fixed");
+    if (values + alone + fixed == 0) continue;
+    table.add({text_at(*line, "line"), text_at(*line, "within"), grouped(values), Cell(grouped(alone), alone > 0),
+               Cell(grouped(fixed), fixed > 0)});
     if (table.rows() == kMostLines) break;
   }
   return wrapped(
              fmt::format("Contraction changes the verdict on {} of {} examined pairs. Source lines whose products are "
                          "fused, by effect (values, verdicts alone: how many change if only this line is fused; "
                          "verdicts fixed: how many changed verdicts return if only this line is not fused):",
-                         grouped(origins.verdicts), grouped(origins.pairs)),
+                         grouped(number_at(origins, "verdicts")), grouped(number_at(origins, "pairs"))),
              screen.columns) +
          table.text(screen);
 }
@@ -214,76 +184,8 @@ Json origins_json(const analysis::Origins& origins, const std::vector<Question>&
 
 }  // namespace
 
-std::string discrepancy_tables(const DiscrepancyResults& results, const Screen& screen) {
-  const auto& [spec, found, origins] = results;
-  std::string text;
-  for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
-    const LanesCompared& lanes = spec.lanes[l];
-    const DiscrepancyCounts sum = total(lanes, found[l]);
-    const std::vector<Question>& questions = questions_of(lanes.first->algorithm);
-    TextTable table({{"question", Align::left},
-                     {"asked"},
-                     {"differs"},
-                     {"median"},
-                     {"99 %"},
-                     {"largest"},
-                     {"2nd nearer"},
-                     {"sign"},
-                     {"outcome"},
-                     {"verdict"},
-                     {"band"}});
-    bool any = false;
-    for (std::size_t q = 0; q < questions.size(); ++q) {
-      const int question = static_cast<int>(q);
-      const auto of = [&](int field) { return sum.counts[static_cast<std::size_t>(question_at(question) + field)]; };
-      using namespace question_counts;
-      if (of(differs) == 0) continue;
-      any = true;
-      const std::size_t values = questions[q].of.size();
-      const Octaves octaves = octaves_of(sum, question, values);
-      const std::uint64_t second = sum_of(sum, question, values, value_counts::nearer_second),
-                          first = sum_of(sum, question, values, value_counts::nearer_first);
-      table.add({questions[q].name, grouped(of(asked)), rate_words(of(differs), of(asked)), ulps_of(octaves, 0.5),
-                 ulps_of(octaves, 0.99), ulps_of(octaves, 1),
-                 first + second == 0 ? "-" : bare_percent(second, first + second) + " %",
-                 Cell(rate_words(of(sign), of(asked)), of(sign) > 0),
-                 Cell(rate_words(of(outcome), of(asked)), of(outcome) > 0), Cell(grouped(of(verdict)), of(verdict) > 0),
-                 of(sign) == 0 ? "-" : fmt::format("{:.3g}", largest(sum, q, band_maxima::in_bounds))});
-    }
-    text += wrapped(
-        fmt::format("{} against {}{}", lanes.first->id, lanes.second->id, any ? ":" : ": no bit of any value differs."),
-        screen.columns);
-    if (any) text += table.text(screen);
-    if (origins[l]) text += origins_table(*origins[l], screen);
-  }
-  return text;
-}
-
-std::string comparisons_table(const DiscrepancyResults& results, const Screen& screen) {
-  const auto& [spec, found, origins] = results;
-  TextTable table({{"first", Align::left},
-                   {"second", Align::left},
-                   {"pairs"},
-                   {"a value differs"},
-                   {"a sign"},
-                   {"a comparison"},
-                   {"the verdict"}});
-  for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
-    const LanesCompared& lanes = spec.lanes[l];
-    const DiscrepancyCounts sum = total(lanes, found[l]);
-    const std::uint64_t pairs = sum.counts[pair_counts::pairs];
-    std::vector<Cell> row = {lanes.first->id, lanes.second->id, grouped(pairs)};
-    for (const int field : {pair_counts::differs, pair_counts::sign, pair_counts::outcome, pair_counts::verdict}) {
-      const std::uint64_t count = sum.counts[static_cast<std::size_t>(field)];
-      row.emplace_back(rate_words(count, pairs), count > 0);
-    }
-    table.add(std::move(row));
-  }
-  return table.text(screen);
-}
-
-Json discrepancy_json(const DiscrepancyResults& results) {
-  const auto& [spec, found, origins] = results;
+Json discrepancy_json(const DiscrepancySpec& spec, const Discrepancies& found,
+                      const std::vector<std::optional<analysis::Origins>>& origins) {
   Json all = Json::array();
   for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
     const LanesCompared& lanes = spec.lanes[l];
@@ -301,32 +203,85 @@ Json discrepancy_json(const DiscrepancyResults& results) {
   return {{"lanes", all}};
 }
 
-std::string discrepancy_csv(const DiscrepancyResults& results) {
-  const auto& [spec, found, origins] = results;
-  std::string text = "first,second,stratum,question,value,count,bucket,pairs\n";
-  for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
-    const std::vector<Question>& questions = questions_of(spec.lanes[l].first->algorithm);
-    for (std::size_t s = 0; s < spec.sources.size(); ++s) {
-      const auto rows = [&](const std::vector<Field>& fields, int at, const std::string& question,
-                            const std::string& value) {
-        for (const Field& field : fields) {
-          if (const std::uint64_t count = found[l][s].counts[static_cast<std::size_t>(at + field.at)])
-            text += fmt::format("{},{},{},\"{}\",\"{}\",{},{},{}\n", spec.lanes[l].first->id, spec.lanes[l].second->id,
-                                spec.sources[s].id, question, value, field.name, field.bucket, count);
-        }
-      };
-      rows(kPairFields, 0, "", "");
-      if (const Axis axis = spec.sources[s].axis; axis != Axis::none) {
-        for (int place = -kBucketMost; place <= kBucketMost; ++place)
-          rows(kPairFields, place_at(place), std::string(name(axis)),
-               octave(exponent_of(axis, static_cast<std::int8_t>(place))));
+std::string discrepancy_tables(const Json& json, const Screen& screen) {
+  std::string text;
+  for (const Json& of : json.at("lanes")) {
+    TextTable table({{"question", Align::left},
+                     {"asked"},
+                     {"differs"},
+                     {"median"},
+                     {"99 %"},
+                     {"largest"},
+                     {"2nd nearer"},
+                     {"sign"},
+                     {"outcome"},
+                     {"verdict"},
+                     {"band"}});
+    for (const Json& question : of.at("total").at("questions")) {
+      const auto number = [&](const char* key) { return number_at(question, key); };
+      if (number("differs") == 0) continue;
+      Octaves octaves;  // of the distances of all its values
+      std::uint64_t first = 0, second = 0;
+      for (const Json& value : question.at("values")) {
+        for (const auto& [k, count] : sizes_of(value)) octaves[k] += count;
+        first += value.at("nearer").value("first", std::uint64_t{0});
+        second += value.at("nearer").value("second", std::uint64_t{0});
       }
-      for (int site = 0; site <= kSiteCount; ++site) rows(kSiteFields, site_at(site), std::string(site_name(site)), "");
-      for (std::size_t q = 0; q < questions.size(); ++q) {
-        rows(question_fields(), question_at(static_cast<int>(q)), questions[q].name, "");
-        for (std::size_t v = 0; v < questions[q].of.size(); ++v)
-          rows(value_fields(), value_at(static_cast<int>(q), static_cast<int>(v)), questions[q].name,
-               questions[q].of[v]);
+      const std::uint64_t asked = number("asked"), sign = number("sign"), outcome = number("outcome");
+      table.add({text_at(question, "question"), grouped(asked), rate_words(number("differs"), asked),
+                 ulps_of(octaves, 0.5), ulps_of(octaves, 0.99), ulps_of(octaves, 1),
+                 first + second == 0 ? "-" : bare_percent(second, first + second) + " %",
+                 Cell(rate_words(sign, asked), sign > 0), Cell(rate_words(outcome, asked), outcome > 0),
+                 Cell(grouped(number("verdict")), number("verdict") > 0),
+                 sign == 0 ? "-" : fmt::format("{:.3g}", question.at("largest_in_bounds").get<double>())});
+    }
+    const bool any = table.rows() > 0;
+    text += wrapped(title_of(of) + (any ? ":" : ": no bit of any value differs."), screen.columns);
+    if (any) text += table.text(screen);
+    if (!of.at("origins").is_null()) text += origins_table(of["origins"], screen);
+  }
+  return text;
+}
+
+std::string comparisons_table(const Json& json, const Screen& screen) {
+  TextTable table({{"first", Align::left},
+                   {"second", Align::left},
+                   {"pairs"},
+                   {"a value differs"},
+                   {"a sign"},
+                   {"a comparison"},
+                   {"the verdict"}});
+  for (const Json& of : json.at("lanes")) {
+    const Json& total = of.at("total");
+    const std::uint64_t pairs = number_at(total, "pairs");
+    std::vector<Cell> row = {text_at(of, "first"), text_at(of, "second"), grouped(pairs)};
+    for (const char* key : {"differs", "sign", "outcome", "verdict"}) {
+      const std::uint64_t count = number_at(total, key);
+      row.emplace_back(rate_words(count, pairs), count > 0);
+    }
+    table.add(std::move(row));
+  }
+  return table.text(screen);
+}
+
+std::string discrepancy_csv(const Json& json) {
+  std::string text = "first,second,stratum,question,value,count,bucket,pairs\n";
+  for (const Json& of : json.at("lanes")) {
+    for (const auto& [stratum, counts] : of.at("strata").items()) {
+      const auto add = [&, id = stratum](const std::string& question, const std::string& value, const Json& some) {
+        text += csv_rows(
+            fmt::format("{},{},{},\"{}\",\"{}\",", text_at(of, "first"), text_at(of, "second"), id, question, value),
+            some);
+      };
+      add("", "", counts);
+      for (const auto& [axis, places] : counts.at("extremes").items()) {
+        for (const auto& [place, some] : places.items()) add(axis, "2^" + place, some);
+      }
+      for (const auto& [site, some] : counts.at("sites").items()) add(site, "", some);
+      for (const Json& question : counts.at("questions")) {
+        add(text_at(question, "question"), "", question);
+        for (const Json& value : question.at("values"))
+          add(text_at(question, "question"), text_at(value, "value"), value);
       }
     }
   }

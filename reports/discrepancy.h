@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presents how the values of two lanes differ, as tables, discrepancy.json and discrepancy.csv.
+// Presents how the values of two lanes differ: tables, sentences, discrepancy.json, discrepancy.csv, pictures, and one
+// page without scripts.
 #pragma once
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,24 +14,21 @@
 
 namespace graze::reports {
 
-// The results of `graze discrepancy`: counts for each comparison, and the source lines at which its differences start,
-// if they are known.
-struct DiscrepancyResults {
-  const analysis::DiscrepancySpec& spec;
-  analysis::Discrepancies counts;
-  std::vector<std::optional<analysis::Origins>> origins;
-};
+// {"lanes": [{"first", "second", "strata": {stratum: counts}}]}; docs/formats.md describes the counts.
+// found, origins: for each comparison. Origins are the source lines at which its differences start, if they are known.
+nlohmann::ordered_json discrepancy_json(const analysis::DiscrepancySpec& spec, const analysis::Discrepancies& found,
+                                        const std::vector<std::optional<analysis::Origins>>& origins);
 
 // Returns two tables for each comparison: its questions over all sources, and the source lines whose contraction has
-// the largest effect.
-std::string discrepancy_tables(const DiscrepancyResults& results, const Screen& screen);
+// the largest effect.   json, here and below: the result of discrepancy_json.
+std::string discrepancy_tables(const nlohmann::ordered_json& json, const Screen& screen);
 
 // Returns a table with a row for each comparison: the shares of the pairs on which a value, a sign, a comparison's
 // outcome and the verdict differ.
-std::string comparisons_table(const DiscrepancyResults& results, const Screen& screen);
+std::string comparisons_table(const nlohmann::ordered_json& json, const Screen& screen);
 
-// {"lanes": [{"first", "second", "strata": {stratum: counts}}]}; docs/formats.md describes the counts.
-nlohmann::ordered_json discrepancy_json(const DiscrepancyResults& results);
+// Returns a row for each nonzero count: first,second,stratum,question,value,count,bucket,pairs.
+std::string discrepancy_csv(const nlohmann::ordered_json& json);
 
 // Reads discrepancy.json. Returns null if there is no such file.
 // Throws: corpus::FormatError, which names the file, if its counts are impossible.
@@ -40,7 +39,25 @@ nlohmann::ordered_json read_discrepancy(const std::filesystem::path& file);
 std::string discrepancy_changes(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after,
                                 const Screen& screen);
 
-// Returns a row for each nonzero count: first,second,stratum,question,value,count,bucket,pairs.
-std::string discrepancy_csv(const DiscrepancyResults& results);
+// Returns five sentences: on which shares of the pairs values and verdicts differ, where differences start, which lane
+// is nearer to the exact values, how near to zero signs differ, and the remedy. If one of these is not known, its
+// sentence says so. A sentence for each comparison of verdicts alone follows.   json: the contents of discrepancy.json.
+std::vector<std::string> discrepancy_answer(const nlohmann::ordered_json& json);
+
+// SVG pictures of how the values of two lanes differ.   of: an entry of "lanes" in discrepancy.json.
+std::string funnel_figure(const nlohmann::ordered_json& of);       // from differing values to differing verdicts
+std::string differences_figure(const nlohmann::ordered_json& of);  // how large differences are, by direction
+std::string errors_figure(const nlohmann::ordered_json& of);       // errors of both lanes, mirrored
+std::string band_figure(const nlohmann::ordered_json& of);  // how near to zero signs differ; empty if no sign does
+
+// Pictures of the shares of differing pairs by scale or by offset, one for each stratum that varies it. May be empty.
+std::string extremes_figures(const nlohmann::ordered_json& of);
+
+// Returns a self-contained HTML page: the sentences, then tables and pictures for each pair of lanes.
+std::string discrepancy_page(const nlohmann::ordered_json& json);
+
+// Returns a table with a row for each compared value: both lanes' values, their distance in ulps, the exact value, both
+// errors, and a mark if the comparison's outcome differs.   Requires: as for analysis::runs_beside.
+std::string side_by_side(const analysis::LanesCompared& lanes, const AnyPair& pair, const Screen& screen);
 
 }  // namespace graze::reports

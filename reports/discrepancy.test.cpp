@@ -7,7 +7,6 @@
 #include <regex>
 
 #include "analysis/tuning.h"
-#include "reports/discrepancy_page.h"
 #include "reports/possible_counts.h"
 #include "strata/strata.h"
 
@@ -25,15 +24,13 @@ class DiscrepancyResult : public testing::Test {
     spec.lanes.emplace_back(lane("moller_1997/f64/cpu"), lane("moller_1997/f64/cuda-nofma"));
     spec.sources = strata::stratum_sources(4, 9000, {"thesis", "near_edge_edge", "extreme_scale"});
     const auto simpler = [](const AnyPair&, const AnyPair&) { return false; };
-    const DiscrepancyResults results{
-        spec,
-        analysis::discrepancies(spec),
-        {analysis::origins(*spec.lanes[0].second, spec.sources, 500, 0, simpler), std::nullopt}};
     json_ = {{"pairs", 9000u},
              {"seed", 4u},
              {"build", {{"version", "1"}, {"commit", "a"}, {"compiler", "GCC"}, {"cuda", nullptr}}}};
-    json_.update(discrepancy_json(results));
-    csv_ = discrepancy_csv(results);
+    json_.update(
+        discrepancy_json(spec, analysis::discrepancies(spec),
+                         {analysis::origins(*spec.lanes[0].second, spec.sources, 500, 0, simpler), std::nullopt}));
+    csv_ = discrepancy_csv(json_);
   }
 
   static inline Json json_;

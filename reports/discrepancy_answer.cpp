@@ -5,7 +5,7 @@
 
 #include "analysis/tuning.h"
 #include "core/text.h"
-#include "reports/discrepancy_page.h"
+#include "reports/discrepancy.h"
 #include "reports/discrepancy_reading.h"
 #include "reports/findings.h"
 #include "reports/terminal.h"
@@ -107,9 +107,8 @@ std::string start_sentence(const std::vector<const Json*>& lanes) {
 std::string nearer_sentence(const std::vector<const Json*>& lanes) {
   std::uint64_t first = 0, second = 0, equal = 0, unknown = 0;
   for (const Json* of : lanes) {
-    const auto sums = sum_by_bucket(of->at("total"), "nearer");
-    const auto at = [&](const char* key) { return sums.contains(key) ? sums.at(key) : 0; };
-    first += at("first"), second += at("second"), equal += at("equal"), unknown += at("unknown");
+    auto sums = sum_by_bucket(of->at("total"), "nearer");
+    first += sums["first"], second += sums["second"], equal += sums["equal"], unknown += sums["unknown"];
   }
   const std::uint64_t all = first + second + equal + unknown;
   if (all == 0) return "No value differs, so no lane is nearer to the exact values.";
@@ -127,8 +126,7 @@ std::string band_sentence(const std::vector<const Json*>& lanes, std::uint64_t p
   for (const Json* of : lanes) {
     for (const Json& question : of->at("total").at("questions")) {
       asked += number_at(question, "asked");
-      if (question.at("band").contains("unknown"))
-        beyond_range += question.at("band").at("unknown").get<std::uint64_t>();
+      beyond_range += question.at("band").value("unknown", std::uint64_t{0});
       if (const double band = question.at("largest_in_bounds"); band > widest) {
         widest = band;
         where = fmt::format("{} of {}", text_at(question, "question"), text_at(*of, "second"));

@@ -38,7 +38,6 @@ void add_numbers(const Json& of, const std::string& place, std::map<std::string,
 }  // namespace
 
 std::string discrepancy_changes(const Json& before, const Json& after, const Screen& screen) {
-  const auto lanes_of = [](const Json& of) { return text_at(of, "first") + " against " + text_at(of, "second"); };
   std::string text;
   for (const std::string& sentence : code_differences(before, after)) text += wrapped(sentence, screen.columns);
   std::size_t differ = 0, same = 0, alone = 0;  // alone: numbers that only one of the results has
@@ -47,12 +46,12 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
   const auto match = [&](const char* kind, const auto& with_both) {
     const Json old_ones = before.value(kind, Json::array()), new_ones = after.value(kind, Json::array());
     const auto in = [&](const Json& list, const Json& wanted) {
-      return std::find_if(list.begin(), list.end(), [&](const Json& of) { return lanes_of(of) == lanes_of(wanted); });
+      return std::find_if(list.begin(), list.end(), [&](const Json& of) { return title_of(of) == title_of(wanted); });
     };
     for (const Json& of : old_ones) {
       const auto now = in(new_ones, of);
       if (now == new_ones.end()) {
-        text += wrapped(fmt::format("Only the first has {}.", lanes_of(of)), screen.columns);
+        text += wrapped(fmt::format("Only the first has {}.", title_of(of)), screen.columns);
       } else {
         with_both(of, *now);
         std::map<std::string, Json> old_numbers, new_numbers;
@@ -72,7 +71,7 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
     }
     for (const Json& of : new_ones) {
       if (in(old_ones, of) == old_ones.end())
-        text += wrapped(fmt::format("Only the second has {}.", lanes_of(of)), screen.columns);
+        text += wrapped(fmt::format("Only the second has {}.", title_of(of)), screen.columns);
     }
   };
   const auto compare = [&](const Json& of, const std::string& question, const Json& old_counts,
@@ -81,7 +80,7 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
       if (!count.is_number_unsigned() || !new_counts.contains(name)) continue;
       if (count != new_counts.at(name))
         table.add(
-            {lanes_of(of), question, name, grouped(count.get<std::uint64_t>()), grouped(number_at(new_counts, name))});
+            {title_of(of), question, name, grouped(count.get<std::uint64_t>()), grouped(number_at(new_counts, name))});
     }
   };
   // Compares the rows of two lists that have the same values at both keys. The first key names the row.
@@ -97,7 +96,7 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
   match("lanes", [&](const Json& of, const Json& now) {
     compare(of, "", of.at("total"), now.at("total"));
     if (const bool old = !of.at("origins").is_null(); old != !now.at("origins").is_null()) {
-      text += wrapped(fmt::format("Only the {} has origins of {}.", old ? "first" : "second", lanes_of(of)),
+      text += wrapped(fmt::format("Only the {} has origins of {}.", old ? "first" : "second", title_of(of)),
                       screen.columns);
     } else if (old) {
       const Json &before_origins = of["origins"], &now_origins = now["origins"];

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "reports/discrepancy_page.h"
+#include "reports/discrepancy.h"
 #include "reports/discrepancy_reading.h"
 #include "reports/plain_figures.h"
 #include "reports/svg.h"
@@ -62,21 +63,19 @@ std::string mirrored_bars(const std::string& title, const std::vector<std::strin
 }  // namespace
 
 std::string errors_figure(const Json& of) {
-  const auto first = sum_by_bucket(of.at("total"), "first_error"),
-             second = sum_by_bucket(of.at("total"), "second_error");
+  auto first = sum_by_bucket(of.at("total"), "first_error"), second = sum_by_bucket(of.at("total"), "second_error");
   std::vector<std::string> labels = {"0", "1/2"};
-  for (int k = 0; k < 36; ++k) labels.push_back(fmt::format("2^{}", k));
-  const auto at = [](const auto& sums, const std::string& key) { return sums.contains(key) ? sums.at(key) : 0; };
-  while (labels.size() > 4 && at(first, labels.back()) + at(second, labels.back()) == 0) labels.pop_back();
+  for (int k = 0; k < 36; ++k) labels.push_back(octave(k));
+  while (labels.size() > 4 && first[labels.back()] + second[labels.back()] == 0) labels.pop_back();
   labels.insert(labels.end(), {"not finite", "unknown"});
   std::vector<std::uint64_t> ups, downs;
-  for (const std::string& label : labels) ups.push_back(at(first, label)), downs.push_back(at(second, label));
+  for (const std::string& label : labels) ups.push_back(first[label]), downs.push_back(second[label]);
   return mirrored_bars("Error against the exact value, in ulps: at most", labels, ups, downs, text_at(of, "first"),
                        text_at(of, "second"));
 }
 
 std::string differences_figure(const Json& of) {
-  const auto above = sum_by_bucket(of.at("total"), "above"), below = sum_by_bucket(of.at("total"), "below");
+  auto above = sum_by_bucket(of.at("total"), "above"), below = sum_by_bucket(of.at("total"), "below");
   int most = 0;
   for (const auto* sums : {&above, &below}) {
     for (const auto& [bucket, count] : *sums) most = std::max(most, power_of(bucket));
@@ -84,9 +83,9 @@ std::string differences_figure(const Json& of) {
   std::vector<std::string> labels;
   std::vector<std::uint64_t> ups, downs;
   for (int k = 0; k <= most; ++k) {
-    labels.push_back(fmt::format("2^{}", k));
-    ups.push_back(above.contains(labels.back()) ? above.at(labels.back()) : 0);
-    downs.push_back(below.contains(labels.back()) ? below.at(labels.back()) : 0);
+    labels.push_back(octave(k));
+    ups.push_back(above[labels.back()]);
+    downs.push_back(below[labels.back()]);
   }
   return mirrored_bars("Difference in ulps: at least", labels, ups, downs, text_at(of, "second") + " is higher",
                        "it is lower");
@@ -112,8 +111,8 @@ std::string band_figure(const Json& of) {
   std::vector<std::string> labels;
   std::vector<std::uint64_t> counts;
   for (int k = bands.begin()->first; k <= bands.rbegin()->first; ++k) {
-    labels.push_back(fmt::format("2^{}", k));
-    counts.push_back(bands.contains(k) ? bands[k] : 0);
+    labels.push_back(octave(k));
+    counts.push_back(bands[k]);
   }
   return mirrored_bars("The critical band: size of values whose sign differs, in bounds of their rounding error",
                        labels, counts, {}, "signs that differ", "");
@@ -123,11 +122,8 @@ namespace {
 
 constexpr std::uint64_t kFewestPairs = 30;  // shares of fewer pairs are not drawn
 
-// A line in the picture of shares by scale or offset.
-struct ShareLine {
-  const char *count, *label;
-};
-constexpr ShareLine kShareLines[] = {
+// The lines in the picture of shares by scale or offset: the name of the count, and the label.
+constexpr std::pair<const char*, const char*> kShareLines[] = {
     {"differs", "a value differs"}, {"sign", "a sign"}, {"outcome", "a comparison"}, {"verdict", "the verdict"}};
 
 // Draws shares of pairs by their place on an axis, on a logarithmic scale. places: counts by log2 of each place's lower
@@ -160,7 +156,7 @@ std::string extremes_figure(const std::string& title, const std::string& unit,
   const std::size_t every = (places.size() + 11) / 12;
   std::size_t place = 0;
   for (const auto& [power, counts] : places) {
-    if (place++ % every == 0) svg += svg_text(x_of(power), 374, "middle", fmt::format("2^{}", power));
+    if (place++ % every == 0) svg += svg_text(x_of(power), 374, "middle", octave(power));
   }
   return svg + svg_text(kRight, 404, "end", unit) + "</svg>\n";
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reports/discrepancy_page.h"
+#include "reports/discrepancy.h"
 
 #include <fmt/format.h>
 
@@ -85,8 +85,6 @@ std::string strata_table(const Json& of) {
   return text + "</table></div>\n";
 }
 
-std::string title_of(const Json& of) { return text_at(of, "first") + " against " + text_at(of, "second"); }
-
 std::string lanes_table(const Json& json) {
   std::string text = shares_header("lanes");
   for (const Json& of : json.at("lanes")) text += shares_row(title_of(of), of.at("total"));
@@ -103,14 +101,9 @@ std::string simplest_cell(const Json& line) {
 }
 
 std::string lines_table(const Json& origins) {
-  std::vector<const Json*> lines;
-  for (const Json& line : origins.at("lines")) {
-    if (number_at(line, "values") + number_at(line, "verdicts_fixed") > 0) lines.push_back(&line);
-  }
-  std::stable_sort(lines.begin(), lines.end(), [](const Json* l, const Json* r) {
-    return std::pair(number_at(*l, "verdicts_fixed"), number_at(*l, "values")) >
-           std::pair(number_at(*r, "verdicts_fixed"), number_at(*r, "values"));
-  });
+  std::vector<const Json*> lines = by_weight(origins);
+  std::erase_if(lines,
+                [](const Json* line) { return number_at(*line, "values") + number_at(*line, "verdicts_fixed") == 0; });
   std::string text = fmt::format(
       "<p>Contraction changes the verdict on {} of {} traced pairs. The source lines whose products are fused, by "
       "their effect:</p>\n<div class=\"wide\"><table><tr><th>line</th><th>source</th><th>within</th><th>values that it "

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 namespace graze::reports {
 
@@ -14,6 +16,8 @@ std::uint64_t number_at(const ordered_json& json, const std::string& key) {
   if (!number.is_number_unsigned()) throw std::runtime_error("expected a count in " + key + ", found " + number.dump());
   return number.get<std::uint64_t>();
 }
+
+std::string title_of(const ordered_json& of) { return text_at(of, "first") + " against " + text_at(of, "second"); }
 
 double part_of(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
@@ -56,6 +60,12 @@ Octaves octaves_at(const ordered_json& histogram) {
   return octaves;
 }
 
+Octaves sizes_of(const ordered_json& differences) {
+  Octaves sizes = octaves_at(differences.at("below"));
+  for (const auto& [k, count] : octaves_at(differences.at("above"))) sizes[k] += count;
+  return sizes;
+}
+
 std::map<std::string, std::uint64_t> sum_by_bucket(const ordered_json& counts, const char* histogram) {
   std::map<std::string, std::uint64_t> sums;
   for (const ordered_json& question : counts.at("questions")) {
@@ -72,6 +82,28 @@ std::uint64_t sum_at(const ordered_json& counts, const char* key) {
     for (const ordered_json& value : question.at("values")) sum += number_at(value, key);
   }
   return sum;
+}
+
+std::vector<const ordered_json*> by_weight(const ordered_json& origins) {
+  std::vector<const ordered_json*> lines;
+  for (const ordered_json& line : origins.at("lines")) lines.push_back(&line);
+  const auto weight = [](const ordered_json* line) {
+    return std::pair(number_at(*line, "verdicts_fixed"), number_at(*line, "values"));
+  };
+  std::stable_sort(lines.begin(), lines.end(), [&](auto l, auto r) { return weight(l) > weight(r); });
+  return lines;
+}
+
+std::string csv_rows(const std::string& start, const ordered_json& counts) {
+  std::string text;
+  for (const auto& [name, count] : counts.items()) {
+    if (count.is_number_unsigned() && count != 0) text += fmt::format("{}{},,{}\n", start, name, count.dump());
+    if (!count.is_object()) continue;
+    for (const auto& [bucket, part] : count.items()) {
+      if (part.is_number_unsigned()) text += fmt::format("{}{},{},{}\n", start, name, bucket, part.dump());
+    }
+  }
+  return text;
 }
 
 std::vector<const ordered_json*> differing_lanes(const ordered_json& discrepancy) {

@@ -21,6 +21,9 @@ inline std::string text_at(const nlohmann::ordered_json& json, const char* key) 
   return json.at(key).get<std::string>();
 }
 
+// "A against B" for an entry of "lanes" or "verdicts".
+std::string title_of(const nlohmann::ordered_json& of);
+
 // part / whole; 0 if whole is 0.
 double part_of(std::uint64_t part, std::uint64_t whole);
 
@@ -43,9 +46,19 @@ std::optional<int> quantile(const Octaves& octaves, double share);
 // Reads a histogram whose buckets are all powers of 2.
 Octaves octaves_at(const nlohmann::ordered_json& histogram);
 
+// The sizes of differences in ulps, from the histograms "below" and "above".
+Octaves sizes_of(const nlohmann::ordered_json& differences);
+
 // Both sum over all values of all questions. sum_by_bucket adds up a histogram, and sum_at a count.
 std::map<std::string, std::uint64_t> sum_by_bucket(const nlohmann::ordered_json& counts, const char* histogram);
 std::uint64_t sum_at(const nlohmann::ordered_json& counts, const char* key);
+
+// The lines of "origins", sorted by the number of verdicts that they change, then by the number of values.
+std::vector<const nlohmann::ordered_json*> by_weight(const nlohmann::ordered_json& origins);
+
+// Rows of discrepancy.csv for the nonzero counts of an object and of its histograms.
+// start: the cells before the count's name, with a comma at the end.
+std::string csv_rows(const std::string& start, const nlohmann::ordered_json& counts);
 
 // The entries of "lanes" in which some value differs.
 std::vector<const nlohmann::ordered_json*> differing_lanes(const nlohmann::ordered_json& discrepancy);

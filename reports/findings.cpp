@@ -28,11 +28,9 @@ std::vector<Contracted> contracted(const CampaignCounts& counts, const LaneIndic
     const ReportLane& lane = counts.lanes[l];
     const std::optional<Variant> variant = variant_of_name(lane.name.variant);
     if (!variant || info_of(*variant).arithmetic != Arithmetic::contracted) continue;
-    int without = counts.counterpart(l, name(rounded_variant(*variant)));
-    if (without < 0) without = lane.cpu;
-    if (without < 0) continue;
-    const auto other = static_cast<std::size_t>(without);
-    found.push_back({other, l, differs(counts, counts.total, other, l)});
+    std::optional<std::size_t> without = counts.counterpart(l, name(rounded_variant(*variant)));
+    if (!without) without = lane.cpu;
+    if (without) found.push_back({*without, l, differs(counts, counts.total, *without, l)});
   }
   return found;
 }
@@ -100,7 +98,7 @@ std::string thesis(const CampaignCounts& counts, const LaneIndices& lanes) {
   std::uint64_t without_contraction = 0;
   bool ran_without = false;
   for (const std::size_t l : lanes) {
-    if (!counts.lanes[l].name.variant.starts_with("cuda") || counts.lanes[l].cpu < 0) continue;
+    if (!counts.lanes[l].name.variant.starts_with("cuda") || !counts.lanes[l].cpu) continue;
     compared.push_back(l);
     if (counts.lanes[l].name.variant != name(Variant::cuda_nofma)) continue;
     ran_without = true;
@@ -120,20 +118,19 @@ std::string thesis(const CampaignCounts& counts, const LaneIndices& lanes) {
         "lane on any of {} pairs (with 95 % confidence fewer than {}).",
         in_doubles, compared.size(), pairs, rate_words(bound_of_none(stratum->pairs), Bound::upper));
   }
-  const int own = counts.find({"interval_overlap", "f32", "cuda-fma", ""});
-  const auto own_place = static_cast<std::size_t>(own);
-  const bool tells_own = own >= 0 && own_place != most && counts.lanes[own_place].cpu >= 0;
+  const std::optional<std::size_t> own = counts.find({"interval_overlap", "f32", "cuda-fma", ""});
+  const bool compares_own = own && counts.lanes[*own].cpu;
   return fmt::format(
       "On the 2012 thesis's triangles{} the GPU differs most from the CPU in {}: on {} of {} pairs{}{}.{}", in_doubles,
       counts.lanes[most].id, with_interval(share_of(differing(most), stratum->pairs)), pairs,
-      tells_own ? fmt::format("; in the thesis's own algorithm, interval_overlap/f32, on {}",
-                              with_interval(share_of(differing(own_place), stratum->pairs)))
-                : "",
+      compares_own && *own != most ? fmt::format("; in the thesis's own algorithm, interval_overlap/f32, on {}",
+                                                 with_interval(share_of(differing(*own), stratum->pairs)))
+                                   : "",
       !ran_without ? ""
       : without_contraction == 0
           ? "; without contraction on none"
           : fmt::format("; without contraction {} verdicts still differ", grouped(without_contraction)),
-      in_float32 && own >= 0 && counts.lanes[own_place].cpu >= 0 ? kRateOf2012 : "");
+      in_float32 && compares_own ? kRateOf2012 : "");
 }
 
 std::string dangerous(const CampaignCounts& counts, const LaneIndices& lanes) {

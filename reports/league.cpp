@@ -16,6 +16,7 @@
 #include "fuzz/counts_json.h"
 #include "fuzz/minimise/kinds.h"
 #include "reports/plain_figures.h"
+#include "reports/tables.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"
 
@@ -24,23 +25,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json share_json(std::uint64_t count, std::uint64_t of) {
-  const Share share = share_of(count, of);
-  const auto rounded = [](double x) { return std::stod(fmt::format("{:.5g}", x)); };
-  return {{"count", count},
-          {"of", of},
-          {"share", rounded(share.share)},
-          {"low", std::stod(rounded_down(share.low, 5))},
-          {"high", std::stod(rounded_up(share.high, 5))}};
-}
-
 Json counts_json(const fuzz::LeagueCounts& counts) {
   Json row{{"pairs", counts.pairs}};
   row.update(fuzz::counts_json(counts, true));
   row["clear"] = counts.clear;
   row["outside"] = counts.outside;
   row["not_repeated"] = counts.not_repeated;
-  row["wrong"] = share_json(counts.wrong(), counts.pairs);
+  row["wrong"] = share_json(share_of(counts.wrong(), counts.pairs));
   return row;
 }
 
@@ -60,8 +51,8 @@ Json row_json(const fuzz::LeagueRow& row) {
           {"groups", groups},
           {"total", counts_json(total)},
           {"clear", clear},
-          {"order_dependent", share_json(row.order_dependent, row.order_sample)},
-          {"breaks_invariant", share_json(row.breaks_invariant, row.order_sample)},
+          {"order_dependent", share_json(share_of(row.order_dependent, row.order_sample))},
+          {"breaks_invariant", share_json(share_of(row.breaks_invariant, row.order_sample))},
           {"flips", row.flips ? Json(*row.flips) : Json()}};
 }
 
@@ -142,12 +133,9 @@ void choose_drawings(Json& failures, const Json& rows) {
   }
 }
 
-std::string count_text(const Json& count) { return grouped(count.get<std::uint64_t>()); }
-
 std::string negatives_and_positives(const Json& counts) {
-  return counts.at("pairs") == 0
-             ? "-"
-             : count_text(counts.at("false_negative")) + " / " + count_text(counts.at("false_positive"));
+  return counts.at("pairs") == 0 ? "-"
+                                 : grouped(counts.at("false_negative")) + " / " + grouped(counts.at("false_positive"));
 }
 
 std::string nanoseconds_text(const Json& league, const Json& row) {
@@ -157,7 +145,7 @@ std::string nanoseconds_text(const Json& league, const Json& row) {
 }
 
 std::string count_of_sample(const Json& share) {
-  return share.at("of") == 0 ? "-" : count_text(share.at("count")) + " of " + count_text(share.at("of"));
+  return share.at("of") == 0 ? "-" : grouped(share.at("count")) + " of " + grouped(share.at("of"));
 }
 
 // A column after the groups, and its cell for a row.
@@ -166,20 +154,19 @@ struct Extra {
   std::string (*text)(const Json& league, const Json& row);
 };
 constexpr Extra kExtras[] = {
-    {"clear", [](const Json&, const Json& row) { return count_text(row.at("clear")); }},
-    {"declined", [](const Json&, const Json& row) { return count_text(row.at("total").at("declined")); }},
-    {"crashed", [](const Json&, const Json& row) { return count_text(row.at("total").at("crashed")); }},
-    {"timed out", [](const Json&, const Json& row) { return count_text(row.at("total").at("timed_out")); }},
-    {"unstable", [](const Json&, const Json& row) { return count_text(row.at("total").at("unstable")); }},
-    {"not repeated", [](const Json&, const Json& row) { return count_text(row.at("total").at("not_repeated")); }},
+    {"clear", [](const Json&, const Json& row) { return grouped(row.at("clear")); }},
+    {"declined", [](const Json&, const Json& row) { return grouped(row.at("total").at("declined")); }},
+    {"crashed", [](const Json&, const Json& row) { return grouped(row.at("total").at("crashed")); }},
+    {"timed out", [](const Json&, const Json& row) { return grouped(row.at("total").at("timed_out")); }},
+    {"unstable", [](const Json&, const Json& row) { return grouped(row.at("total").at("unstable")); }},
+    {"not repeated", [](const Json&, const Json& row) { return grouped(row.at("total").at("not_repeated")); }},
     {"by convention",
      [](const Json&, const Json& row) {
-       return row.at("total").at("outside") == 0 ? "-" : count_text(row.at("total").at("by_convention"));
+       return row.at("total").at("outside") == 0 ? "-" : grouped(row.at("total").at("by_convention"));
      }},
     {"order", [](const Json&, const Json& row) { return count_of_sample(row.at("order_dependent")); }},
     {"invariants", [](const Json&, const Json& row) { return count_of_sample(row.at("breaks_invariant")); }},
-    {"flips",
-     [](const Json&, const Json& row) { return row.at("flips").is_null() ? "-" : count_text(row.at("flips")); }},
+    {"flips", [](const Json&, const Json& row) { return row.at("flips").is_null() ? "-" : grouped(row.at("flips")); }},
     {"ns a pair", nanoseconds_text},
 };
 
@@ -211,7 +198,7 @@ std::string table_head(const std::vector<std::string>& titles) {
 std::string page_counts(const Json& league) {
   std::vector<std::string> head{"lane"};
   for (const auto& [group, pairs] : league.at("groups").items())
-    head.push_back(fmt::format("{}, {} pairs", group, count_text(pairs)));
+    head.push_back(fmt::format("{}, {} pairs", group, grouped(pairs)));
   for (const Extra& extra : kExtras) head.push_back(extra.title);
   std::string text = table_head(head);
   for (const Json& row : league.at("rows")) {
@@ -219,8 +206,7 @@ std::string page_counts(const Json& league) {
     for (const auto& [group, pairs] : league.at("groups").items()) {
       const Json& counts = row.at("groups").at(group);
       cells.push_back(negatives_and_positives(counts));
-      if (counts.at("pairs") != pairs && counts.at("pairs") != 0)
-        cells.back() += " of " + count_text(counts.at("pairs"));
+      if (counts.at("pairs") != pairs && counts.at("pairs") != 0) cells.back() += " of " + grouped(counts.at("pairs"));
     }
     for (const Extra& extra : kExtras) cells.push_back(extra.text(league, row));
     text += table_line(cells);
@@ -374,14 +360,14 @@ std::string league_table(const Json& league, const Screen& screen) {
   }
   std::string pairs;
   for (const auto& [group, count] : league.at("groups").items())
-    pairs += fmt::format("{}{} {}", pairs.empty() ? "" : ", ", group, count_text(count));
+    pairs += fmt::format("{}{} {}", pairs.empty() ? "" : ", ", group, grouped(count));
   return wrapped(
              fmt::format("False negatives / false positives within each lane's contract, on the same {} pairs ({}).",
-                         count_text(league.at("pairs")), pairs),
+                         grouped(league.at("pairs")), pairs),
              screen.columns) +
          table.text(screen) +
          wrapped(fmt::format("{} smallest failures, each repeated in a fresh process; {} more were not repeated.",
-                             league.at("failures").size(), count_text(league.at("failures_not_repeated"))),
+                             league.at("failures").size(), grouped(league.at("failures_not_repeated"))),
                  screen.columns);
 }
 
@@ -415,7 +401,7 @@ Wrong verdicts within the contract (false negatives, false positives, crashed, t
 ## Smallest failures
 These are the simplest pairs found, one for each subject, shape ("clear" as above) and kind of wrong verdict. The commands run in the folder in which `scripts/league` ran. `graze repro --emit` turns a pair into a program. CGAL and GMP confirmed each failure, and a fresh process repeated it; {not_repeated} others were not repeated and are left out. In the drawings the second triangle is orange, the contact red, and the line where the two planes meet dashed.
 {failures})",
-      fmt::arg("command", command), fmt::arg("pairs", count_text(league.at("pairs"))),
+      fmt::arg("command", command), fmt::arg("pairs", grouped(league.at("pairs"))),
       fmt::arg("doubles",
                league.contains("coordinates") ? ", with coordinates in double. Ulps are those of double" : ""),
       fmt::arg("seed", league.at("seed").get<std::uint64_t>()), fmt::arg("counts", page_counts(league)),
@@ -424,7 +410,7 @@ These are the simplest pairs found, one for each subject, shape ("clear" as abov
       fmt::arg("machine", league.at("timings").at("machine").get<std::string>()),
       fmt::arg("date", league.at("timings").at("date").get<std::string>()), fmt::arg("shares", page_shares(league)),
       fmt::arg("subjects", page_subjects(league)),
-      fmt::arg("not_repeated", count_text(league.at("failures_not_repeated"))),
+      fmt::arg("not_repeated", grouped(league.at("failures_not_repeated"))),
       fmt::arg("failures", page_failures(league)));
 }
 

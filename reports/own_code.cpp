@@ -37,11 +37,6 @@ std::string not_counted(const analysis::LaneCounts& found) {
   return text;
 }
 
-// " (2.4 %)"; empty if the count is 0.
-std::string share_words(std::uint64_t count, std::uint64_t of) {
-  return count == 0 ? "" : fmt::format(" ({})", rate_words(count, of));
-}
-
 // Whether the sentence about the kind's simplest pair says that the cause is not settled.
 bool is_open(const Json& kind) {
   return kind.at("simplest").at("sentences").at(0).get_ref<const std::string&>().find("not settled") !=
@@ -68,22 +63,16 @@ int rank_of(const Json& kind, const std::string& lane, std::uint64_t all) {
   return is_mistake && is_common && !is_open(kind) ? 1 : 2;
 }
 
-// "2^3 ulps"
-std::string in_ulps(int exponent) { return fmt::format("2^{} ulps", exponent); }
-
 // Says from which margin upwards the lane is right on these pairs.
 std::string trusted_from(const StratumCounts& pairs, std::size_t lane, const std::string& which) {
-  const Threshold apart = threshold(pairs, lane, 1), deep = threshold(pairs, lane, -1);
   std::vector<std::string> right, wrong;
-  if (apart.found) {
-    right.push_back(fmt::format("all {} at least {} apart", grouped(apart.above), in_ulps(apart.exponent)));
-  } else if (apart.largest) {
-    wrong.push_back(fmt::format("{} apart", in_ulps(*apart.largest)));
-  }
-  if (deep.found) {
-    right.push_back(fmt::format("all {} at least {} deep", grouped(deep.above), in_ulps(deep.exponent)));
-  } else if (deep.largest) {
-    wrong.push_back(fmt::format("{} deep", in_ulps(*deep.largest)));
+  for (const auto& [side, how] : {std::pair(1, "apart"), {-1, "deep"}}) {
+    const Threshold from = threshold(pairs, lane, side);
+    if (from.found) {
+      right.push_back(fmt::format("all {} at least 2^{} ulps {}", grouped(from.above), from.exponent, how));
+    } else if (from.largest) {
+      wrong.push_back(fmt::format("2^{} ulps {}", *from.largest, how));
+    }
   }
   std::string text;
   if (!right.empty()) text += fmt::format(" Among {} it is right on {}.", which, fmt::join(right, " and "));
@@ -135,17 +124,17 @@ std::string wrong_words(const CampaignCounts& counts, std::size_t lane) {
 
 std::string wrong_by_kind(const CampaignCounts& counts, std::size_t lane) {
   std::vector<std::string> parts;
+  const auto add = [&](const std::string& id, const StratumCounts& of) {
+    const std::uint64_t wrong = of.wrong(lane);
+    parts.push_back(fmt::format("{} {} of {}{}", id, grouped(wrong), grouped(of.pairs),
+                                wrong == 0 ? "" : fmt::format(" ({})", rate_words(wrong, of.pairs))));
+  };
   for (const GroupCounts& group : counts.groups) {
     if (group.id == "mesh") {  // the mesh's own pairs are listed apart from moved pairs
-      for (const std::size_t s : group.strata) {
-        const StratumCounts& stratum = counts.strata[s];
-        parts.push_back(fmt::format("{} {} of {}{}", stratum.id, grouped(stratum.wrong(lane)), grouped(stratum.pairs),
-                                    share_words(stratum.wrong(lane), stratum.pairs)));
-      }
-      continue;
+      for (const std::size_t s : group.strata) add(counts.strata[s].id, counts.strata[s]);
+    } else {
+      add(group.id, group.counts);
     }
-    const std::uint64_t wrong = group.counts.wrong(lane), of = group.counts.pairs;
-    parts.push_back(fmt::format("{} {} of {}{}", group.id, grouped(wrong), grouped(of), share_words(wrong, of)));
   }
   return fmt::format("By group of strata: {}.", fmt::join(parts, ", "));
 }

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "reports/changed_verdicts.h"
+#include "reports/comparison.h"
 #include "reports/extremes.h"
 #include "reports/findings.h"
 #include "reports/page.h"

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <string>
@@ -21,7 +22,7 @@
 #include "core/wilson.h"
 #include "fuzz/campaign/lane_costs.h"
 #include "fuzz/counts_json.h"
-#include "reports/changed_verdicts.h"
+#include "reports/comparison.h"
 #include "reports/extremes.h"
 #include "reports/failure_cards.h"
 #include "reports/tables.h"
@@ -57,6 +58,15 @@ struct Drawn {
   std::uint64_t pairs = 0, intersects = 0;
 };
 
+// The strata of a group, or all strata if it is null.
+std::vector<std::size_t> strata_in(const Json& report, const Json& group) {
+  if (!group.is_null())
+    return report.at("groups").at(group.get<std::size_t>()).at("strata").get<std::vector<std::size_t>>();
+  std::vector<std::size_t> all(report.at("strata").size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
 // The pairs of a stratum, of a group, or of all strata if both are null.
 Drawn drawn_of(const Json& report, const Json& stratum, const Json& group = {}) {
   if (!stratum.is_null()) {
@@ -64,15 +74,10 @@ Drawn drawn_of(const Json& report, const Json& stratum, const Json& group = {}) 
     return {row.at("pairs"), row.at("intersects")};
   }
   Drawn sum;
-  const auto add = [&](const Json& place) {
+  for (const std::size_t place : strata_in(report, group)) {
     const Drawn one = drawn_of(report, place);
     sum.pairs += one.pairs;
     sum.intersects += one.intersects;
-  };
-  if (!group.is_null()) {
-    for (const Json& place : report.at("groups").at(group.get<std::size_t>()).at("strata")) add(place);
-  } else {
-    for (std::size_t s = 0; s < report.at("strata").size(); ++s) add(s);
   }
   return sum;
 }
@@ -470,11 +475,7 @@ void expect_possible_costs(const Json& costs, const Json& report) {
     const Json& group = row["group"];
     expect(rows.emplace(row["lane"].dump(), group.dump()).second, "the costs of each lane in a group once", row);
     std::uint64_t most = 0;
-    if (group.is_null()) {
-      for (std::size_t place = 0; place < report.at("strata").size(); ++place) most += most_of(place);
-    } else {
-      for (const Json& place : report.at("groups").at(group.get<std::size_t>()).at("strata")) most += most_of(place);
-    }
+    for (const std::size_t place : strata_in(report, group)) most += most_of(place);
     expect(row["pairs"] > 0 && row["pairs"] <= most, fmt::format("costs of 1 to {} pairs", most), row);
   }
 }

@@ -44,13 +44,13 @@ std::optional<Cost> cost_of(const Costs* costs, std::size_t lane, const std::vec
   return costs ? costs->of(lane, strata) : std::nullopt;
 }
 
-// The cheapest lane on these strata; -1 if none was timed.
-int cheapest(const Costs* costs, const LaneIndices& among, const std::vector<std::size_t>& strata) {
-  int best = -1;
+// The cheapest lane on these strata. Nothing if none was timed.
+std::optional<std::size_t> cheapest(const Costs* costs, const LaneIndices& among,
+                                    const std::vector<std::size_t>& strata) {
+  std::optional<std::size_t> best;
   for (const std::size_t l : among) {
     const std::optional<Cost> cost = cost_of(costs, l, strata);
-    if (cost && (best < 0 || cost->middle < costs->of(static_cast<std::size_t>(best), strata)->middle))
-      best = static_cast<int>(l);
+    if (cost && (!best || cost->middle < costs->of(*best, strata)->middle)) best = l;
   }
   return best;
 }
@@ -76,17 +76,15 @@ std::string over_all_strata(const CampaignCounts& counts, const Costs* costs, co
 std::string price(const CampaignCounts& counts, const Costs* costs, const LaneIndices& exact) {
   if (!costs) return ". Its cost depends on the machine; costs.json has it if the campaign was timed.";
   const Ground ground = ground_of(counts);
-  const int own = cheapest(costs, exact, ground.strata);
-  if (own < 0) return ". Its cost is not settled: the campaign has no timings of it.";
-  const auto lane = static_cast<std::size_t>(own);
-  const Cost cost = *costs->of(lane, ground.strata);
-  const int fastest = cheapest(costs, published(counts), ground.strata);
-  const std::string which = exact.size() > 1 ? counts.lanes[lane].id + " at" : "at";
-  if (fastest < 0) return fmt::format(", {} {} {}.", which, cost_words(cost), ground.pair);
-  const auto other = static_cast<std::size_t>(fastest);
-  const Cost others = *costs->of(other, ground.strata);
-  const std::string& id = counts.lanes[other].id;
-  const std::string everywhere = over_all_strata(counts, costs, ground, lane, other);
+  const std::optional<std::size_t> lane = cheapest(costs, exact, ground.strata);
+  if (!lane) return ". Its cost is not settled: the campaign has no timings of it.";
+  const Cost cost = *costs->of(*lane, ground.strata);
+  const std::optional<std::size_t> other = cheapest(costs, published(counts), ground.strata);
+  const std::string which = exact.size() > 1 ? counts.lanes[*lane].id + " at" : "at";
+  if (!other) return fmt::format(", {} {} {}.", which, cost_words(cost), ground.pair);
+  const Cost others = *costs->of(*other, ground.strata);
+  const std::string& id = counts.lanes[*other].id;
+  const std::string everywhere = over_all_strata(counts, costs, ground, *lane, *other);
   if (is_cheaper(cost, others)) {
     return fmt::format(", {} {} {} against {} for the fastest published lane, {}{}.", which, cost_words(cost),
                        ground.pair, cost_words(others), id, everywhere);
@@ -99,18 +97,16 @@ std::string price(const CampaignCounts& counts, const Costs* costs, const LaneIn
   }
   return fmt::format(", {} {} {}. The fastest published lane, {}, takes {}{}; it is wrong on {} of all pairs.", which,
                      cost_words(cost), ground.pair, id, cost_words(others), everywhere,
-                     rate_words(wrong_share(counts, other).share));
+                     rate_words(wrong_share(counts, *other).share));
 }
 
-// The best lane of the other families according to `better`; -1 if there is none.
+// The best lane of the other families according to `better`. Nothing if there is none.
 template <class Better>
-int first_of_others(const CampaignCounts& counts, const LaneIndices& lanes, std::size_t than, Better better) {
-  int best = -1;
-  for (const std::size_t l : lanes) {
-    if (same_family(counts, l, than)) continue;
-    if (best < 0 || better(l, static_cast<std::size_t>(best))) best = static_cast<int>(l);
-  }
-  return best;
+std::optional<std::size_t> first_of_others(const CampaignCounts& counts, const LaneIndices& lanes, std::size_t than,
+                                           Better better) {
+  const LaneIndices others = those(lanes, [&](std::size_t l) { return !same_family(counts, l, than); });
+  if (others.empty()) return {};
+  return *std::min_element(others.begin(), others.end(), better);
 }
 
 std::string not_settled(const CampaignCounts& counts, const char* which, std::size_t l, std::size_t r,
@@ -128,11 +124,10 @@ std::string not_settled(const CampaignCounts& counts, const char* which, std::si
 // ", at 82 ns a general pair": the cost of the cheapest of the lanes.
 std::string at_cost(const CampaignCounts& counts, const Costs* costs, const LaneIndices& lanes) {
   const Ground ground = ground_of(counts);
-  const int lane = cheapest(costs, lanes, ground.strata);
-  if (lane < 0) return "";
-  const auto place = static_cast<std::size_t>(lane);
-  return fmt::format(", {}at {} {}", lanes.size() == 1 ? "" : counts.lanes[place].id + " ",
-                     cost_words(*costs->of(place, ground.strata)), ground.pair);
+  const std::optional<std::size_t> lane = cheapest(costs, lanes, ground.strata);
+  if (!lane) return "";
+  return fmt::format(", {}at {} {}", lanes.size() == 1 ? "" : counts.lanes[*lane].id + " ",
+                     cost_words(*costs->of(*lane, ground.strata)), ground.pair);
 }
 
 // "; bound declines 1,200 pairs", for each lane that declines some pairs.
@@ -168,15 +163,15 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
   const std::size_t worst =
       *std::max_element(lanes.begin(), lanes.end(), [&](auto l, auto r) { return wrong(l) < wrong(r); });
   if (wrong(worst) == 0) return {"No lane need be avoided: none is wrong on any pair of this campaign."};
-  const int next = first_of_others(counts, lanes, worst, [&](auto l, auto r) { return wrong(l) > wrong(r); });
-  if (next < 0) {
+  const auto next = first_of_others(counts, lanes, worst, [&](auto l, auto r) { return wrong(l) > wrong(r); });
+  if (!next) {
     const LaneName& name = counts.lanes[worst].name;
     return {fmt::format("Only published lanes of {}/{} ran, so the campaign does not say which to avoid.", name.subject,
                         name.scalar),
             false};
   }
-  if (!wrong_share(counts, worst).apart(wrong_share(counts, static_cast<std::size_t>(next))))
-    return {not_settled(counts, "worst", worst, static_cast<std::size_t>(next), wrong_share, "wrong")};
+  if (!wrong_share(counts, worst).apart(wrong_share(counts, *next)))
+    return {not_settled(counts, "worst", worst, *next, wrong_share, "wrong")};
   const analysis::LaneCounts& found = counts.total.lanes[worst];
   const LaneIndices equals = those(lanes, [&](std::size_t l) {
     const analysis::LaneCounts& of = counts.total.lanes[l];
@@ -234,9 +229,9 @@ Sentence least_wrong_lane(const CampaignCounts& counts, const Costs* costs) {
                         declining(counts, lanes))};
   }
   const char* which = any_declines ? "most often right" : "least wrong";
-  const int next = first_of_others(counts, lanes, least, less);
-  if (next >= 0 && !share_not_right(counts, least).apart(share_not_right(counts, static_cast<std::size_t>(next))))
-    return {not_settled(counts, which, least, static_cast<std::size_t>(next), share_not_right,
+  const std::optional<std::size_t> next = first_of_others(counts, lanes, least, less);
+  if (next && !share_not_right(counts, least).apart(share_not_right(counts, *next)))
+    return {not_settled(counts, which, least, *next, share_not_right,
                         any_declines ? "wrong or without a verdict" : "wrong")};
   const LaneIndices best = those(lanes, [&](std::size_t l) {
     return not_right(counts, l) == not_right(counts, least) && total.wrong(l) == total.wrong(least);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reports/side_by_side.h"
+#include "reports/discrepancy.h"
 
 #include <fmt/format.h>
 

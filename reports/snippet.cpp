@@ -26,10 +26,10 @@ constexpr Embedded kEmbedded[] = {
 #include "embedded.inc"
 };
 
-std::string_view embedded(std::string_view path) {
+// The file's text; null if it is not embedded.
+const std::string_view* find_embedded(std::string_view path) {
   const auto file = std::find_if(std::begin(kEmbedded), std::end(kEmbedded), [&](auto& f) { return f.path == path; });
-  if (file == std::end(kEmbedded)) throw std::logic_error(fmt::format("{}: expected an embedded file", path));
-  return file->text;
+  return file == std::end(kEmbedded) ? nullptr : &file->text;
 }
 
 // A header and everything that it includes, each file once, in the order in which a compiler reads them.
@@ -179,6 +179,11 @@ std::string filled(std::string_view file, const std::vector<std::pair<std::strin
 
 }  // namespace
 
+std::string_view embedded(std::string_view path) {
+  if (const std::string_view* text = find_embedded(path)) return *text;
+  throw std::logic_error(fmt::format("{}: expected an embedded file", path));
+}
+
 bool shows_lanes(SnippetKind kind) {
   return kind == SnippetKind::cpp || kind == SnippetKind::cuda || kind == SnippetKind::gtest;
 }
@@ -193,11 +198,9 @@ bool shows(SnippetKind kind, const Lane& lane) {
 
 std::string source_line(const std::string& place) {
   const std::size_t colon = place.rfind(':');
-  const auto file = std::find_if(std::begin(kEmbedded), std::end(kEmbedded), [&](const Embedded& f) {
-    return colon != place.npos && f.path == place.substr(0, colon);
-  });
-  if (file == std::end(kEmbedded)) return "";
-  std::istringstream lines{std::string(file->text)};
+  const std::string_view* file = colon == place.npos ? nullptr : find_embedded(place.substr(0, colon));
+  if (!file) return "";
+  std::istringstream lines{std::string(*file)};
   std::string line;
   for (int n = std::stoi(place.substr(colon + 1)); n > 0 && std::getline(lines, line); --n) {
   }
@@ -248,6 +251,8 @@ std::string snippet(SnippetKind kind, const SnippetCase& found) {
                                                 ? "1000"
                                                 : "1"},
                                  {"test", "Subject" + name_of_test}});
+    const bool ends = found.verdict == Verdict::crashed || found.verdict == Verdict::timed_out;
+    if (test) values.emplace_back("calls", filled(ends ? "foreign_gtest_death.in" : "foreign_gtest_calls.in", values));
   } else if (shows_lanes(kind)) {
     const std::string_view id = found.lane->info->id;
     values.insert(
@@ -261,11 +266,9 @@ std::string snippet(SnippetKind kind, const SnippetCase& found) {
          {"decide", call_of(*found.lane, kind == SnippetKind::cuda ? "graze::" + type_name(id) : "Algorithm").call},
          {"sources", amalgamated_source(id, found.lane->under.has_value())}});
   }
-  const bool ends = found.verdict == Verdict::crashed || found.verdict == Verdict::timed_out;
   const std::string_view file = !foreign                    ? file_of(kind)
                                 : kind == SnippetKind::cuda ? "foreign.cu.in"
                                 : kind == SnippetKind::cpp  ? "foreign.cpp.in"
-                                : ends                      ? "foreign_death.cpp.in"
                                                             : "foreign_gtest.cpp.in";
   return filled(file, values);
 }

@@ -34,6 +34,9 @@ struct SnippetCase {
 // Requires: finite coordinates; truth is not declined; a lane that the kind shows, if it shows lanes.
 std::string snippet(SnippetKind kind, const SnippetCase& found);
 
+// The text of a source file that the build embeds (CMakeLists.txt).   Throws: std::logic_error if it is not embedded.
+std::string_view embedded(std::string_view path);
+
 // Returns core/algorithms/ID.h and everything that it includes as one source, without the project's own includes and
 // include guards. With `with_policy`, also the code that decides under a policy.
 std::string amalgamated_source(std::string_view algorithm_id, bool with_policy = false);

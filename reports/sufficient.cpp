@@ -36,12 +36,11 @@ std::string none_words(std::span<const Candidate> candidates, std::optional<Scal
 
 }  // namespace
 
-int cheapest_sufficient(std::span<const Candidate> candidates, std::optional<Scalar> scalar) {
-  int best = -1;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const Candidate& c = candidates[i];
+const Candidate* cheapest_sufficient(std::span<const Candidate> candidates, std::optional<Scalar> scalar) {
+  const Candidate* best = nullptr;
+  for (const Candidate& c : candidates) {
     if (c.result != analysis::TuneResult::satisfied || (scalar && c.scalar != *scalar)) continue;
-    if (best < 0 || c.cost.middle < candidates[static_cast<std::size_t>(best)].cost.middle) best = static_cast<int>(i);
+    if (!best || c.cost.middle < best->cost.middle) best = &c;
   }
   return best;
 }
@@ -50,9 +49,9 @@ std::vector<std::string> sufficient_sentences(double rate, std::span<const Candi
                                               const std::string& exact, const analysis::Cost& exact_cost) {
   const std::string asked = fmt::format("Wrong on at most {} of this scene's pairs: ", rate);
   const std::string exact_words = fmt::format("{}, never wrong, {} a pair", exact, cost_words(exact_cost));
-  const int best = cheapest_sufficient(candidates);
-  if (best < 0) return {fmt::format("{}use {}.", asked, exact_words), none_words(candidates, std::nullopt)};
-  const Candidate& c = candidates[static_cast<std::size_t>(best)];
+  const Candidate* best = cheapest_sufficient(candidates);
+  if (!best) return {fmt::format("{}use {}.", asked, exact_words), none_words(candidates, std::nullopt)};
+  const Candidate& c = *best;
   const std::string lane_words = fmt::format("{}, {}, {}", c.lane, errors_words(c), cost_words(c.cost));
   std::vector<std::string> sentences;
   if (is_cheaper(c.cost, exact_cost)) {
@@ -67,10 +66,9 @@ std::vector<std::string> sufficient_sentences(double rate, std::span<const Candi
                                                cost_words(c.cost)))};
   }
   const Scalar other = c.scalar == Scalar::f32 ? Scalar::f64 : Scalar::f32;
-  if (const int of_other = cheapest_sufficient(candidates, other); of_other >= 0) {
-    const Candidate& o = candidates[static_cast<std::size_t>(of_other)];
-    sentences.push_back(fmt::format("In {} the cheapest that suffices is {}: {}, {}.", name(other), o.lane,
-                                    errors_words(o), cost_words(o.cost)));
+  if (const Candidate* o = cheapest_sufficient(candidates, other)) {
+    sentences.push_back(fmt::format("In {} the cheapest that suffices is {}: {}, {}.", name(other), o->lane,
+                                    errors_words(*o), cost_words(o->cost)));
   } else {
     sentences.push_back(none_words(candidates, other));
   }

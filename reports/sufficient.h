@@ -23,9 +23,10 @@ struct Candidate {
   analysis::Cost cost;
 };
 
-// The index of the cheapest candidate that keeps the rate; -1 if there is none.
+// The cheapest candidate that keeps the rate; null if there is none.
 // scalar: if given, only candidates of this scalar count.
-int cheapest_sufficient(std::span<const Candidate> candidates, std::optional<Scalar> scalar = std::nullopt);
+const Candidate* cheapest_sufficient(std::span<const Candidate> candidates,
+                                     std::optional<Scalar> scalar = std::nullopt);
 
 // Says which lane to use at this rate of wrong verdicts, what the other precision would change, and what `exact` costs.
 // A lane is not called cheaper if the spreads of the costs overlap.   Requires: at least one candidate.

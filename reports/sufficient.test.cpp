@@ -26,9 +26,9 @@ const std::vector<Candidate> kThree = {candidate("a/f32/cpu", Scalar::f32, 20'00
                                        candidate("c/f64/cpu", Scalar::f64, 0, 30)};
 
 TEST(Sufficient, TheCheapestThatKeepsTheRateIsChosen) {
-  EXPECT_EQ(cheapest_sufficient(kThree), 2);
-  EXPECT_EQ(cheapest_sufficient(kThree, Scalar::f32), 1);
-  EXPECT_EQ(cheapest_sufficient({kThree.data(), 1}), -1);
+  EXPECT_EQ(cheapest_sufficient(kThree), &kThree[2]);
+  EXPECT_EQ(cheapest_sufficient(kThree, Scalar::f32), &kThree[1]);
+  EXPECT_EQ(cheapest_sufficient({kThree.data(), 1}), nullptr);
 }
 
 TEST(Sufficient, ACheaperLaneIsRecommendedWithItsBound) {

@@ -47,6 +47,10 @@ Json errors_of(const StratumCounts& pairs, std::size_t lane) {
 Json to_json(const Share& share) {
   // Without cases there is no share.
   if (share.of == 0) return {{"count", 0}, {"of", 0}, {"share", nullptr}, {"low", nullptr}, {"high", nullptr}};
+  return share_json(share);
+}
+
+Json share_json(const Share& share) {
   return {{"count", share.count},
           {"of", share.of},
           {"share", rounded(share.share)},
@@ -64,7 +68,7 @@ Json rates(const CampaignCounts& counts) {
       rows.push_back({{"lane", l}, {"stratum", place}});
       rows.back().update(errors_of(stratum, l));
       rows.back().update({{"declined", lane.declined}, {"differs_from_cpu", nullptr}});
-      if (counts.lanes[l].cpu >= 0)
+      if (counts.lanes[l].cpu)
         rows.back()["differs_from_cpu"] = to_json(share_of(lane.differs_from_cpu, stratum.pairs));
       if (counts.lanes[l].name.scalar == "f32" && (place.is_null() ? any_doubles : stratum.in_doubles()))
         rows.back()["stored"] = lane.stored;
@@ -79,27 +83,26 @@ Json rates(const CampaignCounts& counts) {
 
 std::optional<std::uint64_t> differs(const CampaignCounts& counts, const StratumCounts& stratum, std::size_t left,
                                      std::size_t right) {
-  const int left_cpu = counts.lanes[left].cpu, right_cpu = counts.lanes[right].cpu;
+  const auto left_cpu = counts.lanes[left].cpu, right_cpu = counts.lanes[right].cpu;
   // A lane that never differs from the cpu lane can stand for it in the comparison.
-  const bool stands_for_cpu = left_cpu >= 0 && left_cpu == right_cpu && stratum.lanes[left].differs_from_cpu == 0;
-  if (static_cast<int>(left) != right_cpu && !stands_for_cpu) return std::nullopt;
+  const bool stands_for_cpu = left_cpu && left_cpu == right_cpu && stratum.lanes[left].differs_from_cpu == 0;
+  if (right_cpu != left && !stands_for_cpu) return std::nullopt;
   return stratum.lanes[right].differs_from_cpu;
 }
 
 Json side_by_side(const CampaignCounts& counts) {
   Json rows = Json::array();
-  const auto add = [&](const char* kind, std::size_t left, int other) {
-    if (other < 0) return;
-    const auto right = static_cast<std::size_t>(other);
+  const auto add = [&](const char* kind, std::size_t left, std::optional<std::size_t> right) {
+    if (!right) return;
     Json strata = Json::array();
     for_each_stratum(counts, [&](const Json& place, const StratumCounts& stratum) {
-      const std::optional<std::uint64_t> count = differs(counts, stratum, left, right);
+      const std::optional<std::uint64_t> count = differs(counts, stratum, left, *right);
       strata.push_back({{"stratum", place},
                         {"left_wrong", wrong_of(stratum, left)},
-                        {"right_wrong", wrong_of(stratum, right)},
+                        {"right_wrong", wrong_of(stratum, *right)},
                         {"differs", count ? to_json(share_of(*count, stratum.pairs)) : Json()}});
     });
-    rows.push_back({{"kind", kind}, {"left", left}, {"right", right}, {"strata", std::move(strata)}});
+    rows.push_back({{"kind", kind}, {"left", left}, {"right", *right}, {"strata", std::move(strata)}});
   };
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
     const ReportLane& lane = counts.lanes[l];
@@ -121,8 +124,7 @@ Json margins(const CampaignCounts& counts) {
       points.push_back({{"side", side_of(bucket)},
                         {"exponent", bucket == 0 ? Json() : Json(exponent_of(bucket))},
                         {"wrong", to_json(share_of(found.wrong[l], found.pairs))}});
-      if (counts.lanes[l].cpu >= 0)
-        points.back()["differs"] = to_json(share_of(found.differs_from_cpu[l], found.pairs));
+      if (counts.lanes[l].cpu) points.back()["differs"] = to_json(share_of(found.differs_from_cpu[l], found.pairs));
     }
     rows.push_back({{"lane", l}, {"stratum", nullptr}, {"points", std::move(points)}});
   }

@@ -11,6 +11,8 @@
 namespace graze::reports {
 
 // {"count", "of", "share", "low", "high"}, rounded to 5 significant digits; low and high are rounded outward.
+// to_json: the last three are null if `of` is 0.
+nlohmann::ordered_json share_json(const Share& share);
 nlohmann::ordered_json to_json(const Share& share);
 
 nlohmann::ordered_json rates(const CampaignCounts& counts);
@@ -42,6 +44,21 @@ nlohmann::ordered_json thresholds(const CampaignCounts& counts);
 nlohmann::ordered_json groups(const CampaignCounts& counts);
 nlohmann::ordered_json group_rates(const CampaignCounts& counts);
 nlohmann::ordered_json extremes(const CampaignCounts& counts);
+
+// Shows how the verdicts of one source differ between the compilers and processors of a campaign. Has a row for each
+// algorithm and scalar. A row has a cell for each variant without a policy: the share of
+// verdicts that differ from the reference's, and the share that are wrong. Variants that agree on every pair of every
+// row form a group. The reference is x86-gcc, else cpu, else the first variant. ToolchainMap in
+// reports/web/src/report.ts describes the JSON.
+//
+// Two lanes of a subject differ on a pair exactly if the pair's signature marks them differently, so the signatures'
+// counts suffice. A lane has no count if it declines pairs or its convention covers some, because not all
+// of these pairs have a signature. signatures: as signature_rows returns them (failure_cards.h).   Returns: null if
+// no toolchain ran.
+nlohmann::ordered_json toolchain_map(const CampaignCounts& counts, const nlohmann::ordered_json& signatures);
+
+// Whether a program built by a toolchain ran as a lane of the campaign.
+bool has_toolchains(const CampaignCounts& counts);
 
 // Whether a bucket's pairs intersect, are disjoint, or have margin zero.
 constexpr const char* side_of(Bucket bucket) { return bucket < 0 ? "intersects" : bucket > 0 ? "disjoint" : "zero"; }

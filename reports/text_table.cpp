@@ -109,8 +109,6 @@ class Printer {
     return align == Align::left ? text + pad : pad + text;
   }
 
-  std::string line(std::string text) const { return text.substr(0, text.find_last_not_of(' ') + 1) + '\n'; }
-
   std::string block(const std::vector<std::size_t>& some, Headers headers) const {
     std::vector<int> widths, ends;  // ends: the position where each column ends
     for (const std::size_t c : some) {
@@ -118,10 +116,16 @@ class Printer {
       ends.push_back((ends.empty() ? indent_ : ends.back() + kBetween) + widths.back());
     }
     std::string result;
+    const auto add_header = [&](const std::string& text) {
+      result += bold(screen_, text.substr(0, text.find_last_not_of(' ') + 1)) + '\n';
+    };
     for (std::size_t i = some.size(); i-- > 0;) {  // the steps, with the last column's on top
       if (!is_step(some[i], headers)) continue;
       std::string text = padded(columns_[some[i]].header, ends[i], Align::right);
-      result += stems(text, some, ends, i + 1, headers);
+      for (std::size_t j = i + 1; j < some.size(); ++j) {  // the stems of the steps above
+        if (is_step(some[j], headers)) text += spaces(ends[j] - 1 - width_of(text)) + "|";
+      }
+      add_header(text);
     }
     std::size_t height = 1;
     for (const std::size_t c : some) {
@@ -138,9 +142,8 @@ class Printer {
         const Align align = is_step(some[i], headers) ? Align::right : column.align;
         text += (i == 0 ? "" : spaces(kBetween)) + padded(h < blank ? "" : lines[h - blank], widths[i], align);
       }
-      result += line(text);
+      add_header(text);
     }
-    result = emphasised(result);
     for (const auto& row : cells_) {
       std::string text = spaces(indent_);
       std::size_t shown = 0;  // up to the last cell that is not blank
@@ -160,24 +163,6 @@ class Printer {
         text += cell_text.substr(to);
       }
       result += text.substr(0, shown) + '\n';
-    }
-    return result;
-  }
-
-  // Adds to a line the stems of the steps above it.
-  std::string stems(std::string text, const std::vector<std::size_t>& some, const std::vector<int>& ends,
-                    std::size_t from, Headers headers) const {
-    for (std::size_t i = from; i < some.size(); ++i) {
-      if (is_step(some[i], headers)) text += spaces(ends[i] - 1 - width_of(text)) + "|";
-    }
-    return text + '\n';
-  }
-
-  std::string emphasised(const std::string& lines) const {
-    std::string result;
-    for (std::size_t at = 0, end; at < lines.size(); at = end + 1) {
-      end = lines.find('\n', at);
-      result += bold(screen_, lines.substr(at, end - at)) + '\n';
     }
     return result;
   }

@@ -23,13 +23,6 @@ struct ToleranceLine {
   std::function<std::uint64_t(const Point&)> count;
 };
 
-// Maps log2 of the tolerance, between low and high, to the picture's x.
-struct ToleranceFrame {
-  double left, right, low, high;
-
-  double x(double tolerance) const { return left + (right - left) * (std::log2(tolerance) - low) / (high - low); }
-};
-
 template <class Point>
 std::string tolerance_figure(std::string_view title, std::string_view heading,
                              const std::vector<analysis::CurveOf<Point>>& curves, const std::string& chosen,
@@ -47,12 +40,14 @@ std::string tolerance_figure(std::string_view title, std::string_view heading,
     if (!curve.site.empty() || curve.points.empty()) continue;
     const double low = std::log2(analysis::tolerance_of(curve.points.front().policy)),
                  high = std::log2(analysis::tolerance_of(curve.points.back().policy));
-    const ToleranceFrame frame{both && !curve.relative ? 484.0 : 64.0, both && curve.relative ? 460.0 : 880.0, low,
-                               high};
+    const double left = both && !curve.relative ? 484 : 64, right = both && curve.relative ? 460 : 880;
+    const auto x_of = [&](double tolerance) {
+      return left + (right - left) * (std::log2(tolerance) - low) / (high - low);
+    };
     for (const ToleranceLine<Point>& line : lines) {
       std::string points;
       for (const Point& point : curve.points)
-        points += fmt::format("{:.1f},{:.1f} ", frame.x(analysis::tolerance_of(point.policy)),
+        points += fmt::format("{:.1f},{:.1f} ", x_of(analysis::tolerance_of(point.policy)),
                               kRates.y(static_cast<double>(line.count(point)) /
                                        static_cast<double>(std::max<std::uint64_t>(point.pairs, 1))));
       svg += fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"2\" points=\"{}\"/>\n", line.colour,
@@ -62,10 +57,10 @@ std::string tolerance_figure(std::string_view title, std::string_view heading,
       if (point.policy == chosen)
         svg += fmt::format(
             "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"64\" y2=\"350\" stroke=\"#777\" stroke-dasharray=\"4 3\"/>\n",
-            frame.x(analysis::tolerance_of(point.policy)));
+            x_of(analysis::tolerance_of(point.policy)));
     }
     for (const double at : {low, (low + high) / 2, high})
-      svg += svg_text(frame.x(std::exp2(at)), 370,
+      svg += svg_text(x_of(std::exp2(at)), 370,
                       at == low    ? "start"
                       : at == high ? "end"
                                    : "middle",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reports/toolchain_map.h"
+#include "reports/tables.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,7 +11,6 @@
 
 #include "core/variants.h"
 #include "reports/findings.h"
-#include "reports/tables.h"
 #include "reports/terminal.h"
 
 namespace graze::reports {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reports/toolchain_map.h"
+#include "reports/tables.h"
 
 #include "reports/failure_cards.h"
 #include "reports/test_campaign.h"

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "fuzz/counts_json.h"
 #include "reports/discrepancy_reading.h"
@@ -36,12 +37,8 @@ std::string simplest_in(const Json& row) {
   return row.contains("simplest") ? text_at(row.at("simplest"), "place") : "";
 }
 
-// A count of a source line: its name in the JSON, and its member.
-struct LineCount {
-  const char* name;
-  std::uint64_t analysis::LineApart::*count;
-};
-constexpr LineCount kLineCounts[] = {
+// The counts of a source line: the name in the JSON, and the member.
+constexpr std::pair<const char*, std::uint64_t analysis::LineApart::*> kLineCounts[] = {
     {"compared", &analysis::LineApart::compared},   {"differs", &analysis::LineApart::differs},
     {"zero_sign", &analysis::LineApart::zero_sign}, {"not_finite", &analysis::LineApart::not_finite},
     {"sign", &analysis::LineApart::sign},           {"outcome", &analysis::LineApart::outcome},
@@ -51,7 +48,7 @@ Json operands_json(const analysis::OperandsApart& found) {
   Json lines = Json::array();
   for (const analysis::LineApart& of : found.lines) {
     Json& line = lines.emplace_back(Json{{"line", line_of(of.at)}, {"within", line_of(of.from)}});
-    for (const LineCount& field : kLineCounts) line[field.name] = of.*field.count;
+    for (const auto& [name, count] : kLineCounts) line[name] = of.*count;
     line["below"] = octaves_json(of.below);
     line["above"] = octaves_json(of.above);
   }
@@ -66,13 +63,6 @@ std::string place_of(const Json& line) {
   const std::string within = short_name("within");
   const bool is_own = !within.empty() && !within.starts_with("graze:");  // "graze:": Graze's call of the function
   return short_name("line") + (is_own ? " in " + within : "");
-}
-
-// The sizes of the differences between a line's operands, in ulps.
-Octaves sizes_of(const Json& line) {
-  Octaves sizes = octaves_at(line.at("below"));
-  for (const auto& [k, count] : octaves_at(line.at("above"))) sizes[k] += count;
-  return sizes;
 }
 
 std::string ulps_words(const Octaves& sizes, double share) {
@@ -251,14 +241,8 @@ std::string verdicts_csv(const Json& of) {
     }
   }
   for (const Json* line : differing_lines(of)) {
-    const std::string start =
-        fmt::format("{},{},,\"{}\",\"\",", text_at(of, "first"), text_at(of, "second"), place_of(*line));
-    for (const auto& [name, count] : line->items()) {
-      if (count.is_number() && count != 0) text += fmt::format("{}{},,{}\n", start, name, count.get<std::uint64_t>());
-      if (!count.is_object()) continue;
-      for (const auto& [bucket, part] : count.items())
-        text += fmt::format("{}{},{},{}\n", start, name, bucket, part.get<std::uint64_t>());
-    }
+    text += csv_rows(fmt::format("{},{},,\"{}\",\"\",", text_at(of, "first"), text_at(of, "second"), place_of(*line)),
+                     *line);
   }
   return text;
 }

@@ -16,6 +16,7 @@
 #include "cuda/twin/twin.h"
 #include "oracle/truth.h"
 #include "reports/page.h"
+#include "reports/snippet.h"
 #include "strata/pair_source.h"
 
 namespace graze::reports {
@@ -29,9 +30,6 @@ constexpr char kText[] =
 constexpr std::string_view kTemplate(kText, sizeof kText - 1);
 #include "viewer_modules.inc"
 constexpr std::string_view kModules[] = {{kModuleF32, sizeof kModuleF32 - 1}, {kModuleF64, sizeof kModuleF64 - 1}};
-constexpr char kCanaries[] =
-#include "canaries.inc"
-    ;
 
 constexpr std::uint64_t kReplaySeed = 20120131;
 constexpr std::uint64_t kReplayed = 16;  // pairs of each stratum
@@ -62,7 +60,7 @@ std::vector<const Lane*> replayed_lanes(Scalar type) {
 
 std::vector<AnyPair> replayed_pairs(Scalar type) {
   std::vector<AnyPair> pairs;
-  std::istringstream text(kCanaries);
+  std::istringstream text{std::string(embedded("cuda/twin/canaries.pairs"))};
   corpus::PairReader canaries(text, "canaries");
   while (const auto entry = canaries.next()) pairs.emplace_back(entry->pair);
   const PairTypes drawn = type == Scalar::f32 ? PairTypes::f32 : PairTypes::f64;

@@ -10,21 +10,16 @@ bool by_convention(const Lane& lane, Verdict verdict, const BasicPair<Real>& pai
   return is_outside(lane.outside, pair, truth);
 }
 
-template <class Real>
-std::vector<Verdict> excused(std::span<const Lane* const> lanes, std::vector<Verdict> verdicts,
-                             const BasicPair<Real>& pair, const oracle::Truth& truth) {
+template bool by_convention(const Lane&, Verdict, const Pair&, const Relation&);
+template bool by_convention(const Lane&, Verdict, const DoublePair&, const Relation&);
+
+std::vector<Verdict> excused(std::span<const Lane* const> lanes, std::vector<Verdict> verdicts, const AnyPair& pair,
+                             const Relation& truth) {
   for (std::size_t l = 0; l < verdicts.size(); ++l) {
     if (by_convention(*lanes[l], verdicts[l], pair, truth)) verdicts[l] = truth.verdict;
   }
   return verdicts;
 }
-
-template bool by_convention(const Lane&, Verdict, const Pair&, const Relation&);
-template bool by_convention(const Lane&, Verdict, const DoublePair&, const Relation&);
-template std::vector<Verdict> excused(std::span<const Lane* const>, std::vector<Verdict>, const Pair&,
-                                      const oracle::Truth&);
-template std::vector<Verdict> excused(std::span<const Lane* const>, std::vector<Verdict>, const DoublePair&,
-                                      const oracle::Truth&);
 
 std::string outside_in_words(unsigned outside) {
   std::string words;

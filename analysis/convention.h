@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/any_pair.h"
 #include "core/lanes/lanes.h"
-#include "core/pair.h"
 #include "oracle/truth.h"
 
 namespace graze::analysis {
@@ -16,12 +16,14 @@ namespace graze::analysis {
 // unstable verdicts never count as convention.
 template <class Real>
 bool by_convention(const Lane& lane, Verdict verdict, const BasicPair<Real>& pair, const Relation& truth);
+inline bool by_convention(const Lane& lane, Verdict verdict, const AnyPair& pair, const Relation& truth) {
+  return visit(pair, [&](const auto& own) { return by_convention(lane, verdict, own, truth); });
+}
 
 // Returns the verdicts, with the truth in place of those that differ by convention. Verdicts that still differ from the
 // truth are wrong or declined.
-template <class Real>
-std::vector<Verdict> excused(std::span<const Lane* const> lanes, std::vector<Verdict> verdicts,
-                             const BasicPair<Real>& pair, const oracle::Truth& truth);
+std::vector<Verdict> excused(std::span<const Lane* const> lanes, std::vector<Verdict> verdicts, const AnyPair& pair,
+                             const Relation& truth);
 
 // "touching pairs, coplanar pairs"; empty for a convention that excludes nothing.
 std::string outside_in_words(unsigned outside);

@@ -2,14 +2,11 @@
 #include "analysis/discrepancy.h"
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <bit>
 
+#include "analysis/over_threads.h"
 #include "analysis/sweep.h"
 #include "backends/backends.h"
 #include "core/discrepancy/count.h"
@@ -277,39 +274,37 @@ bool compare_on_device(const LanesCompared& lanes, const strata::PairSource& sou
 
 Discrepancies discrepancies(const DiscrepancySpec& spec) {
   const std::vector<SourceBlock> blocks = blocks_of(spec.sources, kPairsCompared);
-  const auto threads = static_cast<std::size_t>(spec.threads > 0 ? spec.threads : tbb::info::default_concurrency());
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   const auto nothing_yet = [&] {
     Discrepancies nothing;
     for (const LanesCompared& lanes : spec.lanes)
       nothing.emplace_back(spec.sources.size(), DiscrepancyCounts(lanes.first->algorithm));
     return nothing;
   };
-  Discrepancies all = nothing_yet();
+  Discrepancies on_device = nothing_yet();
   std::vector<std::vector<bool>> done(spec.lanes.size(), std::vector<bool>(spec.sources.size()));
   for (std::size_t l = 0; l < spec.lanes.size() && spec.on_device; ++l) {
     for (std::size_t s = 0; s < spec.sources.size(); ++s)
-      done[l][s] = compare_on_device(spec.lanes[l], spec.sources[s], all[l][s]);
+      done[l][s] = compare_on_device(spec.lanes[l], spec.sources[s], on_device[l][s]);
   }
-  tbb::enumerable_thread_specific<Discrepancies> results(nothing_yet);
-  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+  const auto count_block = [&](std::size_t b, Discrepancies& result) {
     const SourceBlock& block = blocks[b];
     const auto source = static_cast<std::size_t>(block.source);
     if (std::all_of(done.begin(), done.end(), [source](const auto& of) { return of[source]; })) return;
     const auto count = [&](const auto& pairs) {
-      Discrepancies& result = results.local();
       for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
         if (!done[l][source]) count_discrepancies(spec.lanes[l], pairs, spec.sources[source].axis, result[l][source]);
       }
     };
     const strata::PairBlock pairs = strata::pairs_of(spec.sources[source], block.first, block.count);
     pairs.in_doubles() ? count(pairs.doubles) : count(pairs.floats);
-  });
-  for (const Discrepancies& some : results) {
+  };
+  const auto add = [](Discrepancies& all, const Discrepancies& some) {
     for (std::size_t l = 0; l < all.size(); ++l) {
       for (std::size_t s = 0; s < all[l].size(); ++s) all[l][s] += some[l][s];
     }
-  }
+  };
+  Discrepancies all = sum_over_threads(blocks.size(), spec.threads, nothing_yet, count_block, add);
+  add(all, on_device);
   return all;
 }
 

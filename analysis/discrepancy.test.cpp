@@ -119,6 +119,21 @@ TEST(Discrepancy, EveryQuestionIsListedWithItsSiteAndIsAsked) {
   }
 }
 
+// Expects equal values on all `pairs` pairs.   Returns: how many values were compared.
+std::uint64_t expect_no_bit_differs(const LanesCompared& lanes, const DiscrepancyCounts& of, std::uint64_t pairs) {
+  EXPECT_EQ(count(of, pair_counts::pairs), pairs);
+  for (const int field : {pair_counts::differs, pair_counts::choice, pair_counts::verdict})
+    EXPECT_EQ(count(of, field), 0u) << lanes.second->id;
+  EXPECT_EQ(of.unlike[0] + of.unlike[1], 0u);
+  std::uint64_t compared = 0;
+  for (std::size_t q = 0; q < questions_of(lanes.first->algorithm).size(); ++q) {
+    const int at = value_at(static_cast<int>(q), 0);
+    compared += count(of, at + value_counts::compared);
+    EXPECT_EQ(count(of, at + value_counts::compared), count(of, at + value_counts::equal));
+  }
+  return compared;
+}
+
 // Without contraction, the published algorithms give the same bits on every processor. So the kernels of cuda-nofma may
 // run on a device in place of a host lane.
 TEST(Discrepancy, WithoutContractionNoBitDiffers) {
@@ -127,18 +142,7 @@ TEST(Discrepancy, WithoutContractionNoBitDiffers) {
   const Discrepancies found = counted(lanes, 11, strata::kStrataCount * 400);
   for (std::size_t l = 0; l < lanes.size(); ++l) {
     std::uint64_t compared = 0;
-    for (const DiscrepancyCounts& of : found[l]) {
-      EXPECT_EQ(count(of, pair_counts::pairs), 400u);
-      EXPECT_EQ(count(of, pair_counts::differs), 0u) << lanes[l].second->id;
-      EXPECT_EQ(count(of, pair_counts::choice), 0u);
-      EXPECT_EQ(count(of, pair_counts::verdict), 0u);
-      EXPECT_EQ(of.unlike[0] + of.unlike[1], 0u);
-      for (std::size_t q = 0; q < questions_of(lanes[l].first->algorithm).size(); ++q) {
-        const int at = value_at(static_cast<int>(q), 0);
-        compared += count(of, at + value_counts::compared);
-        EXPECT_EQ(count(of, at + value_counts::compared), count(of, at + value_counts::equal));
-      }
-    }
+    for (const DiscrepancyCounts& of : found[l]) compared += expect_no_bit_differs(lanes[l], of, 400);
     EXPECT_GT(compared, 10'000u) << lanes[l].second->id;
   }
 }
@@ -153,16 +157,8 @@ TEST(Discrepancy, WithoutContractionNoBitDiffersOnDoubles) {
   for (std::size_t l = 0; l < lanes.size(); ++l) {
     std::uint64_t compared = 0, differs = 0;
     for (std::size_t s = 0; s < sources.size(); ++s) {
-      const DiscrepancyCounts& of = found[l][s];
-      EXPECT_EQ(count(of, pair_counts::pairs), 300u) << sources[s].id;
-      for (const int field : {pair_counts::differs, pair_counts::choice, pair_counts::verdict})
-        EXPECT_EQ(count(of, field), 0u) << lanes[l].second->id << ' ' << sources[s].id;
-      EXPECT_EQ(of.unlike[0] + of.unlike[1], 0u);
-      for (std::size_t q = 0; q < questions_of(lanes[l].first->algorithm).size(); ++q) {
-        const int at = value_at(static_cast<int>(q), 0);
-        compared += count(of, at + value_counts::compared);
-        EXPECT_EQ(count(of, at + value_counts::compared), count(of, at + value_counts::equal));
-      }
+      SCOPED_TRACE(sources[s].id);
+      compared += expect_no_bit_differs(lanes[l], found[l][s], 300);
       differs += count(by_contraction[l][s], pair_counts::differs);
     }
     EXPECT_GT(compared, 10'000u) << lanes[l].second->id;
@@ -577,21 +573,11 @@ TEST(Discrepancy, VerdictsAloneAreThoseOfTheLanes) {
 TEST(Discrepancy, FindsAPlantedUlp) {
   const Pair pair{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{0.25f, 0.25f, 1}, {0.25f, 0.25f, 2}, {1, 1, 2}}};
   const Lane& of = lane("moller_1997/f32/cpu");
-  const std::vector<Question>& questions = questions_of(of.algorithm);
-  std::vector<float> first(2 * questions.size());
-  RecordedPath path;
-  host_record(of)(&pair, 1, {first.data(), 1, &path});
-  std::vector<float> second = first;
-  ASSERT_EQ(questions[0].name, "plane_distance.b[0]");
-  ASSERT_EQ(first[0], 0);  // that vertex lies in the plane
-  second[0] = -std::numeric_limits<float>::denorm_min();
-  second[2] = std::nextafter(first[2], 2.0f);
-  Places places;
-  decide_widened<float>(pair, [&](const auto& a, const auto& b) {
-    compare_runs<Moller1997>(a, b, graze::Run<float>{{first.data(), 1}, path},
-                             graze::Run<float>{{second.data(), 1}, path}, degrees_of(of.algorithm).data(), Axis::none,
-                             places);
-    return Verdict::declined;
+  ASSERT_EQ(questions_of(of.algorithm)[0].name, "plane_distance.b[0]");
+  const Places places = planted<Moller1997, float>(of, pair, [](auto& first, auto& second) {
+    ASSERT_EQ(first[0], 0);  // that vertex lies in the plane
+    second[0] = -std::numeric_limits<float>::denorm_min();
+    second[2] = std::nextafter(first[2], 2.0f);
   });
   EXPECT_TRUE(places.has(value_at(0, 0) + value_counts::below));
   EXPECT_TRUE(places.has(value_at(0, 0) + value_counts::first_error));  // no error

@@ -41,6 +41,14 @@ BasicPair<Real> moved(const BasicPair<Real>& pair, Extreme extreme, int k) {
   return is_finite(result) ? result : pair;
 }
 
+// The processor time of this thread, without the time in which other programs run. Other programs still slow the
+// thread, because they share its cache and its clock.
+double processor_nanoseconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
+}
+
 // The nanoseconds that reading the clock adds to a time. They matter if few pairs are timed.
 double nanoseconds_of_the_clock() {
   static const double least = [] {
@@ -53,21 +61,6 @@ double nanoseconds_of_the_clock() {
   }();
   return least;
 }
-
-}  // namespace
-
-double processor_nanoseconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
-}
-
-std::string_view name(Extreme extreme) {
-  constexpr std::string_view kNames[] = {"scale", "offset", "flatness", "aspect"};
-  return kNames[static_cast<int>(extreme)];
-}
-
-namespace {
 
 template <class PairOf>
 double nanoseconds_of(const DecideBlock& lane, const std::vector<PairOf>& pairs, Calls calls) {
@@ -84,6 +77,11 @@ double nanoseconds_of(const DecideBlock& lane, const std::vector<PairOf>& pairs,
 }
 
 }  // namespace
+
+std::string_view name(Extreme extreme) {
+  constexpr std::string_view kNames[] = {"scale", "offset", "flatness", "aspect"};
+  return kNames[static_cast<int>(extreme)];
+}
 
 double nanoseconds_a_pair(const DecideBlock& lane, const strata::PairBlock& pairs, Calls calls) {
   return pairs.in_doubles() && lane.decides_doubles() ? nanoseconds_of(lane, pairs.doubles, calls)

@@ -21,10 +21,6 @@ struct Cost {
 // How many pairs one call decides: all pairs, or one pair, as in most programs that call such a test.
 enum class Calls { of_blocks, of_one };
 
-// The processor time of this thread, without the time in which other programs run. Other programs still slow the
-// thread, because they share its cache and its clock.
-double processor_nanoseconds();
-
 // Nanoseconds per pair of one run of the lane over the pairs, of the type that it takes.   Requires: pairs.
 double nanoseconds_a_pair(const DecideBlock& lane, const strata::PairBlock& pairs, Calls calls = Calls::of_blocks);
 

@@ -9,6 +9,7 @@
 #include <random>
 #include <set>
 
+#include "analysis/foreign_testing.h"
 #include "core/exact/exact.h"
 
 namespace graze::analysis {
@@ -186,27 +187,21 @@ TEST(Tune, FindsDeadKnobs) {
 }
 
 // This code is exact, except that it says "intersects" on all pairs whose coordinates are all smaller than 1/1000.
-class WrongWhenSmall : public ForeignCode {
- public:
-  bool misses = false;  // also says that pairs with a first coordinate above 0 do not intersect
-  void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) override {
-    for (std::size_t i = 0; i < count; ++i) {
-      float largest = 0;
-      for (int c = 0; c < kCoordinates; ++c) largest = std::max(largest, std::fabs(coordinates(pairs[i])[c]));
-      if (i % 64 == 0) intersects[i / 64] = declined[i / 64] = 0;
-      const bool missed = misses && pairs[i].a[0].x > 0;
-      const bool yes = largest < 1e-3f || (!missed && exact::intersects(&pairs[i].a[0].x, &pairs[i].b[0].x));
-      intersects[i / 64] |= std::uint64_t{yes} << i % 64;
-    }
-  }
-  Verdict failure(const Pair&) override { return Verdict::crashed; }
-};
+// misses: it also says that pairs with a first coordinate above 0 do not intersect.
+Stranger wrong_when_small(bool misses) {
+  return Stranger([misses](const Pair& pair) {
+    float largest = 0;
+    for (int c = 0; c < kCoordinates; ++c) largest = std::max(largest, std::fabs(coordinates(pair)[c]));
+    const bool missed = misses && pair.a[0].x > 0;
+    const bool yes = largest < 1e-3f || (!missed && exact::intersects(&pair.a[0].x, &pair.b[0].x));
+    return yes ? Verdict::intersects : Verdict::disjoint;
+  });
+}
 
 // Only the false positives double: the other errors are too many for the sum to double.
 TEST(Tune, FindsWhereTheForbiddenErrorsDouble) {
   TuneSpec spec;
-  WrongWhenSmall small;
-  small.misses = true;
+  Stranger small = wrong_when_small(true);
   const DecideBlock policy(small);
   spec.sweep = host_sweep([&](const std::string& of) { return of.empty() ? moller().decide : policy; });
   spec.forbid = Forbid::false_positive;
@@ -224,7 +219,7 @@ TEST(Tune, FindsWhereTheForbiddenErrorsDouble) {
 
 TEST(Tune, FindsWhereTheScaleBreaksAPolicy) {
   TuneSpec spec;
-  WrongWhenSmall small;
+  Stranger small = wrong_when_small(false);
   const DecideBlock policy(small);
   spec.sweep = host_sweep([&](const std::string& of) { return of.empty() ? moller().decide : policy; });
   spec.sources = stratum_sources(5, 4000, {"near_vertex_face"});  // coordinates of about 1

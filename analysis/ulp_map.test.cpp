@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/foreign_testing.h"
 #include "analysis/lane_trace.h"
 #include "cuda/twin/twin.h"
 #include "oracle/truth.h"
@@ -91,29 +92,18 @@ TEST(UlpMap, EachCellIsWhatItsPairGets) {
   EXPECT_GT(wrong, 1000);
 }
 
-// Foreign code fails on two columns and two cells.
-class Fails : public ForeignCode {
- public:
-  void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) override {
-    *intersects = *declined = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint64_t fails = is_failure(failure(pairs[i]));
-      *intersects |= fails << i;
-      *declined |= fails << i;
-    }
-  }
-  Verdict failure(const Pair& pair) override {
-    const auto at = [&](int column) { return pair.b[0].x == pair_at(kOnTheDiagonal, {9, 10}, column, 0).b[0].x; };
-    const float highest = pair_at(kOnTheDiagonal, {9, 10}, 0, 0).b[0].y;
-    return at(10)                                         ? Verdict::crashed
-           : at(12)                                       ? Verdict::unstable
-           : (at(14) || at(16)) && pair.b[0].y == highest ? Verdict::timed_out
-                                                          : Verdict::disjoint;
-  }
-};
+// This code fails on two columns and two cells.
+Verdict fails_in_places(const Pair& pair) {
+  const auto at = [&](int column) { return pair.b[0].x == pair_at(kOnTheDiagonal, {9, 10}, column, 0).b[0].x; };
+  const float highest = pair_at(kOnTheDiagonal, {9, 10}, 0, 0).b[0].y;
+  return at(10)                                         ? Verdict::crashed
+         : at(12)                                       ? Verdict::unstable
+         : (at(14) || at(16)) && pair.b[0].y == highest ? Verdict::timed_out
+                                                        : Verdict::disjoint;
+}
 
 TEST(UlpMap, FailuresOfForeignCodeHaveCellsOfTheirOwn) {
-  Fails code;
+  Stranger code(fails_in_places);
   const AlgorithmInfo info{"fails", "test", "", "", "", false};
   const Lane lane{"fails/f32/cpu", &info, Scalar::f32, Variant::cpu, "", {}, -1, code, false, false, true, 0, ""};
   const Lane* const lanes[] = {&lane};

@@ -45,8 +45,7 @@ std::vector<VerdictsApart> verdicts_apart(const TwoDeciders& deciders, const std
         const Verdict verdict = verdicts[lane][i];
         right[lane] = verdict == truth.verdict;
         if (right[lane]) continue;
-        right[lane] =
-            visit(pair, [&](const auto& own) { return by_convention(*deciders.lanes[lane], verdict, own, truth); });
+        right[lane] = by_convention(*deciders.lanes[lane], verdict, pair, truth);
         ++(right[lane] ? to.of[lane].by_convention : to.of[lane].of(verdict));
       }
       if (verdicts[0][i] == verdicts[1][i]) continue;

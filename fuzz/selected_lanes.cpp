@@ -71,6 +71,17 @@ std::vector<const Lane*> SelectedLanes::device_lanes() const {
   return result;
 }
 
+void SelectedLanes::keep_if(const std::function<bool(const Lane&)>& keep) {
+  std::size_t kept = 0;
+  for (std::size_t l = 0; l < lanes.size(); ++l) {
+    if (!keep(*lanes[l])) continue;
+    lanes[kept] = lanes[l];
+    on_host[kept++] = on_host[l];
+  }
+  lanes.resize(kept);
+  on_host.resize(kept);
+}
+
 std::string SelectedLanes::evidence(std::size_t l) const {
   const std::string here = on_host[l] ? backend_of(*lanes[l]).evidence(*lanes[l], of_doubles) : "";
   return !on_device(l) ? here : here.empty() ? "device" : "device and " + here;
@@ -107,18 +118,11 @@ void expect_each_runs(const SelectedLanes& under_test) {
 
 std::vector<LaneLeftOut> leave_out(SelectedLanes& under_test, const std::function<std::string(const Lane&)>& why) {
   std::vector<LaneLeftOut> taken;
-  std::vector<const Lane*> lanes;
-  std::vector<DecideBlock> on_host;
-  for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
-    if (const std::string reason = why(*under_test.lanes[l]); !reason.empty()) {
-      taken.push_back({under_test.lanes[l]->id, reason});
-    } else {
-      lanes.push_back(under_test.lanes[l]);
-      on_host.push_back(under_test.on_host[l]);
-    }
-  }
-  under_test.lanes = std::move(lanes);
-  under_test.on_host = std::move(on_host);
+  under_test.keep_if([&](const Lane& lane) {
+    const std::string reason = why(lane);
+    if (!reason.empty()) taken.push_back({lane.id, reason});
+    return reason.empty();
+  });
   under_test.left_out.insert(under_test.left_out.end(), taken.begin(), taken.end());
   expect_each_runs(under_test);
   return taken;

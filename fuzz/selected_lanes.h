@@ -37,6 +37,8 @@ struct SelectedLanes {
   bool on_device(std::size_t l) const { return device && backends::backend_of(*lanes[l]).has_device; }
   // The lanes that run on the device, in order.
   std::vector<const Lane*> device_lanes() const;
+  // Removes the other lanes.
+  void keep_if(const std::function<bool(const Lane&)>& keep);
   // Whether the lane runs both on the device and as its twin, for comparison. The device's verdicts count.
   bool on_both(std::size_t l) const { return on_device(l) && on_host[l]; }
   // Where the lane's verdicts come from: "device", "twin, verified on …", "twin", "device and twin, …". Empty for

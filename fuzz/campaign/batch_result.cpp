@@ -44,10 +44,4 @@ void PairCounts::add(const PairCounts& other) {
   exact += other.exact;
 }
 
-void BatchResult::add(const BatchResult& other) {
-  PairCounts::add(other);
-  for (const auto& [signature, found] : other.signatures) signatures[signature].add(found);
-  for (const auto& [lane, found] : other.executor_mismatches) executor_mismatches[lane].add(found);
-}
-
 }  // namespace graze::fuzz

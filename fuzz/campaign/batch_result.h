@@ -61,12 +61,21 @@ struct PairCounts {
   std::uint64_t exact = 0;          // pairs decided by the exact lane, here or on a device
 };
 
-struct BatchResult : PairCounts {
+// The counts of some pairs, with their signatures.   Key: of a signature.
+template <class Key>
+struct CountsBy : PairCounts {
   using PairCounts::PairCounts;
-  void add(const BatchResult& other);
+  explicit CountsBy(const PairCounts& counts) : PairCounts(counts) {}
+  void add(const CountsBy& other) {
+    PairCounts::add(other);
+    for (const auto& [key, found] : other.signatures) signatures[key].add(found);
+    for (const auto& [lane, found] : other.executor_mismatches) executor_mismatches[lane].add(found);
+  }
 
-  std::map<analysis::Signature, SignatureCount> signatures;
+  std::map<Key, SignatureCount> signatures;
   std::map<std::string, SignatureCount> executor_mismatches;  // by lane: pairs on which device and twin differ
 };
+
+using BatchResult = CountsBy<analysis::Signature>;
 
 }  // namespace graze::fuzz

@@ -137,10 +137,9 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
   Store store(store_spec(campaign));
   expect_usable_records(campaign.directory);
   take_in_ranks(campaign, store);
-  GpuEngine device(campaign);
   Confirmation confirmation(campaign);
   const auto judged = [&](const PairRange& batch) {
-    if (!campaign.engines.empty()) return device.judge(batch.source, batch.first, batch.pairs);
+    if (!campaign.engines.empty()) return judge_on_devices(campaign, batch, confirmation);
     BatchResult result = judge(
         campaign, batch.source, batch.pairs, [&](std::size_t i) { return batch.first + i; }, campaign.exact);
     if (campaign.exact) confirmation.confirm(batch.source, result);
@@ -190,13 +189,7 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
   }
   const bool complete = progress.done == progress.total;
   if (!complete) tell(true);
-  Outcome outcome{complete, {}, store.oracle()};
-  if (campaign.shard.whole() && !campaign.take) {
-    outcome.summary = write_summary(campaign, store, complete);
-  } else {
-    if (complete) store.compact();  // so that merging thousands of shards stays cheap
-    outcome.summary = shard_summary(campaign.shard, store, complete, progress.done);
-  }
+  Outcome outcome{complete, write_own_summary(campaign, store, complete, progress.done), store.oracle()};
   store.finish();
   Json run = {{"pairs", progress.done_here},
               {"seconds", seconds()},

@@ -46,6 +46,19 @@ inline std::vector<strata::PairSource> sources_in_scenes(std::uint64_t seed, std
   return sources;
 }
 
+inline Campaign campaign_in(const std::filesystem::path& directory, const SelectedLanes& under_test,
+                            std::vector<strata::PairSource> sources, std::uint64_t seed) {
+  Campaign c;
+  c.seed = seed;
+  c.sources = std::move(sources);
+  c.under_test = &under_test;
+  c.threads = 2;
+  c.directory = directory;
+  c.spec = campaign_spec(c);
+  c.build = build_info(under_test);
+  return c;
+}
+
 class CampaignFiles : public testing::Test {
  protected:
   CampaignFiles() {
@@ -56,15 +69,7 @@ class CampaignFiles : public testing::Test {
 
   Campaign campaign_of(const SelectedLanes& under_test, std::vector<strata::PairSource> sources, std::uint64_t seed,
                        const std::string& name) const {
-    Campaign c;
-    c.seed = seed;
-    c.sources = std::move(sources);
-    c.under_test = &under_test;
-    c.threads = 2;
-    c.directory = root_ / name;
-    c.spec = campaign_spec(c);
-    c.build = build_info(under_test);
-    return c;
+    return campaign_in(root_ / name, under_test, std::move(sources), seed);
   }
 
   // Runs this many batches of the campaign.   Returns: its summary.

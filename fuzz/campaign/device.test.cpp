@@ -92,6 +92,18 @@ TEST_F(DeviceTest, StrataHaveTheBitsOfTheHost) {
 }
 #endif
 
+// Expects the host's discrepancies on the device too.   Returns: how many verdicts differ.
+std::uint64_t verdicts_that_differ(analysis::DiscrepancySpec spec) {
+  const analysis::Discrepancies on_host = analysis::discrepancies(spec);
+  spec.on_device = true;
+  EXPECT_EQ(analysis::discrepancies(spec), on_host) << spec.lanes[0].second->id;
+  std::uint64_t verdicts = 0;
+  for (const auto& of_lanes : on_host) {
+    for (const analysis::DiscrepancyCounts& counts : of_lanes) verdicts += counts.counts[5];  // pair_counts::verdict
+  }
+  return verdicts;
+}
+
 TEST_F(DeviceTest, DiscrepanciesAreThoseOfTheHost) {
   std::uint64_t verdicts = 0;
   for (const Variant second : {Variant::cuda_fma, Variant::cuda_nofma}) {
@@ -100,12 +112,7 @@ TEST_F(DeviceTest, DiscrepanciesAreThoseOfTheHost) {
     for (const Lane& lane : published_lanes()) {
       if (lane.variant == Variant::cpu) spec.lanes.emplace_back(lane, *counterpart(lane, second));
     }
-    const analysis::Discrepancies on_host = analysis::discrepancies(spec);
-    spec.on_device = true;
-    EXPECT_EQ(analysis::discrepancies(spec), on_host) << name(second);
-    for (const auto& of_lanes : on_host) {
-      for (const analysis::DiscrepancyCounts& counts : of_lanes) verdicts += counts.counts[5];  // pair_counts::verdict
-    }
+    verdicts += verdicts_that_differ(spec);
   }
   EXPECT_GT(verdicts, 1000u);
 }
@@ -124,12 +131,7 @@ TEST_F(DeviceTest, DiscrepanciesOfDoublesAreThoseOfTheHost) {
       different += cuda::count_different_runs(*spec.lanes[0].first, *spec.lanes[0].second, source);
     EXPECT_EQ(different > 1000, second == Variant::cuda_fma) << different;
     EXPECT_EQ(different == 0, second == Variant::cuda_nofma) << different;
-    const analysis::Discrepancies on_host = analysis::discrepancies(spec);
-    spec.on_device = true;
-    EXPECT_EQ(analysis::discrepancies(spec), on_host) << name(second);
-    for (const auto& of_lanes : on_host) {
-      for (const analysis::DiscrepancyCounts& counts : of_lanes) verdicts += counts.counts[5];  // pair_counts::verdict
-    }
+    verdicts += verdicts_that_differ(spec);
   }
   EXPECT_GT(verdicts, 100u);
 }

@@ -53,34 +53,34 @@ void add(const cuda::EngineResult& found, int source, bool of_doubles, std::span
 
 }  // namespace
 
-BatchResult GpuEngine::judge(int source, std::uint64_t first, std::uint64_t count) {
-  const std::size_t engines = campaign_.engines.size();
+BatchResult judge_on_devices(const Campaign& campaign, const PairRange& range, Confirmation& confirmation) {
+  const strata::PairSource& source = campaign.sources[static_cast<std::size_t>(range.source)];
+  const std::size_t engines = campaign.engines.size();
   std::vector<std::future<std::vector<cuda::EngineResult>>> runs;
   for (std::size_t e = 0; e < engines; ++e) {
-    const std::uint64_t begin = count * e / engines, end = count * (e + 1) / engines;
+    const std::uint64_t begin = range.pairs * e / engines, end = range.pairs * (e + 1) / engines;
     runs.push_back(std::async(std::launch::async, [&, e, begin, end] {
       std::vector<cuda::EngineResult> parts;
       for (std::uint64_t at = begin; at < end; at += parts.back().done) {
-        parts.push_back(
-            campaign_.engines[e]->run(campaign_.sources[static_cast<std::size_t>(source)], first + at, end - at));
+        parts.push_back(campaign.engines[e]->run(source, range.first + at, end - at));
       }
       return parts;
     }));
   }
-  const std::vector<const Lane*>& lanes = campaign_.under_test->lanes;
-  BatchResult result = no_counts(campaign_);
+  const std::vector<const Lane*>& lanes = campaign.under_test->lanes;
+  BatchResult result = no_counts(campaign);
   std::vector<std::uint64_t> undecided;
   for (auto& run : runs) {
     for (const cuda::EngineResult& found : run.get()) {
-      add(found, source, campaign_.sources[static_cast<std::size_t>(source)].in_doubles(), lanes, result);
+      add(found, range.source, source.in_doubles(), lanes, result);
       undecided.insert(undecided.end(), found.undecided.begin(), found.undecided.end());
     }
   }
-  confirmation_.confirm(source, result);
+  confirmation.confirm(range.source, result);
   constexpr std::size_t kAtOnce = 65536;
   for (std::size_t at = 0; at < undecided.size(); at += kAtOnce) {
-    result.add(fuzz::judge(campaign_, source, std::min(kAtOnce, undecided.size() - at),
-                           [&](std::size_t i) { return undecided[at + i]; }));
+    result.add(judge(campaign, range.source, std::min(kAtOnce, undecided.size() - at),
+                     [&](std::size_t i) { return undecided[at + i]; }));
   }
   return result;
 }

@@ -7,18 +7,9 @@
 
 namespace graze::fuzz {
 
-class GpuEngine {
- public:
-  // Requires: campaign outlives this.
-  explicit GpuEngine(const Campaign& campaign) : campaign_(campaign), confirmation_(campaign) {}
-
-  // Judges the pairs [first, first + count) of the source, split among the campaign's engines.
-  // Throws: OracleMismatch if a kept case contradicts the device's result.
-  BatchResult judge(int source, std::uint64_t first, std::uint64_t count);
-
- private:
-  const Campaign& campaign_;
-  Confirmation confirmation_;
-};
+// Judges the pairs, split among the campaign's engines.
+// Requires: the confirmation is the campaign's.
+// Throws: OracleMismatch if a kept case contradicts the device's result.
+BatchResult judge_on_devices(const Campaign& campaign, const PairRange& range, Confirmation& confirmation);
 
 }  // namespace graze::fuzz

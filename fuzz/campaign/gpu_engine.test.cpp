@@ -3,6 +3,7 @@
 // with the CPU engine. device.test.cpp tests this on devices.
 #include "fuzz/campaign/gpu_engine.h"
 
+#include "core/message_testing.h"
 #include "cuda/engine/host_engine.h"
 #include "fuzz/campaign/campaign_testing.h"
 #include "fuzz/campaign/changed_verdicts.h"
@@ -87,13 +88,8 @@ TEST_F(GpuEngineTest, TakesAnyNumberOfLanes) {
 }
 
 TEST_F(GpuEngineTest, SaysWhenItsMemoryIsNotEnough) {
-  const auto error = [&](const std::string& name, const cuda::EngineLimits& limits) -> std::string {
-    try {
-      run(campaign(twins_, name, 20'000, 1, 3, {"mixed_scale"}, limits));
-    } catch (const std::runtime_error& e) {
-      return e.what();
-    }
-    return "";
+  const auto error = [&](const std::string& name, const cuda::EngineLimits& limits) {
+    return error_of([&] { run(campaign(twins_, name, 20'000, 1, 3, {"mixed_scale"}, limits)); });
   };
   cuda::EngineLimits few;
   few.signatures = 16;

@@ -42,7 +42,7 @@ double summary_bytes(const StoreSpec& spec, const StoredCounts& counts) {
 
 Sample measure(const Campaign& campaign) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
-  GpuEngine device(campaign);
+  Confirmation confirmation(campaign);
   Sample sample;
   const bool of_doubles = analysis::any_in_doubles(campaign.sources);
   sample.pairs_of_row = campaign.engines.empty() ? kSample : of_doubles ? kSampleOfDoubles : kSampleOfDevice;
@@ -51,7 +51,7 @@ Sample measure(const Campaign& campaign) {
     const auto judged = [&](std::uint64_t count) -> StoredCounts {
       sample.pairs += count;
       if (campaign.engines.empty()) return judge(campaign, source, count, [](std::size_t i) { return i; });
-      return device.judge(source, 0, count);
+      return judge_on_devices(campaign, {source, 0, count}, confirmation);
     };
     const StoredCounts few = judged(sample.pairs_of_row / kFewer);
     const auto start = std::chrono::steady_clock::now();

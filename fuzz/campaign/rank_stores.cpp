@@ -57,8 +57,4 @@ void take_in_ranks(const Campaign& campaign, Store& store) {
   }
 }
 
-void remove_ranks(const fs::path& campaign) {
-  for (const fs::path& directory : rank_directories(campaign)) remove_store(directory);
-}
-
 }  // namespace graze::fuzz

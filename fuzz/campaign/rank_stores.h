@@ -17,6 +17,4 @@ std::vector<std::filesystem::path> rank_directories(const std::filesystem::path&
 // Throws: std::runtime_error, in one line, for a store that is damaged or belongs to another campaign.
 void take_in_ranks(const Campaign& campaign, Store& store);
 
-void remove_ranks(const std::filesystem::path& campaign);
-
 }  // namespace graze::fuzz

@@ -142,8 +142,10 @@ Json write_summary(const Campaign& campaign, const Store& store, bool complete) 
   return summary;
 }
 
-Json shard_summary(const Shard& shard, const Store& store, bool complete, std::uint64_t pairs) {
-  return {{"shard", shard.name()},
+Json write_own_summary(const Campaign& campaign, Store& store, bool complete, std::uint64_t pairs) {
+  if (campaign.shard.whole() && !campaign.take) return write_summary(campaign, store, complete);
+  if (complete) store.compact();  // so that merging thousands of shards stays cheap
+  return {{"shard", campaign.shard.name()},
           {"complete", complete},
           {"pairs", pairs},
           {"disagreements", store.disagreements()},

@@ -29,8 +29,10 @@ Json summary_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_sourc
                 const std::map<std::string, SignatureCount>& signatures,
                 const std::map<std::string, SignatureCount>& executor_mismatches, bool complete);
 
-// The summary of an unmerged shard: {"shard", "complete", "pairs", "disagreements", "signatures"}.
-Json shard_summary(const Shard& shard, const Store& store, bool complete, std::uint64_t pairs);
+// Like write_summary, for a campaign that may be a part of another. The store of a complete part is compacted.
+// pairs: the pairs that are done.
+// Returns: for a part {"shard", "complete", "pairs", "disagreements", "signatures"}.
+Json write_own_summary(const Campaign& campaign, Store& store, bool complete, std::uint64_t pairs);
 
 // The file of a signature's cases, from its row in the summary.
 // Throws: std::runtime_error if the path is not within cases/, because readers of a summary also write these files.

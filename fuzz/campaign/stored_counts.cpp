@@ -137,17 +137,11 @@ Json parsed(const std::string& bytes) {
 }  // namespace
 
 StoredCounts::StoredCounts(int lanes)
-    : PairCounts(analysis::Tally(std::vector<int>(static_cast<std::size_t>(lanes), -1))) {}
+    : CountsBy(analysis::Tally(std::vector<int>(static_cast<std::size_t>(lanes), -1))) {}
 
-StoredCounts::StoredCounts(const BatchResult& result)
-    : PairCounts(result), executor_mismatches(result.executor_mismatches) {
+StoredCounts::StoredCounts(const BatchResult& result) : CountsBy(static_cast<const PairCounts&>(result)) {
+  executor_mismatches = result.executor_mismatches;
   for (const auto& [signature, found] : result.signatures) signatures[analysis::key(signature)].add(found);
-}
-
-void StoredCounts::add(const StoredCounts& other) {
-  PairCounts::add(other);
-  for (const auto& [key, found] : other.signatures) signatures[key].add(found);
-  for (const auto& [lane, found] : other.executor_mismatches) executor_mismatches[lane].add(found);
 }
 
 std::string to_bytes(const StoredCounts& counts) {

@@ -24,14 +24,10 @@ struct PairRange {
   std::uint64_t first = 0, pairs = 0;
 };
 
-// Counts can be added in any order.
-struct StoredCounts : PairCounts {
+// Counts with the signatures' keys. They can be added in any order.
+struct StoredCounts : CountsBy<std::string> {
   explicit StoredCounts(int lanes);
   StoredCounts(const BatchResult& result);
-  void add(const StoredCounts& other);
-
-  std::map<std::string, SignatureCount> signatures;           // by key
-  std::map<std::string, SignatureCount> executor_mismatches;  // by lane: pairs on which device and twin differ
 };
 
 std::string to_bytes(const StoredCounts& counts);

@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/message_testing.h"
+
 namespace graze::fuzz {
 namespace {
 
@@ -32,12 +34,7 @@ Json good() {
 std::string complaint(const Json& counts, Axis axis = Axis::none) {
   std::string bytes;
   Json::to_cbor(counts, bytes);
-  try {
-    from_bytes(bytes, kRange, axis, 2);
-  } catch (const Damaged& error) {
-    return error.what();
-  }
-  return "";
+  return error_of<Damaged>([&] { from_bytes(bytes, kRange, axis, 2); });
 }
 
 TEST(StoredCounts, AreReadBack) {

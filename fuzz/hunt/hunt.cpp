@@ -257,13 +257,8 @@ class Hunter {
   Outcome finished() {
     const bool complete = store_->gaps(0).empty();
     if (!complete) tell_status(true);
-    Outcome outcome{complete, {}, store_->oracle()};
-    if (hunt_.campaign.shard.whole()) {
-      outcome.summary = write_summary(hunt_.campaign, *store_, complete);
-    } else {
-      if (complete) store_->compact();
-      outcome.summary = shard_summary(hunt_.campaign.shard, *store_, complete, found_->all.pairs);
-    }
+    Outcome outcome{complete, write_own_summary(hunt_.campaign, *store_, complete, found_->all.pairs),
+                    store_->oracle()};
     write_whole(hunt_.campaign.directory / "hunt.json", found_->told().dump(1) + "\n");
     append_timing(hunt_.campaign.directory,
                   {{"pairs", done_here_},

@@ -349,14 +349,10 @@ TEST_F(HuntFiles, ShardsMergeByKindInAnyOrder) {
   merge({{root_ / "merged"}, root_ / "again", false});
   expect_same_hunt("merged", "again");
 
-  const auto refusal = [&](const MergeOptions& options) -> std::string {
-    try {
-      merge(options);
-    } catch (const std::runtime_error& error) {
-      EXPECT_FALSE(std::filesystem::exists(options.out));
-      return error.what();
-    }
-    return "";
+  const auto refusal = [&](const MergeOptions& options) {
+    const std::string error = error_of([&] { merge(options); });
+    EXPECT_FALSE(std::filesystem::exists(options.out));
+    return error;
   };
   EXPECT_TRUE(names(refusal({{parts[0], parts[2]}, root_ / "none", false}), {"2/3", "graze hunt --runs 5000"}));
   EXPECT_TRUE(names(refusal({parts, root_ / "none", true}), {"--partial", "hunt"}));

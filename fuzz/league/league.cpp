@@ -21,7 +21,6 @@
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimise.h"
 #include "strata/groups.h"
-#include "subjects/subjects.h"
 
 namespace graze::fuzz {
 namespace {
@@ -174,15 +173,9 @@ LeagueCounts& LeagueCounts::operator+=(const LeagueCounts& other) {
 }
 
 SelectedLanes league_lanes(const std::vector<std::string>& globs) {
-  SelectedLanes all = select_lanes(globs, Executor::twin), result;
-  result.left_out = all.left_out;
-  result.asked = all.asked;
-  for (std::size_t l = 0; l < all.lanes.size(); ++l) {
-    if (all.lanes[l]->variant != Variant::cpu && all.lanes[l]->variant != Variant::cpu_fma) continue;
-    result.lanes.push_back(all.lanes[l]);
-    result.on_host.push_back(all.on_host[l]);
-  }
-  return result;
+  SelectedLanes lanes = select_lanes(globs, Executor::twin);
+  lanes.keep_if([](const Lane& lane) { return lane.variant == Variant::cpu || lane.variant == Variant::cpu_fma; });
+  return lanes;
 }
 
 League run_league(const SelectedLanes& under_test, std::vector<strata::PairSource> sources, std::uint64_t seed,
@@ -247,23 +240,11 @@ std::vector<std::optional<double>> league_costs(const League& league) {
   const PairTypes types = league.in_doubles ? PairTypes::f64 : PairTypes::f32;
   const strata::PairBlock pairs = strata::pairs_of(
       strata::stratum_sources(league.seed, kLeagueTimedPairs, {"uniform"}, types).front(), 0, kLeagueTimedPairs);
-  std::vector<std::vector<double>> taken(league.rows.size());
-  for (std::size_t repetition = 0; repetition < kLeagueRepetitions; ++repetition) {
-    for (std::size_t r = 0; r < league.rows.size(); ++r) {
-      const Lane& lane = *league.rows[r].lane;
-      const double start = analysis::processor_nanoseconds();
-      league.in_doubles ? verdicts_of(lane.decide, pairs.doubles) : verdicts_of(lane.decide, pairs.floats);
-      std::optional<double> nanoseconds = analysis::processor_nanoseconds() - start;
-      if (lane.foreign) nanoseconds = subjects::processes_of(lane).nanoseconds();
-      if (nanoseconds) taken[r].push_back(*nanoseconds / static_cast<double>(pairs.size()));
-    }
-  }
-  std::vector<std::optional<double>> medians(league.rows.size());
-  for (std::size_t r = 0; r < medians.size(); ++r) {
-    if (taken[r].size() < kLeagueRepetitions) continue;
-    std::nth_element(taken[r].begin(), taken[r].begin() + kLeagueRepetitions / 2, taken[r].end());
-    medians[r] = taken[r][kLeagueRepetitions / 2];
-  }
+  std::vector<const Lane*> lanes;
+  for (const LeagueRow& row : league.rows) lanes.push_back(row.lane);
+  std::vector<std::optional<double>> medians;
+  for (const std::optional<analysis::Cost>& cost : analysis::costs_of(lanes, pairs, kLeagueRepetitions))
+    medians.push_back(cost ? std::optional(cost->middle) : std::nullopt);
   return medians;
 }
 

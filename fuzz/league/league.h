@@ -89,7 +89,8 @@ League run_league(
 
 // Nanoseconds per pair of each row on the first pairs of `uniform`: the median of repetitions in which all rows take
 // turns. For foreign code it is the time in its own process, without communication. Command subjects have no time.
-inline constexpr std::size_t kLeagueTimedPairs = 1024, kLeagueRepetitions = 15;
+inline constexpr std::size_t kLeagueTimedPairs = 1024;
+inline constexpr int kLeagueRepetitions = 15;
 std::vector<std::optional<double>> league_costs(const League& league);
 
 }  // namespace graze::fuzz

@@ -63,7 +63,7 @@ bool fails_so(const LeagueFailure& failure, const AnyPair& pair) {
   const oracle::Truth truth = oracle::truth(pair);
   const bool shaped = failure.shape == kClear ? is_clear(truth) : shape_name(truth.hulls) == failure.shape;
   return shaped && verdict != truth.verdict && verdict == failure.verdict &&
-         !visit(pair, [&](const auto& own) { return analysis::by_convention(*failure.lane, verdict, own, truth); });
+         !analysis::by_convention(*failure.lane, verdict, pair, truth);
 }
 
 }  // namespace

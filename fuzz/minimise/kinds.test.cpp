@@ -11,9 +11,10 @@
 #include <set>
 
 #include "analysis/explain.h"
+#include "core/message_testing.h"
 #include "core/relation_of.h"
 #include "corpus/pair_format.h"
-#include "fuzz/campaign/campaign.h"
+#include "fuzz/campaign/campaign_testing.h"
 #include "fuzz/files.h"
 #include "fuzz/sealed.h"
 #include "strata/strata.h"
@@ -30,15 +31,8 @@ class Kinds : public testing::Test {
     directory_ = fs::temp_directory_path() / ("graze_kinds_" + std::to_string(getpid()));
     fs::remove_all(directory_);
     under_test_ = select_lanes({}, Executor::twin);
-    Campaign campaign;
-    campaign.seed = 5;
-    campaign.sources = strata::stratum_sources(campaign.seed, std::size(strata::kStrata) * 30, {"*"});
-    campaign.under_test = &under_test_;
-    campaign.threads = 2;
-    campaign.directory = directory_;
-    campaign.spec = campaign_spec(campaign);
-    campaign.build = build_info(under_test_);
-    run_campaign(campaign, std::atomic<bool>{false}, [](const Progress&) {});
+    const auto sources = strata::stratum_sources(5, std::size(strata::kStrata) * 30, {"*"});
+    run_campaign(campaign_in(directory_, under_test_, sources, 5), std::atomic<bool>{false}, [](const Progress&) {});
     summary_ = Json::parse(read_whole(directory_ / "summary.json"));
     kinds_ = find_kinds(under_test_, directory_, summary_);
   }
@@ -139,30 +133,25 @@ TEST_F(Kinds, StoredOnesAgreeWithTheCampaign) {
   const fs::path file = directory_ / "failures.json";
   write_kinds(directory_, under_test_, kinds_);
   const Json whole = Json::parse(read_whole(file));
-  const auto error_of = [&](const std::string& text) -> std::string {
+  const auto error_on = [&](const std::string& text) {
     std::ofstream(file) << text;
-    try {
-      read_kinds(directory_);
-    } catch (const corpus::FormatError& error) {
-      return error.what();
-    }
-    return "";
+    return error_of<corpus::FormatError>([&] { read_kinds(directory_); });
   };
-  ASSERT_EQ(error_of(whole.dump()), "");
+  ASSERT_EQ(error_on(whole.dump()), "");
   for (const char* text : {"", "{", "[]", "7", R"({"kinds": []})", R"({"summary": 1, "cases": 2, "kinds": []})"}) {
-    const std::string error = error_of(text);
+    const std::string error = error_on(text);
     EXPECT_TRUE(error.starts_with("cannot use " + file.string() + ": it has been changed or damaged")) << text << error;
     EXPECT_TRUE(error.ends_with("; remove it, then run: graze minimize " + directory_.string())) << error;
   }
   const auto refused = [&](const char* place, const Json& value) {
     Json other = whole;
     other[Json::json_pointer(place)] = value;
-    EXPECT_NE(error_of(sealed(other).dump()), "") << place << " was accepted as " << value;
+    EXPECT_NE(error_on(sealed(other).dump()), "") << place << " was accepted as " << value;
   };
   Json other_sentence = whole;
   other_sentence["kinds"][0]["simplest"]["sentences"][0] = "It is right.";
-  EXPECT_NE(error_of(other_sentence.dump()).find("its checksum differs"), std::string::npos);
-  const std::string damaged = error_of(sealed({{"summary", 1}, {"cases", 2}, {"kinds", Json::array()}}).dump());
+  EXPECT_NE(error_on(other_sentence.dump()).find("its checksum differs"), std::string::npos);
+  const std::string damaged = error_on(sealed({{"summary", 1}, {"cases", 2}, {"kinds", Json::array()}}).dump());
   EXPECT_TRUE(damaged.starts_with("cannot use " + file.string() + ": it is damaged; remove it")) << damaged;
   const auto at = [&](const char* place) -> const Json& { return whole.at(Json::json_pointer(place)); };
   const std::uint64_t pairs = at("/kinds/0/pairs");

@@ -16,6 +16,7 @@
 #include "core/simplify/moves.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimised_cases.h"
 #include "oracle/truth.h"
 #include "strata/pair_source.h"
@@ -31,11 +32,7 @@ const SelectedLanes& under_test() {
   return all;
 }
 
-std::string text(const AnyPair& pair) {
-  std::ostringstream out;
-  corpus::write_entry(out, corpus::entry_of(pair, {}));
-  return out.str();
-}
+std::string text(const AnyPair& pair) { return pair_text(pair) + '\n'; }
 
 bool same_bits(const AnyPair& l, const AnyPair& r) { return text(l) == text(r); }
 

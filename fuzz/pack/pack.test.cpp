@@ -36,15 +36,9 @@ class PackTest : public testing::Test {
   std::string refusal(const std::string& bytes) const {
     const fs::path file = root_ / "a.sqlar";
     write_whole(file, bytes);
-    try {
-      read_archive(file);
-      return "";
-    } catch (const corpus::FormatError& error) {
-      const std::string what = error.what();
-      EXPECT_TRUE(names(what, {file.string()}));
-      EXPECT_EQ(what.find('\n'), what.npos) << what;
-      return what;
-    }
+    const std::string error = error_of<corpus::FormatError>([&] { read_archive(file); });
+    EXPECT_TRUE(error.empty() || names(error, {file.string()})) << error;
+    return error;
   }
 
   // The archive's bytes after these SQL statements ran on it.
@@ -179,13 +173,9 @@ TEST_F(PackTest, TheListOfFilesIsChecked) {
     edit(manifest, files);
     files.push_back({"pack.json", false, seal ? sealed(manifest).dump(1) + "\n" : manifest.dump(1)});
     write_whole(root_ / "p.sqlar", archive_of(files));
-    try {
-      read_pack(root_ / "p.sqlar");
-      return std::string();
-    } catch (const corpus::FormatError& error) {
-      EXPECT_TRUE(names(error.what(), {"p.sqlar"}));
-      return std::string(error.what());
-    }
+    const std::string error = error_of<corpus::FormatError>([&] { read_pack(root_ / "p.sqlar"); });
+    EXPECT_TRUE(error.empty() || names(error, {"p.sqlar"})) << error;
+    return error;
   };
   EXPECT_EQ(packed([](Json&, auto&) {}), "");
   using List = std::vector<PackedFile>;

@@ -80,13 +80,13 @@ class MpiRanks final : public Ranks {
     return before;
   }
 
-  void reduce(Reduction& reduction) override {
+  void reduce(const std::function<std::string()>& give, const std::function<void(const std::string&)>& take) override {
     for (int step = 1; step < size; step *= 2) {
       if (rank % (2 * step) != 0) {
-        send(reduction.give(), rank - step);
+        send(give(), rank - step);
         return;
       }
-      if (rank + step < size) reduction.take(receive(rank + step));
+      if (rank + step < size) take(receive(rank + step));
     }
   }
 

@@ -18,13 +18,6 @@ namespace {
 
 constexpr std::uint64_t kMostOnCpu = std::uint64_t{1} << 20;  // pairs per block of the CPU engine: some seconds
 
-struct Tree final : Ranks::Reduction {
-  explicit Tree(Sums& sums_) : sums(sums_) {}
-  std::string give() override { return sums.bytes(); }
-  void take(const std::string& bytes) override { sums.add(bytes); }
-  Sums& sums;
-};
-
 // The root's plan for all ranks: {"build", "size", "gaps": [[source, first, pairs], …]} or {"error"}.
 Json plan_of(const Campaign& campaign, const Store& store, int ranks) {
   Json gaps = Json::array();
@@ -100,12 +93,11 @@ std::optional<Outcome> run_on_ranks(Campaign& campaign, Ranks& ranks, const std:
 
   Sums sums(campaign.sources, static_cast<int>(campaign.under_test->lanes.size()));
   for_each_row(own, [&](const PairRange& range, const StoredCounts& counts) { sums.add(range, counts, 0); });
-  Tree tree(sums);
-  ranks.reduce(tree);
+  ranks.reduce([&] { return sums.bytes(); }, [&](const std::string& bytes) { sums.add(bytes); });
   if (ranks.rank != 0) return {};
   for (std::size_t s = 0; s < campaign.sources.size(); ++s)
     store->complete(static_cast<int>(s), sums.of_source(static_cast<int>(s)));
-  remove_ranks(campaign.directory);
+  for (const std::filesystem::path& rank : rank_directories(campaign.directory)) remove_store(rank);
   Outcome outcome{true, write_summary(campaign, *store, true), store->oracle()};
   append_timing(campaign.directory,
                 {{"pairs", std::accumulate(gaps.begin(), gaps.end(), std::uint64_t{0},

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -24,12 +25,8 @@ class Ranks {
 
   // Sends what a rank and the ranks below it in the tree know to its parent, in log2(size) rounds. In each round a rank
   // either sends the result of `give` and is done, or passes what it received to `take`.
-  struct Reduction {
-    virtual ~Reduction() = default;
-    virtual std::string give() = 0;
-    virtual void take(const std::string& bytes) = 0;
-  };
-  virtual void reduce(Reduction& reduction) = 0;
+  virtual void reduce(const std::function<std::string()>& give,
+                      const std::function<void(const std::string& bytes)>& take) = 0;
 
   // Returns whether `here` is true on every rank.
   virtual bool all(bool here) = 0;

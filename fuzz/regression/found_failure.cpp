@@ -7,7 +7,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 
 #include "analysis/lane_trace.h"
 #include "analysis/signature.h"
@@ -18,6 +17,7 @@
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimised_cases.h"
 
 namespace graze::fuzz {
@@ -97,9 +97,7 @@ std::vector<FoundFailure> found_in_cases(const std::vector<corpus::Entry>& entri
   std::set<std::string> taken;
   const auto take = [&](const std::string& signature, const corpus::Entry& entry) {
     if (!taken.insert(signature).second) return;
-    std::ostringstream bits;
-    corpus::write_entry(bits, corpus::entry_of(corpus::pair_of(entry), {}));
-    failures.push_back({signature, entry, 1, seen_by(build, "case", bits.str())});
+    failures.push_back({signature, entry, 1, seen_by(build, "case", pair_text(corpus::pair_of(entry)) + '\n')});
   };
   const bool minimised = std::any_of(entries.begin(), entries.end(), is_minimised);
   for (const corpus::Entry& entry : entries) {

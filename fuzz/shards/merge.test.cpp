@@ -53,14 +53,10 @@ class MergeTest : public CampaignFiles {
 
   // The error of merge; empty if there is none.
   std::string refusal(const std::vector<fs::path>& parts) const {
-    try {
-      merge({parts, root_ / "refused", false});
-    } catch (const std::runtime_error& error) {
-      EXPECT_FALSE(fs::exists(root_ / "refused"));
-      EXPECT_FALSE(fs::exists(root_ / "refused.graze.part"));
-      return error.what();
-    }
-    return "";
+    const std::string error = error_of([&] { merge({parts, root_ / "refused", false}); });
+    EXPECT_EQ(fs::exists(root_ / "refused"), error.empty());
+    EXPECT_FALSE(fs::exists(root_ / "refused.graze.part"));
+    return error;
   }
 
   fs::path database(const std::string& name) const { return root_ / name / kDatabase; }
@@ -147,14 +143,7 @@ TEST_F(MergeTest, OnlyWhatAKilledMergeLeftIsReplaced) {
 
 TEST_F(MergeTest, AMergeThatIsDoneIsSaidToBe) {
   const std::vector<fs::path> parts = run_shards(2);
-  const auto refused = [&](const fs::path& out) -> std::string {
-    try {
-      merge({parts, out, false});
-    } catch (const UsageError& error) {
-      return error.what();
-    }
-    return "";
-  };
+  const auto refused = [&](const fs::path& out) { return error_of<UsageError>([&] { merge({parts, out, false}); }); };
   merge({parts, root_ / "all", false});
   EXPECT_TRUE(names(refused(root_ / "all"), {(root_ / "all").string(), "already"}));
   merge({{parts[0]}, root_ / "half", true});

@@ -10,7 +10,6 @@
 #include <stdexcept>
 #include <thread>
 
-#include "cli/query_input.h"
 #include "core/error.h"
 #include "core/lanes/lanes.h"
 #include "cuda/query/device_query.h"
@@ -128,10 +127,14 @@ class Measuring {
 
   // Measures the exact lane again, on the same numbers stored as doubles.
   void by_executors_in_doubles(const Array& array, std::vector<std::uint8_t>& exact) {
+    const auto in_doubles = [](const Triangle& t) {
+      query::DoubleTriangle result;
+      std::copy(t.begin(), t.end(), result.begin());
+      return result;
+    };
     const query::DoubleTriangle reference = in_doubles(array.reference);
     std::vector<query::DoubleTriangle> triangles(array.triangles.size());
-    std::transform(array.triangles.begin(), array.triangles.end(), triangles.begin(),
-                   [](const Triangle& t) { return in_doubles(t); });
+    std::transform(array.triangles.begin(), array.triangles.end(), triangles.begin(), in_doubles);
     const graze_triangles host = query::rows_of(std::span<const query::DoubleTriangle>(triangles));
     by_executors(array.name, query::query_of(reference, host), sizeof triangles[0], "all", kExactInDoubles, exact,
                  &exact);

@@ -37,7 +37,7 @@ std::string words(const oracle::Truth& truth) {
 
 }  // namespace
 
-std::vector<corpus::Entry> read_cases(const std::string& name, PairTypes taken) {
+std::vector<corpus::Entry> read_cases(const std::string& name, bool exact_input) {
   const std::size_t first = name.find(':'), last = name.rfind(':');
   // A scene is named by a path, which may contain slashes and colons.
   const std::size_t at = std::min(name.find('@'), name.size());
@@ -50,8 +50,6 @@ std::vector<corpus::Entry> read_cases(const std::string& name, PairTypes taken) 
     const fuzz::SceneCase named{source, name.substr(at + 1, middle - at - 1),
                                 number(name.substr(middle + 1, last - middle - 1), name),
                                 number(name.substr(last + 1), name)};
-    if (strata::stratum_in_doubles(named.id) && taken == PairTypes::f32)
-      throw UsageError(name + " is a pair of doubles; this verb takes only pairs of float32");
     return {corpus::entry_of(fuzz::draw_again(named), {{"stratum", named.id},
                                                        {"seed", std::to_string(named.seed)},
                                                        {"index", std::to_string(named.index)},
@@ -62,8 +60,11 @@ std::vector<corpus::Entry> read_cases(const std::string& name, PairTypes taken) 
   const bool three_numbers =
       first != std::string::npos && first != last && (in_doubles || name.find('/') == std::string::npos);
   if (!three_numbers || std::filesystem::exists(name, ignored)) {
-    std::vector<corpus::Entry> entries = corpus::read_pairs(name, taken);
+    std::vector<corpus::Entry> entries = corpus::read_pairs(name, PairTypes::both);
     if (entries.empty()) throw std::runtime_error("there is no pair in " + name);
+    for (const corpus::Entry& entry : entries) {
+      if (exact_input) expect_exact_input(name, entry);
+    }
     return entries;
   }
   const std::string seed = name.substr(first + 1, last - first - 1), index = name.substr(last + 1);
@@ -72,8 +73,6 @@ std::vector<corpus::Entry> read_cases(const std::string& name, PairTypes taken) 
   if (sources.size() != 1) throw UsageError(name + " matches several strata; name one");
   const std::vector<std::pair<std::string, std::string>> numbers = {
       {"stratum", stratum}, {"seed", seed}, {"index", index}};
-  if (in_doubles && taken == PairTypes::f32)
-    throw UsageError(name + " is a pair of doubles; this verb takes only pairs of float32");
   return {corpus::entry_of(sources.front().any_pair(number(index, name)), numbers)};
 }
 
@@ -173,6 +172,15 @@ std::string stored_verdicts(const corpus::Entry& entry, const std::vector<fuzz::
     words += fmt::format("{}{} {}{}", words.empty() ? "stored by the campaign: " : ", ", lane, name(verdict),
                          is_wrong(verdict, truth) ? " !" : "");
   return words;
+}
+
+std::vector<corpus::Entry> read_noted_cases(const std::string& name, bool exact_input) {
+  std::vector<corpus::Entry> entries = read_cases(name, exact_input);
+  for (const corpus::Entry& entry : entries) {
+    const std::string note = written_note(entry, truth_of(entry));
+    if (!note.empty()) fmt::print("{}:{}: {}\n", printable(name), entry.line, note);
+  }
+  return entries;
 }
 
 CLI::Option* add_exact_input(CLI::App& command, bool& exact_input) {

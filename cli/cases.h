@@ -17,9 +17,11 @@ namespace graze::cli {
 
 // Returns: at least one case. A stratum's pair has the fields stratum, seed and index.
 // Throws: UsageError for an invalid name, FormatError for a file that is missing or not in the format,
-// std::runtime_error for a file without a case; UsageError or FormatError for a pair of doubles if `taken` excludes
-// doubles.
-std::vector<corpus::Entry> read_cases(const std::string& name, PairTypes taken = PairTypes::f32);
+// std::runtime_error for a file without a case; as expect_exact_input if the input must be exact.
+std::vector<corpus::Entry> read_cases(const std::string& name, bool exact_input = false);
+
+// The same. Also prints each case's written_note.
+std::vector<corpus::Entry> read_noted_cases(const std::string& name, bool exact_input);
 
 // What identifies the case for a reader: STRATUM:SEED:INDEX, the case that it was minimised from, its name, or its line
 // in the file.

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -75,6 +76,11 @@ fuzz::Json recorded_spec_of(const std::filesystem::path& name);
 // Throws: as subjects::open_recorded.
 void open_subjects_of(const std::filesystem::path& name, bool resubject = false);
 
+// Opens them, except code that has changed or is missing, so that the verb continues without it.
+// Returns: the names of the subjects that are left out, each with the reason.
+std::vector<std::pair<std::string, std::string>> open_unchanged_subjects_of(const std::filesystem::path& name,
+                                                                            bool resubject = false);
+
 // Opens the subjects, including those recorded for `about`, then selects the lanes. Reports on standard error which
 // requested lanes do not run here, and why; these include lanes whose recorded code has changed.
 // Throws: as subjects::open, fuzz::select_lanes and fuzz::expect_each_runs.
@@ -124,8 +130,32 @@ int repro_pack(const std::string& file);
 int list_hip_plans(const std::vector<std::string>& subjects, const std::vector<std::string>& flags,
                    const std::string& json);
 
-// Adds --scene to a verb that draws pairs. If the verb has --coordinates, add that option first.
-void add_scene_option(CLI::App& command, std::string& file);
+// The pairs that a verb draws.
+struct DrawOptions {
+  std::uint64_t pairs = 1'000'000, seed = 1;
+  std::vector<std::string> strata = {};  // patterns
+  PairTypes coordinates = PairTypes::f32;
+  std::string scene = {};  // the file; empty for none
+};
+
+// Adds --coordinates to a verb that draws pairs of either type, or of both at once.
+enum class OfBothTypes { no, yes };
+void add_coordinates_option(CLI::App& command, PairTypes& types, OfBothTypes both = OfBothTypes::yes);
+// Adds --strata, --coordinates and --scene.
+void add_draw_options(CLI::App& command, DrawOptions& options, OfBothTypes both = OfBothTypes::yes);
+
+// If --coordinates is not given, sets the type to that of the scene.   Throws: as fuzz::open_scene.
+void take_type_of_scene(const CLI::App& command, DrawOptions& options);
+PairTypes type_of_scene(const std::string& scene);
+
+// Sets the function that runs the verb, after take_type_of_scene.
+template <class Options, class Verb>
+void run_drawing(CLI::App& command, const std::shared_ptr<Options>& options, int& status, Verb verb) {
+  command.callback([&command, options, &status, verb] {
+    take_type_of_scene(command, *options);
+    status = verb(*options);
+  });
+}
 
 // Measures the mesh in this coordinate type, or without a type in the type that the mesh needs. Writes the scene to the
 // file, as `graze scene MESH --out FILE` does.   Throws: what that verb throws.
@@ -135,17 +165,9 @@ void write_scene_of(const std::string& mesh, const std::string& out, std::option
 // this share of the scene's pairs, what `exact` costs, and the strata that the scene leaves out.   Throws: as drawn.
 void print_sufficient(const std::string& scene, double rate);
 
-// Draws from the scene file, or from the strata if `scene` is empty. For a scene, sets `recorded` to what the verb's
-// results record under "scene".   Throws: as fuzz::open_scene, strata::scene_sources and strata::stratum_sources.
-strata::SceneSources drawn(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
-                           const std::vector<std::string>& globs, PairTypes types, fuzz::Json* recorded = nullptr);
-
-// Adds --coordinates to a verb that draws pairs of either type, or of both at once.
-enum class OfBothTypes { no, yes };
-void add_coordinates_option(CLI::App& command, PairTypes& types, OfBothTypes both = OfBothTypes::yes);
-// If --coordinates is not given, sets `types` to the type of the scene.   Throws: as fuzz::open_scene.
-void take_type_of_scene(const CLI::App& command, const std::string& scene, PairTypes& types);
-PairTypes type_of_scene(const std::string& scene);
+// Draws from the scene, or from the strata without one. For a scene, sets `recorded` to what the verb's results record
+// under "scene".   Throws: as fuzz::open_scene, strata::scene_sources and strata::stratum_sources.
+strata::SceneSources drawn(const DrawOptions& options, fuzz::Json* recorded = nullptr);
 
 // Lists the strata that the scene cannot contain, with the reasons, below a heading; empty for none.
 std::string left_out_text(const std::vector<strata::LeftOut>& left_out);

@@ -16,14 +16,13 @@ class Compare : public CommandTest {
   static std::string fuzz(const std::string& options) {
     return "export XDG_CACHE_HOME=$PWD/cache; " + options + " > /dev/null; ";
   }
-  nlohmann::json json(const std::string& file) { return nlohmann::json::parse(contents(shell.folder / file)); }
+  nlohmann::json json(const std::string& file) { return shell.json(file); }
 
   // Compares the campaigns `before` and `after`, and checks each row's counts against `graze discrepancy` on the same
   // pairs. `graze discrepancy` gets the two builds that ran as two libraries.
   // build_of_lane: index into the builds cpu, cpu-fma and cpu-fast.
   void expect_counts(const std::string& strata, int pairs, std::size_t build_of_lane = 0) {
-    const Ran said = shell("export XDG_CACHE_HOME=$PWD/cache; graze report --compare before after");
-    ASSERT_EQ(said.status, 0) << said.err;
+    const Ran said = shell.done("export XDG_CACHE_HOME=$PWD/cache; graze report --compare before after");
     EXPECT_TRUE(said.out.starts_with("Changed: ")) << said.out;
     const auto build = [&](const char* campaign) -> std::string {
       return json(std::string(campaign) + "/summary.json")["spec"]["subjects"][0]["builds"][build_of_lane];
@@ -66,10 +65,10 @@ TEST_F(Compare, AnotherCompilerIsCountedPairByPair) {
   EXPECT_EQ(before["environment"]["CXX"], "c++ -DEPSILON=1e-6f");
   EXPECT_EQ(after["environment"]["CXX"], "c++ -DEPSILON=2e-6f");
   EXPECT_EQ(before["builds"].size(), 3u);
-  EXPECT_NE(before["compiler"].get<std::string>().find("++"), std::string::npos);
+  EXPECT_TRUE(has(before["compiler"].get<std::string>(), {"++"}));
   expect_counts("near_edge_edge,thesis", 2000);
   const Ran said = shell("export XDG_CACHE_HOME=$PWD/cache; graze report --compare before after");
-  EXPECT_NE(said.out.find(", CXX=c++ -DEPSILON=2e-6f"), std::string::npos) << said.out;
+  EXPECT_TRUE(has(said.out, {", CXX=c++ -DEPSILON=2e-6f"}));
 }
 
 // Clang contracts within an expression, GCC across statements too.
@@ -82,7 +81,7 @@ TEST_F(Compare, ClangAgainstGccIsCountedPairByPair) {
       "coplanar_wide,exact_contact --pairs 2000 --out ";
   expect_done(fuzz("CXX=g++ " + run + "before") + "CXX=clang++-14 " + run + "after > /dev/null");
   const std::string compiler = json("after/summary.json")["spec"]["subjects"][0]["compiler"];
-  EXPECT_NE(compiler.find("clang"), compiler.npos) << compiler;
+  EXPECT_TRUE(has(compiler, {"clang"}));
   expect_counts("coplanar_wide,exact_contact", 2000, 1);
 }
 
@@ -190,8 +189,7 @@ TEST_F(Compare, TheCommandInTheReportRunsAsItStands) {
                 " > /dev/null && graze report " + out + " > /dev/null");
     expect_done("export XDG_CACHE_HOME=$PWD/cache; " + json(out + "/report.json")["run"]["command"].get<std::string>() +
                 " > /dev/null");
-    EXPECT_EQ(contents(shell.folder / out / "summary.json"), contents(shell.folder / "campaign/summary.json"))
-        << command;
+    EXPECT_EQ(shell.file(out + "/summary.json"), shell.file("campaign/summary.json")) << command;
   }
   EXPECT_EQ(number, 7);
 }

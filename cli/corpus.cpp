@@ -57,16 +57,6 @@ fuzz::DecideLanes decide_by(const fuzz::SelectedLanes& under_test) {
       [&under_test](const AnyPair& pair, std::vector<const Lane*>& apart) { return decide(under_test, pair, apart); };
 }
 
-std::vector<corpus::Entry> cases_to_add(const std::string& name, bool exact_input) {
-  std::vector<corpus::Entry> entries = read_cases(name, PairTypes::both);
-  for (const corpus::Entry& entry : entries) {
-    if (exact_input) expect_exact_input(name, entry);
-    const std::string note = written_note(entry, truth_of(entry));
-    if (!note.empty()) fmt::print("{}:{}: {}\n", printable(name), entry.line, note);
-  }
-  return entries;
-}
-
 void print_next(const CorpusOptions& options, const char* verb) {
   const bool usual = options.folder == CorpusOptions().folder;
   fmt::print("Next: graze corpus {}{}\n", verb, usual ? "" : " --corpus " + path_word(options.folder));
@@ -99,10 +89,10 @@ void add(const CorpusOptions& options) {
     if (!std::filesystem::is_directory(name) && (!options.signatures.empty() || options.most != CorpusOptions().most))
       throw UsageError("--signatures and --top choose signatures of campaigns, and " + name +
                        " is a file of cases; leave these options out");
-    found.emplace_back(
-        name, std::filesystem::is_directory(name)
-                  ? fuzz::found_in_campaign(name, options.signatures, options.most)
-                  : fuzz::found_in_cases(cases_to_add(name, options.exact_input), build, under_test.lanes, by_bench));
+    found.emplace_back(name, std::filesystem::is_directory(name)
+                                 ? fuzz::found_in_campaign(name, options.signatures, options.most)
+                                 : fuzz::found_in_cases(read_noted_cases(name, options.exact_input), build,
+                                                        under_test.lanes, by_bench));
     if (found.back().second.empty())
       throw std::runtime_error(
           "there is nothing to add in " + name +

@@ -12,8 +12,7 @@ namespace {
 class CorpusVerb : public CommandTest {
  protected:
   void campaign(const std::string& out, const std::string& options) {
-    const Ran ran = shell("graze fuzz --threads 1 --executor twin " + options + " --out " + out);
-    ASSERT_EQ(ran.status, 0) << ran.err;
+    expect_done("graze fuzz --threads 1 --executor twin " + options + " --out " + out);
   }
 };
 
@@ -26,9 +25,7 @@ TEST_F(CorpusVerb, TakesACampaignListsItAndHolds) {
       << added.err;
   const Ran listed = shell("graze corpus list | grep -c ^failing");
   EXPECT_EQ(listed.out, "15\n");
-  const Ran held = shell("graze corpus verify --executor twin");
-  EXPECT_EQ(held.status, 0) << held.out << held.err;
-  EXPECT_NE(held.out.find("15 failing, 0 fixed, 0 flaky"), std::string::npos) << held.out;
+  expect_out("graze corpus verify --executor twin", {"15 failing, 0 fixed, 0 flaky"});
   const Ran some = shell("graze corpus add c --signatures '*/moller_1997:*,none/*' --top 1 --corpus some");
   EXPECT_EQ(some.out,
             "5 new, 0 seen again, 0 known already; some/cases.pairs holds 5\n"
@@ -49,11 +46,10 @@ TEST_F(CorpusVerb, TakesACampaignListsItAndHolds) {
 TEST_F(CorpusVerb, WhatNoLaneCanConfirmIsNotAdded) {
   campaign("c", "--pairs 1000 --strata near_edge_edge --lanes 'moller_1997/*/cpu,guigue_devillers_2003/f32/cpu'");
   const std::string add = "graze corpus add c --lanes moller_1997/f32/cpu";
-  const Ran some = shell(add);
-  EXPECT_EQ(some.status, 0) << some.err;
+  const Ran some = shell.done(add);
   EXPECT_EQ(some.err.rfind("graze: c: ", 0), 0u) << some.err;
-  EXPECT_NE(some.err.find(" not added: no lane that was wrong on them runs here"), std::string::npos) << some.err;
-  EXPECT_EQ(contents(shell.folder / "corpus/regression/cases.pairs").find("/guigue"), std::string::npos);
+  EXPECT_TRUE(has(some.err, {" not added: no lane that was wrong on them runs here"}));
+  EXPECT_FALSE(has(shell.file("corpus/regression/cases.pairs"), {"/guigue"}));
   expect_error(add + " --corpus none --signatures '*guigue_devillers_2003:*'", 1, {"c", "not added", "--lanes"});
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "none/cases.pairs"));
   expect_error("graze corpus add c/cases/$(ls c/cases | head -n 1) --signatures nosuch --corpus none", 2,
@@ -71,31 +67,27 @@ TEST_F(CorpusVerb, TakesEverySignatureWithItsCount) {
   const auto check = [&](const std::string& corpus) {
     return shell("r=" + corpus + "; python3 -c \"" + same_as_summary + "\"");
   };
-  ASSERT_EQ(shell("graze corpus add c --corpus r --lanes '*/f32/cpu'").status, 0);
+  expect_done("graze corpus add c --corpus r --lanes '*/f32/cpu'");
   const Ran found = check("r");
   EXPECT_EQ(found.status, 0) << found.err;
-  ASSERT_EQ(shell("graze minimize c > /dev/null && graze corpus add c --corpus m --lanes '*/f32/cpu'").status, 0);
+  expect_done("graze minimize c > /dev/null && graze corpus add c --corpus m --lanes '*/f32/cpu'");
   const Ran minimised = check("m");
   EXPECT_EQ(minimised.status, 0) << minimised.err;
-  EXPECT_EQ(shell("grep -q kind=minimised m/cases.pairs && graze corpus verify --corpus m --lanes '*/f32/cpu'").status,
-            0);
+  expect_done("grep -q kind=minimised m/cases.pairs && graze corpus verify --corpus m --lanes '*/f32/cpu'");
 }
 
 // One code always answers yes; another code of the same name always answers no.
 TEST_F(CorpusVerb, FailuresInBothDirectionsAreKeptAndOtherCodeOfOneNameIsRefused) {
   for (const std::string answer : {"0", "1"}) {
-    const Ran ran = shell("mkdir d" + answer + " && echo 'extern \"C\" int hit(const float*, const float*) { return " +
-                          answer + "; }' > d" + answer + "/m.cpp && graze fuzz --subject mine=d" + answer +
-                          "/m.cpp:hit --lanes mine/f32/cpu --strata near_vertex_face --pairs 200 --out c" + answer);
-    ASSERT_EQ(ran.status, 0) << ran.err;
+    expect_done("mkdir d" + answer + " && echo 'extern \"C\" int hit(const float*, const float*) { return " + answer +
+                "; }' > d" + answer + "/m.cpp && graze fuzz --subject mine=d" + answer +
+                "/m.cpp:hit --lanes mine/f32/cpu --strata near_vertex_face --pairs 200 --out c" + answer);
   }
   expect_error("graze corpus add c0 c1 --corpus both", 2, {"c0", "c1", "mine", "d0/m.cpp", "d1/m.cpp"});
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "both"));
-  EXPECT_NE(shell("graze corpus add c0 --corpus r").out.find(", 0 seen again"), std::string::npos);
-  EXPECT_NE(shell("graze corpus add c1 --corpus r").out.find(", 0 seen again"), std::string::npos);
-  EXPECT_EQ(
-      shell("grep -q 'signature=[^ ]*mine:-' r/cases.pairs && grep -q 'signature=[^ ]*mine:+' r/cases.pairs").status,
-      0);
+  EXPECT_TRUE(has(shell("graze corpus add c0 --corpus r").out, {", 0 seen again"}));
+  EXPECT_TRUE(has(shell("graze corpus add c1 --corpus r").out, {", 0 seen again"}));
+  expect_done("grep -q 'signature=[^ ]*mine:-' r/cases.pairs && grep -q 'signature=[^ ]*mine:+' r/cases.pairs");
 }
 
 TEST_F(CorpusVerb, AMinimisedCaseStandsForItsFile) {
@@ -107,22 +99,21 @@ TEST_F(CorpusVerb, AMinimisedCaseStandsForItsFile) {
   // A file of cases: its minimised case represents all of them.
   EXPECT_TRUE(shell("graze corpus add m --corpus s").out.starts_with("1 new"));
   EXPECT_EQ(shell("grep -c 'kind=minimised from=x' s/cases.pairs").out, "1\n");
-  EXPECT_EQ(shell("graze repro s/cases.pairs > /dev/null").status, 0);
+  expect_done("graze repro s/cases.pairs > /dev/null");
   EXPECT_EQ(shell("graze repro m --emit obj | grep -c 'Case minimised from x:'").out, "1\n");
 }
 
 TEST_F(CorpusVerb, AChangedVerdictFailsUntilItIsRecorded) {
   shell("echo '0 0 0 4 0 0 2 0 0  1 0 0 1 0 4 1 0 2' > p; graze corpus add p --corpus r");
-  ASSERT_EQ(shell("graze corpus verify --corpus r").status, 0);
+  expect_done("graze corpus verify --corpus r");
   const std::string forge = "sed -i 's/moller_1997:-/moller_1997:./2; s/state=failing/state=fixed/' r/cases.pairs;";
   const Ran changed = shell(forge + "cp r/cases.pairs forged; graze corpus verify --corpus r");
   EXPECT_EQ(changed.status, 1) << changed.out;
-  EXPECT_NE(changed.out.find(": moller_1997/f32/cpu: was intersects (right), is disjoint (wrong)\n"), std::string::npos)
-      << changed.out;
-  EXPECT_NE(changed.out.find(": fixed -> failing\n"), std::string::npos) << changed.out;
-  EXPECT_EQ(shell("cmp forged r/cases.pairs").status, 0);  // verify without --update changes nothing
-  EXPECT_EQ(shell("graze corpus verify --corpus r --update").status, 0);
-  EXPECT_EQ(shell("graze corpus verify --corpus r").status, 0);
+  EXPECT_TRUE(has(changed.out,
+                  {": moller_1997/f32/cpu: was intersects (right), is disjoint (wrong)\n", ": fixed -> failing\n"}));
+  expect_done("cmp forged r/cases.pairs");  // verify without --update changes nothing
+  expect_done("graze corpus verify --corpus r --update");
+  expect_done("graze corpus verify --corpus r");
 }
 
 TEST_F(CorpusVerb, BadInputGetsOneLine) {
@@ -146,7 +137,7 @@ TEST_F(CorpusVerb, BadInputGetsOneLine) {
 
 TEST_F(CorpusVerb, NoRecordOfTheLanesThatRunIsAFailure) {
   shell("echo '0 0 0 4 0 0 2 0 0  1 0 0 1 0 4 1 0 2' > p; graze corpus add p --corpus r --lanes 'moller_*'");
-  EXPECT_EQ(shell("graze corpus verify --corpus r").status, 0);
+  expect_done("graze corpus verify --corpus r");
   expect_error("graze corpus verify --corpus r --lanes separating_axes/f32/cpu > /dev/null", 1,
                {"r/cases.pairs", "--lanes"});
 }
@@ -155,42 +146,39 @@ TEST_F(CorpusVerb, NoRecordOfTheLanesThatRunIsAFailure) {
 // bytes.
 TEST_F(CorpusVerb, KilledWhileAddingLosesNothing) {
   campaign("c", "--pairs 30000 --strata 'near_*,coplanar_*'");
-  ASSERT_EQ(shell("graze corpus add c --corpus whole --top 3 && graze corpus add c --corpus whole").status, 0);
-  ASSERT_EQ(shell("graze corpus add c --corpus killed --top 3 && cp killed/cases.pairs old").status, 0);
+  expect_done("graze corpus add c --corpus whole --top 3 && graze corpus add c --corpus whole");
+  expect_done("graze corpus add c --corpus killed --top 3 && cp killed/cases.pairs old");
   int killed = 0;
   while (shell(signal_at_write(SIGKILL, killed + 1) + "graze corpus add c --corpus killed").status != 0) {
     ASSERT_LT(++killed, 100);
-    EXPECT_EQ(shell("cmp killed/cases.pairs old || cmp killed/cases.pairs whole/cases.pairs").status, 0);
+    expect_done("cmp killed/cases.pairs old || cmp killed/cases.pairs whole/cases.pairs");
   }
   EXPECT_GE(killed, 2);  // before the new file is written, and before it replaces the old one
-  ASSERT_EQ(shell("graze corpus add c --corpus killed").status, 0);
-  EXPECT_EQ(shell("cmp killed/cases.pairs whole/cases.pairs").status, 0);
+  expect_done("graze corpus add c --corpus killed");
+  expect_done("cmp killed/cases.pairs whole/cases.pairs");
 }
 
 TEST_F(CorpusVerb, TwoAtOnceLoseNothing) {
-  const Ran ran = shell(
+  expect_done(
       "mkdir r; for i in 0 1 2 3 4 5 6 7 8 9; do graze corpus add degenerate:1:$i --corpus r & done; wait;"
       "for i in 0 1 2 3 4 5 6 7 8 9; do graze corpus add degenerate:1:$i --corpus s; done;"
       "a=$(graze corpus list --corpus r | grep -c ^failing); test \"$a\" -gt 9;"
       "test \"$a\" = \"$(graze corpus list --corpus s | grep -c ^failing)\"");
-  EXPECT_EQ(ran.status, 0) << ran.out << ran.err;
 }
 
 TEST_F(CorpusVerb, AFullDiskLosesNothing) {
   campaign("c", "--pairs 10000");
-  ASSERT_EQ(shell("graze corpus add c --top 2 --corpus r; cp r/cases.pairs old").status, 0);
+  expect_done("graze corpus add c --top 2 --corpus r; cp r/cases.pairs old");
   expect_error("ulimit -f 40; graze corpus add c --corpus r", 1, {"r/cases.pairs"});
   const Ran ran = shell("ulimit -f 0; graze corpus verify --corpus r --lanes 'moller_1997/f32/cpu' --update");
   EXPECT_EQ(ran.status, 1) << ran.err;
-  EXPECT_EQ(ran.out.find("recorded"), std::string::npos) << ran.out;
-  EXPECT_EQ(shell("cmp r/cases.pairs old").status, 0);
+  EXPECT_FALSE(has(ran.out, {"recorded"}));
+  expect_done("cmp r/cases.pairs old");
 }
 
 // Lanes without contraction give the same verdicts everywhere; the others depend on the compiler and the toolkit.
 TEST_F(CorpusVerb, TheRepositorysOwnHolds) {
-  const Ran ran =
-      shell("graze corpus verify --lanes '*/cpu,*/cuda-nofma' --corpus '" GRAZE_SOURCE_DIR "/corpus/regression'");
-  EXPECT_EQ(ran.status, 0) << ran.out << ran.err;
+  expect_done("graze corpus verify --lanes '*/cpu,*/cuda-nofma' --corpus '" GRAZE_SOURCE_DIR "/corpus/regression'");
 }
 
 }  // namespace

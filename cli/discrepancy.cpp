@@ -30,15 +30,13 @@ namespace {
 constexpr int kDevice = 1, kTwin = 2;   // indices of the words of --executor
 constexpr std::size_t kMostTables = 2;  // with more comparisons, only shares are printed
 
-struct DiscrepancyOptions {
+struct DiscrepancyOptions : DrawOptions {
+  DiscrepancyOptions() : DrawOptions{20'000} {}
   std::vector<std::string> lanes;  // first and second in turn
   LaneOptions subjects;
   std::vector<std::string> compare;
-  std::vector<std::string> strata;
-  std::uint64_t pairs = 20'000, seed = 1;
-  PairTypes coordinates = PairTypes::f32;
   int threads = 0, executor = 0;
-  std::string scene, campaign, out;
+  std::string campaign, out;
 };
 
 // What to compare: values or, for users' code, verdicts.
@@ -219,8 +217,7 @@ int discrepancy(DiscrepancyOptions options) {
   std::string left_out;
   if (options.campaign.empty()) {
     fuzz::Json recorded;
-    strata::SceneSources all =
-        drawn(options.scene, seed, options.pairs, options.strata, options.coordinates, &recorded);
+    strata::SceneSources all = drawn(options, &recorded);
     spec.sources = std::move(all.sources);
     left_out = left_out_text(all.left_out);
     if (!recorded.is_null()) scene = recorded.at("name");
@@ -328,9 +325,7 @@ void add_discrepancy(CLI::App& app, int& status) {
       ->option_text("DIR DIR");
   add_subject_options(*command, options->subjects);
   add_resubject_option(*command, options->subjects);
-  add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
-  add_coordinates_option(*command, options->coordinates);
-  add_scene_option(*command, options->scene);
+  add_draw_options(*command, *options);
   command
       ->add_option("--campaign", options->campaign,
                    "Compare on the first pairs of this campaign; without --out, its report shows the results")
@@ -357,10 +352,7 @@ void add_discrepancy(CLI::App& app, int& status) {
                                "--executor", "--out", "--subject"})
     command->get_option("--compare")->excludes(silenced);
   command->get_option("--campaign")->excludes("--seed");
-  command->callback([options, command, &status] {
-    take_type_of_scene(*command, options->scene, options->coordinates);
-    status = discrepancy(*options);
-  });
+  run_drawing(*command, options, status, discrepancy);
 }
 
 }  // namespace graze::cli

@@ -51,23 +51,19 @@ constexpr const char* kCampaign =
 
 TEST_F(Doubles, ACampaignIsRepeatedByItsFiles) {
   expect_done(kCampaign);
-  const std::string printed = contents(shell.folder / "printed");
-  EXPECT_NE(printed.find("graze repro c/cases/"), std::string::npos) << printed;
-  EXPECT_NE(printed.find("Next: graze minimize c"), std::string::npos) << printed;
-  const Json summary = Json::parse(contents(shell.folder / "c/summary.json"));
+  const std::string printed = shell.file("printed");
+  EXPECT_TRUE(has(printed, {"graze repro c/cases/", "Next: graze minimize c"}));
+  const Json summary = shell.json("c/summary.json");
   ASSERT_TRUE(summary["strata"].contains("stored/f64"));
   const Json& lanes = summary["strata"]["stored/f64"]["lanes"];
   EXPECT_GT(lanes["exact/f32/cpu"]["stored"], 290);  // of 300: the stratum promises it
   EXPECT_EQ(lanes["exact/f64/cpu"]["false_negative"], 0);
   const std::string file = summary["signatures"][0]["case"];
-  const Ran again = shell("graze repro c/" + file + " --lanes '*/cpu'");
-  EXPECT_EQ(again.status, 0) << again.out << again.err;
-  EXPECT_NE(again.out.find("(as recorded)"), std::string::npos) << again.out;
-  const Ran report = shell("graze report c");
-  EXPECT_EQ(report.status, 0) << report.err;
-  EXPECT_NE(report.out.find("Next: graze minimize c"), std::string::npos) << report.out;
-  EXPECT_NE(contents(shell.folder / "c/report.html").find("stored/f64"), std::string::npos);
-  const Json told = Json::parse(contents(shell.folder / "c/report.json"));
+  expect_out("graze repro c/" + file + " --lanes '*/cpu'", {"(as recorded)"});
+  const Ran report = shell.done("graze report c");
+  EXPECT_TRUE(has(report.out, {"Next: graze minimize c"}));
+  EXPECT_TRUE(has(shell.file("c/report.html"), {"stored/f64"}));
+  const Json told = shell.json("c/report.json");
   int of_float = 0;
   for (const Json& row : told["rates"]) {
     const std::string lane = told["lanes"][row["lane"].get<std::size_t>()]["id"];
@@ -78,26 +74,25 @@ TEST_F(Doubles, ACampaignIsRepeatedByItsFiles) {
     ++of_float;
   }
   EXPECT_GT(of_float, 8);
-  EXPECT_NE(contents(shell.folder / "c/rates.csv").find("exact/f32/cpu,general,stored/f64,stored,"), std::string::npos);
+  EXPECT_TRUE(has(shell.file("c/rates.csv"), {"exact/f32/cpu,general,stored/f64,stored,"}));
   expect_done("graze fuzz --coordinates f64 --strata 'stored,near_vertex_face' --pairs 600 --lanes '*/cpu' --out c");
   expect_done(
       "graze fuzz --coordinates f64 --strata stored --pairs 100 --lanes 'moller_1997/*/cpu' --out j "
       "--junit j.xml");
-  const std::string junit = contents(shell.folder / "j.xml");
-  EXPECT_NE(junit.find("name=\"stored/f64\""), std::string::npos) << junit;
-  EXPECT_NE(junit.find("graze repro j/cases/"), std::string::npos) << junit;
+  const std::string junit = shell.file("j.xml");
+  EXPECT_TRUE(has(junit, {"name=\"stored/f64\"", "graze repro j/cases/"}));
   const Ran failed = shell(
       "graze fuzz --coordinates f64 --strata stored --pairs 100 --lanes 'moller_1997/*/cpu' --out k --fail-above 3");
   EXPECT_EQ(failed.status, 1);
-  EXPECT_NE(failed.err.find("coordinates=f64"), std::string::npos) << failed.err;
+  EXPECT_TRUE(has(failed.err, {"coordinates=f64"}));
 }
 
 // The exact lane in float decides what float32 stores, so its wrong verdicts are failures like those of other lanes.
 TEST_F(Doubles, WhatStoringAloneGetsWrongIsAFailure) {
   const std::string fuzz =
       "graze fuzz --coordinates f64 --strata stored,large_offset --pairs 400 --lanes 'exact/*/cpu' --out s";
-  ASSERT_EQ(shell(fuzz).status, 0);
-  const Json summary = Json::parse(contents(shell.folder / "s/summary.json"));
+  expect_done(fuzz);
+  const Json summary = shell.json("s/summary.json");
   std::uint64_t wrong = 0, of_signatures = 0;
   for (const Json& stratum : summary["strata"]) {
     const Json& lane = stratum["lanes"]["exact/f32/cpu"];
@@ -106,28 +101,27 @@ TEST_F(Doubles, WhatStoringAloneGetsWrongIsAFailure) {
   EXPECT_GT(wrong, 200u);
   EXPECT_EQ(summary["disagreements"], wrong);
   for (const Json& row : summary["signatures"]) {
-    EXPECT_NE(row["key"].get<std::string>().find("/exact:"), std::string::npos) << row;
+    EXPECT_TRUE(has(row["key"].get<std::string>(), {"/exact:"})) << row;
     of_signatures += row["count"].get<std::uint64_t>();
   }
   EXPECT_EQ(of_signatures, wrong);
   expect_done("graze minimize s");
   const std::string failures = shell("graze failures s").out;
-  EXPECT_NE(failures.find("stored"), std::string::npos) << failures;
+  EXPECT_TRUE(has(failures, {"stored"}));
   const std::string file = "s/" + std::string(summary["signatures"][0]["case"]);
   const Ran explained = shell("graze explain " + file);
-  EXPECT_NE(explained.out.find("float32"), std::string::npos) << explained.out << explained.err;
-  EXPECT_NE(shell("graze repro " + file).out.find("(as recorded)"), std::string::npos);
+  EXPECT_TRUE(has(explained.out, {"float32"})) << explained.err;
+  EXPECT_TRUE(has(shell("graze repro " + file).out, {"(as recorded)"}));
   expect_done("graze map " + file + " --lanes 'exact/*/cpu' --out map");
   expect_done("graze report s");
   const Ran failed = shell("rm -rf t; " + fuzz + " --fail-above 0 --out t");
   EXPECT_EQ(failed.status, 1);
-  EXPECT_NE(failed.err.find("exact is wrong on "), std::string::npos) << failed.err;
+  EXPECT_TRUE(has(failed.err, {"exact is wrong on "}));
 }
 
 TEST_F(Doubles, ATableIsReadBackWithTheSameTruth) {
   expect_done("graze dump stored/f64:7 --pairs 40 --format pairs --lanes 'exact/*/cpu,moller_1997/f32/cpu' > p.pairs");
-  const Ran check = shell("graze check p.pairs --json --lanes 'exact/*/cpu,moller_1997/f32/cpu'");
-  ASSERT_EQ(check.status, 0) << check.err;
+  const Ran check = shell.done("graze check p.pairs --json --lanes 'exact/*/cpu,moller_1997/f32/cpu'");
   std::istringstream lines(check.out);
   int pairs = 0, changed = 0;
   for (std::string line; std::getline(lines, line); ++pairs) {
@@ -141,15 +135,13 @@ TEST_F(Doubles, ATableIsReadBackWithTheSameTruth) {
   EXPECT_EQ(pairs, 40);
   EXPECT_GT(changed, 35);
   // Names and a table of decimals give the same pairs.
-  const std::string first = contents(shell.folder / "p.pairs").substr(0, 400);
-  const Ran one = shell("graze repro stored/f64:7:0 --lanes 'exact/*/cpu'");
-  EXPECT_EQ(one.status, 0) << one.err;
-  EXPECT_NE(one.out.find("stored/f64:7:0"), std::string::npos) << one.out;
+  const std::string first = shell.file("p.pairs").substr(0, 400);
+  expect_out("graze repro stored/f64:7:0 --lanes 'exact/*/cpu'", {"stored/f64:7:0"});
   expect_done("graze dump stored/f64:7 --pairs 40 > p.csv");
   expect_done(
       "python3 -c \"\nimport csv\nfor row in csv.DictReader(open('p.csv')):\n"
       " print(*[float(row[t + str(v) + c]).hex() for t in 'ab' for v in range(3) for c in 'xyz'])\n\" > decimals");
-  std::istringstream written(contents(shell.folder / "p.pairs")), decimals(contents(shell.folder / "decimals"));
+  std::istringstream written(shell.file("p.pairs")), decimals(shell.file("decimals"));
   std::string line;
   std::getline(written, line);  // the version
   for (std::string decimal; std::getline(decimals, decimal);) {
@@ -177,12 +169,9 @@ std::string walls(int count) {
 TEST_F(Doubles, AMeshIsDrawnInItsDoubles) {
   std::ofstream(shell.folder / "walls.off") << walls(40);
   const std::string lanes = " --lanes 'exact/*/cpu,moller_1997/*/cpu' ";
-  const Ran ran = shell("graze fuzz --mesh walls.off --coordinates f64" + lanes + "--out c");
-  EXPECT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.err.find("walls.off: decided in doubles, because 120 of 360 coordinates have more digits"),
-            std::string::npos)
-      << ran.err;
-  const Json summary = Json::parse(contents(shell.folder / "c/summary.json"));
+  const Ran ran = shell.done("graze fuzz --mesh walls.off --coordinates f64" + lanes + "--out c");
+  EXPECT_TRUE(has(ran.err, {"walls.off: decided in doubles, because 120 of 360 coordinates have more digits"}));
+  const Json summary = shell.json("c/summary.json");
   const Json& mesh = summary["strata"]["mesh/f64"];
   EXPECT_EQ(mesh["pairs"], 20);  // float32 puts both walls into one plane
   EXPECT_EQ(mesh["intersects"], 0);
@@ -190,10 +179,10 @@ TEST_F(Doubles, AMeshIsDrawnInItsDoubles) {
   EXPECT_EQ(mesh["lanes"]["exact/f32/cpu"]["false_positive"], 20);
   EXPECT_EQ(mesh["lanes"]["exact/f32/cpu"]["stored"], 20);
   // The summary's command draws the same pairs again; so do shards.
-  const std::string bytes = contents(shell.folder / "c/summary.json");
+  const std::string bytes = shell.file("c/summary.json");
   expect_done("graze fuzz --mesh walls.off --coordinates f64" + lanes + "--out c > again && graze report c > told");
-  EXPECT_EQ(contents(shell.folder / "c/summary.json"), bytes);
-  EXPECT_NE(contents(shell.folder / "c/report.html").find("--coordinates f64"), std::string::npos);
+  EXPECT_EQ(shell.file("c/summary.json"), bytes);
+  EXPECT_TRUE(has(shell.file("c/report.html"), {"--coordinates f64"}));
   expect_done(
       "graze dump c --format pairs > c.pairs && graze check c.pairs --lanes exact/f64/cpu | grep -q 'truth: disjoint'");
   const std::string file = "c/" + summary["signatures"][0]["case"].get<std::string>();
@@ -207,20 +196,19 @@ TEST_F(Doubles, AMeshIsDrawnInItsDoubles) {
       "graze merge s-1 s-2 --out both && graze fuzz --mesh walls.off --coordinates both --strata uniform "
       "--pairs 60" +
       lanes + "--out whole");
-  Json both = Json::parse(contents(shell.folder / "both/summary.json"));
-  EXPECT_EQ(both["strata"], Json::parse(contents(shell.folder / "whole/summary.json"))["strata"]);
+  Json both = shell.json("both/summary.json");
+  EXPECT_EQ(both["strata"], shell.json("whole/summary.json")["strata"]);
   for (const char* source : {"uniform", "uniform/f64", "mesh", "mesh/f64"})
     EXPECT_TRUE(both["strata"].contains(source)) << source;
   EXPECT_EQ(both["strata"]["mesh"]["intersects"], 20);
   // `graze scene` tells what storing in float32 changes.
-  const Ran scene = shell("graze scene walls.off --out walls.toml");
-  EXPECT_EQ(scene.status, 0) << scene.err;
-  EXPECT_NE(scene.err.find("20 of 20 pairs have another verdict"), std::string::npos) << scene.err;
+  const Ran scene = shell.done("graze scene walls.off --out walls.toml");
+  EXPECT_TRUE(has(scene.err, {"20 of 20 pairs have another verdict"}));
   expect_done("graze fuzz --scene walls.toml --pairs 100" + lanes + "--out s > out");
   // Numbers that float32 holds are the same in doubles.
   std::ofstream(shell.folder / "plain.off") << "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n";
   expect_done("graze fuzz --mesh plain.off --coordinates both" + lanes + "--out p > out 2> err && test ! -s err");
-  const Json plain = Json::parse(contents(shell.folder / "p/summary.json"))["strata"];
+  const Json plain = shell.json("p/summary.json")["strata"];
   for (const char* source : {"mesh", "mesh/f64"}) EXPECT_EQ(plain[source]["intersects"], 1) << source;
   expect_done("graze scene plain.off > plain.toml 2> err && test ! -s err");
 }
@@ -228,13 +216,13 @@ TEST_F(Doubles, AMeshIsDrawnInItsDoubles) {
 TEST_F(Doubles, ACaseThatNamesAnotherPairHasChanged) {
   for (const char* stratum : {"near_edge_edge", "near_edge_edge/f64"}) {
     expect_done("graze dump " + std::string(stratum) + " --pairs 2 --format pairs > two.pairs");
-    EXPECT_EQ(shell("graze repro two.pairs --lanes 'exact/*/cpu'").status, 0);
+    expect_done("graze repro two.pairs --lanes 'exact/*/cpu'");
     for (const char* edit : {"s/index=1/index=777/", "s/seed=1/seed=2/", "s/stratum=near_edge_edge/stratum=uniform/"}) {
       const Ran ran = shell("sed '" + std::string(edit) +
                             "' two.pairs > other.pairs && graze repro other.pairs --lanes "
                             "'exact/*/cpu'");
       EXPECT_EQ(ran.status, 1) << stratum << ' ' << edit << ran.out << ran.err;
-      EXPECT_NE(ran.out.find("which is another pair"), std::string::npos) << ran.out;
+      EXPECT_TRUE(has(ran.out, {"which is another pair"}));
     }
   }
 }
@@ -244,7 +232,7 @@ TEST_F(Doubles, TheirScalesAndGroupsAreTheirOwnInAReport) {
       "graze fuzz --coordinates both --strata extreme_scale,uniform --pairs 60k --lanes "
       "'moller_1997/*/cpu,exact/*/cpu' "
       "--out s && graze report s");
-  const Json told = Json::parse(contents(shell.folder / "s/report.json"));
+  const Json told = shell.json("s/report.json");
   std::map<std::string, int> steps;
   int ends_at_most = 0;
   for (const Json& row : told["extremes"]) {
@@ -260,24 +248,21 @@ TEST_F(Doubles, TheirScalesAndGroupsAreTheirOwnInAReport) {
   }
   EXPECT_EQ(steps, (std::map<std::string, int>{{"scale", 4}, {"scale/f64", 32}}));
   EXPECT_GT(ends_at_most, 0);
-  const std::string rates = contents(shell.folder / "s/rates.csv");
-  EXPECT_NE(rates.find("exact/f32/cpu,general/f64,uniform/f64,wrong,"), std::string::npos);
-  EXPECT_NE(rates.find("exact/f32/cpu,general,uniform,wrong,"), std::string::npos);
-  EXPECT_EQ(rates.find("exact/f32/cpu,general,uniform/f64,"), std::string::npos);
+  const std::string rates = shell.file("s/rates.csv");
+  EXPECT_TRUE(has(rates, {"exact/f32/cpu,general/f64,uniform/f64,wrong,", "exact/f32/cpu,general,uniform,wrong,"}));
+  EXPECT_FALSE(has(rates, {"exact/f32/cpu,general,uniform/f64,"}));
 }
 
 TEST_F(Doubles, NoReasonIsToldThatNobodySaw) {
   std::ofstream(shell.folder / "beyond.pairs") << "0 0 0  1 0 0  0 1 0   0 0 1  1 0 1  0 1e39 1\n";
   const std::string told =
       shell("graze explain beyond.pairs --lanes 'moller_1997/f32/cpu' | tr '\\n' ' ' | tr -s ' '").out;
-  EXPECT_NE(told.find("float32 cannot store the pair (number 17, 1e+39, is beyond its range)"), std::string::npos)
-      << told;
+  EXPECT_TRUE(has(told, {"float32 cannot store the pair (number 17, 1e+39, is beyond its range)"}));
   std::ofstream(shell.folder / "yes.c") << "int meet(const double* a, const double* b) { return 1; }\n";
   std::ofstream(shell.folder / "y.pairs") << "0 0 0 1 0 0 0 1 0  0 0 1 1 0 1 0 1 1 | coordinates=f64\n";
   const std::string own =
       shell("graze explain y.pairs --subject yes=./yes.c:meet --lanes 'yes/*' | tr '\\n' ' ' | tr -s ' '").out;
-  EXPECT_NE(own.find("the code itself is wrong here, not its rounding (no sum and no product"), std::string::npos)
-      << own;
+  EXPECT_TRUE(has(own, {"the code itself is wrong here, not its rounding (no sum and no product"}));
 }
 
 // An epsilon is found in a function of doubles as in one of floats, from the function's verdicts on other doubles.
@@ -290,15 +275,14 @@ TEST_F(Doubles, ExperimentsFindAnEpsilonInOnesOwnCode) {
       << "0.1 0.2 0  1.3 0 0  0 1.7 0   0.1 0 1e-7  1.1 0 1e-7  0 1.9 1e-7 | coordinates=f64\n";
   const std::string own =
       shell("graze explain near.pairs --subject near=./near.c:meet --lanes 'near/*' | tr '\\n' ' ' | tr -s ' '").out;
-  EXPECT_NE(own.find("an absolute epsilon decides"), std::string::npos) << own;
-  EXPECT_NE(own.find("with 1e-36 in place of 1e-6 at near.c:3 it is right"), std::string::npos) << own;
-  EXPECT_EQ(own.find("perhaps"), std::string::npos) << own;
+  EXPECT_TRUE(has(own, {"an absolute epsilon decides", "with 1e-36 in place of 1e-6 at near.c:3 it is right"}));
+  EXPECT_FALSE(has(own, {"perhaps"}));
 }
 
 // A campaign's case is refused if the campaign's strata cannot have drawn its pair.
 TEST_F(Doubles, CasesOfOtherStrataAreRefused) {
   expect_done("graze fuzz --strata near_vertex_face --pairs 2000 --lanes 'moller_1997/f32/cpu' --out c");
-  const Json summary = Json::parse(contents(shell.folder / "c/summary.json"));
+  const Json summary = shell.json("c/summary.json");
   const std::string file = "c/" + summary["signatures"][0]["case"].get<std::string>();
   expect_done("sed -i '3,$s/stratum=[a-z_]* seed=1 index=[0-9]* /stratum=nosuch seed=99 index=12345678 /' " + file);
   expect_error("graze report c", 1, {file, "does not belong to the campaign"});
@@ -317,13 +301,10 @@ TEST_F(Doubles, WhatStoringChangesIsSaid) {
       << "1000000.01 0 0 1000000.01 1 0 1000000.01 0 1  1000000.02 0 0 1000000.02 1 0 1000000.02 0 1 | "
          "coordinates=f64\n";
   const Ran ran = shell("graze check far.pairs --lanes 'exact/*/cpu' | tr -s ' \\n' ' '");
-  EXPECT_NE(ran.out.find("truth: disjoint"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("as stored in float32: they share an area"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("number 1, 1000000.01"), std::string::npos) << ran.out;
+  EXPECT_TRUE(has(ran.out, {"truth: disjoint", "as stored in float32: they share an area", "number 1, 1000000.01"}));
   std::ofstream(shell.folder / "large.pairs") << "1e300 0 0 0 1e300 0 0 0 1e300 1 1 1 2 2 2 3 3 4\n";
-  const Ran large = shell("graze check large.pairs --lanes 'exact/*/cpu,moller_1997/*/cpu' | tr -s ' \\n' ' '");
-  EXPECT_EQ(large.status, 0) << large.err;
-  EXPECT_NE(large.out.find("float32 cannot store it: number 1, 1e+300"), std::string::npos) << large.out;
+  expect_out("graze check large.pairs --lanes 'exact/*/cpu,moller_1997/*/cpu' | tr -s ' \\n' ' '",
+             {"float32 cannot store it: number 1, 1e+300"});
 }
 
 // A margin below the smallest double or above the largest is reported as such, never as a contact or as infinite.
@@ -333,8 +314,7 @@ TEST_F(Doubles, NoMarginIsZeroOrInfiniteByRounding) {
          "0 0 0 -0x1p-1074 -0x1p-1074 0 -0x1p-1074 0 -0x1p-1074 | coordinates=f64\n"
          "1e308 1e308 1e308 1e308 -1e308 1e308 1e308 0 -1e308  "
          "-1.7e308 -1.7e308 -1.7e308 -1.7e308 1.7e308 1.7e308 -1.7e308 0 -1.7e308 | coordinates=f64\n";
-  const Ran ran = shell("graze check ends.pairs --lanes 'exact/f64/cpu' --json");
-  EXPECT_EQ(ran.status, 0) << ran.err;
+  const Ran ran = shell.done("graze check ends.pairs --lanes 'exact/f64/cpu' --json");
   std::istringstream lines(ran.out);
   for (const double margin : {0x1p-1074, 0x1.fffffffffffffp+1023}) {
     std::string line;
@@ -354,7 +334,7 @@ TEST_F(Doubles, FailuresAreMinimisedAndExplained) {
       "1 "
       "> /dev/null && graze minimize d --threads 4 > /dev/null && diff -r c/cases d/cases && cmp c/failures.json "
       "d/failures.json && graze report c");
-  const Json report = Json::parse(contents(shell.folder / "c/report.json"));
+  const Json report = shell.json("c/report.json");
   int stored = 0, computed = 0;
   for (const Json& card : report["cards"]) {
     const Json& kind = card["kind"];
@@ -365,31 +345,25 @@ TEST_F(Doubles, FailuresAreMinimisedAndExplained) {
       continue;
     }
     ++stored;
-    for (const std::string lane : kind["lanes"]) EXPECT_NE(lane.find("/f32/"), std::string::npos) << lane;
+    for (const std::string lane : kind["lanes"]) EXPECT_TRUE(has(lane, {"/f32/"}));
     // The card's command runs the pair in doubles.
     const std::string command = card["commands"][1]["text"];
-    const Ran ran = shell(command);
-    EXPECT_EQ(ran.status, 0) << command << ran.err;
-    EXPECT_NE(ran.out.find("float32 stores another pair, for which that is right"), std::string::npos) << ran.out;
+    expect_out(command, {"float32 stores another pair, for which that is right"});
   }
   EXPECT_GT(stored, 1);
   EXPECT_GT(computed, 1);
   const Ran failures = shell("graze failures c");
-  EXPECT_NE(failures.out.find("stored"), std::string::npos) << failures.out << failures.err;
-  const Ran one = shell("graze minimize stored/f64:1:3 --lanes 'guigue_devillers_2003/*/cpu' --out small.pairs");
-  EXPECT_EQ(one.status, 0) << one.err;
-  EXPECT_NE(one.out.find("cause: stored, as before"), std::string::npos) << one.out;
-  EXPECT_NE(contents(shell.folder / "small.pairs").find("coordinates=f64"), std::string::npos);
+  EXPECT_TRUE(has(failures.out, {"stored"})) << failures.err;
+  expect_out("graze minimize stored/f64:1:3 --lanes 'guigue_devillers_2003/*/cpu' --out small.pairs",
+             {"cause: stored, as before"});
+  EXPECT_TRUE(has(shell.file("small.pairs"), {"coordinates=f64"}));
   // In the map around it, lanes in float decide what float32 stores, so many neighbouring cells are the same pair.
-  const Ran map = shell("graze map small.pairs --lanes 'guigue_devillers_2003/*/cpu'");
-  EXPECT_EQ(map.status, 0) << map.err;
-  EXPECT_NE(map.out.find("guigue_devillers_2003/f64/cpu"), std::string::npos) << map.out;
-  const Ran why = shell("graze explain small.pairs --lanes 'guigue_devillers_2003/*/cpu' --json");
-  EXPECT_EQ(why.status, 0) << why.err;
+  expect_out("graze map small.pairs --lanes 'guigue_devillers_2003/*/cpu'", {"guigue_devillers_2003/f64/cpu"});
+  const Ran why = shell.done("graze explain small.pairs --lanes 'guigue_devillers_2003/*/cpu' --json");
   const Json line = Json::parse(why.out.substr(0, why.out.find('\n')));
   EXPECT_EQ(line["lanes"][0]["cause"], "stored") << line;
   EXPECT_EQ(line["lanes"][0]["settled"], "yes");
-  EXPECT_NE(line["pair"].get<std::string>().find("coordinates=f64"), std::string::npos);
+  EXPECT_TRUE(has(line["pair"].get<std::string>(), {"coordinates=f64"}));
 }
 
 // The programs have the exact doubles; the program of a lane in float rounds them as it reads them.
@@ -403,7 +377,7 @@ TEST_F(Doubles, CasesBecomePrograms) {
               "case.cpp -o case");
   const Ran wrong = shell("./case");
   EXPECT_EQ(wrong.status, 1) << wrong.out;
-  EXPECT_NE(wrong.out.find("guigue_devillers_2003/f32: intersects; truth: disjoint"), std::string::npos) << wrong.out;
+  EXPECT_TRUE(has(wrong.out, {"guigue_devillers_2003/f32: intersects; truth: disjoint"}));
   expect_done(repro + "python > case.py && python3 case.py && grep -q 'each number is a double' case.py");
   expect_done(repro + "cgal > cgal.cpp && g++ -std=c++20 cgal.cpp -lmpfr -lgmp -o cgal && ./cgal");
   expect_done(repro + "obj > case.obj && grep -q 1.0000000000009095 case.obj");
@@ -419,17 +393,16 @@ TEST_F(Doubles, AllDecimalsOfTwoMeshesAreDoublesIfSomeHaveManyDigits) {
   for (const std::string command :
        {"graze query few.off many.off --between", "graze query many.off few.off --between",
         "graze query few.off#0 many.off", "graze query many.off#0 few.off", "graze query few.txt many.off"}) {
-    const Ran ran = shell(command);
-    EXPECT_EQ(ran.status, 0) << command << ran.err;
-    EXPECT_NE(ran.out.find("0 "), std::string::npos) << ran.out;
-    EXPECT_EQ(ran.out.find("1 pair"), std::string::npos) << command << ran.out;
-    EXPECT_EQ(ran.out.find("1 of 1"), std::string::npos) << command << ran.out;
-    EXPECT_NE(ran.err.find("many.off: decided in doubles"), std::string::npos) << command << ran.err;
-    EXPECT_EQ(ran.err.find("rounded"), std::string::npos) << command << ran.err;
+    const Ran ran = shell.done(command);
+    EXPECT_TRUE(has(ran.out, {"0 "}));
+    EXPECT_FALSE(has(ran.out, {"1 pair"})) << command;
+    EXPECT_FALSE(has(ran.out, {"1 of 1"})) << command;
+    EXPECT_TRUE(has(ran.err, {"many.off: decided in doubles"})) << command;
+    EXPECT_FALSE(has(ran.err, {"rounded"})) << command;
   }
   for (const std::string meshes : {"few.off many.off", "many.off few.off"}) {
     expect_done("rm -rf f; graze fuzz --mesh " + meshes + " --coordinates f64 --lanes 'exact/*/cpu' --out f");
-    const Json mesh = Json::parse(contents(shell.folder / "f/summary.json"))["strata"]["mesh/f64"];
+    const Json mesh = shell.json("f/summary.json")["strata"]["mesh/f64"];
     EXPECT_EQ(mesh["intersects"], 0) << meshes;
     EXPECT_EQ(mesh["lanes"]["exact/f32/cpu"]["stored"], 1) << meshes;
   }
@@ -439,46 +412,44 @@ TEST_F(Doubles, ARegressionCorpusKeepsThemBesideFloats) {
   expect_done(
       "graze fuzz --coordinates both --strata 'near_vertex_face,stored' --pairs 600 "
       "--lanes 'moller_1997/*/cpu,exact/*/cpu' --out c && graze corpus add c --top 3 --corpus r --lanes '*/cpu'");
-  const std::string once = contents(shell.folder / "r/cases.pairs");
-  EXPECT_NE(once.find("exact_"), std::string::npos) << once;
+  const std::string once = shell.file("r/cases.pairs");
+  EXPECT_TRUE(has(once, {"exact_"}));
   std::size_t of_doubles = 0, of_floats = 0;
   for (const corpus::Entry& entry : corpus::read_pairs(shell.folder / "r/cases.pairs", PairTypes::both))
     ++(entry.doubles ? of_doubles : of_floats);
   EXPECT_GT(of_doubles, 1u);
   EXPECT_GT(of_floats, 0u);
-  const Ran verified =
-      shell("graze corpus verify --corpus r --lanes '*/cpu,*/f64/cuda-fma,*/f64/cuda-fma/abs:1e-6' --executor twin");
-  EXPECT_EQ(verified.status, 0) << verified.out << verified.err;
-  EXPECT_EQ(verified.out.find("Not run"), std::string::npos) << verified.out;
+  const Ran verified = shell.done(
+      "graze corpus verify --corpus r --lanes '*/cpu,*/f64/cuda-fma,*/f64/cuda-fma/abs:1e-6' --executor twin");
+  EXPECT_FALSE(has(verified.out, {"Not run"}));
   // The exact lane of doubles is among the lanes unless others are named.
   const auto lanes_of = [&](const char* lanes) {
-    const Ran ran = shell(std::string("graze corpus verify --corpus r --executor twin") + lanes);
-    EXPECT_EQ(ran.status, 0) << ran.out << ran.err;
+    const Ran ran = shell.done(std::string("graze corpus verify --corpus r --executor twin") + lanes);
     return ran.out.substr(0, ran.out.find(" lanes: "));
   };
   EXPECT_EQ(lanes_of(""), lanes_of(" --lanes 'exact/f64/*,*'"));
   EXPECT_NE(lanes_of(""), lanes_of(" --lanes '*,!exact/f64/*'"));
   expect_done("graze corpus verify --corpus r --lanes '*/cpu' --update && graze corpus list --corpus r > /dev/null");
-  EXPECT_EQ(contents(shell.folder / "r/cases.pairs"), once);
+  EXPECT_EQ(shell.file("r/cases.pairs"), once);
   // A verdict on a pair of doubles that differs from its record is a change.
   expect_done("sed -i '/coordinates=f64/s/\\(lanes=.*moller_1997:\\)[+-]f32/\\1.f32/' r/cases.pairs");
-  EXPECT_NE(contents(shell.folder / "r/cases.pairs"), once);
+  EXPECT_NE(shell.file("r/cases.pairs"), once);
   const Ran changed = shell("graze corpus verify --corpus r --lanes 'moller_1997/f32/cpu'");
   EXPECT_EQ(changed.status, 1) << changed.out;
-  EXPECT_NE(changed.out.find("moller_1997/f32/cpu: was "), std::string::npos) << changed.out;
+  EXPECT_TRUE(has(changed.out, {"moller_1997/f32/cpu: was "}));
   // Single pairs.
   expect_done("graze corpus add stored/f64:1:3 --corpus s --lanes 'exact/*/cpu,moller_1997/*/cpu'");
-  EXPECT_NE(contents(shell.folder / "s/cases.pairs").find("coordinates=f64"), std::string::npos);
+  EXPECT_TRUE(has(shell.file("s/cases.pairs"), {"coordinates=f64"}));
 }
 
 TEST_F(Doubles, APolicyIsTunedOnThem) {
   const std::string strata = "--strata near_vertex_face,stored --pairs 2000 --coordinates f64 ";
   expect_done("graze tune moller_1997/f64/cpu --forbid false-negative " + strata + "--out t > told");
-  const Json tuned = Json::parse(contents(shell.folder / "t/tune.json"));
+  const Json tuned = shell.json("t/tune.json");
   // A campaign with the chosen policy, on the pairs that judged it, has the same counts.
   const std::string lane = "moller_1997/f64/cpu/" + tuned["chosen"].get<std::string>();
   expect_done("graze fuzz --lanes '" + lane + "' " + strata + "--seed 2 --out c");
-  const Json summary = Json::parse(contents(shell.folder / "c/summary.json"));
+  const Json summary = shell.json("c/summary.json");
   for (const char* count : {"false_positive", "false_negative", "declined"}) {
     std::uint64_t counted = 0;
     for (const Json& stratum : summary["strata"]) counted += stratum["lanes"][lane][count].get<std::uint64_t>();
@@ -486,25 +457,24 @@ TEST_F(Doubles, APolicyIsTunedOnThem) {
   }
   EXPECT_GT(tuned["confirmed"]["fixed"], 0);
   for (const char* file : {"t/fixed.pairs", "t/broken.pairs"})
-    EXPECT_NE(contents(shell.folder / file).find("coordinates=f64"), std::string::npos) << file;
-  const std::string told = contents(shell.folder / "told");
-  EXPECT_NE(told.find("exact/f64/cpu"), std::string::npos) << told;
+    EXPECT_TRUE(has(shell.file(file), {"coordinates=f64"})) << file;
+  const std::string told = shell.file("told");
+  EXPECT_TRUE(has(told, {"exact/f64/cpu"}));
   const std::size_t next = told.find("Next: ");
   ASSERT_NE(next, std::string::npos);
-  EXPECT_NE(shell(told.substr(next + 6)).out.find("moller_1997/f64"), std::string::npos) << told;
+  EXPECT_TRUE(has(shell(told.substr(next + 6)).out, {"moller_1997/f64"})) << told;
   // Tunes a CUDA lane without contraction, which runs as a twin.
   expect_done("graze tune moller_1997/f64/cuda-nofma --forbid false-negative " + strata + "--out w > told");
-  EXPECT_EQ(Json::parse(contents(shell.folder / "w/tune.json"))["confirmed"], tuned["confirmed"]);
+  EXPECT_EQ(shell.json("w/tune.json")["confirmed"], tuned["confirmed"]);
   // Tunes a lane in float on a campaign's own pairs, and two lanes with --agree.
   expect_done(
       "graze fuzz --lanes 'moller_1997/*/cpu*' --strata near_vertex_face --pairs 500 --coordinates both --out d");
   expect_done("graze tune moller_1997/f32/cpu --from d --out u");
-  EXPECT_NE(contents(shell.folder / "u/changes.csv").find("near_vertex_face/f64,1,"), std::string::npos);
+  EXPECT_TRUE(has(shell.file("u/changes.csv"), {"near_vertex_face/f64,1,"}));
   expect_done("graze tune --agree moller_1997/f64/cpu moller_1997/f64/cpu-fma --max-rate 0.1 " + strata +
               "--out v > lines && tr '\\n' ' ' < lines > told");
-  EXPECT_NE(contents(shell.folder / "told").find("exact/f64/cpu and exact/f64/cuda"), std::string::npos);
-  EXPECT_NE(contents(shell.folder / "told").find("both lanes are moller_1997/f64/cpu."), std::string::npos);
-  const Json agreed = Json::parse(contents(shell.folder / "v/agree.json"));
+  EXPECT_TRUE(has(shell.file("told"), {"exact/f64/cpu and exact/f64/cuda", "both lanes are moller_1997/f64/cpu."}));
+  const Json agreed = shell.json("v/agree.json");
   EXPECT_EQ(agreed["zero_confirmed"]["pairs"], 2000);
   EXPECT_EQ(agreed["zero_confirmed"]["intersecting"], agreed["confirmed"]["intersecting"]);
 }
@@ -529,17 +499,17 @@ int intersects(const double* a, const double* b) { return !side(a, b) && !side(b
   expect_done(
       "export XDG_CACHE_HOME=$PWD/cache; graze tune mine/f64/cpu --subject mine=./mine.c --coordinates f64 --strata "
       "near_vertex_face --pairs 3000 --out t");
-  const Json tuned = Json::parse(contents(shell.folder / "t/tune.json"));
+  const Json tuned = shell.json("t/tune.json");
   EXPECT_EQ(tuned["epsilon"]["name"], "eps");
   EXPECT_LT(tuned["confirmed"]["false_positive"], tuned["zero_confirmed"]["false_positive"]);
-  EXPECT_NE(contents(shell.folder / "t/fixed.pairs").find("coordinates=f64"), std::string::npos);
+  EXPECT_TRUE(has(shell.file("t/fixed.pairs"), {"coordinates=f64"}));
 }
 
 TEST_F(Doubles, ErrorsAndCostsAreMeasuredOnThem) {
   expect_done(
       "graze pareto --coordinates f64 --strata stored,near_vertex_face --pairs 2000 --lanes "
       "'moller_1997/*/cpu,exact/*/cpu' --out p");
-  const Json found = Json::parse(contents(shell.folder / "p/pareto.json"));
+  const Json found = shell.json("p/pareto.json");
   int failures = 0;
   for (const Json& lane : found["lanes"]) {
     const bool never = lane["lane"] == "exact/f64/cpu";
@@ -549,7 +519,7 @@ TEST_F(Doubles, ErrorsAndCostsAreMeasuredOnThem) {
     if (never) continue;
     std::ofstream(shell.folder / "f.pairs") << lane["failure"].get<std::string>() << '\n';
     const Ran checked = shell("graze check f.pairs --lanes " + lane["lane"].get<std::string>());
-    EXPECT_NE(checked.out.find(" !"), std::string::npos) << lane["failure"] << checked.out << checked.err;
+    EXPECT_TRUE(has(checked.out, {" !"})) << lane["failure"] << checked.err;
     ++failures;
   }
   EXPECT_EQ(failures, 3);
@@ -562,7 +532,7 @@ TEST_F(Doubles, BrokenInvariantsAreCountedOnThem) {
   expect_done(
       "graze invariants --coordinates f64 --pairs 2800 --lanes "
       "'guigue*/*/cpu,exact/*/cpu' --out i");
-  const Json found = Json::parse(contents(shell.folder / "i/invariants.json"));
+  const Json found = shell.json("i/invariants.json");
   ASSERT_EQ(found["lanes"].size(), 4u);
   EXPECT_GT(found["truth"]["pairs"], 5000);  // each pair, and what float32 stores of it if it can
   for (const Json& lane : found["lanes"]) {
@@ -597,8 +567,8 @@ TEST_F(Doubles, VerdictsOfOnesOwnCodeAreComparedOnThem) {
     const std::string lane = "mine/" + scalar + "/cpu", exact = "exact/" + scalar + "/cpu";
     expect_done("graze discrepancy " + lane + " " + exact + " --subject " + subject + drawn + "d_" + scalar);
     expect_done("graze fuzz --lanes '" + lane + "," + exact + "' --subject " + subject + drawn + "c_" + scalar);
-    const Json found = Json::parse(contents(shell.folder / ("d_" + scalar) / "discrepancy.json"))["verdicts"][0];
-    const Json summary = Json::parse(contents(shell.folder / ("c_" + scalar) / "summary.json"));
+    const Json found = shell.json("d_" + scalar + "/discrepancy.json")["verdicts"][0];
+    const Json summary = shell.json("c_" + scalar + "/summary.json");
     for (const auto& [stratum, row] : found["strata"].items()) {
       EXPECT_TRUE(stratum.ends_with("/f64")) << stratum;
       const Json& lanes = summary["strata"][stratum]["lanes"];
@@ -614,7 +584,7 @@ TEST_F(Doubles, VerdictsOfOnesOwnCodeAreComparedOnThem) {
   expect_done("graze fuzz --lanes 'mine/*,exact/*' --subject mine=mine.c:meet" + drawn + "later");
   expect_done("graze report --compare c_f64 later");
   std::uint64_t broken = 0, mended = 0;
-  const Json compared = Json::parse(contents(shell.folder / "later/compare.json"))["compare"]["verdicts"];
+  const Json compared = shell.json("later/compare.json")["compare"]["verdicts"];
   for (const Json& row : compared) {
     if (row["known"] == "same") continue;
     broken += row["broken"].get<std::uint64_t>();
@@ -635,8 +605,7 @@ TEST_F(Doubles, ValuesOfLanesInDoubleAreComparedOnThem) {
   expect_done(compare + "--campaign c --pairs 4001");
   expect_done(compare + drawn + "d");
   expect_done("cmp c/discrepancy.json d/discrepancy.json");
-  const Json summary = Json::parse(contents(shell.folder / "c/summary.json")),
-             found = Json::parse(contents(shell.folder / "c/discrepancy.json"));
+  const Json summary = shell.json("c/summary.json"), found = shell.json("c/discrepancy.json");
   EXPECT_EQ(found["coordinates"], "f64");
   const Json& of = found["lanes"][0];
   EXPECT_EQ(of["strata"].size(), 2u);
@@ -645,11 +614,10 @@ TEST_F(Doubles, ValuesOfLanesInDoubleAreComparedOnThem) {
     EXPECT_EQ(row["verdict"], summary["strata"][stratum]["lanes"][second]["differs_from_cpu"]) << stratum;
     EXPECT_GT(row["verdict"], 5) << stratum;
   }
-  EXPECT_NE(contents(shell.folder / "c/discrepancy.html").find("4,001 pairs of triangles, with coordinates in double"),
-            std::string::npos);
+  EXPECT_TRUE(has(shell.file("c/discrepancy.html"), {"4,001 pairs of triangles, with coordinates in double"}));
   expect_done("graze report c");
   const std::string other_pairs = "that the campaign did not draw";
-  EXPECT_EQ(contents(shell.folder / "c/report.html").find(other_pairs), std::string::npos);
+  EXPECT_FALSE(has(shell.file("c/report.html"), {other_pairs}));
 
   // The simplest pair whose verdict a line changes is one of doubles.
   bool in_doubles = false;
@@ -662,18 +630,16 @@ TEST_F(Doubles, ValuesOfLanesInDoubleAreComparedOnThem) {
   }
   EXPECT_TRUE(in_doubles) << of["origins"]["lines"];
   const Ran all =
-      shell("graze discrepancy --executor twin --coordinates both --strata stored,thesis --pairs 90 --out e");
-  ASSERT_EQ(all.status, 0) << all.err;
-  const Json of_all = Json::parse(contents(shell.folder / "e/discrepancy.json"));
+      shell.done("graze discrepancy --executor twin --coordinates both --strata stored,thesis --pairs 90 --out e");
+  const Json of_all = shell.json("e/discrepancy.json");
   EXPECT_EQ(of_all["coordinates"], "both");
   EXPECT_EQ(of_all["lanes"].size(), 10u);
   EXPECT_EQ(of_all["lanes"][0]["strata"].size(), 3u);  // thesis, thesis/f64 and stored/f64
-  for (const Json& lanes : of_all["lanes"])
-    EXPECT_NE(lanes["first"].get<std::string>().find("/f64/"), std::string::npos);
-  EXPECT_NE(all.err.find("moller_1997/f32/cuda-fma"), std::string::npos) << all.err;
+  for (const Json& lanes : of_all["lanes"]) EXPECT_TRUE(has(lanes["first"].get<std::string>(), {"/f64/"}));
+  EXPECT_TRUE(has(all.err, {"moller_1997/f32/cuda-fma"}));
   EXPECT_EQ(of_all["lanes_left_out"]["why"].size(), 15u);  // cpu, cuda-fma and cuda-nofma of five algorithms
   expect_done("graze discrepancy --executor twin --strata thesis --pairs 90 --out f");
-  EXPECT_FALSE(Json::parse(contents(shell.folder / "f/discrepancy.json")).contains("coordinates"));
+  EXPECT_FALSE(shell.json("f/discrepancy.json").contains("coordinates"));
   expect_error("graze discrepancy --compare e f", 2, {"strata"});
   expect_error("graze dump stored/f64:1 --pairs 2 --values moller_1997/f32/cpu,moller_1997/f32/cpu-fma", 2,
                {"stored/f64", "float32"});
@@ -682,7 +648,7 @@ TEST_F(Doubles, ValuesOfLanesInDoubleAreComparedOnThem) {
                                            "3 0 1 2\n3 3 4 5\n";
   expect_done("graze fuzz --mesh m.off --coordinates f64 --lanes " + first + " --out m");
   expect_done(compare + "--campaign m");
-  const Json of_mesh = Json::parse(contents(shell.folder / "m/discrepancy.json"));
+  const Json of_mesh = shell.json("m/discrepancy.json");
   EXPECT_EQ(of_mesh["pairs"], 1);
   EXPECT_EQ(of_mesh["coordinates"], "f64");
 }
@@ -695,10 +661,9 @@ TEST_F(Doubles, AFloatLanesCauseIsOfTheStoredPair) {
   const std::string explain = "graze explain p.pairs --lanes 'moller_1997/*/cpu'";
   const Ran json = shell(explain + " --json"), told = shell(explain);
   EXPECT_EQ(told.status, 0) << told.err;
-  EXPECT_NE(json.out.find(": on the pair as float32 stores it, the algorithm itself is wrong here"), std::string::npos)
-      << json.out;
-  EXPECT_NE(told.out.find("on the stored pair: no number of"), std::string::npos) << told.out;
-  EXPECT_NE(shell("graze check p.pairs --lanes 'exact/f64/*'").out.find("exact/f64"), std::string::npos);
+  EXPECT_TRUE(has(json.out, {": on the pair as float32 stores it, the algorithm itself is wrong here"}));
+  EXPECT_TRUE(has(told.out, {"on the stored pair: no number of"}));
+  EXPECT_TRUE(has(shell("graze check p.pairs --lanes 'exact/f64/*'").out, {"exact/f64"}));
 }
 
 TEST_F(Doubles, AreSearchedByAHunt) {
@@ -707,7 +672,7 @@ TEST_F(Doubles, AreSearchedByAHunt) {
   const Ran first = shell(hunt);
   if (first.err.find("libFuzzer") != std::string::npos) GTEST_SKIP() << "this build has no libFuzzer";
   ASSERT_EQ(first.status, 0) << first.err;
-  const Json summary = Json::parse(contents(shell.folder / "h/summary.json"));
+  const Json summary = shell.json("h/summary.json");
   const Json& lanes = summary["strata"]["hunt/f64"]["lanes"];
   EXPECT_GT(lanes["exact/f32/cpu"]["stored"], 30);
   EXPECT_GT(lanes["moller_1997/f64/cpu"]["false_negative"], 10);
@@ -715,22 +680,22 @@ TEST_F(Doubles, AreSearchedByAHunt) {
     EXPECT_EQ(lanes["exact/f64/cpu"][wrong], 0);
   const std::string file = summary["signatures"][0]["case"];
   const Ran again = shell("graze repro h/" + file);
-  EXPECT_NE(again.out.find("(as recorded)"), std::string::npos) << again.out << again.err;
-  EXPECT_NE(contents(shell.folder / ("h/" + file)).find("stratum=hunt/f64 seed=3 index="), std::string::npos);
+  EXPECT_TRUE(has(again.out, {"(as recorded)"})) << again.err;
+  EXPECT_TRUE(has(shell.file("h/" + file), {"stratum=hunt/f64 seed=3 index="}));
   expect_done("graze minimize h && graze failures h && graze report h");
-  const Json report = Json::parse(contents(shell.folder / "h/report.json"));
+  const Json report = shell.json("h/report.json");
   EXPECT_EQ(report["run"]["command"].dump().find("graze hunt --runs 1500 --seed 3 --coordinates f64"), 1u);
   EXPECT_EQ(report["strata"][0]["describes"], "pairs that guided search made from all strata of doubles");
-  const std::string before = contents(shell.folder / "h/summary.json");
+  const std::string before = shell.file("h/summary.json");
   expect_done(hunt + " && graze corpus add h --corpus k --top 3 --lanes '*/cpu'");
-  EXPECT_EQ(contents(shell.folder / "h/summary.json"), before);
+  EXPECT_EQ(shell.file("h/summary.json"), before);
   expect_error("graze hunt --coordinates both --out b", 2, {"--coordinates", "both"});
   write_survey();
   expect_done("graze hunt --scene survey.toml --runs 300 --seed 3 --lanes 'moller_1997/*/cpu,exact/*/cpu' --out s");
-  const Json survey = Json::parse(contents(shell.folder / "s/summary.json"));
+  const Json survey = shell.json("s/summary.json");
   EXPECT_EQ(survey["strata"]["hunt/f64"]["pairs"], 300);
-  EXPECT_EQ(shell("graze repro s/" + survey["signatures"][0]["case"].get<std::string>()).status, 0);
-  expect_within_survey(contents(shell.folder / ("s/" + survey["signatures"][0]["case"].get<std::string>())));
+  expect_done("graze repro s/" + survey["signatures"][0]["case"].get<std::string>());
+  expect_within_survey(shell.file("s/" + survey["signatures"][0]["case"].get<std::string>()));
 }
 
 // A scene's file names the type of its pairs. A case of a campaign in the scene can be drawn again by name.
@@ -738,11 +703,8 @@ TEST_F(Doubles, ASceneIsDrawnInItsDoubles) {
   write_survey();
   const std::string lanes = "--lanes 'moller_1997/*/cpu,exact/*/cpu' ";
   const std::string fuzz = "graze fuzz --scene survey.toml --pairs 6000 " + lanes;
-  const Ran ran = shell(fuzz + "--threads 2 --out one");
-  ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find("  large_offset/f64: your coordinates stay within 0 … 5400300 m\n"), std::string::npos)
-      << ran.out;
-  const Json summary = Json::parse(contents(shell.folder / "one/summary.json"));
+  expect_out(fuzz + "--threads 2 --out one", {"  large_offset/f64: your coordinates stay within 0 … 5400300 m\n"});
+  const Json summary = shell.json("one/summary.json");
   EXPECT_EQ(summary["spec"]["strata"].size(), 16u) << summary["spec"]["strata"];
   std::uint64_t pairs = 0, stored = 0;
   for (const auto& [id, row] : summary["strata"].items()) {
@@ -759,22 +721,19 @@ TEST_F(Doubles, ASceneIsDrawnInItsDoubles) {
     ASSERT_EQ(shell(signal_at_write(SIGKILL, write) + fuzz + "--threads 1 --out two").status, 128 + SIGKILL) << write;
   expect_done(fuzz + "--threads 1 --out two && cmp one/summary.json two/summary.json && diff -r one/cases two/cases");
   expect_done(fuzz + "--shard 1/2 --out p1 && " + fuzz + "--shard 2/2 --out p2 && graze merge p1 p2 --out merged");
-  EXPECT_EQ(Json::parse(contents(shell.folder / "merged/summary.json"))["strata"], summary["strata"]);
+  EXPECT_EQ(shell.json("merged/summary.json")["strata"], summary["strata"]);
   // A case says where it is from, and each of its names draws it again.
   const std::string file = "one/" + summary["signatures"][0]["case"].get<std::string>();
-  const std::string text = contents(shell.folder / file);
+  const std::string text = shell.file(file);
   expect_within_survey(text);
   std::smatch found;
   ASSERT_TRUE(std::regex_search(text, found, std::regex("stratum=(\\S+) seed=(\\d+) index=(\\d+) scene=(\\S+) ")))
       << text;
   const std::string id = found[1], numbers = ":" + found[2].str() + ":" + found[3].str(), scene = found[4];
   EXPECT_TRUE(scene.starts_with("survey.toml#")) << scene;
-  const Ran again = shell("graze repro " + file);
-  EXPECT_EQ(again.status, 0) << again.out << again.err;
-  EXPECT_NE(again.out.find("(as recorded)"), std::string::npos) << again.out;
+  expect_out("graze repro " + file, {"(as recorded)"});
   const auto vertices_of = [&](const std::string& name) {
-    const Ran repro = shell("graze repro '" + name + "' --emit obj");
-    EXPECT_EQ(repro.status, 0) << name << repro.err;
+    const Ran repro = shell.done("graze repro '" + name + "' --emit obj");
     return repro.out.substr(std::min(repro.out.find("\nv "), repro.out.size()));
   };
   const std::string vertices = vertices_of(file);
@@ -783,23 +742,22 @@ TEST_F(Doubles, ASceneIsDrawnInItsDoubles) {
     EXPECT_EQ(vertices_of(id + '@' + of + numbers), vertices) << of;
   // The verbs that take a campaign take this one.
   expect_done("graze minimize one > minimised && graze failures one > kinds && graze report one > report");
-  EXPECT_NE(contents(shell.folder / "one/failures.json").find("/f64@survey.toml#"), std::string::npos);
-  const std::string command = Json::parse(contents(shell.folder / "one/report.json"))["run"]["command"];
-  EXPECT_NE(command.find("--scene survey.toml --pairs 6000 --seed 1 --coordinates f64 --lanes"), std::string::npos)
-      << command;
+  EXPECT_TRUE(has(shell.file("one/failures.json"), {"/f64@survey.toml#"}));
+  const std::string command = shell.json("one/report.json")["run"]["command"];
+  EXPECT_TRUE(has(command, {"--scene survey.toml --pairs 6000 --seed 1 --coordinates f64 --lanes"}));
   expect_done(command.substr(0, command.find("--out")) + "--out one && cmp one/summary.json two/summary.json");
   const Ran dumped = shell("graze dump one --pairs 30 --format pairs");
-  EXPECT_NE(dumped.out.find("scene=" + scene), std::string::npos) << dumped.err;
+  EXPECT_TRUE(has(dumped.out, {"scene=" + scene})) << dumped.err;
   expect_within_survey(dumped.out);
   expect_done("graze pack one --out one.sqlar && graze tune moller_1997/f64/cpu --from one --pairs 500 --out from");
   // Pairs of both types, in a scene where float32 is fine enough.
   std::ofstream(shell.folder / "hall.toml") << "extent = [-20, 20]\nedges = [0.5, 4]\n";
   expect_done("graze fuzz --scene hall.toml --coordinates both --pairs 600 --strata uniform,near_edge_edge " + lanes +
               "--out b && graze report b");
-  const Json both = Json::parse(contents(shell.folder / "b/summary.json"));
+  const Json both = shell.json("b/summary.json");
   for (const char* source : {"uniform", "uniform/f64", "near_edge_edge", "near_edge_edge/f64"})
     EXPECT_NEAR(both["strata"][source]["pairs"].get<int>(), 150, 1) << source;
-  const std::string of_both = Json::parse(contents(shell.folder / "b/report.json"))["run"]["command"];
+  const std::string of_both = shell.json("b/report.json")["run"]["command"];
   expect_done(of_both.substr(0, of_both.find("--out")) + "--out b2 && cmp b/summary.json b2/summary.json");
 }
 
@@ -816,26 +774,24 @@ TEST_F(Doubles, AMeshOfDoublesBecomesASceneOfDoubles) {
     }
   }
   off.close();
-  const Ran ran = shell("graze scene site.off --units m --out site.toml");
-  ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.err.find("have more digits than float32 holds"), std::string::npos) << ran.err;
-  const std::string text = contents(shell.folder / "site.toml");
-  for (const char* line : {"\ncoordinates = \"f64\"\n", "\nextent = [[500000.25, 500002.1], [5400000.01, 5400002.06], ",
-                           "\ngrid = { decimals = 2 }\n"})
-    EXPECT_NE(text.find(line), std::string::npos) << line << text;
+  const Ran ran = shell.done("graze scene site.off --units m --out site.toml");
+  EXPECT_TRUE(has(ran.err, {"have more digits than float32 holds"}));
+  const std::string text = shell.file("site.toml");
+  EXPECT_TRUE(has(text, {"\ncoordinates = \"f64\"\n", "\nextent = [[500000.25, 500002.1], [5400000.01, 5400002.06], ",
+                         "\ngrid = { decimals = 2 }\n"}));
   expect_done("graze fuzz --scene site.toml --pairs 900 --lanes 'moller_1997/*/cpu,exact/*/cpu' --out s");
-  const Json strata = Json::parse(contents(shell.folder / "s/summary.json"))["strata"];
+  const Json strata = shell.json("s/summary.json")["strata"];
   for (const char* source : {"mesh/f64", "mesh_ulps/f64", "mesh_moved/f64", "shared_edge/f64"})
     EXPECT_GT(strata[source]["pairs"], 0) << source;
   // The mesh's own pairs are those that fuzz --mesh draws, in another order.
   expect_done("graze fuzz --mesh site.off --coordinates f64 --lanes 'moller_1997/*/cpu,exact/*/cpu' --out m");
-  const Json of_mesh = Json::parse(contents(shell.folder / "m/summary.json"))["strata"]["mesh/f64"];
+  const Json of_mesh = shell.json("m/summary.json")["strata"]["mesh/f64"];
   expect_done(
       "graze fuzz --scene site.toml --strata mesh --pairs 100k --lanes 'moller_1997/*/cpu,exact/*/cpu' --out own");
-  EXPECT_EQ(Json::parse(contents(shell.folder / "own/summary.json"))["strata"]["mesh/f64"]["lanes"], of_mesh["lanes"]);
+  EXPECT_EQ(shell.json("own/summary.json")["strata"]["mesh/f64"]["lanes"], of_mesh["lanes"]);
   // float32 must be requested by name; here it is too coarse for a scene.
   expect_error("graze fuzz --scene site.toml --coordinates f32 --out f", 2, {"float32", "8 ulps", "doubles"});
-  EXPECT_NE(shell("graze scene site.off --coordinates f32").err.find("8 ulps"), std::string::npos);
+  EXPECT_TRUE(has(shell("graze scene site.off --coordinates f32").err, {"8 ulps"}));
   expect_done("graze scene site.off --coordinates f64 | sed 1,3d | cmp - <(sed 's/\"m\"/\"units\"/;1,3d' site.toml)");
   // Pairs of doubles are measured too.
   expect_done("graze dump m --format pairs > m.pairs && graze scene m.pairs | grep -q '^coordinates = \"f64\"'");
@@ -847,20 +803,19 @@ TEST_F(Doubles, EveryVerbDrawsAScenesDoubles) {
   std::ofstream(shell.folder / "mine.c") << "int meet(const double* a, const double* b) { return a[0] < b[0]; }\n";
   std::ofstream(shell.folder / "subjects.txt") << "mine=mine.c:meet\n";
   expect_done("graze tune moller_1997/f64/cpu --scene survey.toml --pairs 2000 --out t | tee told");
-  EXPECT_NE(contents(shell.folder / "told").find("large_offset/f64: your coordinates"), std::string::npos);
+  EXPECT_TRUE(has(shell.file("told"), {"large_offset/f64: your coordinates"}));
   expect_done("graze pareto --scene survey.toml --pairs 1000 --lanes 'moller_1997/f64/cpu,exact/f64/cpu' --out p");
   expect_done("graze invariants --scene survey.toml --pairs 200 --lanes 'exact/f64/cpu' --out i");
-  const Json invariants = Json::parse(contents(shell.folder / "i/invariants.json"));
+  const Json invariants = shell.json("i/invariants.json");
   EXPECT_EQ(invariants["scene"], "survey.toml");
   expect_done("graze league --subjects subjects.txt --scene survey.toml --pairs 300 --out l");
-  EXPECT_NE(contents(shell.folder / "l/league.md").find("--scene survey.toml --coordinates f64"), std::string::npos);
+  EXPECT_TRUE(has(shell.file("l/league.md"), {"--scene survey.toml --coordinates f64"}));
   expect_done("graze plan --scene survey.toml --pairs 1e6 --lanes 'exact/f64/cpu'");
   expect_done("graze plan --coordinates both --pairs 1e6 --lanes 'exact/f64/cpu'");
   expect_done(
       "graze discrepancy mine/f64/cpu exact/f64/cpu --subject mine=mine.c:meet --scene survey.toml --pairs 500 "
       "--out d");
-  EXPECT_TRUE(
-      Json::parse(contents(shell.folder / "d/discrepancy.json"))["verdicts"][0]["strata"].contains("uniform/f64"));
+  EXPECT_TRUE(shell.json("d/discrepancy.json")["verdicts"][0]["strata"].contains("uniform/f64"));
   // Each refusal says why.
   expect_error("graze discrepancy moller_1997/f32/cpu moller_1997/f32/cpu-fma --scene survey.toml", 2,
                {"only on pairs of float32"});
@@ -878,11 +833,10 @@ TEST_F(Doubles, WhatSufficesIsJudgedOnAScenesDoubles) {
       ran.out, found,
       std::regex("(?:use|that suffices is):? ([a-z_0-9]+/f64/cpu[^,]*), at 95 % confidence wrong on under")))
       << ran.out << ran.err;
-  EXPECT_NE(ran.out.find("exact/f64/cpu"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("No published lane of f32 is shown to suffice"), std::string::npos) << ran.out;
+  EXPECT_TRUE(has(ran.out, {"exact/f64/cpu", "No published lane of f32 is shown to suffice"}));
   const std::string lane = found[1];
   expect_done("graze fuzz --scene survey.toml --pairs 40k --seed 77 --lanes " + lane + " --out fresh");
-  const Json summary = Json::parse(contents(shell.folder / "fresh/summary.json"));
+  const Json summary = shell.json("fresh/summary.json");
   double wrong = 0, pairs = 0;
   for (const auto& [source, row] : summary["strata"].items()) {
     EXPECT_TRUE(source.ends_with("/f64")) << source;
@@ -908,8 +862,7 @@ TEST_F(Doubles, TryTakesTheDoublesOfCodeInDouble) {
          "0\n500003.25 5400000.02 0\n500000.25 5400000.02 3\n500001.25 5399999.01 1\n500001.25 5400001.01 1\n500001.25 "
          "5399999.01 3\n3 0 1 2\n3 3 4 5\n3 6 7 8\n";
   const auto tried = [&](const std::string& arguments) {
-    const Ran ran = shell("export XDG_CACHE_HOME=$PWD/cache; graze try " + arguments + " --pairs 300 --json");
-    EXPECT_EQ(ran.status, 0) << arguments << ran.err;
+    const Ran ran = shell.done("export XDG_CACHE_HOME=$PWD/cache; graze try " + arguments + " --pairs 300 --json");
     return Json::parse(ran.out, nullptr, false);
   };
   for (const std::string in : {"walls.off", "survey.toml", "--coordinates f64"}) {
@@ -918,15 +871,15 @@ TEST_F(Doubles, TryTakesTheDoublesOfCodeInDouble) {
     EXPECT_GT(answer["wrong"]["count"], 25) << in;
     EXPECT_EQ(answer["test"], "try/case.cpp") << in;
     EXPECT_EQ(answer["nanoseconds_a_call"]["exact"]["lane"], "exact/f64/cpu") << in;
-    EXPECT_NE(answer["epsilon"].get<std::string>().find("1e-9"), std::string::npos) << answer["epsilon"];
-    const Json strata = Json::parse(contents(shell.folder / "try/summary.json"))["strata"];
+    EXPECT_TRUE(has(answer["epsilon"].get<std::string>(), {"1e-9"})) << answer["epsilon"];
+    const Json strata = shell.json("try/summary.json")["strata"];
     for (const auto& [source, row] : strata.items()) {
       EXPECT_TRUE(source.ends_with("/f64")) << source;
       const Json lanes = row["lanes"];
       ASSERT_TRUE(lanes.contains("exact/f64/cpu"));
     }
     const std::string file = answer["failures"][0]["case"];
-    EXPECT_NE(contents(shell.folder / file).find("coordinates=f64"), std::string::npos) << file;
+    EXPECT_TRUE(has(shell.file(file), {"coordinates=f64"})) << file;
     expect_done("export XDG_CACHE_HOME=$PWD/cache; graze explain " + file);
     EXPECT_EQ(answer["again"].get<std::string>().find("--coordinates f64") != std::string::npos, in.starts_with("--"))
         << answer["again"];
@@ -934,13 +887,13 @@ TEST_F(Doubles, TryTakesTheDoublesOfCodeInDouble) {
   // The output names the exact lane of doubles, and its command for more pairs keeps the type.
   const Ran screen =
       shell("export XDG_CACHE_HOME=$PWD/cache; graze try double.cpp:meet --coordinates f64 --pairs 300 --out screen");
-  EXPECT_NE(screen.out.find("Instead: exact/f64/cpu is right on all 300 pairs."), std::string::npos) << screen.out;
+  EXPECT_TRUE(has(screen.out, {"Instead: exact/f64/cpu is right on all 300 pairs."}));
   // Code in float gets a mesh as float32 stores it, unless the user asks for doubles; then errors from storing count as
   // its own.
   tried("float.cpp:meet walls.off --out f");
-  EXPECT_TRUE(Json::parse(contents(shell.folder / "f/summary.json"))["strata"].contains("mesh"));
+  EXPECT_TRUE(shell.json("f/summary.json")["strata"].contains("mesh"));
   tried("float.cpp:meet survey.toml --out g");
-  const Json stored = Json::parse(contents(shell.folder / "g/summary.json"))["strata"]["uniform/f64"]["lanes"];
+  const Json stored = shell.json("g/summary.json")["strata"]["uniform/f64"]["lanes"];
   EXPECT_TRUE(stored["float/f32/cpu"].contains("stored")) << stored;
 }
 

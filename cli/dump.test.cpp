@@ -20,9 +20,8 @@ std::vector<std::string> cells_of(const std::string& line) {
 
 // Every row equals the output of `graze check` for the pair with the same numbers.
 TEST_F(Dump, ATableSaysWhatCheckSays) {
-  const Ran ran =
-      shell("graze dump near_edge_edge:7 --pairs 20 --lanes 'moller_1997/f32/cpu,exact/f32/cpu' > t.csv; cat t.csv");
-  ASSERT_EQ(ran.status, 0) << ran.err;
+  const Ran ran = shell.done(
+      "graze dump near_edge_edge:7 --pairs 20 --lanes 'moller_1997/f32/cpu,exact/f32/cpu' > t.csv; cat t.csv");
   std::istringstream lines(ran.out);
   std::string line;
   std::getline(lines, line);
@@ -38,8 +37,7 @@ TEST_F(Dump, ATableSaysWhatCheckSays) {
   }
   pairs.close();
   ASSERT_EQ(rows.size(), 20u);
-  const Ran check = shell("graze check typed.pairs --json --lanes 'moller_1997/f32/cpu,exact/f32/cpu'");
-  ASSERT_EQ(check.status, 0) << check.err;
+  const Ran check = shell.done("graze check typed.pairs --json --lanes 'moller_1997/f32/cpu,exact/f32/cpu'");
   std::istringstream objects(check.out);
   for (std::size_t i = 0; std::getline(objects, line); ++i) {
     const auto object = nlohmann::json::parse(line);
@@ -62,9 +60,8 @@ std::string field_of(const std::string& line, const std::string& key) {
 
 TEST_F(Dump, PairsReadBackWithTheSameTruth) {
   expect_done("graze dump 'lattice:5' --format pairs --pairs 40 --lanes 'exact/f32/cpu,moller_1997/f32/cpu' > l.pairs");
-  const Ran check = shell("graze check l.pairs --json --exact-input --lanes 'exact/f32/cpu,moller_1997/f32/cpu'");
-  ASSERT_EQ(check.status, 0) << check.err;
-  std::istringstream lines(contents(shell.folder / "l.pairs")), objects(check.out);
+  const Ran check = shell.done("graze check l.pairs --json --exact-input --lanes 'exact/f32/cpu,moller_1997/f32/cpu'");
+  std::istringstream lines(shell.file("l.pairs")), objects(check.out);
   std::string line, text;
   std::getline(lines, line);
   EXPECT_EQ(line, "graze-pairs 1");
@@ -119,7 +116,7 @@ TEST_F(Dump, ACampaignIsAllOfItsPairs) {
       "graze fuzz --seed 3 --pairs 50 --strata 'lattice,thesis' --lanes exact/f32/cpu --out 'c d' > /dev/null && "
       "graze dump 'c d' > c.csv && test $(wc -l < c.csv) = 51 && "
       "graze dump lattice:3 --pairs 25 > l.csv && graze dump thesis:3 --pairs 25 | tail -n +2 >> l.csv");
-  EXPECT_EQ(shell("sort c.csv > 1; sort l.csv > 2; cmp 1 2").status, 0);
+  expect_done("sort c.csv > 1; sort l.csv > 2; cmp 1 2");
   EXPECT_EQ(shell("graze dump 'c d' --pairs 3 | wc -l").out, "4\n");
 }
 

@@ -52,9 +52,8 @@ class Emit : public testing::TestWithParam<EmitCase> {
   // Emits to `file`, then runs the command in its first comment.
   Ran run(const std::string& kind, const std::string& file, const std::string& lane = "") {
     const std::string lanes = lane.empty() ? "" : " --lanes '" + lane + "'";
-    const Ran emitted = shell("graze repro case.pairs --emit " + kind + lanes + " > " + file);
-    EXPECT_EQ(emitted.status, 0) << emitted.err;
-    std::istringstream text(contents(shell.folder / file));
+    shell.done("graze repro case.pairs --emit " + kind + lanes + " > " + file);
+    std::istringstream text(shell.file(file));
     std::string comment, command;
     text >> comment;
     std::getline(text, command);
@@ -94,7 +93,7 @@ TEST_P(Emit, GtestFails) {
   if (std::string(GetParam().cpu).ends_with("-fma") && !contracts()) GTEST_SKIP() << "this build does not contract";
   const Ran ran = run("gtest", "case.cpp", GetParam().cpu);
   EXPECT_EQ(ran.status, 1) << ran.err;
-  EXPECT_NE(ran.out.find(" 1 FAILED TEST"), std::string::npos) << ran.out;
+  EXPECT_TRUE(has(ran.out, {" 1 FAILED TEST"}));
 }
 
 TEST_P(Emit, CudaShowsTheWrongVerdict) {
@@ -123,10 +122,9 @@ TEST_P(Emit, ObjHoldsTheSameBits) {
   const Ran emitted = shell("graze repro case.pairs --emit obj > case.obj; grep -c '^[of] ' case.obj");
   EXPECT_EQ(emitted.out, "4\n");
   const std::string bits = " | head -n 7 | tail -n 6";
-  const Ran same = shell("graze check case.pairs --truth-only" + bits +
-                         " > a; sed -n 's/^v //p' case.obj | tr '\\n' ' ' | graze check - --truth-only" + bits +
-                         " > b; test -s a && cmp a b");
-  EXPECT_EQ(same.status, 0) << same.out << same.err;
+  shell.done("graze check case.pairs --truth-only" + bits +
+             " > a; sed -n 's/^v //p' case.obj | tr '\\n' ' ' | graze check - --truth-only" + bits +
+             " > b; test -s a && cmp a b");
 }
 
 INSTANTIATE_TEST_SUITE_P(cli, Emit, testing::ValuesIn(kCases),
@@ -151,10 +149,10 @@ TEST(EmitFlags, AreThoseOfTheLane) {
   const auto first_line = [&](const std::string& what) {
     return shell("graze repro p --emit " + what + " | head -n 1").out;
   };
-  EXPECT_NE(first_line("cpp --lanes '*/f32/cpu'").find("-ffp-contract=off"), std::string::npos);
-  EXPECT_NE(first_line("cpp --lanes '*/f32/cpu-fma'").find("-ffp-contract=fast"), std::string::npos);
-  EXPECT_NE(first_line("cuda --lanes '*/f32/cuda-nofma'").find("-fmad=false"), std::string::npos);
-  EXPECT_EQ(first_line("cuda --lanes '*/f32/cuda-fma'").find("fmad"), std::string::npos);
+  EXPECT_TRUE(has(first_line("cpp --lanes '*/f32/cpu'"), {"-ffp-contract=off"}));
+  EXPECT_TRUE(has(first_line("cpp --lanes '*/f32/cpu-fma'"), {"-ffp-contract=fast"}));
+  EXPECT_TRUE(has(first_line("cuda --lanes '*/f32/cuda-nofma'"), {"-fmad=false"}));
+  EXPECT_FALSE(has(first_line("cuda --lanes '*/f32/cuda-fma'"), {"fmad"}));
 }
 
 // Needs no device: the contraction rules, which were verified on one, must give a snippet's kernel as many fused
@@ -204,7 +202,7 @@ TEST(EmitErrors, SayWhatIsMissing) {
   expect(easy + "cpp --lanes '*/cuda-*fma'", 1, {"easy", "CPU lanes"});
   expect(easy + "fortran", 2, {"fortran"});
   expect("echo 'nan 0 0 4 0 0 0 4 0  0 0 9 4 0 9 0 4 9' > n; graze repro n --emit obj", 1, {"n", "finite coordinates"});
-  EXPECT_NE(shell(easy + "python").out.find("Graze: disjoint"), std::string::npos);  // needs no wrong lane
+  EXPECT_TRUE(has(shell(easy + "python").out, {"Graze: disjoint"}));  // needs no wrong lane
 }
 
 }  // namespace

@@ -124,8 +124,8 @@ TEST_F(ExitStatus, PlacesWithOtherThingsAreWrongUse) {
     expect_error("graze status s1 --prometheus " + file, 2, {file, "--force"});
     expect_error("graze toolchain x86-gcc --json " + file, 2, {file, "--force"});
   }
-  EXPECT_EQ(contents(shell.folder / "p").substr(0, 4), "0.1 ");
-  EXPECT_EQ(contents(shell.folder / "mine/notes.txt"), "kept");
+  EXPECT_EQ(shell.file("p").substr(0, 4), "0.1 ");
+  EXPECT_EQ(shell.file("mine/notes.txt"), "kept");
   expect_done(
       "graze minimize p --lanes 'guigue*/f32/cpu' --out link --force && test -L link && head -n 1 p | grep -q "
       "graze-pairs");

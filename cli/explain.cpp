@@ -236,11 +236,8 @@ void explain_cases(const ExplainOptions& options) {
   fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
   fuzz::put_own_code_first(under_test);
   const reports::Screen screen = output_screen();
-  const std::vector<corpus::Entry> entries = read_cases(options.name, PairTypes::both);
+  const std::vector<corpus::Entry> entries = read_cases(options.name, options.exact_input);
   take_doubles_of(entries, under_test);
-  for (const corpus::Entry& entry : entries) {
-    if (options.exact_input) expect_exact_input(options.name, entry);
-  }
   // Two lines of the limit are kept for the text that follows.
   LimitedText limited(options.all ? std::numeric_limits<int>::max() : kMostLines - 2);
   const auto add = [&](const std::vector<std::string>& blocks) {

@@ -147,8 +147,7 @@ fuzz::Campaign campaign_of(const FuzzOptions& options, const fuzz::SelectedLanes
   if (!options.scratch.empty()) campaign.scratch = fuzz::scratch_of(options.scratch, options.out);
   Json scene_spec;
   if (options.mesh.empty() || !options.strata.empty()) {  // with a mesh, strata are used only if the user asks for them
-    strata::SceneSources drawn =
-        cli::drawn(options.scene, options.seed, options.pairs, options.strata, options.coordinates, &scene_spec);
+    strata::SceneSources drawn = cli::drawn(options, &scene_spec);
     say_notes(drawn.notes, drawn.rounding, options.exact_input);
     campaign.sources = std::move(drawn.sources);
     left_out = std::move(drawn.left_out);
@@ -328,10 +327,8 @@ void add_fuzz(CLI::App& app, int& status) {
       ->add_option("--scratch", options->scratch,
                    "Folder on a local disk for a shard's database while it runs; it is then copied to --out")
       ->option_text("DIR");
-  add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
-  add_coordinates_option(*command, options->coordinates);
+  add_draw_options(*command, *options);
   add_lane_options(*command, options->lanes);
-  add_scene_option(*command, options->scene);
   command
       ->add_option(
           "--mesh", options->mesh,
@@ -374,10 +371,7 @@ void add_fuzz(CLI::App& app, int& status) {
   command->add_flag("--json", options->json, "Print the summary as JSON");
   add_junit(*command, options->junit, "one test for each lane and stratum");
   command->add_flag("--require-device", options->require_device, "Fail if there is no CUDA device");
-  command->callback([options, command, &status] {
-    take_type_of_scene(*command, options->scene, options->coordinates);
-    status = start(*options);
-  });
+  run_drawing(*command, options, status, start);
 }
 
 }  // namespace graze::cli

@@ -13,13 +13,10 @@
 
 namespace graze::cli {
 
-struct FuzzOptions {
-  std::uint64_t pairs = 1'000'000;
-  std::uint64_t seed = 1;
+struct FuzzOptions : DrawOptions {
   int threads = 0;
-  std::string out = "campaign", scene;
-  std::vector<std::string> strata, mesh;
-  PairTypes coordinates = PairTypes::f32;
+  std::string out = "campaign";
+  std::vector<std::string> mesh;
   LaneOptions lanes;
   fuzz::EngineChoice engine = fuzz::EngineChoice::automatic;
   bool by_exact_lane = false, exact_input = false;

@@ -26,13 +26,10 @@ namespace graze::cli {
 using fuzz::Json;
 namespace {
 
-struct HuntOptions {
-  std::uint64_t runs = 1'000'000;
-  std::uint64_t seed = 1, minutes = 0;
+struct HuntOptions : DrawOptions {
+  std::uint64_t minutes = 0;
   int threads = 0;
-  std::string out = "hunt", scene;
-  PairTypes coordinates = PairTypes::f32;
-  std::vector<std::string> strata;
+  std::string out = "hunt";
   LaneOptions lanes;
   fuzz::Shard shard;
   bool json = false;
@@ -72,7 +69,7 @@ int hunt(const HuntOptions& options) {
   fuzz::SelectedLanes under_test = selected_lanes(lanes);
   if (options.coordinates == PairTypes::f64) take_doubles(under_test);
   fuzz::Hunt hunt;
-  hunt.pairs = options.runs;
+  hunt.pairs = options.pairs;
   hunt.seconds = 60 * static_cast<double>(options.minutes);
   hunt.campaign.seed = options.seed;
   hunt.campaign.under_test = &under_test;
@@ -80,8 +77,7 @@ int hunt(const HuntOptions& options) {
   hunt.campaign.directory = options.out;
   hunt.campaign.shard = options.shard;
   Json scene_spec;
-  strata::SceneSources drawn =
-      cli::drawn(options.scene, options.seed, options.runs, options.strata, options.coordinates, &scene_spec);
+  strata::SceneSources drawn = cli::drawn(options, &scene_spec);
   hunt.drawn.sources = std::move(drawn.sources);
   std::optional<strata::Scene> scene;
   if (!options.scene.empty()) {
@@ -138,7 +134,7 @@ void add_hunt(CLI::App& app, int& status) {
                                          "lanes compute");
   command->footer("Example: graze hunt --runs 1000000 --seed 1 --lanes 'moller*' --out hunt");
   auto options = std::make_shared<HuntOptions>();
-  add_count(*command, "--runs", options->runs, 1, kMostWhole, "Number of pairs in total");
+  add_count(*command, "--runs", options->pairs, 1, kMostWhole, "Number of pairs in total");
   command
       ->add_option("--minutes", options->minutes,
                    "Time limit in minutes, after which the same command resumes the search; 0 means none")
@@ -155,15 +151,11 @@ void add_hunt(CLI::App& app, int& status) {
       *command, options->shard,
       "Part of the search to run: the K-th of N, with its share of the runs, in a directory of its own. `graze merge` "
       "joins the parts by kind of failure");
-  add_globs(*command, "--strata", options->strata, "Patterns of the strata to start from");
-  add_coordinates_option(*command, options->coordinates, OfBothTypes::no);
+  add_draw_options(*command, *options, OfBothTypes::no);
+  command->get_option("--strata")->description("Patterns of the strata to start from");
   add_lane_options(*command, options->lanes, Executors::twins);
-  add_scene_option(*command, options->scene);
   command->add_flag("--json", options->json, "Print the summary as JSON");
-  command->callback([options, command, &status] {
-    take_type_of_scene(*command, options->scene, options->coordinates);
-    status = hunt(*options);
-  });
+  run_drawing(*command, options, status, hunt);
 }
 
 }  // namespace graze::cli

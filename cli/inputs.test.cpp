@@ -55,8 +55,8 @@ TEST_F(Inputs, FoldersAndDevicesInAFilesPlaceAreNamed) {
   for (const char* verb : {"check", "explain", "fuzz --mesh", "report --out r.html --from"}) {
     const Ran ran = shell(std::string("graze ") + verb + " /proc/self/mem");  // opens, but cannot be read
     EXPECT_EQ(ran.status, 1) << verb;
-    EXPECT_NE(ran.err.find("/proc/self/mem"), std::string::npos) << verb << ran.err;
-    EXPECT_EQ(ran.err.find("basic_filebuf"), std::string::npos) << verb << ran.err;
+    EXPECT_TRUE(has(ran.err, {"/proc/self/mem"})) << verb;
+    EXPECT_FALSE(has(ran.err, {"basic_filebuf"})) << verb;
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
   }
   // A read error on standard input is not taken for its end.
@@ -115,8 +115,7 @@ TEST_F(Inputs, UnknownOptionsAreNamedWithWhatIsNearest) {
 TEST_F(Inputs, CountsAreWhatPeopleWrite) {
   for (const char* count : {"2000", "2_000", "2e3", "2k", "0.2e4", "0.002M"}) {
     const Ran ran =
-        shell(std::string("graze fuzz --strata uniform --lanes exact/f32/cpu --json --out c --pairs ") + count);
-    ASSERT_EQ(ran.status, 0) << count << ran.err;
+        shell.done(std::string("graze fuzz --strata uniform --lanes exact/f32/cpu --json --out c --pairs ") + count);
     EXPECT_EQ(Json::parse(ran.out)["spec"]["pairs"], 2000) << count;
   }
   for (const char* count : {"1.5", "1e", "_1", "1__0", "1_", "1e99", "1x", "kM", "1e-1", ".5M"})
@@ -131,7 +130,7 @@ TEST_F(Inputs, ForeignTextDoesNotReachTheTerminal) {
     EXPECT_LE(ran.status, 1) << verb << ran.err;
     EXPECT_EQ((ran.out + ran.err).find_first_of("\x1b\x07"), std::string::npos) << verb << ran.out;
   }
-  EXPECT_NE(shell("graze check a:b:c").out.find("a\\x1b[31mb"), std::string::npos);
+  EXPECT_TRUE(has(shell("graze check a:b:c").out, {"a\\x1b[31mb"}));
 }
 
 // Names of folders and files are escaped too.
@@ -150,8 +149,7 @@ TEST_F(Inputs, NoNameReachesTheTerminalAsItIs) {
       ".pairs --out " + name + "m && graze check " + name + ".pairs && graze corpus add " + name + ".pairs --corpus " +
       name + "k && graze pack " + name + "c";
   std::ofstream(shell.folder / "all.sh") << script;
-  const Ran ran = shell("bash all.sh");
-  EXPECT_EQ(ran.status, 0) << ran.err;
+  const Ran ran = shell.done("bash all.sh");
   EXPECT_GT(std::count(ran.out.begin(), ran.out.end(), '\n'), 100);
   for (const std::string& text : {ran.out, ran.err}) {
     const std::size_t at = text.find('\x1b');
@@ -168,33 +166,29 @@ TEST_F(Inputs, WhatFloat32MakesOfDecimalsIsSaid) {
        {"graze check near.pairs", "graze check near.pairs --json", "graze explain near.pairs",
         "graze minimize near.pairs", "graze corpus add near.pairs"}) {
     const Ran ran = shell(command);
-    EXPECT_NE((ran.out + ran.err).find(note), std::string::npos) << command << ran.out << ran.err;
+    EXPECT_TRUE(has(ran.out + ran.err, {note})) << command;
     expect_error(command + " --exact-input", 2, {"near.pairs:1", "\"1.00000000001\"", "--exact-input", "12"});
   }
   // A double in hex that float32 cannot represent makes a pair of doubles.
   const Ran hex = shell(
       "echo '0 0 1 1 0 1 0 1 1  0 0 0x1.0000000000001p0 1 0 0x1.0000000000001p0 0 1 "
       "0x1.0000000000001p0' | graze check -");
-  EXPECT_NE(hex.out.find("truth: disjoint"), std::string::npos) << hex.out;
-  EXPECT_NE(hex.out.find("as stored in float32: they share an area"), std::string::npos) << hex.out;
+  EXPECT_TRUE(has(hex.out, {"truth: disjoint", "as stored in float32: they share an area"}));
   // Decimals that doubles cannot distinguish either.
   const Ran finer = shell(
       "echo '0 0 1 1 0 1 0 1 1  0 0 1.00000000000000000001 1 0 1.00000000000000000001 0 1 1.00000000000000000001' | "
       "graze check -");
-  EXPECT_NE(finer.out.find("as written: disjoint, 1e-20 apart; as doubles and as stored in float32:"),
-            std::string::npos)
-      << finer.out;
-  EXPECT_EQ(finer.out.find("it rounds"), std::string::npos);
+  EXPECT_TRUE(has(finer.out, {"as written: disjoint, 1e-20 apart; as doubles and as stored in float32:"}));
+  EXPECT_FALSE(has(finer.out, {"it rounds"}));
   // Doubles and float32 round the pair to different distances.
   const Ran apart = shell(
       "echo '9.3 0.4 16.2 2.6 2.1 21.2 7.6 5.7 12.6  6.11 2.67 17.12 10.21 7.27 17.42 9.21 4.17 18.22' | graze check - "
       "--json");
-  for (const char* words :
-       {"as written: they touch in a point; as doubles: disjoint, 9.29e-16 apart;",
-        "as stored in float32: disjoint, 2.91e-07 apart (it rounds 18 numbers, the first is number 1, 9.3)"})
-    EXPECT_NE(apart.out.find(words), std::string::npos) << apart.out;
-  EXPECT_NE(shell("graze check near.pairs").out.find("(it rounds 3 numbers, the first is number 12, "),
-            std::string::npos);
+  EXPECT_TRUE(
+      has(apart.out,
+          {"as written: they touch in a point; as doubles: disjoint, 9.29e-16 apart;",
+           "as stored in float32: disjoint, 2.91e-07 apart (it rounds 18 numbers, the first is number 1, 9.3)"}));
+  EXPECT_TRUE(has(shell("graze check near.pairs").out, {"(it rounds 3 numbers, the first is number 12, "}));
   // Rounding that does not change the truth is not reported.
   expect_done("echo '0.1 0 0 4 0 0 0 4 0  1 1 0.3 1 2 4 2 1 4' > p; graze check p > out; ! grep -q written out");
   expect_done(std::string("echo '") + kTouching + "' | graze check - --exact-input");
@@ -209,9 +203,8 @@ TEST_F(Inputs, WhatFloat32MakesOfMeshesIsSaid) {
   for (const std::string command : {"graze query far.off#0 far.off --lanes 'exact,moller_1997/f32/cpu'",
                                     "graze query first.txt far.off --lanes moller_1997/f32/cpu",
                                     "graze fuzz --mesh far.off --lanes '*/f32/cpu' --out c"}) {
-    const Ran ran = shell(command);
-    EXPECT_EQ(ran.status, 0) << command << ran.err;
-    EXPECT_NE(ran.err.find(note), std::string::npos) << command << ran.err;
+    const Ran ran = shell.done(command);
+    EXPECT_TRUE(has(ran.err, {note})) << command;
     EXPECT_EQ(ran.err.find(note), ran.err.rfind(note)) << command << ran.err;
     EXPECT_EQ(ran.err.find("graze: exact decides the rounded triangles too") != std::string::npos,
               command.find("exact,moller") != std::string::npos)
@@ -220,19 +213,17 @@ TEST_F(Inputs, WhatFloat32MakesOfMeshesIsSaid) {
     expect_error(again + " --exact-input", 2, {"float32", "6 of", "--exact-input"});
     EXPECT_FALSE(std::filesystem::exists(shell.folder / "c2"));
   }
-  EXPECT_NE(
-      shell("graze query first.txt far.off --lanes 'exact*/f32/cpu'").err.find("first.txt: float32 rounded 3 of 9"),
-      std::string::npos);
+  EXPECT_TRUE(
+      has(shell("graze query first.txt far.off --lanes 'exact*/f32/cpu'").err, {"first.txt: float32 rounded 3 of 9"}));
   std::ofstream(shell.folder / "near.off") << "OFF\n3 1 0\n0 0 0\n1 0 0\n0.5 1 0\n3 0 1 2\n";
   for (const std::string command :
        {"graze query --self far.off", "graze query far.off far.off --between", "graze query first.txt far.off",
         "graze query far.off#1 far.off --any", "graze scene far.off"}) {
     expect_error(command + " --exact-input", 2, {"float32", "6 of", "--exact-input"});
     const Ran ran = shell(command);
-    EXPECT_NE(
-        ran.err.find("far.off: decided in doubles, because 6 of 18 coordinates have more digits than float32 holds"),
-        std::string::npos);
-    EXPECT_EQ(ran.err.find("rounded"), std::string::npos) << ran.err;
+    EXPECT_TRUE(
+        has(ran.err, {"far.off: decided in doubles, because 6 of 18 coordinates have more digits than float32 holds"}));
+    EXPECT_FALSE(has(ran.err, {"rounded"}));
   }
   expect_done("graze query first.txt far.off --csv h.csv --obj h.obj --pairs h.pairs > out; grep -q '^1 of 2' out");
   expect_done("graze query far.off#1 near.off 2> err; grep -q 'far.off: decided in doubles' err");
@@ -246,13 +237,12 @@ TEST_F(Inputs, WhatFloat32MakesOfMeshesIsSaid) {
   for (const std::string command : {"graze query --self least.off", "graze query least.off#0 least.off",
                                     "graze fuzz --mesh least.off --lanes exact/f32/cpu --out l"}) {
     const Ran ran = shell(command);
-    EXPECT_NE(ran.err.find("least.off: float32 rounded 3 of 18 coordinates"), std::string::npos) << command << ran.err;
+    EXPECT_TRUE(has(ran.err, {"least.off: float32 rounded 3 of 18 coordinates"})) << command;
     expect_error(command + " --exact-input", 2, {"least.off", "3 of 18", "--exact-input"});
   }
   expect_error("graze query least.txt near.off --exact-input", 2, {"least.txt", "1 of 9"});
-  const Ran exact = shell("graze query --self near.off --exact-input");
-  EXPECT_EQ(exact.status, 0) << exact.err;
-  EXPECT_EQ(exact.err.find("float32"), std::string::npos);
+  const Ran exact = shell.done("graze query --self near.off --exact-input");
+  EXPECT_FALSE(has(exact.err, {"float32"}));
 }
 
 TEST_F(Inputs, PatternsThatLeaveNothingAreWrongUse) {
@@ -304,7 +294,7 @@ TEST_F(Inputs, PastedPairsAreReadByEveryVerb) {
     std::ofstream(shell.folder / name) << text;
     for (const std::string verb : {"check", "repro", "explain"}) {
       const Ran ran = shell("graze " + verb + (verb == "explain" ? " --all " : " ") + name);
-      EXPECT_NE(ran.out.find("truth: intersects, contact point"), std::string::npos) << verb << name << ran.err;
+      EXPECT_TRUE(has(ran.out, {"truth: intersects, contact point"})) << verb << name << ran.err;
     }
     const std::string file = name;
     expect_done("graze repro " + file + " --emit obj && graze minimize " + file + " --out m && graze explain m && " +
@@ -335,7 +325,7 @@ TEST_F(Inputs, PrintedCommandsRunAsTheyStand) {
                   .out.ends_with("\nNext: graze explain 'a b'\n"));
   EXPECT_TRUE(shell("graze explain 'a b' --lanes 'guigue_*/f32/cpu'").out.ends_with("\nNext: graze map 'a b'\n"));
   EXPECT_TRUE(shell("graze check 'a b' --lanes 'guigue_*/f32/cpu'").out.ends_with("\nNext: graze explain 'a b'\n"));
-  EXPECT_EQ(shell("graze check 'a b' --lanes 'exact/*'").out.find("Next:"), std::string::npos);
+  EXPECT_FALSE(has(shell("graze check 'a b' --lanes 'exact/*'").out, {"Next:"}));
   EXPECT_TRUE(shell("graze map 'a b' --lanes 'guigue_*/f32/cpu' --out m.png")
                   .out.ends_with("\nNext: graze repro 'a b' --emit cpp\n"));
   expect_done("graze repro 'a b' --emit cpp > bug.cpp");
@@ -351,9 +341,9 @@ TEST_F(Inputs, PrintedCommandsRunAsTheyStand) {
                 verb);
   }
   // Output for other programs has no such line.
-  EXPECT_EQ(shell("graze check 'a b' --json; graze explain 'a b' --json; graze lanes --json; graze dump lattice")
-                .out.find("Next"),
-            std::string::npos);
+  EXPECT_FALSE(
+      has(shell("graze check 'a b' --json; graze explain 'a b' --json; graze lanes --json; graze dump lattice").out,
+          {"Next"}));
 }
 
 }  // namespace

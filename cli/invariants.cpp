@@ -15,13 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct InvariantsOptions {
+struct InvariantsOptions : DrawOptions {
+  InvariantsOptions() : DrawOptions{20'000} {}
   LaneOptions lanes;
-  std::vector<std::string> strata;
-  std::uint64_t pairs = 20'000, seed = 1;
-  PairTypes coordinates = PairTypes::f32;
   int threads = 0;
-  std::string scene, out = "invariants";
+  std::string out = "invariants";
 };
 
 int invariants(const InvariantsOptions& options) {
@@ -30,7 +28,7 @@ int invariants(const InvariantsOptions& options) {
   analysis::InvariantSpec spec;
   spec.lanes = under_test.lanes;
   spec.on_host = under_test.on_host;
-  strata::SceneSources all = drawn(options.scene, options.seed, options.pairs, options.strata, options.coordinates);
+  strata::SceneSources all = drawn(options);
   spec.sources = std::move(all.sources);
   spec.threads = options.threads;
   spec.simpler = is_simpler;
@@ -72,9 +70,7 @@ void add_invariants(CLI::App& app, int& status) {
   command->footer("Example: graze invariants --lanes '*/f32/cpu' --strata 'near_*' --pairs 2000");
   const auto options = std::make_shared<InvariantsOptions>();
   add_lane_options(*command, options->lanes, Executors::twins);
-  add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
-  add_coordinates_option(*command, options->coordinates);
-  add_scene_option(*command, options->scene);
+  add_draw_options(*command, *options);
   add_count(*command, "--pairs", options->pairs, 1, kMostWhole,
             "Number of pairs in total, shared evenly by the strata; each is decided in about 70 forms");
   add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of the pairs");
@@ -82,10 +78,7 @@ void add_invariants(CLI::App& app, int& status) {
   command->add_option("--out", options->out, "Folder for invariants.json and the simplest cases")
       ->capture_default_str()
       ->option_text("DIR");
-  command->callback([options, command, &status] {
-    take_type_of_scene(*command, options->scene, options->coordinates);
-    status = invariants(*options);
-  });
+  run_drawing(*command, options, status, invariants);
 }
 
 }  // namespace graze::cli

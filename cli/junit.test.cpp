@@ -13,7 +13,7 @@ class Junit : public CommandTest {
  protected:
   // {"suite": {"test": failure, or null}}; skipped tests as "skipped: why".
   nlohmann::json read(const std::string& file) {
-    const Ran ran = shell(
+    const Ran ran = shell.done(
         "python3 -c \"import json, sys, xml.etree.ElementTree as x\n"
         "out = {}\n"
         "for suite in x.parse('" +
@@ -30,7 +30,6 @@ class Junit : public CommandTest {
         "        tests[test.get('name')] = failure.text if failure is not None else \\\n"
         "            'skipped: ' + skipped.get('message') if skipped is not None else None\n"
         "print(json.dumps(out))\"");
-    EXPECT_EQ(ran.status, 0) << ran.err;
     return nlohmann::json::parse(ran.out, nullptr, false);
   }
 };
@@ -48,12 +47,11 @@ TEST_F(Junit, EscapesWhatXmlForbids) {
 // Each lane and stratum is a test. It fails if the summary counts wrong verdicts, and shows a pair on which the lane is
 // wrong.
 TEST_F(Junit, OfACampaignHasTheCountsOfItsSummary) {
-  const Ran ran = shell(
+  expect_done(
       "graze fuzz --executor twin --pairs 4000 --strata 'uniform,lattice,near_edge_edge' --out c --junit r.xml "
       "--lanes 'exact/f32/cpu,moller_1997/f32/c*'");
-  ASSERT_EQ(ran.status, 0) << ran.err;
   const nlohmann::json tests = read("r.xml");
-  const auto summary = nlohmann::json::parse(contents(shell.folder / "c/summary.json"));
+  const auto summary = shell.json("c/summary.json");
   int failures = 0, all = 0;
   for (const std::string lane : summary["spec"]["lanes"]) {
     for (const std::string stratum : summary["spec"]["strata"]) {
@@ -88,15 +86,14 @@ TEST_F(Junit, OfACampaignHasTheCountsOfItsSummary) {
   EXPECT_EQ(shell("cat mine.xml; ls d").out, "<testsuites/>\n");
   EXPECT_EQ(shell("graze fuzz --pairs 100 --out d --junit .").status, 1);
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "d"));
-  EXPECT_EQ(shell("graze fuzz --pairs 100 --lanes exact/f32/cpu --out e --junit r.xml").status, 0);
+  expect_done("graze fuzz --pairs 100 --lanes exact/f32/cpu --out e --junit r.xml");
   EXPECT_EQ(read("r.xml").size(), 1u);
   EXPECT_EQ(shell("graze fuzz --pairs 100 --shard 1/2 --out f --junit s.xml").status, 2);
 }
 
 TEST_F(Junit, OfTryAndOfACorpus) {
   shell("echo 'bool meet(const float* a, const float* b) { return a[0] < b[0]; }' > own.cpp");
-  const Ran tried = shell("graze try own.cpp:meet --pairs 500 --junit t.xml");
-  EXPECT_EQ(tried.status, 0) << tried.err;
+  expect_done("graze try own.cpp:meet --pairs 500 --junit t.xml");
   const nlohmann::json tests = read("t.xml");
   EXPECT_TRUE(tests.at("exact/f32/cpu").at("uniform").is_null());
   EXPECT_TRUE(tests.at("own/f32/cpu").at("uniform").is_string()) << tests;
@@ -106,7 +103,7 @@ TEST_F(Junit, OfTryAndOfACorpus) {
                 .status,
             0);
   const std::string verify = "graze corpus verify --lanes '*/f32/cpu' --junit v.xml";
-  EXPECT_EQ(shell(verify).status, 0);
+  expect_done(verify);
   const auto passed = read("v.xml").at("corpus/regression/cases.pairs");
   EXPECT_GT(passed.size(), 4u);
   for (const auto& [name, failure] : passed.items()) EXPECT_TRUE(failure.is_null()) << name;

@@ -121,32 +121,22 @@ void open_subjects_of(const std::filesystem::path& name, bool resubject) {
     fmt::print(stderr, "graze: {}\n", printable(line));
 }
 
-namespace {
-
-// Opens the subjects of that spec, except code that has changed or is missing, so that the verb continues without it.
-// Returns: the lanes that are left out.
-std::vector<fuzz::LaneLeftOut> open_unchanged_subjects_of(const std::filesystem::path& name, bool resubject) {
-  const fuzz::Json spec = recorded_spec_of(name);
+std::vector<std::pair<std::string, std::string>> open_unchanged_subjects_of(const std::filesystem::path& name,
+                                                                            bool resubject) {
   const subjects::Changed changed = resubject ? subjects::Changed::used : subjects::Changed::refused;
-  std::vector<fuzz::LaneLeftOut> left_out;
-  for (const fuzz::Json& row : spec.value("subjects", fuzz::Json::array())) {
+  std::vector<std::pair<std::string, std::string>> left_out;
+  for (const fuzz::Json& row : recorded_spec_of(name).value("subjects", fuzz::Json::array())) {
     try {
       for (const std::string& line : subjects::open_recorded({{"subjects", fuzz::Json::array({row})}}, false, changed))
         fmt::print(stderr, "graze: {}\n", printable(line));
     } catch (const UsageError&) {
       throw;
     } catch (const std::runtime_error& error) {
-      const std::string subject = row.at("name").get<std::string>() + '/',
-                        why = printable(error.what()) + (resubject ? "" : "; --resubject runs the changed code");
-      for (const std::string id : spec.at("lanes")) {
-        if (id.starts_with(subject)) left_out.push_back({id, why});
-      }
+      left_out.emplace_back(row.at("name"), printable(error.what()));
     }
   }
   return left_out;
 }
-
-}  // namespace
 
 std::vector<std::string> subject_names(const LaneOptions& options) {
   std::vector<std::string> names;
@@ -179,7 +169,15 @@ fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesy
                                    bool require_device) {
   open_subjects(options);
   std::vector<fuzz::LaneLeftOut> not_opened;
-  if (!about.empty()) not_opened = open_unchanged_subjects_of(about, options.resubject);
+  if (!about.empty()) {
+    const fuzz::Json spec = recorded_spec_of(about);
+    const std::string hint = options.resubject ? "" : "; --resubject runs the changed code";
+    for (const auto& [subject, why] : open_unchanged_subjects_of(about, options.resubject)) {
+      for (const std::string id : spec.at("lanes")) {
+        if (id.starts_with(subject + '/')) not_opened.push_back({id, why + hint});
+      }
+    }
+  }
   fuzz::SelectedLanes under_test = fuzz::select_lanes(options.globs, options.executor, require_device, not_opened);
   fuzz::expect_each_runs(under_test);
   std::vector<std::string> ids;

@@ -34,11 +34,9 @@ namespace fs = std::filesystem;
 // Seconds. The least time limit of a program, because its first pair includes its start.
 constexpr double kStartOfAProgram = 10;
 
-struct LeagueOptions {
-  std::string subjects, scene, out = "league";
-  std::uint64_t pairs = 100'000, seed = 1;
-  PairTypes coordinates = PairTypes::f32;
-  std::vector<std::string> strata;
+struct LeagueOptions : DrawOptions {
+  LeagueOptions() : DrawOptions{100'000} {}
+  std::string subjects, out = "league";
   double timeout = 0.1;
 };
 
@@ -129,9 +127,7 @@ int league(const LeagueOptions& options) {
     if (!has_lane) fmt::print(stderr, "graze: left out {}: it does not take doubles\n", subject.name);
     return !has_lane;
   });
-  const strata::SceneSources drawn_pairs =
-      drawn(options.scene, options.seed, options.pairs, options.strata, options.coordinates);
-  const std::vector<strata::PairSource>& sources = drawn_pairs.sources;
+  const std::vector<strata::PairSource> sources = drawn(options).sources;
   const ResultFolder folder(options.out, "league.json");
   const std::atomic<bool>& interrupted = catch_interrupts();
   const auto start = std::chrono::steady_clock::now();
@@ -186,16 +182,11 @@ void add_league(CLI::App& app, int& status) {
       ->check(number(0.001, 86400.0))
       ->capture_default_str()
       ->option_text("SECONDS");
-  add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
-  add_coordinates_option(*command, options->coordinates);
-  add_scene_option(*command, options->scene);
+  add_draw_options(*command, *options);
   command->add_option("--out", options->out, "Directory for league.json, league.md and drawings")
       ->capture_default_str()
       ->option_text("DIR");
-  command->callback([options, command, &status] {
-    take_type_of_scene(*command, options->scene, options->coordinates);
-    status = league(*options);
-  });
+  run_drawing(*command, options, status, league);
 }
 
 }  // namespace graze::cli

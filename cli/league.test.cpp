@@ -34,21 +34,19 @@ constexpr const char* kRun = "graze league --subjects subjects.txt --pairs 1000 
 TEST_F(LeagueCommand, DrawsWithinAScene) {
   std::ofstream(shell.folder / "hall.toml") << "extent = [[100, 108], [0, 4], [0, 4]]\nedges = [0.5, 1, 2]\n";
   expect_done("graze league --subjects subjects.txt --pairs 600 --scene hall.toml --strata uniform --out found");
-  const std::string page = contents(shell.folder / "found/league.md");
-  EXPECT_NE(page.find("--scene hall.toml"), std::string::npos);
-  const auto league = nlohmann::json::parse(contents(shell.folder / "found/league.json"));
+  const std::string page = shell.file("found/league.md");
+  EXPECT_TRUE(has(page, {"--scene hall.toml"}));
+  const auto league = shell.json("found/league.json");
   const std::string all = league.dump();
-  EXPECT_EQ(all.find("extreme_scale"), std::string::npos);
+  EXPECT_FALSE(has(all, {"extreme_scale"}));
   EXPECT_GT(league["failures"].size(), 0u);
   expect_error("graze league --subjects subjects.txt --scene nowhere.toml", 1, {"nowhere.toml"});
 }
 
 TEST_F(LeagueCommand, LeavesATableAPageAndDrawings) {
-  const Ran ran = shell(kRun);
-  ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find("on the same 1,000\npairs (general 500, degenerate 500)"), std::string::npos) << ran.out;
-  const auto league = nlohmann::json::parse(contents(shell.folder / "found/league.json"));
-  const std::string page = contents(shell.folder / "found/league.md");
+  expect_out(kRun, {"on the same 1,000\npairs (general 500, degenerate 500)"});
+  const auto league = shell.json("found/league.json");
+  const std::string page = shell.file("found/league.md");
   for (const auto& row : league["rows"]) {
     const bool slow = row["subject"] == "no";
     EXPECT_EQ(row["total"]["pairs"], slow ? 200 : 1000) << row["lane"];
@@ -63,16 +61,16 @@ TEST_F(LeagueCommand, LeavesATableAPageAndDrawings) {
       EXPECT_EQ(row["total"]["false_negative"], 0);
       EXPECT_TRUE(league["timings"]["nanoseconds"][row["lane"].get<std::string>()].is_null());
     }
-    EXPECT_NE(page.find("| `" + row["lane"].get<std::string>() + "` |"), std::string::npos);
+    EXPECT_TRUE(has(page, {"| `" + row["lane"].get<std::string>() + "` |"}));
   }
-  EXPECT_NE(page.find("| `no` | 7\\|8 | not known | says &quot;no&quot; | nothing |"), std::string::npos) << page;
-  EXPECT_NE(page.find("| `spoken` | not known | not known | nothing stated | nothing |"), std::string::npos);
+  EXPECT_TRUE(has(page, {"| `no` | 7\\|8 | not known | says &quot;no&quot; | nothing |",
+                         "| `spoken` | not known | not known | nothing stated | nothing |"}));
   std::size_t drawings = 0;
   for (const auto& file : std::filesystem::directory_iterator(shell.folder / "found/league")) {
     ++drawings;
     EXPECT_LT(file.file_size(), 4096u);
     EXPECT_TRUE(contents(file.path()).starts_with("<svg xmlns="));
-    EXPECT_NE(page.find("(league/" + file.path().filename().string() + ")"), std::string::npos);
+    EXPECT_TRUE(has(page, {"(league/" + file.path().filename().string() + ")"}));
   }
   EXPECT_GT(drawings, 5u);
   EXPECT_LT(page.find("\n### spoken\n"), page.find("\n### moller_1997\n"));  // the libraries' failures come first
@@ -80,17 +78,16 @@ TEST_F(LeagueCommand, LeavesATableAPageAndDrawings) {
 
 TEST_F(LeagueCommand, ThePagesCommandsShowItsFailures) {
   expect_done(kRun);
-  const auto league = nlohmann::json::parse(contents(shell.folder / "found/league.json"));
-  const std::string page = contents(shell.folder / "found/league.md");
+  const auto league = shell.json("found/league.json");
+  const std::string page = shell.file("found/league.md");
   std::set<std::string> subjects;
   for (const auto& failure : league["failures"]) {
     const std::string again = failure["again"], says = failure["says"];
-    EXPECT_NE(page.find(again), std::string::npos);
+    EXPECT_TRUE(has(page, {again}));
     subjects.insert(failure["subject"]);
-    const Ran ran = shell(again);
-    ASSERT_EQ(ran.status, 0) << again << ran.err;
-    EXPECT_NE(ran.out.find("truth: " + failure["truth"].get<std::string>()), std::string::npos) << ran.out;
-    EXPECT_NE(ran.out.find(says + " !"), std::string::npos) << again << '\n' << ran.out;
+    const Ran ran = shell.done(again);
+    EXPECT_TRUE(has(ran.out, {"truth: " + failure["truth"].get<std::string>()}));
+    EXPECT_TRUE(has(ran.out, {says + " !"})) << again;
   }
   for (const char* subject : {"no", "dies", "spoken", "moller_1997"})
     EXPECT_TRUE(subjects.contains(subject)) << subject;
@@ -100,21 +97,18 @@ TEST_F(LeagueCommand, OfDoublesHasFunctionsOfDoublesAlone) {
   std::ofstream(shell.folder / "doubles.c")
       << "int meet(const double a[9], const double b[9]) { return a[0] < b[0]; }\n";
   expect_done("cc -shared -fPIC -O2 doubles.c -o doubles.so && echo 'by_x=doubles.so:meet/f64' >> subjects.txt");
-  const Ran ran =
-      shell("graze league --subjects subjects.txt --pairs 600 --strata uniform,stored --coordinates f64 --out found");
-  ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.err.find("graze: left out spoken: it does not take doubles\n"), std::string::npos) << ran.err;
-  const auto league = nlohmann::json::parse(contents(shell.folder / "found/league.json"));
+  const Ran ran = shell.done(
+      "graze league --subjects subjects.txt --pairs 600 --strata uniform,stored --coordinates f64 --out found");
+  EXPECT_TRUE(has(ran.err, {"graze: left out spoken: it does not take doubles\n"}));
+  const auto league = shell.json("found/league.json");
   EXPECT_EQ(league["coordinates"], "f64");
-  EXPECT_EQ(league["strata"], nlohmann::json({"uniform/f64", "stored/f64"}));
-  for (const auto& row : league["rows"])
-    EXPECT_NE(row["lane"].get<std::string>().find("/f64/cpu"), std::string::npos) << row["lane"];
+  EXPECT_EQ(league["strata"], nlohmann::ordered_json({"uniform/f64", "stored/f64"}));
+  for (const auto& row : league["rows"]) EXPECT_TRUE(has(row["lane"].get<std::string>(), {"/f64/cpu"})) << row["lane"];
   int of_doubles = 0;
   for (const auto& failure : league["failures"]) {
     const std::string again = failure["again"], says = failure["says"];
     const Ran found = shell(again);
-    EXPECT_NE(found.out.find("truth: " + failure["truth"].get<std::string>()), std::string::npos) << again;
-    EXPECT_NE(found.out.find(says + " !"), std::string::npos) << again << '\n' << found.out;
+    EXPECT_TRUE(has(found.out, {"truth: " + failure["truth"].get<std::string>(), says + " !"})) << again;
     of_doubles += again.find(" | coordinates=f64'") != std::string::npos;
   }
   EXPECT_GT(of_doubles, 3);
@@ -124,8 +118,7 @@ TEST_F(LeagueCommand, OfDoublesHasFunctionsOfDoublesAlone) {
 TEST_F(LeagueCommand, TheSameRunHasTheSameResultsButForTimings) {
   expect_done(kRun);
   expect_done("mv found first && " + std::string(kRun));
-  EXPECT_EQ(without_timings(nlohmann::json::parse(contents(shell.folder / "found/league.json"))),
-            without_timings(nlohmann::json::parse(contents(shell.folder / "first/league.json"))));
+  EXPECT_EQ(without_timings(shell.json("found/league.json")), without_timings(shell.json("first/league.json")));
 }
 
 TEST_F(LeagueCommand, BadFilesAreOneLine) {

@@ -119,7 +119,7 @@ void write_pictures(const analysis::UlpMap& map, const fs::path& out) {
 void draw_map(const MapOptions& options) {
   const std::optional<analysis::MovedCoordinates> asked = asked_for(options);
   fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
-  const corpus::Entry entry = read_cases(options.name, PairTypes::both).front();
+  const corpus::Entry entry = read_cases(options.name).front();
   take_doubles_of({entry}, under_test);
   const AnyPair pair = corpus::pair_of(entry);
   if (!is_finite(pair.doubles))

@@ -134,7 +134,7 @@ Pair TwoMeshes::pair(std::uint32_t i, std::uint32_t j) const {
 }
 
 DoublePair TwoMeshes::pair_of_doubles(std::uint32_t i, std::uint32_t j) const {
-  const MeshTriangles& other = b ? *b : a;
+  const strata::MeshPairs& other = b ? *b : a;
   DoublePair result = in_doubles(pair(i, j));
   if (!a.in_doubles.empty()) std::copy_n(a.in_doubles[i].begin(), 3, result.a);
   if (!other.in_doubles.empty()) std::copy_n(other.in_doubles[j].begin(), 3, result.b);

@@ -18,6 +18,7 @@
 
 #include "core/pair.h"
 #include "core/verdict.h"
+#include "strata/mesh.h"
 #include "strata/mesh_slabs.h"
 
 namespace graze::cli {
@@ -46,23 +47,13 @@ FoundPair related(std::uint32_t i, std::uint32_t j, const DoublePair& pair);
 // The text of a CSV file: a header, and a row for each pair.
 std::string csv_of(std::span<const FoundPair> pairs);
 
-// The triangles of a mesh in float32. `in_doubles` has the same triangles in doubles if float32 rounded a coordinate;
-// otherwise it is empty.
-struct MeshTriangles {
-  std::vector<std::array<Vec3<float>, 3>> triangles;
-  std::vector<std::array<Vec3<double>, 3>> in_doubles = {};
-  bool has_doubles = false;  // a coordinate is beyond float32 (strata::Rounding)
-
-  std::size_t size() const { return triangles.size(); }
-};
-
 // One mesh against itself, or two against each other.
 struct TwoMeshes {
-  MeshTriangles a;
-  std::optional<MeshTriangles> b;
+  strata::MeshPairs a;
+  std::optional<strata::MeshPairs> b;
 
   // Whether a coordinate is beyond float32. Then doubles are decided.
-  bool are_doubles() const { return a.has_doubles || (b && b->has_doubles); }
+  bool are_doubles() const { return a.rounding.beyond > 0 || (b && b->rounding.beyond > 0); }
   Pair pair(std::uint32_t i, std::uint32_t j) const;
   DoublePair pair_of_doubles(std::uint32_t i, std::uint32_t j) const;
 };

@@ -98,13 +98,8 @@ std::string with_header(const std::string& text) {
 int minimize_case(const MinimizeOptions& options) {
   if (!options.out.empty()) expect_replaceable(options.out, kPairs);
   fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
-  std::vector<corpus::Entry> entries = read_cases(options.name, PairTypes::both);
+  std::vector<corpus::Entry> entries = read_noted_cases(options.name, options.exact_input);
   take_doubles_of(entries, under_test);
-  for (const corpus::Entry& entry : entries) {
-    if (options.exact_input) expect_exact_input(options.name, entry);
-    const std::string note = written_note(entry, truth_of(entry));
-    if (!note.empty()) fmt::print("{}:{}: {}\n", printable(options.name), entry.line, note);
-  }
   std::string text;
   if (std::all_of(entries.begin(), entries.end(), [](auto& entry) { return entry.line != 0 && entry.lines == 1; })) {
     text = fuzz::read_whole(options.name, fuzz::NamedBy::user);

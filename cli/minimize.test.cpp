@@ -17,20 +17,17 @@ class Minimize : public CommandTest {
 };
 
 TEST_F(Minimize, ACaseIsPrintedAndWrittenWithItsOriginal) {
-  const Ran ran = shell("graze minimize exact_contact:1:1 --lanes 'guigue_*/f32/cpu' --out small.pairs");
-  ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find("exact_contact:1:1, guigue_devillers_2003\n"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("1-minimal: none of the "), std::string::npos) << ran.out;
-  const std::string file = contents(shell.folder / "small.pairs");
+  expect_out("graze minimize exact_contact:1:1 --lanes 'guigue_*/f32/cpu' --out small.pairs",
+             {"exact_contact:1:1, guigue_devillers_2003\n", "1-minimal: none of the "});
+  const std::string file = shell.file("small.pairs");
   const std::size_t minimised = file.find("kind=minimised"), worst = file.find("kind=worst"),
                     original = file.find("index=1");
   EXPECT_LT(minimised, worst);
   EXPECT_LT(worst, original);
   EXPECT_NE(original, std::string::npos);
-  EXPECT_NE(file.find("from=exact_contact:1:1"), std::string::npos);
+  EXPECT_TRUE(has(file, {"from=exact_contact:1:1"}));
   // Both pairs fail as recorded.
-  const Ran repro = shell("graze repro small.pairs --lanes 'guigue_*/f32/cpu'");
-  EXPECT_EQ(repro.status, 0) << repro.out;
+  const Ran repro = shell.done("graze repro small.pairs --lanes 'guigue_*/f32/cpu'");
   std::size_t as_recorded = 0;
   for (std::size_t at = 0; (at = repro.out.find("(as recorded)", at)) != std::string::npos; ++at) ++as_recorded;
   EXPECT_EQ(as_recorded, 2u) << repro.out;
@@ -41,15 +38,15 @@ TEST_F(Minimize, ACaseIsPrintedAndWrittenWithItsOriginal) {
 TEST_F(Minimize, ACampaignTwiceIsTheSameBytesWhateverTheThreads) {
   expect_done(std::string(kFuzz) + "--out one > /dev/null && cp -r one two && cp -r one fresh");
   expect_done("graze minimize one --threads 1 && graze minimize two --threads 4 && diff -r one/cases two/cases");
-  const auto run = nlohmann::json::parse(contents(shell.folder / "one/timings.json"))["runs"].back();
+  const auto run = shell.json("one/timings.json")["runs"].back();
   EXPECT_GT(run["processor_seconds_worst"], 0);
   EXPECT_LT(run["processor_seconds_worst"], 0.5 * run["processor_seconds"].get<double>());
-  const auto summary = nlohmann::json::parse(contents(shell.folder / "one/summary.json"));
+  const auto summary = shell.json("one/summary.json");
   ASSERT_GT(summary["signatures"].size(), 50u);
   for (const auto& row : summary["signatures"]) {
     const std::string name = row["case"], file = contents(shell.folder / "one" / name),
                       fresh = contents(shell.folder / "fresh" / name);
-    EXPECT_NE(file.find("kind=minimised"), std::string::npos) << name;
+    EXPECT_TRUE(has(file, {"kind=minimised"})) << name;
     const std::size_t entries = fresh.find('\n', fresh.find('\n') + 1) + 1;
     EXPECT_TRUE(file.ends_with(fresh.substr(entries))) << name;  // the originals, as they were
   }
@@ -96,10 +93,9 @@ TEST_F(Minimize, ACaseThatIsInterruptedIsNotWritten) {
 }
 
 TEST_F(Minimize, SaysTheCauseAndWhetherItEnded) {
-  const Ran ran = shell("graze minimize extreme_scale:1:3 --lanes 'projected_sat/f32/cpu' --out small.pairs");
-  ASSERT_EQ(ran.status, 0) << ran.err;
+  const Ran ran = shell.done("graze minimize extreme_scale:1:3 --lanes 'projected_sat/f32/cpu' --out small.pairs");
   EXPECT_TRUE(std::regex_search(ran.out, std::regex("\n  cause: [a-z ]+, as before\n"))) << ran.out;
-  const std::string file = contents(shell.folder / "small.pairs");
+  const std::string file = shell.file("small.pairs");
   EXPECT_TRUE(
       std::regex_search(file, std::regex("kind=minimised .* cause=[a-z_]+ one_minimal=yes moves_in_vain=[0-9]+\n")))
       << file;
@@ -107,14 +103,10 @@ TEST_F(Minimize, SaysTheCauseAndWhetherItEnded) {
 
 TEST_F(Minimize, LanesAreThoseOfTheCampaignOrThoseAskedFor) {
   expect_done("graze fuzz --seed 2 --pairs 100 --strata near_edge_edge --lanes '*/cpu' --out host > /dev/null");
-  const Ran ran = shell("graze minimize host && grep -h kind=minimised host/cases/*.pairs");
-  EXPECT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find(":-f32/cpu "), std::string::npos) << ran.out;
-  const Ran some = shell("graze minimize host --lanes 'moller_*'");
-  EXPECT_EQ(some.status, 0) << some.err;
-  EXPECT_NE(some.out.find("no selected lane is wrong on the others"), std::string::npos) << some.out;
-  const auto kinds = nlohmann::json::parse(contents(shell.folder / "host/failures.json"));
-  EXPECT_EQ(kinds["lanes"], (nlohmann::json{"moller_1997/f32/cpu", "moller_1997/f64/cpu"}));
+  expect_out("graze minimize host && grep -h kind=minimised host/cases/*.pairs", {":-f32/cpu "});
+  expect_out("graze minimize host --lanes 'moller_*'", {"no selected lane is wrong on the others"});
+  const auto kinds = shell.json("host/failures.json");
+  EXPECT_EQ(kinds["lanes"], (nlohmann::ordered_json{"moller_1997/f32/cpu", "moller_1997/f64/cpu"}));
   expect_done("graze failures host | grep 'signatures belong to no kind'");
   expect_done("graze report host | grep 'signatures belong to no kind of failure'");
   expect_error("graze minimize host --lanes 'moller_*/cuda-nofma'", 2, {"the campaign did not run it"});
@@ -123,7 +115,7 @@ TEST_F(Minimize, LanesAreThoseOfTheCampaignOrThoseAskedFor) {
 // Each file of cases states its signature; a file that another program wrote or moved there is rejected.
 TEST_F(Minimize, CasesThatAreNotTheCampaignsAreRefusedAndCanBeBroughtBack) {
   expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c > /dev/null && cp -r c whole");
-  const auto rows = nlohmann::json::parse(contents(shell.folder / "c/summary.json"))["signatures"];
+  const auto rows = shell.json("c/summary.json")["signatures"];
   const std::string first = "c/" + rows.front()["case"].get<std::string>(), key = rows.front()["key"],
                     last = "c/" + rows.back()["case"].get<std::string>();
   for (const auto& [edit, found] : {std::pair("cp " + last + ' ' + first, std::string("head")),
@@ -152,7 +144,7 @@ TEST_F(Minimize, CasesThatAreNotTheCampaignsAreRefusedAndCanBeBroughtBack) {
 // The forged pair has the right truth, but other lanes are wrong on it, so only the lanes reveal the forgery.
 TEST_F(Minimize, CasesOnWhichOtherLanesAreWrongAreRefused) {
   expect_done(std::string(kFuzz) + "--out c > /dev/null");
-  const auto rows = nlohmann::json::parse(contents(shell.folder / "c/summary.json"))["signatures"];
+  const auto rows = shell.json("c/summary.json")["signatures"];
   int forged = 0;
   for (const auto& one : rows) {
     for (const auto& other : rows) {
@@ -185,8 +177,7 @@ TEST_F(Minimize, KindsAreTheOldOnesOrTheNewOnes) {
   expect_done(std::string(kFuzz) +
               "--out d > /dev/null && graze failures d > /dev/null && cp d/failures.json of_originals");
   expect_done("graze minimize d --shard 1/1000 && graze report d > said");
-  EXPECT_NE(contents(shell.folder / "said").find("The kinds of failure are not known yet"), std::string::npos)
-      << contents(shell.folder / "said");
+  EXPECT_TRUE(has(shell.file("said"), {"The kinds of failure are not known yet"}));
   expect_done(
       "cmp d/failures.json of_originals && graze failures d > /dev/null && ! cmp -s d/failures.json of_originals");
 }

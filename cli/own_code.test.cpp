@@ -53,15 +53,11 @@ class Emitted : public testing::TestWithParam<OwnCode> {
   Shell shell{std::string("own-") + GetParam().name};
 
   Ran run_command() const { return shell("head -n 1 case.cpp | cut -c 4- > run.sh; rm -f case; bash run.sh"); }
-  void write(int answer) const {
-    const Ran written = shell("ANSWER=" + std::to_string(answer) + "; " + GetParam().write);
-    ASSERT_EQ(written.status, 0) << written.err;
-  }
+  void write(int answer) const { shell.done("ANSWER=" + std::to_string(answer) + "; " + GetParam().write); }
   void emit(const std::string& kind) const {
-    const Ran emitted = shell("export XDG_CACHE_HOME=$PWD/cache; echo '" + std::string(kPair) +
-                              "' > p; graze repro p --subject 'own=" + GetParam().what +
-                              "' --lanes 'own/*/cpu' --emit " + kind + " > case.cpp");
-    ASSERT_EQ(emitted.status, 0) << emitted.err;
+    shell.done("export XDG_CACHE_HOME=$PWD/cache; echo '" + std::string(kPair) +
+               "' > p; graze repro p --subject 'own=" + GetParam().what + "' --lanes 'own/*/cpu' --emit " + kind +
+               " > case.cpp");
   }
 };
 
@@ -69,12 +65,12 @@ TEST_P(Emitted, GtestFailsAndPassesWhenTheCodeIsMended) {
   write(0);
   emit("gtest");
   const Ran wrong = run_command();
-  EXPECT_EQ(wrong.status, 1) << wrong.out << wrong.err << contents(shell.folder / "case.cpp");
-  EXPECT_NE(wrong.out.find(" 1 FAILED TEST"), std::string::npos) << wrong.out << wrong.err;
+  EXPECT_EQ(wrong.status, 1) << wrong.out << wrong.err << shell.file("case.cpp");
+  EXPECT_TRUE(has(wrong.out, {" 1 FAILED TEST"})) << wrong.err;
   write(1);
   const Ran right = run_command();
   EXPECT_EQ(right.status, 0) << right.out << right.err;
-  EXPECT_NE(right.out.find("[  PASSED  ] 1 test."), std::string::npos) << right.out;
+  EXPECT_TRUE(has(right.out, {"[  PASSED  ] 1 test."}));
 }
 
 TEST_P(Emitted, CppSaysBothVerdicts) {
@@ -82,7 +78,7 @@ TEST_P(Emitted, CppSaysBothVerdicts) {
   emit("cpp");
   const Ran wrong = run_command();
   EXPECT_EQ(wrong.status, 1) << wrong.out << wrong.err;
-  EXPECT_NE(wrong.out.find("/cpu: disjoint; truth: intersects\n"), std::string::npos) << wrong.out << wrong.err;
+  EXPECT_TRUE(has(wrong.out, {"/cpu: disjoint; truth: intersects\n"})) << wrong.err;
   write(1);
   EXPECT_EQ(run_command().status, 0);
 }
@@ -108,9 +104,9 @@ TEST_F(OwnCodeTest, ExplainShowsEachLanesOwnVerdict) {
       }
       return std::string();
     };
-    EXPECT_NE(row("own/f32 ").find(says), std::string::npos) << ran.out << ran.err;
+    EXPECT_TRUE(has(row("own/f32 "), {says})) << ran.out << ran.err;
     for (const char* lane : {"moller_1997/f32 ", "exact/f32 "}) {
-      EXPECT_NE(row(lane).find("intersects"), std::string::npos) << ran.out;
+      EXPECT_TRUE(has(row(lane), {"intersects"})) << ran.out;
       EXPECT_EQ(row(lane).find('!'), std::string::npos) << ran.out;
     }
   }
@@ -121,8 +117,7 @@ TEST_F(OwnCodeTest, TheExactLaneRunsBesideItUnlessALaneOptionLeavesItOut) {
   const std::string graze = "export XDG_CACHE_HOME=$PWD/cache; graze ",
                     fuzz = graze + "fuzz --subject own=./own.c --pairs 40 --strata uniform --json ";
   const auto lanes_of = [&](const std::string& options) {
-    const Ran ran = shell(fuzz + options);
-    EXPECT_EQ(ran.status, 0) << ran.err;
+    const Ran ran = shell.done(fuzz + options);
     return nlohmann::json::parse(ran.out)["spec"]["lanes"].get<std::vector<std::string>>();
   };
   using Lanes = std::vector<std::string>;
@@ -135,7 +130,7 @@ TEST_F(OwnCodeTest, TheExactLaneRunsBesideItUnlessALaneOptionLeavesItOut) {
   const Ran gap = shell(graze + "merge s1 --out m");
   const std::size_t at = gap.err.find("graze fuzz ");
   ASSERT_NE(at, std::string::npos) << gap.err;
-  EXPECT_NE(gap.err.find("!exact/f32/cpu"), std::string::npos) << gap.err;
+  EXPECT_TRUE(has(gap.err, {"!exact/f32/cpu"}));
 }
 
 // Tries code that hangs and code that crashes.
@@ -145,17 +140,14 @@ TEST_F(OwnCodeTest, FailuresAreEmittedToo) {
         "printf '#include <stdlib.h>\\n#include <unistd.h>\\nint intersects(const float a[9], const float b[9]) "
         "{ " +
         std::string(does) + " return 0; }' > own.c");
-    const Ran emitted = shell("export XDG_CACHE_HOME=$PWD/cache; echo '" + std::string(kPair) +
-                              "' > p; graze repro p --subject own=./own.c --lanes 'own/*/cpu' --emit gtest "
-                              "--subject-timeout 0.3 > case.cpp");
-    ASSERT_EQ(emitted.status, 0) << emitted.err;
+    expect_done("export XDG_CACHE_HOME=$PWD/cache; echo '" + std::string(kPair) +
+                "' > p; graze repro p --subject own=./own.c --lanes 'own/*/cpu' --emit gtest "
+                "--subject-timeout 0.3 > case.cpp");
     const Ran ran = shell("head -n 1 case.cpp | cut -c 4- > run.sh; rm -f case; bash run.sh");
     EXPECT_EQ(ran.status, 1) << does << ran.out;
-    EXPECT_NE(ran.out.find(" 1 FAILED TEST"), std::string::npos) << does << ran.out << ran.err;
+    EXPECT_TRUE(has(ran.out, {" 1 FAILED TEST"})) << does << ran.err;
     shell("echo 'int intersects(const float a[9], const float b[9]) { return 1; }' > own.c");
-    const Ran fixed = shell("bash run.sh");
-    EXPECT_EQ(fixed.status, 0) << does << fixed.out;
-    EXPECT_NE(fixed.out.find("[  PASSED  ] 1 test."), std::string::npos) << fixed.out;
+    expect_out("bash run.sh", {"[  PASSED  ] 1 test."});
   }
 }
 
@@ -175,24 +167,21 @@ TEST_F(OwnCodeTest, CudaSourcesAreEmittedToo) {
     GTEST_SKIP() << lanes.err;
   shell("echo '" + std::string(kPair) + "' > p");
   const auto emit = [&](const std::string& kind, const std::string& file) {
-    const Ran emitted =
-        shell(again + "graze repro p" + subject + "--lanes 'own/*/cuda-fma' --emit " + kind + " > " + file);
-    ASSERT_EQ(emitted.status, 0) << emitted.err;
-    ASSERT_NE(contents(shell.folder / file).find("own/f64/cuda-fma"), std::string::npos);
+    expect_done(again + "graze repro p" + subject + "--lanes 'own/*/cuda-fma' --emit " + kind + " > " + file);
+    ASSERT_TRUE(has(shell.file(file), {"own/f64/cuda-fma"}));
     shell("head -n 1 " + file + " | cut -c 4- > run.sh; rm -f case");
   };
   emit("gtest", "case.cpp");
   const Ran wrong = shell(again + "bash run.sh");
   EXPECT_EQ(wrong.status, 1) << wrong.out << wrong.err;
-  EXPECT_NE(wrong.out.find(" 1 FAILED TEST"), std::string::npos) << wrong.out << wrong.err;
-  EXPECT_NE(wrong.out.find("\"cuda\":\""), std::string::npos) << wrong.out;
-  EXPECT_NE(wrong.out.find("Which is: \"disjoint\""), std::string::npos) << wrong.out;
+  EXPECT_TRUE(has(wrong.out, {" 1 FAILED TEST"})) << wrong.err;
+  EXPECT_TRUE(has(wrong.out, {"\"cuda\":\"", "Which is: \"disjoint\""}));
   write("true");
   const Ran right = shell(again + "./case");
-  EXPECT_NE(right.out.find("[  PASSED  ] 1 test."), std::string::npos) << right.out << right.err;
+  EXPECT_TRUE(has(right.out, {"[  PASSED  ] 1 test."})) << right.err;
   const Ran alone = shell("PATH=/nowhere ./case");
-  EXPECT_EQ(alone.out.find("PASSED"), std::string::npos);
-  EXPECT_NE(alone.out.find("must be on the PATH"), std::string::npos) << alone.out << alone.err;
+  EXPECT_FALSE(has(alone.out, {"PASSED"}));
+  EXPECT_TRUE(has(alone.out, {"must be on the PATH"})) << alone.err;
   expect_error(again + "graze repro p" + subject + "--lanes 'own/*/cuda-fma' --emit cuda", 1,
                {"CUDA lanes", "--lanes"});
 #ifdef GRAZE_NVCC_DIR
@@ -233,16 +222,15 @@ TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
       "export XDG_CACHE_HOME=$PWD/cache; graze explain p --subject-timeout 0.5 --lanes 'own/*/cuda-*fma' ";
   const Ran named = shell(explain + "--subject own=./own.cu:one | tr -s ' \\n' ' '");
   if (shell(explain + "--subject own=./own.cu:one").err.find("NVRTC") != std::string::npos) GTEST_SKIP() << "no NVRTC";
-  EXPECT_NE(named.out.find("nvcc fuses the product into the addition at own.cu:2 (inlined at own.cu:5) (built without "
-                           "contraction it is right)."),
-            std::string::npos)
-      << named.out << named.err;
-  EXPECT_NE(named.out.find("own.cu:2, inlined at "), std::string::npos) << named.out;
+  EXPECT_TRUE(
+      has(named.out, {"nvcc fuses the product into the addition at own.cu:2 (inlined at own.cu:5) (built without "
+                      "contraction it is right)."}))
+      << named.err;
+  EXPECT_TRUE(has(named.out, {"own.cu:2, inlined at "}));
   const Ran late = shell(explain + "--subject own=./own.cu:both | tr -s ' \\n' ' '");
-  EXPECT_NE(late.out.find("the compiler fuses products into additions (built without contraction it is right; which "
-                          "products matter is not known: with some of its products fused it does not return)."),
-            std::string::npos)
-      << late.out << late.err;
+  EXPECT_TRUE(has(late.out, {"the compiler fuses products into additions (built without contraction it is right; which "
+                             "products matter is not known: with some of its products fused it does not return)."}))
+      << late.err;
 }
 
 // Like CudaAgainstCpuIsExplained, but on a pair of doubles.
@@ -260,20 +248,19 @@ TEST_F(OwnCodeTest, CudaInDoubleIsExplainedOnDoubles) {
   const std::string cached = "export XDG_CACHE_HOME=$PWD/cache; ", both = " --subject own=./own.cu:both ";
   const Ran named = shell(cached + "graze explain p --lanes 'own/*'" + both + "| tr -s ' \\n' ' '");
   if (named.err.find("NVRTC") != std::string::npos) GTEST_SKIP() << "no NVRTC";
-  EXPECT_NE(
-      named.out.find("own/f64/cuda-fma differs from cpu by contraction at own.cu:2 (inlined at own.cu:5): with the "
-                     "products there rounded it says disjoint, as cpu does."),
-      std::string::npos)
-      << named.out << named.err;
+  EXPECT_TRUE(
+      has(named.out, {"own/f64/cuda-fma differs from cpu by contraction at own.cu:2 (inlined at own.cu:5): with the "
+                      "products there rounded it says disjoint, as cpu does."}))
+      << named.err;
   // Differing operands are counted by the line of their comparison.
   expect_done(cached +
               "graze discrepancy own/f64/cuda-nofma own/f64/cuda-fma --coordinates f64 --strata exact_contact --pairs "
               "300 --executor twin --out d" +
               both);
-  const auto found = nlohmann::json::parse(contents(shell.folder / "d/discrepancy.json"));
+  const auto found = shell.json("d/discrepancy.json");
   const auto& operands = found["verdicts"][0]["operands"];
   EXPECT_GT(operands["lines"][0]["differs"].get<int>(), 50) << operands;
-  EXPECT_NE(operands["lines"][0]["line"].get<std::string>().find("own.cu:5"), std::string::npos) << operands;
+  EXPECT_TRUE(has(operands["lines"][0]["line"].get<std::string>(), {"own.cu:5"})) << operands;
 }
 
 // CUDA lanes of a __host__ __device__ function are compared with its cpu lane.
@@ -301,42 +288,36 @@ TEST_F(OwnCodeTest, CudaAgainstCpuIsExplained) {
       "own/f32/cuda-fma differs from cpu by contraction at own.cu:2 (inlined at own.cu:5): with the products there "
       "rounded it says disjoint, as cpu does. Build with -fmad=false. Cost of ";
   const Ran named = explained(both + "--lanes 'own/*'");
-  EXPECT_NE(named.out.find(said), std::string::npos) << named.out << named.err;
+  EXPECT_TRUE(has(named.out, {said})) << named.err;
   const Ran device_only = explained("--subject own=./own.cu:one --lanes 'own/*'");
-  EXPECT_NE(device_only.out.find("cuda-fma"), std::string::npos) << device_only.out << device_only.err;
-  EXPECT_EQ(device_only.out.find("differs from cpu"), std::string::npos) << device_only.out;
+  EXPECT_TRUE(has(device_only.out, {"cuda-fma"})) << device_only.err;
+  EXPECT_FALSE(has(device_only.out, {"differs from cpu"}));
   // Checks the claim: if only the products of that line are rounded, the verdict is that of cpu.
   shell("sed '2s/.*/  return __fsub_rn(__fmul_rn(t[0], t[1]), __fmul_rn(t[3], t[4]));/' own.cu > rounded.cu");
   const Ran rounded =
       shell(cached + "graze check p --json --executor twin --lanes 'own/*/cuda-fma' --subject own=./rounded.cu:one");
-  EXPECT_NE(rounded.out.find(R"("own/f32/cuda-fma":"disjoint")"), std::string::npos) << rounded.out << rounded.err;
+  EXPECT_TRUE(has(rounded.out, {R"("own/f32/cuda-fma":"disjoint")"})) << rounded.err;
   // fuzz counts differences from cpu.
-  const Ran fuzzed =
-      shell(cached + "graze fuzz --executor twin --pairs 300 --strata exact_contact --out c --lanes 'own/*'" + both);
-  EXPECT_EQ(fuzzed.status, 0) << fuzzed.err;
-  const auto summary = nlohmann::json::parse(contents(shell.folder / "c/summary.json"));
+  expect_done(cached + "graze fuzz --executor twin --pairs 300 --strata exact_contact --out c --lanes 'own/*'" + both);
+  const auto summary = shell.json("c/summary.json");
   EXPECT_TRUE(summary["spec"]["subjects"][0].contains("host")) << summary["spec"];
-  const Ran report = shell(cached + "graze report c");
-  EXPECT_EQ(report.status, 0) << report.err;
-  EXPECT_NE(contents(shell.folder / "c/differs.csv").find("own/f32/cuda-fma"), std::string::npos);
+  expect_done(cached + "graze report c");
+  EXPECT_TRUE(has(shell.file("c/differs.csv"), {"own/f32/cuda-fma"}));
   const Ran test = shell(cached + "graze repro p --emit gtest --lanes own/f32/cpu-fma" + both +
                          " > case.cpp && eval \"$(grep -o 'g++ .*' case.cpp | head -1)\"");
-  EXPECT_NE(test.out.find("1 FAILED TEST"), std::string::npos) << test.out << test.err;
+  EXPECT_TRUE(has(test.out, {"1 FAILED TEST"})) << test.err;
 }
 
 // Requested lanes that do not run are named, recorded and reported. A pattern that matches no lane is an error.
 TEST_F(OwnCodeTest, LanesThatDoNotRunAreNamedEverywhere) {
   const std::string lanes = " --lanes 'moller_1997/f32/c*' ";
-  const Ran ran = shell("graze fuzz --executor twin --pairs 200 --strata uniform --out c" + lanes);
-  ASSERT_EQ(ran.status, 0) << ran.err;
+  const Ran ran = shell.done("graze fuzz --executor twin --pairs 200 --strata uniform --out c" + lanes);
   EXPECT_EQ(ran.err, "graze: left out (no twin; a CUDA device runs it): moller_1997/f32/cuda-fast\n");
-  EXPECT_NE(contents(shell.folder / "c/summary.json").find(R"("moller_1997/f32/cuda-fast": "no twin")"),
-            std::string::npos);
+  EXPECT_TRUE(has(shell.file("c/summary.json"), {R"("moller_1997/f32/cuda-fast": "no twin")"}));
   expect_done("graze report c");
   for (const char* file : {"c/report.json", "c/report.html"})
-    EXPECT_NE(contents(shell.folder / file)
-                  .find("did not run: left out (no twin; a CUDA device runs it): moller_1997/f32/cuda-fast."),
-              std::string::npos)
+    EXPECT_TRUE(
+        has(shell.file(file), {"did not run: left out (no twin; a CUDA device runs it): moller_1997/f32/cuda-fast."}))
         << file;
   shell("echo '" + std::string(kPair) + "' > p");
   for (const char* verb : {"check p --executor twin", "explain p", "invariants --pairs 19 --out l",
@@ -346,7 +327,7 @@ TEST_F(OwnCodeTest, LanesThatDoNotRunAreNamedEverywhere) {
   const Ran all =
       shell("graze fuzz --pairs 200 --strata uniform --out d --executor twin --lanes 'moller_1997/f32/c*fma'");
   EXPECT_EQ(all.err, "");
-  EXPECT_EQ(contents(shell.folder / "d/summary.json").find("left_out"), std::string::npos);
+  EXPECT_FALSE(has(shell.file("d/summary.json"), {"left_out"}));
   // --subject requests the user's code even without a pattern.
   std::ofstream(shell.folder / "own.cu") << "__device__ bool meet(const float a[9], const float b[9]) "
                                             "{ return expf(a[0]) > b[0]; }\n";
@@ -367,8 +348,8 @@ TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
   const std::size_t again = ran.err.find("to replay it: ");
   ASSERT_NE(again, std::string::npos) << ran.err;
   const Ran repro = shell(ran.err.substr(again + 14) + " ");
-  EXPECT_NE(repro.out.find("own/f32"), std::string::npos) << repro.out << repro.err;
-  EXPECT_NE(repro.out.find("!"), std::string::npos) << repro.out;
+  EXPECT_TRUE(has(repro.out, {"own/f32"})) << repro.err;
+  EXPECT_TRUE(has(repro.out, {"!"}));
   expect_done(fuzz + "400");  // moller is wrong too, but was not requested
   // The file has the smallest of all minimised cases, which need not come from the smallest kept pair.
   const auto pairs_of = [&](const std::string& command) {
@@ -419,13 +400,12 @@ TEST_F(OwnCodeTest, EveryVerbTakesWhatMisbehaves) {
     expect_done("graze minimize " + name + " > minimized");
     expect_done("graze report " + name);
     const Ran kinds = shell("graze failures " + name);
-    EXPECT_NE(kinds.out.find(name + ": " + way.cause + ", "), std::string::npos) << kinds.out << kinds.err;
-    EXPECT_NE(contents(shell.folder / name / "report.json").find(way.cause), std::string::npos);
+    EXPECT_TRUE(has(kinds.out, {name + ": " + way.cause + ", "})) << kinds.err;
+    EXPECT_TRUE(has(contents(shell.folder / name / "report.json"), {way.cause}));
     const std::string found =
         "$(grep -l '" + name + ":" + std::string(way.mark) + "' " + name + "/cases/*.pairs | head -n 1)";
     const Ran explained = shell("graze explain --all " + found);
-    EXPECT_NE(explained.out.find(std::string("cause: ") + way.cause + "\n"), std::string::npos)
-        << explained.out << explained.err;
+    EXPECT_TRUE(has(explained.out, {std::string("cause: ") + way.cause + "\n"})) << explained.err;
     expect_done("graze repro " + found);
     expect_done("graze map " + found + " --out m.png");
     expect_done("graze corpus add " + found + " --corpus corpus-" + name);

@@ -28,12 +28,10 @@ constexpr std::size_t kPairsInCache = 4096, kPairsFromMemory = std::size_t{1} <<
 constexpr std::uint64_t kFewestAtAnExtreme = 4000;
 constexpr std::size_t kPairsOnDevice = std::size_t{1} << 22;  // 302 MB
 
-struct ParetoOptions {
+struct ParetoOptions : DrawOptions {
+  ParetoOptions() : DrawOptions{200'000} {}
   LaneOptions lanes;
-  std::vector<std::string> strata;
-  std::uint64_t pairs = 200'000, seed = 1;
-  PairTypes coordinates = PairTypes::f32;
-  std::string scene, out = "pareto";
+  std::string out = "pareto";
   bool device = false;
 };
 
@@ -122,12 +120,11 @@ int pareto(ParetoOptions options) {
   std::vector<std::string> ids;
   for (const Lane* lane : under_test.lanes) ids.push_back(lane->id);
   const analysis::Sweep sweep = sweep_of(options);
-  const strata::SceneSources all =
-      drawn(options.scene, options.seed, options.pairs, options.strata, options.coordinates);
+  const strata::SceneSources all = drawn(options);
   const ResultFolder folder(options.out, "pareto.json");
   analysis::Pareto pareto = offers_of(options, under_test.lanes, sweep(ids, all.sources), all.sources);
-  const std::uint64_t at_each = std::max(options.pairs / 10, std::min(options.pairs, kFewestAtAnExtreme));
-  const auto some = drawn(options.scene, options.seed, at_each, options.strata, options.coordinates).sources;
+  options.pairs = std::max(options.pairs / 10, std::min(options.pairs, kFewestAtAnExtreme));
+  const auto some = drawn(options).sources;
   for (const analysis::Extreme extreme : analysis::kExtremes) {
     const std::size_t first = pareto.curves.size();
     for (const std::string& id : ids) pareto.curves.push_back({id, extreme, {}});
@@ -174,9 +171,7 @@ void add_pareto(CLI::App& app, int& status) {
   add_globs(*command, "--lanes", options->lanes.globs, "Patterns of the lanes to run");
   command->get_option("--lanes")->default_str("common CPU lanes and those of --subject; with --device CUDA lanes");
   add_subject_options(*command, options->lanes);
-  add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
-  add_coordinates_option(*command, options->coordinates);
-  add_scene_option(*command, options->scene);
+  add_draw_options(*command, *options);
   add_count(*command, "--pairs", options->pairs, 1000, kMostWhole, "Number of pairs on which errors are counted");
   add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of the pairs");
   command
@@ -187,10 +182,7 @@ void add_pareto(CLI::App& app, int& status) {
   command->add_option("--out", options->out, "Folder for pareto.json and the pictures")
       ->capture_default_str()
       ->option_text("DIR");
-  command->callback([options, command, &status] {
-    take_type_of_scene(*command, options->scene, options->coordinates);
-    status = pareto(*options);
-  });
+  run_drawing(*command, options, status, pareto);
 }
 
 }  // namespace graze::cli

@@ -16,12 +16,9 @@ namespace graze::cli {
 using fuzz::Json;
 namespace {
 
-struct PlanOptions {
-  std::uint64_t pairs = 1'000'000, gpus = 0, cores = 1;
+struct PlanOptions : DrawOptions {
+  std::uint64_t gpus = 0, cores = 1;
   double rate = 0;
-  std::vector<std::string> strata;
-  PairTypes coordinates = PairTypes::f32;
-  std::string scene;
   LaneOptions lanes;
   bool json = false;
 };
@@ -46,8 +43,7 @@ int plan(const PlanOptions& options) {
   fuzz::Campaign campaign;
   campaign.under_test = &under_test;
   Json scene;
-  campaign.sources =
-      drawn(options.scene, campaign.seed, options.pairs, options.strata, options.coordinates, &scene).sources;
+  campaign.sources = drawn(options, &scene).sources;
   campaign.spec = fuzz::campaign_spec(campaign);
   if (!scene.is_null()) campaign.spec["scene"] = scene;
   const bool gpu = options.gpus > 0;
@@ -104,9 +100,7 @@ void add_plan(CLI::App& app, int& status) {
   command->footer("Example: graze plan --pairs 1e10 --lanes '*/f32/cpu' --cores 64");
   auto options = std::make_shared<PlanOptions>();
   add_count(*command, "--pairs", options->pairs, 1, kMostWhole, "Number of pairs in total");
-  add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
-  add_coordinates_option(*command, options->coordinates);
-  add_scene_option(*command, options->scene);
+  add_draw_options(*command, *options);
   add_lane_options(*command, options->lanes);
   CLI::Option* cores =
       add_count(*command, "--cores", options->cores, 1, 10'000'000, "Number of cores that run the campaign");
@@ -120,10 +114,7 @@ void add_plan(CLI::App& app, int& status) {
       ->check(number(1e-3, 1e15))
       ->option_text("PAIRS");
   command->add_flag("--json", options->json, "Print one JSON object");
-  command->callback([options, command, &status] {
-    take_type_of_scene(*command, options->scene, options->coordinates);
-    status = plan(*options);
-  });
+  run_drawing(*command, options, status, plan);
 }
 
 }  // namespace graze::cli

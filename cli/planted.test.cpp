@@ -41,7 +41,7 @@ extern "C" int flips(const float a[9], const float b[9]) {
   expect_done(
       "graze fuzz --subject flips=flips.so:flips --lanes 'flips/*' --strata uniform,shared_edge --pairs 400k --seed 4 "
       "--out c");
-  const auto summary = nlohmann::json::parse(contents(shell.folder / "c/summary.json"));
+  const auto summary = shell.json("c/summary.json");
   EXPECT_EQ(summary["disagreements"], planted.size());
   std::vector<std::string> found;
   for (const auto& file : std::filesystem::directory_iterator(shell.folder / "c/cases")) {

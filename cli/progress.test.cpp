@@ -56,8 +56,8 @@ TEST(Progress, NeverWraps) {
     ASSERT_GE(shown.size(), widest);  // with more room, more is shown
     widest = shown.size();
   }
-  EXPECT_NE(fitting(more, 200).find("most in"), std::string::npos);
-  EXPECT_EQ(fitting(more, 80).find("most in"), std::string::npos);
+  EXPECT_TRUE(has(fitting(more, 200), {"most in"}));
+  EXPECT_FALSE(has(fitting(more, 80), {"most in"}));
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include <set>
 #include <sstream>
 
+#include <graze/query.h>
+
 #include "backends/backends.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
@@ -64,7 +66,7 @@ int tell(void* user, std::uint64_t done, std::uint64_t triangles) {
 }
 
 template <class Real>
-using TrianglesOf = std::vector<std::array<Real, 9>>;
+using TrianglesOf = std::vector<TriangleOf<Real>>;
 
 // The pair whose verdict is byte p of a run.
 template <class Real>
@@ -116,15 +118,15 @@ void write_hits(const QueryOptions& options, const Run& run, const TrianglesOf<R
     if (run.bytes[p] != 1) continue;
     const std::size_t triangle = p % triangles.size(), reference = p / triangles.size();
     entries.push_back(case_at(p, references, triangles));
-    rows.push_back(related(static_cast<std::uint32_t>(reference), static_cast<std::uint32_t>(triangle),
-                           pair_at(p, references, triangles)));
-    hits.triangles.push_back(in_doubles(triangles[triangle]));
+    const BasicPair<Real> pair = pair_at(p, references, triangles);
+    rows.push_back(related(static_cast<std::uint32_t>(reference), static_cast<std::uint32_t>(triangle), pair));
+    hits.triangles.push_back(second_of(pair));
   }
   if (!options.csv.empty()) write_result(options.csv, csv_of(rows), fuzz::NamedBy::user);
   if (!options.pairs.empty()) write_pairs(options.pairs, entries);
   if (options.obj.empty()) return;
   ObjGroup asked{"reference", {}};
-  for (const auto& reference : references) asked.triangles.push_back(in_doubles(reference));
+  for (const auto& reference : references) asked.triangles.push_back(first_of(pair_of(reference, reference)));
   write_result(options.obj, obj_of({asked, hits}), fuzz::NamedBy::user);
 }
 
@@ -241,8 +243,8 @@ std::vector<Run> runs_of(const QueryOptions& options, const QueryLanes& lanes, c
   for (Run& run : runs) {
     Told told{interrupted, Progress("triangles", triangles.size(), isatty(STDERR_FILENO), error_screen())};
     const graze_triangles part = query::rows_of(std::span(triangles));
-    graze_query query = query::query_of(references[0], part);
-    query.references = references[0].data();
+    graze_query query = query::query_of(std::array<Real, 9>(), part);  // the array gives only the type
+    query.references = references.data();
     query.reference_count = references.size();
     query.lane = run.lane.c_str();
     query.executor =
@@ -334,8 +336,8 @@ void query_mesh(const QueryOptions& options, int& status) {
         fmt::format("graze query needs two files, a reference and a mesh, but got {}", options.files.size()));
   if (options.any && (!options.csv.empty() || !options.obj.empty() || !options.pairs.empty()))
     throw UsageError("--any does not work with --csv, --obj or --pairs, which write all hits");
-  const Input of_references = read_references(options.files[0]),
-              of_mesh = read_mesh(options.files[1], strata::Coordinates::any);
+  const strata::MeshPairs of_references = read_references(options.files[0]),
+                          of_mesh = strata::read_triangles(options.files[1], strata::Coordinates::any);
   const QueryLanes lanes = query_lanes(options.lanes, {"exact"});
   const bool has_doubles = of_references.rounding.beyond > 0 || of_mesh.rounding.beyond > 0,
              are_doubles = has_doubles && lanes.ids == std::vector<std::string>{"exact"};
@@ -344,8 +346,9 @@ void query_mesh(const QueryOptions& options, int& status) {
     fmt::print(stderr,
                "graze: exact decides the rounded triangles too, because the other lanes take float32; alone, it "
                "decides the doubles\n");
-  are_doubles ? answer<double>(options, lanes, in_doubles(of_references), in_doubles(of_mesh), status)
-              : answer<float>(options, lanes, of_references.triangles, of_mesh.triangles, status);
+  are_doubles
+      ? answer<double>(options, lanes, of_references.triangles_in_doubles(), of_mesh.triangles_in_doubles(), status)
+      : answer<float>(options, lanes, of_references.triangles, of_mesh.triangles, status);
 }
 
 }  // namespace

@@ -47,14 +47,12 @@ class QueryCommand : public CommandTest {
   }
 
   Json json(const std::string& command) const {
-    const Ran ran = shell(command);
-    EXPECT_EQ(ran.status, 0) << command << ran.err;
+    const Ran ran = shell.done(command);
     return Json::parse(ran.out);
   }
 
   std::string out(const std::string& command) const {
-    const Ran ran = shell(command);
-    EXPECT_EQ(ran.status, 0) << command << ran.err;
+    const Ran ran = shell.done(command);
     return ran.out;
   }
 };
@@ -85,7 +83,7 @@ TEST_F(QueryCommand, JsonIsOneObject) {
 
 TEST_F(QueryCommand, WritesHits) {
   expect_done("graze query mesh.obj#3 mesh.obj --obj hits.obj --pairs hits.pairs");
-  const std::string obj = contents(shell.folder / "hits.obj");
+  const std::string obj = shell.file("hits.obj");
   EXPECT_TRUE(
       obj.starts_with("# Written by graze query\ng reference\nv 3 2 0\nv 1 2 5\nv 2 1 5\nf 1 2 3\ng hits\nv 0 0 0\n"))
       << obj;
@@ -109,11 +107,9 @@ TEST_F(QueryCommand, SeveralLanesAreComparedAndMismatchesAreCases) {
             "exact                          guigue_devillers_2003/f32/cpu/filtered          0\n"
             "guigue_devillers_2003/f32/cpu  guigue_devillers_2003/f32/cpu/filtered          1\n"
             "1 mismatch, 1 of them kept in mismatches.pairs\nNext: graze explain mismatches.pairs\n");
-  const std::string kept = contents(shell.folder / "mismatches.pairs");
-  EXPECT_NE(kept.find("said_by_exact=intersects said_by_guigue_devillers_2003_f32_cpu=disjoint "
-                      "said_by_guigue_devillers_2003_f32_cpu_filtered=intersects\n"),
-            std::string::npos)
-      << kept;
+  const std::string kept = shell.file("mismatches.pairs");
+  EXPECT_TRUE(has(kept, {"said_by_exact=intersects said_by_guigue_devillers_2003_f32_cpu=disjoint "
+                         "said_by_guigue_devillers_2003_f32_cpu_filtered=intersects\n"}));
   expect_done("graze explain mismatches.pairs --lanes '*/f32/cpu'");
   expect_error("graze query ref.txt mesh.obj --pairs x --mismatches ./x", 2, {"--pairs", "--mismatches", "./x"});
   expect_done("graze minimize mismatches.pairs --lanes 'guigue*/f32/cpu' --out small.pairs");
@@ -163,12 +159,10 @@ TEST_F(QueryCommand, CudaLanesRunByTheirTwinsAndAreComparedTwoByTwo) {
   }
   EXPECT_EQ(found["differing"][0]["triangles"], 0);  // without contraction CPU and GPU agree
   EXPECT_GT(found["differing"][1]["triangles"], 0);
-  const Ran ran = shell("graze query ref.txt thesis.obj --executor one-core --lanes 'interval_overlap/f32/cuda-f*'");
-  EXPECT_EQ(ran.status, 0);
+  const Ran ran =
+      shell.done("graze query ref.txt thesis.obj --executor one-core --lanes 'interval_overlap/f32/cuda-f*'");
   EXPECT_TRUE(ran.out.ends_with("(interval_overlap/f32/cuda-fma, one-core, by its twin)\n")) << ran.out;
-  EXPECT_NE(ran.err.find("left out (no twin; a CUDA device runs it): interval_overlap/f32/cuda-fast"),
-            std::string::npos)
-      << ran.err;
+  EXPECT_TRUE(has(ran.err, {"left out (no twin; a CUDA device runs it): interval_overlap/f32/cuda-fast"}));
   expect_error("graze query ref.txt thesis.obj --lanes interval_overlap/f32/cuda-fast", 2, {"cuda-fast", "no twin"});
 }
 
@@ -180,7 +174,7 @@ TEST_F(QueryCommand, SelfTellsPiercingFromNeighbours) {
   const Json found = json("graze query --self mesh.obj --json --pairs p.pairs --obj p.obj");
   EXPECT_EQ(found["first"], Json({0, 2}));
   EXPECT_EQ(found["common_edge"], 1);
-  EXPECT_NE(out("graze check p.pairs --truth-only").find("contact segment"), std::string::npos);
+  EXPECT_TRUE(has(out("graze check p.pairs --truth-only"), {"contact segment"}));
   EXPECT_EQ(
       json("printf 'v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 3\\n' > one.obj; graze query --self one.obj --json")["hits"],
       0);
@@ -276,7 +270,7 @@ TEST_F(QueryCommand, BenchMeasuresAndCompares) {
                        (row["data"] == "resident" ? ", resident" : ""));
   }
   const std::string plot = out("cat speed.svg");
-  for (const std::string& executor : executors) EXPECT_NE(plot.find(">" + executor + "</text>"), std::string::npos);
+  for (const std::string& executor : executors) EXPECT_TRUE(has(plot, {">" + executor + "</text>"}));
   const auto count = [&](const std::string& what) {
     std::size_t n = 0;
     for (std::size_t at = 0; (at = plot.find(what, at)) != plot.npos; ++at) ++n;
@@ -284,7 +278,7 @@ TEST_F(QueryCommand, BenchMeasuresAndCompares) {
   };
   EXPECT_EQ(count("<polyline"), executors.size());
   EXPECT_EQ(count("<circle"), 2 * executors.size());  // two sizes
-  EXPECT_NE(out("graze bench --triangles 1000").find("thesis, 1,000"), std::string::npos);
+  EXPECT_TRUE(has(out("graze bench --triangles 1000"), {"thesis, 1,000"}));
   expect_error("graze bench --triangles 0", 2, {"--triangles", "'0'", "1"});
   expect_error("graze bench --mesh no.obj", 1, {"no.obj", "No such file or directory"});
   expect_error("graze bench --triangles 10 --lanes nosuch", 2, {"'nosuch'"});

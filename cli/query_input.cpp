@@ -4,8 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
+
+#include <graze/query.h>
 
 #include "backends/backends.h"
 #include "cli/cases.h"
@@ -20,14 +21,14 @@
 namespace graze::cli {
 namespace {
 
-Input read_numbers(const std::string& file) {
+strata::MeshPairs read_numbers(const std::string& file) {
   std::string why;
   std::optional<std::string> read = plain_file(file, why);
   if (!read) throw std::runtime_error(cannot("read", file, why));
   std::string text = std::move(*read);
   std::replace(text.begin(), text.end(), ',', ' ');
   strata::Lines lines({file, text}, '#');
-  Input references;
+  strata::MeshPairs references;
   std::vector<strata::Coordinate> numbers;
   while (lines.next()) {
     for (std::size_t i = 0; i < lines.words().size(); ++i) numbers.push_back(lines.coordinate(i, references.rounding));
@@ -38,8 +39,8 @@ Input read_numbers(const std::string& file) {
   references.triangles.resize(numbers.size() / 9);
   references.in_doubles.resize(numbers.size() / 9);
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    references.triangles[i / 9][i % 9] = numbers[i].stored;
-    references.in_doubles[i / 9][i % 9] = numbers[i].written;
+    (&references.triangles[i / 9][0].x)[i % 9] = numbers[i].stored;
+    (&references.in_doubles[i / 9][0].x)[i % 9] = numbers[i].written;
   }
   references.notes = strata::rounding_note(file, references.rounding);
   references.notes_of_doubles = strata::doubles_note(file, references.rounding);
@@ -84,7 +85,7 @@ QueryLanes query_lanes(const LaneOptions& options, const std::vector<std::string
   return result;
 }
 
-Input read_references(const std::string& name) {
+strata::MeshPairs read_references(const std::string& name) {
   const std::size_t hash = name.rfind('#');
   if (strata::is_mesh(name) && std::filesystem::exists(name))
     throw UsageError(
@@ -95,7 +96,7 @@ Input read_references(const std::string& name) {
   const std::optional<std::uint64_t> face = parse_whole(name.substr(hash + 1));
   if (!face) throw UsageError(name + ": expected MESH#FACE with a whole number, found '" + name.substr(hash + 1) + "'");
   const std::string file = name.substr(0, hash);
-  Input mesh = read_mesh(file);
+  strata::MeshPairs mesh = strata::read_triangles(file);
   if (*face >= mesh.triangles.size())
     throw std::runtime_error(
         fmt::format("{} has no face {}: it has {}, numbered from 0", file, *face, mesh.triangles.size()));
@@ -104,25 +105,8 @@ Input read_references(const std::string& name) {
   return mesh;
 }
 
-Input read_mesh(const std::string& file, strata::Coordinates coordinates) {
-  const strata::MeshPairs mesh = strata::read_triangles(file, coordinates);
-  Input result{std::vector<query::Triangle>(mesh.triangles.size()),
-               std::vector<query::DoubleTriangle>(mesh.in_doubles.size()), mesh.notes, mesh.notes_of_doubles,
-               mesh.rounding};
-  std::memcpy(result.triangles.data(), mesh.triangles.data(), mesh.triangles.size() * sizeof(query::Triangle));
-  std::memcpy(result.in_doubles.data(), mesh.in_doubles.data(), mesh.in_doubles.size() * sizeof(query::DoubleTriangle));
-  return result;
-}
-
-std::vector<query::DoubleTriangle> in_doubles(const Input& input) {
-  if (!input.in_doubles.empty()) return input.in_doubles;
-  std::vector<query::DoubleTriangle> result;
-  for (const query::Triangle& triangle : input.triangles) result.push_back(in_doubles(triangle));
-  return result;
-}
-
-void say_notes(const Input& references, const Input& mesh, bool exact_input, bool are_doubles) {
-  const auto which = are_doubles && !exact_input ? &Input::notes_of_doubles : &Input::notes;
+void say_notes(const strata::MeshPairs& references, const strata::MeshPairs& mesh, bool exact_input, bool are_doubles) {
+  const auto which = are_doubles && !exact_input ? &strata::MeshPairs::notes_of_doubles : &strata::MeshPairs::notes;
   std::vector<std::string> notes = references.*which;
   notes.insert(notes.end(), (mesh.*which).begin(), (mesh.*which).end());
   strata::Rounding rounding = references.rounding;
@@ -137,9 +121,8 @@ std::string obj_of(const std::vector<ObjGroup>& groups) {
   std::size_t vertex = 1;
   for (const ObjGroup& group : groups) {
     text += "g " + group.name + "\n";
-    for (const std::array<double, 9>& t : group.triangles) {
-      for (std::size_t k = 0; k < 9; k += 3)
-        text += fmt::format("v {} {} {}\n", digits(t[k]), digits(t[k + 1]), digits(t[k + 2]));
+    for (const TriangleOf<double>& triangle : group.triangles) {
+      for (const Vec3<double>& v : triangle) text += fmt::format("v {} {} {}\n", digits(v.x), digits(v.y), digits(v.z));
       text += fmt::format("f {} {} {}\n", vertex, vertex + 1, vertex + 2);
       vertex += 3;
     }

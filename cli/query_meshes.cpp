@@ -50,17 +50,13 @@ struct Search {
 };
 
 Search opened(const QueryOptions& options) {
-  std::vector<strata::MeshPairs> read;
-  for (const std::string& file : options.between ? options.files : std::vector{options.self})
-    read.push_back(strata::read_triangles(file, strata::Coordinates::any));
-  const auto triangles_of = [](strata::MeshPairs& mesh) {
-    return MeshTriangles{std::move(mesh.triangles), std::move(mesh.in_doubles), mesh.rounding.beyond > 0};
-  };
-  Search search{options, {triangles_of(read[0]), {}}};
-  if (read.size() == 2) search.meshes.b = triangles_of(read[1]);
+  const auto read = [](const std::string& file) { return strata::read_triangles(file, strata::Coordinates::any); };
+  Search search{options, {read(options.between ? options.files[0] : options.self), {}}};
+  if (options.between) search.meshes.b = read(options.files[1]);
   const bool of_doubles = search.meshes.are_doubles() && !options.exact_input;
-  for (const strata::MeshPairs& mesh : read)
-    say_notes(of_doubles ? mesh.notes_of_doubles : mesh.notes, mesh.rounding, options.exact_input);
+  for (const strata::MeshPairs* mesh : {&search.meshes.a, search.self() ? nullptr : &*search.meshes.b}) {
+    if (mesh) say_notes(of_doubles ? mesh->notes_of_doubles : mesh->notes, mesh->rounding, options.exact_input);
+  }
   return search;
 }
 
@@ -98,10 +94,8 @@ void write_files(const Search& search) {
                                                       : corpus::entry_of(search.meshes.pair(hit.i, hit.j), {});
     entry.fields.push_back({"name", fmt::format("triangles_{}_{}", hit.i, hit.j)});
     corpus::write_entry(pairs, entry);
-    for (const double* from : {&exact.a[0].x, &exact.b[0].x}) {
-      hits.triangles.emplace_back();
-      std::copy_n(from, 9, hits.triangles.back().begin());
-    }
+    hits.triangles.push_back(first_of(exact));
+    hits.triangles.push_back(second_of(exact));
   }
   if (!options.pairs.empty()) write_result(options.pairs, pairs.str(), fuzz::NamedBy::user);
   if (!options.obj.empty()) write_result(options.obj, obj_of({hits}), fuzz::NamedBy::user);
@@ -110,8 +104,8 @@ void write_files(const Search& search) {
 Json json_of(const Search& search) {
   const FoundPairs& found = search.found;
   const std::vector<FoundPair> list = search.list();
-  Json json = {{"triangles", search.meshes.a.size()}, {"hits", search.hits()}, {"first", nullptr}};
-  if (!search.self()) json["triangles"] = {search.meshes.a.size(), search.meshes.b->size()};
+  Json json = {{"triangles", search.meshes.a.triangles.size()}, {"hits", search.hits()}, {"first", nullptr}};
+  if (!search.self()) json["triangles"] = {search.meshes.a.triangles.size(), search.meshes.b->triangles.size()};
   if (!list.empty()) json["first"] = {list[0].i, list[0].j};
   json["declined"] = found.declined;
   json["seconds"] = found.seconds;
@@ -138,14 +132,14 @@ std::string words_of(const Search& search) {
                       vertices = found.of(Kind::common_vertex);
   std::string text;
   if (search.self()) {
-    text = fmt::format("{} triangles: {} each other, {} otherwise\n", grouped(search.meshes.a.size()),
+    text = fmt::format("{} triangles: {} each other, {} otherwise\n", grouped(search.meshes.a.triangles.size()),
                        s(search.hits(), " pair pierces", " pairs pierce"), s(touching, " touches", " touch"));
     text +=
         fmt::format("neighbours that share only an edge: {}; only a vertex: {}\n", grouped(edges), grouped(vertices));
   } else {
-    text =
-        fmt::format("{} and {} triangles: {} ({})\n", grouped(search.meshes.a.size()), grouped(search.meshes.b->size()),
-                    s(search.hits(), " pair intersects", " pairs intersect"), search.executor);
+    text = fmt::format("{} and {} triangles: {} ({})\n", grouped(search.meshes.a.triangles.size()),
+                       grouped(search.meshes.b->triangles.size()),
+                       s(search.hits(), " pair intersects", " pairs intersect"), search.executor);
     text += fmt::format("{} each other, {} only an edge, {} only a vertex, {} otherwise\n",
                         s(found.of(Kind::pierces), " pierces", " pierce"), s(edges, " shares", " share"),
                         grouped(vertices), s(touching, " touches", " touch"));
@@ -172,7 +166,7 @@ void query_meshes(const QueryOptions& options, int& status) {
   catch_interrupts();
   const Decider decider = exact_decider(options.executors[0]);
   search.executor = decider.executor;
-  const std::size_t triangles = search.meshes.a.size();
+  const std::size_t triangles = search.meshes.a.triangles.size();
   Progress progress("triangles", triangles, isatty(STDERR_FILENO), error_screen());
   std::size_t done = 0;
   const auto start = std::chrono::steady_clock::now();

@@ -22,7 +22,6 @@
 #include "reports/csv.h"
 #include "reports/margin_figure.h"
 #include "reports/page.h"
-#include "subjects/subjects.h"
 
 namespace graze::cli {
 
@@ -90,21 +89,12 @@ std::string page_of(const std::string& file) {
 
 // Makes the campaign's report. Opens its foreign code, because the programs that show a failure need it.
 Json make_report(const fs::path& directory) {
-  std::vector<std::string> missing;
-  for (const Json& row : recorded_spec_of(directory).value("subjects", Json::array())) {
-    try {
-      subjects::open_recorded({{"subjects", Json::array({row})}});
-    } catch (const UsageError&) {
-      throw;
-    } catch (const std::runtime_error& error) {
-      missing.push_back(
-          fmt::format("No program shows a failure of {}, because the code that the campaign ran cannot "
-                      "be opened: {}.",
-                      printable(row.at("name").get<std::string>()), printable(error.what())));
-    }
-  }
+  const auto missing = open_unchanged_subjects_of(directory);
   Json report = reports::make_report(directory);
-  for (const std::string& sentence : missing) report["missing"].push_back(sentence);
+  for (const auto& [subject, why] : missing)
+    report["missing"].push_back(
+        fmt::format("No program shows a failure of {}, because the code that the campaign ran cannot be opened: {}.",
+                    printable(subject), why));
   return report;
 }
 

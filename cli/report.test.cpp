@@ -17,7 +17,7 @@ class Report : public CommandTest {
       "graze fuzz --pairs 3000 --lanes 'moller_1997/*,exact/f32/cpu' --executor twin "
       "--strata 'near_edge_edge,degenerate,thesis' ";
 
-  nlohmann::json json(const char* file) { return nlohmann::json::parse(contents(shell.folder / file)); }
+  nlohmann::json json(const char* file) { return shell.json(file); }
 };
 
 // The map's differences come from signatures. The test also counts those from x86-gcc, which equals cpu, pair by pair.
@@ -26,9 +26,8 @@ TEST_F(Report, MapsToolchains) {
       "graze fuzz --pairs 4000 --lanes 'interval_overlap/*,exact/f32/cpu' --executor twin "
       "--toolchains x86-gcc,x86-gcc-v3,x87-24 --out c > /dev/null");
   const std::string said = shell("graze report c").out;
-  EXPECT_NE(said.find("cpu, cuda-nofma, x86-gcc agree on all 4,000 pairs."), said.npos) << said;
-  EXPECT_NE(said.find(" differs most from x86-gcc: on "), said.npos) << said;
-  const nlohmann::ordered_json report = nlohmann::ordered_json::parse(contents(shell.folder / "c/report.json"));
+  EXPECT_TRUE(has(said, {"cpu, cuda-nofma, x86-gcc agree on all 4,000 pairs.", " differs most from x86-gcc: on "}));
+  const nlohmann::ordered_json report = shell.json("c/report.json");
   const nlohmann::ordered_json& map = report.at("toolchains");
   std::map<std::size_t, nlohmann::ordered_json> differs;
   for (const auto& rate : report.at("rates")) {
@@ -59,7 +58,7 @@ TEST_F(Report, MapsToolchains) {
 // Every verb that reads a campaign's JSON refuses counts that another program wrote, and names the file.
 TEST_F(Report, CountsThatCannotBeAreRefused) {
   expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c > /dev/null && graze report c");
-  const nlohmann::ordered_json summary = nlohmann::ordered_json::parse(contents(shell.folder / "c/summary.json"));
+  const nlohmann::ordered_json summary = shell.json("c/summary.json");
   const auto write = [&](const char* file, const nlohmann::ordered_json& json) {
     const bool is_summary = file == std::string("c/summary.json");  // checked against the database
     std::ofstream(shell.folder / file) << (is_summary ? json.dump(1) + '\n' : sealed(json));
@@ -79,8 +78,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
     }
   }
   write("c/summary.json", summary);
-  nlohmann::ordered_json kinds = nlohmann::ordered_json::parse(contents(shell.folder / "c/failures.json")),
-                         more = kinds;
+  nlohmann::ordered_json kinds = shell.json("c/failures.json"), more = kinds;
   more["kinds"][0]["pairs"] = more["kinds"][0]["pairs"].get<std::uint64_t>() + 1;
   write("c/failures.json", more);
   expect_error("graze failures c", 1, {"c/failures.json", "graze minimize"});
@@ -116,7 +114,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
     expect_done("cp k c/" + file);
   }
 
-  const std::string timed = contents(shell.folder / "c/timings.json");
+  const std::string timed = shell.file("c/timings.json");
   nlohmann::ordered_json timings = nlohmann::ordered_json::parse(timed), costs;
   for (nlohmann::ordered_json& run : timings["runs"]) {
     if (run.contains("costs")) run["costs"]["lanes"]["exact/f32/cpu"]["thesis"]["middle"] = -1;
@@ -132,10 +130,10 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   for (const char* verb : {"report c", "minimize c", "merge c --out m"})
     expect_error(std::string("graze ") + verb, 1, {"c/timings.json", "damaged", "remove it"});
   expect_done(std::string(kFuzz) + "--out c 2>&1 | grep 'c/timings.json: it has been changed or damaged'");
-  EXPECT_EQ(contents(shell.folder / "c/timings.json"), timed.substr(0, timed.size() - 30));
+  EXPECT_EQ(shell.file("c/timings.json"), timed.substr(0, timed.size() - 30));
   EXPECT_TRUE(std::filesystem::exists(shell.folder / "c/costs.json"));
   std::ofstream(shell.folder / "c/timings.json") << timed;
-  costs = nlohmann::ordered_json::parse(contents(shell.folder / "c/costs.json"));
+  costs = shell.json("c/costs.json");
   for (const auto& [field, value] : {std::pair("middle", -1), {"pairs", 1'000'000}}) {
     nlohmann::ordered_json other = costs;
     other["rows"][0][field] = value;
@@ -144,7 +142,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   }
   write("c/costs.json", costs);
 
-  nlohmann::ordered_json report = nlohmann::ordered_json::parse(contents(shell.folder / "c/report.json"));
+  nlohmann::ordered_json report = shell.json("c/report.json");
   for (const char* part : {"count", "of", "share"}) {
     nlohmann::ordered_json other = report;
     other["rates"][0]["wrong"][part] = 12345678;
@@ -175,7 +173,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   expect_error("graze report --from r.json --out r.html", 1, {"r.json", "3000"});
 
   // Deeply nested JSON must not overflow the stack, with the database or without it.
-  const std::string text = contents(shell.folder / "c/summary.json");
+  const std::string text = shell.file("c/summary.json");
   const auto expect_too_deep = [&] {
     std::ofstream(shell.folder / "c/summary.json")
         << text.substr(0, text.rfind('}')) << R"(,"x":)" << std::string(60'000, '[') << std::string(60'000, ']') << '}';
@@ -247,10 +245,10 @@ TEST_F(Report, PipesAndForeignFilesAmongTheRecordsAreRefused) {
   const std::string pairs = "c/cases/" + hash + ".pairs", maps = "c/cases/" + hash + ".maps.json";
   expect_done("cp " + pairs + " kept && echo mine > " + pairs);
   expect_error(fuzz, 2, {pairs, "--force"});
-  EXPECT_EQ(contents(shell.folder / pairs), "mine\n");
+  EXPECT_EQ(shell.file(pairs), "mine\n");
   expect_done("cp kept " + pairs + " && echo '{\"a\": 1}' > " + maps);
   expect_error("graze minimize c --again", 2, {maps, "--force"});
-  EXPECT_EQ(contents(shell.folder / maps), "{\"a\": 1}\n");
+  EXPECT_EQ(shell.file(maps), "{\"a\": 1}\n");
   expect_done("rm " + maps + " && graze minimize c");
   // A truncated result of Graze is recognised and replaced.
   expect_done("truncate -s -30 c/costs.json && graze report c && graze report --from c/report.json --out r.html");
@@ -301,7 +299,7 @@ TEST_F(Report, ADamagedStatusIsReplaced) {
   }
   expect_done("echo precious > theirs && ln -sf ../theirs c/status.json");
   expect_error(fuzz, 2, {"c/status.json", "link"});
-  EXPECT_EQ(contents(shell.folder / "theirs"), "precious\n");
+  EXPECT_EQ(shell.file("theirs"), "precious\n");
 }
 
 TEST_F(Report, SameBytesWhateverTheThreads) {
@@ -342,15 +340,14 @@ TEST_F(Report, ComparesTwoCampaigns) {
   for (const char* seed : {"1", "2"})
     expect_done(
         fmt::format("{0} --seed {1} --out seed{1} > /dev/null && graze minimize seed{1} > /dev/null", kFuzz, seed));
-  const Ran said = shell("graze report --compare seed1 seed2");
-  ASSERT_EQ(said.status, 0) << said.err;
+  const Ran said = shell.done("graze report --compare seed1 seed2");
   const nlohmann::json report = json("seed2/compare.json");
   EXPECT_TRUE(said.out.starts_with(fmt::format(
       "None of {} rates changed, and no kind of failure with at least 14 expected signatures came or went; differences "
       "under ",
       report["rates"].size())))
       << said.out;
-  EXPECT_NE(said.out.find("\nThe seed differs: 1 before, 2 after.\nWrote "), std::string::npos) << said.out;
+  EXPECT_TRUE(has(said.out, {"\nThe seed differs: 1 before, 2 after.\nWrote "}));
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "seed2/report.json"));
   EXPECT_EQ(report["run"]["seed"], 2);
   EXPECT_EQ(report["compare"]["other"]["seed"], 1);
@@ -359,9 +356,8 @@ TEST_F(Report, ComparesTwoCampaigns) {
   expect_done("test -s seed2/compare.html && test -s seed2/compare.csv");
   // In a campaign without kinds, the report says what it does not compare.
   expect_done("rm seed1/failures.json");
-  EXPECT_NE(
-      shell("graze report --compare seed1 seed2").out.find("and kinds of failure are not compared; differences under "),
-      std::string::npos);
+  EXPECT_TRUE(has(shell("graze report --compare seed1 seed2").out,
+                  {"and kinds of failure are not compared; differences under "}));
 }
 
 // The code is edited between two campaigns. Both orders can be compared, and each page shows its own code.
@@ -373,22 +369,18 @@ TEST_F(Report, ComparesCodeBeforeAndAfterAnEdit) {
                 answer + " > /dev/null && graze minimize c" + answer + " > /dev/null");
   }
   for (const char* order : {"c0 c1", "c1 c0"}) {
-    const Ran said = shell(std::string("graze report --compare ") + order);
-    ASSERT_EQ(said.status, 0) << said.err;
+    const Ran said = shell.done(std::string("graze report --compare ") + order);
     EXPECT_EQ(said.err, "");
     EXPECT_TRUE(said.out.starts_with("Changed: 200 verdicts of 1 of 2 lanes: ")) << said.out;
-    EXPECT_NE(said.out.find("The code of mine differs: "), std::string::npos) << said.out;
+    EXPECT_TRUE(has(said.out, {"The code of mine differs: "}));
   }
   EXPECT_EQ(json("c1/compare.json")["run"]["subjects"], json("c0/compare.json")["compare"]["other"]["subjects"]);
-  const auto shows_code = [&](const char* file) {
-    return contents(shell.folder / file).find("#include \\\"") != std::string::npos;
-  };
+  const auto shows_code = [&](const char* file) { return shell.file(file).find("#include \\\"") != std::string::npos; };
   EXPECT_TRUE(shows_code("c1/compare.json"));
   EXPECT_FALSE(shows_code("c0/compare.json"));
-  const Ran old = shell("graze report c0");
-  EXPECT_EQ(old.status, 0) << old.err;
+  const Ran old = shell.done("graze report c0");
   EXPECT_EQ(old.err, "");
-  EXPECT_NE(old.out.find("m.cpp:hit has changed since the campaign ran: its hash is "), std::string::npos) << old.out;
+  EXPECT_TRUE(has(old.out, {"m.cpp:hit has changed since the campaign ran: its hash is "}));
   // If two source files have the same name, each report has only the programs of its own code.
   expect_done(
       "mkdir p && mv m.cpp p && graze fuzz --subject mine=p/m.cpp:hit --lanes mine/f32/cpu --strata "

@@ -87,7 +87,7 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
     return repro_pack(name);
   }
   fuzz::SelectedLanes under_test = selected_lanes(lanes, name);
-  const std::vector<corpus::Entry> entries = read_cases(name, PairTypes::both);
+  const std::vector<corpus::Entry> entries = read_cases(name);
   take_doubles_of(entries, under_test);
   if (!emitted.empty()) {
     const auto kind = std::find(std::begin(reports::kSnippetKinds), std::end(reports::kSnippetKinds), emitted);

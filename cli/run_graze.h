@@ -16,6 +16,7 @@
 #include <regex>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/message_testing.h"
@@ -30,10 +31,15 @@ inline std::string contents(const std::filesystem::path& file) {
   return text.str();
 }
 
-inline nlohmann::json json_of(const std::filesystem::path& file) { return nlohmann::json::parse(contents(file)); }
-
 // The text of the object as Graze would write it, with the correct checksum (fuzz/sealed.h).
 inline std::string sealed(const nlohmann::ordered_json& json) { return fuzz::sealed(json).dump(1) + '\n'; }
+
+// Success if the text has all of the parts.
+inline testing::AssertionResult has(std::string_view text, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts)
+    if (text.find(part) == text.npos) return testing::AssertionFailure() << "no '" << part << "' in: " << text;
+  return testing::AssertionSuccess() << "found in: " << text;
+}
 
 struct Ran {
   int status;  // exit status; 128 + n for signal n
@@ -61,6 +67,17 @@ class Shell {
     return {WIFEXITED(rc) ? WEXITSTATUS(rc) : 128 + WTERMSIG(rc), contents(folder / ".out"), contents(folder / ".err")};
   }
 
+  // Runs a command that must succeed.
+  Ran done(const std::string& command) const {
+    Ran ran = (*this)(command);
+    EXPECT_EQ(ran.status, 0) << command << '\n' << ran.out << ran.err;
+    return ran;
+  }
+
+  // Returns the contents of a file in the folder.
+  std::string file(const std::string& name) const { return contents(folder / name); }
+  nlohmann::ordered_json json(const std::string& name) const { return nlohmann::ordered_json::parse(file(name)); }
+
   std::filesystem::path folder;
 };
 
@@ -82,9 +99,11 @@ class CommandTest : public testing::Test {
   Shell shell{std::string(testing::UnitTest::GetInstance()->current_test_info()->test_suite_name()) + "-" +
               testing::UnitTest::GetInstance()->current_test_info()->name()};
 
-  void expect_done(const std::string& command) const {
-    const Ran ran = shell(command);
-    EXPECT_EQ(ran.status, 0) << command << '\n' << ran.out << ran.err;
+  void expect_done(const std::string& command) const { shell.done(command); }
+
+  // Expects success, and these parts on stdout.
+  void expect_out(const std::string& command, const std::vector<std::string>& parts) const {
+    EXPECT_TRUE(has(shell.done(command).out, parts)) << command;
   }
 
   // Runs the command and sends it `signal` once it catches SIGTERM; earlier, SIGTERM would end it with status 143.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze scene`: writes a scene file from meshes or pairs. Also adds --scene to the verbs that draw from a scene.
+// `graze scene`: writes a scene file from meshes or pairs. Also adds the options of the verbs that draw pairs.
 #include <fmt/format.h>
 
 #include <tbb/blocked_range.h>
@@ -106,15 +106,8 @@ Measured measured_meshes(const SceneVerb& options, std::string& text) {
   };
   Measured result;
   if (in_doubles) {
-    std::vector<std::array<Vec3<double>, 3>> triangles = found->in_doubles;
-    for (std::size_t t = triangles.size(); t < found->triangles.size(); ++t) {
-      const auto wide = [&](int i) {
-        const Vec3<float>& v = found->triangles[t][static_cast<std::size_t>(i)];
-        return Vec3<double>{v.x, v.y, v.z};
-      };
-      triangles.push_back({wide(0), wide(1), wide(2)});
-    }
-    result = sample_of(triangles, [found](std::uint64_t index) { return found->double_pair(index); });
+    result =
+        sample_of(found->triangles_in_doubles(), [found](std::uint64_t index) { return found->double_pair(index); });
   } else {
     result = sample_of(found->triangles, [found](std::uint64_t index) { return found->pair(index); });
   }
@@ -234,15 +227,8 @@ void add_scene(CLI::App& app, int&) {
   });
 }
 
-void add_scene_option(CLI::App& command, std::string& file) {
-  command.add_option("--scene", file, "Scene file to draw pairs in, written by `graze scene` or by hand")
-      ->option_text("FILE");
-  if (CLI::Option* types = command.get_option_no_throw("--coordinates"))
-    types->default_str("f32, or those of the scene");
-}
-
-strata::SceneSources drawn(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
-                           const std::vector<std::string>& globs, PairTypes types, fuzz::Json* recorded) {
+strata::SceneSources drawn(const DrawOptions& options, fuzz::Json* recorded) {
+  const auto& [pairs, seed, globs, types, scene] = options;
   if (scene.empty()) return {strata::stratum_sources(seed, pairs, globs, types), {}, {}, {}};
   expect_utf8("--scene", scene);
   const fuzz::NamedScene named = fuzz::open_scene(scene);
@@ -264,10 +250,18 @@ void add_coordinates_option(CLI::App& command, PairTypes& types, OfBothTypes bot
       ->default_str("f32");
 }
 
-void take_type_of_scene(const CLI::App& command, const std::string& scene, PairTypes& types) {
-  if (scene.empty() || command.count("--coordinates") > 0) return;
-  expect_utf8("--scene", scene);
-  types = type_of_scene(scene);
+void add_draw_options(CLI::App& command, DrawOptions& options, OfBothTypes both) {
+  add_globs(command, "--strata", options.strata, "Patterns of the strata to draw from");
+  add_coordinates_option(command, options.coordinates, both);
+  command.get_option("--coordinates")->default_str("f32, or those of the scene");
+  command.add_option("--scene", options.scene, "Scene file to draw pairs in, written by `graze scene` or by hand")
+      ->option_text("FILE");
+}
+
+void take_type_of_scene(const CLI::App& command, DrawOptions& options) {
+  if (options.scene.empty() || command.count("--coordinates") > 0) return;
+  expect_utf8("--scene", options.scene);
+  options.coordinates = type_of_scene(options.scene);
 }
 
 PairTypes type_of_scene(const std::string& scene) {

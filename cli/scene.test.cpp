@@ -30,19 +30,17 @@ class SceneVerb : public CommandTest {
                                                "edges = [0.5, 40]\nunits = \"mm\"\n";
   }
 
-  Json json(const std::string& file) const { return Json::parse(contents(shell.folder / file)); }
+  Json json(const std::string& file) const { return shell.json(file); }
 };
 
 TEST_F(SceneVerb, AMeshBecomesAPageThatIsRead) {
-  const Ran ran = shell("graze scene hills.off --units mm --out hills.toml");
-  ASSERT_EQ(ran.status, 0) << ran.err;
+  const Ran ran = shell.done("graze scene hills.off --units mm --out hills.toml");
   EXPECT_TRUE(ran.out.starts_with("Wrote hills.toml: 162 triangles, ")) << ran.out;
   EXPECT_TRUE(ran.out.ends_with("Next: graze fuzz --scene hills.toml\n")) << ran.out;
-  const std::string text = contents(shell.folder / "hills.toml");
-  for (const char* line :
-       {"\nunits = \"mm\"\n", "\nextent = [[50, 61.25], [0, 13.5], [200, 201.125]]\n",
-        "\ngrid = { power_of_two = -3 }\n", "\n[mix]\n", "\n[margins]\n", "\nfiles = [\"hills.off\"]\n"})
-    EXPECT_NE(text.find(line), std::string::npos) << line << text;
+  const std::string text = shell.file("hills.toml");
+  EXPECT_TRUE(
+      has(text, {"\nunits = \"mm\"\n", "\nextent = [[50, 61.25], [0, 13.5], [200, 201.125]]\n",
+                 "\ngrid = { power_of_two = -3 }\n", "\n[mix]\n", "\n[margins]\n", "\nfiles = [\"hills.off\"]\n"}));
   EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 100);
   expect_done("graze scene hills.off --units mm > again.toml && cmp hills.toml again.toml");
   expect_done("mkdir sub && graze scene hills.off --out sub/s.toml && grep -q '\"../hills.off\"' sub/s.toml");
@@ -56,17 +54,10 @@ TEST_F(SceneVerb, AMeshBecomesAPageThatIsRead) {
 TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
   const std::string fuzz = "graze fuzz --scene hills.toml --pairs 20000 --lanes '*/f32/cpu' ";
   expect_done("graze scene hills.off --out hills.toml");
-  const Ran ran = shell(fuzz + "--threads 1 --out one");
-  ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find(
-                "\nLeft out, because the scene cannot contain them:\n  thesis: its triangles have fixed coordinates"),
-            std::string::npos)
-      << ran.out;
-  EXPECT_NE(ran.out.find(
-                "\n  extreme_scale: your coordinates stay within 0 … 201.125 units, and your triangles' longest edges "
-                "within "),
-            std::string::npos)
-      << ran.out;
+  expect_out(fuzz + "--threads 1 --out one",
+             {"\nLeft out, because the scene cannot contain them:\n  thesis: its triangles have fixed coordinates",
+              "\n  extreme_scale: your coordinates stay within 0 … 201.125 units, and your triangles' longest edges "
+              "within "});
   expect_done(fuzz + "--threads 2 --out two && diff one/summary.json two/summary.json && diff -r one/cases two/cases");
   const Json summary = json("one/summary.json");
   EXPECT_EQ(summary["spec"]["scene"]["left_out"]["far_from_origin"], "your coordinates stay within 0 … 201.125 units");
@@ -80,8 +71,7 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
   const std::string numbers = ":" + found[2].str() + ":" + found[3].str(), id = found[1].str(), of = found[4].str();
   EXPECT_TRUE(of.starts_with("hills.toml#")) << of;
   const auto vertices_of = [&](const std::string& name) {
-    const Ran repro = shell("graze repro '" + name + "' --emit obj");
-    EXPECT_EQ(repro.status, 0) << name << repro.err;
+    const Ran repro = shell.done("graze repro '" + name + "' --emit obj");
     return repro.out.substr(std::min(repro.out.find("\nv "), repro.out.size()));
   };
   const std::string vertices = vertices_of("one/" + summary["signatures"][0]["case"].get<std::string>());
@@ -90,17 +80,17 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
     EXPECT_EQ(vertices_of(id + "@" + scene + numbers), vertices) << scene;
   // The verbs that use a campaign accept one in a scene.
   expect_done("graze minimize one > minimised && graze failures one > kinds && graze report one > report");
-  EXPECT_NE(contents(shell.folder / "one/failures.json").find("@hills.toml#"), std::string::npos);
-  EXPECT_NE(contents(shell.folder / "one/report.json").find("--scene hills.toml --pairs 20000"), std::string::npos);
+  EXPECT_TRUE(has(shell.file("one/failures.json"), {"@hills.toml#"}));
+  EXPECT_TRUE(has(shell.file("one/report.json"), {"--scene hills.toml --pairs 20000"}));
   const Ran dumped = shell("graze dump one --pairs 40 --format pairs");
-  EXPECT_NE(dumped.out.find("scene=" + of), std::string::npos) << dumped.err;
+  EXPECT_TRUE(has(dumped.out, {"scene=" + of})) << dumped.err;
   // With only a comment added, the scene's campaign resumes. Another scene is another campaign, and case names do not
   // match.
   expect_done("sed -i '1i # mine' hills.toml && " + fuzz + "--out one");
   expect_done("sed -i 's/^units.*/units = \"m\"/' hills.toml");
   const Ran other = shell(fuzz + "--out one");
   EXPECT_EQ(other.status, 2);
-  EXPECT_NE(other.err.find("cannot use one: it holds another campaign"), std::string::npos) << other.err;
+  EXPECT_TRUE(has(other.err, {"cannot use one: it holds another campaign"}));
   expect_error("graze explain '" + id + "@" + of + numbers + "'", 1, {"hills.toml", of});
   EXPECT_EQ(vertices_of(id + "@one" + numbers), vertices);
 }
@@ -116,13 +106,9 @@ TEST_F(SceneVerb, FewerPairsThanAskedForAreExplained) {
 }
 
 TEST_F(SceneVerb, ThreeLinesAreACampaign) {
-  const Ran ran =
-      shell("graze fuzz --scene mm.toml --pairs 2000 --strata 'near_*,extreme_scale' --lanes '*/f32/cpu' --out c");
-  ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find("  extreme_scale: your coordinates stay within -5400 … 120800 mm, and your triangles' longest "
-                         "edges within 0.5 … 40\n"),
-            std::string::npos)
-      << ran.out;
+  expect_out("graze fuzz --scene mm.toml --pairs 2000 --strata 'near_*,extreme_scale' --lanes '*/f32/cpu' --out c",
+             {"  extreme_scale: your coordinates stay within -5400 … 120800 mm, and your triangles' longest "
+              "edges within 0.5 … 40\n"});
   EXPECT_EQ(json("c/summary.json")["spec"]["strata"].size(), 4u);
 }
 
@@ -131,10 +117,9 @@ TEST_F(SceneVerb, TheExamplesAreDrawnFrom) {
   expect_done("graze fuzz --scene " + root + "/docs/scenes/millimetres.toml --pairs 2000 --lanes '*/f32/cpu' --out mm");
   expect_done("python3 " + root +
               "/scripts/terrain_mesh 16 > terrain.off && graze scene terrain.off --units m --out t.toml");
-  const std::string text = contents(shell.folder / "t.toml");
-  EXPECT_NE(text.find("\nextent = [[0, 400], [0, 400], [128.58, 155.46]]\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("\ngrid = { decimals = 2 }\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("\ncontent = \"3794dafeca051a06\"\n"), std::string::npos) << text;  // the script's bytes
+  const std::string text = shell.file("t.toml");
+  EXPECT_TRUE(has(text, {"\nextent = [[0, 400], [0, 400], [128.58, 155.46]]\n", "\ngrid = { decimals = 2 }\n",
+                         "\ncontent = \"3794dafeca051a06\"\n"}));  // the script's bytes
 }
 
 TEST_F(SceneVerb, PosesAndSeveralMeshes) {
@@ -150,11 +135,9 @@ TEST_F(SceneVerb, PosesAndSeveralMeshes) {
 // Whichever lanes are measured as the cheapest, a fresh campaign shows that they suffice.
 TEST_F(SceneVerb, WhatSufficesKeepsTheRateInAFreshCampaign) {
   for (const std::string measured : {"hills.off --out s.toml", "mm.toml"}) {
-    const Ran ran = shell("graze scene " + measured + " --sufficient 0.05 | tr '\\n' ' '");
-    ASSERT_EQ(ran.status, 0) << ran.err;
-    EXPECT_NE(ran.out.find("Wrong on at most 0.05 of this scene's pairs: use "), std::string::npos) << ran.out;
-    EXPECT_NE(ran.out.find("exact/f32/cpu"), std::string::npos) << ran.out;
-    EXPECT_NE(ran.out.find("far_from_origin: your coordinates"), std::string::npos) << ran.out;
+    const Ran ran = shell.done("graze scene " + measured + " --sufficient 0.05 | tr '\\n' ' '");
+    EXPECT_TRUE(has(ran.out, {"Wrong on at most 0.05 of this scene's pairs: use ", "exact/f32/cpu",
+                              "far_from_origin: your coordinates"}));
     const std::regex lane("(?:: use|suffices is) (\\w+/f(?:32|64)/cpu(?:/[^ ,]+[0-9])?)[,:]");
     int checked = 0;
     for (std::sregex_iterator at(ran.out.begin(), ran.out.end(), lane), end; at != end; ++at) {

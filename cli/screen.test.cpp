@@ -76,17 +76,16 @@ TEST_F(TerminalTest, ColourIsForTerminalsThatWantIt) {
   const std::string piped = shell(explain).out;
   EXPECT_EQ(piped.find('\033'), std::string::npos) << piped;
   const std::string shown = on_terminal(shell, explain, 80);
-  EXPECT_NE(shown.find(kColour), std::string::npos) << shown;
-  EXPECT_NE(shown.find("\033[31mdisjoint !\033[0m"), std::string::npos) << shown;
+  EXPECT_TRUE(has(shown, {kColour, "\033[31mdisjoint !\033[0m"}));
   EXPECT_EQ(without_colour(shown), piped);  // colour adds no information
   for (const char* without : {"export TERM=xterm NO_COLOR=1", "unset NO_COLOR; export TERM=dumb"})
     EXPECT_EQ(on_terminal(shell, explain, 80, without), piped) << without;
-  EXPECT_NE(on_terminal(shell, explain, 80, "export TERM=xterm NO_COLOR=").find(kColour), std::string::npos);
+  EXPECT_TRUE(has(on_terminal(shell, explain, 80, "export TERM=xterm NO_COLOR="), {kColour}));
   EXPECT_EQ(on_terminal(shell, explain + " | cat", 80), piped);
 }
 
 TEST_F(TerminalTest, ErrorsAreColouredWhereTheyAreRead) {
-  EXPECT_NE(on_terminal(shell, "graze check missing > /dev/null || true", 80).find(kColour), std::string::npos);
+  EXPECT_TRUE(has(on_terminal(shell, "graze check missing > /dev/null || true", 80), {kColour}));
   EXPECT_EQ(on_terminal(shell, "graze check missing 2> error || cat error", 80).find('\033'), std::string::npos);
   EXPECT_EQ(on_terminal(shell, "graze check missing || true", 80, "export NO_COLOR=1").find('\033'), std::string::npos);
 }
@@ -102,8 +101,7 @@ TEST_F(TerminalTest, WhatIsPrintedFitsEightyColumnsAndUsesMore) {
         "graze repro extreme_scale:1:5 --lanes '*/f32/c*[!t]' --executor twin | grep -v signature",
         "graze explain coplanar_rounded:1:10", "graze explain mixed_scale:1:3 --lanes '*/f32/c*[!t]'",
         "graze explain extreme_scale:1:5", "graze map mixed_scale:1:3 --lanes 'guigue*/f32/c*[!t]' --out m.png"}) {
-    const Ran piped = shell(command);
-    ASSERT_EQ(piped.status, 0) << command << piped.err;
+    const Ran piped = shell.done(command);
     EXPECT_LE(widest(piped.out), 80) << command << '\n' << piped.out;
     const std::string narrow = on_terminal(shell, command.substr(0, command.find(" | ")), 80);
     EXPECT_EQ(without_colour(narrow).find(piped.out.substr(0, piped.out.find('\n'))), 0u) << command;
@@ -124,9 +122,9 @@ TEST_F(TerminalTest, TheLiveLineNeverWraps) {
     EXPECT_LT(widest(text), columns) << text;
     EXPECT_EQ(text.find('\n'), std::string::npos) << text;
   }
-  ASSERT_EQ(shell("graze fuzz --pairs 1000 --strata 'near_*' --lanes '*/f32/cpu' --out m > /dev/null").status, 0);
+  expect_done("graze fuzz --pairs 1000 --strata 'near_*' --lanes '*/f32/cpu' --out m > /dev/null");
   const std::string text = on_terminal(shell, "graze minimize m > /dev/null", 40);
-  EXPECT_NE(text.find(" left"), std::string::npos) << text;
+  EXPECT_TRUE(has(text, {" left"}));
   EXPECT_LT(widest(text), 40) << text;
 }
 
@@ -166,10 +164,8 @@ TEST_F(ScreenTest, HelpGroupsTheVerbsByTaskAndSaysDefaults) {
   }
   EXPECT_EQ(verbs_in_help(shell, "graze").size(), 29u);
   const std::string fuzz = shell("graze fuzz --help").out;
-  for (const std::string part :
-       {"Usage: graze fuzz [OPTIONS]\n", "--pairs N ", "(default: 1000000)", "(default: auto)"})
-    EXPECT_NE(fuzz.find(part), std::string::npos) << part << fuzz;
-  EXPECT_NE(shell("graze check --help").out.find("Usage: graze check [OPTIONS] FILE\n"), std::string::npos);
+  EXPECT_TRUE(has(fuzz, {"Usage: graze fuzz [OPTIONS]\n", "--pairs N ", "(default: 1000000)", "(default: auto)"}));
+  EXPECT_TRUE(has(shell("graze check --help").out, {"Usage: graze check [OPTIONS] FILE\n"}));
 }
 
 TEST_F(TerminalTest, StrataAreOneLineEachForProgramsAndWrappedForPeople) {
@@ -188,8 +184,8 @@ TEST_F(ScreenTest, LanesSayOnceWhatTheirTwinsAreTrustedFor) {
   for (const auto& row : lane_rows(shell)) status[row["lane"]] = row["status"];
   if (status.at("moller_1997/f32/cuda-fma") == "available (device)") GTEST_SKIP() << "there is a device";
   const std::string out = shell("graze lanes").out;
-  EXPECT_NE(out.find("  moller_1997/f32/cuda-fma             available (twin)\n"), std::string::npos) << out;
-  EXPECT_NE(out.find("CUDA lanes run by their twins, on the CPU"), std::string::npos) << out;
+  EXPECT_TRUE(has(
+      out, {"  moller_1997/f32/cuda-fma             available (twin)\n", "CUDA lanes run by their twins, on the CPU"}));
 }
 
 // The build's message without nvcc must be true: it names as unavailable exactly those variants whose lanes have no
@@ -199,7 +195,7 @@ TEST_F(ScreenTest, TheBuildSaysWhatRunsWithoutNvcc) {
   const std::size_t at = text.find("CUDA lanes: run by their twins, on the CPU (built without nvcc); ");
   ASSERT_NE(at, std::string::npos);
   const std::string message = text.substr(at, text.find('\n', at) - at);
-  EXPECT_NE(message.find("is unavailable"), std::string::npos);
+  EXPECT_TRUE(has(message, {"is unavailable"}));
   int variants = 0;
   for (const auto& row : lane_rows(shell)) {
     const std::string target = row["target"], status = row["status"];

@@ -84,11 +84,10 @@ TEST_F(SubjectVerbs, EveryVerbThatOffersSubjectsRunsAndShowsThem) {
     ASSERT_TRUE(known.contains(verb)) << "add a row for it";
     const SubjectVerb& row = *known[verb];
     if (verb == "prove-twin" || (verb == "hunt" && !can_hunt)) continue;
-    const Ran ran = shell(kWithoutDevice + verb + ' ' + row.arguments + " --subject mine=./mine.c");
-    EXPECT_EQ(ran.status, 0) << ran.out << ran.err;
+    const Ran ran = shell.done(kWithoutDevice + verb + ' ' + row.arguments + " --subject mine=./mine.c");
     if (verb == "plan") continue;  // shows no lane; it refuses lanes that do not exist
-    const std::string shown = *row.shows ? contents(shell.folder / row.shows) : ran.out;
-    EXPECT_NE(shown.find("mine"), std::string::npos) << shown << ran.err;
+    const std::string shown = *row.shows ? shell.file(row.shows) : ran.out;
+    EXPECT_TRUE(has(shown, {"mine"})) << ran.err;
     known.erase(verb);
   }
   known.erase("prove-twin");
@@ -124,20 +123,19 @@ TEST_F(SubjectVerbs, CrashesAreCountedAsSuch) {
   std::ofstream(shell.folder / "mine.c") << "#include <stdlib.h>\nstatic const float kGap = 1e-3f;\nint "
                                             "intersects(const float a[9], const float b[9]) { if "
                                             "(b[0] == 1) abort(); return a[0] > b[0] + kGap; }\n";
-  const Ran query = shell(std::string(kWithoutDevice) +
-                          "query 'mesh.off#0' mesh.off --lanes exact,mine/f32/cpu --subject mine=./mine.c --json");
-  ASSERT_EQ(query.status, 0) << query.err;
+  const Ran query = shell.done(std::string(kWithoutDevice) +
+                               "query 'mesh.off#0' mesh.off --lanes exact,mine/f32/cpu --subject mine=./mine.c --json");
   const auto other = nlohmann::json::parse(query.out)["others"][0];
   EXPECT_EQ(other["lane"], "mine/f32/cpu");
   EXPECT_EQ(other["failed"], 1) << query.out;
   EXPECT_EQ(other["declined"], 0) << query.out;
-  EXPECT_NE(contents(shell.folder / "mismatches.pairs").find("said_by_mine_f32_cpu=crashed"), std::string::npos);
+  EXPECT_TRUE(has(shell.file("mismatches.pairs"), {"said_by_mine_f32_cpu=crashed"}));
   std::ofstream(shell.folder / "mine.c") << "#include <stdlib.h>\nint intersects(const float a[9], const float b[9]) { "
                                             "if (a[0] > 0.9f && a[0] < 0.91f) abort(); return 1; }\n";
   expect_done(
       std::string(kWithoutDevice) +
       "pareto --subject mine=./mine.c --lanes mine/f32/cpu,exact/f32/cpu --strata uniform --pairs 1000 --out o");
-  const auto pareto = nlohmann::json::parse(contents(shell.folder / "o/pareto.json"));
+  const auto pareto = shell.json("o/pareto.json");
   ASSERT_EQ(pareto["not_timed"].size(), 1u) << pareto;
   EXPECT_GE(pareto["not_timed"][0]["errors"]["crashed"], 1);
   EXPECT_EQ(pareto["subjects"][0]["name"], "mine");
@@ -148,12 +146,12 @@ TEST_F(SubjectVerbs, ParetoComparesTheCostOfOwnCode) {
   expect_done(std::string(kWithoutDevice) +
               "pareto --subject mine=./mine.c --subject 'line=cmd:sed -u s/.*/1/' --lanes "
               "mine/f32/cpu,line/f32/cpu,exact/f32/cpu --strata uniform --pairs 1000 --out o > table");
-  const auto pareto = nlohmann::json::parse(contents(shell.folder / "o/pareto.json"));
+  const auto pareto = shell.json("o/pareto.json");
   ASSERT_EQ(pareto["lanes"].size(), 2u) << pareto;
   for (const auto& row : pareto["lanes"]) EXPECT_GT(row["one_a_call"]["middle"], 0) << row;
   ASSERT_EQ(pareto["not_timed"].size(), 1u);
   EXPECT_EQ(pareto["not_timed"][0]["lane"], "line/f32/cpu");
-  EXPECT_NE(contents(shell.folder / "table").find("line/f32/cpu"), std::string::npos);
+  EXPECT_TRUE(has(shell.file("table"), {"line/f32/cpu"}));
 }
 
 // A campaign knows its subjects. If their code has changed, verbs say so, leave it out, and show what was stored;
@@ -168,14 +166,13 @@ TEST_F(SubjectVerbs, ChangedCodeIsSaidAndStoredVerdictsAreShown) {
                                           "dump c --pairs 3 --lanes 'm*/f32/cpu'"};
   for (const std::string& verb : verbs) {
     const Ran ran = shell(kWithoutDevice + verb);
-    EXPECT_NE(ran.out.find("mine"), std::string::npos) << verb << ran.err;
+    EXPECT_TRUE(has(ran.out, {"mine"})) << verb << ran.err;
     EXPECT_EQ(ran.err, "") << verb;
   }
   expect_done("sed -i 's/ + kGap/ - kGap/' mine.c");
   for (const std::string& verb : verbs) {
     SCOPED_TRACE(verb);
-    const Ran ran = shell(kWithoutDevice + verb);
-    EXPECT_EQ(ran.status, 0) << ran.err;
+    const Ran ran = shell.done(kWithoutDevice + verb);
     EXPECT_TRUE(
         names(ran.err.substr(0, ran.err.find('\n')), {"left out", "mine.c", "changed", "--resubject", "mine/f32/cpu"}))
         << ran.err;
@@ -185,7 +182,7 @@ TEST_F(SubjectVerbs, ChangedCodeIsSaidAndStoredVerdictsAreShown) {
     EXPECT_TRUE(
         names(again.err.substr(0, again.err.find('\n')), {"mine: its code is not the code that the campaign ran"}))
         << again.err;
-    EXPECT_NE(again.out.find("mine"), std::string::npos) << again.out;
+    EXPECT_TRUE(has(again.out, {"mine"}));
   }
   // A pattern none of whose lanes runs is an error.
   expect_error(std::string(kWithoutDevice) + "check c/cases/one.pairs --lanes 'mine/*'", 2,
@@ -194,9 +191,8 @@ TEST_F(SubjectVerbs, ChangedCodeIsSaidAndStoredVerdictsAreShown) {
   // Verbs that do not run the code still work.
   expect_done(std::string(kWithoutDevice) + "report c && graze dump c > /dev/null && graze status c");
   if (shell("graze view --out v.html").status == 0) {
-    const Ran viewed = shell(std::string(kWithoutDevice) + "view c/cases/one.pairs --out v.html");
-    EXPECT_EQ(viewed.status, 0) << viewed.err;
-    EXPECT_NE(contents(shell.folder / "v.html").find("\"stored\":true"), std::string::npos);
+    expect_done(std::string(kWithoutDevice) + "view c/cases/one.pairs --out v.html");
+    EXPECT_TRUE(has(shell.file("v.html"), {"\"stored\":true"}));
   }
 }
 
@@ -228,16 +224,14 @@ TEST_F(SubjectVerbs, LanesThatDoNotRunAreSaid) {
   for (const auto& [command, json] : rows) {
     SCOPED_TRACE(command);
     const Ran ran = shell(kWithoutDevice + command + some);
-    EXPECT_NE(ran.err.find("moller_1997/f32/cuda-fast"), std::string::npos) << ran.err;
-    EXPECT_NE(ran.err.find("left out ("), std::string::npos) << ran.err;
-    EXPECT_NE(ran.err.find("a CUDA device runs it"), std::string::npos) << ran.err;
+    EXPECT_TRUE(has(ran.err, {"moller_1997/f32/cuda-fast", "left out (", "a CUDA device runs it"}));
     if (!json.empty()) {
-      const std::string text = json == "out" ? ran.out : contents(shell.folder / json);
-      EXPECT_NE(text.find("lanes_left_out"), std::string::npos) << text;
+      const std::string text = json == "out" ? ran.out : shell.file(json);
+      EXPECT_TRUE(has(text, {"lanes_left_out"}));
     }
     const Ran nothing = shell(kWithoutDevice + command + none);
     EXPECT_EQ(nothing.status, 2) << nothing.out << nothing.err;
-    EXPECT_NE(nothing.err.find("moller_1997/f32/cuda-fast"), std::string::npos) << nothing.err;
+    EXPECT_TRUE(has(nothing.err, {"moller_1997/f32/cuda-fast"}));
   }
   expect_error("graze lanes --lanes nosuch", 2, {"'nosuch'"});
 }

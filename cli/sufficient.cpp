@@ -32,7 +32,7 @@ std::uint64_t pairs_for(double rate) { return std::max<std::uint64_t>(100'000, s
 // needed at the end.
 std::vector<strata::PairSource> pairs_before(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
                                              PairTypes types) {
-  std::vector<strata::PairSource> sources = drawn(scene, seed, pairs, {}, types).sources;
+  std::vector<strata::PairSource> sources = drawn({pairs, seed, {}, types, scene}).sources;
   std::erase_if(sources, [](const strata::PairSource& source) { return fuzz::is_of_mesh(source.id); });
   return sources;
 }
@@ -67,7 +67,7 @@ void print_sufficient(const std::string& scene, double rate) {
   const std::vector<analysis::Cost> costs =
       analysis::costs_of(timed, analysis::first_pairs(spec.others, kTimed), kPasses);
   for (std::size_t c = 0; c < candidates.size(); ++c) candidates[c].cost = costs[c + 1];
-  const strata::SceneSources last = drawn(scene, 3, pairs, {}, types);
+  const strata::SceneSources last = drawn({pairs, 3, {}, types, scene});
   // Candidates were selected by their errors on earlier pairs, so fresh pairs must confirm the cheapest one.
   while (const Candidate* best = reports::cheapest_sufficient(candidates)) {
     const std::ptrdiff_t place = best - candidates.data();

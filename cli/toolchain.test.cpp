@@ -91,11 +91,11 @@ TEST_P(ToolchainCommand, IsMeasured) {
   if (ran.out.empty() && (ran.err.find(": no ") != std::string::npos || ran.err.find("not found") != std::string::npos))
     GTEST_SKIP() << ran.err;
   ASSERT_EQ(ran.status, *c.wrong ? 1 : 0) << ran.out << ran.err;
-  const nlohmann::json json = nlohmann::json::parse(contents(shell.folder / "r.json"));
+  const nlohmann::json json = shell.json("r.json");
   EXPECT_EQ(json["measured"], c.measured) << ran.out;
   EXPECT_EQ(names_with(json, "does not hold"), c.wrong) << ran.out;
   EXPECT_EQ(json["without_answer"], 0);
-  EXPECT_NE(ran.out.find(std::string("measured:   ") + c.measured), std::string::npos) << ran.out;
+  EXPECT_TRUE(has(ran.out, {std::string("measured:   ") + c.measured}));
 }
 
 INSTANTIATE_TEST_SUITE_P(cli, ToolchainCommand, testing::ValuesIn(kCases),
@@ -110,7 +110,7 @@ TEST_F(Toolchain, EmulatorsDivideAndTakeRootsExactly) {
     if (shell("graze toolchain | grep -q '^" + name + " .* yes$'").status != 0) continue;
     ++emulated;
     EXPECT_EQ(shell("graze toolchain " + name + " --json " + name + ".json").status, 0) << name;
-    const nlohmann::json json = nlohmann::json::parse(contents(shell.folder / (name + ".json")));
+    const nlohmann::json json = shell.json(name + ".json");
     for (const auto& result : json["results"]) {
       const std::string canary = result["name"];
       if (canary == "division" || canary == "root" || canary == "fma" || canary == "nearest" ||
@@ -127,7 +127,7 @@ TEST_F(Toolchain, TheLibrarysOwnFmaIsTested) {
   if (shell("graze toolchain | grep -q '^wasm .* yes$'").status != 0) GTEST_SKIP() << "no wasm";
   const Ran ran = shell("graze toolchain wasm --json r.json");
   ASSERT_TRUE(std::filesystem::exists(shell.folder / "r.json")) << ran.out << ran.err;
-  const nlohmann::json json = nlohmann::json::parse(contents(shell.folder / "r.json"));
+  const nlohmann::json json = shell.json("r.json");
   EXPECT_EQ(json["measured"], "rounded");
   for (const auto& result : json["results"]) {
     if (result["name"] == "fma" && result["scalar"] == "f32") continue;
@@ -136,13 +136,10 @@ TEST_F(Toolchain, TheLibrarysOwnFmaIsTested) {
 }
 
 TEST_F(Toolchain, ListsToolchains) {
-  const Ran ran = shell("graze toolchain");
-  EXPECT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find("\nx86-gcc "), std::string::npos) << ran.out;
+  expect_out("graze toolchain", {"\nx86-gcc "});
   shell("printf '[[toolchain]]\\nname = \"mine\"\\ncxx = \"no-such-c++\"\\nrounding = \"rounded\"\\n' > mine.toml");
   const std::string list = shell("graze toolchain --toolchains mine.toml").out;
-  EXPECT_NE(list.find("\nmine "), std::string::npos) << list;
-  EXPECT_NE(list.find("no no-such-c++"), std::string::npos) << list;
+  EXPECT_TRUE(has(list, {"\nmine ", "no no-such-c++"}));
   expect_error("graze toolchain mine --toolchains mine.toml", 1, {"mine", "no-such-c++"});
 }
 
@@ -156,26 +153,24 @@ TEST_F(Toolchain, ListsFusedProducts) {
   const std::string subject = " --subject mine=./mine.cpp ";
   Ran ran = shell("graze toolchain x86-gcc-v3 --json r.json" + subject);
   EXPECT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find("\n    mine.cpp:2: madd f32"), ran.out.npos) << ran.out;
-  EXPECT_NE(ran.out.find(": const float sum = a[0] * b[1] + a[2];\n"), ran.out.npos) << ran.out;
-  EXPECT_NE(ran.out.find(" on 1 line, plan "), ran.out.npos) << ran.out;
-  const nlohmann::json plan = nlohmann::json::parse(contents(shell.folder / "r.json"))["plans"][0];
+  EXPECT_TRUE(
+      has(ran.out, {"\n    mine.cpp:2: madd f32", ": const float sum = a[0] * b[1] + a[2];\n", " on 1 line, plan "}));
+  const nlohmann::json plan = shell.json("r.json")["plans"][0];
   EXPECT_EQ(plan["name"], "mine");
   EXPECT_GT(plan["f32"]["operations"], 0);
   EXPECT_EQ(plan["f64"]["operations"], 0);
   EXPECT_EQ(plan["f32"]["lines"][0]["place"], "mine.cpp:2");
   ran = shell("graze toolchain x86-gcc-v3 --flags=-ffp-contract=off" + subject);
-  EXPECT_NE(ran.out.find("mine/f32  no fused operation"), ran.out.npos) << ran.out;
+  EXPECT_TRUE(has(ran.out, {"mine/f32  no fused operation"}));
   ran = shell("graze toolchain 'x86_64-linux-gnu-g++ -O2 -march=x86-64-v3 -flto'" + subject);
-  EXPECT_NE(ran.out.find("not read: with -flto"), ran.out.npos) << ran.out;
+  EXPECT_TRUE(has(ran.out, {"not read: with -flto"}));
 
   ran = shell("graze toolchain x86-gcc-v3");
-  EXPECT_NE(ran.out.find("moller_1997/f32 "), ran.out.npos) << ran.out;
+  EXPECT_TRUE(has(ran.out, {"moller_1997/f32 "}));
   ran = shell("graze toolchain x87");
-  EXPECT_NE(ran.out.find("in the published algorithms: none\n"), ran.out.npos) << ran.out;
+  EXPECT_TRUE(has(ran.out, {"in the published algorithms: none\n"}));
   ran = shell("graze toolchain 'x86_64-linux-gnu-gcc -O2'");
-  EXPECT_NE(ran.out.find("not read: the toolchain x86_64-linux-gnu-gcc -O2 has no compiler for C++"), ran.out.npos)
-      << ran.out;
+  EXPECT_TRUE(has(ran.out, {"not read: the toolchain x86_64-linux-gnu-gcc -O2 has no compiler for C++"}));
   expect_error("graze toolchain x86-gcc --subject 'mine=cmd:cat'", 2, {"mine", "cmd:cat"});
   expect_error("graze toolchain --subject mine=./mine.cpp", 2, {"--subject"});
 }
@@ -195,12 +190,11 @@ TEST_F(Toolchain, ACampaignWhosePlanChangedSaysSo) {
       "--pairs 2000 ";
   write("");
   expect_done("chmod +x v3++ && " + fuzz + "--out a > /dev/null && " + fuzz + "--out same > /dev/null");
-  const nlohmann::json recorded = nlohmann::json::parse(
-      contents(shell.folder / "a/summary.json"))["spec"]["subjects"][0]["toolchains"][0]["contraction"];
+  const nlohmann::json recorded = shell.json("a/summary.json")["spec"]["subjects"][0]["toolchains"][0]["contraction"];
   const std::string then = recorded["f32"]["plan"];
   EXPECT_GT(recorded["f32"]["operations"], 0);
   Ran ran = shell("graze report --compare a same");
-  EXPECT_EQ(ran.out.find("fuses"), ran.out.npos) << ran.out << ran.err;
+  EXPECT_FALSE(has(ran.out, {"fuses"})) << ran.err;
   write("-ffp-contract=off");
   expect_done(fuzz + "--out b > /dev/null");
   ran = shell("graze report --compare a b");
@@ -210,10 +204,10 @@ TEST_F(Toolchain, ACampaignWhosePlanChangedSaysSo) {
     if (c != '\n' && c != ' ') said += c;
     if ((c == '\n' || c == ' ') && !said.ends_with(' ')) said += ' ';
   }
-  EXPECT_NE(said.find("moller_1997/f32 (v3): the compiler fuses other products (plan " + then + " before, "), said.npos)
+  EXPECT_TRUE(has(said, {"moller_1997/f32 (v3): the compiler fuses other products (plan " + then + " before, "}))
       << ran.out;
-  EXPECT_NE(said.find(" after); "), said.npos);
-  const auto report = nlohmann::json::parse(contents(shell.folder / "b/compare.json"));
+  EXPECT_TRUE(has(said, {" after); "}));
+  const auto report = shell.json("b/compare.json");
   std::uint64_t changed = 0;
   for (const auto& row : report["compare"]["verdicts"]) {
     if (row["lane"] == "moller_1997/f32/v3") changed += row["most"].get<std::uint64_t>();
@@ -233,10 +227,9 @@ TEST_F(Toolchain, ListsWhatHipFuses) {
   if (has_hip) {
     const auto run = shell("graze toolchain hip --subject mine=./k.cu:meets --json h.json");
     EXPECT_EQ(run.status, 0) << run.err;
-    EXPECT_NE(run.out.find("no verdict is claimed"), run.out.npos) << run.out;
-    EXPECT_NE(run.out.find("k.cu:2       1        1       1  const float u"), run.out.npos) << run.out;
-    EXPECT_EQ(run.out.find("k.cu:3"), run.out.npos) << run.out;
-    const auto json = nlohmann::ordered_json::parse(contents(shell.folder / "h.json"));
+    EXPECT_TRUE(has(run.out, {"no verdict is claimed", "k.cu:2       1        1       1  const float u"}));
+    EXPECT_FALSE(has(run.out, {"k.cu:3"}));
+    const auto json = shell.json("h.json");
     EXPECT_EQ(json.at("fused_with_contract_off"), 0);
     EXPECT_EQ(json.at("plans").at(0).at("nvidia").at("operations"), 1);
     std::ofstream(shell.folder / "l.hip") << "__device__ bool meets(const float* a, const float*) {\n"
@@ -263,10 +256,10 @@ TEST_F(Toolchain, SaysWhatIsWrong) {
   expect_error("graze toolchain 'x86_64-linux-gnu-gcc -O2' --run false", 1, {"exit status 1"});
   // One program answers nothing, and another forges a line.
   EXPECT_EQ(shell("graze toolchain 'x86_64-linux-gnu-gcc -O2' --run 'true {}' --json r.json").status, 1);
-  EXPECT_EQ(nlohmann::json::parse(contents(shell.folder / "r.json"))["without_answer"], 54);
+  EXPECT_EQ(shell.json("r.json")["without_answer"], 54);
   const Ran forged = shell("graze toolchain 'x86_64-linux-gnu-gcc -O2' --run 'echo expression f32 7; {}'");
   EXPECT_EQ(forged.status, 1);
-  EXPECT_NE(forged.out.find("1 computation without an answer"), std::string::npos) << forged.out;
+  EXPECT_TRUE(has(forged.out, {"1 computation without an answer"}));
 }
 
 }  // namespace

@@ -27,36 +27,34 @@ class TryCommand : public CommandTest {
  protected:
   void write(const std::string& name, const std::string& text) const { std::ofstream(shell.folder / name) << text; }
   Json answer_of(const std::string& arguments) const {
-    const Ran ran = shell("export XDG_CACHE_HOME=$PWD/cache; graze try " + arguments + " --json");
-    EXPECT_EQ(ran.status, 0) << arguments << '\n' << ran.err;
+    const Ran ran = shell.done("export XDG_CACHE_HOME=$PWD/cache; graze try " + arguments + " --json");
     return Json::parse(ran.out, nullptr, false);
   }
 };
 
 TEST_F(TryCommand, AnswersOnOneScreen) {
   write("mine.cpp", kBoxes);
-  const Ran ran = shell("graze try mine.cpp:meet --pairs 2000");
-  ASSERT_EQ(ran.status, 0) << ran.err;
+  const Ran ran = shell.done("graze try mine.cpp:meet --pairs 2000");
   EXPECT_LE(std::count(ran.out.begin(), ran.out.end(), '\n'), 30) << ran.out;
   EXPECT_TRUE(ran.out.starts_with("mine/f32/cpu is wrong on ")) << ran.out;
   std::string in_one_line = ran.out;
   for (std::size_t at; (at = in_one_line.find("\n  ")) != std::string::npos;) in_one_line.replace(at, 3, " ");
-  for (const char* part :
-       {" of 2,000 pairs: ", "\nBy group of strata: general", "\nOther builds: f32/cpu-fma",
-        "\nEpsilon: ", "\nInstead: exact/f32/cpu is right on all 2,000 pairs.\n", "\nA call of one pair takes ",
-        " in mine/f32/cpu, ", " in exact/f32/cpu, ", " passes over 2,000 pairs, on one core of ",
-        "\nWrote try/report.html, try/cases/", ", try/case.cpp ", "\nNext: graze explain try/cases/"})
-    EXPECT_NE(in_one_line.find(part), std::string::npos) << part << '\n' << ran.out;
+  EXPECT_TRUE(has(in_one_line, {" of 2,000 pairs: ", "\nBy group of strata: general", "\nOther builds: f32/cpu-fma",
+                                "\nEpsilon: ", "\nInstead: exact/f32/cpu is right on all 2,000 pairs.\n",
+                                "\nA call of one pair takes ", " in mine/f32/cpu, ", " in exact/f32/cpu, ",
+                                " passes over 2,000 pairs, on one core of ", "\nWrote try/report.html, try/cases/",
+                                ", try/case.cpp ", "\nNext: graze explain try/cases/"}))
+      << ran.out;
   std::istringstream lines(ran.out);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(reports::width_of(line), 80) << line;
-  EXPECT_EQ(ran.err.find(" failures"), std::string::npos) << ran.err;  // no progress without a terminal
+  EXPECT_FALSE(has(ran.err, {" failures"}));  // no progress without a terminal
 }
 
 // The numbers on the screen are those of the campaign, and every other verb works on the folder.
 TEST_F(TryCommand, TheFolderIsACampaigns) {
   write("mine.cpp", kBoxes);
   const Json answer = answer_of("mine.cpp:meet --pairs 2000 --seed 5");
-  const Json summary = Json::parse(contents(shell.folder / "try/summary.json"));
+  const Json summary = shell.json("try/summary.json");
   std::uint64_t wrong = 0;
   for (const auto& [stratum, row] : summary["strata"].items()) {
     EXPECT_EQ(row["lanes"]["mine/f32/cpu"]["false_negative"], 0) << stratum;
@@ -73,16 +71,16 @@ TEST_F(TryCommand, TheFolderIsACampaigns) {
   ASSERT_EQ(answer["failures"].size(), 3u);
   for (const Json& failure : answer["failures"]) {
     const std::string file = failure["case"];
-    EXPECT_NE(contents(shell.folder / file).find("kind=minimised"), std::string::npos) << file;
-    const std::string text = contents(shell.folder / file), pair = failure["pair"];
+    EXPECT_TRUE(has(shell.file(file), {"kind=minimised"})) << file;
+    const std::string text = shell.file(file), pair = failure["pair"];
     EXPECT_LT(text.find(pair), text.find("kind=minimised")) << file;
     expect_done("graze repro " + file);
   }
   for (const char* lane : {"own", "exact", "cheapest"})
     EXPECT_GT(answer["nanoseconds_a_call"][lane]["middle"], 0) << lane;
   const Ran test = shell("cd try && head -n 1 case.cpp | cut -c 4- > run.sh && bash run.sh");
-  EXPECT_NE(test.out.find(" 1 FAILED TEST"), std::string::npos) << test.out << test.err;
-  EXPECT_NE(contents(shell.folder / "try/case.cpp").find("#include \"../mine.cpp\"\n"), std::string::npos);
+  EXPECT_TRUE(has(test.out, {" 1 FAILED TEST"})) << test.err;
+  EXPECT_TRUE(has(shell.file("try/case.cpp"), {"#include \"../mine.cpp\"\n"}));
   expect_done("graze failures try && graze report try && graze minimize try && graze status try");
 }
 
@@ -144,7 +142,7 @@ TEST_F(TryCommand, OnlyBoolsAndIntsOfPythonAreVerdicts) {
         "def raises(a, b):\n    raise ValueError('no area')\n");
   const Json never = answer_of("shapes.py:never --pairs 30");
   EXPECT_EQ(never["wrong"]["count"], 0);
-  const Json summary = Json::parse(contents(shell.folder / "try/summary.json"));
+  const Json summary = shell.json("try/summary.json");
   int declined = 0;
   for (const Json& row : summary["strata"]) declined += row["lanes"]["shapes/f32/cpu"]["declined"].get<int>();
   EXPECT_EQ(declined, 30);
@@ -172,12 +170,11 @@ int main(void) {
   }
 })");
   expect_done("cc p.c -o p");
-  const Ran ran = shell("graze try 'cmd:./p' --pairs 40");
-  EXPECT_EQ(ran.status, 0) << ran.err;
+  const Ran ran = shell.done("graze try 'cmd:./p' --pairs 40");
   const std::size_t told = ran.err.find("p/f32/cpu crashes on some pairs: no idea about ");
   ASSERT_NE(told, ran.err.npos) << ran.err;
   EXPECT_EQ(ran.err.find("crashes on some pairs", told + 20), ran.err.npos) << ran.err;
-  EXPECT_EQ(ran.err.find("started"), ran.err.npos);
+  EXPECT_FALSE(has(ran.err, {"started"}));
 }
 
 // A program that keeps running but gives an invalid answer is not reported as ended.
@@ -185,7 +182,7 @@ TEST_F(TryCommand, AnAnswerThatIsNoneIsToldByExplain) {
   expect_done(
       "graze fuzz --subject 'y=cmd:while read l; do echo yes; done' --lanes 'y/*' --strata uniform --pairs 3 --out y");
   const Ran why = shell("graze explain y/cases/$(ls y/cases | head -n 1) --lanes 'y/*'");
-  EXPECT_NE(why.out.find("its line was not 1, 0 or ?"), why.out.npos) << why.out << why.err;
+  EXPECT_TRUE(has(why.out, {"its line was not 1, 0 or ?"})) << why.err;
 }
 
 TEST_F(TryCommand, WorksOnEachKindOfCode) {
@@ -232,13 +229,13 @@ TEST_F(TryCommand, WorksOnEachKindOfCode) {
     EXPECT_EQ(answer["nanoseconds_a_call"]["own"].contains("middle"), code.is_timed) << code.source;
     if (needs == "NVRTC") {
       const Ran text = shell("graze try own.cu:meet --pairs 30 --out text");
-      EXPECT_NE(text.out.find("CPU against GPU: graze discrepancy --campaign text\n"), std::string::npos) << text.out;
+      EXPECT_TRUE(has(text.out, {"CPU against GPU: graze discrepancy --campaign text\n"}));
       expect_done("graze discrepancy --campaign text > /dev/null");
     }
     if (std::string(code.source).find(".py:") != std::string::npos) {
       EXPECT_EQ(answer["wrapper"], out + ".py");
       // The recorded command runs, and an edit of the function is noticed.
-      const Json report = Json::parse(contents(shell.folder / out / "report.json"));
+      const Json report = shell.json(out + "/report.json");
       expect_done(report["run"]["command"].get<std::string>() + " > /dev/null");
       expect_done("sed -i 's/</>/' shapes.py");
       EXPECT_NE(answer_of(std::string(code.source) + " --pairs 30 --out " + out)["earlier"], "");
@@ -255,12 +252,10 @@ TEST_F(TryCommand, OfRightCodeSaysHowMuchThatProves) {
         "#include \"core/exact/exact.h\"\n"
         "bool meet(const float* a, const float* b) { return graze::exact::intersects(a, b); }\n");
   const Ran ran =
-      shell("graze try right.cpp:meet --pairs 1000 --flags='-std=c++20 -U__FAST_MATH__ -I" GRAZE_SOURCE_DIR "'");
-  ASSERT_EQ(ran.status, 0) << ran.err;
+      shell.done("graze try right.cpp:meet --pairs 1000 --flags='-std=c++20 -U__FAST_MATH__ -I" GRAZE_SOURCE_DIR "'");
   EXPECT_TRUE(ran.out.starts_with("right/f32/cpu is wrong on none of the 1,000 pairs that it decides: with 95 %\n"))
       << ran.out;
-  EXPECT_NE(ran.out.find("Epsilon: no failure that was examined shows an absolute epsilon."), std::string::npos)
-      << ran.out;
+  EXPECT_TRUE(has(ran.out, {"Epsilon: no failure that was examined shows an absolute epsilon."}));
 }
 
 TEST_F(TryCommand, AMeshOrASceneSaysWhereThePairsAreDrawn) {
@@ -284,10 +279,8 @@ TEST_F(TryCommand, AMeshOrASceneSaysWhereThePairsAreDrawn) {
   EXPECT_EQ(in_scene["scene"], "");
   ASSERT_FALSE(on_mesh["strata_left_out"].empty());
   EXPECT_FALSE(on_mesh["strata_left_out"][0]["why"].get<std::string>().empty());
-  const Ran screen = shell("graze try mine.cpp:meet arm.off --pairs 400 --out t/");
-  EXPECT_EQ(screen.status, 0) << screen.err;
-  EXPECT_NE(screen.out.find("\nLeft out, because the scene cannot contain them: "), std::string::npos) << screen.out;
-  EXPECT_NE(screen.out.find("t.toml"), std::string::npos) << screen.out;
+  expect_out("graze try mine.cpp:meet arm.off --pairs 400 --out t/",
+             {"\nLeft out, because the scene cannot contain them: ", "t.toml"});
   expect_done("test -f t.toml && test ! -e t/.toml && mkdir full && touch full/letter");
   expect_error("graze try mine.cpp:meet arm.off --out full/", 2, {"full", "campaign directory"});
   expect_done("test ! -e full.toml && test ! -e full/.toml");
@@ -335,7 +328,7 @@ TEST_F(TryCommand, NamesTheEpsilonAndTheCommandThatTunesIt) {
   EXPECT_EQ(changed[1], one["wrong"]["count"]);
   EXPECT_EQ(answer_of("tiny.cpp:meet --pairs 300 --out tiny")["wrong"]["count"], changed[1] - changed[0] + changed[2]);
   const Ran screen = shell("graze try one.cpp:meet --pairs 300");
-  EXPECT_NE(screen.out.find("\nTune it: graze tune one/f32/cpu --from try\n"), std::string::npos) << screen.out;
+  EXPECT_TRUE(has(screen.out, {"\nTune it: graze tune one/f32/cpu --from try\n"}));
   expect_done("export XDG_CACHE_HOME=$PWD/cache; " + one["tune"].get<std::string>() + " --pairs 2000");
   write("two.cpp", "const float kEps = 1e-6f;\nconst float kTol = 1e-4f;\n" + by_x + "kEps * kTol; }\n");
   const Json two = answer_of("two.cpp:meet --pairs 300 --out two");
@@ -361,9 +354,9 @@ TEST_F(TryCommand, NoOtherProcessMayUseTheFolderWhileItMinimises) {
         "  echo 0\n"
         "done\n");
   expect_done("graze try 'cmd:bash own.sh' --pairs 60");
-  const std::string seen = contents(shell.folder / "seen");
-  EXPECT_NE(seen.find("held"), std::string::npos);
-  EXPECT_EQ(seen.find("free"), std::string::npos) << seen;
+  const std::string seen = shell.file("seen");
+  EXPECT_TRUE(has(seen, {"held"}));
+  EXPECT_FALSE(has(seen, {"free"}));
   expect_error("flock try graze try 'cmd:bash own.sh' --pairs 90", 1, {"try", "another process"});
   expect_done("test -f try/summary.json && test ! -e try.1");
 }

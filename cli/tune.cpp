@@ -71,12 +71,13 @@ TunePairs pairs_from(const TuneOptions& options) {
 
 TunePairs tune_pairs(const TuneOptions& options) {
   if (!options.from.empty()) return pairs_from(options);
-  const std::uint64_t pairs = options.pairs > 0 ? options.pairs : 1'000'000;
-  strata::SceneSources others = drawn(options.scene, options.seed + 1, pairs, options.strata, options.coordinates);
-  std::vector<strata::PairSource> sources =
-      drawn(options.scene, options.seed, std::max<std::uint64_t>(pairs / 10, 1), options.strata, options.coordinates)
-          .sources;
-  return {nullptr, without_meshes(std::move(sources), "choose on; add --strata"), std::move(others.sources),
+  DrawOptions draw = options;
+  if (draw.pairs == 0) draw.pairs = DrawOptions().pairs;
+  draw.seed = options.seed + 1;
+  strata::SceneSources others = drawn(draw);
+  draw.pairs = std::max<std::uint64_t>(draw.pairs / 10, 1);
+  draw.seed = options.seed;
+  return {nullptr, without_meshes(drawn(draw).sources, "choose on; add --strata"), std::move(others.sources),
           left_out_text(others.left_out)};
 }
 
@@ -302,9 +303,7 @@ void add_tune(CLI::App& app, int& status) {
       ->option_text("NAME")
       ->default_str("the obvious one");
   for (const char* of_own_code : {"--resubject", "--epsilon"}) command->get_option("--agree")->excludes(of_own_code);
-  add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
-  add_coordinates_option(*command, options->coordinates);
-  add_scene_option(*command, options->scene);
+  add_draw_options(*command, *options);
   command
       ->add_option("--from", options->from,
                    "Campaign on whose pairs the choice is made, including the disagreements that it counted")
@@ -349,7 +348,7 @@ void add_tune(CLI::App& app, int& status) {
         (options->agree || static_cast<analysis::Forbid>(options->forbid) == analysis::Forbid::any))
       throw UsageError(
           "--max-other limits the other kind of error; it needs --forbid false-negative or false-positive");
-    take_type_of_scene(*command, options->scene, options->coordinates);
+    take_type_of_scene(*command, *options);
     status = options->agree ? agree(*options) : tune(*options);
   });
 }

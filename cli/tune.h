@@ -17,15 +17,12 @@
 
 namespace graze::cli {
 
-struct TuneOptions {
+struct TuneOptions : DrawOptions {
+  TuneOptions() : DrawOptions{0} {}  // 0: a million, or as many as the campaign `from` has
   std::vector<std::string> lanes;
   LaneOptions own_code;  // its subjects
   std::string epsilon;   // for own code: the name of the constant; empty: the obvious one
-  std::string scene, from, out;
-  std::vector<std::string> strata;
-  std::uint64_t pairs = 0;  // 0: a million, or as many as the campaign `from` has
-  std::uint64_t seed = 1;
-  PairTypes coordinates = PairTypes::f32;
+  std::string from, out;
   int threads = 0;
   int forbid = 2;
   double max_rate = 1e-6, max_other = 0.1;

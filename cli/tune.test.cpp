@@ -23,26 +23,23 @@ TEST_F(Policies, AreLanesOnEveryVerb) {
       "moller_1997/f64/cpu/plane_distance=abs:1e-6,separation=rel:2,moller_1997/f32/cpu/bound'";
   std::ofstream(shell.folder / "small.pairs") << "0 0 0 .01 0 0 0 .01 0  0 0 .005 .01 0 .005 0 .01 .005\n";
   const Ran check = shell("graze check small.pairs" + lanes);
-  EXPECT_NE(check.out.find("moller_1997/f32 paper"), std::string::npos) << check.out << check.err;
-  EXPECT_NE(check.out.find("moller_1997/f64 plane_distance=abs:1e-6,separation=rel:2"), std::string::npos) << check.out;
+  EXPECT_TRUE(has(check.out, {"moller_1997/f32 paper"})) << check.err;
+  EXPECT_TRUE(has(check.out, {"moller_1997/f64 plane_distance=abs:1e-6,separation=rel:2"}));
   const Ran explained = shell("graze explain small.pairs" + lanes);
-  EXPECT_NE(explained.out.find("experiment: without paper it is right"), std::string::npos)
-      << explained.out << explained.err;
+  EXPECT_TRUE(has(explained.out, {"experiment: without paper it is right"})) << explained.err;
   expect_done("graze fuzz --strata 'near_vertex_face,shared_edge,extreme_scale' --pairs 900 --out c" + lanes +
               " > fuzz");
-  const auto summary = json_of(shell.folder / "c/summary.json");
+  const auto summary = shell.json("c/summary.json");
   EXPECT_EQ(summary["spec"]["lanes"].size(), 5u);
   EXPECT_GT(summary["strata"]["extreme_scale"]["lanes"]["moller_1997/f32/cpu/paper"]["false_positive"], 50);
   EXPECT_EQ(summary["strata"]["extreme_scale"]["lanes"]["moller_1997/f32/cpu/bound"]["false_positive"], 0);
   expect_done("graze minimize c && graze failures c > kinds && graze report c && graze dump c > /dev/null");
-  EXPECT_NE(contents(shell.folder / "kinds").find("moller_1997: policy"), std::string::npos)
-      << contents(shell.folder / "kinds");
+  EXPECT_TRUE(has(shell.file("kinds"), {"moller_1997: policy"}));
   // A case of a lane under a policy, emitted as a program.
   const Ran emitted = shell(
       "graze repro small.pairs --lanes moller_1997/f32/cpu/paper --emit cpp > case.cpp && g++ -std=c++20 -O2 "
       "-ffp-contract=off case.cpp -o case && ./case");
-  EXPECT_NE(emitted.out.find("moller_1997/f32: intersects; truth: disjoint"), std::string::npos)
-      << emitted.out << emitted.err;
+  EXPECT_TRUE(has(emitted.out, {"moller_1997/f32: intersects; truth: disjoint"})) << emitted.err;
   expect_done("graze lanes --lanes 'moller_1997/f32/cpu/rel:8' | grep 'rel:8 *available'");
   expect_done("graze map small.pairs --lanes moller_1997/f32/cpu/paper --out map.png");
 }
@@ -58,17 +55,16 @@ TEST_F(TuneCommand, AFreshCampaignConfirmsWhatItRecommends) {
   const std::string tune =
       "graze tune moller_1997/f32/cpu --strata 'near_*' --pairs 20k --forbid false-negative --max-rate 1e-3 "
       "--max-other 0.75 ";
-  const Ran ran = shell(tune + "--out t");
-  ASSERT_EQ(ran.status, 0) << ran.err;
+  const Ran ran = shell.done(tune + "--out t");
   EXPECT_EQ(ran.out.find("Use "), 0u) << ran.out;
-  const auto json = json_of(shell.folder / "t/tune.json");
+  const auto json = shell.json("t/tune.json");
   ASSERT_EQ(json["result"], "satisfied") << ran.out;
   const std::string policy = json["chosen"];
   // With ten times the pairs and another seed, the rate stays below the reported bound.
   expect_done("graze fuzz --strata 'near_*' --pairs 200k --seed 99 --lanes 'moller_1997/f32/cpu/" + policy +
               "' --out c > /dev/null");
   double negatives = 0;
-  const auto summary = json_of(shell.folder / "c/summary.json");
+  const auto summary = shell.json("c/summary.json");
   for (const auto& [stratum, row] : summary["strata"].items())
     negatives += row["lanes"]["moller_1997/f32/cpu/" + policy]["false_negative"].get<double>();
   EXPECT_LE(negatives / 200'000, json["bound"].get<double>());
@@ -88,9 +84,8 @@ TEST_F(TuneCommand, AFreshCampaignConfirmsWhatItRecommends) {
 TEST_F(TuneCommand, ChoosesOnTheDisagreementsOfACampaign) {
   expect_done("graze fuzz --strata 'near_*' --pairs 8k --seed 7 --lanes 'moller_1997/f32/*' --out c > /dev/null");
   const std::string tune = "graze tune moller_1997/f32/cpu --from c --forbid false-negative --max-rate 1e-2 ";
-  const Ran ran = shell(tune + "--max-other 0.5 --pairs 6k --out t");
-  ASSERT_EQ(ran.status, 0) << ran.err;
-  const auto tuned = json_of(shell.folder / "t/tune.json"), campaign = json_of(shell.folder / "c/summary.json");
+  const Ran ran = shell.done(tune + "--max-other 0.5 --pairs 6k --out t");
+  const auto tuned = shell.json("t/tune.json"), campaign = shell.json("c/summary.json");
   EXPECT_EQ(tuned["zero"]["pairs"], 8000);
   EXPECT_EQ(tuned["confirmed"]["pairs"], 6000);
   std::uint64_t wrong = 0;
@@ -118,7 +113,7 @@ TEST_F(TuneCommand, ChoosesOnTheDisagreementsOfACampaign) {
       if (rows[policy + ",fixes"] + rows[policy + ",breaks"] == 0) continue;
       EXPECT_EQ(rows[policy + ",fixes"], point["fixed"]) << policy;
       EXPECT_EQ(rows[policy + ",breaks"], point["broken"]) << policy;
-      EXPECT_NE(ran.out.find("\n" + policy + " "), std::string::npos) << ran.out;
+      EXPECT_TRUE(has(ran.out, {"\n" + policy + " "}));
       ++tolerances;
     }
   }
@@ -147,10 +142,10 @@ TEST_F(TuneCommand, ChoosesOnTheDisagreementsOfACampaign) {
 // A campaign with different code: its counts are possible, but its pairs give others.
 TEST_F(TuneCommand, ACampaignWhosePairsShowOtherErrorsIsRefused) {
   expect_done("graze fuzz --strata near_edge_edge --pairs 2k --lanes moller_1997/f32/cpu --out c > /dev/null");
-  auto summary = json_of(shell.folder / "c/summary.json");
+  auto summary = shell.json("c/summary.json");
   auto& stratum = summary["strata"]["near_edge_edge"];
   const std::string lane = "moller_1997/f32/cpu";
-  const auto less = [](nlohmann::json& count) { count = count.get<int>() - 1; };
+  const auto less = [](nlohmann::ordered_json& count) { count = count.get<int>() - 1; };
   less(stratum["lanes"][lane]["false_negative"]);
   less(stratum["margins"]["-2^-1"]["wrong"].at(lane));
   less(summary["disagreements"]);
@@ -178,8 +173,7 @@ TEST_F(TuneCommand, NextIsACommandThatRuns) {
   // The first run fixes and breaks pairs, and the second run in the same folder does not.
   for (const char* lane : {"moller_1997/f32/cpu --strata near_vertex_face --forbid false-negative --max-rate 1e-2",
                            "guigue_devillers_2003/f64/cpu --strata uniform --max-rate 1e-2"}) {
-    const Ran ran = shell(std::string("graze tune --pairs 3k --out t ") + lane);
-    EXPECT_EQ(ran.status, 0) << ran.err;
+    const Ran ran = shell.done(std::string("graze tune --pairs 3k --out t ") + lane);
     const std::size_t at = ran.out.find("\nNext: ");
     ASSERT_NE(at, std::string::npos) << ran.out;
     expect_done(ran.out.substr(at + 7));
@@ -207,7 +201,7 @@ int main() {
   }
 }
 )";
-  const std::string chosen = json_of(shell.folder / "t/tune.json")["chosen"];
+  const std::string chosen = shell.json("t/tune.json")["chosen"];
   ASSERT_NE(chosen, "zero");
   expect_done("g++ -std=c++20 -O2 -Wall -Wextra -Werror -ffp-contract=off main.cpp -o main");
   expect_done(
@@ -241,10 +235,9 @@ TEST_F(TuneCommand, HelpHasExamplesThatRun) {
 // Counts the differing verdicts again from `graze dump`, independently of agree.json. `policy`: "" or "/POLICY".
 std::size_t recounted(const Shell& shell, const std::string& strata, std::uint64_t seed, int pairs,
                       const std::string& first, const std::string& second, const std::string& policy) {
-  const Ran ran = shell("graze dump " + strata + ":" + std::to_string(seed) + " --pairs " + std::to_string(pairs) +
-                        " --format csv --lanes '" + first + policy + "," + second + policy + "' | tail -n " +
-                        std::to_string(pairs) + " | awk -F, '$(NF-1) != $NF' | wc -l");
-  EXPECT_EQ(ran.status, 0) << ran.err;
+  const Ran ran = shell.done("graze dump " + strata + ":" + std::to_string(seed) + " --pairs " + std::to_string(pairs) +
+                             " --format csv --lanes '" + first + policy + "," + second + policy + "' | tail -n " +
+                             std::to_string(pairs) + " | awk -F, '$(NF-1) != $NF' | wc -l");
   return std::stoul(ran.out);
 }
 
@@ -255,16 +248,15 @@ TEST_F(AgreeCommand, FreshPairsConfirmItForTwoAlgorithms) {
     const std::string cpu = subject + std::string("/cpu"), cuda = subject + std::string("/cuda-fma");
     const std::string tune =
         "graze tune " + cpu + " " + cuda + " --agree --strata " + stratum + " --pairs 10k --max-rate 3e-3 ";
-    const Ran ran = shell(tune + "--out t");
-    ASSERT_EQ(ran.status, 0) << ran.err;
-    const auto json = json_of(shell.folder / "t/agree.json");
+    const Ran ran = shell.done(tune + "--out t");
+    const auto json = shell.json("t/agree.json");
     ASSERT_EQ(json["result"], result) << ran.out;
     const std::string policy = json["chosen"] == "zero" ? "" : "/" + json["chosen"].get<std::string>();
     EXPECT_EQ(json["zero_confirmed"]["differing"], recounted(shell, stratum, 2, 10'000, cpu, cuda, "")) << ran.out;
     EXPECT_EQ(json["confirmed"]["differing"], recounted(shell, stratum, 2, 10'000, cpu, cuda, policy)) << ran.out;
     EXPECT_GT(json["zero_confirmed"]["differing"], 100) << ran.out;
     EXPECT_EQ(json["rounded"]["agreement"]["differing"], 0) << ran.out;
-    EXPECT_NE(ran.out.find("(exact/f32/cpu and exact/f32/cuda)"), std::string::npos) << ran.out;
+    EXPECT_TRUE(has(ran.out, {"(exact/f32/cpu and exact/f32/cuda)"}));
     // With twice the pairs and another seed, the rate stays within the bound.
     const double fresh = static_cast<double>(recounted(shell, stratum, 99, 20'000, cpu, cuda, policy)) / 20'000;
     if (result == std::string("satisfied")) {
@@ -295,25 +287,24 @@ TEST_F(AgreeCommand, SaysWhatNeedsNoPolicyAndWhatIsNotSettled) {
   const std::string tune = "graze tune moller_1997/f32/cpu moller_1997/f32/cuda-nofma --agree --strata 'near_*' ";
   const Ran settled = shell(tune + "--pairs 4k --max-rate 1e-3 --out t");
   EXPECT_EQ(settled.out.find("No policy is needed: "), 0u) << settled.out << settled.err;
-  EXPECT_EQ(settled.out.find("Without a tolerance: "), std::string::npos) << settled.out;  // there is nothing to mend
-  EXPECT_EQ(json_of(shell.folder / "t/agree.json")["chosen"], "zero");
+  EXPECT_FALSE(has(settled.out, {"Without a tolerance: "}));  // there is nothing to mend
+  EXPECT_EQ(shell.json("t/agree.json")["chosen"], "zero");
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "t/differ.pairs"));
   const Ran open = shell(tune + "--pairs 4k --max-rate 1e-4 --out t");
   EXPECT_EQ(open.out.find("Not settled: "), 0u) << open.out << open.err;
-  EXPECT_NE(open.out.find("29,956"), std::string::npos) << open.out;  // log(0.05) / log(1 - 1e-4)
-  EXPECT_EQ(json_of(shell.folder / "t/agree.json")["result"], "too few pairs");
+  EXPECT_TRUE(has(open.out, {"29,956"}));  // log(0.05) / log(1 - 1e-4)
+  EXPECT_EQ(shell.json("t/agree.json")["result"], "too few pairs");
 }
 
 TEST_F(AgreeCommand, LeavesOutWhatTheTwinCannotReplay) {
-  const Ran ran = shell(
+  const Ran ran = shell.done(
       "graze tune interval_overlap/f32/cuda-fma interval_overlap/f32/cpu --agree --strata shared_edge --pairs 2k "
       "--out t");
-  ASSERT_EQ(ran.status, 0) << ran.err;
-  const auto json = json_of(shell.folder / "t/agree.json");
+  const auto json = shell.json("t/agree.json");
   EXPECT_EQ(json["without_relative"], "interval_overlap/f32/cuda-fma");
   EXPECT_EQ(json["curves"].size(), 4u);
   for (const auto& curve : json["curves"]) EXPECT_EQ(curve["tolerance"], "abs");
-  EXPECT_NE(ran.out.find("Relative tolerances are left out: "), std::string::npos) << ran.out;
+  EXPECT_TRUE(has(ran.out, {"Relative tolerances are left out: "}));
 }
 
 TEST_F(AgreeCommand, BadInputGetsOneLine) {
@@ -330,13 +321,11 @@ TEST_F(AgreeCommand, BadInputGetsOneLine) {
 }
 
 TEST_F(ParetoCommand, SetsErrorsAgainstCosts) {
-  const Ran ran = shell(
+  expect_out(
       "graze pareto --strata 'near_*,extreme_scale' --pairs 3000 --lanes "
-      "'*/f32/cpu,exact/f32/cpu,moller_1997/f32/cpu/paper' --out t");
-  ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find("\n  Scaled by 2^k"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("\nWith one pair per call"), std::string::npos) << ran.out;
-  const auto json = json_of(shell.folder / "t/pareto.json");
+      "'*/f32/cpu,exact/f32/cpu,moller_1997/f32/cpu/paper' --out t",
+      {"\n  Scaled by 2^k", "\nWith one pair per call"});
+  const auto json = shell.json("t/pareto.json");
   ASSERT_EQ(json["lanes"].size(), 7u);
   double before = 0;
   for (const auto& row : json["lanes"]) {
@@ -363,11 +352,9 @@ TEST_F(ParetoCommand, SetsErrorsAgainstCosts) {
 
 TEST_F(ParetoCommand, NamesTheLanesThatItLeavesOut) {
   const std::string pareto = "graze pareto --strata near_edge_edge --pairs 1000 ";
-  const Ran ran = shell(pareto + "--lanes 'moller_1997/f32/c*fma,moller_1997/f32/cpu' --out t");
-  ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.err.find("graze: left out (only --device times CUDA lanes): moller_1997/f32/cuda-"), std::string::npos)
-      << ran.err;
-  const auto json = json_of(shell.folder / "t/pareto.json");
+  const Ran ran = shell.done(pareto + "--lanes 'moller_1997/f32/c*fma,moller_1997/f32/cpu' --out t");
+  EXPECT_TRUE(has(ran.err, {"graze: left out (only --device times CUDA lanes): moller_1997/f32/cuda-"}));
+  const auto json = shell.json("t/pareto.json");
   EXPECT_EQ(json["lanes_left_out"]["why"]["moller_1997/f32/cuda-fma"], "only --device times CUDA lanes");
   expect_error(pareto + "--lanes 'moller_1997/f32/cpu,moller_1997/f32/cuda-fma' --out u", 2,
                {"'moller_1997/f32/cuda-fma'"});
@@ -375,13 +362,10 @@ TEST_F(ParetoCommand, NamesTheLanesThatItLeavesOut) {
 
 TEST_F(ParetoCommand, DrawsWithinAScene) {
   std::ofstream(shell.folder / "hall.toml") << "extent = [[100, 108], [0, 4], [0, 4]]\nedges = [0.5, 1, 2]\n";
-  const Ran ran =
-      shell("graze pareto --scene hall.toml --pairs 2000 --lanes 'moller_1997/f32/cpu,exact/f32/cpu' --out t");
-  EXPECT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find("extreme_scale: your coordinates stay within 0 … 108"), std::string::npos) << ran.out;
-  const Ran tuned = shell("graze tune moller_1997/f64/cpu --scene hall.toml --pairs 2000 --out u");
-  EXPECT_EQ(tuned.status, 0) << tuned.err;
-  EXPECT_NE(tuned.out.find("extreme_scale: your coordinates stay within 0 … 108"), std::string::npos) << tuned.out;
+  expect_out("graze pareto --scene hall.toml --pairs 2000 --lanes 'moller_1997/f32/cpu,exact/f32/cpu' --out t",
+             {"extreme_scale: your coordinates stay within 0 … 108"});
+  expect_out("graze tune moller_1997/f64/cpu --scene hall.toml --pairs 2000 --out u",
+             {"extreme_scale: your coordinates stay within 0 … 108"});
   expect_error("graze tune moller_1997/f64/cpu --scene nowhere.toml", 1, {"nowhere.toml"});
 }
 

@@ -34,9 +34,8 @@ TEST_F(TuneOwnCode, ACampaignOfTheChangedSourceConfirmsTheValue) {
   const Ran ran = tune(options + "--out t");
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(ran.out.find("Use kEps = "), 0u) << ran.out;
-  EXPECT_NE(ran.out.find("mine.cpp:3"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("(now 0.25f)"), std::string::npos) << ran.out;
-  const auto json = json_of(shell.folder / "t/tune.json");
+  EXPECT_TRUE(has(ran.out, {"mine.cpp:3", "(now 0.25f)"}));
+  const auto json = shell.json("t/tune.json");
   ASSERT_EQ(json["result"], "satisfied") << ran.out;
   EXPECT_EQ(json["epsilon"]["name"], "kEps");
   EXPECT_EQ(json["epsilon"]["written"], "0.25f");
@@ -56,7 +55,7 @@ TEST_F(TuneOwnCode, ACampaignOfTheChangedSourceConfirmsTheValue) {
       "export XDG_CACHE_HOME=$PWD/cache; graze fuzz --subject mine=./mine.cpp --lanes mine/f32/cpu --strata "
       "uniform,shared_vertex,near_vertex_face --pairs 9k --seed 2 --out c > /dev/null");
   std::uint64_t positives = 0, negatives = 0;
-  const auto summary = json_of(shell.folder / "c/summary.json");
+  const auto summary = shell.json("c/summary.json");
   for (const auto& [stratum, row] : summary["strata"].items()) {
     positives += row["lanes"]["mine/f32/cpu"]["false_positive"].get<std::uint64_t>();
     negatives += row["lanes"]["mine/f32/cpu"]["false_negative"].get<std::uint64_t>();
@@ -71,7 +70,7 @@ TEST_F(TuneOwnCode, SaysThatNoValueHelps) {
   const Ran ran = tune("--subject mine=./mine.cpp --strata near_vertex_face --pairs 2k --max-rate 1e-6 --out t");
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(ran.out.find("No value is good enough here: no value of kEps from 0 up keeps"), 0u) << ran.out;
-  EXPECT_EQ(json_of(shell.folder / "t/tune.json")["result"], "not satisfiable");
+  EXPECT_EQ(shell.json("t/tune.json")["result"], "not satisfiable");
 }
 
 // In a scene the sentence has its unit; the campaign's folder knows the subject, and its report reads the result.
@@ -84,19 +83,19 @@ TEST_F(TuneOwnCode, UsesTheScenesUnitsAndACampaignsSubjects) {
       "--strata uniform,shared_edge --pairs 3k --out c > /dev/null");
   const Ran ran = tune("--from c --max-rate 0.3 --pairs 3k --out c");
   ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find(" mm"), std::string::npos) << ran.out;
-  EXPECT_EQ(json_of(shell.folder / "c/tune.json")["epsilon"]["units"], "mm");
-  EXPECT_EQ(contents(shell.folder / "c/changes.csv").find("stratum,seed,index"), 0u);
+  EXPECT_TRUE(has(ran.out, {" mm"}));
+  EXPECT_EQ(shell.json("c/tune.json")["epsilon"]["units"], "mm");
+  EXPECT_EQ(shell.file("c/changes.csv").find("stratum,seed,index"), 0u);
   expect_done("graze report c");
-  EXPECT_NE(contents(shell.folder / "c/report.html").find("kEps"), std::string::npos);
+  EXPECT_TRUE(has(shell.file("c/report.html"), {"kEps"}));
   // After the source has changed, the campaign's counts are not those of the code.
   write("0.125f");
   expect_error("export XDG_CACHE_HOME=$PWD/cache; graze tune mine/f32/cpu --from c --out d", 1,
                {"mine.cpp", "changed"});
   const Ran now = tune("--from c --resubject --max-rate 0.3 --pairs 3k --out d");
   EXPECT_EQ(now.status, 0) << now.err;
-  EXPECT_NE(now.err.find("mine"), std::string::npos) << now.err;
-  EXPECT_EQ(json_of(shell.folder / "d/tune.json")["epsilon"]["written"], "0.125f");
+  EXPECT_TRUE(has(now.err, {"mine"}));
+  EXPECT_EQ(shell.json("d/tune.json")["epsilon"]["written"], "0.125f");
 }
 
 TEST_F(TuneOwnCode, CudaSourcesAreBuiltAgainToo) {
@@ -109,8 +108,7 @@ TEST_F(TuneOwnCode, CudaSourcesAreBuiltAgainToo) {
       "300 --forbid false-negative --max-rate 0.5 --max-other 1 --out t");
   if (ran.err.find("NVRTC") != std::string::npos) GTEST_SKIP() << "no NVRTC";
   ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find("EPS"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("mine.cu:1"), std::string::npos) << ran.out;
+  EXPECT_TRUE(has(ran.out, {"EPS", "mine.cu:1"}));
 }
 
 TEST_F(TuneOwnCode, WhatCannotBeTunedGetsOneLine) {

@@ -29,68 +29,55 @@ using reports::Viewed;
 constexpr std::size_t kMostCandidates = 100'000;  // pairs of a mesh that are searched for wrong verdicts
 constexpr std::size_t kMostOfAMesh = 500;         // pairs of a mesh that are shown
 
-using Triangle = std::array<Vec3<double>, 3>;
-
-Triangle widened(const std::array<Vec3<float>, 3>& t) {
-  return {Vec3<double>{t[0].x, t[0].y, t[0].z}, {t[1].x, t[1].y, t[1].z}, {t[2].x, t[2].y, t[2].z}};
+// The lanes of the user's code: from --subject, and from the campaign that is shown.   Throws: as selected_lanes.
+fuzz::SelectedLanes lanes_of_own_code(LaneOptions options, const std::string& what) {
+  options.executor = fuzz::Executor::twin;
+  fuzz::SelectedLanes own = selected_lanes(options, what);
+  for (std::size_t l = own.lanes.size(); l-- > 0;) {
+    if (own.lanes[l]->foreign) continue;
+    own.lanes.erase(own.lanes.begin() + static_cast<std::ptrdiff_t>(l));
+    own.on_host.erase(own.on_host.begin() + static_cast<std::ptrdiff_t>(l));
+  }
+  return own;
 }
 
-// The user's code: from --subject, and from the campaign that is shown.
-class OwnCode {
- public:
-  // Throws: as selected_lanes.
-  OwnCode(LaneOptions options, const std::string& what) {
-    options.executor = fuzz::Executor::twin;
-    under_test_ = selected_lanes(options, what);
-    for (std::size_t l = under_test_.lanes.size(); l-- > 0;) {
-      if (under_test_.lanes[l]->foreign) continue;
-      under_test_.lanes.erase(under_test_.lanes.begin() + static_cast<std::ptrdiff_t>(l));
-      under_test_.on_host.erase(under_test_.on_host.begin() + static_cast<std::ptrdiff_t>(l));
+// The campaign's verdicts for lanes that cannot run now.
+std::vector<reports::SaidOfPair> stored(const fuzz::SelectedLanes& own, const corpus::Entry& entry) {
+  std::vector<reports::SaidOfPair> said;
+  if (own.left_out.empty()) return said;
+  const Verdict truth = truth_of(entry).verdict;
+  for (const auto& [lane, verdict] : stored_verdicts_of(entry, own.left_out, truth))
+    said.push_back({lane, verdict, is_wrong(verdict, truth), true});
+  return said;
+}
+
+void add_verdicts(fuzz::SelectedLanes& own, Viewed& viewed) {
+  const auto in_doubles = [](const reports::ViewedPair& one) { return !one.pair.floats; };
+  if (!own.lanes.empty() && std::any_of(viewed.pairs.begin(), viewed.pairs.end(), in_doubles)) take_doubles(own);
+  viewed.lanes_left_out = fuzz::left_out_json(own);
+  if (own.lanes.empty()) return;
+  for (reports::ViewedPair& one : viewed.pairs) {
+    const oracle::Truth truth = oracle::truth(one.pair);
+    const std::vector<Verdict> verdicts = decide(own, one.pair);
+    const std::vector<Verdict> counted = counted_verdicts(own, verdicts, one.pair, truth);
+    for (std::size_t l = 0; l < verdicts.size(); ++l) {
+      const bool wrong = truth.verdict != Verdict::declined && is_wrong(counted[l], truth.verdict);
+      one.said.push_back({own.lanes[l]->id, verdicts[l], wrong});
     }
   }
+}
 
-  // The campaign's verdicts for lanes that cannot run now.
-  std::vector<reports::SaidOfPair> stored(const corpus::Entry& entry) const {
-    std::vector<reports::SaidOfPair> said;
-    if (under_test_.left_out.empty()) return said;
-    const Verdict truth = truth_of(entry).verdict;
-    for (const auto& [lane, verdict] : stored_verdicts_of(entry, under_test_.left_out, truth))
-      said.push_back({lane, verdict, is_wrong(verdict, truth), true});
-    return said;
-  }
-
-  void add_verdicts(Viewed& viewed) {
-    const auto in_doubles = [](const reports::ViewedPair& one) { return !one.pair.floats; };
-    if (!under_test_.lanes.empty() && std::any_of(viewed.pairs.begin(), viewed.pairs.end(), in_doubles))
-      take_doubles(under_test_);
-    viewed.lanes_left_out = fuzz::left_out_json(under_test_);
-    if (under_test_.lanes.empty()) return;
-    for (reports::ViewedPair& one : viewed.pairs) {
-      const oracle::Truth truth = oracle::truth(one.pair);
-      const std::vector<Verdict> verdicts = decide(under_test_, one.pair);
-      const std::vector<Verdict> counted = counted_verdicts(under_test_, verdicts, one.pair, truth);
-      for (std::size_t l = 0; l < verdicts.size(); ++l) {
-        const bool wrong = truth.verdict != Verdict::declined && is_wrong(counted[l], truth.verdict);
-        one.said.push_back({under_test_.lanes[l]->id, verdicts[l], wrong});
-      }
-    }
-  }
-
- private:
-  fuzz::SelectedLanes under_test_;
-};
-
-void add_cases(const std::string& name, const OwnCode& own, Viewed& viewed,
+void add_cases(const std::string& name, const fuzz::SelectedLanes& own, Viewed& viewed,
                std::size_t most = reports::kMostViewedPairs) {
-  for (const corpus::Entry& entry : read_cases(name, PairTypes::both)) {
+  for (const corpus::Entry& entry : read_cases(name)) {
     if (most-- == 0 || viewed.pairs.size() == reports::kMostViewedPairs) break;
     viewed.pairs.push_back(
-        {shown_name(fs::path(name).filename().string(), entry), corpus::pair_of(entry), own.stored(entry)});
+        {shown_name(fs::path(name).filename().string(), entry), corpus::pair_of(entry), stored(own, entry)});
   }
 }
 
 // Adds the simplest case of each signature of a campaign, or all cases of another folder.
-void add_folder(const fs::path& folder, const OwnCode& own, Viewed& viewed) {
+void add_folder(const fs::path& folder, const fuzz::SelectedLanes& own, Viewed& viewed) {
   const bool campaign = fs::is_directory(folder / "cases");
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(campaign ? folder / "cases" : folder)) {
@@ -116,7 +103,7 @@ void add_mesh(const fs::path& file, bool exact_input, Viewed& viewed) {
   say_notes(in_doubles && !exact_input ? mesh.notes_of_doubles : mesh.notes, mesh.rounding, exact_input);
   const std::size_t shown = std::min(mesh.triangles.size(), reports::kMostViewedTriangles);
   for (std::size_t i = 0; i < shown; ++i)
-    viewed.triangles.push_back(in_doubles ? mesh.in_doubles[i] : widened(mesh.triangles[i]));
+    viewed.triangles.push_back(in_doubles ? mesh.in_doubles[i] : strata::in_doubles(mesh.triangles[i]));
   fuzz::SelectedLanes under_test = fuzz::select_lanes({}, fuzz::Executor::twin);
   if (in_doubles) fuzz::select_for_doubles(under_test);
   std::vector<reports::ViewedPair> others;
@@ -135,9 +122,6 @@ void add_mesh(const fs::path& file, bool exact_input, Viewed& viewed) {
             std::back_inserter(viewed.pairs));
 }
 
-Triangle first_of(const AnyPair& pair) { return {pair.doubles.a[0], pair.doubles.a[1], pair.doubles.a[2]}; }
-Triangle second_of(const AnyPair& pair) { return {pair.doubles.b[0], pair.doubles.b[1], pair.doubles.b[2]}; }
-
 // If all pairs are hits of `graze query` with one reference, shows them all at once.
 void show_against_the_first(Viewed& viewed) {
   const auto of_it = [&](const reports::ViewedPair& one) {
@@ -153,14 +137,14 @@ void show_against_the_first(Viewed& viewed) {
 
 // Adds the triangles of `graze query REFERENCE MESH`, hits first; the hits are also the pairs.
 void add_query(const std::string& reference, const std::string& file, bool exact_input, Viewed& viewed) {
-  const Input of_references = read_references(reference), of_mesh = read_mesh(file);
+  const strata::MeshPairs of_references = read_references(reference), of_mesh = strata::read_triangles(file);
   const bool are_doubles = of_references.rounding.beyond > 0 || of_mesh.rounding.beyond > 0;
   say_notes(of_references, of_mesh, exact_input, are_doubles);
   if (of_references.triangles.size() != 1)
     throw std::runtime_error(fmt::format("graze view shows one reference, and {} has {}", printable(reference),
                                          of_references.triangles.size()));
-  const std::vector<query::DoubleTriangle> references = in_doubles(of_references), mesh = in_doubles(of_mesh);
-  std::vector<Triangle> others;
+  const auto references = of_references.triangles_in_doubles(), mesh = of_mesh.triangles_in_doubles();
+  std::vector<TriangleOf<double>> others;
   std::vector<std::size_t> other_ids;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const AnyPair pair = are_doubles ? AnyPair(pair_of(references[0], mesh[i]))
@@ -169,7 +153,7 @@ void add_query(const std::string& reference, const std::string& file, bool exact
     const bool shown = hit || (viewed.pairs.empty() && i + 1 == mesh.size());  // one pair if there are no hits
     if (shown && viewed.pairs.size() < kMostOfAMesh)
       viewed.pairs.push_back({fmt::format("{}, triangle {}", printable(fs::path(file).filename().string()), i), pair});
-    std::vector<Triangle>& of = hit ? viewed.triangles : others;
+    std::vector<TriangleOf<double>>& of = hit ? viewed.triangles : others;
     if (of.size() == reports::kMostViewedTriangles) continue;
     of.push_back(second_of(pair));
     (hit ? viewed.ids : other_ids).push_back(i);
@@ -182,7 +166,7 @@ void add_query(const std::string& reference, const std::string& file, bool exact
   viewed.opens_with_triangles = true;
 }
 
-Viewed viewed_of(const std::string& what, const std::string& mesh, bool exact_input, const OwnCode& own) {
+Viewed viewed_of(const std::string& what, const std::string& mesh, bool exact_input, const fuzz::SelectedLanes& own) {
   Viewed viewed;
   viewed.title = printable(fs::path(what).filename().string());
   std::error_code ignored;
@@ -221,9 +205,9 @@ void view(const LaneOptions& options, const std::string& what, const std::string
         "the viewer is not in this build: it needs Node with npm, clang and wasi-libc; run scripts/setup to install "
         "them and build");
   }
-  OwnCode own(options, what);
+  fuzz::SelectedLanes own = lanes_of_own_code(options, what);
   Viewed viewed = viewed_of(what, mesh, exact_input, own);
-  own.add_verdicts(viewed);
+  add_verdicts(own, viewed);
   viewed.random = random;
   write_result(out, reports::viewer_page(viewed), fuzz::NamedBy::user);
   const std::size_t count = viewed.pairs.size();

@@ -21,19 +21,18 @@ class ViewCommand : public CommandTest {
 
   // Returns the data in the page.
   nlohmann::json data(const std::string& page) const {
-    const std::string text = contents(shell.folder / page), start = "<script type=\"application/json\" id=\"view\">";
+    const std::string text = shell.file(page), start = "<script type=\"application/json\" id=\"view\">";
     const std::size_t begin = text.find(start) + start.size();
     return nlohmann::json::parse(text.substr(begin, text.find("</script>", begin) - begin));
   }
 };
 
 TEST_F(ViewCommand, OnePageOfFewMegabytesThatNamesNoOtherFile) {
-  const Ran ran = shell("graze view thesis:1:0");
-  ASSERT_EQ(ran.status, 0) << ran.err;
+  const Ran ran = shell.done("graze view thesis:1:0");
   EXPECT_EQ(ran.out, "Wrote view.html: 1 pair\n");
-  const std::string page = contents(shell.folder / "view.html");
+  const std::string page = shell.file("view.html");
   EXPECT_LT(page.size(), std::size_t{4} << 20);
-  EXPECT_EQ(page.find(" src="), page.npos);
+  EXPECT_FALSE(has(page, {" src="}));
   const nlohmann::json held = data("view.html");
   EXPECT_EQ(held["pairs"][0]["name"], "thesis:1:0");
   EXPECT_EQ(held["pairs"][0]["bits"].get<std::string>().substr(0, 24), "40000000c000000040800000");  // 2 -2 4
@@ -104,8 +103,7 @@ TEST_F(ViewCommand, PairsOfDoublesAsTheyAre) {
       "1000000.01 0 0 1000000.01 1 0 1000000.01 0 1  1000000.02 0 0 1000000.02 1 0 1000000.02 0 1";
   const std::string bits = "412e848005";  // of 1000000.01 and of 1000000.02
   const auto shows_doubles = [&](const std::string& command, std::size_t pairs) {
-    const Ran ran = shell("graze view " + command + " --out d.html");
-    EXPECT_EQ(ran.status, 0) << command << ran.err;
+    expect_done("graze view " + command + " --out d.html");
     const nlohmann::json held = data("d.html");
     EXPECT_EQ(held["coordinates"], "f64") << command;
     EXPECT_EQ(held["pairs"].size(), pairs) << command;
@@ -129,7 +127,7 @@ TEST_F(ViewCommand, PairsOfDoublesAsTheyAre) {
   const nlohmann::json query = shows_doubles("far.off#0 far.off", 1);
   EXPECT_EQ(query["ids"], (std::vector<int>{0, 1}));  // one hit, itself
   const Ran said = shell("graze view far.off");
-  EXPECT_NE(said.err.find("far.off: decided in doubles"), std::string::npos) << said.err;
+  EXPECT_TRUE(has(said.err, {"far.off: decided in doubles"}));
   for (const char* what : {"far.off", "far.off#0 far.off"})
     expect_error(std::string("graze view --exact-input --out e.html ") + what, 2, {"float32", "6 of", "--exact-input"});
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "e.html"));

@@ -81,11 +81,6 @@ void add_rounding(MeshPairs& pairs, const Rounding& rounding, const std::filesys
   for (std::string& note : doubles_note(file.string(), rounding)) pairs.notes_of_doubles.push_back(std::move(note));
 }
 
-std::array<Vec3<double>, 3> in_doubles(const Triangle& t) {
-  const auto wide = [](const Vec3<float>& v) { return Vec3<double>{v.x, v.y, v.z}; };
-  return {wide(t[0]), wide(t[1]), wide(t[2])};
-}
-
 // How many fans fold over themselves: some triangle's normal points against the sum of the fan's normals. The face of
 // such a fan is not convex. The test rounds to double, so it may miss a fold that is narrower than this rounding.
 std::size_t folded_fans(const Soup& soup) {
@@ -221,6 +216,18 @@ void pair_up(MeshPairs& result, const std::vector<std::size_t>& ends, const std:
 }
 
 }  // namespace
+
+std::array<Vec3<double>, 3> in_doubles(const Triangle& t) {
+  const auto wide = [](const Vec3<float>& v) { return Vec3<double>{v.x, v.y, v.z}; };
+  return {wide(t[0]), wide(t[1]), wide(t[2])};
+}
+
+std::vector<std::array<Vec3<double>, 3>> MeshPairs::triangles_in_doubles() const {
+  if (!in_doubles.empty()) return in_doubles;
+  std::vector<std::array<Vec3<double>, 3>> result;
+  for (const Triangle& triangle : triangles) result.push_back(strata::in_doubles(triangle));
+  return result;
+}
 
 Pair MeshPairs::pair(std::size_t index) const {
   const Triangle& a = triangles[candidates[index].first];

@@ -34,7 +34,12 @@ struct MeshPairs {
   // Requires: index < size().
   Pair pair(std::size_t index) const;
   DoublePair double_pair(std::size_t index) const;
+
+  // All triangles as doubles, which hold every float32 exactly.
+  std::vector<std::array<Vec3<double>, 3>> triangles_in_doubles() const;
 };
+
+std::array<Vec3<double>, 3> in_doubles(const std::array<Vec3<float>, 3>& triangle);
 
 // The candidate pairs as a campaign's sources: "mesh" in float32, and "mesh/f64" in doubles.
 std::vector<PairSource> mesh_sources(const std::shared_ptr<const MeshPairs>& mesh, PairTypes types);

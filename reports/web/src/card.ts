@@ -2,7 +2,7 @@
 // The card of a kind of failure: the simplest case, every lane's verdict on that case, the explanation, and the
 // commands that reproduce it.
 import { viewer_button } from './card_viewer';
-import { breakable, button, code_block, copy_button, h, head_row, lazy_details, list } from './dom';
+import { breakable, button, code_block, copy_button, h, lazy_details, list, scroller, table, table_row } from './dom';
 import { counted, figure } from './format';
 import { kind_facts, kind_lanes, kind_title } from './kind';
 import type { Report } from './report';
@@ -11,34 +11,20 @@ import { stage } from './stage';
 type Card = Report['cards'][number];
 
 function coordinates({ pair }: Card) {
-  const row = (name: string, first: number) =>
-    h(
-      'tr',
-      {},
-      h('th', { scope: 'row' }, name),
-      [0, 1, 2].map((k) =>
-        h('td', { class: 'number' }, h('span', {}, pair.decimal[first + k]), h('code', {}, pair.hex[first + k])),
+  const row = (v: number) =>
+    table_row(
+      `${v < 3 ? 'a' : 'b'}[${v % 3}]`,
+      [3 * v, 3 * v + 1, 3 * v + 2].map((c) =>
+        h('td', { class: 'number' }, h('span', {}, pair.decimal[c]), h('code', {}, pair.hex[c])),
       ),
     );
   const text = pair.hex.join(' ');
   return h(
     'div',
     { class: 'coordinates' },
-    h(
-      'div',
-      { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Coordinates' },
-      h(
-        'table',
-        { class: 'plain' },
-        h('caption', {}, 'Coordinates, decimal and hex'),
-        head_row(['x', 'y', 'z']),
-        h(
-          'tbody',
-          {},
-          [0, 1, 2].map((i) => row(`a[${i}]`, 3 * i)),
-          [0, 1, 2].map((i) => row(`b[${i}]`, 9 + 3 * i)),
-        ),
-      ),
+    scroller(
+      'Coordinates',
+      table('plain', 'Coordinates, decimal and hex', ['', 'x', 'y', 'z'], [0, 1, 2, 3, 4, 5].map(row)),
     ),
     h(
       'p',
@@ -61,31 +47,18 @@ function verdicts(report: Report, card: Card) {
     rows.get(name)!.set(lane.target, verdict);
     if (!targets.includes(lane.target)) targets.push(lane.target);
   }
-  return h(
-    'div',
-    { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Verdicts' },
-    h(
-      'table',
-      { class: 'plain verdicts' },
-      h('caption', {}, 'Verdict of every lane; wrong verdicts are marked'),
-      head_row(targets),
-      h(
-        'tbody',
-        {},
-        [...rows].map(([name, by_target]) =>
-          h(
-            'tr',
-            {},
-            h('th', { scope: 'row' }, breakable(name)),
-            targets.map((target) => {
-              const verdict = by_target.get(target);
-              return h(
-                'td',
-                { class: verdict?.wrong ? 'bad' : '' },
-                verdict ? `${verdict.wrong ? '✗ ' : ''}${verdict.verdict}` : '–',
-              );
-            }),
-          ),
+  const cell = (verdict?: Card['verdicts'][number]) =>
+    h('td', { class: verdict?.wrong ? 'bad' : '' }, verdict ? `${verdict.wrong ? '✗ ' : ''}${verdict.verdict}` : '–');
+  return scroller(
+    'Verdicts',
+    table(
+      'plain verdicts',
+      'Verdict of every lane; wrong verdicts are marked',
+      ['', ...targets],
+      [...rows].map(([name, by_target]) =>
+        table_row(
+          breakable(name),
+          targets.map((target) => cell(by_target.get(target))),
         ),
       ),
     ),
@@ -162,7 +135,7 @@ function truth_words({ truth }: Card) {
 }
 
 // Makes the contents of a card when the card is first opened.
-export function card_body(report: Report, card: Card, id: string) {
+function card_body(report: Report, card: Card, id: string) {
   const truth = truth_words(card),
     [verdict] = truth.split(',');
   return h(

@@ -34,6 +34,10 @@ export function shares_axis(shares: number[]) {
   };
 }
 
+// The label of a horizontal axis, in the middle below it.
+export const x_label = (label: string | null, labelOffset: number) =>
+  ({ label, labelAnchor: 'center', labelArrow: 'none', labelOffset }) as const;
+
 export function series_colour(report: Report, algorithm: string): string {
   const algorithms = [...new Set(report.lanes.map((lane) => lane.algorithm))];
   return `var(--series-${algorithms.indexOf(algorithm) % 6})`;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sections for the results of `graze tune`, `graze pareto` and `graze discrepancy`, if the campaign's folder has them.
 import * as Plot from '@observablehq/plot';
-import { kChartStyle, named, shares_axis } from './chart';
+import { kChartStyle, named, shares_axis, x_label } from './chart';
 import { breakable, button, choice, code_block, copy_button, h, list, on_width, section, sentence } from './dom';
 import { count, noisy_mark, percent, percent_bound, power_of_two, spread_words } from './format';
 import type { Discrepancy, Errors, PolicyErrors, Report, Pareto, Tuned } from './report';
-import { table_of } from './sortable_table';
+import { counts, table_of } from './sortable_table';
 import { cell_text } from './pairs_of_cell';
 import { go_to } from './state';
 
@@ -26,6 +26,7 @@ export function front(pareto: Pareto) {
     `${offer.lane}\n${nanoseconds(cost(offer).middle)} ns a pair\n${percent(share(offer.errors))} without a correct verdict${offer.dominated ? '\nanother lane costs no more and errs no more' : ''}`;
   const kept = pareto.lanes.filter((offer) => !offer.dominated).sort((a, b) => cost(a).middle - cost(b).middle);
   const element = h('div', { class: 'chart', id: 'front-chart' });
+  const at = { x: (o: Offer) => cost(o).middle, y: (o: Offer) => axis.place(share(o.errors)) };
   on_width(element, (width) => {
     const small = width < 520;
     const plot = Plot.plot({
@@ -39,24 +40,15 @@ export function front(pareto: Pareto) {
       x: {
         type: 'log',
         inset: 12,
-        label: 'nanoseconds a pair',
-        labelAnchor: 'center',
-        labelArrow: 'none',
-        labelOffset: 36,
+        ...x_label('nanoseconds a pair', 36),
         ticks: small ? 4 : 8,
         tickFormat: (v: number) => String(v),
       },
       y: { ...axis.options, grid: true, label: null },
       marks: [
-        Plot.line(kept, {
-          x: (o: Offer) => cost(o).middle,
-          y: (o: Offer) => axis.place(share(o.errors)),
-          stroke: 'currentColor',
-          strokeOpacity: 0.35,
-        }),
+        Plot.line(kept, { ...at, stroke: 'currentColor', strokeOpacity: 0.35 }),
         Plot.dot(pareto.lanes, {
-          x: (o: Offer) => cost(o).middle,
-          y: (o: Offer) => axis.place(share(o.errors)),
+          ...at,
           r: (o: Offer) => (o.dominated ? 3 : 5.5),
           fill: (o: Offer) => (o.dominated ? '#999' : 'var(--series-0)'),
         }),
@@ -65,24 +57,10 @@ export function front(pareto: Pareto) {
           : [0, 1].map((odd) =>
               Plot.text(
                 kept.filter((_, i) => i % 2 === odd),
-                {
-                  x: (o: Offer) => cost(o).middle,
-                  y: (o: Offer) => axis.place(share(o.errors)),
-                  text: 'lane',
-                  dy: odd ? 14 : -12,
-                  fontSize: 11,
-                },
+                { ...at, text: 'lane', dy: odd ? 14 : -12, fontSize: 11 },
               ),
             )),
-        Plot.tip(
-          pareto.lanes,
-          Plot.pointer({
-            x: (o: Offer) => cost(o).middle,
-            y: (o: Offer) => axis.place(share(o.errors)),
-            title: words,
-            maxRadius: 24,
-          }),
-        ),
+        Plot.tip(pareto.lanes, Plot.pointer({ ...at, title: words, maxRadius: 24 })),
       ],
       r: { type: 'identity' },
     });
@@ -118,18 +96,6 @@ export function pareto_section(report: Report, pareto: Pareto) {
       button('its failures', () => go_to('kinds', { cell: cell_text(report, { lane, stratum: null, kind: 'wrong' }) }))
     );
   };
-  const errors = (label: string, of: (e: Errors) => number) => ({
-    label,
-    numeric: true,
-    cell: (o: Offer) => count(of(o.errors)),
-    order: (o: Offer) => of(o.errors),
-  });
-  const needs = (label: string, of: (o: Offer) => number | undefined) => ({
-    label,
-    numeric: true,
-    cell: (o: Offer) => (of(o) === undefined ? '–' : count(of(o)!)),
-    order: (o: Offer) => of(o) ?? 0,
-  });
   const table = table_of<Offer>(
     [
       { label: 'Lane', cell: (o) => h('td', { id: row_id(o.lane) }, breakable(o.lane)), order: (o) => o.lane },
@@ -146,14 +112,14 @@ export function pareto_section(report: Report, pareto: Pareto) {
         cell: (o) => nanoseconds(far(o).middle),
         order: (o) => far(o).middle,
       },
-      errors('False negatives', (e) => e.false_negative),
-      errors('False positives', (e) => e.false_positive),
-      errors('Declined', (e) => e.declined),
+      counts('False negatives', (o) => o.errors.false_negative),
+      counts('False positives', (o) => o.errors.false_positive),
+      counts('Declined', (o) => o.errors.declined),
       ...(on_device
         ? [
-            needs('Registers', (o) => o.registers),
-            needs('Local bytes', (o) => o.local_bytes),
-            needs('Threads at once', (o) => o.active_threads),
+            counts('Registers', (o: Offer) => o.registers),
+            counts('Local bytes', (o: Offer) => o.local_bytes),
+            counts('Threads at once', (o: Offer) => o.active_threads),
           ]
         : []),
       {
@@ -277,13 +243,12 @@ export function tuned_section(tuned: Tuned) {
       marginBottom: 44,
       style: kChartStyle,
       x: {
-        label:
+        ...x_label(
           curve().tolerance === 'rel'
             ? 'K, in machine epsilons times the quantity’s size'
             : 'E, in the quantity’s own unit',
-        labelAnchor: 'center',
-        labelArrow: 'none',
-        labelOffset: 38,
+          38,
+        ),
         ticks: width < 560 ? 5 : 10,
         tickFormat: (v: number) => power_of_two(v),
       },
@@ -301,7 +266,7 @@ export function tuned_section(tuned: Tuned) {
       ),
     );
   }
-  const redraw = () => element.clientWidth && draw(element.clientWidth);
+  const redraw = on_width(element, draw);
 
   function show(which: number) {
     shown = which;
@@ -315,7 +280,6 @@ export function tuned_section(tuned: Tuned) {
     redraw();
   }
   show(shown);
-  on_width(element, draw);
   return section(
     'tuning',
     `Which tolerance for ${tuned.lane}`,

@@ -4,7 +4,7 @@ import { breakable, h, list, section, sentence } from './dom';
 import { count, in_full, percent } from './format';
 import type { Compare, Report, Share } from './report';
 import { build_words } from './run';
-import { sortable_table, table_of } from './sortable_table';
+import { counts, sortable_table, table_of } from './sortable_table';
 
 type Change = Compare['rates'][number];
 type Seen = Compare['gained'][number];
@@ -86,8 +86,8 @@ function kinds_table(caption: string, seen: Seen[]) {
   const table = table_of<Seen>(
     [
       { label: 'Kind', cell: (s) => h('code', {}, ...breakable(s.key)), order: (s) => s.key },
-      { label: 'Signatures', numeric: true, cell: (s) => count(s.signatures), order: (s) => s.signatures },
-      { label: 'Pairs', numeric: true, cell: (s) => count(s.count), order: (s) => s.count },
+      counts('Signatures', (s) => s.signatures),
+      counts('Pairs', (s) => s.count),
     ],
     seen,
     { caption, class: 'plain', page: 30 },

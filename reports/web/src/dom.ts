@@ -35,18 +35,29 @@ export const list = (items: Child[], props: Props = {}) =>
     items.map((item) => h('li', {}, item)),
   );
 
-// The head of a table: an empty corner, then the titles of the columns.
-export const head_row = (titles: Child[]) =>
+// A table. An empty title makes an empty corner.
+export const table = (name: string, caption: string | null, titles: Child[], rows: Child[]) =>
   h(
-    'thead',
-    {},
+    'table',
+    { class: name },
+    caption !== null && h('caption', {}, caption),
     h(
-      'tr',
+      'thead',
       {},
-      h('td', {}),
-      titles.map((title) => h('th', { scope: 'col' }, title)),
+      h(
+        'tr',
+        {},
+        titles.map((title) => (title === '' ? h('td', {}) : h('th', { scope: 'col' }, title))),
+      ),
     ),
+    h('tbody', {}, rows),
   );
+
+export const table_row = (name: Child, ...cells: Child[]) => h('tr', {}, h('th', { scope: 'row' }, name), cells);
+
+// Contents that scroll sideways if they are too wide for the page.
+export const scroller = (label: string, ...contents: Child[]) =>
+  h('div', { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': label }, contents);
 
 export function section(id: string, title: string, ...children: Child[]) {
   return h('section', { id, 'aria-labelledby': `${id}-title` }, h('h2', { id: `${id}-title` }, title), ...children);
@@ -109,6 +120,10 @@ export function lazy_details(summary: Child[], make: () => Child, props: Props =
   return { details, open: () => ((details.open = true), open()) };
 }
 
+// A <details> below a section's main contents.
+export const more_facts = (title: string, make: () => Child) =>
+  lazy_details([title], make, { class: 'more-facts' }).details;
+
 // A labelled <select> that calls `change` with the chosen value.
 export function choice(label: string, options: [string, string][], value: string, change: (value: string) => void) {
   const select = h(
@@ -119,11 +134,13 @@ export function choice(label: string, options: [string, string][], value: string
   return h('label', { class: 'field' }, h('span', {}, label), select);
 }
 
-// Calls draw(width) now and whenever the element's width changes.
+// Calls draw(width) soon, and whenever the element's width changes.   Returns: a function that draws again now, if the
+// element is shown.
 export function on_width(element: HTMLElement, draw: (width: number) => void) {
   let last = 0;
   new ResizeObserver(() => {
     const width = Math.floor(element.clientWidth);
     if (width > 0 && width !== last) draw((last = width));
   }).observe(element);
+  return () => element.clientWidth && draw(element.clientWidth);
 }

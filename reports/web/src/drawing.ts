@@ -83,6 +83,9 @@ export const cross = (u: Vec, v: Vec): Vec => [
   u[0] * v[1] - u[1] * v[0],
 ];
 
+// The triangles of a convex polygon, three corners each.
+export const fan = (points: Vec[]) => points.slice(2).flatMap((q, i) => [points[0], points[i + 1], q]);
+
 function normal([p, q, r]: Vec[]): Vec {
   const n = cross(minus(q, p), minus(r, p));
   const length = Math.hypot(...n);

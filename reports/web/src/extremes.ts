@@ -3,8 +3,8 @@
 // often a lane errs there as on the pairs nearest to 2^0. A table in words also covers flat triangles and needles,
 // which `graze pareto` measures.
 import * as Plot from '@observablehq/plot';
-import { kChartStyle, named } from './chart';
-import { breakable, h, lazy_details, on_width, section } from './dom';
+import { kChartStyle, named, x_label } from './chart';
+import { breakable, h, more_facts, on_width, section } from './dom';
 import { figure, in_full, percent, power_of_two } from './format';
 import { times_fill, times_legend } from './heat';
 import { lane_picker, type Picker } from './lane_picker';
@@ -32,42 +32,40 @@ const bounds = ([, low, high]: Times) =>
 const kFew = 100;
 const few = ({ wrong }: Cell) => wrong.of < kFew;
 
+const kScale = { axis: 'largest coordinate', short: 'largest coordinate', what: 'largest coordinate' };
+const kOffset = {
+  axis: 'largest coordinate, in sizes of the pair',
+  short: 'largest coordinate / size',
+  what: 'offset',
+};
 const kKinds: { kind: Kind; column: string; title: string; says: string; axis: string; short: string; what: string }[] =
   [
     {
       kind: 'scale',
       column: 'Scaled',
       title: 'Size of the coordinates',
-      axis: 'largest coordinate',
-      short: 'largest coordinate',
-      what: 'largest coordinate',
+      ...kScale,
       says: 'Columns: the power of two of the largest coordinate, from the smallest subnormal float32 to the largest float32. Products underflow on the left and overflow on the right.',
     },
     {
       kind: 'offset',
       column: 'Away from the origin',
       title: 'Distance from the origin',
-      axis: 'largest coordinate, in sizes of the pair',
-      short: 'largest coordinate / size',
-      what: 'offset',
+      ...kOffset,
       says: 'Columns: a pair’s distance from the origin, in multiples of its own size. Each doubling leaves float32 one bit less for the pair’s shape.',
     },
     {
       kind: 'scale/f64',
       column: 'Doubles scaled',
       title: 'Size of the coordinates of doubles',
-      axis: 'largest coordinate',
-      short: 'largest coordinate',
-      what: 'largest coordinate',
+      ...kScale,
       says: 'Pairs of doubles. Columns: the power of two of the largest coordinate. Lanes in float32 decide the pair as float32 stores it, and float32 ends at 2^128.',
     },
     {
       kind: 'offset/f64',
       column: 'Doubles away from the origin',
       title: 'Distance of doubles from the origin',
-      axis: 'largest coordinate, in sizes of the pair',
-      short: 'largest coordinate / size',
-      what: 'offset',
+      ...kOffset,
       says: 'Pairs of doubles. Columns: a pair’s distance from the origin, in multiples of its own size.',
     },
   ];
@@ -149,10 +147,7 @@ export function extremes_section(report: Report, pareto: Pareto | null) {
         domain: [from, to],
         ticks,
         tickFormat: power_of_two,
-        label: small ? short : axis,
-        labelAnchor: 'center',
-        labelArrow: 'none',
-        labelOffset: 40,
+        ...x_label(small ? short : axis, 40),
       },
       y: { domain: lanes, label: null, padding: 0.12, axis: small ? null : 'left', tickSize: 0 },
       marks: [
@@ -197,13 +192,13 @@ export function extremes_section(report: Report, pareto: Pareto | null) {
     element.replaceChildren(cells.length ? named(plot, label) : h('p', { class: 'empty' }, 'No lane is chosen.'));
   }
 
+  const draw_again = figures.map((one) => on_width(one.element, (width) => draw(one, width)));
   const redraw = () => {
-    figures.forEach((one) => one.element.clientWidth && draw(one, one.element.clientWidth));
+    draw_again.forEach((again) => again());
     words.show(picker.lanes());
   };
   const picker: Picker = lane_picker(report, 'extremes', { target: ['cpu'] }, redraw);
   const words = words_table(report, pareto, picker.lanes());
-  figures.forEach((one) => on_width(one.element, (width) => draw(one, width)));
   return section(
     'extremes',
     'Extremes',
@@ -227,22 +222,19 @@ export function extremes_section(report: Report, pareto: Pareto | null) {
     times_legend(),
     figures.map(({ kind, title, says, element }) => [
       h('div', { class: 'kept' }, h('h3', {}, title), h('p', {}, says), element),
-      lazy_details(
-        ['The numbers as a table'],
-        () =>
-          table_of<Cell>(
-            [
-              { label: 'Lane', cell: (c) => c.name, order: (c) => c.lane },
-              { label: 'From', numeric: true, cell: (c) => power_of_two(c.from), order: (c) => c.from },
-              { label: 'Wrong', numeric: true, cell: (c) => percent(c.wrong.share), order: (c) => c.wrong.share },
-              { label: 'Times the origin', numeric: true, cell: ratio, order: (c) => shown(c.times) },
-              { label: 'In full', cell: (c) => in_full(c.wrong), order: (c) => c.wrong.count },
-            ],
-            cells_of(report, kind, picker.lanes()),
-            { caption: `${title}, for the lanes chosen when this was opened`, class: 'plain', page: 100 },
-          ),
-        { class: 'more-facts' },
-      ).details,
+      more_facts('The numbers as a table', () =>
+        table_of<Cell>(
+          [
+            { label: 'Lane', cell: (c) => c.name, order: (c) => c.lane },
+            { label: 'From', numeric: true, cell: (c) => power_of_two(c.from), order: (c) => c.from },
+            { label: 'Wrong', numeric: true, cell: (c) => percent(c.wrong.share), order: (c) => c.wrong.share },
+            { label: 'Times the origin', numeric: true, cell: ratio, order: (c) => shown(c.times) },
+            { label: 'In full', cell: (c) => in_full(c.wrong), order: (c) => c.wrong.count },
+          ],
+          cells_of(report, kind, picker.lanes()),
+          { caption: `${title}, for the lanes chosen when this was opened`, class: 'plain', page: 100 },
+        ),
+      ),
     ]),
   );
 }

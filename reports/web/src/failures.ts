@@ -2,8 +2,9 @@
 // Failures: a card for each kind, and a table of the signatures behind the kinds. The same filters apply to both.
 import { card_element, kind_id } from './card';
 import { has_viewer } from './card_viewer';
-import { button, choice, code_block, h, section } from './dom';
+import { button, code_block, h, section } from './dom';
 import { count, counted } from './format';
+import { kept_choice, kept_search } from './kept';
 import { kind_words } from './kind';
 import {
   campaign_command,
@@ -78,7 +79,7 @@ export function failure_sections(report: Report) {
 
   function update() {
     const cell = cell_of(report, chosen('cell')),
-      algorithm = chosen('algorithm'),
+      algorithm = by_algorithm.value(),
       matches = matcher(chosen('find'));
     const rows = report.signatures.filter(
       (s) =>
@@ -121,31 +122,16 @@ export function failure_sections(report: Report) {
     else cell_note.replaceChildren();
   }
 
-  const search = h('input', {
-    type: 'search',
-    placeholder: 'moller f64, or *.h:117*',
-    oninput: () => {
-      choose('find', search.value.trim());
-      update();
-    },
-  });
+  const search = kept_search('find', 'Find', 'moller f64, or *.h:117*', update);
   const algorithms = [...new Set(report.signatures.map((s) => s.algorithm))];
-  const by_algorithm = choice(
+  const by_algorithm = kept_choice(
+    'algorithm',
     'Algorithm',
     [['', 'all'], ...algorithms.map((a): [string, string] => [a, a])],
-    '',
-    (value) => {
-      choose('algorithm', value);
-      update();
-    },
+    update,
   );
-  const reread = () => {
-    search.value = chosen('find');
-    by_algorithm.querySelector('select')!.value = chosen('algorithm');
-    update();
-  };
-  reread();
-  when_chosen(reread);
+  update();
+  when_chosen(update);
   const all = (open: boolean) => () => cards.forEach((card) => (open ? card.open() : (card.details.open = false)));
   const sections = [
     section(
@@ -158,7 +144,7 @@ export function failure_sections(report: Report) {
         !has_viewer() &&
           ' Cards do not open in the viewer, because graze was built without the compiler for WebAssembly that the viewer needs.',
       ),
-      h('div', { class: 'controls' }, h('label', { class: 'field' }, h('span', {}, 'Find'), search), by_algorithm),
+      h('div', { class: 'controls' }, search, by_algorithm.element),
       cell_note,
       cards.length > 0 && [
         h(

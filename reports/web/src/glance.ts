@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The chart beside the answer: the errors of each lane by group of strata, and the lane's cost.
 import * as Plot from '@observablehq/plot';
-import { kChartStyle, named, shares_axis } from './chart';
+import { kChartStyle, named, shares_axis, x_label } from './chart';
 import { h, on_width } from './dom';
 import { count, in_full, is_noisy, nanoseconds, percent } from './format';
 import type { Costs, Report } from './report';
@@ -29,7 +29,7 @@ function cost_ground(report: Report) {
 
 // Chooses one lane for each algorithm and precision, preferably the cpu lane. Lanes with fewer wrong verdicts come
 // first.
-export function glance_rows(report: Report, costs: Costs | null): Row[] {
+function glance_rows(report: Report, costs: Costs | null): Row[] {
   const total = new Map(
     report.rates.filter((rate) => rate.stratum === null).map((rate) => [rate.lane, rate.wrong.count]),
   );
@@ -93,13 +93,7 @@ export function glance(report: Report, costs: Costs | null) {
       marginTop: 20,
       marginBottom: 42,
       style: kChartStyle,
-      x: {
-        ...axis.options,
-        label: 'share of wrong verdicts',
-        labelAnchor: 'center',
-        labelArrow: 'none',
-        labelOffset: 38,
-      },
+      x: { ...axis.options, ...x_label('share of wrong verdicts', 38) },
       y: { domain: rows.map((row) => row.name), label: null, axis: small ? null : 'left', tickSize: 0 },
       symbol: { domain: report.groups.map((group) => group.id), range: [...kSymbols] },
       marks: [

@@ -9,7 +9,7 @@ import { h } from './dom';
 const kSteps = 26;
 
 // The colour step of a share; null for a share of zero, which has no colour.
-export function heat_step(share: number): number | null {
+function heat_step(share: number): number | null {
   if (!(share > 0)) return null;
   return Math.round(Math.cbrt(share) * (kSteps - 1));
 }
@@ -19,7 +19,7 @@ export const heat_class = (share: number) => {
   return step === null ? 'none' : `h${step}`;
 };
 
-export const heat_fill = (share: number) => {
+const heat_fill = (share: number) => {
   const step = heat_step(share);
   return step === null ? 'var(--heat-none)' : `var(--h${step})`;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Describes a kind of failure: its title, its lanes, the origins of its pairs, their margins, and the worst pair.
 import * as Plot from '@observablehq/plot';
-import { kChartStyle, named } from './chart';
+import { kChartStyle, named, x_label } from './chart';
 import { breakable, code_block, h, on_width, type Child } from './dom';
 import { count, counted, figure, margin_order, margin_words } from './format';
 import type { FailureKind, Report } from './report';
@@ -140,10 +140,7 @@ function margins_histogram(kind: FailureKind) {
         ticks: ticks_of(bars, (width - 28) / bars.length),
         tickFormat: (name: string) => margin_words(name).replace(/ ulps.*/, ''),
         tickSize: 3,
-        label: sides || null,
-        labelAnchor: 'center',
-        labelArrow: 'none',
-        labelOffset: 32,
+        ...x_label(sides || null, 32),
       },
       y: { axis: null },
       marks: [

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The league table: lanes × strata, with false positives and false negatives.
-import { breakable, choice, h, section } from './dom';
+import { breakable, h, section } from './dom';
 import { bare_percent, count, in_full } from './format';
 import { heat_class, heat_legend } from './heat';
+import { kept_choice, kept_search } from './kept';
 import { lane_picker } from './lane_picker';
-import { cell_text, cell_words, kErrors, type Kind } from './pairs_of_cell';
+import { cell_text, cell_words, type Kind } from './pairs_of_cell';
 import type { Report, Share } from './report';
 import { matcher } from './search';
 import { sortable_table, type Column } from './sortable_table';
-import { choose, chosen, go_to, when_chosen } from './state';
+import { chosen, go_to, when_chosen } from './state';
 
 type Rate = Report['rates'][number];
 type Show = 'both' | Kind;
@@ -42,9 +43,7 @@ export function league_section(report: Report) {
   const in_doubles = (stratum: number) => report.strata[stratum].id.endsWith('/f64');
   const places = report.strata.map((_, i) => i);
   const both_types = places.some(in_doubles) && !places.every(in_doubles);
-  let show: Show = 'both',
-    only = 'all',
-    type = 'all';
+  let show: Show = 'both';
 
   const readout = h('p', { class: 'readout', 'aria-live': 'polite' });
   const kHint =
@@ -98,8 +97,11 @@ export function league_section(report: Report) {
   }
 
   function columns(): Column<number>[] {
-    const shown =
-      only !== 'all' ? [Number(only)] : places.filter((i) => type === 'all' || in_doubles(i) === (type === 'f64'));
+    const only = strata.value(),
+      type = both_types ? types.value() : 'all';
+    const shown = places.filter((i) =>
+      only === 'all' ? type === 'all' || in_doubles(i) === (type === 'f64') : report.strata[i].id === only,
+    );
     const column = (stratum: number | null, label: string): Column<number> => ({
       label,
       numeric: true,
@@ -116,7 +118,7 @@ export function league_section(report: Report) {
     ];
   }
 
-  const table = sortable_table<number>(columns(), {
+  const table = sortable_table<number>([], {
     caption: 'Share of wrong verdicts in per cent, lanes by strata',
     class: 'league',
     walk: true,
@@ -128,53 +130,30 @@ export function league_section(report: Report) {
   };
   const picker = lane_picker(report, 'league', {}, () => update());
 
-  const search = h('input', {
-    type: 'search',
-    placeholder: 'such as moller f64, or */f64/*',
-    oninput: () => {
-      choose('lane', search.value.trim());
-      update();
-    },
-  });
-  const shows = choice('Show', kShow, show, (value) => {
-    choose('show', value === 'both' ? '' : value);
-    redraw();
-  });
-  const strata = choice(
+  const redraw = () => {
+    show = shows.value() as Show;
+    table.columns(columns());
+    table.element.classList.toggle('single', show !== 'both');
+    update();
+  };
+  const search = kept_search('lane', 'Find a lane', 'such as moller f64, or */f64/*', update);
+  const shows = kept_choice('show', 'Show', kShow, redraw);
+  const strata = kept_choice(
+    'stratum',
     'Stratum',
-    [['all', 'all'], ...report.strata.map((stratum, i): [string, string] => [String(i), stratum.id])],
-    only,
-    (value) => {
-      choose('stratum', value === 'all' ? '' : report.strata[Number(value)].id);
-      redraw();
-    },
+    [['all', 'all'], ...report.strata.map(({ id }): [string, string] => [id, id])],
+    redraw,
   );
-  const types = choice(
+  const types = kept_choice(
+    'type',
     'Coordinates',
     [
       ['all', 'float32 and double'],
       ['f32', 'float32'],
       ['f64', 'double'],
     ],
-    type,
-    (value) => {
-      choose('type', value === 'all' ? '' : value);
-      redraw();
-    },
+    redraw,
   );
-  const redraw = () => {
-    type = both_types && ['f32', 'f64'].includes(chosen('type')) ? chosen('type') : 'all';
-    types.querySelector('select')!.value = type;
-    const place = report.strata.findIndex((stratum) => stratum.id === chosen('stratum'));
-    only = place < 0 ? 'all' : String(place);
-    show = chosen('show') in kErrors ? (chosen('show') as Kind) : 'both';
-    shows.querySelector('select')!.value = show;
-    strata.querySelector('select')!.value = only;
-    search.value = chosen('lane');
-    table.columns(columns());
-    table.element.classList.toggle('single', show !== 'both');
-    update();
-  };
   redraw();
   when_chosen(redraw);
   table.element.classList.add('league-table');
@@ -190,14 +169,7 @@ export function league_section(report: Report) {
       h('b', {}, 'false negative'),
       ' is the verdict “disjoint” on triangles that meet. Its share is that among the pairs that intersect. Each cell shows false positives above false negatives. Click a column’s heading to sort by that column.',
     ),
-    h(
-      'div',
-      { class: 'controls' },
-      h('label', { class: 'field' }, h('span', {}, 'Find a lane'), search),
-      shows,
-      strata,
-      ...(both_types ? [types] : []),
-    ),
+    h('div', { class: 'controls' }, search, shows.element, strata.element, both_types && types.element),
     picker.element,
     h('div', { class: 'between' }, heat_legend(), readout),
     table.element,

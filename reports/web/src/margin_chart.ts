@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A share of pairs against the exact margin, with a curve for each lane.
 import * as Plot from '@observablehq/plot';
-import { kChartStyle, named, series_colour, series_dash, series_width, shares_axis } from './chart';
+import { kChartStyle, named, series_colour, series_dash, series_width, shares_axis, x_label } from './chart';
 import { h } from './dom';
 import { count, in_full, percent, percent_bound, power_of_two } from './format';
 import type { Report, Share } from './report';
@@ -83,14 +83,13 @@ export function margin_chart(
     for (let e = Math.ceil((lowest + (small ? 8 : 0)) / 16) * 16; e <= highest; e += small ? 16 : 8)
       ticks.push(place('disjoint', e), place('intersects', e));
     const exponent_at = (x: number) => Math.abs(x) + lowest - kGap;
-    const style = (lane: number) => report.lanes[lane];
     const lanes = [...new Set(all.map((dot) => dot.lane))];
     const marks: Plot.Markish[] = [
       Plot.ruleX([0], { stroke: 'currentColor', strokeOpacity: 0.12, strokeWidth: small ? 8 : 14 }),
       Plot.ruleY([y(0)], { stroke: 'currentColor', strokeOpacity: 0.5 }),
     ];
     for (const lane of lanes) {
-      const { algorithm, scalar, target } = style(lane);
+      const { algorithm, scalar, target } = report.lanes[lane];
       const stroke = series_colour(report, algorithm),
         dash = series_dash(target),
         strokeWidth = series_width(scalar);
@@ -165,12 +164,12 @@ export function margin_chart(
         domain: [-reach, reach],
         ticks,
         tickFormat: (x: number) => (x === 0 ? '0' : power_of_two(exponent_at(x))),
-        label: small
-          ? 'margin, ulps: ← deep · apart →'
-          : 'exact margin in ulps of the largest coordinate:  ← deeper inside  ·  farther apart →',
-        labelAnchor: 'center',
-        labelArrow: 'none',
-        labelOffset: 42,
+        ...x_label(
+          small
+            ? 'margin, ulps: ← deep · apart →'
+            : 'exact margin in ulps of the largest coordinate:  ← deeper inside  ·  farther apart →',
+          42,
+        ),
       },
       y: {
         ...(log() ? axis.options : { domain: [0, 100], tickFormat: (v: number) => `${v} %` }),

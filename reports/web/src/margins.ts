@@ -2,13 +2,14 @@
 // Error against margin: the share of wrong verdicts by the exact margin in ulps, and the threshold at or above which no
 // error was seen.
 import { series_colour } from './chart';
-import { breakable, choice, h, lazy_details, on_width, section } from './dom';
-import { count, in_full, percent_bound, power_of_two } from './format';
+import { breakable, h, more_facts, on_width, section } from './dom';
+import { in_full, percent_bound, power_of_two } from './format';
+import { kept_choice } from './kept';
 import { lane_picker, type Picker } from './lane_picker';
 import { margin_chart, type Dot } from './margin_chart';
 import type { Report, Threshold } from './report';
-import { sortable_table, table_of } from './sortable_table';
-import { choose, chosen, when_chosen } from './state';
+import { counts, sortable_table, table_of } from './sortable_table';
+import { when_chosen } from './state';
 
 type Row = Report['thresholds'][number];
 
@@ -17,7 +18,6 @@ const from_words = ({ exponent, largest }: Threshold) =>
   exponent !== null ? power_of_two(exponent) : largest === null ? 'no such pairs' : `wrong at ${power_of_two(largest)}`;
 
 export function margins_section(report: Report) {
-  let log = chosen('share') !== 'linear';
   const figure_element = h('figure', { class: 'chart', id: 'margin-chart' });
   const thresholds = sortable_table<Row>(
     [
@@ -31,12 +31,7 @@ export function margins_section(report: Report) {
             cell: (t: Row) => from_words(t[side]),
             order: (t: Row) => t[side].exponent ?? 999,
           },
-          {
-            label: 'Pairs beyond',
-            numeric: true,
-            cell: (t: Row) => count(t[side].above),
-            order: (t: Row) => t[side].above,
-          },
+          counts('Pairs beyond', (t: Row) => t[side].above),
           {
             label: 'Rate below (95 %)',
             numeric: true,
@@ -55,26 +50,22 @@ export function margins_section(report: Report) {
     { id: 'all', label: 'all strata together', is: (t: Row) => t.group === null && t.stratum === null },
     ...report.strata.map(({ id }, s) => ({ id: `stratum ${id}`, label: id, is: (t: Row) => t.stratum === s })),
   ];
-  const kind = () => kinds.find(({ id }) => id === chosen('trust')) ?? kinds[0];
-  const trust = choice(
+  const trust = kept_choice(
+    'trust',
     'Pairs',
     kinds.map(({ id, label }): [string, string] => [id, label]),
-    kind().id,
-    (value) => {
-      choose('trust', value === kinds[0].id ? '' : value);
-      show_thresholds();
-    },
+    show_thresholds,
   );
   const describes = h('p', { class: 'key' });
   function show_thresholds() {
-    trust.querySelector('select')!.value = kind().id;
-    const group = report.groups.find(({ id }) => id === kind().id);
+    const kind = kinds.find(({ id }) => id === trust.value())!,
+      group = report.groups.find(({ id }) => id === kind.id);
     describes.textContent = group
       ? `${group.id}: ${group.describes} (${group.strata.map((s) => report.strata[s].id).join(', ')}).`
       : '';
-    thresholds.show(report.thresholds.filter((t) => kind().is(t) && picker.lanes().includes(t.lane)));
+    thresholds.show(report.thresholds.filter((t) => kind.is(t) && picker.lanes().includes(t.lane)));
   }
-  when_chosen(() => show_thresholds());
+  when_chosen(show_thresholds);
 
   const chart = margin_chart(
     report,
@@ -82,14 +73,23 @@ export function margins_section(report: Report) {
     'wrong',
     { title: 'Share of wrong verdicts against the exact margin, all strata', label: 'share wrong', word: 'wrong' },
     () => picker.lanes(),
-    () => log,
+    () => share.value() === 'log',
   );
   function draw(width: number) {
     chart.draw(width);
     show_thresholds();
   }
 
-  const redraw = () => figure_element.clientWidth && draw(figure_element.clientWidth);
+  const redraw = on_width(figure_element, draw);
+  const share = kept_choice(
+    'share',
+    'Share',
+    [
+      ['log', 'logarithmic'],
+      ['linear', 'linear'],
+    ],
+    redraw,
+  );
   const published = [...new Set(report.lanes.filter((lane) => !lane.exact).map((lane) => lane.algorithm))];
   const picker: Picker = lane_picker(
     report,
@@ -98,7 +98,6 @@ export function margins_section(report: Report) {
     redraw,
     (algorithm) => series_colour(report, algorithm),
   );
-  on_width(figure_element, draw);
 
   const key = h(
     'p',
@@ -115,23 +114,7 @@ export function margins_section(report: Report) {
       {},
       'The chart shows how often a lane is wrong at each margin, which is the exact distance or depth in ulps. Pairs on the right are apart, so errors are false positives. Pairs on the left intersect, so errors are false negatives. Pairs in the middle touch.',
     ),
-    h(
-      'div',
-      { class: 'controls' },
-      choice(
-        'Share',
-        [
-          ['log', 'logarithmic'],
-          ['linear', 'linear'],
-        ],
-        log ? 'log' : 'linear',
-        (value) => {
-          log = value === 'log';
-          choose('share', log ? '' : value);
-          redraw();
-        },
-      ),
-    ),
+    h('div', { class: 'controls' }, share.element),
     picker.element,
     figure_element,
     key,
@@ -141,22 +124,19 @@ export function margins_section(report: Report) {
       {},
       'The answer depends on the pairs. For the chosen pairs, the table shows the smallest margin (a power of two) at or above which no error was seen. It also shows the number of pairs beyond that margin, and a bound on the error rate there. The bound holds with 95 % confidence for a threshold that was fixed before the campaign. These thresholds come from the same data, so confirm them with another seed.',
     ),
-    h('div', { class: 'controls' }, trust),
+    h('div', { class: 'controls' }, trust.element),
     describes,
     thresholds.element,
-    lazy_details(
-      ['The chart’s numbers as a table'],
-      () =>
-        table_of<Dot>(
-          [
-            { label: 'Lane', cell: (d) => report.lanes[d.lane].id, order: (d) => d.lane },
-            { label: 'Margin', cell: (d) => d.words.split('\n')[1], order: (d) => d.x },
-            { label: 'Wrong', cell: (d) => in_full(d.share), order: (d) => d.share.share, descending_first: true },
-          ],
-          chart.dots(),
-          { caption: 'Share wrong by margin, for the lanes chosen when this was opened', class: 'plain', page: 100 },
-        ),
-      { class: 'more-facts' },
-    ).details,
+    more_facts('The chart’s numbers as a table', () =>
+      table_of<Dot>(
+        [
+          { label: 'Lane', cell: (d) => report.lanes[d.lane].id, order: (d) => d.lane },
+          { label: 'Margin', cell: (d) => d.words.split('\n')[1], order: (d) => d.x },
+          { label: 'Wrong', cell: (d) => in_full(d.share), order: (d) => d.share.share, descending_first: true },
+        ],
+        chart.dots(),
+        { caption: 'Share wrong by margin, for the lanes chosen when this was opened', class: 'plain', page: 100 },
+      ),
+    ),
   );
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sections "What was run" and "The answer".
-import { breakable, code_block, h, lazy_details, list, section, sentence, type Child } from './dom';
+import { breakable, code_block, h, list, more_facts, section, sentence, type Child } from './dom';
 import { count, nanoseconds, noisy_mark, percent, spread_words } from './format';
 import { front } from './choices';
 import { glance } from './glance';
 import type { Costs, Report, Pareto } from './report';
-import { table_of } from './sortable_table';
+import { counts, table_of } from './sortable_table';
 
 // "20 lanes: twin, verified on …", one line for each kind of evidence.
 function executors(report: Report): Child[] {
@@ -22,7 +22,7 @@ function strata_table(report: Report) {
     [
       { label: 'Stratum', cell: (s) => [s.id], order: (s) => report.strata.indexOf(s) },
       { label: 'What it draws', cell: (s) => [s.describes], order: (s) => s.describes },
-      { label: 'Pairs', numeric: true, cell: (s) => count(s.pairs), order: (s) => s.pairs },
+      counts('Pairs', (s) => s.pairs),
       {
         label: 'Intersect',
         numeric: true,
@@ -132,14 +132,10 @@ export function run_section(report: Report, costs: Costs | null) {
     code_block(run.command, 'the campaign’s command'),
     h('p', { class: 'label' }, 'Make this page again from the stored results'),
     code_block(run.map_command, 'the report’s command'),
-    lazy_details([`${report.strata.length} strata`], () => strata_table(report), { class: 'more-facts' }).details,
-    lazy_details([`${report.lanes.length} lanes`], () => lanes_table(report), { class: 'more-facts' }).details,
+    more_facts(`${report.strata.length} strata`, () => strata_table(report)),
+    more_facts(`${report.lanes.length} lanes`, () => lanes_table(report)),
     costs &&
-      lazy_details(
-        [`Costs of ${new Set(costs.rows.map((row) => row.lane)).size} lanes`],
-        () => costs_table(report, costs),
-        { class: 'more-facts' },
-      ).details,
+      more_facts(`Costs of ${new Set(costs.rows.map((row) => row.lane)).size} lanes`, () => costs_table(report, costs)),
     report.missing.length > 0 &&
       h('div', { class: 'notice' }, h('strong', {}, 'What this report lacks'), list(report.missing.map(sentence))),
   );

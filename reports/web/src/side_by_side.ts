@@ -72,10 +72,9 @@ function by_margin(report: Report) {
     report,
     'differ',
     { scalar: ['f32'], target: targets.includes('cuda-fma') ? ['cuda-fma'] : targets },
-    () => element.clientWidth && chart.draw(element.clientWidth),
+    on_width(element, chart.draw),
     (algorithm) => series_colour(report, algorithm),
   );
-  on_width(element, chart.draw);
   return [
     h('h3', {}, 'At which margins do lanes differ from the cpu lane?'),
     h(
@@ -100,24 +99,15 @@ export function side_by_side_section(report: Report) {
     const table = sortable_table<Side>(
       [
         { label: 'Algorithm', cell: (side) => common(report, side), order: (side) => rows.indexOf(side) },
-        {
-          label: `${own(rows[0].left)}, wrong`,
+        ...(['left', 'right'] as const).map((which) => ({
+          label: `${own(rows[0][which])}, wrong`,
           numeric: true,
-          cell: (side) => {
+          cell: (side: Side) => {
             const s = of(side);
-            return s ? share_cell(s.left_wrong) : '–';
+            return s ? share_cell(s[`${which}_wrong`]) : '–';
           },
-          order: (side) => of(side)?.left_wrong.share ?? -1,
-        },
-        {
-          label: `${own(rows[0].right)}, wrong`,
-          numeric: true,
-          cell: (side) => {
-            const s = of(side);
-            return s ? share_cell(s.right_wrong) : '–';
-          },
-          order: (side) => of(side)?.right_wrong.share ?? -1,
-        },
+          order: (side: Side) => of(side)?.[`${which}_wrong`].share ?? -1,
+        })),
         ...(measured
           ? [
               {

@@ -2,9 +2,9 @@
 // The table of signatures.
 import { kind_id } from './card';
 import { h } from './dom';
-import { count, margin_order, margin_words, percent } from './format';
+import { margin_order, margin_words, percent } from './format';
 import type { Report } from './report';
-import { sortable_table } from './sortable_table';
+import { counts, sortable_table } from './sortable_table';
 
 type Signature = Report['signatures'][number];
 
@@ -55,7 +55,7 @@ export function signature_table(report: Report, pair_of: (signature: Signature) 
   return sortable_table<Signature>(
     [
       { label: 'No.', numeric: true, cell: (s) => String(report.signatures.indexOf(s) + 1), order: (s) => -s.count },
-      { label: 'Pairs', numeric: true, cell: (s) => count(s.count), order: (s) => s.count },
+      counts('Pairs', (s) => s.count),
       { label: 'Share', numeric: true, cell: (s) => percent(s.share), order: (s) => s.share },
       { label: 'Algorithm', cell: (s) => s.algorithm, order: (s) => s.algorithm },
       { label: 'Contact', cell: (s) => s.contact, order: (s) => s.contact },

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A table that sorts by any column and shows its rows in pages. Arrow keys move between its cells.
 import { button, h, type Child } from './dom';
+import { count } from './format';
 
 export interface Column<Row> {
   label: string;
@@ -17,6 +18,14 @@ export interface Table<Row> {
   show: (rows: Row[]) => void;
   columns: (columns: Column<Row>[]) => void;
 }
+
+// A column of counts; a count that is undefined is not known.
+export const counts = <Row>(label: string, of: (row: Row) => number | undefined): Column<Row> => ({
+  label,
+  numeric: true,
+  cell: (row) => (of(row) === undefined ? '–' : count(of(row)!)),
+  order: (row) => of(row) ?? -1,
+});
 
 interface Options {
   caption: string;

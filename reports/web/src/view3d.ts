@@ -20,7 +20,7 @@ import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
 import { view_of } from './camera';
-import { framed_half_height, labels, project, type Shape, type Vec, type View } from './drawing';
+import { fan, framed_half_height, labels, project, type Shape, type Vec, type View } from './drawing';
 
 let renderer: WebGLRenderer | null | undefined; // null: this browser has no WebGL
 
@@ -42,20 +42,7 @@ export interface Picture {
 
 const style_colour = (name: string) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-function fan(points: Vec[]) {
-  const corners: number[] = [];
-  for (let i = 1; i + 1 < points.length; ++i) corners.push(...points[0], ...points[i], ...points[i + 1]);
-  const geometry = new BufferGeometry().setAttribute('position', new Float32BufferAttribute(corners, 3));
-  geometry.computeVertexNormals();
-  return geometry;
-}
-
-function segments(points: Vec[], closed: boolean) {
-  const ends = points.flatMap((p, i) =>
-    i + 1 < points.length ? [...p, ...points[i + 1]] : closed ? [...p, ...points[0]] : [],
-  );
-  return new LineSegmentsGeometry().setPositions(ends);
-}
+const closed = (points: Vec[]) => [...points, points[0]];
 
 export function picture(shape: Shape): Picture {
   const scene = new Scene();
@@ -65,14 +52,22 @@ export function picture(shape: Shape): Picture {
   const lines: { material: LineMaterial; width: number }[] = [];
   const made: { dispose: () => void }[] = [];
 
-  function add_line(
-    geometry: LineSegmentsGeometry,
-    name: string,
-    width: number,
-    hidden: 'shown' | 'faint',
-    dashed = false,
-  ) {
+  // Triangles, three corners each.
+  function add_mesh(corners: Vec[], name: string, material: Material & { color: Color }) {
+    const geometry = new BufferGeometry().setAttribute('position', new Float32BufferAttribute(corners.flat(), 3));
+    geometry.computeVertexNormals();
+    const mesh = new Mesh(geometry, material);
+    scene.add(mesh);
+    coloured.push({ material, name });
+    made.push(geometry, material);
+    return mesh;
+  }
+
+  function add_lines(polylines: Vec[][], name: string, width: number, hidden: 'shown' | 'faint', dashed = false) {
     const material = new LineMaterial({ linewidth: width, dashed, dashSize: 0.06, gapSize: 0.04, transparent: true });
+    const geometry = new LineSegmentsGeometry().setPositions(
+      polylines.flatMap((points) => points.slice(1).flatMap((q, i) => [...points[i], ...q])),
+    );
     if (hidden === 'faint') Object.assign(material, { depthTest: false, opacity: 0.35 });
     coloured.push({ material, name });
     lines.push({ material, width });
@@ -94,12 +89,9 @@ export function picture(shape: Shape): Picture {
       polygonOffsetFactor: shift,
       polygonOffsetUnits: 2 * shift,
     });
-    const geometry = fan([...points]);
-    scene.add(new Mesh(geometry, material));
-    coloured.push({ material, name });
-    made.push(geometry, material);
-    add_line(segments([...points], true), `${name}-edge`, 2, 'shown');
-    add_line(segments([...points], true), `${name}-edge`, 1.2, 'faint').renderOrder = 1; // drawn even where the other triangle hides it
+    add_mesh(fan(points), name, material);
+    add_lines([closed(points)], `${name}-edge`, 2, 'shown');
+    add_lines([closed(points)], `${name}-edge`, 1.2, 'faint').renderOrder = 1; // drawn even where the other triangle hides it
   }
   for (const { colour, triangles, opacity, lines, width, dashed } of shape.marks ?? []) {
     if (triangles?.length) {
@@ -113,27 +105,19 @@ export function picture(shape: Shape): Picture {
         polygonOffsetFactor: 3,
         polygonOffsetUnits: 6,
       });
-      const geometry = new BufferGeometry().setAttribute('position', new Float32BufferAttribute(triangles.flat(), 3));
-      geometry.computeVertexNormals();
-      scene.add(new Mesh(geometry, material));
-      coloured.push({ material, name: colour });
-      made.push(geometry, material);
+      add_mesh(triangles, colour, material);
     }
-    const ends = (lines ?? []).flatMap((points) => points.slice(1).flatMap((q, i) => [...points[i], ...q]));
-    if (ends.length) add_line(new LineSegmentsGeometry().setPositions(ends), colour, width ?? 1.5, 'shown', dashed);
+    const drawn = (lines ?? []).filter((points) => points.length > 1);
+    if (drawn.length) add_lines(drawn, colour, width ?? 1.5, 'shown', dashed);
   }
-  if (shape.line.length > 1) add_line(segments(shape.line, false), '--ink', 1.3, 'shown', true);
+  if (shape.line.length > 1) add_lines([shape.line], '--ink', 1.3, 'shown', true);
   if (shape.contact.length > 2) {
     const material = new MeshBasicMaterial({ side: DoubleSide, depthTest: false, transparent: true, opacity: 0.55 });
-    const geometry = fan(shape.contact);
-    const mesh = new Mesh(geometry, material);
-    mesh.renderOrder = 2;
-    scene.add(mesh);
-    coloured.push({ material, name: '--contact' });
-    made.push(geometry, material);
+    add_mesh(fan(shape.contact), '--contact', material).renderOrder = 2;
   }
   if (shape.contact.length > 1) {
-    const line = add_line(segments(shape.contact, shape.contact.length > 2), '--contact', 4, 'shown');
+    const edges = shape.contact.length > 2 ? closed(shape.contact) : shape.contact;
+    const line = add_lines([edges], '--contact', 4, 'shown');
     line.material.depthTest = false;
     line.renderOrder = 3;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Explains why a GPU lane decides differently from the same source on the CPU: the first comparison with different
 // outcomes, the values there, and the operations that nvcc fused.
-import { h, head_row, type Child } from '../dom';
+import { h, table, table_row, type Child } from '../dom';
 import { figure } from '../format';
 import type { Site, Step } from './graze.js';
 import type { Model } from './model';
@@ -84,7 +84,7 @@ function ends_of(run: Step[], { site, relation, left, right }: Step): [string, s
   return ['one range', 'the other'];
 }
 
-function table(
+function parting_table(
   model: Model,
   run: Step[],
   [mine, theirs]: [Step, Step],
@@ -105,26 +105,22 @@ function table(
     h('b', { class: verdict === right ? '' : 'bad' }, `${verdict === right ? '' : '✗ '}${verdict}`),
   ];
   const row = (name: string, i: number, held: boolean, then: Child) =>
-    h(
-      'tr',
-      {},
-      h('th', { scope: 'row' }, name),
+    table_row(
+      name,
       h('td', {}, h('code', {}, texts[i])),
       !sign && h('td', {}, h('code', {}, texts[i + 3])),
       h('td', {}, outcome(held)),
       h('td', {}, then),
     );
-  return h(
-    'table',
-    { class: 'plain parting' },
-    head_row([one, other, asked, 'result'].filter(Boolean)),
-    h(
-      'tbody',
-      {},
+  return table(
+    'plain parting',
+    null,
+    ['', ...[one, other, asked, 'result'].filter(Boolean)],
+    [
       row('CPU', 0, theirs.held, so(last[1], verdicts[1])),
       row('GPU', 1, mine.held, so(last[0], verdicts[0])),
       row('with 113 bits', 2, mine.holds, `as the ${mine.holds === theirs.held ? 'CPU' : 'GPU'}`),
-    ),
+    ],
   );
 }
 
@@ -190,7 +186,7 @@ export function apart(model: Model, lane: string): { parts: Child[]; brief: Chil
         'Both run the same source on the same numbers. The first comparison with a different outcome is at ',
         quoted(mine.line),
       ),
-      table(
+      parting_table(
         model,
         known.steps,
         [mine, theirs],

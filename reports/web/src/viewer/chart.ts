@@ -17,9 +17,8 @@ const kMargin = 8,
 // The two closest ends, one of each range.
 const critical = ({ a, b }: Row): [number, number] => (b[0] - a[1] > a[0] - b[1] ? [a[1], b[0]] : [b[1], a[0]]);
 
-// ulp: the distance between neighbouring numbers of the lane.   Returns: the picture, and the magnification of its lower
-// half.
-export function chart(rows: Row[], ulp: (at: number) => number, width: number): { svg: SVGElement; magnified: number } {
+// ulp: the distance between neighbouring numbers of the lane.
+export function chart(rows: Row[], ulp: (at: number) => number, width: number) {
   const all = rows.flatMap(({ a, b }) => [...a, ...b]),
     low = Math.min(...all),
     high = Math.max(...all),
@@ -61,5 +60,5 @@ export function chart(rows: Row[], ulp: (at: number) => number, width: number): 
       }
     });
   });
-  return { svg, magnified: views.length > 1 ? whole / half : 1 };
+  return svg;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fields of the 18 coordinates: one can choose, type, paste and step a coordinate.
-import { button, h, head_row, section } from '../dom';
+import { button, h, section, table, table_row } from '../dom';
 import { coordinate_name, decimal, hex_float, stored_as } from './data';
 import type { Model } from './model';
 
@@ -12,7 +12,7 @@ export const kSteps = [
 export const kMove = 0.0625; // the same step as in the thesis's viewer
 
 // Finds numbers in any notation, with any text between them.
-export function numbers_in(text: string): string[] {
+function numbers_in(text: string): string[] {
   return text.match(/[-+]?(?:0x[0-9a-f.]+(?:p[-+]?\d+)?|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)/gi) ?? [];
 }
 
@@ -90,10 +90,8 @@ export function coordinates(model: Model, say: (text: string) => void) {
     );
   }
   const row = (v: number) =>
-    h(
-      'tr',
-      {},
-      h('th', { scope: 'row' }, `${v < 3 ? 'a' : 'b'}[${v % 3}]`),
+    table_row(
+      `${v < 3 ? 'a' : 'b'}[${v % 3}]`,
       [0, 1, 2].map((k) => h('td', {}, fields[3 * v + k])),
     );
   return {
@@ -102,12 +100,11 @@ export function coordinates(model: Model, say: (text: string) => void) {
     element: section(
       'coordinates',
       'Coordinates',
-      h(
-        'table',
-        { class: 'plain pair' },
-        h('caption', {}, `In ${type}. Type a number, or paste 18 numbers into any field.`),
-        head_row(['x', 'y', 'z']),
-        h('tbody', {}, [0, 1, 2, 3, 4, 5].map(row)),
+      table(
+        'plain pair',
+        `In ${type}. Type a number, or paste 18 numbers into any field.`,
+        ['', 'x', 'y', 'z'],
+        [0, 1, 2, 3, 4, 5].map(row),
       ),
       steps,
       exactly,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // All keys, and the help that lists them.
-import { h } from '../dom';
+import { h, table_row } from '../dom';
 
 // keys: as in KeyboardEvent.key, without Shift and Alt; shown: for readers. of_2012: whether the thesis's viewer had
 // the key.
@@ -25,14 +25,8 @@ const base = (event: KeyboardEvent) =>
 export function keys(all: Key[], active: () => boolean) {
   const table = (rows: Key[]) =>
     rows.map(({ shown, does }) =>
-      h(
-        'tr',
-        {},
-        h(
-          'th',
-          { scope: 'row' },
-          shown.split(' ').map((key, i) => [i ? ' ' : '', h('kbd', {}, key)]),
-        ),
+      table_row(
+        shown.split(' ').map((key, i) => [i ? ' ' : '', h('kbd', {}, key)]),
         h('td', {}, does),
       ),
     );

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The live verdicts of all lanes; changed verdicts are marked and announced.
-import { breakable, button, h, head_row, type Child } from '../dom';
+import { breakable, button, h, scroller, table, table_row, type Child } from '../dom';
 import type { Model } from './model';
 
 const kMostSaid = 3;
@@ -25,29 +25,23 @@ export function matrix(model: Model) {
     'cuda-nofma': ['GPU, ', h('span', { class: 'whole' }, '-fmad=false')],
     'cuda-fma': 'GPU, nvcc’s default',
   };
-  const table = h(
-    'div',
-    { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Verdicts' },
-    h(
-      'table',
-      { class: 'plain lanes' },
-      h('caption', {}, 'Verdicts of all lanes'),
-      head_row(variants.map((variant) => [titles[variant] ?? variant, h('code', {}, variant)])),
-      h(
-        'tbody',
-        {},
-        [...rows].map(([name, lanes]) =>
-          h(
-            'tr',
-            { 'data-row': name },
-            h('th', { scope: 'row' }, breakable(name)),
-            variants.map((variant) => {
-              const lane = cell(lanes, variant);
-              return h('td', {}, lane ? cells.get(lane)! : h('span', { class: 'none' }, '–'));
-            }),
-          ),
-        ),
-      ),
+  const drawn_rows = [...rows].map(([name, lanes]) => ({
+    lanes,
+    element: table_row(
+      breakable(name),
+      variants.map((variant) => {
+        const lane = cell(lanes, variant);
+        return h('td', {}, lane ? cells.get(lane)! : h('span', { class: 'none' }, '–'));
+      }),
+    ),
+  }));
+  const element = scroller(
+    'Verdicts',
+    table(
+      'plain lanes',
+      'Verdicts of all lanes',
+      ['', ...variants.map((variant) => [titles[variant] ?? variant, h('code', {}, variant)])],
+      drawn_rows.map((row) => row.element),
     ),
   );
   let before: typeof model.decided.verdicts | null = null;
@@ -77,10 +71,10 @@ export function matrix(model: Model) {
       );
       button.setAttribute('aria-pressed', String(lane === model.lane));
     }
-    for (const row of table.querySelectorAll<HTMLElement>('[data-row]'))
-      row.classList.toggle(
+    for (const row of drawn_rows)
+      row.element.classList.toggle(
         'apart',
-        rows.get(row.dataset.row!)!.some((lane) => model.differs(lane)),
+        row.lanes.some((lane) => model.differs(lane)),
       );
     before = verdicts;
     if (flipped.length)
@@ -99,5 +93,5 @@ export function matrix(model: Model) {
     { class: 'small' },
     'The verdict of each lane. A lane is an algorithm in float32 (f32) or float64 (f64), built for CPU or GPU.',
   );
-  return { element: h('div', { class: 'verdicts-of-all' }, asked, table, key), told, update };
+  return { element: h('div', { class: 'verdicts-of-all' }, asked, element, key), told, update };
 }

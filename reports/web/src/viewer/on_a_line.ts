@@ -37,16 +37,9 @@ export function on_a_line(model: Model) {
     truth_said = h('p', {}),
     choices = h('div', { class: 'controls' });
   let truth_row: Row[] = [];
-  const draw = (into: HTMLElement, of: Row[]) => (width: number) =>
-    into.replaceChildren(...(of.length ? [chart(of, ulp_of(scalar), width).svg] : []));
-  const redraw = () => {
-    for (const [into, of] of [
-      [picture, rows],
-      [truth_picture, truth_row],
-    ] as const)
-      if (into.clientWidth) draw(into, of)(into.clientWidth);
-  };
-  on_width(picture, redraw);
+  const draw = (into: HTMLElement, of: () => Row[]) =>
+    on_width(into, (width) => into.replaceChildren(...(of().length ? [chart(of(), ulp_of(scalar), width)] : [])));
+  const draw_again = [draw(picture, () => rows), draw(truth_picture, () => truth_row)];
 
   // beside: the ranges of the lane's counterpart on the GPU or CPU, if the two differ.
   function show(ranges: Ranges, how: Child, beside: [string, Ranges | null | undefined] | null) {
@@ -175,7 +168,7 @@ export function on_a_line(model: Model) {
     drawing = model.graze.drawing(model.pair);
     of_the_lane();
     of_the_margin();
-    redraw();
+    draw_again.forEach((again) => again());
   }
   return {
     update,

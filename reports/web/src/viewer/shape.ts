@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pair as a shape to draw. Exact differences from the centre are magnified in double before they become float32, so
 // that a single ulp is visible. Parts far outside the drawing are cut off first.
-import { cross, dot, drawn_sizes, minus, scale_note, type Mark, type Shape, type Vec } from '../drawing';
+import { cross, dot, drawn_sizes, fan, minus, scale_note, type Mark, type Shape, type Vec } from '../drawing';
 import { figure } from '../format';
 import { decimal, type Coordinates } from './data';
 import type { Drawing } from './graze.js';
@@ -38,8 +38,6 @@ function cut(polygon: Vec[]): Vec[] {
   }
   return points;
 }
-
-const fan = (points: Vec[]) => points.slice(2).flatMap((q, i) => [points[0], points[i + 1], q]);
 
 function plane(corners: Vec[]): Vec[] {
   const [p, q, r] = corners,

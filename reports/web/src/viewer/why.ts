@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Explains the chosen lane's verdict: where its run differs from that of the CPU, or from a run with 113 bits.
-import { h, type Child } from '../dom';
+import { h, scroller, table, type Child } from '../dom';
 import { apart, differing } from './apart';
 import type { Graze, Step, Verdict } from './graze.js';
 import type { Model } from './model';
@@ -44,37 +44,24 @@ function steps_table(run: Step[]) {
     'details',
     {},
     h('summary', {}, `All ${run.length} steps`),
-    h(
-      'div',
-      { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Steps' },
-      h(
-        'table',
-        { class: 'plain steps' },
-        h(
-          'thead',
-          {},
+    scroller(
+      'Steps',
+      table(
+        'plain steps',
+        null,
+        ['source line', 'what', 'in the lane', 'with 113 bits'],
+        run.map((step) =>
           h(
             'tr',
-            {},
-            ['source line', 'what', 'in the lane', 'with 113 bits'].map((title) => h('th', { scope: 'col' }, title)),
-          ),
-        ),
-        h(
-          'tbody',
-          {},
-          run.map((step) =>
-            h(
-              'tr',
-              { class: step.relation && step.held !== step.holds ? 'bad' : '' },
-              h('td', {}, code(step.line.replace('core/algorithms/', ''))),
-              h('td', {}, step.site.replace('_', ' ') || 'comparison'),
-              [false, true].map((exact) =>
-                h(
-                  'td',
-                  {},
-                  code(compared(step, exact)),
-                  step.relation ? ` ${outcome(exact ? step.holds : step.held)}` : '',
-                ),
+            { class: step.relation && step.held !== step.holds ? 'bad' : '' },
+            h('td', {}, code(step.line.replace('core/algorithms/', ''))),
+            h('td', {}, step.site.replace('_', ' ') || 'comparison'),
+            [false, true].map((exact) =>
+              h(
+                'td',
+                {},
+                code(compared(step, exact)),
+                step.relation ? ` ${outcome(exact ? step.holds : step.held)}` : '',
               ),
             ),
           ),

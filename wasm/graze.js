@@ -44,7 +44,10 @@ function graze_of(exports, host) {
   /** Numbers of the pairs' type in the module's memory. @param {number} at @param {number} count */
   const numbers_at = (at, count) =>
     in_doubles ? new Float64Array(memory.buffer, at, count) : new Float32Array(memory.buffer, at, count);
-  const view = () => new DataView(memory.buffer); // a new view for each use, because growing memory detaches old views
+  /** @param {number} at @param {number} count @returns {number[]} */
+  const integers_at = (at, count) => [...new Int32Array(memory.buffer, at, count)];
+  /** @param {number} at @param {number} count @returns {number[]} */
+  const doubles_at = (at, count) => [...new Float64Array(memory.buffer, at, count)];
 
   /** @param {number} at */
   function text_at(at) {
@@ -67,13 +70,8 @@ function graze_of(exports, host) {
   }
 
   /** @param {number} at @param {number} count @returns {Point[]} */
-  function points_at(at, count) {
-    const data = view();
-    return Array.from(
-      { length: count },
-      (_, i) => /** @type {Point} */ ([0, 8, 16].map((k) => data.getFloat64(at + 24 * i + k, true))),
-    );
-  }
+  const points_at = (at, count) =>
+    Array.from({ length: count }, (_, i) => /** @type {Point} */ (doubles_at(at + 24 * i, 3)));
 
   /** The file's path from the repository's root: "core/vec3.h". @param {number} at */
   const file_at = (at) => text_at(at).replace(/^.*?(?=core\/)/, '');
@@ -83,7 +81,8 @@ function graze_of(exports, host) {
     { length: exports.stratum_count() },
     (_, i) => text_at(exports.stratum_id(i)) + (in_doubles ? '/f64' : ''),
   );
-  const verdicts_at = exports.verdicts();
+  /** The verdicts of the last decision. @param {number} count */
+  const verdicts_of = (count) => new Uint8Array(memory.buffer, exports.verdicts(), count).slice();
 
   /** @param {string} name @param {readonly string[]} names @param {string} what */
   function place(name, names, what) {
@@ -123,9 +122,7 @@ function graze_of(exports, host) {
      */
     decide(pair) {
       set_pair(pair);
-      return Object.fromEntries(
-        lanes.map((id, i) => [id, exports.decide(i, 1) ? kVerdicts[view().getUint8(verdicts_at)] : null]),
-      );
+      return Object.fromEntries(lanes.map((id, i) => [id, exports.decide(i, 1) ? kVerdicts[verdicts_of(1)[0]] : null]));
     },
 
     /**
@@ -146,7 +143,7 @@ function graze_of(exports, host) {
       pair.set(a);
       pair.set(b, 9);
       exports.decide_truth(1);
-      return view().getUint8(verdicts_at) === 1;
+      return verdicts_of(1)[0] === 1;
     },
 
     /**
@@ -154,9 +151,7 @@ function graze_of(exports, host) {
      * @param {Pair} pair @returns {Truth}
      */
     truth(pair) {
-      const at = truth_at(pair),
-        data = view();
-      const [verdict, contact, , a, b, coplanar] = Array.from({ length: 6 }, (_, i) => data.getInt32(at + 4 * i, true));
+      const [verdict, contact, , a, b, coplanar] = integers_at(truth_at(pair), 6);
       return { verdict: kVerdicts[verdict], contact: kContacts[contact], coplanar: coplanar !== 0, dimensions: [a, b] };
     },
 
@@ -168,14 +163,9 @@ function graze_of(exports, host) {
      */
     margin(pair) {
       const at = truth_at(pair),
-        data = view();
-      const sign = /** @type {-1 | 0 | 1} */ (data.getInt32(at + 8, true));
-      return {
-        sign,
-        least: data.getFloat64(at + 32, true),
-        most: data.getFloat64(at + 40, true),
-        ulp: 2 ** data.getInt32(at + 24, true),
-      };
+        [, , sign, , , , log2_ulp] = integers_at(at, 7),
+        [least, most] = doubles_at(at + 32, 2);
+      return { sign: /** @type {-1 | 0 | 1} */ (sign), least, most, ulp: 2 ** log2_ulp };
     },
 
     /**
@@ -200,7 +190,7 @@ function graze_of(exports, host) {
     parse(text) {
       if (text.length > 1000) return null;
       set_text(text);
-      return exports.parse(0) ? numbers_at(exports.pairs(), 1)[0] : null;
+      return exports.parse() ? numbers_at(exports.pairs(), 1)[0] : null;
     },
 
     /**
@@ -219,7 +209,7 @@ function graze_of(exports, host) {
     nudged(x, ulps) {
       const number = numbers_at(exports.pairs(), 1);
       number[0] = x;
-      exports.nudge(0, ulps);
+      exports.nudge(ulps);
       return number[0];
     },
 
@@ -233,9 +223,11 @@ function graze_of(exports, host) {
     map_row(pair, x, y, up, columns, step, of) {
       set_pair(pair, exports.centre());
       exports.map_row(x, y, up, columns, step);
-      const cells = () => new Uint8Array(memory.buffer, verdicts_at, columns).slice();
       exports.decide_truth(columns);
-      return [cells(), ...of.map((id) => (exports.decide(lane(id), columns) ? cells() : null))];
+      return [
+        verdicts_of(columns),
+        ...of.map((id) => (exports.decide(lane(id), columns) ? verdicts_of(columns) : null)),
+      ];
     },
 
     /**
@@ -245,23 +237,21 @@ function graze_of(exports, host) {
     drawing(pair) {
       set_pair(pair);
       const at = exports.draw(),
-        data = view();
-      const [contact, line, a, b] = [0, 4, 8, 12].map((k) => data.getInt32(at + k, true));
+        [contact, line, a, b] = integers_at(at, 4);
       const points = at + 16,
-        after = points + 24 * kMostPoints;
+        after = points + 24 * kMostPoints,
+        [low_a, high_a, low_b, high_b] = doubles_at(after + 192, 4),
+        [witness, feature_a, feature_b] = integers_at(after + 224, 3);
       return {
         contact: points_at(points, contact),
         line: points_at(after, line),
         sections: [points_at(after + 48, a), points_at(after + 96, b)],
-        witness: points_at(after + 144, data.getInt32(after + 224, true)),
-        along: [0, 1].map(
-          (k) =>
-            /** @type {[number, number]} */ ([0, 8].map((end) => data.getFloat64(after + 192 + 16 * k + end, true))),
-        ),
-        features: [
-          feature_at('a', data.getInt32(after + 228, true)),
-          feature_at('b', data.getInt32(after + 232, true)),
+        witness: points_at(after + 144, witness),
+        along: [
+          [low_a, high_a],
+          [low_b, high_b],
         ],
+        features: [feature_at('a', feature_a), feature_at('b', feature_b)],
       };
     },
 
@@ -277,14 +267,11 @@ function graze_of(exports, host) {
       set_pair(pair);
       const count = exports.steps(lane(id));
       if (count < 0) return null;
-      const at = exports.steps_at(),
-        data = view();
+      const at = exports.steps_at();
       const steps = Array.from({ length: count }, (_, i) => {
         const step = at + 64 * i;
-        const [file, line, site, compared, relation, held, holds, result] = Array.from({ length: 8 }, (_, k) =>
-          data.getInt32(step + 4 * k, true),
-        );
-        const [left, right, exactLeft, exactRight] = [32, 40, 48, 56].map((k) => data.getFloat64(step + k, true));
+        const [file, line, site, compared, relation, held, holds, result] = integers_at(step, 8);
+        const [left, right, exactLeft, exactRight] = doubles_at(step + 32, 4);
         return {
           line: `${file_at(file)}:${line}`,
           site: site < 0 ? '' : kSites[site],
@@ -309,10 +296,9 @@ function graze_of(exports, host) {
     contractions(pair, id) {
       set_pair(pair);
       const count = exports.contractions(lane(id));
-      const at = exports.contractions_at(),
-        data = view();
+      const at = exports.contractions_at();
       return Array.from({ length: count }, (_, i) => {
-        const [file, from_file, line, from_line] = [0, 4, 8, 12].map((k) => data.getInt32(at + 16 * i + k, true));
+        const [file, from_file, line, from_line] = integers_at(at + 16 * i, 4);
         const from = file_at(from_file);
         return { line: `${file_at(file)}:${line}`, from: from && `${from}:${from_line}` };
       });

@@ -127,10 +127,11 @@ GRAZE_EXPORT(generate) void generate(int stratum, std::uint64_t seed, std::uint6
     draw(pairs_in[i], seed, kModuleStrata[stratum].stratum, first + static_cast<std::uint64_t>(i));
 }
 
-// Parses the text as a number, rounded once to the type of coordinates.   Returns: whether the text is a number.
-GRAZE_EXPORT(parse) int parse(int coordinate) {
+// Parses the text as a number, rounded once to the type of coordinates, into the first coordinate of the first pair.
+// Returns: whether the text is a number.
+GRAZE_EXPORT(parse) int parse() {
   const std::optional<Coordinate> value = number_in(text_in, Coordinate{});
-  if (value) coordinates(pairs_in[0])[coordinate] = *value;
+  if (value) coordinates(pairs_in[0])[0] = *value;
   return value.has_value();
 }
 
@@ -182,8 +183,8 @@ GRAZE_EXPORT(truth) const TruthOut* truth() {
   return &truth_out;
 }
 
-// Raises a coordinate of the first pair by this many ulps.
-GRAZE_EXPORT(nudge) void nudge(int coordinate, int ulps) { nudge_in(pairs_in[0], coordinate, ulps); }
+// Raises the first coordinate of the first pair by this many ulps.
+GRAZE_EXPORT(nudge) void nudge(int ulps) { nudge_in(pairs_in[0], 0, ulps); }
 
 // Writes the pairs of one row of an ulp map (analysis/ulp_map.h) around the pair in `centre`. From each pair to the
 // next, coordinate x rises by `step` ulps. Coordinate y is `up` ulps above that of the centre.

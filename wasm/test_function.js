@@ -130,17 +130,17 @@ export function test_function(graze, overlap, options = {}) {
   const out = exports.test_function(whole('pairs', pairs), whole('seed', seed), max_wrong, kinds);
   if (no_answer) throw no_answer;
 
-  const data = new DataView(exports.memory.buffer, out);
-  const [tested, positive, negative, declined, failed] = [0, 1, 2, 3, 4].map((k) => data.getFloat64(16 + 8 * k, true));
-  const coordinates = Array.from({ length: 18 }, (_, k) => data.getFloat32(64 + 4 * k, true));
+  const [passed, has_smallest, summary, fault] = new Int32Array(exports.memory.buffer, out, 4);
+  const [tested, positive, negative, declined, failed] = new Float64Array(exports.memory.buffer, out + 16, 5);
+  const coordinates = [...new Float32Array(exports.memory.buffer, out + 64, 18)];
   return {
-    passed: data.getInt32(0, true) !== 0,
-    summary: graze.text_at(data.getInt32(8, true)),
-    fault: graze.text_at(data.getInt32(12, true)),
+    passed: passed !== 0,
+    summary: graze.text_at(summary),
+    fault: graze.text_at(fault),
     pairs: tested,
     wrong: positive + negative + failed,
     declined,
-    smallest: data.getInt32(4, true) ? { a: coordinates.slice(0, 9), b: coordinates.slice(9) } : null,
+    smallest: has_smallest ? { a: coordinates.slice(0, 9), b: coordinates.slice(9) } : null,
     thrown,
   };
 }

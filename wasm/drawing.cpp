@@ -1,80 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same construction as in oracle/common_set.cpp: the half-spaces of one triangle's hull clip the other's polygon.
-// Numbers are rounded, so a point near a plane counts as on the plane. The exact decision gives the kind of the common
-// set.
+// Clips the hulls (oracle/clipping.h) with 113 bits. Numbers are rounded, so a point near a plane counts as on the
+// plane. The exact decision gives the kind of the common set.
 #include "wasm/drawing.h"
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+
+#include "oracle/clipping.h"
 
 namespace graze::wasm {
 namespace {
 
 using Real = long double;
 using Point = Vec3<Real>;
-using Polygon = std::vector<Point>;
+using Polygon = oracle::Polygon<Real>;
+using HalfSpace = oracle::HalfSpace<Real>;
+using oracle::hull_of, oracle::negative, oracle::normal_of;
 
 constexpr Real kNearly = 0x1p-90L;  // a value below kNearly times the sum of its terms' sizes counts as zero
 
 Point widened(const Vec3<double>& v) { return {v.x, v.y, v.z}; }
 bool is_zero(const Point& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
 
-struct HalfSpace {
-  Point normal, at;
-  Real height(const Point& p) const {
-    const Point v = p - at;
-    const Real value = dot(normal, v);
-    const Real size = std::abs(normal.x * v.x) + std::abs(normal.y * v.y) + std::abs(normal.z * v.z);
-    return std::abs(value) <= size * kNearly ? 0 : value;
-  }
-};
-
-Point normal_of(const Point (&p)[3]) { return cross(p[1] - p[0], p[2] - p[0]); }
-
-Polygon hull_of(const Point (&p)[3]) {
-  if (!is_zero(normal_of(p))) return {p[0], p[1], p[2]};
-  const auto before = [](const Point& u, const Point& v) {
-    return u.x != v.x ? u.x < v.x : u.y != v.y ? u.y < v.y : u.z < v.z;
-  };
-  const auto [low, high] = std::minmax_element(p, p + 3, before);
-  return *low == *high ? Polygon{*low} : Polygon{*low, *high};
-}
-
-std::vector<HalfSpace> half_spaces(const Polygon& hull) {
-  const Point axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  std::vector<HalfSpace> all;
-  const auto add_plane = [&](const Point& normal) {
-    all.push_back({normal, hull[0]});
-    all.push_back({{-normal.x, -normal.y, -normal.z}, hull[0]});
-  };
-  if (hull.size() == 3) {
-    const Point normal = cross(hull[1] - hull[0], hull[2] - hull[0]);
-    add_plane(normal);
-    for (int i = 0; i < 3; ++i) all.push_back({cross(normal, hull[(i + 1) % 3] - hull[i]), hull[i]});
-  } else if (hull.size() == 2) {
-    const Point along = hull[1] - hull[0];
-    for (const Point& axis : axes) add_plane(cross(axis, along));  // a zero normal excludes nothing
-    all.push_back({along, hull[0]});
-    all.push_back({{-along.x, -along.y, -along.z}, hull[1]});
-  } else {
-    for (const Point& axis : axes) add_plane(axis);
-  }
-  return all;
-}
-
-Polygon clipped(const Polygon& polygon, const HalfSpace& half) {
-  Polygon kept;
-  const auto keep = [&](const Point& p) {
-    if (std::find(kept.begin(), kept.end(), p) == kept.end()) kept.push_back(p);
-  };
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Point &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
-    const Real at_p = half.height(p), at_q = half.height(q);
-    if (at_p >= 0) keep(p);
-    if ((at_p < 0 && at_q > 0) || (at_p > 0 && at_q < 0)) keep(p + (q - p) * (at_p / (at_p - at_q)));
-  }
-  return kept;
+Real height(const HalfSpace& half, const Point& p) {
+  const Point& normal = half.normal;
+  const Point v = p - half.at;
+  const Real value = dot(normal, v);
+  const Real size = std::abs(normal.x * v.x) + std::abs(normal.y * v.y) + std::abs(normal.z * v.z);
+  return std::abs(value) <= size * kNearly ? 0 : value;
 }
 
 int write(const Polygon& points, Vec3<double>* out, int most) {
@@ -88,7 +41,8 @@ int write(const Polygon& points, Vec3<double>* out, int most) {
 
 // The intersection of the hull and the plane: empty, a point, or a segment.
 Polygon section(const Point (&p)[3], const HalfSpace& plane) {
-  Polygon ends = clipped(clipped(hull_of(p), plane), {{-plane.normal.x, -plane.normal.y, -plane.normal.z}, plane.at});
+  const HalfSpace below = {negative(plane.normal), plane.at};
+  Polygon ends = oracle::clipped(oracle::clipped(hull_of(p), plane, height), below, height);
   return ends.size() > 2 ? Polygon{} : ends;  // the whole hull lies in the plane
 }
 
@@ -228,8 +182,7 @@ Drawing drawing_of(const DoublePair& pair, const Relation& relation) {
   if (!relation.intersects()) {
     add_witness(result, nearest(a, b), 1, {}, a, b);
   } else {
-    Polygon common = hull_of(a);
-    for (const HalfSpace& half : half_spaces(hull_of(b))) common = clipped(common, half);
+    Polygon common = oracle::common_polygon(a, b, height);
     const auto points = static_cast<std::size_t>(relation.contact);  // a point has one vertex, a segment has two
     if (relation.contact != Contact::area && common.size() > points) common.resize(points);
     result.contact_count = write(common, result.contact, Drawing::kMost);

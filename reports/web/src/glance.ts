@@ -55,11 +55,11 @@ function glance_rows(report: Report, costs: Costs | null): Row[] {
 export function glance(report: Report, costs: Costs | null) {
   const rows = glance_rows(report, costs);
   const wrong = new Map(report.group_rates.map(({ lane, group, wrong }) => [`${lane}/${group}`, wrong]));
-  const shares = rows.flatMap((row) => report.groups.map((_, g) => wrong.get(`${row.lane}/${g}`)!.share));
-  const axis = shares_axis(shares);
+  const share_of = (row: Row, group: number) => wrong.get(`${row.lane}/${group}`)!;
+  const axis = shares_axis(rows.flatMap((row) => report.groups.map((_, g) => share_of(row, g).share)));
   const dots: Dot[] = rows.flatMap((row) =>
     report.groups.map(({ id }, g) => {
-      const share = wrong.get(`${row.lane}/${g}`)!;
+      const share = share_of(row, g);
       return {
         name: row.name,
         group: id,
@@ -75,7 +75,7 @@ export function glance(report: Report, costs: Costs | null) {
   const said = rows
     .map((row) => {
       const groups = report.groups.map(({ id }, g) => {
-        const share = wrong.get(`${row.lane}/${g}`)!;
+        const share = share_of(row, g);
         return `${share.count ? percent(share.share) : 'none'} of ${id}`;
       });
       return `${row.name}: wrong on ${groups.join(', ')} pairs${row.cost && `; ${row.cost}`}`;

@@ -77,16 +77,14 @@ export function coordinates(model: Model, say: (text: string) => void) {
       if (!Object.is(shown[c], model.pair[c])) show(c); // do not overwrite what is being typed
       field.classList.toggle('chosen', c === model.chosen);
     });
+    const value = model.pair[model.chosen],
+      size = Math.abs(value);
     exactly.replaceChildren(
-      h('strong', {}, model.chosen_name),
+      h('strong', {}, coordinate_name(model.chosen)),
       ' is exactly ',
-      h('code', {}, hex_float(model.pair[model.chosen])),
+      h('code', {}, hex_float(value)),
       '; an ulp of it is ',
-      h(
-        'code',
-        {},
-        String(model.graze.nudged(Math.abs(model.pair[model.chosen]), 1) - Math.abs(model.pair[model.chosen])),
-      ),
+      h('code', {}, String(model.graze.nudged(size, 1) - size)),
     );
   }
   const row = (v: number) =>
@@ -95,7 +93,6 @@ export function coordinates(model: Model, say: (text: string) => void) {
       [0, 1, 2].map((k) => h('td', {}, fields[3 * v + k])),
     );
   return {
-    take,
     update,
     element: section(
       'coordinates',

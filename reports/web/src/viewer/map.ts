@@ -102,8 +102,8 @@ export function map(model: Model, module: WebAssembly.Module) {
         ...canvases.map((canvas, i) =>
           h(
             'figure',
-            {},
-            h('div', { class: 'map-frame' }, canvas),
+            { class: 'panel' },
+            h('div', {}, canvas),
             h('figcaption', {}, i ? breakable(lanes[i - 1]) : 'truth'),
           ),
         ),

@@ -43,30 +43,17 @@ async function draw() {
   await ready;
   while (wanted) {
     const request: MapRequest = wanted,
+      { number, pair, x, y, step, lanes, policy } = request,
       start = performance.now();
     let pause = start;
-    graze!.set_policy(request.policy);
+    graze!.set_policy(policy);
     for (const every of kLevels) {
       for (let row = 0; row < kSide; row += every) {
-        const up = (kSide / 2 - row) * request.step;
-        const rows = graze!.map_row(
-          request.pair,
-          request.x,
-          request.y,
-          up,
-          kSide / every,
-          every * request.step,
-          request.lanes,
-        );
-        const last = every === 1 && row === kSide - 1;
-        postMessage({
-          number: request.number,
-          row,
-          every,
-          rows,
-          milliseconds: performance.now() - start,
-          last,
-        } satisfies MapPart);
+        const up = (kSide / 2 - row) * step,
+          rows = graze!.map_row(pair, x, y, up, kSide / every, every * step, lanes),
+          last = every === 1 && row === kSide - 1,
+          milliseconds = performance.now() - start;
+        postMessage({ number, row, every, rows, milliseconds, last } satisfies MapPart);
         if (performance.now() - pause > kSlice) {
           await new Promise((resolve) => setTimeout(resolve, 0));
           pause = performance.now();

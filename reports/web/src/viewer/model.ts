@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The viewer's state: one pair, the chosen coordinate and lane, and the history.
-import { coordinate_name, from_bits, stored_as, to_bits, type_of_bits, type Coordinates, type Scalar } from './data';
+import { from_bits, stored_as, to_bits, type_of_bits, type Coordinates, type Scalar } from './data';
 import type { Graze, Margin, Truth, Verdict } from './graze.js';
 
 export type Centre = 'both triangles' | 'the chosen vertex' | 'the contact or gap';
@@ -156,9 +156,6 @@ export class Model {
   }
   get vertex() {
     return 3 * Math.floor(this.chosen / 3);
-  }
-  get chosen_name() {
-    return coordinate_name(this.chosen);
   }
 }
 

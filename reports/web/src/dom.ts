@@ -73,6 +73,20 @@ export function sentence(text: string): Child[] {
   return text.split('`').map((part, i) => (i % 2 ? h('code', {}, part) : part));
 }
 
+// A text of this page with marks: `code`, **strong**, *emphasised*.
+export const marked = (text: string): Child[] =>
+  text
+    .split(/(`.*?`|\*\*.*?\*\*|\*.*?\*)/)
+    .map((part, i) =>
+      i % 2 === 0
+        ? part
+        : part[0] === '`'
+          ? h('code', {}, part.slice(1, -1))
+          : part[1] === '*'
+            ? h('strong', {}, part.slice(2, -2))
+            : h('i', {}, part.slice(1, -1)),
+    );
+
 async function to_clipboard(text: string) {
   try {
     await navigator.clipboard.writeText(text);

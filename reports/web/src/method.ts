@@ -1,120 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0
 // Method and definitions, in plain words.
-import { h, section, type Child } from './dom';
+import { h, marked, section } from './dom';
 
-const kTerms: [string, Child[]][] = [
-  ['Pair', ['Two triangles, given by 18 float32 numbers. The stored bits are the input: nothing rounds them again.']],
-  ['Triangle', ['The closed convex hull of its three points, so a degenerate triangle is a segment or a point.']],
+const kTerms = [
+  ['Pair', 'Two triangles, given by 18 float32 numbers. The stored bits are the input: nothing rounds them again.'],
+  ['Triangle', 'The closed convex hull of its three points, so a degenerate triangle is a segment or a point.'],
   [
     'Intersects',
-    [
-      'The two sets share at least one point: touching counts. A ',
-      h('i', {}, 'contact'),
-      ' is a point, a segment or an area.',
-    ],
+    'The two sets share at least one point: touching counts. A *contact* is a point, a segment or an area.',
   ],
   [
     'Lane',
-    [
-      'One way to decide a pair: algorithm/scalar/target. ',
-      h('code', {}, 'cpu'),
-      ' rounds every operation; ',
-      h('code', {}, 'cpu-fma'),
-      ' and ',
-      h('code', {}, 'cuda-fma'),
-      ' let the compiler fuse a product and an addition into one rounding (contraction); ',
-      h('code', {}, 'cuda-nofma'),
-      ' is nvcc with ',
-      h('code', {}, '-fmad=false'),
-      '.',
-    ],
+    'One way to decide a pair: algorithm/scalar/target. `cpu` rounds every operation; `cpu-fma` and `cuda-fma` let the compiler fuse a product and an addition into one rounding (contraction); `cuda-nofma` is nvcc with `-fmad=false`.',
   ],
   [
     'Twin',
-    [
-      'A replay of a CUDA kernel’s PTX on the CPU, including its contractions, with the same bits. ',
-      '“Verified on” a GPU means that the GPU and the twin had the same verdicts and the same deciding numbers, on as many pairs as the first number says. Explicit PTX is the kernel with every contraction written out. The twin is made from explicit PTX, which was compared on the GPU with nvcc’s default build.',
-    ],
+    'A replay of a CUDA kernel’s PTX on the CPU, including its contractions, with the same bits. “Verified on” a GPU means that the GPU and the twin had the same verdicts and the same deciding numbers, on as many pairs as the first number says. Explicit PTX is the kernel with every contraction written out. The twin is made from explicit PTX, which was compared on the GPU with nvcc’s default build.',
   ],
   [
     'Stratum',
-    [
-      'A named generator of pairs: a pure function of seed and index. Each stratum is hard in its own way. Shares over all strata depend on the mix of strata and say nothing about your data. Shares within a stratum can be true of your data.',
-    ],
+    'A named generator of pairs: a pure function of seed and index. Each stratum is hard in its own way. Shares over all strata depend on the mix of strata and say nothing about your data. Shares within a stratum can be true of your data.',
   ],
   [
     'Truth',
-    [
-      'CGAL’s exact kernel decides; an independent decision on integers of any size (GMP) confirms every disagreement that is kept. If the two ever differ, the campaign stops.',
-    ],
+    'CGAL’s exact kernel decides; an independent decision on integers of any size (GMP) confirms every disagreement that is kept. If the two ever differ, the campaign stops.',
   ],
   [
     'False positive, false negative',
-    [
-      'False positive: the lane says “intersects” about triangles that are apart. False negative: it says “disjoint” about triangles that meet. Each share counts only the pairs on which that error is possible; the share “wrong” counts all pairs. ',
-      h('i', {}, 'Declined'),
-      ' is neither of these errors.',
-    ],
+    'False positive: the lane says “intersects” about triangles that are apart. False negative: it says “disjoint” about triangles that meet. Each share counts only the pairs on which that error is possible; the share “wrong” counts all pairs. *Declined* is neither of these errors.',
   ],
   [
     'Margin',
-    [
-      'How far a pair is from changing its verdict. For a disjoint pair, the margin is the distance. For an intersecting pair, it is the length of the shortest translation that separates the triangles; charts show these pairs on the left. It is 0 if an arbitrarily short translation separates them, as for touching or coplanar pairs. The margin is computed exactly, then rounded once.',
-    ],
+    'How far a pair is from changing its verdict. For a disjoint pair, the margin is the distance. For an intersecting pair, it is the length of the shortest translation that separates the triangles; charts show these pairs on the left. It is 0 if an arbitrarily short translation separates them, as for touching or coplanar pairs. The margin is computed exactly, then rounded once.',
   ],
   [
     'Ulp',
-    [
-      'The step between neighbouring float32 numbers at the pair’s largest coordinate. Margins are given in ulps, so that the pair’s size does not matter.',
-    ],
+    'The step between neighbouring float32 numbers at the pair’s largest coordinate. Margins are given in ulps, so that the pair’s size does not matter.',
   ],
   [
     'Interval',
-    [
-      'Wilson’s interval at 95 % confidence. If no error was seen in n pairs, the rate is below 1 − 0.05^(1/n), about 3/n, with 95 % confidence.',
-    ],
+    'Wilson’s interval at 95 % confidence. If no error was seen in n pairs, the rate is below 1 − 0.05^(1/n), about 3/n, with 95 % confidence.',
   ],
   [
     'Kind of failure',
-    [
-      'Signatures with the same algorithm, cause (rounding, overflow, underflow, contraction, fast math, or the algorithm’s own logic), source line of the comparison that decides, and shape. The shape is ',
-      h('i', {}, 'degenerate'),
-      ' if a triangle is a segment or a point, otherwise ',
-      h('i', {}, 'contained'),
-      ' if one triangle lies in the other in the same plane, otherwise ',
-      h('i', {}, 'coplanar'),
-      ' or ',
-      h('i', {}, 'general'),
-      '. A cause is ',
-      h('i', {}, 'settled'),
-      ' for a lane if the verdict becomes right without the cause and remains wrong with that cause alone.',
-    ],
+    'Signatures with the same algorithm, cause (rounding, overflow, underflow, contraction, fast math, or the algorithm’s own logic), source line of the comparison that decides, and shape. The shape is *degenerate* if a triangle is a segment or a point, otherwise *contained* if one triangle lies in the other in the same plane, otherwise *coplanar* or *general*. A cause is *settled* for a lane if the verdict becomes right without the cause and remains wrong with that cause alone.',
   ],
   [
     'Signature',
-    [
-      'Failures of an algorithm that look alike: the contact, the dimensions of both triangles (2 is a proper triangle), coplanar or skew, which triangle lies in the other, the margin’s power of two, and the mark of each lane: ',
-      h('code', {}, '+'),
-      ' false positive, ',
-      h('code', {}, '-'),
-      ' false negative, ',
-      h('code', {}, '?'),
-      ' declined, ',
-      h('code', {}, '.'),
-      ' right.',
-    ],
+    'Failures of an algorithm that look alike: the contact, the dimensions of both triangles (2 is a proper triangle), coplanar or skew, which triangle lies in the other, the margin’s power of two, and the mark of each lane: `+` false positive, `-` false negative, `?` declined, `.` right.',
   ],
   [
     'Minimised',
-    [
-      'A minimised pair was made simpler step by step, while the same lanes failed in the same way, until no single step made it simpler.',
-    ],
+    'A minimised pair was made simpler step by step, while the same lanes failed in the same way, until no single step made it simpler.',
   ],
   [
     'Ulp map',
-    [
-      'The verdicts around a case: two coordinates move by single ulps, one step a pixel, after Kettner, Mehlhorn, Pion, Schirra and Yap (Classroom examples of robustness problems in geometric computations, 2008). A lane that is right on all these pairs has the same picture as the truth.',
-    ],
+    'The verdicts around a case: two coordinates move by single ulps, one step a pixel, after Kettner, Mehlhorn, Pion, Schirra and Yap (Classroom examples of robustness problems in geometric computations, 2008). A lane that is right on all these pairs has the same picture as the truth.',
   ],
 ];
 
@@ -130,7 +71,7 @@ export function method_section() {
     h(
       'dl',
       { class: 'terms' },
-      kTerms.map(([term, text]) => h('div', {}, h('dt', {}, term), h('dd', {}, text))),
+      kTerms.map(([term, text]) => h('div', {}, h('dt', {}, term), h('dd', {}, marked(text)))),
     ),
   );
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Explains why a GPU lane decides differently from the same source on the CPU: the first comparison with different
 // outcomes, the values there, and the operations that nvcc fused.
-import { h, table, table_row, type Child } from '../dom';
+import { h, marked, table, table_row, type Child } from '../dom';
 import { figure } from '../format';
 import type { Site, Step } from './graze.js';
 import type { Model } from './model';
@@ -15,8 +15,6 @@ export function show_why() {
   section.scrollIntoView({ block: 'start', behavior: still ? 'auto' : 'smooth' });
   if (!still) section.animate([{ background: 'var(--flip)' }, {}], { duration: 1200 });
 }
-
-const bold = (text: string) => h('strong', {}, text);
 
 // Returns the GPU lane that differs from the CPU lane: `lane` itself, or the counterpart of a CPU lane.
 export function differing(model: Model, lane: string): string | undefined {
@@ -152,29 +150,11 @@ export function apart(model: Model, lane: string): { parts: Child[]; brief: Chil
     sites = graze.contractions(pair, lane);
   const [here, there] = [decided.verdicts[lane]!, decided.verdicts[cpu]!],
     judged = (verdict: string) => (verdict === decided.truth.verdict ? 'right' : 'wrong');
-  const parts: Child[] = [
-    h(
-      'p',
-      {},
-      bold(subject),
-      ` in ${scalar === 'f32' ? 'float32' : 'float64'} says `,
-      bold(there),
-      ` on the CPU (${judged(there)}) and `,
-      bold(here),
-      ` on the GPU (${judged(here)}). `,
-      sites.length
-        ? [
-            'The cause is ',
-            bold('contraction'),
-            ': for the GPU nvcc fuses a multiplication and the following addition, ',
-            h('code', {}, 'a * b + c'),
-            ', into one operation that rounds once; the CPU rounds twice, after each of them. So the last digits differ, and here they decide. Built with ',
-            h('code', {}, '-fmad=false'),
-            `, the GPU says ${decided.verdicts[lane.replace('cuda-fma', 'cuda-nofma')]}.`,
-          ]
-        : ['Which operation makes the difference is ', bold('not settled'), '.'],
-    ),
-  ];
+  const says = `**${subject}** in ${scalar === 'f32' ? 'float32' : 'float64'} says **${there}** on the CPU (${judged(there)}) and **${here}** on the GPU (${judged(here)}). `,
+    cause = sites.length
+      ? `The cause is **contraction**: for the GPU nvcc fuses a multiplication and the following addition, \`a * b + c\`, into one operation that rounds once; the CPU rounds twice, after each of them. So the last digits differ, and here they decide. Built with \`-fmad=false\`, the GPU says ${decided.verdicts[lane.replace('cuda-fma', 'cuda-nofma')]}.`
+      : 'Which operation makes the difference is **not settled**.';
+  const parts: Child[] = [h('p', {}, marked(says + cause))];
   let brief: Child = null;
   if (found) {
     const [mine, theirs] = [known.steps[found[0]], other.steps[found[1]]],
@@ -198,12 +178,9 @@ export function apart(model: Model, lane: string): { parts: Child[]; brief: Chil
       whose = ends_of(known.steps, mine),
       step = ulp_of(scalar)(Math.max(Math.abs(mine.left), Math.abs(mine.right)));
     brief = [
-      h('code', {}, subject),
-      ` in ${scalar} asks${whose ? ` whether ${whose[0]} ends before ${whose[1]} begins` : ''}: on the CPU `,
-      h('code', {}, `${x} ${mine.relation} ${z}`),
-      `, ${outcome(theirs.held)}; on the GPU `,
-      h('code', {}, `${y} ${mine.relation} ${w}`),
-      `, ${outcome(mine.held)}. `,
+      marked(
+        `\`${subject}\` in ${scalar} asks${whose ? ` whether ${whose[0]} ends before ${whose[1]} begins` : ''}: on the CPU \`${x} ${mine.relation} ${z}\`, ${outcome(theirs.held)}; on the GPU \`${y} ${mine.relation} ${w}\`, ${outcome(mine.held)}. `,
+      ),
       h(
         'a',
         {
@@ -246,13 +223,13 @@ export function apart(model: Model, lane: string): { parts: Child[]; brief: Chil
         h(
           'p',
           {},
-          'The GPU’s numbers here are ',
-          bold('not settled'),
-          ': they come from a rule of contraction that gives the lane’s verdict.',
+          marked(
+            'The GPU’s numbers here are **not settled**: they come from a rule of contraction that gives the lane’s verdict.',
+          ),
         ),
       );
   } else {
-    parts.push(h('p', {}, 'Which comparison is the first with different outcomes is ', bold('not settled'), '.'));
+    parts.push(h('p', {}, marked('Which comparison is the first with different outcomes is **not settled**.')));
   }
   if (sites.length) parts.push(places(sites));
   return { parts, brief };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Explains the chosen lane's verdict: where its run differs from that of the CPU, or from a run with 113 bits.
-import { h, scroller, table, type Child } from '../dom';
+import { h, marked, scroller, table, type Child } from '../dom';
 import { apart, differing } from './apart';
 import type { Graze, Step, Verdict } from './graze.js';
 import type { Model } from './model';
@@ -9,13 +9,9 @@ import { code, compared, outcome, quoted } from './numbers';
 function beside_exact(run: Step[], says: Verdict, with_113_bits: Verdict): Child[] {
   const wrong = run.find((step) => step.relation && step.held !== step.holds);
   if (with_113_bits === says || !wrong)
-    return [
-      'With 113 bits the algorithm says ',
-      h('strong', {}, with_113_bits),
-      ' as well: its ',
-      h('strong', {}, 'logic'),
-      ' is wrong here, not its rounding.',
-    ];
+    return marked(
+      `With 113 bits the algorithm says **${with_113_bits}** as well: its **logic** is wrong here, not its rounding.`,
+    );
   const numbers = [wrong.left, wrong.right, wrong.exactLeft, wrong.exactRight];
   const lost = numbers.slice(0, 2).some((x) => !Number.isFinite(x))
     ? 'the numbers left their range, by overflow or underflow'
@@ -23,19 +19,13 @@ function beside_exact(run: Step[], says: Verdict, with_113_bits: Verdict): Child
       ? 'the value became zero, by underflow or in a difference'
       : 'rounding';
   return [
-    'With numbers of 113 bits (float32 has 24, float64 has 53), the algorithm says ',
-    h('strong', {}, with_113_bits),
-    '. The first comparison with a different outcome in the lane is at ',
+    marked(
+      `With numbers of 113 bits (float32 has 24, float64 has 53), the algorithm says **${with_113_bits}**. The first comparison with a different outcome in the lane is at `,
+    ),
     quoted(wrong.line),
-    'The lane computes ',
-    code(compared(wrong)),
-    ` (${outcome(wrong.held)}), with 113 bits it is `,
-    code(compared(wrong, true)),
-    ` (${outcome(wrong.holds)}): `,
-    h('strong', {}, lost),
-    '. ',
-    code('graze explain'),
-    ' says which comparison decides.',
+    marked(
+      `The lane computes \`${compared(wrong)}\` (${outcome(wrong.held)}), with 113 bits it is \`${compared(wrong, true)}\` (${outcome(wrong.holds)}): **${lost}**. \`graze explain\` says which comparison decides.`,
+    ),
   ];
 }
 
@@ -100,7 +90,7 @@ export function why(model: Model) {
         : h('strong', { class: wrong ? 'bad' : '' }, `It is ${wrong ? 'wrong' : 'right'}. `),
       of_stored,
       wrong && says === stored?.verdict
-        ? ['For these its verdict is right, so the cause is ', h('strong', {}, 'rounding of the input'), '.']
+        ? marked('For these its verdict is right, so the cause is **rounding of the input**.')
         : wrong
           ? beside_exact(run, says, known!.with_113_bits)
           : `Its ${run.filter((step) => step.relation).length} comparisons ${run.some((step) => step.relation && step.held !== step.holds) ? 'do not all have the same outcome with 113 bits, but that does not change the verdict.' : 'have the same outcome with 113 bits.'}`,

@@ -2,7 +2,7 @@
 // Error against margin: the share of wrong verdicts by the exact margin in ulps, and the threshold at or above which no
 // error was seen.
 import { series_colour } from './chart';
-import { breakable, h, more_facts, on_width, section } from './dom';
+import { breakable, h, marked, more_facts, on_width, section } from './dom';
 import { in_full, percent_bound, power_of_two } from './format';
 import { kept_choice } from './kept';
 import { lane_picker, type Picker } from './lane_picker';
@@ -102,9 +102,9 @@ export function margins_section(report: Report) {
   const key = h(
     'p',
     { class: 'key' },
-    'Colour: algorithm. Thick: f32, thin: f64. Full line: cpu; dashes: cpu-fma; dots: cuda-nofma; dash and dot: cuda-fma. Band: 95 % interval. ',
-    h('b', {}, '▲'),
-    ' no error was seen from here outwards.',
+    marked(
+      'Colour: algorithm. Thick: f32, thin: f64. Full line: cpu; dashes: cpu-fma; dots: cuda-nofma; dash and dot: cuda-fma. Band: 95 % interval. **▲** no error was seen from here outwards.',
+    ),
   );
   return section(
     'margins',

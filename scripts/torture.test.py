@@ -218,10 +218,10 @@ class Torture(unittest.TestCase):
         if not real.exists():
             self.skipTest("no build/bin/graze")
         for kind, wrong, what in (
-            ("foreign_places", f'exec {real} "$@" --force', "to refuse a file of another"),
+            ("foreign_places", f'exec {real} "$@" --force', "a file of another to be refused, found status "),
             ("forged_summaries", f'{real} "$@" || exit 0', "to be refused, found status 0"),
             ("forged_cases", f'{real} "$@" || exit 0', "to be refused, found status 0"),
-            ("forged_kinds", f'{real} "$@" || exit 0', "to refuse a forged "),
+            ("forged_kinds", f'{real} "$@" || exit 0', " to be refused, found status 0"),
             ("unsealed", f'{real} "$@" || exit 0', "to be refused, found status 0"),
             (
                 "kill_results",

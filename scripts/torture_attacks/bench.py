@@ -15,11 +15,8 @@ import time
 MEMORY_MIB = 1024  # address space; not applied to builds with a sanitizer, which need far more
 PROCESSOR_SECONDS = 60  # a process that takes longer hangs
 SECONDS = 600  # a process that waits longer hangs; a loaded machine takes many times as long as an idle one
-RESULTS = (
-    "summary.json",
-    "margins.svg",
-    "hunt.json",
-)  # and the files in cases/; timings and the database's pages may differ
+# The results, with the files in cases/. Timings and the database's pages may differ.
+RESULTS = ("summary.json", "margins.svg", "hunt.json")
 
 
 class Violation(Exception):
@@ -63,17 +60,13 @@ class Bench:
         """The arguments of the campaign of that name, or of the hunt, except --out."""
         drawn = random.Random(f"{self.seed} {name}")
         seed = drawn.randrange(1 << 32)
-        if name == "hunt":
-            coordinates = drawn.choice(["f32", "f64"])
-            command = f"hunt --runs 12000 --coordinates {coordinates}"
-            return f"{command} --seed {seed} --lanes interval_overlap/f32/cpu --threads 2".split()
         many = "near_edge_edge,degenerate,uniform,lattice,near_vertex_face,coplanar_wide"
-        pairs, strata = {
-            "large": ("240000", many),
-            "small": ("600", many),
-            "tiny": ("24", "near_edge_edge,degenerate"),
+        command = {
+            "large": f"fuzz --pairs 240000 --strata {many}",
+            "small": f"fuzz --pairs 600 --strata {many}",
+            "tiny": "fuzz --pairs 24 --strata near_edge_edge,degenerate",
+            "hunt": f"hunt --runs 12000 --coordinates {drawn.choice(['f32', 'f64'])}",
         }[name]
-        command = f"fuzz --pairs {pairs} --strata {strata}"
         return f"{command} --seed {seed} --lanes interval_overlap/f32/cpu --threads 2".split()
 
     def reference(self, name, minimised=False, reported=False, shard=None):
@@ -110,6 +103,14 @@ class Round:
         self.counts = collections.Counter()
         self.commands = []
         folder.mkdir(parents=True, exist_ok=True)
+
+    def copies(self, campaign, count):
+        """Yields copies of a campaign's folder, and removes each after its turn. A violation keeps the current copy."""
+        for number in range(count):
+            copy = self.folder / f"campaign-{number}"
+            shutil.copytree(campaign, copy)
+            yield copy
+            shutil.rmtree(copy)
 
     def count(self, outcome, times=1):
         """outcome: "same", "read" or "refused"."""
@@ -193,6 +194,12 @@ class Round:
         if names and not any(name in ran.err for name in names):
             raise Violation(f"expected a line that names {' or '.join(names)}, found {ran.err!r}")
         return True
+
+    def must_refuse(self, ran, what, *names):
+        """Requires that graze refused, with one of the names in its message, and counts that."""
+        if not self.is_refused(ran, *names):
+            raise Violation(f"expected {what} to be refused, found status {ran.status}: {ran.out[-200:]!r}")
+        self.count("refused")
 
     def must_succeed(self, ran):
         if ran.status != 0:

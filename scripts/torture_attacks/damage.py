@@ -73,14 +73,13 @@ def statement(random):
     return random.choice(STATEMENTS)
 
 
-def copy(turn, attempt):
-    """Copies a finished campaign, sometimes without its results, which must be restored from the database."""
-    campaign = turn.folder / f"campaign-{attempt}"
-    shutil.copytree(turn.bench.reference("small"), campaign)
-    if turn.random.random() < 0.5:
-        shutil.rmtree(campaign / "cases")
-        (campaign / "summary.json").unlink()
-    return campaign
+def copies(turn):
+    """Yields copies of a finished campaign, some without results, which must be restored from the database."""
+    for campaign in turn.copies(turn.bench.reference("small"), ATTEMPTS):
+        if turn.random.random() < 0.5:
+            shutil.rmtree(campaign / "cases")
+            (campaign / "summary.json").unlink()
+        yield campaign
 
 
 def judge(turn, campaign):
@@ -99,7 +98,6 @@ def judge(turn, campaign):
     else:
         turn.must_be_same(campaign, turn.bench.reference("small"))
         turn.count("same")
-    shutil.rmtree(campaign)
 
 
 def refuses_another_seed(turn, campaign, command):
@@ -119,8 +117,7 @@ def refuses_another_seed(turn, campaign, command):
 
 def flips(turn):
     """Flips single bits."""
-    for attempt in range(ATTEMPTS):
-        campaign = copy(turn, attempt)
+    for campaign in copies(turn):
         file = campaign / DATABASE
         file.write_bytes(mutate.flip_bit(turn.random, file.read_bytes()))
         judge(turn, campaign)
@@ -128,8 +125,7 @@ def flips(turn):
 
 def database_bytes(turn):
     """Changes bytes, pieces or the end of the database, or replaces it with something else."""
-    for attempt in range(ATTEMPTS):
-        campaign = copy(turn, attempt)
+    for campaign in copies(turn):
         file = campaign / DATABASE
         data = file.read_bytes()
         file.unlink()
@@ -137,9 +133,7 @@ def database_bytes(turn):
         if choice == 0:
             file.mkdir()
             ran = turn.run(*turn.bench.campaign("small"), "--out", campaign)
-            if not turn.is_refused(ran, DATABASE):
-                raise Violation("expected a folder in the database's place to be refused")
-            turn.count("refused")
+            turn.must_refuse(ran, "a folder in the database's place", DATABASE)
             continue
         if choice == 1:
             file.write_bytes(turn.random.randbytes(turn.random.choice([1, 100, 5000])))
@@ -162,8 +156,7 @@ def signed(number):
 
 def forged(turn):
     """Changes a row and its checksum. graze may believe the row, but nothing may break."""
-    for attempt in range(ATTEMPTS):
-        campaign = copy(turn, attempt)
+    for campaign in copies(turn):
         with sqlite3.connect(campaign / DATABASE, isolation_level=None) as database:
             (of_campaign,) = database.execute("SELECT checksum FROM campaign").fetchone()
             rows = database.execute("SELECT id, source, first, pairs, counts FROM batch").fetchall()
@@ -181,13 +174,11 @@ def forged(turn):
             turn.must_succeed(turn.run(*command, "--discard-damaged"))
             turn.must_be_same(campaign, turn.bench.reference("small"))
         turn.count("refused" if refused else "read")
-        shutil.rmtree(campaign)
 
 
 def sql(turn):
     """Changes the database through SQLite, which leaves a valid file."""
-    for attempt in range(ATTEMPTS):
-        campaign = copy(turn, attempt)
+    for campaign in copies(turn):
         chosen = [statement(turn.random) for _ in range(turn.random.choice([1, 1, 2]))]
         with sqlite3.connect(campaign / DATABASE, isolation_level=None) as database:
             for each in chosen:

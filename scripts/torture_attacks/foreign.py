@@ -85,20 +85,8 @@ def foreign(turn):
         seed = str(turn.random.randrange(1 << 32))
         few = ["--pairs", "60", "--strata", "uniform", "--seed", seed, "--threads", "2"]
         campaign, alone = turn.folder / f"with-{attempt}", turn.folder / f"without-{attempt}"
-        command = [
-            "fuzz",
-            *few,
-            "--subject",
-            f"h={library(turn.bench)}:{name}",
-            "--subject-timeout",
-            "0.1",
-            "--lanes",
-            "h/*",
-            "--lanes",
-            OURS,
-            "--out",
-            campaign,
-        ]
+        command = ["fuzz", *few, "--subject", f"h={library(turn.bench)}:{name}", "--subject-timeout", "0.1"]
+        command += ["--lanes", "h/*", "--lanes", OURS, "--out", campaign]
         way = turn.random.choice(["whole", "stopped", "killed"])
         if way != "whole":
             started = turn.start(*command)

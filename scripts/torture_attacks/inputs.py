@@ -181,9 +181,7 @@ def pairs(turn):
 def json(turn):
     """The files of a campaign: summary, cases and stored data about them, timings, and a report."""
     reported = turn.bench.reference("tiny", minimised=True, reported=True)
-    for attempt in range(ATTEMPTS // 2):
-        campaign = turn.folder / f"campaign-{attempt}"
-        shutil.copytree(reported, campaign)
+    for campaign in turn.copies(reported, ATTEMPTS // 2):
         cases = [file for file in sorted((campaign / "cases").iterdir()) if file.is_file()]
         files = [campaign / "summary.json"] * 3 + [campaign / "report.json"] * 3 + [campaign / "timings.json"]
         for ending in (".pairs", ".maps.json", ".json"):
@@ -222,4 +220,3 @@ def json(turn):
             command[0] == "fuzz" and ran.status != 0 and file.name != "timings.json"
         ):  # fuzz refuses a damaged timings.json, because its old runs would be lost
             raise Violation(f"expected fuzz to make its files anew, found {ran.err!r}")
-        shutil.rmtree(campaign)

@@ -66,8 +66,7 @@ def to_devices(turn, verb, folder, _expected):
             turn.must_succeed(ran)
             turn.count("same")
         else:
-            expect(turn.is_refused(ran, node.name), "a full device to be refused")
-            turn.count("refused")
+            turn.must_refuse(ran, "a full device", node.name)
 
 
 def to_a_pipe(turn, verb, folder, expected):
@@ -96,26 +95,24 @@ def to_links(turn, verb, folder, expected):
         turn.must_succeed(turn.run(*verb, name))
         expect(name.is_symlink() and behind.read_bytes() == expected, "the link to stay, and the bytes behind it")
         turn.count("same")
-    expect(turn.is_refused(turn.run(*verb, loop), loop.name) and loop.is_symlink(), "a link to itself to be refused")
-    turn.count("refused")
+    turn.must_refuse(turn.run(*verb, loop), "a link to itself", loop.name)
+    expect(loop.is_symlink(), "the link to stay")
 
 
 def to_folders(turn, verb, folder, _expected):
     there = folder / "folder.png"
     there.mkdir()
     (there / "kept").write_text("kept")
-    expect(turn.is_refused(turn.run(*verb, there), there.name), "a folder to be refused")
+    turn.must_refuse(turn.run(*verb, there), "a folder", there.name)
     expect([file.name for file in there.iterdir()] == ["kept"], "the folder to stay as it is")
     missing = folder / "missing" / "file.png"
-    expect(turn.is_refused(turn.run(*verb, missing), missing.name), "a file in no folder to be refused")
-    turn.count("refused")
-    turn.count("refused")
+    turn.must_refuse(turn.run(*verb, missing), "a file in no folder", missing.name)
 
 
 def to_nothing(turn, verb, _folder, _expected):
     ran = turn.run(*verb, "")
-    expect(turn.is_refused(ran, "--out") and ran.status == 2, "--out '' to be wrong use")
-    turn.count("refused")
+    turn.must_refuse(ran, "--out ''", "--out")
+    expect(ran.status == 2, "--out '' to be wrong use")
 
 
 def campaigns(turn):
@@ -132,8 +129,7 @@ def campaigns(turn):
     names = [folder / "file", folder / "file" / "below", folder / "dangling", pathlib.Path("/proc/graze")]
     node = device(folder, 3, "null")
     for name in [*names, *([node] if node else [])]:
-        expect(turn.is_refused(turn.run(*command, name), name.name), f"{name} to be refused")
-        turn.count("refused")
+        turn.must_refuse(turn.run(*command, name), name, name.name)
     expect((folder / "file").read_text() == "kept", "the file to stay as it is")
     expect(node is None or stat.S_ISCHR(os.lstat(node).st_mode), "the device to stay one")
     to_nothing(turn, command, folder, b"")

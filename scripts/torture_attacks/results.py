@@ -121,17 +121,21 @@ def undisturbed(turn, verb):
     return turn.bench.undisturbed[key]
 
 
-def each(turn, attack):
-    """Runs the attack on some verbs."""
-    for verb in turn.random.sample(VERBS, ATTEMPTS):
-        expected = undisturbed(turn, verb)
-        if expected is None:
-            turn.count("refused")
-            continue
-        out = turn.folder / verb
-        begin(turn, verb, out)
-        attack(turn, verb, out, expected)
-        shutil.rmtree(out, ignore_errors=True)
+def on_some_verbs(attack):
+    """Makes an attack on one verb into a round of attacks on some verbs."""
+
+    def attack_some(turn):
+        for verb in turn.random.sample(VERBS, ATTEMPTS):
+            expected = undisturbed(turn, verb)
+            if expected is None:
+                turn.count("refused")
+                continue
+            out = turn.folder / verb
+            begin(turn, verb, out)
+            attack(turn, verb, out, expected)
+            shutil.rmtree(out, ignore_errors=True)
+
+    return attack_some
 
 
 def must_be_whole(out, expected, begun):
@@ -147,77 +151,69 @@ def must_end_alike(turn, verb, out, expected):
     must_agree(snapshot(out), expected, [*out.rglob("*.part*"), *out.parent.glob(out.name + ".graze.part*")])
 
 
-def kill_results(turn):
-    def attack(turn, verb, out, expected):
-        begun = snapshot(out)
-        for _ in range(2):
-            turn.run(
-                *command(turn.bench, verb, out),
-                kill_after=turn.bench.seconds["results", verb]
-                * turn.random.choice([turn.random.random(), 0.9 + 0.2 * turn.random.random()]),
-            )
-            must_be_whole(out, expected, begun)
-            if verb == "merge" and out.exists():  # it had finished; merge writes only into a new folder
-                shutil.rmtree(out)
-        must_end_alike(turn, verb, out, expected)
-        turn.count("same")
-
-    each(turn, attack)
-
-
-def full_results(turn):
-    def attack(turn, verb, out, expected):
-        begun = snapshot(out)
-        largest = max(len(data) if isinstance(data, bytes) else len(json.dumps(data)) for data in expected.values())
-        limit = turn.random.randrange(
-            1024, max(largest, 2048)
-        )  # a smaller limit would cut graze's message, which goes to a file
-        ran = turn.run(*command(turn.bench, verb, out), file_bytes=limit)
-        refused = turn.is_refused(ran, verb, "campaign.sqlite", "room", "memory with a subject", "cannot compile")
+@on_some_verbs
+def kill_results(turn, verb, out, expected):
+    begun = snapshot(out)
+    for _ in range(2):
+        turn.run(
+            *command(turn.bench, verb, out),
+            kill_after=turn.bench.seconds["results", verb]
+            * turn.random.choice([turn.random.random(), 0.9 + 0.2 * turn.random.random()]),
+        )
         must_be_whole(out, expected, begun)
-        if verb == "merge" and out.exists():
+        if verb == "merge" and out.exists():  # it had finished; merge writes only into a new folder
             shutil.rmtree(out)
-        must_end_alike(turn, verb, out, expected)
-        turn.count("refused" if refused else "same")
-
-    each(turn, attack)
+    must_end_alike(turn, verb, out, expected)
+    turn.count("same")
 
 
-def read_only_results(turn):
-    def attack(turn, verb, out, expected):
-        disk = turn.folder / f"disk-{verb}"
-        with small_disk(disk, 64 << 20) as mounted:
-            there = disk / verb
-            begin(turn, verb, there)
-            if mounted:
-                with made_read_only(disk):
-                    ran = turn.run(*command(turn.bench, verb, there))
-                    if not turn.is_refused(ran, verb) or "Read-only file system" not in ran.err:
-                        raise Violation(f"expected the system's reason, Read-only file system, found {ran.err!r}")
-            must_end_alike(turn, verb, there, expected)
-            turn.count("refused" if mounted else "same")
-
-    each(turn, attack)
-
-
-def two_results(turn):
-    def attack(turn, verb, out, expected):
-        same = command(turn.bench, verb, out)
-        refused = finish_both(turn, same, same, [0, 0, 0.01, 0.05], verb)
-        if verb == "merge":
-            shutil.rmtree(out)
-        must_end_alike(turn, verb, out, expected)
-        turn.count("refused" if refused else "same")
-
-    each(turn, attack)
+@on_some_verbs
+def full_results(turn, verb, out, expected):
+    begun = snapshot(out)
+    largest = max(len(data) if isinstance(data, bytes) else len(json.dumps(data)) for data in expected.values())
+    limit = turn.random.randrange(
+        1024, max(largest, 2048)
+    )  # a smaller limit would cut graze's message, which goes to a file
+    ran = turn.run(*command(turn.bench, verb, out), file_bytes=limit)
+    refused = turn.is_refused(ran, verb, "campaign.sqlite", "room", "memory with a subject", "cannot compile")
+    must_be_whole(out, expected, begun)
+    if verb == "merge" and out.exists():
+        shutil.rmtree(out)
+    must_end_alike(turn, verb, out, expected)
+    turn.count("refused" if refused else "same")
 
 
-def leaves(value, place=()):
-    """The paths of all counts in the value."""
+@on_some_verbs
+def read_only_results(turn, verb, out, expected):
+    disk = turn.folder / f"disk-{verb}"
+    with small_disk(disk, 64 << 20) as mounted:
+        there = disk / verb
+        begin(turn, verb, there)
+        if mounted:
+            with made_read_only(disk):
+                ran = turn.run(*command(turn.bench, verb, there))
+                if not turn.is_refused(ran, verb) or "Read-only file system" not in ran.err:
+                    raise Violation(f"expected the system's reason, Read-only file system, found {ran.err!r}")
+        must_end_alike(turn, verb, there, expected)
+        turn.count("refused" if mounted else "same")
+
+
+@on_some_verbs
+def two_results(turn, verb, out, expected):
+    same = command(turn.bench, verb, out)
+    refused = finish_both(turn, same, same, [0, 0, 0.01, 0.05], verb)
+    if verb == "merge":
+        shutil.rmtree(out)
+    must_end_alike(turn, verb, out, expected)
+    turn.count("refused" if refused else "same")
+
+
+def leaves(value, kind, place=()):
+    """The paths of all values of this type. A truth value is no number."""
     if isinstance(value, (dict, list)):
         for key, inner in value.items() if isinstance(value, dict) else enumerate(value):
-            yield from leaves(inner, (*place, key))
-    elif isinstance(value, int) and not isinstance(value, bool):
+            yield from leaves(inner, kind, (*place, key))
+    elif type(value) is kind:
         yield place
 
 
@@ -232,9 +228,7 @@ def forged_summaries(turn):
     """Forges counts in a campaign's JSON. graze must refuse the file by name, with or without the database beside
     it."""
     reported = turn.bench.reference("tiny", minimised=True, reported=True)
-    for attempt in range(4):
-        campaign = turn.folder / f"campaign-{attempt}"
-        shutil.copytree(reported, campaign)
+    for campaign in turn.copies(reported, 4):
         name = turn.random.choice(["summary.json", "summary.json", "failures.json", "report.json"])
         is_summary = name == "summary.json"  # graze checks a summary against the database, not by a checksum
         value = json.loads((campaign / name).read_text()) if is_summary else seal.read(campaign / name)
@@ -247,7 +241,9 @@ def forged_summaries(turn):
             "failures.json": {"pairs", "signatures"},
             "report.json": {"count", "of", "pairs", "intersects", "declined"},
         }.get(name)
-        places = [place for place in leaves({key: value[key] for key in part}) if counts is None or place[-1] in counts]
+        places = [
+            place for place in leaves({key: value[key] for key in part}, int) if counts is None or place[-1] in counts
+        ]
         readers = [
             ["report", campaign],
             ["report", "--compare", reported, campaign],
@@ -270,75 +266,39 @@ def forged_summaries(turn):
             lane[turn.random.choice(["false_negative", "false_positive", "declined"])] = stratum["pairs"] + 1
         (campaign / name).write_text(json.dumps(value, indent=1) + "\n" if is_summary else seal.text(value))
         ran = turn.run(*turn.random.choice(readers))
-        if not turn.is_refused(ran, name):
-            raise Violation(f"expected {name} with another number at {place} to be refused, found status {ran.status}")
-        turn.count("refused")
-        shutil.rmtree(campaign)
+        turn.must_refuse(ran, f"{name} with another number at {place}", name)
 
 
 def forged_kinds(turn):
     """Forges kinds, costs and a status. graze must refuse the file by name."""
     reported = turn.bench.reference("tiny", minimised=True, reported=True)
 
-    def without_kinds(value):
-        value["kinds"] = []
+    def cost(value):
+        lanes = next(run["costs"]["lanes"] for run in value["runs"] if "costs" in run)
+        return next(iter(next(iter(lanes.values())).values()))
 
-    def without_some(value):
-        del value["kinds"][:3]
-
-    def other_part(part, other):
-        def edit(value):
-            value["kinds"][0][part] = other
-
-        return edit
-
-    def other_cost(part, other):
-        def edit(value):
-            lanes = next(run["costs"]["lanes"] for run in value["runs"] if "costs" in run)
-            next(iter(next(iter(lanes.values())).values()))[part] = other
-
-        return edit
-
-    def other_status(part, other):
-        def edit(value):
-            value[part] = other
-
-        return edit
-
-    kinds = [without_kinds, without_some]
-    kinds += [other_part(*pair) for pair in [("strata", {"lattice": 99}), ("margins", {"banana": 1}), ("lanes", ["x"])]]
-    edits = [("failures.json", edit, ["failures", "report"]) for edit in kinds]
-    edits += [("timings.json", other_cost(*pair), ["report"]) for pair in [("middle", -1), ("pairs", 1000000)]]
-    edits += [
-        ("status.json", other_status(*pair), ["status"])
-        for pair in [("disagreements", 1 << 64), ("state", "unknown"), ("done", 1), ("shard", None)]
+    readers = {"failures.json": ["failures", "report"], "timings.json": ["report"], "status.json": ["status"]}
+    edits = [
+        ("failures.json", lambda value: value.update(kinds=[])),
+        ("failures.json", lambda value: value.update(kinds=value["kinds"][3:])),
+        ("failures.json", lambda value: value["kinds"][0].update(strata={"lattice": 99})),
+        ("failures.json", lambda value: value["kinds"][0].update(margins={"banana": 1})),
+        ("failures.json", lambda value: value["kinds"][0].update(lanes=["x"])),
+        ("timings.json", lambda value: cost(value).update(middle=-1)),
+        ("timings.json", lambda value: cost(value).update(pairs=1000000)),
+        ("status.json", lambda value: value.update(disagreements=1 << 64)),
+        ("status.json", lambda value: value.update(state="unknown")),
+        ("status.json", lambda value: value.update(done=1)),
+        ("status.json", lambda value: value.update(shard=None)),
     ]
-    for attempt, (name, edit, readers) in enumerate(turn.random.sample(edits, 4)):
-        campaign = turn.folder / f"campaign-{attempt}"
-        shutil.copytree(reported, campaign)
+    for campaign, (name, edit) in zip(turn.copies(reported, 4), turn.random.sample(edits, 4)):
         value = seal.read(campaign / name)
         edit(value)
         text = seal.text(value)
         (campaign / name).write_text(
             text[: len(text) // 2] if turn.random.random() < 0.2 and name != "timings.json" else text
         )
-        reader = turn.random.choice(readers)
-        ran = turn.run(reader, campaign)
-        if not turn.is_refused(ran, name):
-            raise Violation(
-                f"expected {reader} to refuse a forged {name}, found status {ran.status}: {ran.out[-200:]!r}"
-            )
-        turn.count("refused")
-        shutil.rmtree(campaign)
-
-
-def texts(value, place=()):
-    """The places of all texts."""
-    for key, inner in value.items() if isinstance(value, dict) else enumerate(value):
-        if isinstance(inner, str):
-            yield (*place, key)
-        elif isinstance(inner, (dict, list)):
-            yield from texts(inner, (*place, key))
+        turn.must_refuse(turn.run(turn.random.choice(readers[name]), campaign), f"a forged {name}", name)
 
 
 def unsealed(turn):
@@ -356,20 +316,15 @@ def unsealed(turn):
         ("costs.json", page),
         ("report.json", page),
     ]
-    for attempt, (name, reader) in enumerate(attacks):
-        campaign = turn.folder / f"campaign-{attempt}"
-        shutil.copytree(reported, campaign)
+    for campaign, (name, reader) in zip(turn.copies(reported, len(attacks)), attacks):
         file = campaign / name
         value = json.loads(file.read_text())
-        place = turn.random.choice([place for place in texts(value) if place != ("checksum",)])
+        place = turn.random.choice([place for place in leaves(value, str) if place != ("checksum",)])
         changed(value, place, "x")
         file.write_text(json.dumps(value, indent=1, ensure_ascii=False) + "\n")
         words = [campaign / word if "." in word else word for word in reader[1:]] or [campaign]
         ran = turn.run(reader[0], *words)
-        if not turn.is_refused(ran, file.name):
-            raise Violation(f"expected {name} with another text at {place} to be refused, found status {ran.status}")
-        turn.count("refused")
-        shutil.rmtree(campaign)
+        turn.must_refuse(ran, f"{name} with another text at {place}", file.name)
 
 
 def forged_cases(turn):
@@ -377,9 +332,7 @@ def forged_cases(turn):
     name, and the command in its message must restore it."""
     minimised = turn.bench.reference("tiny", minimised=True)
     rows = json.loads((minimised / "summary.json").read_text())["signatures"]
-    for attempt in range(4):
-        campaign = turn.folder / f"campaign-{attempt}"
-        shutil.copytree(minimised, campaign)
+    for campaign in turn.copies(minimised, 4):
         row, other = turn.random.sample(rows, 2)
         file = campaign / row["case"]
         lines = file.read_text().splitlines(keepends=True)
@@ -400,10 +353,10 @@ def forged_cases(turn):
             )
         changed_file = file.read_text() != "".join(lines)
         ran = turn.run(turn.random.choice(["report", "failures", "minimize"]), campaign)
-        if changed_file and not turn.is_refused(ran, file.name):
-            raise Violation(f"expected {file.name}, changed in way {choice}, to be refused, found status {ran.status}")
-        turn.count("refused" if changed_file else "same")
-        shutil.rmtree(campaign)
+        if changed_file:
+            turn.must_refuse(ran, f"{file.name}, changed in way {choice},", file.name)
+        else:
+            turn.count("same")
 
 
 def pipes(turn):
@@ -411,9 +364,7 @@ def pipes(turn):
     reported = turn.bench.reference("tiny", minimised=True, reported=True)
     records = ["summary.json", "campaign.sqlite", "timings.json", "status.json", "failures.json", "costs.json"]
     records += [file.relative_to(reported).as_posix() for file in sorted((reported / "cases").iterdir())]
-    for attempt in range(6):
-        campaign = turn.folder / f"campaign-{attempt}"
-        shutil.copytree(reported, campaign)
+    for campaign in turn.copies(reported, 6):
         record = campaign / turn.random.choice([*records[:6], turn.random.choice(records[6:])])
         record.unlink()
         os.mkfifo(record)
@@ -428,7 +379,6 @@ def pipes(turn):
         if not stat.S_ISFIFO(os.lstat(record).st_mode):
             raise Violation(f"expected the pipe {record.name} to stay one, found another file")
         turn.count("refused" if refused else "read")
-        shutil.rmtree(campaign)
         shutil.rmtree(turn.folder / "m", ignore_errors=True)
 
 
@@ -453,11 +403,9 @@ def foreign_places(turn):
         link.symlink_to(theirs.name)
         for name in (theirs, link):
             ran = turn.run(*verb, name)
-            if not turn.is_refused(ran, name.name, "in this build", "build with"):
-                raise Violation(f"expected {verb[0]} to refuse a file of another, found status {ran.status}")
+            turn.must_refuse(ran, "a file of another", name.name, "in this build", "build with")
             if theirs.read_text() != "kept" or not link.is_symlink():
                 raise Violation(f"expected a file that is not of graze to stay, found that {verb[0]} replaced it")
-            turn.count("refused")
         if "--force" in ran.err:
             turn.must_succeed(turn.run(*verb, link, "--force"))
             if theirs.read_bytes() == b"kept":
@@ -475,22 +423,20 @@ def foreign_places(turn):
     case = turn.random.choice(sorted((campaign / "cases").glob("*.pairs")))
     case.write_text("kept")
     ran = turn.run(*turn.bench.campaign("tiny"), "--out", campaign)
-    if not turn.is_refused(ran, case.name) or case.read_text() != "kept":
-        raise Violation(f"expected a case that is not of graze to stay, found status {ran.status}")
-    turn.count("refused")
+    turn.must_refuse(ran, "a case that is not of graze", case.name)
+    if case.read_text() != "kept":
+        raise Violation("expected a case that is not of graze to stay, found that fuzz replaced it")
     tiny = [*turn.bench.campaign("tiny"), "--out"]
     for verb in [
         tiny,
         *(command(turn.bench, name, folder)[:-1] for name in ("tune", "pareto", "invariants", "league", "merge")),
     ]:
         ran = turn.run(*verb, folder)
-        if not turn.is_refused(ran, folder.name, "in this build"):
-            raise Violation(f"expected {verb[0]} to refuse a folder of other things, found status {ran.status}")
+        turn.must_refuse(ran, "a folder of other things", folder.name, "in this build")
         if [file.name for file in folder.iterdir()] != ["notes.txt"]:
             raise Violation(
                 f"expected a folder that is not of graze to stay as it is, found that {verb[0]} wrote into it"
             )
-        turn.count("refused")
     league = turn.folder / "league"
     (league / "league").mkdir(parents=True)
     (league / "league" / "mine.svg").write_text("kept")

@@ -52,7 +52,6 @@ name = "small"
 program = "small_test"
 files = ["part/small.h", "part/small.cpp"]
 tests = ["part/small.test.cpp"]
-seen_by = ["part/small.test.cpp"]
 %s
 [[planted]]
 name = "twice is thrice"
@@ -61,15 +60,14 @@ file = "part/small.h"
 before = "x + x; }"
 after = "x + x + x; }"
 tests = ["part/small.test.cpp"]
-seen_by = ["part/small.test.cpp"]
 caught_by = "Small.Twice"
 """
 EQUIVALENT = """
-[[equivalent]]
-file = "part/small.cpp"
-before = "int clamped(int x) { return x < 10 ? x : 10; }"
-after = "int clamped(int x) { return x <= 10 ? x : 10; }"
-reason = "at 10 both give 10"
+[equivalent."part/small.cpp"]
+"at 10 both give 10" = [
+  ["int clamped(int x) { return x < 10 ? x : 10; }",
+   "int clamped(int x) { return x <= 10 ? x : 10; }"],
+]
 """
 
 

@@ -126,12 +126,12 @@ class Runner:
         self.seconds = json.loads(self.kept.read_text(encoding="utf-8")) if self.kept.exists() else {}
 
     def sources_seeing(self, group, file):
-        """The sources to compile again: the file itself, or for a header the sources that the group names."""
+        """The sources to compile again: the file itself, or for a header the sources that the group names, by default
+        its tests."""
         if file.endswith(".cpp"):
             return [file]
-        return next(
-            (row["seen_by"] for row in group.get("header", []) if row["file"] == file), group.get("seen_by", [])
-        )
+        rows = [row for row in group.get("header", []) if row["file"] == file]
+        return next(iter(rows), group).get("seen_by", group["tests"])
 
     def stages(self, group, seeing):
         """The tests in the order in which they run. First come all tests that need no compilation, together, if they

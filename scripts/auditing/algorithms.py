@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The published algorithms, reimplemented from their headers in core/algorithms. Each comparison names its source
 line."""
+import collections
 import pathlib
 import re
 
@@ -39,18 +40,7 @@ def at(file, text):
     return f"{path}:{found[0]}"
 
 
-class Seen:
-    __slots__ = ("line", "left", "relation", "right", "held", "separation")
-
-    def __init__(self, line, left, relation, right, held, separation):
-        self.line, self.left, self.relation, self.right, self.held, self.separation = (
-            line,
-            left,
-            relation,
-            right,
-            held,
-            separation,
-        )
+Seen = collections.namedtuple("Seen", "line left relation right held")
 
 
 class Run:
@@ -75,10 +65,10 @@ class Run:
         """The outcomes of all comparisons, as the algorithm saw them."""
         return tuple(self.lead) + tuple(s.held for s in self.seen[len(self.lead) :])
 
-    def compare(self, line, left, relation, right, separation=False):
+    def compare(self, line, left, relation, right):
         held = outcome(left, relation, right)
         i = len(self.seen)
-        self.seen.append(Seen(line, left, relation, right, held, separation))
+        self.seen.append(Seen(line, left, relation, right, held))
         return self.lead[i] if i < len(self.lead) else held
 
     def snap(self, x):
@@ -139,7 +129,7 @@ def project(r, direction, v):
 def overlap(r, axis, a, b):
     t = project(r, axis, b)  # g++ evaluates arguments from last to first
     s = project(r, axis, a)
-    return not r.compare(OVERLAP[0], s[1], "<", t[0], True) and not r.compare(OVERLAP[1], t[1], "<", s[0], True)
+    return not r.compare(OVERLAP[0], s[1], "<", t[0]) and not r.compare(OVERLAP[1], t[1], "<", s[0])
 
 
 def normalised(v):
@@ -240,7 +230,7 @@ def section(r, point, direction, v, distance):
 
 
 def contains(r, interval, t):
-    return r.compare(IO["from"], interval[0], "<=", t, True) and r.compare(IO["to"], t, "<=", interval[1], True)
+    return r.compare(IO["from"], interval[0], "<=", t) and r.compare(IO["to"], t, "<=", interval[1])
 
 
 def interval_overlap(r, a, b):
@@ -376,7 +366,7 @@ def moller_1997(r, a, b):
         else:
             r_low = s0 if r.compare(line, s0, "<", s1) else s1
             l_high = t1 if r.compare(line, t0, "<", t1) else t0
-        return r.compare(line, l_high, "<", r_low, True)
+        return r.compare(line, l_high, "<", r_low)
 
     return not (less(M["apart_0"], True) or less(M["apart_1"], False))
 

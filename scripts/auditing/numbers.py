@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Number types for the algorithms: exact, with any mantissa size, and with products fused into additions."""
 import math
+import operator
 from fractions import Fraction
 
 import numpy as np
@@ -16,14 +17,11 @@ class Root:
     def __init__(self, p, q=0, m=0):
         self.p, self.q, self.m = p, q, m
 
-    def _with(self, p, q, other):
-        return Root(p, q, self.m or other.m)
-
     def __add__(self, o):
-        return Root(None) if self.p is None or o.p is None else self._with(self.p + o.p, self.q + o.q, o)
+        return Root(None) if self.p is None or o.p is None else Root(self.p + o.p, self.q + o.q, self.m or o.m)
 
     def __sub__(self, o):
-        return Root(None) if self.p is None or o.p is None else self._with(self.p - o.p, self.q - o.q, o)
+        return self + -o
 
     def __neg__(self):
         return self if self.p is None else Root(-self.p, -self.q, self.m)
@@ -31,9 +29,9 @@ class Root:
     def __mul__(self, o):
         if self.p is None or o.p is None:
             return Root(None)
-        if not self.q and not o.q:
-            return self._with(self.p * o.p, 0, o)
         m = self.m or o.m
+        if not self.q and not o.q:
+            return Root(self.p * o.p, 0, m)
         return Root(self.p * o.p + self.q * o.q * m, self.p * o.q + self.q * o.p, m)
 
     def __truediv__(self, o):
@@ -163,12 +161,10 @@ def fma(a, b, c):
     """a b + c, rounded once."""
     if isinstance(a, Real):
         return a.fma(b, c)
-    if not (np.isfinite(a) and np.isfinite(b)):
+    if not (np.isfinite(a) and np.isfinite(b) and a and b):
         return a * b + c
     if not np.isfinite(c):
         return c
-    if not (a and b):
-        return a * b + c
     (na, da), (nb, db), (nc, dc) = (float(x).as_integer_ratio() for x in (a, b, c))
     top, bottom = na * nb * dc + nc * da * db, da * db * dc
     try:
@@ -245,6 +241,9 @@ def value_of(x):
     return x if not isinstance(x, np.floating) else float(x)
 
 
+RELATIONS = {"<": operator.lt, "<=": operator.le, "==": operator.eq, ">": operator.gt, ">=": operator.ge}
+
+
 def outcome(left, relation, right):
     if isinstance(left, Root):
         if left.p is None or right.p is None:
@@ -252,14 +251,4 @@ def outcome(left, relation, right):
         left, right = (left - right).sign(), 0
     elif isinstance(left, (Fused, Real)):
         left, right = value_of(left), value_of(right)
-    return bool(
-        left < right
-        if relation == "<"
-        else left <= right
-        if relation == "<="
-        else left == right
-        if relation == "=="
-        else left > right
-        if relation == ">"
-        else left >= right
-    )
+    return bool(RELATIONS[relation](left, right))

@@ -34,16 +34,8 @@ def syntax_only(command, build):
 class CampaignBuild(unittest.TestCase):
     def test_sources_compiled_together_have_no_clashing_names(self):
         with tempfile.TemporaryDirectory() as build:
-            configured = run(
-                "cmake",
-                "--preset=release",
-                "-B",
-                build,
-                "-DGRAZE_CAMPAIGN=ON",
-                f"-DCMAKE_CXX_COMPILER={COMPILER}",
-                "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
-                cwd=ROOT,
-            )
+            options = ["-DGRAZE_CAMPAIGN=ON", f"-DCMAKE_CXX_COMPILER={COMPILER}", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON"]
+            configured = run("cmake", "--preset=release", "-B", build, *options, cwd=ROOT)
             self.assertEqual(configured.returncode, 0, configured.stderr)
             needed = set(run("ninja", "-C", build, "-t", "inputs", "bin/graze").stdout.split())
             entries = json.loads(pathlib.Path(build, "compile_commands.json").read_text(encoding="utf-8"))

@@ -23,18 +23,8 @@ class Odr(unittest.TestCase):
             for i, source in enumerate(sources):
                 names.append(pathlib.Path(folder) / f"{i}.cpp")
                 names[-1].write_text(source, encoding="utf-8")
-            command = [
-                COMPILER,
-                "-std=c++20",
-                "-flto",
-                *chosen["CMAKE_CXX_FLAGS_DEBUG"].split(),
-                "-shared",
-                "-fPIC",
-                *names,
-                "-o",
-                f"{folder}/out.so",
-            ]
-            ran = subprocess.run(command, capture_output=True, text=True)
+            command = [COMPILER, "-std=c++20", "-flto", *chosen["CMAKE_CXX_FLAGS_DEBUG"].split(), "-shared", "-fPIC"]
+            ran = subprocess.run([*command, *names, "-o", f"{folder}/out.so"], capture_output=True, text=True)
             return ran.returncode, ran.stderr
 
     def test_two_definitions_of_a_type_are_an_error(self):

@@ -195,6 +195,15 @@ class Runner:
         states = {None: "timed out", 0: "survived", NOT_SWITCHED: "not switched"}
         return states.get(status, "killed"), said, used
 
+    def time(self, group, program, where, env=None):
+        """Returns: the CPU seconds of the tests without a mutant.   Throws: Refused, if they do not pass."""
+        state, said, used = self.ask(group, program, 900, env)
+        if state != "survived" or " 0 tests" in said:
+            raise Refused(
+                f"expected the tests of group {group['name']} to pass without a mutant{where}, found: {state}\n{said[-3000:]}"
+            )
+        return used
+
     def limit(self, group, stage, anew):
         """Five times the CPU seconds of a stage without a mutant, plus some margin. Without a mutant the tests must
         pass."""
@@ -204,15 +213,10 @@ class Runner:
                 folder = self.out / "baseline"
                 folder.mkdir(exist_ok=True)
                 objects = self.built(stage, anew) + self.compile(group, anew, folder)
-                state, said, used = self.ask(group, self.link(group["program"], objects, folder / "tests"), 900)
-                if state != "survived" or " 0 tests" in said:
-                    raise Refused(
-                        f"expected the tests of group {group['name']} to pass without a mutant, found: {state}\n{said[-3000:]}"
-                    )
-                self.seconds[key] = used
+                self.seconds[key] = self.time(group, self.link(group["program"], objects, folder / "tests"), "")
                 self.kept.write_text(json.dumps(self.seconds, indent=1), encoding="utf-8")
                 shutil.rmtree(folder)
-                print(f"{key}: pass without a mutant, in {used:.1f} s", flush=True)
+                print(f"{key}: pass without a mutant, in {self.seconds[key]:.1f} s", flush=True)
         return self.patience + 5 * self.seconds[key]
 
     def built(self, stage, anew):
@@ -300,15 +304,9 @@ class Runner:
             objects = mutated + [
                 compiled[source] if source in compiled else self.commands.object_of(source) for source in stage
             ]
-            program, list_of_asked = (
-                self.link(group["program"], objects, folder / f"tests-{place}"),
-                folder / f"asked-{place}",
-            )
-            state, said, used = self.ask(group, program, 900, {"GRAZE_MUTANTS_ASKED": str(list_of_asked)})
-            if state != "survived" or " 0 tests" in said:
-                raise Refused(
-                    f"expected the tests of group {group['name']} to pass without a mutant of {file}, found: {state}\n{said[-3000:]}"
-                )
+            program = self.link(group["program"], objects, folder / f"tests-{place}")
+            list_of_asked = folder / f"asked-{place}"
+            used = self.time(group, program, f" of {file}", {"GRAZE_MUTANTS_ASKED": str(list_of_asked)})
             asked.append((program, set(list_of_asked.read_text().split()) if list_of_asked.exists() else set(), used))
         for number, mutant in list(numbered.items()):
             env, state = {"GRAZE_MUTANT": str(number)}, "not switched"

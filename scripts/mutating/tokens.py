@@ -2,34 +2,9 @@
 """The mutants of a source: its replaceable tokens, each replaced alone or all behind switches (switches.h)."""
 import re
 
-SWAPS = {
-    "<": "<=",
-    "<=": "<",
-    ">": ">=",
-    ">=": ">",
-    "==": "!=",
-    "!=": "==",
-    "&&": "||",
-    "||": "&&",
-    "+": "-",
-    "-": "+",
-    "*": "+",
-    "&": "|",
-    "|": "&",
-    "<<": ">>",
-    ">>": "<<",
-    "+=": "-=",
-    "-=": "+=",
-    "&=": "|=",
-    "|=": "&=",
-    "++": "--",
-    "--": "++",
-    "true": "false",
-    "false": "true",
-    "min": "max",
-    "max": "min",
-    "continue": "break",
-}
+SWAPPED = ("< <=", "> >=", "== !=", "&& ||", "+ -", "& |", "<< >>", "+= -=", "&= |=", "++ --", "true false", "min max")
+SWAPS = {"*": "+", "continue": "break"}
+SWAPS |= {old: new for pair in map(str.split, SWAPPED) for old, new in (pair, pair[::-1])}
 # A token, identified by its surroundings: clang-format puts spaces around binary operators, but not inside a template's
 # <…>.
 TOKEN = re.compile(

@@ -14,6 +14,7 @@ namespace tbb {
 template <class T>
 class enumerable_thread_specific {
  public:
+  enumerable_thread_specific() : make_([] { return T(); }) {}
   explicit enumerable_thread_specific(const T& value) : make_([value] { return value; }) {}
   template <class Make>
   requires std::is_invocable_r_v<T, Make>

@@ -14,6 +14,8 @@ import tempfile
 import unittest
 import xml.etree.ElementTree
 
+from run_action import Run
+
 ROOT = pathlib.Path(__file__).parent.parent
 GRAZE = pathlib.Path(sys.argv.pop()).resolve()
 BUGGY = "int meet(const float a[9], const float b[9]) { return a[0] <= b[0] + 100; }\n"
@@ -112,9 +114,6 @@ class Steps(unittest.TestCase):
     """run_action.py rejects steps that no CI service would run. The other tests rely on that."""
 
     def test_each_step_names_what_exists(self):
-        sys.path.insert(0, str(ROOT / "packaging"))
-        from run_action import Run
-
         inputs = {"a": {"default": "x"}}
         step = {"name": "s", "shell": "bash", "run": "exit 3"}
         quiet = io.StringIO()

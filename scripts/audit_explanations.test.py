@@ -3,12 +3,10 @@
 import copy
 import json
 import os
-import pathlib
 import subprocess
 import sys
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 try:
     from auditing.sentences import audit
 except ImportError:  # perhaps only Debian's Python has numpy

@@ -9,7 +9,6 @@ import tempfile
 import unittest
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import measurements  # noqa: E402
 
 # A file of records with every allowed key, oldest run first.

@@ -17,7 +17,6 @@ sys.dont_write_bytecode = True
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent
 GRAZE = pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else None
-sys.path.insert(0, str(HERE))
 import measurements  # noqa: E402
 from presenting import figures, page, records, site  # noqa: E402
 from presenting.page import RESULTS, results  # noqa: E402

@@ -32,8 +32,8 @@ class Slurm:
         host, cores = socket.gethostname().split(".")[0], os.cpu_count()
         for name in ["state", "spool"]:
             (folder / name).mkdir()
-        (folder / "munge.key").write_bytes(os.urandom(1024))
-        os.chmod(folder / "munge.key", 0o600)
+        (folder / "munged.key").write_bytes(os.urandom(1024))
+        os.chmod(folder / "munged.key", 0o600)
         (folder / "slurm.conf").write_text(
             f"""ClusterName=graze
 SlurmctldHost={host}(127.0.0.1)
@@ -64,16 +64,8 @@ PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 
     def begin(self):
         folder = self.folder
-        self.start(
-            "munged",
-            "--foreground",
-            "--force",
-            f"--key-file={folder}/munge.key",
-            f"--socket={folder}/munge.socket",
-            f"--pid-file={folder}/munged.pid",
-            f"--log-file={folder}/munged.log",
-            f"--seed-file={folder}/munged.seed",
-        )
+        files = [f"--{kind}-file={folder}/munged.{kind}" for kind in ("key", "pid", "log", "seed")]
+        self.start("munged", "--foreground", "--force", f"--socket={folder}/munge.socket", *files)
         self.wait_for(lambda: (folder / "munge.socket").exists(), "munged's socket")
         self.start("slurmctld", "-D")
         self.start("slurmd", "-D")

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Damages a campaign's database. graze must then give the results of an undisturbed run, or refuse in one line; after
 that, --discard-damaged must lead to these results."""
-import pathlib
 import shutil
 import sqlite3
 
 from torture_attacks import mutate
-from torture_attacks.bench import Violation
+from torture_attacks.bench import Violation, bytes_of
 from torture_attacks.seal import fnv1a
 
 ATTEMPTS = 8
@@ -103,16 +102,16 @@ def judge(turn, campaign):
 def refuses_another_seed(turn, campaign, command):
     other = list(command)
     other[other.index("--seed") + 1] += "1"
-    before = {file.relative_to(campaign): file.read_bytes() for file in campaign.rglob("*") if file.is_file()}
-    has_rows = b"near_edge_edge" in before.get(pathlib.Path(DATABASE), b"")
+    before = bytes_of(campaign)
+    has_rows = b"near_edge_edge" in before.get(campaign / DATABASE, b"")
     ran = turn.run(*other)
-    if ran.status == 0 and (has_rows or (campaign / "cases").exists() and "summary.json" in map(str, before)):
+    if ran.status == 0 and (has_rows or (campaign / "cases").exists() and campaign / "summary.json" in before):
         raise Violation("expected another seed to be refused, found that the campaign was resumed")
     if ran.status == 0:  # nothing was left of the campaign, so it started again; restores the files
         shutil.rmtree(campaign)
-        for name, data in before.items():
-            (campaign / name).parent.mkdir(parents=True, exist_ok=True)
-            (campaign / name).write_bytes(data)
+        for file, data in before.items():
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(data)
 
 
 def flips(turn):

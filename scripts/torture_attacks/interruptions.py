@@ -151,8 +151,7 @@ def full_disk(turn):
     minimises = turn.random.random() < 0.3
     name = "tiny" if minimises else "small"
     before, after = turn.bench.reference(name), turn.bench.reference(name, minimised=minimises)
-    needed = sum(file.stat().st_size for file in after.rglob("*") if file.is_file())
-    largest = max(file.stat().st_size for file in after.rglob("*") if file.is_file())
+    sizes = [file.stat().st_size for file in after.rglob("*") if file.is_file()]
     with small_disk(turn.folder / "disk", 1 << 20) as enlarge:
         campaign = turn.folder / "disk" / "campaign"
         if minimises:
@@ -165,12 +164,12 @@ def full_disk(turn):
             # A tmpfs allocates whole pages, so there is more room than the sum of file sizes. A filler file
             # leaves only `room` bytes free.
             free = os.statvfs(turn.folder / "disk").f_bavail * 4096
-            room = turn.random.randrange(0, needed * 2)
+            room = turn.random.randrange(0, sum(sizes) * 2)
             with open(turn.folder / "disk" / "filler", "wb") as filler:
                 filler.write(bytes(max(0, free - room)))
         else:
             limit = turn.random.randrange(
-                1024, largest + 1
+                1024, max(sizes) + 1
             )  # a smaller limit would cut graze's message, which goes to a file
         ran = turn.run(*command, file_bytes=limit)
         refused = turn.is_refused(ran, "campaign", "cases")

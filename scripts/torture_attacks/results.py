@@ -8,10 +8,9 @@ import shutil
 import stat
 import time
 
-from torture_attacks import seal
+from torture_attacks import outputs, seal
 from torture_attacks.bench import Violation, must_agree
 from torture_attacks.interruptions import finish_both, made_read_only, small_disk
-from torture_attacks.outputs import PAIR
 
 ATTEMPTS = 3  # verbs in a round
 # JSON keys of times, and the checksum, which covers these too.
@@ -29,7 +28,7 @@ def inputs(bench):
         folder.mkdir(parents=True)
         (folder / "mine.c").write_text(SUBJECT)
         (folder / "subjects.txt").write_text(f"mine={folder / 'mine.c'}\n")
-        (folder / "pair.txt").write_text(PAIR)
+        (folder / "pair.txt").write_text(outputs.PAIR)
     return folder
 
 
@@ -370,16 +369,7 @@ def foreign_places(turn):
     folder = turn.folder / "mine"
     folder.mkdir()
     (folder / "notes.txt").write_text("kept")
-    pair = inputs(turn.bench) / "pair.txt"
-    lane = ["--lanes", "guigue_devillers_2003/f32/cpu"]
-    report = turn.bench.reference("tiny", reported=True) / "report.json"
-    files = [
-        ["minimize", pair, *lane, "--out"],
-        ["map", pair, *lane, "--out"],
-        ["report", "--from", report, "--out"],
-        ["view", pair, "--out"],
-    ]
-    for place, verb in enumerate(files):
+    for place, verb in enumerate([*outputs.verbs(turn), ["view", "pair.txt", "--out"]]):
         theirs, link = turn.folder / f"theirs-{place}.png", turn.folder / f"link-{place}.png"
         theirs.write_text("kept")
         link.symlink_to(theirs.name)
@@ -396,7 +386,7 @@ def foreign_places(turn):
     theirs = turn.folder / "theirs.txt"
     theirs.write_text("kept")
     os.link(theirs, turn.folder / "linked.html.graze.part")
-    turn.run("view", pair, "--out", turn.folder / "linked.html")
+    turn.run("view", "pair.txt", "--out", turn.folder / "linked.html")
     if theirs.read_text() != "kept":
         raise Violation("expected a file that another name leads to to stay, found that view wrote into it")
     turn.count("same")

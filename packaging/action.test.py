@@ -31,9 +31,8 @@ bool meet(const float a[9], const float b[9]) { return graze::exact::intersects(
 
 class Action(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.home, self.workspace = pathlib.Path(folder.name, "home"), pathlib.Path(folder.name, "work")
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        self.home, self.workspace = pathlib.Path(folder, "home"), pathlib.Path(folder, "work")
         self.home.mkdir()
         self.workspace.mkdir()
         self.environment = {"HOME": str(self.home), "PATH": f"{GRAZE.parent}:{os.environ['PATH']}", "LANG": "C.UTF-8"}

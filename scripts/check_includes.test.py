@@ -13,9 +13,7 @@ SCRIPT = pathlib.Path(__file__).with_name("check_includes.py")
 
 class IncludeDirection(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.root = pathlib.Path(folder.name)
+        self.root = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
         self.write("CMakeLists.txt", "add_subdirectory(core)\nadd_subdirectory(oracle)\nadd_subdirectory(cuda)\n")
         self.write("core/pair.h", "#pragma once\n#include <cstdint>\n")
         self.write("oracle/truth.cpp", '#include "core/pair.h"\n#include <gmpxx.h>\n#include <CGAL/intersections.h>\n')

@@ -30,9 +30,7 @@ BAD = {
 
 class Format(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.root = pathlib.Path(folder.name)
+        self.root = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
         (self.root / "scripts").mkdir()
         for file in ("scripts/format", ".clang-format", ".prettierrc.json", "pyproject.toml"):
             shutil.copy(PROJECT / file, self.root / file)

@@ -3,7 +3,6 @@
 mutants in the project's own list exist."""
 import json
 import pathlib
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -74,8 +73,7 @@ EQUIVALENT = """
 class Mutate(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.root = pathlib.Path(tempfile.mkdtemp(prefix="graze-mutate-"))
-        cls.addClassCleanup(shutil.rmtree, cls.root)
+        cls.root = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="graze-mutate-")))
         for folder in ["scripts", "part"]:
             (cls.root / folder).mkdir()
         for name, text in [

@@ -13,9 +13,7 @@ PART = "OFF\n4 2 0\n0.1 0 0\n1e-1 1 0\n-2 0 1\n3 3 3\n3 0 1 2\n4 0 1 2 3\n"
 
 class NearModels(unittest.TestCase):
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-        self.path = pathlib.Path(self.folder.name)
+        self.path = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def run_it(self, *words):
         return subprocess.run(

@@ -52,13 +52,12 @@ class Quiet(http.server.SimpleHTTPRequestHandler):
 class Package(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.project = pathlib.Path(folder.name) / "project"
+        folder = cls.enterClassContext(tempfile.TemporaryDirectory())
+        cls.project = pathlib.Path(folder, "project")
         cls.project.mkdir()
-        cls.environment = {"HOME": folder.name, "PATH": os.environ["PATH"], "npm_config_cache": f"{folder.name}/npm"}
+        cls.environment = {"HOME": folder, "PATH": os.environ["PATH"], "npm_config_cache": f"{folder}/npm"}
         packed = subprocess.run(
-            [ROOT / "scripts/npm_package", "--wasm", BUILT / "wasm/graze.wasm", "--out", folder.name],
+            [ROOT / "scripts/npm_package", "--wasm", BUILT / "wasm/graze.wasm", "--out", folder],
             capture_output=True,
             text=True,
         )

@@ -21,9 +21,7 @@ USUAL = {"summary": '{"pairs": 3, "build": {"commit": "a"}}', "case": "0 0 0", "
 
 class SameResults(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def graze(self, name, **changed):
         file = self.folder / name

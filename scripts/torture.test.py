@@ -147,9 +147,7 @@ else:
 
 class Torture(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def graze(self, mode):
         file = self.folder / f"graze-{mode}"

@@ -575,7 +575,7 @@ TEST(Discrepancy, FindsAPlantedUlp) {
   const Lane& of = lane("moller_1997/f32/cpu");
   ASSERT_EQ(questions_of(of.algorithm)[0].name, "plane_distance.b[0]");
   const Places places = planted<Moller1997, float>(of, pair, [](auto& first, auto& second) {
-    ASSERT_EQ(first[0], 0);  // that vertex lies in the plane
+    EXPECT_EQ(first[0], 0);  // that vertex lies in the plane
     second[0] = -std::numeric_limits<float>::denorm_min();
     second[2] = std::nextafter(first[2], 2.0f);
   });

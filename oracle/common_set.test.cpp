@@ -62,17 +62,6 @@ TEST(CommonSet, HoldsForTheSmallestNumbers) {
   EXPECT_EQ(common_set(pair), (Points{{tiny, tiny, 0}}));
 }
 
-TEST(CommonSet, OfDoublesIsThatOfTheSameNumbers) {
-  for (const oracle_test::Kind kind : oracle_test::kKinds) {
-    PairSource source(kind, 8);
-    for (int n = 0; n < 300; ++n) {
-      const Pair pair = source.next();
-      ASSERT_EQ(common_set(in_doubles(pair)), common_set(pair)) << hex(pair);
-      ASSERT_EQ(planes_line(in_doubles(pair)), planes_line(pair)) << hex(pair);
-    }
-  }
-}
-
 TEST(CommonSet, HoldsAtBothEndsOfTheDoubles) {
   const double tiny = 0x1p-1074, big = 0x1p1023;
   const DoublePair pair{{{0, 0, 0}, {big, 0, 0}, {0, big, 0}}, {{tiny, tiny, 0}, {tiny, tiny, big}, {0, 0, big}}};

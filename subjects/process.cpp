@@ -26,8 +26,8 @@ namespace {
 constexpr std::size_t kMostFailuresKept = std::size_t{1} << 20;
 
 Verdict verdict_of(signed char answer) {
-  constexpr Verdict kVerdicts[] = {Verdict::disjoint, Verdict::intersects, Verdict::crashed, Verdict::timed_out,
-                                   Verdict::unstable};  // from kDisjoint to kUnstable
+  static constexpr Verdict kVerdicts[] = {Verdict::disjoint, Verdict::intersects, Verdict::crashed, Verdict::timed_out,
+                                          Verdict::unstable};  // from kDisjoint to kUnstable
   return answer < kDisjoint || answer > kUnstable ? Verdict::declined : kVerdicts[answer];
 }
 

@@ -159,9 +159,10 @@ Lane lane_row(const AlgorithmInfo* info, Scalar scalar, Variant variant, unsigne
 }
 
 void add_lane(Entry& entry, std::vector<Lane>& lanes, Code code, Lane lane) {
-  std::unique_ptr<ForeignProcesses>& processes = entry.running[lane.lane_name().within_subject()];
-  processes = std::make_unique<ForeignProcesses>(std::move(code), lane.scalar);
+  auto processes = std::make_unique<ForeignProcesses>(std::move(code), lane.scalar);
   lane.decide = *processes;
+  if (!entry.running.emplace(lane.lane_name().within_subject(), std::move(processes)).second)
+    throw std::logic_error(lane.lane_name().within_subject() + ": the subject already has this lane");
   lanes.push_back(std::move(lane));
 }
 
@@ -570,6 +571,14 @@ std::map<std::string, std::string> recorded_builds(const Json& row) {
   return builds;
 }
 
+// The contraction plan of a toolchain in a row of record(); null if it has none.
+Json recorded_contraction(const Json& row, const std::string& toolchain) {
+  for (const Json& of : row.value("toolchains", Json::array())) {
+    if (of.at("name") == toolchain) return of.value("contraction", Json());
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::vector<std::string> open_recorded(const Json& spec, bool on_device, Changed changed) {
@@ -593,16 +602,15 @@ std::vector<std::string> open_recorded(const Json& spec, bool on_device, Changed
       if (changed == Changed::refused) throw std::runtime_error(what);
       differs.push_back(what);
     }
-    const Json toolchains = row.value("toolchains", Json::array());
+    const std::map<std::string, std::string> builds = recorded_builds(row);
     const Entry& entry = *find_entry(name);
     for (const Entry::FromToolchain& made : entry.from_toolchains) {
-      const auto then = std::find_if(toolchains.begin(), toolchains.end(),
-                                     [&](const Json& of) { return of.at("name") == made.toolchain.name; });
-      if (then == toolchains.end() || made.build.empty() || then->at("build") == made.build) continue;
+      const auto then = builds.find(made.toolchain.name);
+      if (then == builds.end() || made.build.empty() || then->second == made.build) continue;
       std::string what = fmt::format("{}: {} does not build the code that the campaign ran: {} then, {} now", name,
-                                     made.toolchain.name, then->at("build").get<std::string>(), made.build);
+                                     made.toolchain.name, then->second, made.build);
       const Json plan = plan_of(entry.opened, made.toolchain, made.build);
-      if (const std::string fused = plan_difference(then->value("contraction", Json()), plan); !fused.empty())
+      if (const std::string fused = plan_difference(recorded_contraction(row, made.toolchain.name), plan); !fused.empty())
         what += "; " + fused;
       if (changed == Changed::refused) throw std::runtime_error(what);
       differs.push_back(what);

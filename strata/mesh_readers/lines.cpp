@@ -141,10 +141,10 @@ double Lines::number(std::size_t i, const std::string& expected) const {
   if (i >= words_.size()) fail_at(i, expected);
   std::string_view word = words_[i];
   if (word.starts_with('+')) word.remove_prefix(1);
-  double value = std::numeric_limits<double>::quiet_NaN();
+  double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (end != word.data() + word.size() || error == std::errc::invalid_argument) fail_at(i, expected);
-  return value;
+  return error == std::errc{} ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace graze::strata

@@ -66,9 +66,10 @@ template <class Real>
   for (int k = 0; k < kCoordinates; ++k) {
     const auto x = static_cast<double>(coordinates(pair)[k]);
     const auto& [low, high] = file.extent[static_cast<std::size_t>(k % 3)];
-    if (!(as_stored(file, low) <= x && x <= as_stored(file, high)))
+    if (!(static_cast<double>(static_cast<Real>(low)) <= x && x <= static_cast<double>(static_cast<Real>(high))))
       return ::testing::AssertionFailure() << x << " not in " << low << ' ' << high;
-    if (file.grid && as_stored(file, in_scene::point_of(scene.grid, in_scene::number_of(scene.grid, x))) != x)
+    const double on_grid = file.grid ? in_scene::point_of(scene.grid, in_scene::number_of(scene.grid, x)) : x;
+    if (static_cast<double>(static_cast<Real>(on_grid)) != x)
       return ::testing::AssertionFailure() << x << " is not on the grid";
   }
   if (!(longest(pair.a) <= most && longest(pair.b) <= most))

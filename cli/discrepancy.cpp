@@ -239,7 +239,8 @@ int discrepancy(DiscrepancyOptions options) {
                           : !options.campaign.empty() ? options.campaign
                                                       : "discrepancy";
   const ResultFolder folder(out, "discrepancy.json");
-  const fuzz::Json values = reports::discrepancy_json(spec, analysis::discrepancies(spec), origins_of(spec));
+  const analysis::Discrepancies found = analysis::discrepancies(spec);
+  const fuzz::Json values = reports::discrepancy_json(spec, found, origins_of(spec));
 
   fuzz::Json verdicts = fuzz::Json::array();
   std::optional<AnyPair> simplest;

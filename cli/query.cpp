@@ -243,7 +243,8 @@ std::vector<Run> runs_of(const QueryOptions& options, const QueryLanes& lanes, c
   for (Run& run : runs) {
     Told told{interrupted, Progress("triangles", triangles.size(), isatty(STDERR_FILENO), error_screen())};
     const graze_triangles part = query::rows_of(std::span(triangles));
-    graze_query query = query::query_of(std::array<Real, 9>(), part);  // the array gives only the type
+    const std::array<Real, 9> any{};  // gives the type; all references follow
+    graze_query query = query::query_of(any, part);
     query.references = references.data();
     query.reference_count = references.size();
     query.lane = run.lane.c_str();

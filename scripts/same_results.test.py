@@ -37,14 +37,14 @@ class SameResults(unittest.TestCase):
     def test_the_same_but_for_build_and_timings(self):
         summary = '{"pairs": 3, "build": {"commit": "b"}, "checksum": "of the build too", "summary": "its hash"}'
         status, said = self.run_script(summary=summary, clock="2")
-        self.assertEqual((status, said), (0, "20 files compared, 0 differences\n"))
+        self.assertEqual((status, said), (0, "43 files compared, 0 differences\n"))
 
     def test_a_difference_is_shown_where_it_is(self):
         status, said = self.run_script(case="0 0 1")
         self.assertEqual(status, 1)
         self.assertIn("large/cases/1.pairs:1: old 0 0 0\n", said)
         self.assertIn("new 0 0 1\n", said)
-        self.assertIn("20 files compared, 2 differences", said)
+        self.assertIn("43 files compared, 9 differences", said)
 
     def test_a_renamed_key(self):
         renamed = {"summary": '{"pair_count": 3}'}

@@ -610,7 +610,8 @@ std::vector<std::string> open_recorded(const Json& spec, bool on_device, Changed
       std::string what = fmt::format("{}: {} does not build the code that the campaign ran: {} then, {} now", name,
                                      made.toolchain.name, then->second, made.build);
       const Json plan = plan_of(entry.opened, made.toolchain, made.build);
-      if (const std::string fused = plan_difference(recorded_contraction(row, made.toolchain.name), plan); !fused.empty())
+      if (const std::string fused = plan_difference(recorded_contraction(row, made.toolchain.name), plan);
+          !fused.empty())
         what += "; " + fused;
       if (changed == Changed::refused) throw std::runtime_error(what);
       differs.push_back(what);

@@ -166,7 +166,7 @@ TEST_F(ForeignCode, WhatCannotBeWrittenForACompilerIsSaidWithItsReason) {
   expect_error(
       "set -o pipefail; export XDG_CACHE_HOME=$PWD/cache; echo 'int intersects(const float* a, const float* b) "
       "{ return 1; }' > a.c; (ulimit -f 1; graze check pair.txt --subject s=./a.c) 2>&1 | cat >&2",
-      1, {"cache/graze/include/graze/subject.h", "File too large"});
+      1, {"cache/graze/include/graze/cuda_host.h", "File too large"});
 }
 
 // If a constructor reports no function or garbage, one line names the code.

@@ -12,13 +12,18 @@
 
 namespace graze::analysis {
 
-// Calls work(task, result) for each task below `tasks`, on this many threads (0: one for each core). Each thread has
+// While it lives, oneTBB uses at most this many threads (0: one for each core).
+inline tbb::global_control thread_limit(int threads) {
+  return tbb::global_control(tbb::global_control::max_allowed_parallelism,
+                             static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency()));
+}
+
+// Calls work(task, result) for each task below `tasks`, on this many threads (as thread_limit). Each thread has
 // its own result, which starts as empty(). Results must give the same sum in any order. Returns: the sum of these
 // results, to which add(sum, result) adds each.
 template <class Empty, class Work, class Add>
 auto sum_over_threads(std::size_t tasks, int threads, const Empty& empty, const Work& work, const Add& add) {
-  const auto most = static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency());
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, most);
+  const tbb::global_control limit = thread_limit(threads);
   tbb::enumerable_thread_specific<std::invoke_result_t<const Empty&>> results(empty);
   tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) { work(task, results.local()); });
   auto sum = empty();

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "analysis/convention.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/screen.h"
@@ -47,7 +48,7 @@ void check(const CheckOptions& options) {
     const std::string note = written_note(*entry, t), stored = stored_verdicts(*entry, under_test.left_out, t.verdict);
     const std::vector<Verdict> verdicts =
         options.truth_only ? std::vector<Verdict>() : decide(under_test, corpus::pair_of(*entry));
-    const std::vector<Verdict> counted = counted_verdicts(under_test, verdicts, corpus::pair_of(*entry), t);
+    const std::vector<Verdict> counted = analysis::excused(under_test.lanes, verdicts, corpus::pair_of(*entry), t);
     wrong = wrong || some_is_wrong(counted, t.verdict);
     if (options.json) {
       nlohmann::ordered_json line = {{"pair", number_of_pair},
@@ -68,9 +69,7 @@ void check(const CheckOptions& options) {
       const std::string* label = corpus::field(*entry, "name");
       fmt::print("pair {}, line {}{}\n", number_of_pair, entry->line, label ? ": " + printable(*label) : "");
       std::fflush(stdout);
-      corpus::visit(*entry, [&](const auto& pair) {
-        reports::print_pair(std::cout, pair, t, under_test.lanes, verdicts, output_screen());
-      });
+      reports::print_pair(std::cout, corpus::pair_of(*entry), t, under_test.lanes, verdicts, output_screen());
       if (!evidence.empty()) std::cout << reports::wrapped("CUDA lanes: " + evidence, output_screen().columns, 2, 4);
       for (const std::string& text : {stored, note})
         if (!text.empty()) std::cout << reports::wrapped(text, output_screen().columns, 2, 4);

@@ -76,10 +76,10 @@ fuzz::Json recorded_spec_of(const std::filesystem::path& name);
 // Throws: as subjects::open_recorded.
 void open_subjects_of(const std::filesystem::path& name, bool resubject = false);
 
-// Opens them, except code that has changed or is missing, so that the verb continues without it.
+// Opens the subjects of a spec, except code that has changed or is missing, so that the verb continues without it.
 // Returns: the names of the subjects that are left out, each with the reason.
-std::vector<std::pair<std::string, std::string>> open_unchanged_subjects_of(const std::filesystem::path& name,
-                                                                            bool resubject = false);
+std::vector<std::pair<std::string, std::string>> open_unchanged_subjects(const fuzz::Json& spec,
+                                                                         bool resubject = false);
 
 // Opens the subjects, including those recorded for `about`, then selects the lanes. Reports on standard error which
 // requested lanes do not run here, and why; these include lanes whose recorded code has changed.
@@ -204,11 +204,6 @@ CLI::Validator one_of(std::vector<std::string> words, Chosen chosen);
 
 // Returns each lane's verdict on one pair. Reports on standard error if a device and its twin differ.
 std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const AnyPair& pair);
-
-// The verdicts of a pair as they count: those that a subject's convention excuses become the truth
-// (analysis/convention.h).
-std::vector<Verdict> counted_verdicts(const fuzz::SelectedLanes& under_test, const std::vector<Verdict>& verdicts,
-                                      const AnyPair& pair, const oracle::Truth& truth);
 
 // Whether some verdict is wrong. No verdict is wrong if the truth is declined.
 bool some_is_wrong(const std::vector<Verdict>& verdicts, Verdict truth);

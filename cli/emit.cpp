@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "analysis/convention.h"
 #include "analysis/signature.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
@@ -28,7 +29,7 @@ std::string emit(reports::SnippetKind kind, const std::string& name, const std::
     if (t.verdict == Verdict::declined) continue;
     const reports::SnippetCase found{described(name, entry, t), corpus::pair_of(entry), t.verdict, nullptr, t.verdict};
     const std::vector<Verdict> verdicts = decide(under_test, corpus::pair_of(entry));
-    const std::vector<Verdict> counted = counted_verdicts(under_test, verdicts, corpus::pair_of(entry), t);
+    const std::vector<Verdict> counted = analysis::excused(under_test.lanes, verdicts, corpus::pair_of(entry), t);
     const std::string* signature = corpus::field(entry, "signature");
     std::optional<std::size_t> wrong;
     for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {

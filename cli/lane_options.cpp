@@ -121,11 +121,10 @@ void open_subjects_of(const std::filesystem::path& name, bool resubject) {
     fmt::print(stderr, "graze: {}\n", printable(line));
 }
 
-std::vector<std::pair<std::string, std::string>> open_unchanged_subjects_of(const std::filesystem::path& name,
-                                                                            bool resubject) {
+std::vector<std::pair<std::string, std::string>> open_unchanged_subjects(const fuzz::Json& spec, bool resubject) {
   const subjects::Changed changed = resubject ? subjects::Changed::used : subjects::Changed::refused;
   std::vector<std::pair<std::string, std::string>> left_out;
-  for (const fuzz::Json& row : recorded_spec_of(name).value("subjects", fuzz::Json::array())) {
+  for (const fuzz::Json& row : spec.value("subjects", fuzz::Json::array())) {
     try {
       for (const std::string& line : subjects::open_recorded({{"subjects", fuzz::Json::array({row})}}, false, changed))
         fmt::print(stderr, "graze: {}\n", printable(line));
@@ -172,7 +171,7 @@ fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesy
   if (!about.empty()) {
     const fuzz::Json spec = recorded_spec_of(about);
     const std::string hint = options.resubject ? "" : "; --resubject runs the changed code";
-    for (const auto& [subject, why] : open_unchanged_subjects_of(about, options.resubject)) {
+    for (const auto& [subject, why] : open_unchanged_subjects(spec, options.resubject)) {
       for (const std::string id : spec.at("lanes")) {
         if (id.starts_with(subject + '/')) not_opened.push_back({id, why + hint});
       }

@@ -67,9 +67,7 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
   fmt::print("{}, {}\n", printable(from), found.failure.lanes.front()->info->id);
   std::fflush(stdout);
   const reports::Screen screen = output_screen();
-  visit(found.result.pair, [&](const auto& pair) {
-    reports::print_pair(std::cout, pair, t, found.failure.lanes, found.failure.verdicts, screen);
-  });
+  reports::print_pair(std::cout, found.result.pair, t, found.failure.lanes, found.failure.verdicts, screen);
   const std::string minimal =
       found.result.one_minimal
           ? fmt::format("1-minimal: none of the {} single moves to a simpler pair keeps the failure and its cause",

@@ -6,7 +6,6 @@
 #include <charconv>
 #include <set>
 
-#include "analysis/convention.h"
 #include "cli/commands.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -143,11 +142,6 @@ std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const AnyPair
   std::vector<Verdict> verdicts = decide(under_test, pair, apart);
   for (const Lane* lane : apart) fmt::print(stderr, "graze: {}: device and twin differ\n", lane->id);
   return verdicts;
-}
-
-std::vector<Verdict> counted_verdicts(const fuzz::SelectedLanes& under_test, const std::vector<Verdict>& verdicts,
-                                      const AnyPair& pair, const oracle::Truth& truth) {
-  return visit(pair, [&](const auto& own) { return analysis::excused(under_test.lanes, verdicts, own, truth); });
 }
 
 bool some_is_wrong(const std::vector<Verdict>& verdicts, Verdict truth) {

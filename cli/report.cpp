@@ -89,7 +89,7 @@ std::string page_of(const std::string& file) {
 
 // Makes the campaign's report. Opens its foreign code, because the programs that show a failure need it.
 Json make_report(const fs::path& directory) {
-  const auto missing = open_unchanged_subjects_of(directory);
+  const auto missing = open_unchanged_subjects(recorded_spec_of(directory));
   Json report = reports::make_report(directory);
   for (const auto& [subject, why] : missing)
     report["missing"].push_back(

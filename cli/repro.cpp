@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "analysis/convention.h"
 #include "analysis/signature.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
@@ -102,15 +103,13 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
     const std::vector<Verdict> verdicts = decide(under_test, corpus::pair_of(entry));
     fmt::print("{}\n", printable(corpus::numbers_of(entry).value_or(name)));
     std::fflush(stdout);
-    corpus::visit(entry, [&](const auto& pair) {
-      reports::print_pair(std::cout, pair, t, under_test.lanes, verdicts, output_screen());
-    });
+    reports::print_pair(std::cout, corpus::pair_of(entry), t, under_test.lanes, verdicts, output_screen());
     if (!evidence.empty()) std::cout << reports::wrapped("CUDA lanes: " + evidence, output_screen().columns, 2, 4);
     if (const std::string stored = stored_verdicts(entry, under_test.left_out, t.verdict); !stored.empty())
       std::cout << reports::wrapped(stored, output_screen().columns, 2, 4);
     if (const std::string note = entry.doubles ? written_note(entry, t) : ""; !note.empty())
       std::cout << reports::wrapped(note, output_screen().columns, 2, 4);
-    const std::vector<Verdict> counted = counted_verdicts(under_test, verdicts, corpus::pair_of(entry), t);
+    const std::vector<Verdict> counted = analysis::excused(under_test.lanes, verdicts, corpus::pair_of(entry), t);
     if (!fuzz::is_drawn(entry)) {
       std::cout << "  CHANGED, recorded: " << printable(corpus::numbers_of(entry).value_or("its stratum"))
                 << ", which is another pair\n";

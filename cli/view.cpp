@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "analysis/convention.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/query_input.h"
@@ -33,11 +34,7 @@ constexpr std::size_t kMostOfAMesh = 500;         // pairs of a mesh that are sh
 fuzz::SelectedLanes lanes_of_own_code(LaneOptions options, const std::string& what) {
   options.executor = fuzz::Executor::twin;
   fuzz::SelectedLanes own = selected_lanes(options, what);
-  for (std::size_t l = own.lanes.size(); l-- > 0;) {
-    if (own.lanes[l]->foreign) continue;
-    own.lanes.erase(own.lanes.begin() + static_cast<std::ptrdiff_t>(l));
-    own.on_host.erase(own.on_host.begin() + static_cast<std::ptrdiff_t>(l));
-  }
+  own.keep_if([](const Lane& lane) { return lane.foreign; });
   return own;
 }
 
@@ -59,7 +56,7 @@ void add_verdicts(fuzz::SelectedLanes& own, Viewed& viewed) {
   for (reports::ViewedPair& one : viewed.pairs) {
     const oracle::Truth truth = oracle::truth(one.pair);
     const std::vector<Verdict> verdicts = decide(own, one.pair);
-    const std::vector<Verdict> counted = counted_verdicts(own, verdicts, one.pair, truth);
+    const std::vector<Verdict> counted = analysis::excused(own.lanes, verdicts, one.pair, truth);
     for (std::size_t l = 0; l < verdicts.size(); ++l) {
       const bool wrong = truth.verdict != Verdict::declined && is_wrong(counted[l], truth.verdict);
       one.said.push_back({own.lanes[l]->id, verdicts[l], wrong});

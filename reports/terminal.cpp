@@ -181,9 +181,7 @@ void print_verdicts(std::ostream& out, const AnyPair& pair, const oracle::Truth&
       for (std::size_t l = first; l < lanes.size() && cell.text == "-"; ++l) {
         if (is_another(*lanes[l], lane) || !belongs(*lanes[l], variant)) continue;
         const bool wrong = truth != Verdict::declined && is_wrong(verdicts[l], truth);
-        const bool convention = wrong && visit(pair, [&](const auto& own) {
-                                  return analysis::by_convention(*lanes[l], verdicts[l], own, true_of_pair);
-                                });
+        const bool convention = wrong && analysis::by_convention(*lanes[l], verdicts[l], pair, true_of_pair);
         cell = {fmt::format("{}{}", name(verdicts[l]),
                             convention ? " (convention)"
                             : wrong    ? " !"

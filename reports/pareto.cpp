@@ -136,10 +136,13 @@ std::string pareto_table(const Pareto& pareto, const Screen& screen) {
                                {words}};
     if (!pareto.on_device) cells.insert(cells.begin() + 3, {nanoseconds(offer.alone)});
     if (any_failed) cells.insert(cells.end() - 2, {grouped(e.failed()), e.failed() > 0});
-    if (offer.needs) {
-      const auto cell = [](int n) { return Cell{std::to_string(n)}; };
+    if (pareto.on_device) {
+      using Needs = cuda::KernelNeeds;
+      const auto cell = [&](int Needs::*need) {
+        return Cell{offer.needs ? std::to_string((*offer.needs).*need) : "-"};
+      };
       cells.insert(cells.begin() + 3,
-                   {cell(offer.needs->registers), cell(offer.needs->local_bytes), cell(offer.needs->active_threads)});
+                   {cell(&Needs::registers), cell(&Needs::local_bytes), cell(&Needs::active_threads)});
     }
     table.add(std::move(cells));
   }

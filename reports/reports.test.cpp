@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "reports/margin_figure.h"
+#include "reports/pareto.h"
 #include "reports/terminal.h"
 
 namespace graze::reports {
@@ -92,6 +93,27 @@ TEST(Terminal, PairFitsItsScreen) {
   EXPECT_EQ(first_lines(60),
             "  a[0]            0.1      -1.23456e-30         3\n"
             "        0x1.99999ap-4  -0x1.90a33cp-100  0x1.8p+1\n  ");
+}
+
+TEST(ParetoTable, EachRowIsWholeOnADevice) {
+  analysis::Pareto pareto;
+  pareto.on_device = true;
+  pareto.offers.resize(2);
+  pareto.offers[0].lane = "timed", pareto.offers[1].lane = "untimed";
+  pareto.offers[0].near = pareto.offers[0].far = {1, 2, 3};
+  pareto.offers[0].needs = cuda::KernelNeeds{128, 41, 16, 1536};
+  const std::string text = pareto_table(pareto, {});
+  std::istringstream lines(text);
+  std::vector<std::vector<std::string>> rows;
+  for (std::string line, cell; std::getline(lines, line);) {
+    std::istringstream cells(line);
+    for (rows.emplace_back(); cells >> cell;) rows.back().push_back(cell);
+  }
+  ASSERT_GE(rows.size(), 2u) << text;
+  using Row = std::vector<std::string>;
+  EXPECT_EQ(rows[rows.size() - 2],
+            (Row{"timed", "2.0", "2.0", "41", "16", "1536", "0", "0", "0", "none:", "under", "1"}));
+  EXPECT_EQ(rows.back(), (Row{"untimed", "-", "-", "-", "-", "-", "0", "0", "0", "not", "timed"})) << text;
 }
 
 TEST(MarginFigure, DrawsALineForEachCpuLane) {

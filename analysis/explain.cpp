@@ -30,12 +30,14 @@ std::string line_of(const std::source_location& where) {
   return fmt::format("{}:{}", folder == std::string_view::npos ? file : file.substr(folder), where.line());
 }
 
-// Roots or quotients can leave a tie open in every precision. Then the verdict may alternate between right and wrong
-// for ever as bits are added. In that case a number of bits counts as enough only if it is at most half of kMostBits.
+// A verdict may alternate between right and wrong as bits are added: until products are exact, or for ever if roots or
+// quotients leave a tie open in every precision. Unless exact arithmetic was certain with kMostBits, a number of bits
+// counts as enough only if it is at most half of kMostBits.
 int bits_needed(int algorithm, const oracle::Exactly& exactly, const AnyPair& pair, Verdict truth) {
   const int least = pair.floats ? 24 : 53;
   const int bits = exactly.verdict == truth ? oracle::bits_needed(algorithm, pair.doubles, truth, least) : 0;
-  return !exactly.certain && bits > oracle::kMostBits / 2 ? 0 : bits;
+  const bool certain = exactly.certain && exactly.bits <= oracle::kMostBits;
+  return !certain && bits > oracle::kMostBits / 2 ? 0 : bits;
 }
 
 // The pair's neighbours. Nudged pairs may have another truth than the pair, so the truth of each is computed.

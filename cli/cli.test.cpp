@@ -142,6 +142,29 @@ TEST_F(Cli, TwoAtOnceInOneFolderAreRefused) {
   expect_done("graze minimize c > /dev/null && " + fuzz);
 }
 
+// A run whose folder was removed or moved does not touch the campaign that stands there now.
+TEST_F(Cli, AFolderReplacedDuringARunIsLeftAlone) {
+  expect_done("echo 'while read l; do until [ $l = describe ] || [ -e go ]; do sleep 0.05; done; echo 1; done' > w.sh");
+  expect_done("graze fuzz --pairs 600 --strata lattice --lanes '*/f32/cpu' --out other > /dev/null");
+  const std::string fuzz =
+      "graze fuzz --subject 'w=cmd:bash w.sh' --subject-timeout 600 --pairs 40 --strata lattice --lanes 'w/*' ";
+  for (const char* part : {"", "--shard 1/2 "}) {
+    for (const char* replace : {"rm -r c; cp -r other c", "mv c there; cp -r other c", "rm -r c",
+                                "mv c/campaign.sqlite .; cp other/campaign.sqlite c"}) {
+      SCOPED_TRACE(replace);
+      const Ran ran = shell(fmt::format(
+          "rm -rf c there go; {} {} --out c & run=$!\n"
+          "until [ -e c/status.json ] && [ -s c/campaign.sqlite-wal ]; do sleep 0.02; done; {}; rm -f c/*-wal c/*-shm\n"
+          "[ ! -e c ] || cp -r c kept; touch go; wait $run",
+          fuzz, part, replace));
+      EXPECT_EQ(ran.status, 1);
+      EXPECT_TRUE(has(ran.err, {"c/campaign.sqlite: ", "replaced while this run used it"})) << ran.err;
+      EXPECT_EQ(ran.out, "");
+      expect_done("if [ -e kept ]; then diff -r kept c; else test ! -e c; fi; rm -rf kept");
+    }
+  }
+}
+
 // Uses device nodes and pipes made by the test, never those of the machine.
 TEST_F(Cli, OutGoesIntoWhatStandsThere) {
   const std::string minimize = "graze minimize exact_contact:1:1 --lanes 'guigue_*/f32/cpu' --out ";

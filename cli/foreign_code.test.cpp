@@ -68,6 +68,28 @@ TEST_F(ForeignCode, NothingOutlivesACampaignOrItsKill) {
   expect_none_sleeps();
 }
 
+// The first subject puts another program in place of the one that runs subjects.
+TEST_F(ForeignCode, CannotReplaceTheProgramThatRunsIt) {
+  expect_done("mkdir gz && cp $(command -v graze) $(dirname $(command -v graze))/graze-subject-host gz");
+  shell(
+      "cat > replaces.c << 'END'\n"
+      "#include <stdio.h>\n#include <unistd.h>\n"
+      "int intersects(const float a[9], const float b[9]) {\n"
+      "  if (rename(FOLDER \"/gz/graze-subject-host\", FOLDER \"/gz/moved\") == 0)\n"
+      "    return symlink(\"/bin/false\", FOLDER \"/gz/graze-subject-host\");\n"
+      "  return 0;\n}\nEND\n"
+      "echo 'int intersects(const float a[9], const float b[9]) { return 0; }' > none.c");
+  expect_done("cc -shared -fPIC -DFOLDER=\"\\\"$PWD\\\"\" replaces.c -o a.so && cc -shared -fPIC none.c -o b.so");
+  expect_done(
+      "gz/graze fuzz --subject a=./a.so --subject b=./b.so --lanes 'a/*,b/*' --strata uniform --pairs 5000 "
+      "--out o && test -e gz/moved");
+  const nlohmann::ordered_json lanes = shell.json("o/summary.json")["strata"]["uniform"]["lanes"];
+  for (const char* lane : {"a/f32/cpu", "b/f32/cpu"}) {
+    EXPECT_EQ(lanes[lane].value("crashed", 0), 0) << lane;
+    EXPECT_GT(lanes[lane]["false_negative"], 0) << lane;
+  }
+}
+
 // The compiler waits for input from the pipe for ever. A verb that catches no signals itself must stop normally too.
 TEST_F(ForeignCode, ACompilerEndsWithGraze) {
   expect_done("mkfifo pipe.h && echo '#include \"pipe.h\"' > waits.cpp");

@@ -7,7 +7,6 @@
 
 #include <iterator>
 #include <limits>
-#include <span>
 
 #include "cli/commands.h"
 #include "cli/screen.h"
@@ -28,9 +27,11 @@ void add_strata(CLI::App& app, int&) {
                                         columns, 0, 33));
     };
     for (const strata::StratumInfo& row : strata::kStrata) print(row);
-    fmt::print("\n--coordinates f64 draws all of these in doubles, and also the following:\n");
-    for (const strata::StratumInfo& row : std::span(strata::kDoubleStrata).subspan(std::size(strata::kStrata)))
-      print(row);
+    fmt::print("\n--coordinates f64 draws all of these in doubles. These strata differ or exist only there:\n");
+    for (std::size_t i = 0; i < std::size(strata::kDoubleStrata); ++i) {
+      const strata::StratumInfo& row = strata::kDoubleStrata[i];
+      if (i >= std::size(strata::kStrata) || row.what != strata::kStrata[i].what) print(row);
+    }
     fmt::print("\nNext: graze fuzz --strata 'near_*'\n");
   });
 }

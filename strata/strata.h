@@ -40,21 +40,25 @@ struct StratumInfo {
 
 // The strata of pairs of float32.
 inline constexpr StratumInfo kStrata[] = {
+#define GRAZE_BY_TYPE(float32, doubles) float32
 #define GRAZE_STRATUM(name, group, kind, axis, draw, what) \
   {Stratum::name, #name, what, Axis::axis, Group::group, Kind::kind},
 #include "strata/strata.inc"
 #undef GRAZE_STRATUM
+#undef GRAZE_BY_TYPE
 };
 inline constexpr int kStrataCount = sizeof kStrata / sizeof kStrata[0];
 
 // The strata of pairs of doubles.
 inline constexpr StratumInfo kDoubleStrata[] = {
+#define GRAZE_BY_TYPE(float32, doubles) doubles
 #define GRAZE_STRATUM(name, group, kind, axis, draw, what) \
   {Stratum::name, #name, what, Axis::axis, Group::group, Kind::kind},
 #include "strata/strata.inc"
 
 #include "strata/double_strata.inc"
 #undef GRAZE_STRATUM
+#undef GRAZE_BY_TYPE
 };
 inline constexpr int kDoubleStrataCount = sizeof kDoubleStrata / sizeof kDoubleStrata[0];
 

@@ -6,12 +6,14 @@
 #include <linux/capability.h>
 #include <linux/filter.h>
 #include <linux/magic.h>
+#include <linux/net.h>
 #include <linux/seccomp.h>
 #include <poll.h>
 #include <sched.h>
 #include <sys/mount.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <sys/syscall.h>
@@ -382,7 +384,7 @@ namespace {
 // The numbers of system calls in one processor mode. A filter sees only numbers and arguments, not memory, so it cannot
 // check calls with arguments in memory.
 struct Calls {
-  std::uint32_t prlimit, clone, clone3, prctl;
+  std::uint32_t prlimit, clone, clone3, prctl, setsockopt, socketcall;
   // memfd_create, memfd_secret and io_uring_setup allocate memory that no limit counts. With vmsplice, a page of 4 KiB
   // in a pipe may keep 2 MiB allocated. bpf and perf_event_open reach other processes. unshare and setns enter
   // namespaces. add_key, request_key and keyctl make keys that outlive the code.
@@ -392,6 +394,7 @@ struct Calls {
 
 void append_rules(std::vector<sock_filter>& steps, const Calls& calls, bool system_v) {
   constexpr std::uint32_t kX32 = 0x40000000, kArgument = offsetof(seccomp_data, args);
+  constexpr std::uint32_t kCloseRange = 436, kUnshareFiles = 2;  // older headers lack them
   constexpr std::uint32_t kNamespaces =
       CLONE_NEWUSER | CLONE_NEWNS | CLONE_NEWPID | CLONE_NEWNET | CLONE_NEWIPC | CLONE_NEWUTS | CLONE_NEWCGROUP;
   const auto add = [&](std::initializer_list<sock_filter> more) { steps.insert(steps.end(), more); };
@@ -404,11 +407,26 @@ void append_rules(std::vector<sock_filter>& steps, const Calls& calls, bool syst
   }
   add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.prlimit, 0, 4), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0, 1, 0), refuse, allow});
-  add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.clone, 0, 4), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
-       BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, kNamespaces, 0, 1), refuse, allow});
+  // A thread with descriptors of its own could hide them: /proc shows only those of the first thread.
+  add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.clone, 0, 6), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
+       BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, kNamespaces, 2, 0),
+       BPF_STMT(BPF_ALU | BPF_AND | BPF_K, CLONE_THREAD | CLONE_FILES),
+       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, CLONE_THREAD, 0, 1), refuse, allow});
+  add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kCloseRange, 0, 4),
+       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument + 2 * sizeof(std::uint64_t)),
+       BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, kUnshareFiles, 0, 1), refuse, allow});
   // Huge pages must stay off: a part of a huge page in a socket's buffer would keep the whole page allocated.
   add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.prctl, 0, 4), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, PR_SET_THP_DISABLE, 0, 1), refuse, allow});
+  // The system bounds the buffer of a socket only by its own limit, which may be many MiB.
+  add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.setsockopt, 0, 7),
+       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument + sizeof(std::uint64_t)),
+       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SOL_SOCKET, 0, 4),
+       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument + 2 * sizeof(std::uint64_t)),
+       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SO_SNDBUF, 1, 0), BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SO_SNDBUFFORCE, 0, 1),
+       refuse, allow});
+  add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.socketcall, 0, 4), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
+       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_SETSOCKOPT, 0, 1), refuse, allow});
   // Without clone3, the C library uses clone.
   add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.clone3, 0, 1), BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | ENOSYS),
        allow});
@@ -422,9 +440,10 @@ void forbid_calls(bool system_v) {
   constexpr std::uint32_t kMemfdSecret = 447;  // older headers lack SYS_memfd_secret
   std::vector<sock_filter> i386, steps{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, arch))};
   // The last four numbers are those of ipc, which makes all three kinds of objects, semget, shmget and msgget.
-  append_rules(i386,
-               {340, 120, 435, 172, {356, 447, 425, 316, 357, 336, 310, 346, 286, 287, 288}, {117, 393, 395, 399}},
-               system_v);
+  append_rules(
+      i386,
+      {340, 120, 435, 172, 366, 102, {356, 447, 425, 316, 357, 336, 310, 346, 286, 287, 288}, {117, 393, 395, 399}},
+      system_v);
   steps.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, AUDIT_ARCH_I386, 0, static_cast<std::uint8_t>(i386.size())));
   steps.insert(steps.end(), i386.begin(), i386.end());
   append_rules(steps,
@@ -432,6 +451,8 @@ void forbid_calls(bool system_v) {
                 SYS_clone,
                 SYS_clone3,
                 SYS_prctl,
+                SYS_setsockopt,
+                ~0u,  // there is no socketcall
                 {SYS_memfd_create, kMemfdSecret, SYS_io_uring_setup, SYS_vmsplice, SYS_bpf, SYS_perf_event_open,
                  SYS_unshare, SYS_setns, SYS_add_key, SYS_request_key, SYS_keyctl},
                 {SYS_shmget, SYS_semget, SYS_msgget}},

@@ -57,6 +57,7 @@
 #include "subjects/program_protocol.h"
 #include "subjects/supervisor.h"
 #include "subjects/toolchains/command_of.h"
+#include "subjects/usage.h"
 #ifdef GRAZE_SUBJECT_DEVICE
 #include "cuda/subject/subject_device.h"
 #endif
@@ -362,8 +363,7 @@ void set_limits(const char* mib) {
 #endif
   set_limit(RLIMIT_CORE, 0);
   set_limit(RLIMIT_FSIZE, kMostFileBytes);
-  set_limit(RLIMIT_NOFILE,
-            1024);  // because a socket's buffers are system memory, which does not count as the process's memory
+  set_limit(RLIMIT_NOFILE, kDescriptorsOfAProcess);
 }
 
 // Turns off address randomisation where possible, so that code whose answers depend on addresses repeats its answers.

@@ -154,6 +154,32 @@ static void child_eats(void) {
   }
 }
 ATTACK(children_eat, for (int i = 0; i < 4; ++i) child_eats(); for (;;) pause())
+// Fills the buffers of sockets in several processes. These buffers are the system's memory.
+static void child_fills_sockets(void) {
+  static char bytes[1 << 16];
+  static int ends[1024];
+  int count = 0;
+  if (fork() != 0) return;
+  while (count < 1024 && socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends + count) == 0) count += 2;
+  for (int i = 0; i < count; ++i)
+    while (write(ends[i], bytes, sizeof bytes) > 0) continue;
+  for (;;) pause();
+}
+ATTACK(children_fill_sockets, for (int i = 0; i < 4; ++i) child_fills_sockets(); for (;;) pause())
+static void raise_buffers(void) {
+  int ends[2], bytes = 1 << 30;
+  if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0 &&
+      setsockopt(ends[0], SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes) < 0 &&
+      setsockopt(ends[0], SOL_SOCKET, SO_SNDBUFFORCE, &bytes, sizeof bytes) < 0 &&
+      setsockopt(ends[0], SOL_SOCKET, SO_PASSCRED, &bytes, sizeof bytes) == 0)  // other options are free
+    abort();
+}
+ATTACK(raises_buffers, raise_buffers())
+static int start_thread_with_descriptors(void) {
+  static char stack[1 << 14];
+  return clone((int (*)(void*))pause, stack + sizeof stack, CLONE_VM | CLONE_FS | CLONE_SIGHAND | CLONE_THREAD, 0);
+}
+ATTACK(hides_descriptors, if (start_thread_with_descriptors() < 0 && syscall(436, 900, ~0u, 2) < 0) abort())
 ATTACK(eats_shared, char* p = mmap(0, 300 << 20, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
        if (p != MAP_FAILED) memset(p, 1, 300 << 20); for (;;) pause())
 ATTACK(waits_uninterruptibly, if (vfork() == 0) for (;;) pause())

@@ -37,7 +37,7 @@ constexpr auto kLookEvery = std::chrono::milliseconds(100);  // between checks o
 constexpr int kMostWaits = 20;       // a program may wait this many times its limit for a processor
 constexpr int kMostLoads = 3;        // the most loads that may fail for one block
 constexpr double kLoadSeconds = 60;  // to load the code and start a worker
-constexpr std::uint64_t kMostProcesses = 64;
+constexpr std::uint64_t kMostProcesses = 64, kMostDescriptors = 2048;
 
 Time after(double seconds) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
@@ -281,8 +281,8 @@ class Supervisor {
       reap();
       if (is_stopped(loader_)) break;
       if (within_limits()) continue;
-      why_ =
-          fmt::format("used more than {} MiB or {} processes while it was loaded", limits_.bytes >> 20, kMostProcesses);
+      why_ = fmt::format("used more than {} MiB, {} processes or {} descriptors while it was loaded",
+                         limits_.bytes >> 20, kMostProcesses, kMostDescriptors);
       return false;
     }
     why_ =
@@ -341,8 +341,8 @@ class Supervisor {
   bool within_limits() {
     next_look_ = Clock::now() + kLookEvery;
     if (limits_.bytes == 0) return true;
-    const Usage usage = usage_of_descendants(limits_.bytes, kMostProcesses);
-    return usage.bytes <= limits_.bytes && usage.processes <= kMostProcesses;
+    const Usage most{kMostProcesses, limits_.bytes, kMostDescriptors};
+    return usage_of_descendants(most).within(most);
   }
 
   static bool has_ended(int process_fd) {
@@ -394,7 +394,7 @@ int supervise_program(double seconds, std::uint64_t bytes, const std::string& sc
     ended = news[0].revents;
     wanted = !news[1].revents;
     tell_alive();
-    if (!ended && usage_of_descendants(bytes, 1 << 20).bytes > bytes) {
+    if (!ended && usage_of_descendants({~0ull, bytes, ~0ull}).bytes > bytes) {
       status = kTookTooMuchMemory;
       break;
     }

@@ -118,6 +118,14 @@ std::uint64_t bytes_of(const fs::path& folder, std::uint64_t most) {
          bytes_in(folder / "status", {"VmPTE:"});
 }
 
+// The number of descriptors in a folder of /proc. A process that hides them counts with the limit.
+std::uint64_t descriptors_in(const fs::path& folder) {
+  std::error_code error;
+  std::uint64_t count = 0;
+  for (fs::directory_iterator file(folder, error), end; !error && file != end; file.increment(error)) ++count;
+  return error == std::errc::permission_denied ? kDescriptorsOfAProcess : count;
+}
+
 }  // namespace
 
 std::vector<pid_t> own_children() { return read_children("/proc/thread-self/children"); }
@@ -147,21 +155,22 @@ Activity activity_of_descendants(std::uint64_t most) {
   return activity;
 }
 
-Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processes) {
+Usage usage_of_descendants(const Usage& most) {
   // Counts the processes first, because reading the memory of a thousand running processes would take too long.
-  const std::vector<pid_t> all = descendants(most_processes);
-  Usage usage{all.size(), 0};
+  const std::vector<pid_t> all = descendants(most.processes);
+  Usage usage{all.size(), 0, 0};
   Shared shared;
   for (const pid_t process : all) {
-    if (usage.processes > most_processes || usage.bytes > most_bytes) break;
+    if (!usage.within(most)) break;
     const fs::path folder = memory_folder(process);
+    usage.descriptors += descriptors_in(folder / "fd");
     std::ifstream maps(folder / "maps");
     if (!maps && errno == EACCES) {  // a process that hides its mappings counts with its whole address space
       usage.bytes += bytes_in(folder / "status", {"VmSize:", "VmSwap:", "VmPTE:"});
     } else {
       usage.bytes += add_shared(maps, folder, shared);
       // Counts only shares of files' pages if full pages would use more than half of the remaining limit.
-      usage.bytes += bytes_of(folder, most_bytes > usage.bytes ? (most_bytes - usage.bytes) / 2 : 0);
+      usage.bytes += bytes_of(folder, most.bytes > usage.bytes ? (most.bytes - usage.bytes) / 2 : 0);
     }
   }
   return usage;

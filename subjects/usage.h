@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The number, memory and processor time of this process's descendants, from /proc.
+// The number, memory, descriptors and processor time of this process's descendants, from /proc.
 #pragma once
 
 #include <sys/types.h>
@@ -25,12 +25,21 @@ struct Activity {
 };
 Activity activity_of_descendants(std::uint64_t most);
 
+// The limit of open descriptors in each process of foreign code.
+inline constexpr std::uint64_t kDescriptorsOfAProcess = 1024;
+
 struct Usage {
   std::uint64_t processes;
   // Memory and page tables. Shared memory counts once. A page of a file counts in part for each process that maps it.
   std::uint64_t bytes;
+  // Open descriptors. The buffers of pipes and sockets are system memory, which is not in `bytes`.
+  std::uint64_t descriptors;
+
+  bool within(const Usage& most) const {
+    return processes <= most.processes && bytes <= most.bytes && descriptors <= most.descriptors;
+  }
 };
-// The current usage of all descendants. Counting stops soon after the usage exceeds `most_bytes` or `most_processes`.
-Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processes);
+// The current usage of all descendants. Counting stops soon after the usage exceeds `most`.
+Usage usage_of_descendants(const Usage& most);
 
 }  // namespace graze::subjects

@@ -216,6 +216,8 @@ Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
     status.end(outcome.complete ? "done" : "stopped");
     if (outcome.complete) seal(campaign.directory);
     return outcome;
+  } catch (const MovedStore&) {  // the folder's status may be another run's
+    throw;
   } catch (const std::exception& error) {
     status.end("failed", error.what());
     throw;

@@ -129,6 +129,7 @@ Json summary_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_sourc
 }
 
 Json write_summary(const Campaign& campaign, const Store& store, bool complete) {
+  store.expect_in_place();
   for (const auto* cases : {&store.signatures(), &store.executor_mismatches()}) {
     for (const auto& [key, found] : *cases) {
       const std::filesystem::path file = campaign.directory / case_name(key);

@@ -46,6 +46,7 @@ class Store {
   void compact();
 
   void finish() { file_.finish(); }
+  void expect_in_place() const { file_.expect_in_place(); }
 
   // The number of committed pairs that each exact decision judged.
   Json oracle() const;

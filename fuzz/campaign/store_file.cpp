@@ -443,10 +443,20 @@ void StoreFile::shrink() {
 }
 
 void StoreFile::finish() {
+  expect_in_place();
   checked([&] {
     if (database_->execAndGet("PRAGMA wal_checkpoint(TRUNCATE)").getInt() != 0)
       throw std::runtime_error(cannot("write", file_, "its log cannot be written back; run the same command again"));
   });
+}
+
+void StoreFile::expect_in_place() const {
+  int has_moved = 0;
+  sqlite3_file_control(database_->getHandle(), "main", SQLITE_FCNTL_HAS_MOVED, &has_moved);
+  if (has_moved != 0)
+    throw MovedStore(cannot("write", file_,
+                            "it was moved, removed or replaced while this run used it; run the same "
+                            "command again, alone in its folder"));
 }
 
 StoredCounts StoreFile::counts(std::int64_t id) {
@@ -460,6 +470,7 @@ StoredCounts StoreFile::counts(std::int64_t id) {
 
 std::int64_t StoreFile::put(const PairRange& range, const StoredCounts& counts,
                             const std::vector<std::int64_t>& replaced) {
+  expect_in_place();
   return checked([&] {
     SQLite::Transaction transaction(*database_);
     for (const std::int64_t id : replaced) database_->exec(fmt::format("DELETE FROM batch WHERE id = {}", id));

@@ -37,6 +37,11 @@ struct DamagedStore : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Thrown if another file or none stands where a run opened its database. The folder may then be another run's.
+struct MovedStore : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 class StoreFile {
  public:
   // Opens or creates the database in the spec's directory.
@@ -56,7 +61,11 @@ class StoreFile {
   // Writes the log back, so that the file alone is the store. Closing does that too, but cannot report a failure.
   void finish();
 
-  // Replaces the rows `replaced` with a new one in one transaction.   Returns: the new row's id.
+  // Throws: MovedStore.
+  void expect_in_place() const;
+
+  // Replaces the rows `replaced` with a new one in one transaction.
+  // Returns: the new row's id.   Throws: MovedStore.
   std::int64_t put(const PairRange& range, const StoredCounts& counts, const std::vector<std::int64_t>& replaced);
 
  private:

@@ -96,6 +96,8 @@ class Hunter {
       status_.end(outcome.complete ? "done" : "stopped");
       if (outcome.complete) seal(hunt_.campaign.directory);
       return outcome;
+    } catch (const MovedStore&) {  // the folder's status may be another run's
+      throw;
     } catch (const std::exception& error) {
       status_.end("failed", error.what());
       throw;
@@ -175,10 +177,7 @@ class Hunter {
       kept.units.push_back(std::move(unit));
     }
     for (const auto& [key, found] : result.counts.signatures) {
-      SignatureCount all = found;
-      const auto before = store_->signatures().find(key);
-      if (!round.committed && before != store_->signatures().end()) all.add(before->second);
-      for (const CaseKey& c : all.cases) {
+      for (const CaseKey& c : found.cases) {
         const auto own = result.kept.find(c.index);
         if (own != result.kept.end()) kept.kept.insert(*own);
       }

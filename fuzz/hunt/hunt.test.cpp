@@ -236,6 +236,8 @@ class HuntFiles : public CampaignFiles {
   void expect_same_hunt(const std::string& one, const std::string& other) const {
     expect_same_bytes(one, other);
     EXPECT_EQ(read_whole(root_ / one / "hunt.json"), read_whole(root_ / other / "hunt.json"));
+    for (const auto& round : std::filesystem::directory_iterator(root_ / one / "hunt"))
+      EXPECT_EQ(read_whole(round.path()), read_whole(root_ / other / "hunt" / round.path().filename())) << round;
   }
 
   PairTypes types_ = PairTypes::f32;
@@ -254,7 +256,6 @@ TEST_F(HuntFiles, GivesTheSameBytesOnAnyThreadsAfterInterruptionsAndDamage) {
     std::ofstream(root_ / "parts/hunt/000000.round", std::ios::app) << "x";  // the damaged round runs again
   }
   expect_same_hunt("whole", "parts");
-  EXPECT_EQ(read_whole(root_ / "whole/hunt/000000.round"), read_whole(root_ / "one/hunt/000000.round"));
 }
 
 TEST_F(HuntFiles, RunsRoundsAgainWhoseFilesAreOfOtherRounds) {
@@ -267,11 +268,9 @@ TEST_F(HuntFiles, RunsRoundsAgainWhoseFilesAreOfOtherRounds) {
   write_whole(file("000001.round"), first);
   run("moved", 2);
   expect_same_hunt("whole", "moved");
-  EXPECT_EQ(read_whole(file("000000.round")), first);
   write_whole(file("000001.round"), first);
   run("moved", 2);
   expect_same_hunt("whole", "moved");
-  EXPECT_NE(read_whole(file("000001.round")), first);
 }
 
 TEST_F(HuntFiles, RemovesNothingThatItDidNotWrite) {

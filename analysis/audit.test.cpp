@@ -145,7 +145,7 @@ TEST(Deciding, IsTheSmallestSetAndOfEqualOnesTheFirst) {
   EXPECT_GT(earlier, 10);
 }
 
-// If the cause is overflow or underflow, the reported value results from this cause, not from rounding alone.
+// If the cause is overflow or underflow, the reported value must be due to it, not to rounding alone.
 TEST(Deciding, WhatIsToldOfARangeComesFromIt) {
   int told = 0;
   for (const Wrong& wrong : all_wrong()) {

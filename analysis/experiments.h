@@ -25,8 +25,8 @@ namespace graze::analysis {
 //                The unchanged code must be right at some larger scale at which no product of kUsualFactors leaves
 //                the exponents.
 //   relative epsilon   a small number decides in this way, but the unchanged code is wrong at every larger scale.
-//   uninitialised   the verdict depends on the value that the compiler gives to uninitialised variables. The cause is
-//                also this one if any such value makes the verdict right and the compiler warns of such a variable.
+//   uninitialised   the verdict depends on the value that the compiler gives to uninitialised variables. This is also
+//   the cause if any such value makes the verdict right and the compiler warns about such a variable.
 //                Then the coordinates must be small integers times a power of two, so that different machine code
 //                hardly rounds differently.
 //   underflow, overflow   the code is right at all scales at which no product of kUsualFactors leaves the exponents,

@@ -352,7 +352,7 @@ TEST(Experiments, FindWhatDependsOnOrder) {
   }
 }
 
-// Code that is wrong in all orders on small integers is wrong by its logic, with or without an epsilon. The evidence of
+// Code that is wrong in all orders on small integers has an error of logic, with or without an epsilon. The evidence of
 // a cause that is not settled names two experiments.
 TEST(Experiments, FindLogicOnSmallIntegers) {
   const auto contained = [](float epsilon) {

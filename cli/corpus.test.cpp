@@ -142,8 +142,8 @@ TEST_F(CorpusVerb, NoRecordOfTheLanesThatRunIsAFailure) {
                {"r/cases.pairs", "--lanes"});
 }
 
-// Kills `add` before each of its writes. The file is the old or the new one, and the same command ends with the same
-// bytes.
+// Kills `add` before each of its writes. The file is either the old or the new one, and the same command, run again,
+// writes the same bytes.
 TEST_F(CorpusVerb, KilledWhileAddingLosesNothing) {
   campaign("c", "--pairs 30000 --strata 'near_*,coplanar_*'");
   expect_done("graze corpus add c --corpus whole --top 3 && graze corpus add c --corpus whole");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of doubles as users meet them: drawn, run, written, read and repeated. Verbs that take only pairs of float32
-// refuse them by name.
+// Pairs of doubles as users meet them: drawn, run, written, read and repeated. Verbs that take only float32 pairs
+// refuse pairs of doubles, and name them.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -716,7 +716,7 @@ TEST_F(Doubles, ASceneIsDrawnInItsDoubles) {
   }
   EXPECT_EQ(pairs, 6000u);
   EXPECT_GT(stored, 600u);  // float32 has steps of half a metre there
-  // A killed campaign resumes to the same bytes, and its shards merge to the same counts.
+  // A killed campaign that is resumed has the same bytes, and its shards merge to the same counts.
   for (const int write : {5, 15})
     ASSERT_EQ(shell(signal_at_write(SIGKILL, write) + fuzz + "--threads 1 --out two").status, 128 + SIGKILL) << write;
   expect_done(fuzz + "--threads 1 --out two && cmp one/summary.json two/summary.json && diff -r one/cases two/cases");

@@ -149,7 +149,7 @@ void add_report(CLI::App& app, int&) {
                    "second directory")
       ->expected(2)
       ->option_text("DIR1 DIR2");
-  command->add_option("--from", options->from, "Existing report.json; writes only its page, into the file of --out")
+  command->add_option("--from", options->from, "Existing report.json; writes only its page, to the file given by --out")
       ->option_text("FILE");
   command->add_option("--out", options->out, "File for the page of --from")->option_text("FILE");
   command->callback([options] { report(*options); });

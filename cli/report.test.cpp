@@ -20,7 +20,8 @@ class Report : public CommandTest {
   nlohmann::json json(const char* file) { return shell.json(file); }
 };
 
-// The map's differences come from signatures. The test also counts those from x86-gcc, which equals cpu, pair by pair.
+// The map's differences come from signatures. The test also counts those from x86-gcc, whose verdict equals cpu's on
+// every pair.
 TEST_F(Report, MapsToolchains) {
   expect_done(
       "graze fuzz --pairs 4000 --lanes 'interval_overlap/*,exact/f32/cpu' --executor twin "

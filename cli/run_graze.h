@@ -112,8 +112,8 @@ class CommandTest : public testing::Test {
                  before + "; do sleep 0.02; kill -0 $p || exit 99; done; kill -" + signal + " $p; wait $p");
   }
 
-  // Expects this exit status, and one line on stderr that names these words (core/message_testing.h). On a slow machine
-  // lines of progress come before it.
+  // Expects this exit status, and one line on stderr that names these words (core/message_testing.h). On a slow
+  // machine, progress lines come before it.
   void expect_error(const std::string& command, int status, const std::vector<std::string>& words) const {
     const Ran ran = shell(command);
     EXPECT_EQ(ran.status, status) << command << '\n' << ran.err;

@@ -46,7 +46,7 @@ bool same_kind_of_object(const std::string& there, const std::string& text) {
   return theirs.is_object() && ours.is_object() && first_keys(theirs) == first_keys(ours);
 }
 
-// Whether the entry is a leftover of a killed write, or a folder that holds only such entries.
+// Whether the entry was left over from an interrupted write, or is a folder that holds only such entries.
 bool is_nothing(const fs::path& entry) {
   if (is_left_over(entry)) return true;
   return fs::is_directory(fs::symlink_status(entry)) &&

@@ -35,7 +35,7 @@ class AabbTree {
   // Builds the tree without triangles that have no area, which CGAL's trees reject.   Requires: finite coordinates.
   explicit AabbTree(std::span<const std::array<float, 9>> triangles);
   ~AabbTree();
-  // How many of the tree's triangles intersect the reference, exactly.   Requires: the reference has an area.
+  // How many of the tree's triangles intersect the reference, exactly.   Requires: the reference is not degenerate.
   std::uint64_t count(const std::array<float, 9>& reference) const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors of GMP integers whose memory is reused, and the simplices that gmp_contact.cpp compares. The integers have
-// any size (Register) or two limbs (TwoLimbs).
+// Vectors of GMP integers whose memory is reused, and the simplices that gmp_contact.cpp compares. The integers can be
+// of any size (Register) or have two limbs (TwoLimbs).
 #pragma once
 
 #include <gmp.h>

@@ -105,8 +105,8 @@ bool apart(const Json& l, const Json& r) {
          kLeastChance;
 }
 
-// The smallest difference from the rate before that counts as a change. A smaller true difference may pass for chance.
-// Nothing if there are too few pairs to show any difference.
+// The smallest difference from the previous rate that counts as a change. A smaller true difference may pass for
+// chance. Nothing if there are too few pairs to show any difference.
 std::optional<double> unseen_of(const Json& before, const Json& after) {
   const std::uint64_t of = after.at("of");
   const double share = before.at("share");

@@ -207,7 +207,7 @@ TEST(Costs, AreThoseOfTheLastTimedRunAndCountPairs) {
   EXPECT_EQ(costs->of(0, {0, 1})->middle, 70);  // (100 · 40 + 300 · 80) / 400
   EXPECT_EQ(costs->of(0, {0})->high, 41);
   EXPECT_FALSE(costs->of(1, {0}));
-  // Costs of more pairs than the stratum has are refused.
+  // Costs that were measured on more pairs than the stratum has are refused.
   CampaignCounts fewer = counts;
   fewer.strata[0].pairs = 100;
   EXPECT_TRUE(costs_of(runs, fewer));

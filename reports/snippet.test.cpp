@@ -69,8 +69,8 @@ TEST(Snippet, ObjDecimalsReadAsTheSameBits) {
   }
 }
 
-// The corpus has all contacts of triangles, segments and points, in space, in one plane and on one line. Every finite
-// pair of float32 is tested.
+// The corpus has every kind of contact between triangles, segments and points: in space, in one plane and on one line.
+// Every finite pair of float32 is tested.
 TEST(Snippet, PythonDecidesTheWholeCorpus) {
   if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "graze-python-snippets";

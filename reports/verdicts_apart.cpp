@@ -55,7 +55,7 @@ Json operands_json(const analysis::OperandsApart& found) {
   return {{"pairs", found.pairs}, {"verdict", found.verdict}, {"lines", lines}};
 }
 
-// The line's place without folders, such as "mine.cu:9".
+// The line's location without folders, such as "mine.cu:9".
 std::string place_of(const Json& line) {
   const auto short_name = [&](const char* key) {
     return std::filesystem::path(text_at(line, key)).filename().string();

@@ -420,7 +420,7 @@ TEST_F(Subjects, SourcesInCAndCppFindTheirFunctionAndScalar) {
   for (std::size_t i = 0; i < close.size(); ++i) ASSERT_EQ(test_bit(bits.intersects, i), i % 3 == 0) << i;
   EXPECT_FALSE(find_lane("in_double/f32/cpu"));
   EXPECT_FALSE(find_lane("by_name/f32/cpu"));
-  // Another text of an included header makes another build.
+  // A changed header results in a different build.
   write("part.h", "#define LESS(a, b) (a)[0] >= (b)[0]");
   open_one("changed=" + (folder / "both.cpp").string() + ":geo::meets");
   EXPECT_EQ(verdicts(find_lane("changed/f32/cpu")->decide)[0],

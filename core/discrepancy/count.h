@@ -255,7 +255,8 @@ class PairComparison {
              size, left.rounding + right.rounding);
   }
 
-  // Counts the pair: among all pairs if `at` is 0, otherwise among the pairs of its place. Call it after all questions.
+  // Counts the pair: among all pairs if `at` is 0, otherwise among the pairs at place `at`. Call it after all
+  // questions.
   GRAZE_HD void count_pair(int at) {
     using namespace pair_counts;
     sink_.add(at + pairs);

@@ -319,7 +319,7 @@ TEST(Exact, SegmentsAndPointsMeetAsTheAxesSay) {
   for (int contact = 0; contact < 3; ++contact) EXPECT_GT(by_contact[contact], 1'000) << contact;
 }
 
-// Coordinates whose sizes differ by up to 2^200, so that only wide integers hold a pair.
+// Coordinates whose magnitudes differ by a factor of up to 2^200, so that only wide integers can hold a pair.
 TEST(Exact, SegmentsOfAnySizeMeetTrianglesAsTheAxesSay) {
   std::mt19937_64 random(13);
   const auto coordinate = [&] {

@@ -125,7 +125,7 @@ inline PreparedTriangle prepare(const float* v, bool rounded = false) {
 }
 
 // For doubles. The coordinates become differences from the reference's first vertex, because such a difference has a
-// small relative error wherever the triangles are. is_beyond takes the other triangle as such differences, too.
+// small relative error wherever the triangles are. is_beyond expects the other triangle in the same form.
 inline PreparedTriangle prepare(const double* v) {
   float seen[9];
   for (int k = 0; k < 9; ++k) seen[k] = static_cast<float>(v[k] - v[k % 3]);

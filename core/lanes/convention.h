@@ -9,7 +9,8 @@
 
 namespace graze {
 
-// outside: a sum of excluded kinds (Outside).   Requires: finite coordinates; `truth` is the pair's truth.
+// outside: the excluded kinds, as a bitwise OR of Outside flags.   Requires: finite coordinates; `truth` is the pair's
+// truth.
 template <class Real>
 bool is_outside(unsigned outside, const BasicPair<Real>& pair, const Relation& truth) {
   const Hulls& hulls = truth.hulls;

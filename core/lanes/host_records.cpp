@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Recording runs of the host lanes, compiled once per variant like host_blocks.cpp. Define nothing else here, or the
-// linker would mix the variants.
+// linker may mix the variants.
 #include "core/algorithms/recording.h"
 #include "core/lanes/host_blocks.h"
 

@@ -28,23 +28,22 @@ constexpr int kMostSilentLooks = 10'000 / kLookEvery;
 
 constexpr int kAboveShared = 64;  // above the descriptors that a supervisor gets
 
-// The path of a program that was opened before any foreign code ran, so that such code cannot replace it.
-std::string opened(const std::string& program) {
-  static const auto open_one = [](const char* name) {
-    const int file = open(beside_this(name).c_str(), O_PATH | O_CLOEXEC),
-              above = fcntl(file, F_DUPFD_CLOEXEC, kAboveShared);
-    if (file >= 0) close(file);
-    return above;
-  };
-  static const int host = open_one("graze-subject-host"), device = open_one("graze-subject-device");
-  const int file = program == "graze-subject-device" ? device : host;
-  return file < 0 ? beside_this(program).string() : "/proc/self/fd/" + std::to_string(file);
+int open_program(const char* name) {
+  const int file = open(beside_this(name).c_str(), O_PATH | O_CLOEXEC),
+            above = fcntl(file, F_DUPFD_CLOEXEC, kAboveShared);
+  if (file >= 0) close(file);
+  return above;
 }
 
 }  // namespace
 
 std::filesystem::path beside_this(const std::string& program) {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path() / program;
+}
+
+const std::array<int, 2>& program_files() {
+  static const std::array<int, 2> files{open_program("graze-subject-host"), open_program("graze-subject-device")};
+  return files;
 }
 
 SupervisorProcess::SupervisorProcess(const std::string& program, const std::vector<std::string>& arguments,
@@ -82,7 +81,9 @@ SupervisorProcess::SupervisorProcess(const std::string& program, const std::vect
   std::vector<char*> words{const_cast<char*>(file.c_str())};
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
-  const int error = posix_spawn(&process_, opened(program).c_str(), &actions, &attributes, words.data(), environ);
+  const int opened = program_files()[program == "graze-subject-device"];
+  const std::string start = opened < 0 ? file : "/proc/self/fd/" + std::to_string(opened);
+  const int error = posix_spawn(&process_, start.c_str(), &actions, &attributes, words.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   posix_spawnattr_destroy(&attributes);
   close(sockets[1]);

@@ -5,6 +5,7 @@
 
 #include <sys/types.h>
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -19,6 +20,10 @@ inline constexpr int kTookTooMuchMemory = -2;
 
 // The file of a program in the folder of the running program.
 std::filesystem::path beside_this(const std::string& program);
+
+// The descriptors of the programs that a SupervisorProcess starts; -1 for a missing program. They are opened before any
+// foreign code runs, so that such code cannot replace the programs.
+const std::array<int, 2>& program_files();
 
 class SupervisorProcess {
  public:

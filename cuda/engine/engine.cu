@@ -163,7 +163,7 @@ class CudaEngine final : public DeviceEngine {
     block.changed_for_lane = for_lane;
   }
 
-  // Starts to draw the pairs, and to decide them exactly and with the lanes. The pairs are finite, so the exact
+  // Starts drawing the pairs and deciding them, both exactly and with the lanes. The pairs are finite, so the exact
   // decision declines none. `wrong` receives these unused bits; a later step overwrites them.
   void decide(const EngineBlock& block, Buffers& buffers, const strata::PairSource& source) {
     drawing_.draw(source, block.first, block.pairs.count, buffers.coordinates.at_least(0), buffers.stream);

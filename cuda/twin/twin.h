@@ -86,8 +86,8 @@ double most_seconds(const Lane& lane);  // limit for one verdict.   Requires: a 
 // 64 words; a pair of doubles only for a lane in double or a foreign lane.
 Verdict decide_fusing(const Lane& lane, const AnyPair& pair, std::span<const std::uint64_t> fused);
 
-// The comparisons of numbers in a foreign CUDA lane with contraction sites, in program order. `min`, `max` and tests of
-// bits are not comparisons of numbers.
+// The comparisons of numbers in a foreign CUDA lane with contraction sites, in program order. `min`, `max` and bit
+// tests do not count as comparisons of numbers.
 std::span<const ComparisonSite> comparison_sites(const Lane& lane);
 
 struct Comparison {

@@ -91,7 +91,7 @@ std::uint64_t mesh_pairs(const Json& spec, const Json& summary) {
 
 // The --executor that the recorded executors of the CUDA lanes imply; empty for the default.
 std::string executor_of(const Json& spec, const Json& summary) {
-  // With --executor twin no device is looked for, so the reason for leaving out a lane is just "no twin".
+  // With --executor twin, Graze does not look for a device, so the reason for leaving out a lane is just "no twin".
   const Json why = spec.value("lanes_left_out", Json::object()).value("why", Json::object());
   bool both = false, twin = std::any_of(why.begin(), why.end(), [](const Json&reason) { return reason == "no twin"; });
   for (const Json& by : summary.value("build", Json::object()).value("executors", Json::object())) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// status.json: a run's progress, updated every few seconds for `graze status` and `graze merge`. Graze takes no count
-// of a campaign from this file.
+// status.json: a run's progress, updated every few seconds for `graze status` and `graze merge`. Graze never reads a
+// campaign's counts from this file.
 #pragma once
 
 #include <filesystem>

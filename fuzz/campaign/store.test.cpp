@@ -258,7 +258,7 @@ TEST_F(StoreTest, ALinkInPlaceOfTheFolderOfCasesIsRefused) {
   EXPECT_EQ(std::distance(fs::directory_iterator(root_ / "theirs_too"), {}), 1);
 }
 
-// A read-only reader leaves an index and an empty log.
+// A read-only reader leaves an index and an empty log behind.
 TEST_F(StoreTest, ReadingRemovesWhatOtherReadersOfTheDatabaseLeft) {
   const Campaign c = campaign("read");
   run(c);

@@ -13,6 +13,7 @@
 
 #include "core/cannot.h"
 #include "core/fnv1a.h"
+#include "core/programs/supervisor_process.h"
 #include "fuzz/files.h"
 #include "fuzz/hunt/round_bytes.h"
 #include "oracle/truth.h"
@@ -36,10 +37,10 @@ constexpr std::uint32_t kMutations = 0x301;  // used in draws instead of a strat
 // Ends this process without running exit handlers, because it is a copy of a process that continues.
 [[noreturn]] void leave(int status) { _exit(status); }
 
-// Closes all descriptors except the standard streams and the descriptors of code that new processes load. An open
+// Closes all descriptors except the standard streams and those of foreign code and the programs that run it. An open
 // descriptor would keep the folder locked after the parent process has ended.
 void close_all_but_code(const SelectedLanes& under_test) {
-  std::vector<int> kept;
+  std::vector<int> kept(program_files().begin(), program_files().end());
   for (const Lane* lane : under_test.lanes) {
     if (lane->foreign) kept.push_back(subjects::processes_of(*lane).content());
   }

@@ -73,7 +73,7 @@ std::string numbers(bool in_double, bool vector) {
   return std::string(in_double ? "f64" : "f32") + (vector ? " vector" : "");
 }
 
-// The operation of an instruction of x86-64, such as vfmadd231ss.
+// The mnemonic of an x86-64 instruction, such as vfmadd231ss.
 std::optional<FusedOperation> on_x86(std::string_view name) {
   if (!take(name, "vf")) return std::nullopt;
   const bool negative = take(name, "n");

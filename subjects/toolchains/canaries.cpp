@@ -166,7 +166,7 @@ std::vector<Canary> canaries() {
        false,
        all({denormal}),
        {{excess, "rounded twice", all({2 * denormal})}, {fast, "flushed to 0", all({0})}}},
-      // The input is three times the least subnormal number.
+      // The input is three times the smallest positive subnormal number.
       {"subnormal_input",
        "subnormal input",
        fast,

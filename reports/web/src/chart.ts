@@ -6,8 +6,7 @@ import type { Report } from './report';
 
 export const kChartStyle = { background: 'none', fontFamily: 'inherit', fontSize: '12px' };
 
-// Makes the plot one picture with this label for screen readers. Moves the names that Plot gives to the plot's parts to
-// data-mark.
+// Shows the plot to screen readers as one image with this label. Plot names the parts of a plot; moves those names to data-mark.
 export function named(plot: SVGSVGElement | HTMLElement, label: string) {
   for (const part of plot.querySelectorAll('[aria-label]')) {
     part.setAttribute('data-mark', part.getAttribute('aria-label')!);
@@ -34,7 +33,7 @@ export function shares_axis(shares: number[]) {
   };
 }
 
-// The label of a horizontal axis, in the middle below it.
+// The label of a horizontal axis, centred below it.
 export const x_label = (label: string | null, labelOffset: number) =>
   ({ label, labelAnchor: 'center', labelArrow: 'none', labelOffset }) as const;
 

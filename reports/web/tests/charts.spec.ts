@@ -6,7 +6,7 @@ import { expect, pixels, test } from './page';
 
 const kLines = '#margin-chart svg g[data-mark="line"] path';
 
-// On the log axis, a lane has a line on each side of zero on which it was ever wrong.
+// On the log axis, a lane has a line on each side of zero where it was wrong at least once.
 const lines_of = (report: Report, shown: (lane: Report['lanes'][number]) => boolean) =>
   report.margins
     .filter((row) => row.stratum === null && shown(report.lanes[row.lane]))

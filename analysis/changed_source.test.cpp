@@ -12,8 +12,10 @@
 
 #include "analysis/experiments.h"
 #include "analysis/scales.h"
+#include "core/lanes/verdicts.h"
 #include "core/relation_of.h"
 #include "strata/strata.h"
+#include "subjects/rebuilt.h"
 #include "subjects/subjects.h"
 
 namespace graze::analysis {
@@ -128,6 +130,72 @@ TEST_F(ExperimentsOnSources, ANumberThatDecidesAtEveryScaleIsARelativeEpsilon) {
 }
 
 // The function of doubles is right, so the verdict's change with the scale may be underflow.
+// Contraction makes this code wrong here. A build without contraction is right with a negligible epsilon, but the
+// contracted build is not.
+TEST_F(ExperimentsOnSources, AnEpsilonIsTriedInTheLanesOwnBuild) {
+  opened("apart", R"(struct V { float x, y, z; };
+static V of(const float* p, int i) { return {p[3 * i], p[3 * i + 1], p[3 * i + 2]}; }
+static V operator-(V p, V q) { return {p.x - q.x, p.y - q.y, p.z - q.z}; }
+static float dot(V p, V q) { return p.x * q.x + p.y * q.y + p.z * q.z; }
+static V cross(V p, V q) { return {p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x}; }
+static bool separates(V n, const float* a, const float* b) {
+  float al = dot(n, of(a, 0)), ah = al, bl = dot(n, of(b, 0)), bh = bl;
+  for (int i = 1; i < 3; ++i) {
+    const float x = dot(n, of(a, i)), y = dot(n, of(b, i));
+    al = x < al ? x : al, ah = x > ah ? x : ah, bl = y < bl ? y : bl, bh = y > bh ? y : bh;
+  }
+  return bl > ah + 1e-6f || al > bh + 1e-6f;
+}
+bool intersects(const float a[9], const float b[9]) {
+  V e[3], f[3];
+  for (int i = 0; i < 3; ++i) e[i] = of(a, (i + 1) % 3) - of(a, i), f[i] = of(b, (i + 1) % 3) - of(b, i);
+  if (separates(cross(e[0], e[1]), a, b) || separates(cross(f[0], f[1]), a, b)) return false;
+  for (int i = 0; i < 9; ++i)
+    if (separates(cross(e[i / 3], f[i % 3]), a, b)) return false;
+  return true;
+}
+)");
+  const Lane& fused = *find_lane("apart/f32/cpu-fma");
+  if (!runs_on_this_cpu(fused)) GTEST_SKIP() << "this processor has no FMA instructions";
+  int wrong = 0, named = 0;
+  for (std::uint64_t i = 0; i < 400; ++i) {
+    const Pair pair = strata::generate(5, strata::Stratum::near_edge_edge, i);
+    const Verdict truth = relation_of(pair).verdict;
+    if (decide_lane(fused, pair) == truth || decide_lane(*find_lane("apart/f32/cpu"), pair) == truth) continue;
+    const Experiment one = found(fused, pair);
+    ++wrong;
+    if (!has(one.evidence, " in place of 1e-6f at apart.cpp:12 it is right")) continue;
+    ++named;
+    const subjects::ChangedCode exact = subjects::changed(fused, {.negligible = subjects::small_numbers(fused)});
+    EXPECT_EQ(verdicts_of(*exact, std::span<const Pair>(&pair, 1))[0], truth) << one.evidence;
+  }
+  EXPECT_GT(named, 5);
+  EXPECT_GT(wrong, named);
+}
+
+// A build with other flags or types shows nothing about code that selects code by them.
+TEST_F(ExperimentsOnSources, CodeSelectedByTheBuildIsNotSettledByOtherBuilds) {
+  const std::string boxes =
+      "  for (int c = 0; c < 3; ++c) {\n"
+      "    float al = a[c], ah = al, bl = b[c], bh = bl;\n"
+      "    for (int v = c + 3; v < 9; v += 3) {\n"
+      "      al = a[v] < al ? a[v] : al, ah = a[v] > ah ? a[v] : ah;\n"
+      "      bl = b[v] < bl ? b[v] : bl, bh = b[v] > bh ? b[v] : bh;\n"
+      "    }\n";
+  const std::string by_macro = "#ifdef __FMA__\n    if (ah <= bl || bh <= al) return false;\n#endif\n";
+  const std::string by_size = "    if (sizeof al == 4 && (ah <= bl || bh <= al)) return false;\n";
+  const std::string end = "    if (ah < bl || bh < al) return false;\n  }\n  return true;\n}\n";
+  const Pair touching{{{0.1f, 0.2f, 0.3f}, {0.4f, 0.9f, 0.2f}, {0.7f, 0.1f, 0.6f}},
+                      {{0.1f, 0.2f, 0.3f}, {0.05f, 0.5f, 0.9f}, {-0.3f, 0.8f, 0.4f}}};
+  const Experiment size = found(opened("by_size", kHead + boxes + by_size + end), touching);
+  EXPECT_FALSE(size.settled) << name(size.cause) << ' ' << size.evidence;
+  opened("by_macro", kHead + boxes + by_macro + end);
+  const Lane& fused = *find_lane("by_macro/f32/cpu-fma");
+  if (!runs_on_this_cpu(fused)) GTEST_SKIP() << "this processor has no FMA instructions";
+  const Experiment macro = found(fused, touching);
+  EXPECT_FALSE(macro.settled) << name(macro.cause) << ' ' << macro.evidence;
+}
+
 TEST_F(ExperimentsOnSources, ANumberBesideAnOpenUnderflowIsNotSettled) {
   const Lane& lane = opened(
       "small", std::string("bool intersects(const double*, const double*) { return true; }\n") + kHead +

@@ -25,6 +25,8 @@
 namespace graze::analysis {
 namespace {
 
+constexpr char kSelects[] = ", but its source may select other code in that build";
+
 template <class Real>
 class Trial {
   using PairOf = BasicPair<Real>;
@@ -60,9 +62,11 @@ class Trial {
       if (lane_.variant != Variant::toolchain && ask_.asked(*rounded, {pair_})[0]) {
         if (info_of(lane_.variant).arithmetic == Arithmetic::fast)
           return by_build(*rounded, Cause::fast_math, "built so that every operation rounds as written it is right");
-        return by_build(*rounded, Cause::contraction, "built without contraction it is right");
+        Experiment found = by_build(*rounded, Cause::contraction, "built without contraction it is right");
+        if (found.settled && subjects::fused_lines_of(lane_).empty())
+          return {Cause::contraction, false, found.evidence + ", but no fused product was found in its machine code"};
+        return found;
       }
-      ask_.source = rounded;
     }
     std::optional<Experiment> scale;
     if (!size_.is_zero()) scale = by_scale();
@@ -83,14 +87,14 @@ class Trial {
     }
     std::optional<Experiment> precision = scale ? std::nullopt : by_precision();
     if (precision && precision->settled) return *precision;
-    if (scale && scale->cause == Cause::absolute_epsilon && subjects::may_have_epsilon(*ask_.source) == false)
+    if (scale && scale->cause == Cause::absolute_epsilon && subjects::may_have_epsilon(lane_) == false)
       scale->cause = by_exponents_at(ask_.last_turn());
     for (std::optional<Experiment>* found : {&values, &number, &scale, &precision}) {
       if (*found) return open(std::move(**found));
     }
     if (auto both = by_number_in_doubles()) return open(std::move(*both));
     Experiment images = by_images(pair_, asking());
-    if (ask_.in_float64() && (analysis::in_float64(lane_) || subjects::is_all_in_doubles(*ask_.source))) {
+    if (ask_.in_float64() && (analysis::in_float64(lane_) || subjects::is_all_in_doubles(lane_))) {
       images.evidence += "; " + ask_.in_float64_words() + "it is wrong too";
       if (images.cause == Cause::rounding && holds_determinants(pair_, Scalar::f64)) images.cause = Cause::logic;
     }
@@ -102,7 +106,7 @@ class Trial {
   // Code with an epsilon that also rounds too much: neither doubles nor a negligible number alone makes it right.
   std::optional<Experiment> by_number_in_doubles() const {
     const auto number = deciding_number(
-        *ask_.source, [this](const DecideBlock& block) -> bool { return ask_.asked(block, {pair_})[0]; },
+        lane_, [this](const DecideBlock& block) -> bool { return ask_.asked(block, {pair_})[0]; },
         [](const DecideBlock&) { return true; }, true);
     if (!number) return std::nullopt;
     const std::optional<LargerScales> larger = at_larger_scales(ask_.in_float64());
@@ -154,7 +158,7 @@ class Trial {
 
   std::optional<Experiment> by_values() const {
     const auto verdict_of = [this](const DecideBlock& block) { return ask_.said(block, {&pair_, 1})[0]; };
-    auto found = by_initial_values(*ask_.source, truth_, verdict_of);
+    auto found = by_initial_values(lane_, truth_, verdict_of);
     if (!found) return std::nullopt;
     const bool settled = found->differ || has_small_integers(pair_, lane_.scalar);
     return Experiment{Cause::uninitialised, settled, std::move(found->words)};
@@ -230,6 +234,8 @@ class Trial {
     for (const auto& [k, right] : ask_.tried(rounded, scales, 16)) {
       if (!right) return {cause, false, evidence + fmt::format(", but that build is wrong when scaled by 2^{}", k)};
     }
+    if (subjects::selects_by_build(lane_)) return {cause, false, evidence + kSelects};
+    if (by_values()) return {cause, false, evidence + ", but its verdict also changes with uninitialised variables"};
     return {cause, true, std::move(evidence)};
   }
 
@@ -241,7 +247,7 @@ class Trial {
 
   std::optional<DecidingNumber> number_that_decides() const {
     return deciding_number(
-        *ask_.source, [this](const DecideBlock& block) -> bool { return ask_.asked(block, {pair_})[0]; },
+        lane_, [this](const DecideBlock& block) -> bool { return ask_.asked(block, {pair_})[0]; },
         [this](const DecideBlock& block) {
           if (!wrong_images_) wrong_images_ = wrong_images(pair_, asking());
           const std::vector<bool> right = ask_.asked(block, *wrong_images_, true);
@@ -365,6 +371,8 @@ class Trial {
     if (wrong_at_.empty() || !has_usual_exponents() || has_small_integers(pair_, lane_.scalar) || !as_written ||
         !ask_.right_in_float64_at_every_scale())
       return Experiment{Cause::rounding, false, ask_.in_float64_words() + "it is right"};
+    if (!f64 && subjects::selects_by_build(lane_))
+      return Experiment{Cause::rounding, false, ask_.in_float64_words() + "it is right" + kSelects};
     return Experiment{
         Cause::rounding, true,
         ask_.in_float64_words() + fmt::format("it is right, in float32 wrong at all scales that were tried, "

@@ -56,8 +56,7 @@ class ImageVerdicts {
   using PairOf = BasicPair<Real>;
 
  public:
-  ImageVerdicts(const Lane& lane, const PairOf& pair, Verdict truth)
-      : source(&lane), lane_(lane), pair_(pair), truth_(truth) {}
+  ImageVerdicts(const Lane& lane, const PairOf& pair, Verdict truth) : lane_(lane), pair_(pair), truth_(truth) {}
 
   std::vector<Verdict> said(const DecideBlock& block, std::span<const PairOf> pairs) const {
     asked_ += static_cast<int>(pairs.size());
@@ -151,7 +150,7 @@ class ImageVerdicts {
   DecideBlock in_float64() const {
     if (const Lane* f64 = analysis::in_float64(lane_)) return block_of(*f64);
     if (lane_.scalar == Scalar::f64) return nullptr;
-    if (!doubles_) doubles_ = subjects::changed(*source, {.doubles = true});
+    if (!doubles_) doubles_ = subjects::changed(lane_, {.doubles = true});
     return *doubles_ ? DecideBlock(**doubles_) : nullptr;
   }
 
@@ -167,8 +166,6 @@ class ImageVerdicts {
   int verdicts() const { return asked_; }
   bool gave_up() const { return late_ >= kMostLate; }
   Turn last_turn() const { return last_turn_; }
-
-  const Lane* source;  // its source is changed: the lane, or its counterpart rounded as written if that is wrong too
 
  private:
   static constexpr int kMostLate = 3;  // after this many time-outs no more verdicts are requested

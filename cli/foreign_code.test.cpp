@@ -68,6 +68,20 @@ TEST_F(ForeignCode, NothingOutlivesACampaignOrItsKill) {
   expect_none_sleeps();
 }
 
+TEST_F(ForeignCode, CodeThatCannotBeSeenAndTooFewDescriptorsAreRefused) {
+  const std::string folder = "/dev/shm/graze-test-" + std::to_string(getpid());
+  if (shell("mkdir " + folder).status != 0) GTEST_SKIP() << "no /dev/shm";
+  expect_done("echo 'while read l; do echo 1; done' > " + folder + "/p.sh && ln -s " + folder +
+              "/p.sh p.sh && "
+              "echo 'int meet(const float* a, const float* b) { return a[0] < b[0]; }' > " +
+              folder + "/m.c");
+  for (const std::string& what : {"cmd:sh " + folder + "/p.sh", std::string("cmd:sh p.sh"), folder + "/m.c:meet"})
+    expect_error("graze check --subject 'm=" + what + "' pair.txt", 1, {"--subject m", "/dev/shm", "copy"});
+  expect_error("ulimit -n 100; cp " + folder + "/m.c . && graze check --subject m=./m.c:meet pair.txt", 1,
+               {"100 descriptors", "ulimit"});
+  expect_done("rm -r " + folder);
+}
+
 // The first subject puts another program in place of the one that runs subjects.
 TEST_F(ForeignCode, CannotReplaceTheProgramThatRunsIt) {
   expect_done("mkdir gz && cp $(command -v graze) $(dirname $(command -v graze))/graze-subject-host gz");

@@ -399,7 +399,7 @@ Wrong verdicts within the contract (false negatives, false positives, crashed, t
 ## Subjects
 {subjects}
 ## Smallest failures
-These are the simplest pairs found, one for each subject, shape ("clear" as above) and kind of wrong verdict. The commands run in the folder in which `scripts/league` ran. `graze repro --emit` turns a pair into a program. CGAL and GMP confirmed each failure, and a fresh process repeated it; {not_repeated} others were not repeated and are left out. In the drawings the second triangle is orange, the contact red, and the line where the two planes meet dashed.
+These are the simplest pairs found, one for each subject, shape ("clear" as above, but also on strata of "extreme") and kind of wrong verdict. The commands run in the folder in which `scripts/league` ran. `graze repro --emit` turns a pair into a program. CGAL and GMP confirmed each failure, and a fresh process repeated it; {not_repeated} others were not repeated and are left out. In the drawings the second triangle is orange, the contact red, and the line where the two planes meet dashed.
 {failures})",
       fmt::arg("command", command), fmt::arg("pairs", grouped(league.at("pairs"))),
       fmt::arg("doubles",

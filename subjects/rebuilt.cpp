@@ -169,6 +169,13 @@ std::vector<FusedLine> fused_lines_of(const Lane& lane) {
   }
 }
 
+bool selects_by_build(const Lane& lane) {
+  static const std::regex names(
+      "__(FMA|AVX|SSE|FAST_MATH|FINITE_MATH|OPTIMIZE|ARM_FEATURE|FLT_EVAL)|FLT_EVAL_METHOD|FP_FAST|"
+      "\\b(sizeof|is_same|_Generic|typeid|numeric_limits)");
+  return std::regex_search(source_as_built(lane), names);
+}
+
 bool has_source_as_built(const Lane& lane) { return !source_as_built(lane).empty(); }
 
 std::optional<bool> may_have_epsilon(const Lane& lane) {

@@ -53,6 +53,10 @@ struct Change {
 // if there is no source, or if the source has changed since it was built.   Throws: Stopped.
 std::vector<FusedLine> fused_lines_of(const Lane& lane);
 
+// Whether the lane's source names what depends on the build, such as __FMA__ or sizeof. Then a build with other flags
+// or types may be other code, whose verdicts show nothing about this code.
+bool selects_by_build(const Lane& lane);
+
 // Whether the lane is built from a C or C++ source whose file exists and is unchanged.
 bool has_source_as_built(const Lane& lane);
 

@@ -81,6 +81,14 @@ const Lane* find_published(std::string_view name) {
   return found == published_lanes().end() ? nullptr : &*found;
 }
 
+// Foreign code and compilers run with a /dev/shm of their own (subjects/containment.h).
+void expect_visible(const std::string& name, const fs::path& file) {
+  if (fs::weakly_canonical(file).string().starts_with("/dev/shm/"))
+    throw std::runtime_error(fmt::format(
+        "--subject {}: {} is in /dev/shm, which foreign code and compilers cannot see; copy it to another folder", name,
+        shown_path(file.string())));
+}
+
 Opened parsed(const Wanted& wanted) {
   Opened result;
   result.wanted = wanted;
@@ -99,6 +107,7 @@ Opened parsed(const Wanted& wanted) {
       throw std::runtime_error(fmt::format("--subject {}: there is no program {}", wanted.name, shown(missing)));
     result.kind = "command";
     result.code = hash_of_command(wanted.what.substr(kCommand.size()));
+    for (const HashedFile& named : result.code.files) expect_visible(wanted.name, named.file);
     result.hash = result.code.hash;
     return result;
   }
@@ -130,6 +139,7 @@ Opened parsed(const Wanted& wanted) {
         fmt::format("--subject {}: no compiler reads a file named {}; rename it, without quotes, "
                     "backslashes and control characters",
                     wanted.name, shown_path(name)));
+  if (result.kind != "library" && result.kind != "opencl") expect_visible(wanted.name, result.file);
   const std::string bytes = wanted.builds.empty() ? code_in(result.file) : "";
   result.code = {fnv1a(bytes), "the libraries that it loads"};  // replaced when a source is built
   result.hash = result.code.hash;
@@ -532,6 +542,8 @@ Json record(const std::vector<std::string>& lanes) {
         from_toolchains.back()["contraction"] = plan;
       from_toolchains.back()["build"] = row.build;
       from_toolchains.back()["compiler"] = row.compiler;
+      if (!row.toolchain.run.empty() && o.kind != "opencl")
+        from_toolchains.back()["runner"] = fmt::format("{:016x}", hash_of_command(row.toolchain.run).hash);
     }
     if (o.kind == kPublished ? from_toolchains.is_null() : std::none_of(lanes.begin(), lanes.end(), is_of)) continue;
     rows.push_back({{"name", o.wanted.name},

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -26,7 +27,8 @@ constexpr int kLookEvery = 50;  // ms between two checks for a request to stop
 // Counts checks, not time: if the machine is so busy that the supervisor waits, this process waits as well.
 constexpr int kMostSilentLooks = 10'000 / kLookEvery;
 
-constexpr int kAboveShared = 64;  // above the descriptors that a supervisor gets
+constexpr int kAboveShared = 64;            // above the descriptors that a supervisor gets
+constexpr rlim_t kFewestDescriptors = 128;  // of a process that runs foreign code
 
 int open_program(const char* name) {
   const int file = open(beside_this(name).c_str(), O_PATH | O_CLOEXEC),
@@ -48,6 +50,10 @@ const std::array<int, 2>& program_files() {
 
 SupervisorProcess::SupervisorProcess(const std::string& program, const std::vector<std::string>& arguments,
                                      const std::vector<int>& shared, int output) {
+  rlimit files{};
+  if (getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur < kFewestDescriptors)
+    throw std::runtime_error("a limit of " + std::to_string(files.rlim_cur) + " descriptors is too low for " + program +
+                             "; raise it: ulimit -n 1024");
   int sockets[2];
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, sockets) != 0)
     throw std::system_error(errno, std::generic_category(), "cannot make a socket for " + program);

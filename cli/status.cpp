@@ -112,7 +112,10 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
           cannot("open", directory / "status.json", "it is missing beside a database (`graze merge` writes none)"));
     return row;
   }
-  const auto silent = [&] { return std::time(nullptr) - status.at("updated").get<std::int64_t>(); };
+  // Not negative if this machine's clock is behind the writer's.
+  const auto silent = [&] {
+    return std::max<std::int64_t>(0, std::time(nullptr) - status.at("updated").get<std::int64_t>());
+  };
   row["state"] = state_of(status, silent(), stalled);
   if (row["state"] == "killed") {  // or it ended after its status was read
     if (Json now = fuzz::read_status(directory); !now.is_null()) status = std::move(now);

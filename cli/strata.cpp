@@ -27,7 +27,7 @@ void add_strata(CLI::App& app, int&) {
                                         columns, 0, 33));
     };
     for (const strata::StratumInfo& row : strata::kStrata) print(row);
-    fmt::print("\n--coordinates f64 draws all of these in doubles. These strata differ or exist only there:\n");
+    fmt::print("\n--coordinates f64 draws all of these in doubles. New or different there:\n");
     for (std::size_t i = 0; i < std::size(strata::kDoubleStrata); ++i) {
       const strata::StratumInfo& row = strata::kDoubleStrata[i];
       if (i >= std::size(strata::kStrata) || row.what != strata::kStrata[i].what) print(row);

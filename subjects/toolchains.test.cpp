@@ -197,6 +197,21 @@ run = "true"
   EXPECT_TRUE(record({"separating_axes/f32/cpu"}).is_null());
 }
 
+// A campaign with another runner is another campaign.
+TEST_F(Toolchains, TheirRunnerIsRecorded) {
+  const std::string runner = write("runner", "#!/bin/sh\nexec \"$@\"\n");
+  fs::permissions(runner, fs::perms::owner_all);
+  const std::string rows =
+      write("runs.toml", "[[toolchain]]\nname = \"runs\"\ncxx = \"c++ -O2\"\nrun = \"" + runner + " {}\"\n");
+  open_published("moller_1997", rows);
+  const auto recorded = [] { return record({"moller_1997/f32/runs"}).at(0).at("toolchains").at(0); };
+  const nlohmann::ordered_json before = recorded();
+  ASSERT_TRUE(before.contains("runner")) << before;
+  EXPECT_EQ(recorded(), before);
+  write("runner", "#!/bin/sh\nexport X=1\nexec \"$@\"\n");
+  EXPECT_NE(recorded().at("runner"), before["runner"]);
+}
+
 // Foreign code in a toolchain's program fails only on its bad pairs, and its own output is not an answer.
 TEST_F(Toolchains, ProgramsThatFailLoseOnlyTheirPair) {
   Wanted wanted = parse_subject("fails=" + write("fails.cpp", R"(

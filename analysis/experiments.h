@@ -11,6 +11,9 @@ namespace graze::analysis {
 //   crash, no answer in time, unstable   the verdict itself shows the cause
 //   contraction, fast math   the same code with every operation rounded as written is right, at all scales and in
 //                float64 too. This rules out code that is wrong in exact arithmetic and right here by luck.
+//                Contraction also needs a fused product in the machine code. Another build settles nothing, here and
+//                below, if the source selects code by the build (subjects::selects_by_build) or if the verdict
+//                depends on uninitialised variables.
 //   contraction, excess precision, fast math, of a toolchain's lane   the same holds for the code compiled with the
 //                toolchain's strict flags. If rounding the fused products of one line alone makes the code right, that
 //                line is named.
@@ -25,8 +28,8 @@ namespace graze::analysis {
 //                The unchanged code must be right at some larger scale at which no product of kUsualFactors leaves
 //                the exponents.
 //   relative epsilon   a small number decides in this way, but the unchanged code is wrong at every larger scale.
-//   uninitialised   the verdict depends on the value that the compiler gives to uninitialised variables. This is also
-//   the cause if any such value makes the verdict right and the compiler warns about such a variable.
+//   uninitialised   the verdict depends on the value that the compiler gives to uninitialised variables. This is
+//                also the cause if any such value makes the verdict right and the compiler warns about such a variable.
 //                Then the coordinates must be small integers times a power of two, so that different machine code
 //                hardly rounds differently.
 //   underflow, overflow   the code is right at all scales at which no product of kUsualFactors leaves the exponents,

@@ -62,10 +62,7 @@ class Trial {
       if (lane_.variant != Variant::toolchain && ask_.asked(*rounded, {pair_})[0]) {
         if (info_of(lane_.variant).arithmetic == Arithmetic::fast)
           return by_build(*rounded, Cause::fast_math, "built so that every operation rounds as written it is right");
-        Experiment found = by_build(*rounded, Cause::contraction, "built without contraction it is right");
-        if (found.settled && subjects::has_source_as_built(lane_) && subjects::fused_lines_of(lane_).empty())
-          return {Cause::contraction, false, found.evidence + ", but no fused product was found in its machine code"};
-        return found;
+        return by_build(*rounded, Cause::contraction, "built without contraction it is right");
       }
     }
     std::optional<Experiment> scale;
@@ -235,6 +232,8 @@ class Trial {
       if (!right) return {cause, false, evidence + fmt::format(", but that build is wrong when scaled by 2^{}", k)};
     }
     if (subjects::selects_by_build(lane_)) return {cause, false, evidence + kSelects};
+    if (cause == Cause::contraction && subjects::has_source_as_built(lane_) && subjects::fused_lines_of(lane_).empty())
+      return {cause, false, evidence + ", but no fused product was found in its machine code"};
     if (by_values()) return {cause, false, evidence + ", but its verdict also changes with uninitialised variables"};
     return {cause, true, std::move(evidence)};
   }

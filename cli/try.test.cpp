@@ -216,7 +216,8 @@ TEST_F(TryCommand, WorksOnEachKindOfCode) {
                                            : needs.empty() || shell("command -v " + needs).status == 0;
     if (!is_there) continue;
     // On a machine that is busy for seconds, only longer limits leave the cost of each source.
-    const Json answer = answer_of(std::string(code.source) + " --pairs 30 --subject-timeout 60 --out " + out);
+    const std::string arguments = std::string(code.source) + " --pairs 30 --subject-timeout 60 --out " + out;
+    const Json answer = answer_of(arguments);
     ASSERT_TRUE(answer.is_object()) << code.source;
     EXPECT_EQ(answer["lane"], code.lane);
     EXPECT_GT(answer["wrong"]["count"], 0) << code.source;
@@ -239,7 +240,7 @@ TEST_F(TryCommand, WorksOnEachKindOfCode) {
       const Json report = shell.json(out + "/report.json");
       expect_done(report["run"]["command"].get<std::string>() + " > /dev/null");
       expect_done("sed -i 's/</>/' shapes.py");
-      EXPECT_NE(answer_of(std::string(code.source) + " --pairs 30 --subject-timeout 60 --out " + out)["earlier"], "");
+      EXPECT_NE(answer_of(arguments)["earlier"], "");
       expect_error("graze try shapes.py:none --pairs 30 --out none", 1, {"shapes.py", "crashed"});
     }
     ++tried;

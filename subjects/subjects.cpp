@@ -525,7 +525,8 @@ Json plan_of(const Opened& subject, const Toolchain& toolchain, const std::strin
 }  // namespace
 
 Json record(const std::vector<std::string>& lanes) {
-  const StopSignals stops;  // while compilers run
+  const StopSignals stops;                     // while compilers run
+  std::map<std::string, std::string> runners;  // hashes, by the command that runs builds
   Json rows;
   for (const Entry& entry : entries()) {
     const Opened& o = entry.opened;
@@ -542,8 +543,11 @@ Json record(const std::vector<std::string>& lanes) {
         from_toolchains.back()["contraction"] = plan;
       from_toolchains.back()["build"] = row.build;
       from_toolchains.back()["compiler"] = row.compiler;
-      if (!row.toolchain.run.empty() && o.kind != "opencl")
-        from_toolchains.back()["runner"] = fmt::format("{:016x}", hash_of_command(row.toolchain.run).hash);
+      if (const std::string& run = row.toolchain.run; !run.empty() && o.kind != "opencl") {
+        std::string& hash = runners[run];
+        if (hash.empty()) hash = fmt::format("{:016x}", hash_of_command(run).hash);
+        from_toolchains.back()["runner"] = hash;
+      }
     }
     if (o.kind == kPublished ? from_toolchains.is_null() : std::none_of(lanes.begin(), lanes.end(), is_of)) continue;
     rows.push_back({{"name", o.wanted.name},

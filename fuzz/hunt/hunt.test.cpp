@@ -268,9 +268,11 @@ TEST_F(HuntFiles, RunsRoundsAgainWhoseFilesAreOfOtherRounds) {
   write_whole(file("000001.round"), first);
   run("moved", 2);
   expect_same_hunt("whole", "moved");
+  EXPECT_EQ(read_whole(file("000000.round")), first);
   write_whole(file("000001.round"), first);
   run("moved", 2);
   expect_same_hunt("whole", "moved");
+  EXPECT_NE(read_whole(file("000001.round")), first);
 }
 
 TEST_F(HuntFiles, RemovesNothingThatItDidNotWrite) {

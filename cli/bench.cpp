@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze bench`: repeats the tables of the thesis of 2012 on this machine.
+// `graze bench`: repeats the tables of the 2012 thesis on this machine.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -96,7 +96,7 @@ std::string table_of(const Bench& bench, std::size_t group) {
   return table.text(output_screen());
 }
 
-// Describes the device's limits and the speed of the exact lane.
+// Describes the speed of the exact lane as shares of the device's limits.
 std::string shares(const Bench& bench) {
   std::string text;
   for (const auto& [lane, size] : {std::pair(kExact, 36), {kExactInDoubles, 72}}) {
@@ -148,7 +148,7 @@ void bench(const Options& options, int& status) {
   }
   const std::atomic<bool>& interrupted = catch_interrupts();
   const bool on_terminal = isatty(STDERR_FILENO);
-  std::size_t printed = 0;  // arrays whose tables are printed
+  std::size_t printed = 0;  // arrays whose tables are already printed
   const auto print_table = [&](const Bench& bench) {
     if (on_terminal) fmt::print(stderr, "\r\033[K");
     if (options.json) return;
@@ -189,7 +189,7 @@ void bench(const Options& options, int& status) {
                   [](const Lane* lane) { return lane->foreign; }))
     print_wrapped(
         {"Times of your own code include the exchange with its process, which decides each pair twice; `graze pareto` "
-         "times the code alone, for host lanes."});
+         "times only the code, for host lanes."});
   if (!result.machine.devices.empty() && !options.sizes.empty()) {
     fmt::print("crossover: {}\n", result.crossover == 0
                                       ? "none; with copies included, all cores are faster"

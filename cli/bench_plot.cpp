@@ -14,7 +14,7 @@ namespace {
 using reports::svg_text;
 
 constexpr double kWidth = 900, kHeight = 420, kLeft = 64, kRight = 300, kTop = 44, kBottom = 52;
-// The decades that a logarithmic axis needs to hold the given values.
+// The decades that a logarithmic axis must span to show the given values.
 struct Decades {
   int low = 99, high = -99;
   void hold(double value) {

@@ -27,7 +27,7 @@ using query::Answer;
 using query::Triangle;
 
 constexpr std::uint64_t kDrawn = 1'000'000;   // distinct triangles; larger arrays repeat them
-constexpr std::uint64_t kInTree = 1'000'000;  // more triangles would take minutes and gigabytes
+constexpr std::uint64_t kInTree = 1'000'000;  // a larger tree would take minutes and gigabytes
 constexpr std::uint64_t kByLanes = 1'000'000, kByCudaLanes = 10'000'000;  // limits for inexact lanes, which are slower
 constexpr std::uint64_t kOnOneCore = 100'000'000, kInDoubles = 100'000'000;
 constexpr int kTimes = 3;
@@ -125,7 +125,7 @@ class Measuring {
     by_executors(array.name, query::query_of(array.reference, host), sizeof(Triangle), mode, lane, bytes, exact);
   }
 
-  // Measures the exact lane again, on the same numbers stored as doubles.
+  // Measures the exact lane again, with the same numbers stored as doubles.
   void by_executors_in_doubles(const Array& array, std::vector<std::uint8_t>& exact) {
     const auto in_doubles = [](const Triangle& t) {
       query::DoubleTriangle result;
@@ -209,7 +209,7 @@ class Measuring {
     tell(row);
   }
 
-  // All executors must find the same hits in one array, which is stored once on each device.
+  // Checks that all executors find the same hits in an array, which every device holds once.
   void expect_hits(const BenchRow& row) const {
     for (const BenchRow& other : bench_.rows) {
       if (other.group != row.group || other.lane != kExact || other.mode != "all") continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The measurements of `graze bench`: queries on arrays of several sizes with all available executors. Each time is the
-// best of three runs after a warm-up. Also measures the limits of a device, and CGAL's tree of boxes.
+// best of three runs after a warm-up. Also measures a device's limits and CGAL's AABB tree.
 #pragma once
 
 #include <cstdint>
@@ -53,8 +53,8 @@ struct BenchMachine {
 struct Bench {
   BenchMachine machine;
   std::vector<BenchRow> rows;
-  // The smallest measured array from which one GPU, copies included, is always faster than all cores; 0 if there is
-  // none.
+  // Size of the smallest measured array from which one GPU, including copies, is always faster than all cores; 0 if
+  // there is none.
   std::uint64_t crossover = 0;
   std::map<std::string, std::uint64_t> not_timed_above;  // by lane: the size of the largest array on which it is timed
 };
@@ -63,14 +63,14 @@ struct Bench {
 // Throws: std::runtime_error if a measurement fails.
 Bench measure(const BenchOptions& options, const std::function<bool(const Bench&)>& told);
 
-// Adds the rows of two meshes against each other. `told` works as in `measure`.
-// Throws: Stopped; std::runtime_error for a mesh that cannot be read; as `measure`.
+// Adds the rows for two meshes that are tested against each other. `told` works as in `measure`.
+// Throws: Stopped; std::runtime_error for a mesh that cannot be read; what `measure` throws.
 void measure_between(const std::vector<std::string>& files, Bench& bench,
                      const std::function<bool(const Bench&)>& told);
 
-// Returns an SVG of 900 x 420: triangles per second against array size on the thesis arrays, for the exact lane and the
-// thesis's own algorithm. Both axes are logarithmic; each lane has a line for each executor. Twins are not drawn,
-// because their time is not the lane's. `machine`: a description of the machine.
+// Returns an SVG (900 x 420) that plots triangles per second against array size on the thesis arrays, for the exact
+// lane and the thesis's own algorithm. Both axes are logarithmic; each lane has a line for each executor. Twins are not
+// drawn, because their time is not the lane's. `machine`: a description of the machine.
 std::string bench_plot(const Bench& bench, const std::string& machine);
 
 }  // namespace graze::cli

@@ -82,7 +82,7 @@ bool alike(const oracle::Truth& l, const oracle::Truth& r) {
   return l.verdict == r.verdict && l.contact == r.contact && l.margin_sign == r.margin_sign;
 }
 
-// Such as "it rounds number 2, 0.1". If several numbers are rounded, names how many and the first of them.
+// Returns words such as "it rounds number 2, 0.1". If several numbers are rounded, gives their count and the first one.
 std::string rounded_words(std::size_t count, std::size_t first, std::string_view number) {
   return fmt::format("it rounds {}number {}, {}", count == 1 ? "" : fmt::format("{} numbers, the first is ", count),
                      first + 1, number);
@@ -133,7 +133,7 @@ std::string written_note(const corpus::Entry& entry, const oracle::Truth& truth)
   for (std::size_t i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = std::strtod(entry.written[i].c_str(), nullptr);
   const oracle::Truth in_doubles = is_finite(pair) ? oracle::truth(pair) : *written;
   const bool double_differs = !alike(*written, in_doubles);
-  // The words "as doubles and as stored in float32" are used only if they are true of both roundings.
+  // Says "as doubles and as stored in float32" only if the words are true for both roundings.
   const bool float_differs = !alike(in_doubles, truth) || (double_differs && words(in_doubles) != words(truth));
   if (!double_differs && !float_differs) return "";
   std::string text = "as written: " + words(*written);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How users name cases: a file of pairs, a stratum's pair as STRATUM:SEED:INDEX, or a pair of a scene as
+// How users name cases: a file of pairs, a stratum's pair as STRATUM:SEED:INDEX, or a pair drawn in a scene as
 // STRATUM@SCENE:SEED:INDEX.
 #pragma once
 
@@ -17,14 +17,14 @@ namespace graze::cli {
 
 // Returns: at least one case. A stratum's pair has the fields stratum, seed and index.
 // Throws: UsageError for an invalid name, FormatError for a file that is missing or not in the format,
-// std::runtime_error for a file without a case; as expect_exact_input if the input must be exact.
+// std::runtime_error for a file without a case; what expect_exact_input throws if the input must be exact.
 std::vector<corpus::Entry> read_cases(const std::string& name, bool exact_input = false);
 
-// The same. Also prints each case's written_note.
+// Like read_cases, but also prints each case's written_note.
 std::vector<corpus::Entry> read_noted_cases(const std::string& name, bool exact_input);
 
-// What identifies the case for a reader: STRATUM:SEED:INDEX, the case that it was minimised from, its name, or its line
-// in the file.
+// Returns what identifies the case to a reader: STRATUM:SEED:INDEX, the case that it was minimised from, its name, or
+// its line in the file.
 std::string shown_name(const std::string& file, const corpus::Entry& entry);
 
 // The truth of the pair in its own coordinate type.
@@ -34,8 +34,8 @@ oracle::Truth truth_of(const corpus::Entry& entry);
 // if rounding to double or to float32 changes the truth; otherwise empty. truth: the entry's truth.
 std::string written_note(const corpus::Entry& entry, const oracle::Truth& truth);
 
-// The verdicts that the entry's campaign stored for lanes of foreign code that are left out now. Empty unless the entry
-// has a signature of their subject.
+// The verdicts that the entry's campaign stored for foreign-code lanes that cannot run now. Empty unless the entry has
+// a signature of their subject.
 std::vector<std::pair<std::string, Verdict>> stored_verdicts_of(const corpus::Entry& entry,
                                                                 const std::vector<fuzz::LaneLeftOut>& left_out,
                                                                 Verdict truth);

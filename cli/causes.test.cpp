@@ -16,7 +16,7 @@ using nlohmann::json;
 struct Bug {
   const char* name;
   const char *right, *wrong;  // text of planted/edges.cpp, and its replacement
-  const char* strata;         // and other options of the campaign
+  const char* strata;         // and the campaign's other options
   const char* cause;
   const char* line;  // text in the source line that decides; empty if no number decides
   std::vector<std::string> words;
@@ -176,8 +176,8 @@ TEST_P(PlantedBugs, HasItsCauseAndItsWords) {
 
 class TwoExperiments : public CommandTest {
  protected:
-  // What `explain` says about code that compares the gap along x with the limit. In both texts, s is the size of the
-  // largest coordinate.
+  // Returns what `graze explain` says about code that compares the gap along x with a limit. In both expressions, s is
+  // the magnitude of the largest coordinate.
   std::string explained(const std::string& gap, const std::string& limit, const std::string& pair) const {
     std::ofstream(shell.folder / "gap.cpp")
         << "#include <algorithm>\n#include <cmath>\n"
@@ -209,7 +209,7 @@ TEST_F(TwoExperiments, AnEpsilonAndRoundingTogetherAreNamed) {
   }
 }
 
-// This limit grows with the distance from the origin, so some images are right, but doubles do not help.
+// This limit grows with the distance from the origin: the verdict is right on some images, but doubles do not help.
 TEST_F(TwoExperiments, WhatIsWrongInDoublesTooIsNotCalledRounding) {
   const std::string found = explained("n - m, l - k", "s / 16", "3 0 0 2 0 0 3 1 0  3.1240234375 0 0 4 0 0 4 1 0");
   EXPECT_TRUE(found.starts_with("logic: ")) << found;

@@ -24,8 +24,8 @@ namespace {
 
 using fuzz::ChangedVerdicts;
 
-// Finds a subject's lane with the code that the campaign ran. Opens the subject under a name that no user can
-// give.   Returns: null if the code no longer exists.
+// Finds a subject's lane, with the code that the campaign ran. Opens that code under a name that no user can give.
+// Returns: null if the code no longer exists.
 class RecordedCode {
  public:
   RecordedCode(const std::string& directory, std::string suffix)
@@ -70,7 +70,7 @@ void count_on_pairs(const Lane& before, const Lane& after, const std::vector<str
       analysis::verdicts_apart({{&before, &after}, {before.decide, after.decide}}, of_rows, 0, is_simpler);
   for (std::size_t s = 0; s < rows.size(); ++s) {
     Json& row = *rows[s];
-    // If the count is out of bounds, the code answers differently now.
+    // A count outside the bounds means that the code answers differently now, so it is not used.
     if (found[s].differs < row["least"] || found[s].differs > row["most"]) continue;
     row["least"] = row["most"] = found[s].differs;
     row["broken"] = found[s].broken;

@@ -8,11 +8,11 @@
 namespace graze::cli {
 
 // Counts the verdicts that changed between two complete campaigns on the same pairs, as rows for
-// reports::add_comparison. If the code of a --subject still exists in both versions, runs both versions on the pairs
-// and counts exactly.   Returns: null if a database is missing.   Throws: as fuzz::changed_verdicts.
+// reports::add_comparison. If both versions of a --subject's code still exist, runs them on the pairs and counts
+// exactly.   Returns: null if a database is missing.   Throws: what fuzz::changed_verdicts throws.
 fuzz::Json changed_rows(const std::string& before, const std::string& after);
 
-// Prints the part "compare" of a report: the headline, what changed with its smallest cases, and how the campaigns
+// Prints the "compare" part of a report: the headline, each change with its smallest cases, and how the campaigns
 // differ.
 void print_comparison(const fuzz::Json& compare);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command as users run it: JSON contracts, one clear line for bad input, and no loss when it is killed.
+// The command as users run it: JSON contracts, one clear line for bad input, and no lost work when it is killed.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -60,7 +60,7 @@ TEST_F(Cli, BadPairsGetOneLineAndKeepWhatCameBefore) {
   expect_error("graze repro missing.pairs", 1, {"missing.pairs", "No such file or directory"});
 }
 
-// Verdicts that were not compared are not reported as zero.
+// If no verdicts were compared, the number of differences is not reported as zero.
 TEST_F(Cli, NothingComparedIsSaidEverywhere) {
   const std::string fuzz = "graze fuzz --executor twin --pairs 30 --strata uniform ";
   const Ran ran = shell.done(fuzz + "--lanes 'moller_1997/f32/cuda-fma' --out c");
@@ -72,7 +72,7 @@ TEST_F(Cli, NothingComparedIsSaidEverywhere) {
   const Json lanes = Json::parse(beside.out)["strata"]["uniform"]["lanes"];
   EXPECT_TRUE(lanes["moller_1997/f32/cpu"]["differs_from_cpu"].is_null());
   EXPECT_EQ(lanes["moller_1997/f32/cuda-nofma"]["differs_from_cpu"], 0);
-  // A stratum without pairs has no shares.
+  // For a stratum without pairs, no shares are printed.
   const Ran none = shell("graze fuzz --pairs 1 --strata 'uniform,thesis' --lanes 'moller_*/f32/cpu' --out e");
   EXPECT_TRUE(std::regex_search(none.out, std::regex("\nthesis +0 +- +-\n"))) << none.out;
   expect_done("graze report c && graze report d && graze report e");
@@ -142,7 +142,7 @@ TEST_F(Cli, TwoAtOnceInOneFolderAreRefused) {
   expect_done("graze minimize c > /dev/null && " + fuzz);
 }
 
-// A run whose folder was removed or moved does not touch the campaign that stands there now.
+// A run whose folder was removed or moved does not touch the campaign that is there now.
 TEST_F(Cli, AFolderReplacedDuringARunIsLeftAlone) {
   expect_done("echo 'while read l; do until [ $l = describe ] || [ -e go ]; do sleep 0.05; done; echo 1; done' > w.sh");
   expect_done("graze fuzz --pairs 600 --strata lattice --lanes '*/f32/cpu' --out other > /dev/null");
@@ -165,7 +165,7 @@ TEST_F(Cli, AFolderReplacedDuringARunIsLeftAlone) {
   }
 }
 
-// Uses device nodes and pipes made by the test, never those of the machine.
+// Uses device nodes and pipes that the test creates, never the machine's own.
 TEST_F(Cli, OutGoesIntoWhatStandsThere) {
   const std::string minimize = "graze minimize exact_contact:1:1 --lanes 'guigue_*/f32/cpu' --out ";
   expect_done(minimize + "plain");
@@ -212,7 +212,7 @@ TEST_F(Cli, OptionsThatCannotActAreRefused) {
   expect_error("graze query r.txt m.obj" + toolchains, 2, {"--toolchains"});
 }
 
-// The error must be a message of Graze, never one of a library.
+// The error must be Graze's own message, never a library's.
 TEST_F(Cli, WhatIsNoSummaryAndNoReportIsNamed) {
   expect_error("mkdir a; echo '{\"signatures\":[{}],\"spec\":{\"lanes\":5}}' > a/summary.json; graze minimize a", 1,
                {"a/summary.json"});
@@ -234,7 +234,7 @@ TEST_F(Cli, WhatIsNoSummaryAndNoReportIsNamed) {
       "explain $'\\xff.pairs' --json");
 }
 
-// A limit on file sizes simulates a full disk: the error is one line, and the same command resumes once there is room.
+// A file-size limit simulates a full disk: the error is one line, and the same command resumes once there is room.
 TEST_F(Cli, AFullDiskLosesNothing) {
   const std::string fuzz = "graze fuzz --seed 5 --pairs 150000 --strata 'near_*' ";
   expect_error("ulimit -f 400; " + fuzz + "--out disk", 1, {"disk", "File too large"});
@@ -243,7 +243,7 @@ TEST_F(Cli, AFullDiskLosesNothing) {
   expect_done("diff disk/summary.json whole/summary.json && diff -r disk/cases whole/cases");
   for (const char* verb : {"strata", "lanes", "lanes --json"})
     expect_error(std::string("graze ") + verb + " > /dev/full", 1, {"standard output", "No space left on device"});
-  // The exit status is right even if there is no room for the error message.
+  // The exit status is right even if the error message cannot be written.
   expect_error("graze dump uniform --pairs 2000 > /dev/full", 1, {"standard output", "No space left on device"});
   EXPECT_EQ(shell("graze check nofile 2> /dev/full").status, 1);
   EXPECT_EQ(shell("graze check nofile 2>&-").status, 1);
@@ -251,7 +251,7 @@ TEST_F(Cli, AFullDiskLosesNothing) {
   EXPECT_EQ(shell("graze strata > /dev/full 2>&1").status, 1);
 }
 
-// A folder that looks like a rank's but belongs to somebody else is kept.
+// A folder that looks like a rank's, but was not made by Graze, is kept.
 TEST_F(Cli, FoldersOfRanksAreKnownByTheirStores) {
   const std::string fuzz = "graze fuzz --pairs 400 --strata near_edge_edge --lanes moller_1997/f32/cpu --out r";
   expect_done(fuzz);
@@ -263,7 +263,7 @@ TEST_F(Cli, FoldersOfRanksAreKnownByTheirStores) {
   EXPECT_EQ(shell("cat r/rank-7/deep/f other/f r/rank-9/f").out, "x\nx\nx\n");
 }
 
-// Kills a campaign at twelve places. The same command resumes it each time, and the final files have the same bytes.
+// Kills a campaign at twelve points. The same command resumes it each time, and the final files have the same bytes.
 TEST_F(Cli, KilledCampaignsGoOnToTheSameBytes) {
   const std::string fuzz = "graze fuzz --seed 9 --pairs 600000 --strata 'near_*,degenerate' ";
   expect_done(fuzz + "--threads 2 --out whole");
@@ -296,7 +296,7 @@ TEST_F(Cli, ReproRunsStoredCasesAndNoticesChange) {
                           " > other.pairs; graze repro other.pairs");
   EXPECT_EQ(truth.status, 1);
   EXPECT_TRUE(has(truth.out, {"CHANGED, recorded: truth=declined", "CHANGED, recorded: margin=1"}));
-  // Recorded lanes that do not run now make no difference.
+  // Recorded lanes that do not run now count as no difference.
   const std::string algorithm = shell.json("c/summary.json")["signatures"][0]["key"];
   const std::string other = algorithm.find("moller") == std::string::npos ? "moller_*" : "separating_*";
   expect_out("graze repro c/" + first + " --lanes '" + other + "'", {"not compared"});
@@ -325,7 +325,7 @@ TEST_F(Cli, AHuntIsACampaignForOtherVerbs) {
   EXPECT_EQ(shell("graze hunt --runs 601 --lanes 'moller_1997/f32/cpu,exact/f32/cpu' --out h").status, 2);
 }
 
-// SQLite reads a relative name that begins like this as a URI.
+// SQLite reads a relative name that begins with "file:" as a URI.
 TEST_F(Cli, AFolderMayBeNamedLikeAUri) {
   expect_done("mkdir d; graze fuzz --pairs 100 --strata lattice --lanes moller_1997/f32/cpu --out file:d > /dev/null");
   EXPECT_TRUE(std::filesystem::is_empty(shell.folder / "d"));

@@ -25,8 +25,8 @@ namespace graze::cli {
 #undef GRAZE_VERB
 #undef GRAZE_TASK
 
-// --lanes, --subject and --executor of every verb that runs lanes. Verbs that run twins instead of devices have no
-// --executor.
+// The values of --lanes, --subject and --executor in verbs that run lanes. Verbs that run twins instead of devices have
+// no --executor.
 struct LaneOptions {
   std::vector<std::string> globs;
   std::vector<std::string> subjects;  // NAME=WHAT
@@ -39,7 +39,7 @@ struct LaneOptions {
 enum class Executors { chosen, twins };
 void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors = Executors::chosen);
 
-// Adds only the options about subjects.
+// Adds only the options for subjects.
 void add_subject_options(CLI::App& command, LaneOptions& options);
 
 // Splits the values of --flags into words.
@@ -48,20 +48,19 @@ std::vector<std::string> compiler_flags(const std::vector<std::string>& texts);
 // Adds --resubject to a verb that reads campaigns and runs their subjects again.
 void add_resubject_option(CLI::App& command, LaneOptions& options);
 
-// Opens the subjects.   Throws: as subjects::open.
+// Opens the subjects.   Throws: what subjects::open throws.
 void open_subjects(const LaneOptions& options);
 
-// Returns the names of the subjects.
 std::vector<std::string> subject_names(const LaneOptions& options);
-// Adds the pattern "NAME/*" of each subject, for verbs whose default is not every lane.
+// Adds the pattern "NAME/*" for each subject, for verbs whose default is not every lane.
 std::vector<std::string> with_subjects(std::vector<std::string> globs, const LaneOptions& options);
 
-// " --subject NAME=WHAT --flags=…": what a printed command needs to run this subject. Empty unless the subject is open.
+// Returns the words " --subject NAME=WHAT --flags=…" that a command needs to run this subject; empty unless it is open.
 std::string subject_words(const std::string& subject);
 
-// Returns these words for all subjects of the options.
+// Returns the subject_words of all subjects in the options.
 std::string own_words(const LaneOptions& options);
-// " --toolchains arm64-gcc": the toolchains of the options, or else those of the lanes; empty for none.
+// Returns the words " --toolchains arm64-gcc" for the toolchains of the options, or else of the lanes; empty for none.
 std::string toolchain_words(const LaneOptions& options, std::initializer_list<const Lane*> lanes);
 
 // Throws: UsageError if no lane of a subject or of --toolchains is among these names, so that no verb ignores such an
@@ -72,61 +71,61 @@ void expect_own_code_among(const LaneOptions& options, const std::vector<std::st
 // give an empty object.
 fuzz::Json recorded_spec_of(const std::filesystem::path& name);
 
-// Opens the subjects of that spec; with `resubject`, even if their code has changed.
-// Throws: as subjects::open_recorded.
+// Opens the subjects of the recorded spec; with `resubject`, even if their code has changed.
+// Throws: what subjects::open_recorded throws.
 void open_subjects_of(const std::filesystem::path& name, bool resubject = false);
 
-// Opens the subjects of a spec, except code that has changed or is missing, so that the verb continues without it.
+// Opens a spec's subjects. Skips code that has changed or is missing, so that the verb can continue without it.
 // Returns: the names of the subjects that are left out, each with the reason.
 std::vector<std::pair<std::string, std::string>> open_unchanged_subjects(const fuzz::Json& spec,
                                                                          bool resubject = false);
 
 // Opens the subjects, including those recorded for `about`, then selects the lanes. Reports on standard error which
-// requested lanes do not run here, and why; these include lanes whose recorded code has changed.
-// Throws: as subjects::open, fuzz::select_lanes and fuzz::expect_each_runs.
+// requested lanes do not run here, and why. This includes lanes whose recorded code has changed.
+// Throws: what subjects::open, fuzz::select_lanes and fuzz::expect_each_runs throw.
 fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesystem::path& about = {},
                                    bool require_device = false);
 
 // Throws: UsageError unless this names a published lane without a policy.
 const Lane& published_lane(const std::string& id);
-// Also accepts a lane of a subject that is open.
+// Like published_lane, but also accepts a lane of an open subject.
 const Lane& named_lane(const std::string& id);
 
-// The pairs of a campaign: strata are drawn again, meshes read again.
+// The pairs of a campaign: strata are drawn again, and meshes are read again.
 struct CampaignPairs {
-  fuzz::Json summary;  // checked
+  fuzz::Json summary;  // from checked_summary
   std::uint64_t seed = 1;
   std::vector<strata::PairSource> sources;
   std::string scene;  // the name of the pairs' scene; may be empty
 };
 
 // Returns the first pairs of each source of the campaign, `most` in all, or all pairs if `most` is 0. For an unfinished
-// campaign, includes pairs that are not judged yet.
-// Throws: std::runtime_error for a hunt, naming the verb, and as checked_summary.
+// campaign, this includes pairs that are not judged yet.
+// Throws: std::runtime_error for a hunt (the message names the verb); what checked_summary throws.
 CampaignPairs pairs_of_campaign(const std::string& directory, std::uint64_t most, const char* verb);
 
 // Lists these lanes on standard error, each with the reason.
 void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out);
 
 // Keeps the lanes that decide pairs of doubles, and names the others on standard error.
-// Throws: as fuzz::select_for_doubles.
+// Throws: what fuzz::select_for_doubles throws.
 void take_doubles(fuzz::SelectedLanes& under_test);
-// Calls take_doubles if one of the entries is a pair of doubles.
+// Calls take_doubles if some entry is a pair of doubles.
 void take_doubles_of(const std::vector<corpus::Entry>& entries, fuzz::SelectedLanes& under_test);
 
-// Adds an option for patterns, separated by commas in one argument.
+// Adds an option whose argument is a comma-separated list of patterns.
 CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::string>& globs, const char* description);
 
-// Writes the report of the campaign as `graze report DIR` does, but prints nothing.   Throws: what that verb throws.
+// Writes the campaign's report as `graze report DIR` does, but prints nothing.   Throws: what that verb throws.
 void write_report(const std::string& directory);
 
 // Unpacks the file into the new folder NAME-unpacked, runs its campaign there, and compares the results with the
 // pack's. Returns: the exit status, 1 if something differs.
 int repro_pack(const std::string& file);
 
-// `graze toolchain hip`: lists the products that are fused by hipcc for AMD's GPUs and by nvcc for NVIDIA's, in the
-// subjects; if there are none, in the published algorithms. json: a file for them, or empty.   Returns: the exit
-// status, 1 if products stay fused with -ffp-contract=off.
+// `graze toolchain hip`: lists the products that hipcc (for AMD's GPUs) and nvcc (for NVIDIA's) fuse in the subjects,
+// or in the published algorithms if there are no subjects. json: a file for the list; empty for none.   Returns: the
+// exit status, 1 if products stay fused with -ffp-contract=off.
 int list_hip_plans(const std::vector<std::string>& subjects, const std::vector<std::string>& flags,
                    const std::string& json);
 
@@ -144,11 +143,11 @@ void add_coordinates_option(CLI::App& command, PairTypes& types, OfBothTypes bot
 // Adds --strata, --coordinates and --scene.
 void add_draw_options(CLI::App& command, DrawOptions& options, OfBothTypes both = OfBothTypes::yes);
 
-// If --coordinates is not given, sets the type to that of the scene.   Throws: as fuzz::open_scene.
+// If --coordinates is not given, uses the scene's type.   Throws: what fuzz::open_scene throws.
 void take_type_of_scene(const CLI::App& command, DrawOptions& options);
 PairTypes type_of_scene(const std::string& scene);
 
-// Sets the function that runs the verb, after take_type_of_scene.
+// Sets the command's callback, which calls take_type_of_scene and then runs the verb.
 template <class Options, class Verb>
 void run_drawing(CLI::App& command, const std::shared_ptr<Options>& options, int& status, Verb verb) {
   command.callback([&command, options, &status, verb] {
@@ -157,22 +156,23 @@ void run_drawing(CLI::App& command, const std::shared_ptr<Options>& options, int
   });
 }
 
-// Measures the mesh in this coordinate type, or without a type in the type that the mesh needs. Writes the scene to the
-// file, as `graze scene MESH --out FILE` does.   Throws: what that verb throws.
+// Measures the mesh in this coordinate type or, if none is given, in the type that the mesh needs. Writes the scene to
+// the file, as `graze scene MESH --out FILE` does.   Throws: what that verb throws.
 void write_scene_of(const std::string& mesh, const std::string& out, std::optional<PairTypes> type);
 
 // Prints the sentences of `graze scene --sufficient RATE`: the cheapest published host lane that is wrong on at most
-// this share of the scene's pairs, what `exact` costs, and the strata that the scene leaves out.   Throws: as drawn.
+// this share of the scene's pairs, the cost of `exact`, and the strata that the scene leaves out.   Throws: what
+// drawn() throws.
 void print_sufficient(const std::string& scene, double rate);
 
-// Draws from the scene, or from the strata without one. For a scene, sets `recorded` to what the verb's results record
-// under "scene".   Throws: as fuzz::open_scene, strata::scene_sources and strata::stratum_sources.
+// Draws from the scene, or from the strata if there is none. For a scene, sets `recorded` to the "scene" of the verb's
+// results.   Throws: what fuzz::open_scene, strata::scene_sources and strata::stratum_sources throw.
 strata::SceneSources drawn(const DrawOptions& options, fuzz::Json* recorded = nullptr);
 
 // Lists the strata that the scene cannot contain, with the reasons, below a heading; empty for none.
 std::string left_out_text(const std::vector<strata::LeftOut>& left_out);
 
-// Accepts only whole numbers in [least, most], including forms such as 1e6, 10M or 1_000_000. For transform().
+// Accepts only whole numbers in [least, most], including forms such as 1e6, 10M or 1_000_000. For CLI11's transform().
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 
 // Adds an option for a whole number in [least, most]; its help shows the default.
@@ -198,17 +198,17 @@ CLI::Validator number(double least, double most);
 // Throws: UsageError for a file name that is not UTF-8, because results are UTF-8 and could not record it.
 void expect_utf8(const std::string& what, const std::string& file);
 
-// Accepts only these words. For transform(), which keeps the word or replaces it with its index.
+// Accepts only these words. For CLI11's transform(), which keeps the word or replaces it with its index.
 enum class Chosen { word, place };
 CLI::Validator one_of(std::vector<std::string> words, Chosen chosen);
 
 // Returns each lane's verdict on one pair. Reports on standard error if a device and its twin differ.
 std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const AnyPair& pair);
 
-// Whether some verdict is wrong. No verdict is wrong if the truth is declined.
+// Whether any verdict is wrong. No verdict is wrong if the truth is declined.
 bool some_is_wrong(const std::vector<Verdict>& verdicts, Verdict truth);
 
-// Describes in one line what runs the CUDA lanes under test, each kind of evidence once. Empty without CUDA lanes.
+// Describes in one line what runs the CUDA lanes under test, naming each kind of evidence once. Empty without any.
 std::string cuda_evidence(const fuzz::SelectedLanes& under_test);
 
 }  // namespace graze::cli

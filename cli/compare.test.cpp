@@ -19,7 +19,7 @@ class Compare : public CommandTest {
   nlohmann::json json(const std::string& file) { return shell.json(file); }
 
   // Compares the campaigns `before` and `after`, and checks each row's counts against `graze discrepancy` on the same
-  // pairs. `graze discrepancy` gets the two builds that ran as two libraries.
+  // pairs. That verb receives the two builds that ran as two libraries.
   // build_of_lane: index into the builds cpu, cpu-fma and cpu-fast.
   void expect_counts(const std::string& strata, int pairs, std::size_t build_of_lane = 0) {
     const Ran said = shell.done("export XDG_CACHE_HOME=$PWD/cache; graze report --compare before after");
@@ -51,7 +51,7 @@ class Compare : public CommandTest {
   }
 };
 
-// Counting pair by pair finds changes in three cases in which an unpaired test found none.
+// In three cases, counting pair by pair finds changes that an unpaired test did not find.
 TEST_F(Compare, AnotherCompilerIsCountedPairByPair) {
   const std::string run =
       "graze fuzz --subject mine=./mine.cpp --lanes mine/f32/cpu --strata near_edge_edge,thesis --pairs 2000 --out ";
@@ -133,7 +133,7 @@ TEST_F(Compare, TheSameVerdictsAreProvedSoAndNothingElseIs) {
   EXPECT_TRUE(names(counts.out.substr(0, counts.out.find('\n')), {"database"})) << counts.out;
 }
 
-// A library is rebuilt over the old one. The old code is gone, so only the counts bound what changed.
+// A library is rebuilt over the old one. The old code is gone, so only the counts bound the number of changes.
 TEST_F(Compare, CodeThatIsGoneIsBoundedByCounts) {
   const auto build = [](const char* answer) {
     return fmt::format(
@@ -166,7 +166,7 @@ TEST_F(Compare, AnotherSeedIsNoChangeAndTheBlindSpotIsSaid) {
   }
 }
 
-// For each kind of campaign, the report's command runs as it stands and gives the same bytes.
+// For each kind of campaign, the command in the report runs unchanged and gives the same bytes.
 TEST_F(Compare, TheCommandInTheReportRunsAsItStands) {
   expect_done(
       "printf 'OFF\\n4 4 0\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n3 0 1 2\\n3 0 1 3\\n3 0 2 3\\n3 1 2 3\\n' > 'a mesh.off'; "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze corpus`: the regression corpus. `add` adds failures, `list` shows them, `verify` replays them.
+// `graze corpus`: maintains the regression corpus. `add` adds failures, `list` shows them, `verify` replays them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -100,7 +100,7 @@ void add(const CorpusOptions& options) {
   }
 
   made_folder(options.folder, "cases.pairs");
-  // The lock is held from reading the corpus until writing it, so that two commands at once lose nothing.
+  // The lock is held from reading the corpus to writing it, so that two concurrent commands lose nothing.
   const fuzz::FolderLock lock(options.folder, fuzz::FolderLock::WhenTaken::wait);
   fuzz::RegressionCorpus corpus;
   if (std::filesystem::exists(options.file())) corpus = fuzz::read_regressions(options.file());
@@ -144,8 +144,8 @@ void list(const CorpusOptions& options) {
   print_next(options, "verify");
 }
 
-// "Not run: mine. …": names what has recorded verdicts but did not run: subjects that need --subject, and lanes of
-// published algorithms that this build does not have.
+// Returns lines such as "Not run: mine. …". They name what has recorded verdicts but did not run: subjects that need
+// --subject, and lanes of published algorithms that this build does not have.
 std::string not_run(const fuzz::RegressionCorpus& corpus) {
   std::set<std::string> subjects, unknown;
   for (const auto& [signature, c] : corpus) {
@@ -171,7 +171,7 @@ bool has_doubles(const fuzz::RegressionCorpus& corpus) {
   return std::any_of(corpus.begin(), corpus.end(), [](const auto& row) { return !row.second.pair.floats; });
 }
 
-// "Not run on pairs of doubles: …": lanes that decide only the corpus's pairs of float32.
+// Returns "Not run on pairs of doubles: …", with the lanes that decide only the corpus's float32 pairs.
 std::string not_run_on_doubles(const fuzz::RegressionCorpus& corpus, const fuzz::SelectedLanes& under_test) {
   std::vector<std::string> ids;
   if (has_doubles(corpus)) {
@@ -250,7 +250,7 @@ void add_corpus(CLI::App& app, int& status) {
           "Campaign directories (the first case of each signature is added), files of cases, or STRATUM:SEED:INDEX")
       ->required();
   add_globs(*command, "--signatures", options->signatures, "Patterns of the campaign's signatures to add");
-  command->add_option("--top", options->most, "Number of the commonest signatures to add per algorithm")
+  command->add_option("--top", options->most, "Number of signatures to add per algorithm, most frequent first")
       ->transform(whole_number(1, 1'000'000'000))
       ->option_text("N")
       ->default_str("all");

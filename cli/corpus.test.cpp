@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze corpus` as users run it, and the regression corpus of the repository.
+// `graze corpus` as users run it, and the repository's regression corpus.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ TEST_F(CorpusVerb, TakesACampaignListsItAndHolds) {
   EXPECT_EQ(again.out.find(" 0 seen again") == std::string::npos, true) << again.out;
 }
 
-// If none of a failure's wrong lanes runs, nothing confirms it. So it is not added, and a message says so.
+// If none of a failure's wrong lanes runs, nothing confirms the failure, so it is not added, and a message says so.
 TEST_F(CorpusVerb, WhatNoLaneCanConfirmIsNotAdded) {
   campaign("c", "--pairs 1000 --strata near_edge_edge --lanes 'moller_1997/*/cpu,guigue_devillers_2003/f32/cpu'");
   const std::string add = "graze corpus add c --lanes moller_1997/f32/cpu";
@@ -76,7 +76,7 @@ TEST_F(CorpusVerb, TakesEverySignatureWithItsCount) {
   expect_done("grep -q kind=minimised m/cases.pairs && graze corpus verify --corpus m --lanes '*/f32/cpu'");
 }
 
-// One code always answers yes; another code of the same name always answers no.
+// One version of the code always answers yes; the other, under the same name, always answers no.
 TEST_F(CorpusVerb, FailuresInBothDirectionsAreKeptAndOtherCodeOfOneNameIsRefused) {
   for (const std::string answer : {"0", "1"}) {
     expect_done("mkdir d" + answer + " && echo 'extern \"C\" int hit(const float*, const float*) { return " + answer +
@@ -96,7 +96,7 @@ TEST_F(CorpusVerb, AMinimisedCaseStandsForItsFile) {
                   "truth/ kind=minimised from=x truth/'; tail -n +3 $1; } > m")
                 .status,
             0);
-  // A file of cases: its minimised case represents all of them.
+  // In a file of cases, the minimised case represents all of them.
   EXPECT_TRUE(shell("graze corpus add m --corpus s").out.starts_with("1 new"));
   EXPECT_EQ(shell("grep -c 'kind=minimised from=x' s/cases.pairs").out, "1\n");
   expect_done("graze repro s/cases.pairs > /dev/null");
@@ -142,8 +142,8 @@ TEST_F(CorpusVerb, NoRecordOfTheLanesThatRunIsAFailure) {
                {"r/cases.pairs", "--lanes"});
 }
 
-// Kills `add` before each of its writes. The file is either the old or the new one, and the same command, run again,
-// writes the same bytes.
+// Kills `add` before each of its writes. Afterwards the file is either the old or the new one, and running the command
+// again writes the same bytes.
 TEST_F(CorpusVerb, KilledWhileAddingLosesNothing) {
   campaign("c", "--pairs 30000 --strata 'near_*,coplanar_*'");
   expect_done("graze corpus add c --corpus whole --top 3 && graze corpus add c --corpus whole");
@@ -176,7 +176,7 @@ TEST_F(CorpusVerb, AFullDiskLosesNothing) {
   expect_done("cmp r/cases.pairs old");
 }
 
-// Lanes without contraction give the same verdicts everywhere; the others depend on the compiler and the toolkit.
+// Lanes without contraction give the same verdicts everywhere; others depend on the compiler and the CUDA toolkit.
 TEST_F(CorpusVerb, TheRepositorysOwnHolds) {
   expect_done("graze corpus verify --lanes '*/cpu,*/cuda-nofma' --corpus '" GRAZE_SOURCE_DIR "/corpus/regression'");
 }

@@ -32,21 +32,21 @@ constexpr std::size_t kMostTables = 2;  // with more comparisons, only shares ar
 
 struct DiscrepancyOptions : DrawOptions {
   DiscrepancyOptions() : DrawOptions{20'000} {}
-  std::vector<std::string> lanes;  // first and second in turn
+  std::vector<std::string> lanes;  // first, second, first, second, …
   LaneOptions subjects;
   std::vector<std::string> compare;
   int threads = 0, executor = 0;
   std::string campaign, out;
 };
 
-// What to compare: values or, for users' code, verdicts.
+// What to compare: values, or verdicts for a user's code.
 struct Comparisons {
   std::vector<analysis::LanesCompared> values;
   std::vector<analysis::TwoDeciders> verdicts;
-  fuzz::SelectedLanes of_subjects;  // if no lane was named: lanes of --subject, including those that do not run
+  fuzz::SelectedLanes of_subjects;  // if the user named no lane: those of --subject, even if they do not run
 };
 
-// The function that runs a lane of a user's code here.   Throws: UsageError if the lane has none.
+// Returns the function that runs a lane of a user's code here.   Throws: UsageError if the lane has none.
 DecideBlock on_host(const Lane& lane) {
   const fuzz::SelectedLanes selected = fuzz::select_lanes({lane.id});
   fuzz::expect_each_runs(selected);
@@ -66,7 +66,7 @@ std::vector<std::string> names_of_subjects(const DiscrepancyOptions& options) {
   return names;
 }
 
-// Pairs the first lane of each subject and scalar with the others.   Throws: UsageError for a subject with one lane.
+// For each subject and scalar, pairs the first lane with the others.   Throws: UsageError for a subject with one lane.
 Comparisons comparisons_of_subjects(const std::vector<std::string>& names, fuzz::Executor executor) {
   Comparisons comparisons;
   for (const std::string& name : names) {
@@ -90,8 +90,8 @@ Comparisons comparisons_of_subjects(const std::vector<std::string>& names, fuzz:
   return comparisons;
 }
 
-// The comparisons that the user named. By default, those of the subjects or, without subjects, `cpu` with both CUDA
-// builds for each algorithm and scalar.
+// Returns the comparisons that the user named. By default, returns those of the subjects or, without subjects, `cpu`
+// with both CUDA builds for each algorithm and scalar.
 Comparisons comparisons_of(const DiscrepancyOptions& options) {
   if (const auto names = names_of_subjects(options); options.lanes.empty() && !names.empty())
     return comparisons_of_subjects(names, options.subjects.executor);
@@ -121,8 +121,8 @@ Comparisons comparisons_of(const DiscrepancyOptions& options) {
   return comparisons;
 }
 
-// Prefers pairs of two proper triangles, because a fault is hard to see on a segment or a point. Among equally good
-// pairs, prefers the simpler one.
+// Prefers two proper triangles, because a fault is hard to see on a segment or a point. Among equally good pairs,
+// prefers the simpler one.
 bool shows_better(const AnyPair& l, const AnyPair& r) {
   const auto is_degenerate = [](const AnyPair& pair) {
     return fuzz::shape_name(visit(pair, [](const auto& own) { return relation_of(own).hulls; })) == "degenerate";
@@ -131,7 +131,7 @@ bool shows_better(const AnyPair& l, const AnyPair& r) {
   return of_l != of_r ? of_r : is_simpler(l, r);
 }
 
-constexpr std::uint64_t kOriginPairs = 40'000;  // shared by the sources
+constexpr std::uint64_t kOriginPairs = 40'000;  // divided among the sources
 
 // Finds where the values start to differ, for each comparison of a contracted CUDA lane with a lane that rounds every
 // operation.
@@ -147,7 +147,7 @@ std::vector<std::optional<analysis::Origins>> origins_of(const analysis::Discrep
   return origins;
 }
 
-// Reads a result of this verb. name: the file, or its folder.
+// Reads a result of this verb. name: the file or its folder.
 fuzz::Json results_of(const std::string& name) {
   const std::filesystem::path file = std::filesystem::is_directory(name)
                                          ? std::filesystem::path(name) / "discrepancy.json"
@@ -213,7 +213,7 @@ int discrepancy(DiscrepancyOptions options) {
   Comparisons comparisons = comparisons_of(options);
   analysis::DiscrepancySpec spec;
   std::uint64_t seed = options.seed;
-  std::string scene;  // its name in results
+  std::string scene;  // the scene's name in results
   std::string left_out;
   if (options.campaign.empty()) {
     fuzz::Json recorded;

@@ -33,7 +33,7 @@ TEST_F(DiscrepancyCommand, LeavesTheSameBytesWhateverTheThreads) {
   EXPECT_GT(lanes["origins"]["lines"].size(), 5u);
 }
 
-// An independent program counts the values again, with rationals.
+// An independent program counts the values again in rational arithmetic.
 TEST_F(DiscrepancyCommand, CountsAreThoseOfAProgramThatSharesNoCode) {
   struct Case {
     const char *first, *second, *stratum;
@@ -59,7 +59,7 @@ TEST_F(DiscrepancyCommand, CountsAreThoseOfAProgramThatSharesNoCode) {
   }
 }
 
-// As many verdicts differ as a campaign counts on the same pairs, and its report shows the answer.
+// Finds as many differing verdicts as a campaign counts on the same pairs. The campaign's report shows the answer.
 TEST_F(DiscrepancyCommand, ACampaignsColumnIsTheSumOfItsVerdicts) {
   const std::string first = "interval_overlap/f32/cpu", second = "interval_overlap/f32/cuda-fma";
   expect_done("graze fuzz --lanes " + first + "," + second +
@@ -119,7 +119,7 @@ TEST_F(DiscrepancyCommand, ACampaignsPairsAreThoseOfItsScene) {
   EXPECT_TRUE(has(shell.file("c/report.html"), {other_pairs}));
 }
 
-// For a user's code only verdicts are compared, and the output says why values are not.
+// For a user's code, only verdicts are compared, and the output says why values are not.
 TEST_F(DiscrepancyCommand, ComparesTheVerdictsOfYourOwnCode) {
   std::ofstream(shell.folder / "mine.cpp") << R"(
 static float side(const float* t, const float* p) {
@@ -156,7 +156,7 @@ bool meet(const float a[9], const float b[9]) { return crosses(a, b) && crosses(
   const Ran same = shell("graze discrepancy --compare m m");
   EXPECT_TRUE(has(same.out, {"0 numbers differ, "})) << same.err;
   EXPECT_FALSE(has(same.out, {", 0 are the same"}));
-  // A comparison with results of different code says so.
+  // A comparison with the results of different code says that the code differs.
   expect_done("sed -i 's/x > 0/x >= 0/' mine.cpp");
   expect_done("graze discrepancy " + first + " " + second +
               " --subject mine=./mine.cpp:meet --executor twin --strata shared_vertex --pairs 1000 --out edited");
@@ -175,7 +175,7 @@ bool meet(const float a[9], const float b[9]) { return crosses(a, b) && crosses(
   EXPECT_EQ(shell("graze report c").status, 1);
 }
 
-// The example in subjects/examples equals interval_overlap, except where the x87 keeps what a store would round.
+// The example in subjects/examples agrees with interval_overlap, except where the x87 keeps bits that a store rounds.
 TEST_F(DiscrepancyCommand, TheThesissAlgorithmDiffersOnTheX87) {
 #ifndef __x86_64__
   GTEST_SKIP() << "this processor has no x87";
@@ -194,7 +194,7 @@ TEST_F(DiscrepancyCommand, TheThesissAlgorithmDiffersOnTheX87) {
   EXPECT_GT(x87, fused);
 }
 
-// For a CUDA source, operands of comparisons are compared too. This one compares on two lines; only one has products.
+// For a CUDA source, operands of comparisons are compared too. This one has two comparisons, only one with products.
 TEST_F(DiscrepancyCommand, ComparesTheOperandsOfYourOwnCudaSource) {
   std::ofstream(shell.folder / "mine.cu") << R"(
 __device__ bool meet(const float a[9], const float b[9]) {
@@ -253,7 +253,7 @@ __device__ bool meet(const float a[9], const float b[9]) {
   }
 }
 
-// If code does not return when nothing is fused, no operands are counted; its verdicts are still compared.
+// If code does not return when nothing is fused, its operands are not counted, but its verdicts are still compared.
 TEST_F(DiscrepancyCommand, CodeThatHangsWithoutContractionLosesOnlyItsOperands) {
   std::ofstream(shell.folder / "slow.cu") << R"(
 __device__ bool meet(const float a[9], const float b[9]) {
@@ -310,7 +310,7 @@ TEST_F(DiscrepancyCommand, ComparesTheCodeOfACampaign) {
   for (const char* more : {"", " --subject own=./own.c"}) {
     const Ran own = shell.done(compare + "c --out d" + more);
     const auto found = shell.json("d/discrepancy.json");
-    EXPECT_EQ(found["verdicts"].size(), 2u) << own.out;  // cpu-fma and cpu-fast with cpu
+    EXPECT_EQ(found["verdicts"].size(), 2u) << own.out;  // cpu-fma and cpu-fast, each with cpu
     EXPECT_TRUE(found["lanes"].empty());
   }
   expect_out(compare + "p", {"moller_1997/f32/cpu"});

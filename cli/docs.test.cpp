@@ -26,7 +26,7 @@ Lines lines_of(const std::string& text) {
   return lines;
 }
 
-// Whether the lines from e and f on match; "…" matches any number of lines.
+// Whether the lines match, starting from e and f; "…" matches any number of lines.
 bool matches(const Lines& expected, std::size_t e, const Lines& found, std::size_t f) {
   if (e == expected.size()) return f == found.size();
   if (expected[e] == "…")
@@ -34,7 +34,7 @@ bool matches(const Lines& expected, std::size_t e, const Lines& found, std::size
   return f < found.size() && expected[e] == found[f] && matches(expected, e + 1, found, f + 1);
 }
 
-// Shortens the output like the document: keeps as many lines before and after the "…".
+// Shortens the output like the document's: keeps as many lines before and after the "…".
 Lines abridged(const Lines& expected, const Lines& found) {
   const auto dots = std::find(expected.begin(), expected.end(), "…");
   const auto before = dots - expected.begin(), behind = expected.end() - dots - 1;
@@ -56,7 +56,7 @@ std::string missing_tool(const Shell& shell, const std::string& command) {
 }
 
 // Runs the document's commands in one folder. A block that begins with ```language NAME becomes the file NAME there. If
-// an output differs, DOCUMENT.new is written with the present outputs. The test is skipped if a command needs a missing
+// an output differs, DOCUMENT.new is written with the current outputs. The test is skipped if a command needs a missing
 // tool and all other commands print what they should.
 void expect_true_commands(const std::string& document, std::size_t least_commands) {
   const fs::path file = kRoot / document, renewed = file.string() + ".new";
@@ -100,7 +100,7 @@ void expect_true_commands(const std::string& document, std::size_t least_command
   } else {
     std::ofstream(renewed) << text.str();
     ADD_FAILURE() << "outputs differ from " << document
-                  << "; the document with the present outputs: " << renewed.string();
+                  << "; the document with the current outputs: " << renewed.string();
   }
   if (!not_run.empty())
     GTEST_SKIP() << document << ": commands that did not run, by missing tool: " << testing::PrintToString(not_run);
@@ -193,8 +193,8 @@ TEST(Docs, WhatTheyNameExists) {
   EXPECT_GE(paths, 15);
 }
 
-// Checks commits, and builds named by their commit, in prose, measurements and published data. A build of uncommitted
-// sources ("-dirty") counts as missing.
+// Checks commits, and builds that are named by a commit, in prose, measurements and published data. A build of
+// uncommitted sources ("-dirty") counts as missing.
 TEST(Docs, CommitsThatTheyNameAreInTheHistory) {
   const Shell shell("history");
   const std::string git = "git -C '" + kRoot.string() + "' ";

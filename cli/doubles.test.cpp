@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of doubles as users meet them: drawn, run, written, read and repeated. Verbs that take only float32 pairs
+// Pairs of doubles as users meet them: drawn, run, written, read and run again. Verbs that take only float32 pairs
 // refuse pairs of doubles, and name them.
 #include <fmt/format.h>
 
@@ -19,14 +19,14 @@ using Json = nlohmann::ordered_json;
 
 class Doubles : public CommandTest {
  protected:
-  // A scene in metres on a grid of millimetres, where neighbouring floats are half a metre apart.
+  // A scene in metres on a millimetre grid, where neighbouring floats are half a metre apart.
   void write_survey() const {
     std::ofstream(shell.folder / "survey.toml")
         << "coordinates = \"f64\"\nunits = \"m\"\nextent = [[500000, 500300], [5400000, 5400300], [0, 60]]\n"
            "edges = [0.02, 30]\naspect = [1.2, 4, 3000]\ngrid = { decimals = 3 }\n";
   }
 
-  // text: a file of pairs.
+  // text: the contents of a file of pairs.
   static void expect_within_survey(const std::string& text) {
     std::istringstream in(text);
     int pairs = 0;
@@ -56,7 +56,7 @@ TEST_F(Doubles, ACampaignIsRepeatedByItsFiles) {
   const Json summary = shell.json("c/summary.json");
   ASSERT_TRUE(summary["strata"].contains("stored/f64"));
   const Json& lanes = summary["strata"]["stored/f64"]["lanes"];
-  EXPECT_GT(lanes["exact/f32/cpu"]["stored"], 290);  // of 300: the stratum promises it
+  EXPECT_GT(lanes["exact/f32/cpu"]["stored"], 290);  // of 300, as the stratum promises
   EXPECT_EQ(lanes["exact/f64/cpu"]["false_negative"], 0);
   const std::string file = summary["signatures"][0]["case"];
   expect_out("graze repro c/" + file + " --lanes '*/cpu'", {"(as recorded)"});
@@ -134,7 +134,7 @@ TEST_F(Doubles, ATableIsReadBackWithTheSameTruth) {
   }
   EXPECT_EQ(pairs, 40);
   EXPECT_GT(changed, 35);
-  // Names and a table of decimals give the same pairs.
+  // The case names and a table of decimals give the same pairs.
   const std::string first = shell.file("p.pairs").substr(0, 400);
   expect_out("graze repro stored/f64:7:0 --lanes 'exact/*/cpu'", {"stored/f64:7:0"});
   expect_done("graze dump stored/f64:7 --pairs 40 > p.csv");
@@ -178,7 +178,7 @@ TEST_F(Doubles, AMeshIsDrawnInItsDoubles) {
   EXPECT_EQ(mesh["lanes"]["exact/f64/cpu"]["false_positive"], 0);
   EXPECT_EQ(mesh["lanes"]["exact/f32/cpu"]["false_positive"], 20);
   EXPECT_EQ(mesh["lanes"]["exact/f32/cpu"]["stored"], 20);
-  // The summary's command draws the same pairs again; so do shards.
+  // The summary's command draws the same pairs again, and so do shards.
   const std::string bytes = shell.file("c/summary.json");
   expect_done("graze fuzz --mesh walls.off --coordinates f64" + lanes + "--out c > again && graze report c > told");
   EXPECT_EQ(shell.file("c/summary.json"), bytes);
@@ -201,7 +201,7 @@ TEST_F(Doubles, AMeshIsDrawnInItsDoubles) {
   for (const char* source : {"uniform", "uniform/f64", "mesh", "mesh/f64"})
     EXPECT_TRUE(both["strata"].contains(source)) << source;
   EXPECT_EQ(both["strata"]["mesh"]["intersects"], 20);
-  // `graze scene` tells what storing in float32 changes.
+  // `graze scene` reports what storing in float32 changes.
   const Ran scene = shell.done("graze scene walls.off --out walls.toml");
   EXPECT_TRUE(has(scene.err, {"20 of 20 pairs have another verdict"}));
   expect_done("graze fuzz --scene walls.toml --pairs 100" + lanes + "--out s > out");
@@ -265,7 +265,7 @@ TEST_F(Doubles, NoReasonIsToldThatNobodySaw) {
   EXPECT_TRUE(has(own, {"the code itself is wrong here, not its rounding (no sum and no product"}));
 }
 
-// An epsilon is found in a function of doubles as in one of floats, from the function's verdicts on other doubles.
+// An epsilon in a function of doubles is found from the function's verdicts on other doubles.
 TEST_F(Doubles, ExperimentsFindAnEpsilonInOnesOwnCode) {
   std::ofstream(shell.folder / "near.c") << "#include <math.h>\n"
                                             "int meet(const double* a, const double* b) {\n"
@@ -357,7 +357,7 @@ TEST_F(Doubles, FailuresAreMinimisedAndExplained) {
   expect_out("graze minimize stored/f64:1:3 --lanes 'guigue_devillers_2003/*/cpu' --out small.pairs",
              {"cause: stored, as before"});
   EXPECT_TRUE(has(shell.file("small.pairs"), {"coordinates=f64"}));
-  // In the map around it, lanes in float decide what float32 stores, so many neighbouring cells are the same pair.
+  // In its map, lanes in float decide what float32 stores, so many neighbouring cells are the same pair.
   expect_out("graze map small.pairs --lanes 'guigue_devillers_2003/*/cpu'", {"guigue_devillers_2003/f64/cpu"});
   const Ran why = shell.done("graze explain small.pairs --lanes 'guigue_devillers_2003/*/cpu' --json");
   const Json line = Json::parse(why.out.substr(0, why.out.find('\n')));
@@ -366,10 +366,10 @@ TEST_F(Doubles, FailuresAreMinimisedAndExplained) {
   EXPECT_TRUE(has(line["pair"].get<std::string>(), {"coordinates=f64"}));
 }
 
-// The programs have the exact doubles; the program of a lane in float rounds them as it reads them.
+// The programs contain the exact doubles; a program for a lane in float rounds them when it reads them.
 TEST_F(Doubles, CasesBecomePrograms) {
   std::ofstream(shell.folder / "near.pairs")
-      << "0 0 1 1 0 1 0 1 1  0 0 0x1.0000000001p0 1 0 2 0 1 2 | coordinates=f64\n"  // float32 touches
+      << "0 0 1 1 0 1 0 1 1  0 0 0x1.0000000001p0 1 0 2 0 1 2 | coordinates=f64\n"  // they touch in float32
          "0.1 0.2 0.3 1.1 0.2 0.7 0.1 1.3 0.9  0.4 0.5 0.6 2.1 2.2 2.3 1.5 2.5 0.5 | coordinates=f64\n";
   const std::string repro = "graze repro near.pairs --lanes 'guigue_devillers_2003/f32/cpu' --emit ";
   expect_done(repro +
@@ -422,7 +422,7 @@ TEST_F(Doubles, ARegressionCorpusKeepsThemBesideFloats) {
   const Ran verified = shell.done(
       "graze corpus verify --corpus r --lanes '*/cpu,*/f64/cuda-fma,*/f64/cuda-fma/abs:1e-6' --executor twin");
   EXPECT_FALSE(has(verified.out, {"Not run"}));
-  // The exact lane of doubles is among the lanes unless others are named.
+  // By default, the exact lane for doubles is among the lanes.
   const auto lanes_of = [&](const char* lanes) {
     const Ran ran = shell.done(std::string("graze corpus verify --corpus r --executor twin") + lanes);
     return ran.out.substr(0, ran.out.find(" lanes: "));
@@ -431,13 +431,13 @@ TEST_F(Doubles, ARegressionCorpusKeepsThemBesideFloats) {
   EXPECT_NE(lanes_of(""), lanes_of(" --lanes '*,!exact/f64/*'"));
   expect_done("graze corpus verify --corpus r --lanes '*/cpu' --update && graze corpus list --corpus r > /dev/null");
   EXPECT_EQ(shell.file("r/cases.pairs"), once);
-  // A verdict on a pair of doubles that differs from its record is a change.
+  // A verdict that differs from the record is a change on a pair of doubles too.
   expect_done("sed -i '/coordinates=f64/s/\\(lanes=.*moller_1997:\\)[+-]f32/\\1.f32/' r/cases.pairs");
   EXPECT_NE(shell.file("r/cases.pairs"), once);
   const Ran changed = shell("graze corpus verify --corpus r --lanes 'moller_1997/f32/cpu'");
   EXPECT_EQ(changed.status, 1) << changed.out;
   EXPECT_TRUE(has(changed.out, {"moller_1997/f32/cpu: was "}));
-  // Single pairs.
+  // A single pair can be added too.
   expect_done("graze corpus add stored/f64:1:3 --corpus s --lanes 'exact/*/cpu,moller_1997/*/cpu'");
   EXPECT_TRUE(has(shell.file("s/cases.pairs"), {"coordinates=f64"}));
 }
@@ -526,15 +526,15 @@ TEST_F(Doubles, ErrorsAndCostsAreMeasuredOnThem) {
   EXPECT_EQ(found["lanes"].size(), 4u);
 }
 
-// A case of a lane in float is a pair of float32; a case of a lane in double is a pair of doubles. `check` finds each
-// case wrong too.
+// A case of a lane in float is a pair of float32; a case of a lane in double is a pair of doubles. `check` confirms
+// that the lane is wrong on each case.
 TEST_F(Doubles, BrokenInvariantsAreCountedOnThem) {
   expect_done(
       "graze invariants --coordinates f64 --pairs 2800 --lanes "
       "'guigue*/*/cpu,exact/*/cpu' --out i");
   const Json found = shell.json("i/invariants.json");
   ASSERT_EQ(found["lanes"].size(), 4u);
-  EXPECT_GT(found["truth"]["pairs"], 5000);  // each pair, and what float32 stores of it if it can
+  EXPECT_GT(found["truth"]["pairs"], 5000);  // each pair, and its float32 pair if float32 can store it
   for (const Json& lane : found["lanes"]) {
     const std::string id = lane["lane"];
     const Json& order = lane["invariants"]["order"];
@@ -596,7 +596,7 @@ TEST_F(Doubles, VerdictsOfOnesOwnCodeAreComparedOnThem) {
   EXPECT_GT(mended, 0u);
 }
 
-// As many verdicts differ as a campaign counts on the same pairs. Lanes in float are left out, each by name.
+// Finds as many differing verdicts as a campaign counts on the same pairs. Lanes in float are left out and named.
 TEST_F(Doubles, ValuesOfLanesInDoubleAreComparedOnThem) {
   const std::string first = "moller_1997/f64/cpu", second = "moller_1997/f64/cuda-fma",
                     compare = "graze discrepancy " + first + " " + second + " --executor twin ",
@@ -619,7 +619,7 @@ TEST_F(Doubles, ValuesOfLanesInDoubleAreComparedOnThem) {
   const std::string other_pairs = "that the campaign did not draw";
   EXPECT_FALSE(has(shell.file("c/report.html"), {other_pairs}));
 
-  // The simplest pair whose verdict a line changes is one of doubles.
+  // The simplest pair whose verdict a source line changes is a pair of doubles.
   bool in_doubles = false;
   for (const Json& line : of["origins"]["lines"]) {
     if (line["simplest"].is_null()) continue;
@@ -698,7 +698,7 @@ TEST_F(Doubles, AreSearchedByAHunt) {
   expect_within_survey(shell.file("s/" + survey["signatures"][0]["case"].get<std::string>()));
 }
 
-// A scene's file names the type of its pairs. A case of a campaign in the scene can be drawn again by name.
+// A scene file names the type of its pairs. A case from a campaign in the scene can be drawn again by name.
 TEST_F(Doubles, ASceneIsDrawnInItsDoubles) {
   write_survey();
   const std::string lanes = "--lanes 'moller_1997/*/cpu,exact/*/cpu' ";
@@ -722,7 +722,7 @@ TEST_F(Doubles, ASceneIsDrawnInItsDoubles) {
   expect_done(fuzz + "--threads 1 --out two && cmp one/summary.json two/summary.json && diff -r one/cases two/cases");
   expect_done(fuzz + "--shard 1/2 --out p1 && " + fuzz + "--shard 2/2 --out p2 && graze merge p1 p2 --out merged");
   EXPECT_EQ(shell.json("merged/summary.json")["strata"], summary["strata"]);
-  // A case says where it is from, and each of its names draws it again.
+  // A case records its origin, and each of its names draws it again.
   const std::string file = "one/" + summary["signatures"][0]["case"].get<std::string>();
   const std::string text = shell.file(file);
   expect_within_survey(text);
@@ -740,7 +740,7 @@ TEST_F(Doubles, ASceneIsDrawnInItsDoubles) {
   EXPECT_GT(vertices.size(), 60u);
   for (const std::string& of : {scene, std::string("survey.toml"), std::string("one")})
     EXPECT_EQ(vertices_of(id + '@' + of + numbers), vertices) << of;
-  // The verbs that take a campaign take this one.
+  // The verbs that accept a campaign accept this one.
   expect_done("graze minimize one > minimised && graze failures one > kinds && graze report one > report");
   EXPECT_TRUE(has(shell.file("one/failures.json"), {"/f64@survey.toml#"}));
   const std::string command = shell.json("one/report.json")["run"]["command"];
@@ -783,7 +783,7 @@ TEST_F(Doubles, AMeshOfDoublesBecomesASceneOfDoubles) {
   const Json strata = shell.json("s/summary.json")["strata"];
   for (const char* source : {"mesh/f64", "mesh_ulps/f64", "mesh_moved/f64", "shared_edge/f64"})
     EXPECT_GT(strata[source]["pairs"], 0) << source;
-  // The mesh's own pairs are those that fuzz --mesh draws, in another order.
+  // The mesh's own pairs are those that `graze fuzz --mesh` draws, in another order.
   expect_done("graze fuzz --mesh site.off --coordinates f64 --lanes 'moller_1997/*/cpu,exact/*/cpu' --out m");
   const Json of_mesh = shell.json("m/summary.json")["strata"]["mesh/f64"];
   expect_done(
@@ -797,7 +797,7 @@ TEST_F(Doubles, AMeshOfDoublesBecomesASceneOfDoubles) {
   expect_done("graze dump m --format pairs > m.pairs && graze scene m.pairs | grep -q '^coordinates = \"f64\"'");
 }
 
-// Every verb that draws doubles draws them in a scene.
+// Every verb that draws doubles can draw them in a scene.
 TEST_F(Doubles, EveryVerbDrawsAScenesDoubles) {
   write_survey();
   std::ofstream(shell.folder / "mine.c") << "int meet(const double* a, const double* b) { return a[0] < b[0]; }\n";
@@ -816,7 +816,7 @@ TEST_F(Doubles, EveryVerbDrawsAScenesDoubles) {
       "graze discrepancy mine/f64/cpu exact/f64/cpu --subject mine=mine.c:meet --scene survey.toml --pairs 500 "
       "--out d");
   EXPECT_TRUE(shell.json("d/discrepancy.json")["verdicts"][0]["strata"].contains("uniform/f64"));
-  // Each refusal says why.
+  // Each refusal gives its reason.
   expect_error("graze discrepancy moller_1997/f32/cpu moller_1997/f32/cpu-fma --scene survey.toml", 2,
                {"only on pairs of float32"});
   expect_error("graze fuzz --scene survey.toml --strata large_offset --out n", 2, {"large_offset/f64", "5400300"});
@@ -824,7 +824,7 @@ TEST_F(Doubles, EveryVerbDrawsAScenesDoubles) {
                {"float32", "8 ulps", "doubles"});
 }
 
-// The lane that --sufficient names keeps the rate in a fresh campaign on the scene's doubles.
+// In a fresh campaign on the scene's doubles, the lane that --sufficient names stays within the rate.
 TEST_F(Doubles, WhatSufficesIsJudgedOnAScenesDoubles) {
   write_survey();
   const Ran ran = shell("graze scene survey.toml --sufficient 0.05 | tr '\\n' ' '");
@@ -884,12 +884,12 @@ TEST_F(Doubles, TryTakesTheDoublesOfCodeInDouble) {
     EXPECT_EQ(answer["again"].get<std::string>().find("--coordinates f64") != std::string::npos, in.starts_with("--"))
         << answer["again"];
   }
-  // The output names the exact lane of doubles, and its command for more pairs keeps the type.
+  // The output names the exact lane of doubles, and its command for more pairs keeps the coordinate type.
   const Ran screen =
       shell("export XDG_CACHE_HOME=$PWD/cache; graze try double.cpp:meet --coordinates f64 --pairs 300 --out screen");
   EXPECT_TRUE(has(screen.out, {"Instead: exact/f64/cpu is right on all 300 pairs."}));
-  // Code in float gets a mesh as float32 stores it, unless the user asks for doubles; then errors from storing count as
-  // its own.
+  // Code in float gets the mesh as float32 stores it, unless the user asks for doubles; storing errors then count as
+  // the code's own.
   tried("float.cpp:meet walls.off --out f");
   EXPECT_TRUE(shell.json("f/summary.json")["strata"].contains("mesh"));
   tried("float.cpp:meet survey.toml --out g");

@@ -31,7 +31,7 @@ enum class Format { pairs, csv };
 struct DumpOptions {
   std::string name;
   Format format = Format::csv;
-  std::uint64_t pairs = 0;  // 0: 1000 of a stratum, all of a campaign
+  std::uint64_t pairs = 0;  // 0: 1000 pairs of a stratum, all pairs of a campaign
   LaneOptions lanes;
   std::vector<std::string> values;  // two lanes
 };
@@ -65,7 +65,7 @@ CampaignPairs drawn_for(const DumpOptions& options) {
   return pairs;
 }
 
-// The lane's name as a field key, such as moller_1997.f32.cpu.
+// Returns the lane's name as a field key, such as moller_1997.f32.cpu.
 std::string key_of(const Lane& lane) {
   std::string key = lane.id;
   for (char& c : key) c = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' ? c : '.';
@@ -117,7 +117,6 @@ void dump(const DumpOptions& options) {
   }
 }
 
-// The lanes of --values.
 analysis::LanesCompared compared_lanes(const std::vector<std::string>& ids) {
   if (ids.size() != 2) throw UsageError("--values takes two lanes, separated by a comma");
   return {published_lane(ids[0]), published_lane(ids[1])};

@@ -18,7 +18,7 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-// Every row equals the output of `graze check` for the pair with the same numbers.
+// Every row agrees with `graze check` on a pair with the row's coordinates.
 TEST_F(Dump, ATableSaysWhatCheckSays) {
   const Ran ran = shell.done(
       "graze dump near_edge_edge:7 --pairs 20 --lanes 'moller_1997/f32/cpu,exact/f32/cpu' > t.csv; cat t.csv");
@@ -52,7 +52,7 @@ TEST_F(Dump, ATableSaysWhatCheckSays) {
   }
 }
 
-// The value of a field in a line of a file of pairs.
+// Returns a field's value from a line of a file of pairs.
 std::string field_of(const std::string& line, const std::string& key) {
   const std::size_t at = line.find(' ' + key + '=') + key.size() + 2;
   return line.substr(at, line.find(' ', at) - at);
@@ -107,7 +107,7 @@ print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
       return std::stoi(
           shell(std::string("python3 peak.py graze dump uniform --format ") + format + " --pairs " + pairs).out);
     };
-    EXPECT_LT(peak("20000"), peak("200") + 2048) << format;  // in KiB; the text is of about 8 MiB
+    EXPECT_LT(peak("20000"), peak("200") + 2048) << format;  // in KiB; the text has about 8 MiB
   }
 }
 

@@ -11,9 +11,9 @@
 
 namespace graze::cli {
 
-// Emits the first case with a wrong lane under test that the snippet can show. Prefers the first such lane of the
-// algorithm in the case's signature. If the kind shows no lane, emits the first case on which any lane is wrong, or
-// else the first case. `name` is the user's name for the cases.
+// Emits the first case on which a lane under test is wrong that the snippet can show. Prefers the first such lane of
+// the algorithm in the case's signature. If snippets of this kind show no lane, emits the first case on which any lane
+// is wrong, or else the first case. `name` is the user's name for the cases.
 // Throws: std::runtime_error if there is no such case, or none with finite coordinates.
 std::string emit(reports::SnippetKind kind, const std::string& name, const std::vector<corpus::Entry>& entries,
                  const fuzz::SelectedLanes& under_test);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze repro --emit`: compiles every kind with the command in its first comment, runs it, and checks its output.
+// `graze repro --emit`: compiles and runs each kind of snippet with the command in its first comment.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -117,7 +117,7 @@ TEST_P(Emit, CgalAndPythonProveTheTruth) {
   EXPECT_TRUE(python.out.ends_with(cgal.out)) << python.out << cgal.out;
 }
 
-// The decimals of the obj file, read back as a pair, have the bits of the case.
+// The decimals of the OBJ file, read back as a pair, have the case's bits.
 TEST_P(Emit, ObjHoldsTheSameBits) {
   const Ran emitted = shell("graze repro case.pairs --emit obj > case.obj; grep -c '^[of] ' case.obj");
   EXPECT_EQ(emitted.out, "4\n");
@@ -155,7 +155,7 @@ TEST(EmitFlags, AreThoseOfTheLane) {
   EXPECT_FALSE(has(first_line("cuda --lanes '*/f32/cuda-fma'"), {"fmad"}));
 }
 
-// Needs no device: the contraction rules, which were verified on one, must give a snippet's kernel as many fused
+// Needs no device: the contraction rules were verified on one, and must give a snippet's kernel as many fused
 // operations as its lane's kernel has.
 TEST(EmitCuda, ContractsAsItsLaneDoes) {
 #ifndef GRAZE_NVCC_DIR
@@ -163,7 +163,7 @@ TEST(EmitCuda, ContractsAsItsLaneDoes) {
 #else
   const Shell shell("emit-cuda");
   const std::string explicit_ptx = "graze_twin_generator " GRAZE_LANE_PTX " --explicit lanes.ptx && ";
-  // Segments on which some lane of every algorithm is wrong, on host and device.
+  // Pairs of segments on which each algorithm has a wrong lane, on the host and on the device.
   shell("printf '0 0 0 4 0 0 2 0 0 1 0 1 1 0 4 1 0 2\\n0 0 0 4 0 0 2 0 0 1 0 0 1 0 4 1 0 2\\n' > p");
   const std::string ids = shell("graze lanes | sed -n 's|^  \\([a-z0-9_]*\\)/f32/cpu .*|\\1|p' | grep -v exact").out;
   std::istringstream algorithms(ids);

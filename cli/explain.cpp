@@ -25,7 +25,7 @@
 namespace graze::cli {
 namespace {
 
-// Whether a value is off by more than a thousandth. Rounding explains smaller errors, so they tell nothing.
+// Whether a value is off by more than a thousandth. Smaller errors are ordinary rounding, and are not shown.
 bool is_off(const oracle::Beside& beside, Scalar scalar) {
   return !(beside.ulps <= std::ldexp(1e-3, scalar == Scalar::f32 ? 23 : 52));
 }
@@ -33,8 +33,8 @@ bool is_off(const oracle::Beside& beside, Scalar scalar) {
 // "guigue_devillers_2003.h:111"
 std::string place(const analysis::Step& step) { return step.line.substr(step.line.rfind('/') + 1); }
 
-// Formats a value, with the exact value if it is off, or a comparison, with the exact values if its outcome differs.
-// Marks the step to report. places: width of the column for the place.
+// Formats one step: a value, with the exact value if it is off; or a comparison, with the exact values if its outcome
+// differs. Marks the step that is reported. places: width of the column for the place.
 std::string step_text(const analysis::Step& step, bool told, Scalar scalar, int places, const reports::Screen& screen) {
   std::string text = fmt::format("{}{:<{}}  ", told ? "   => " : "      ", place(step), places), exactly;
   const int hang = reports::width_of(text);
@@ -144,8 +144,8 @@ std::string lane_text(const AnyPair& pair, const analysis::LaneExplanation& lane
   return text;
 }
 
-// The runs of two lanes side by side, if the user named exactly two and both record their values; else empty. Also
-// empty for lanes in float on a pair of doubles.
+// Returns the runs of two lanes side by side if the user named exactly two and both record their values; otherwise
+// empty. Also empty for lanes in float on a pair of doubles.
 std::string side_by_side(const std::vector<const Lane*>& lanes, const AnyPair& pair, const reports::Screen& screen) {
   if (lanes.size() != 2 || !is_finite(pair.doubles) || analysis::decides_stored(*lanes[0], pair) ||
       !analysis::why_not_compared(*lanes[0], *lanes[1]).empty())
@@ -153,7 +153,7 @@ std::string side_by_side(const std::vector<const Lane*>& lanes, const AnyPair& p
   return '\n' + reports::side_by_side({*lanes[0], *lanes[1]}, pair, screen);
 }
 
-// The cost of two kernels of the user's code: the lane's own, and one built with -fmad=false.
+// Returns the cost of two kernels of the user's code: the lane's own kernel, and one built with -fmad=false.
 std::string cost_of_rounding(const std::string& lane) {
   const std::string rounded = fmt::format("{}/{}", lane.substr(0, lane.rfind('/')), name(Variant::cuda_nofma));
   std::vector<const cuda::CudaBuild*> builds;
@@ -181,7 +181,7 @@ struct ExplainOptions {
   bool all = false;
 };
 
-// The conclusion about a case, in blocks of lines.
+// Returns the conclusion about a case, in blocks of lines.
 std::vector<std::string> answer_of(const ExplainOptions& options, const fuzz::SelectedLanes& under_test,
                                    const corpus::Entry& entry, const analysis::Explanation& explanation,
                                    const reports::Screen& screen) {
@@ -204,7 +204,7 @@ std::vector<std::string> answer_of(const ExplainOptions& options, const fuzz::Se
   return blocks;
 }
 
-// The details behind the conclusion: the pair with all verdicts, two lanes side by side, and each wrong lane's values.
+// Returns the details: the pair with all verdicts, two lanes side by side, and each wrong lane's values.
 std::vector<std::string> details_of(const fuzz::SelectedLanes& under_test, const analysis::Explanation& explanation,
                                     const reports::Screen& screen) {
   std::ostringstream pair;
@@ -228,7 +228,7 @@ void print_json(const ExplainOptions& options, const fuzz::SelectedLanes& under_
   line["cuda"] = cuda_evidence(under_test);
   fuzz::add_left_out(line, under_test);
   if (const std::string note = written_note(entry, explanation.truth); !note.empty()) line["note"] = note;
-  // A file name may not be valid UTF-8, which JSON requires.
+  // JSON requires valid UTF-8, which a file name need not be.
   fmt::print("{}\n", line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
@@ -238,7 +238,7 @@ void explain_cases(const ExplainOptions& options) {
   const reports::Screen screen = output_screen();
   const std::vector<corpus::Entry> entries = read_cases(options.name, options.exact_input);
   take_doubles_of(entries, under_test);
-  // Two lines of the limit are kept for the text that follows.
+  // Two lines of the limit are reserved for the text that follows.
   LimitedText limited(options.all ? std::numeric_limits<int>::max() : kMostLines - 2);
   const auto add = [&](const std::vector<std::string>& blocks) {
     for (const std::string& block : blocks) limited.add(block);

@@ -20,7 +20,7 @@ TEST_F(ExplainCommand, SaysWhyInOneSentenceAnAlgorithm) {
   EXPECT_EQ(ran.err, "");
 }
 
-// Rounding by an ulp or two is not reported. Only a value that is off has the exact value beside it, and only a
+// Rounding by an ulp or two is not reported. Only a value that is off is shown with the exact value, and only the
 // deciding step has a mark.
 TEST_F(ExplainCommand, SaysItsSentenceFirstAndMarksWhatMatters) {
   std::ofstream(shell.folder / "p") << "0.1 0.2 0.3 0.4 0.9 0.2 0.7 0.1 0.6 0.1 0.2 0.3 0.5 0.5 0.9 -0.3 0.8 0.4\n";
@@ -81,7 +81,7 @@ TEST_F(ExplainCommand, PrintsAtMost40LinesUnlessAllAreAsked) {
       EXPECT_GT(lines(all), 1000);
     }
   }
-  // Other cases' conclusions come before the details of the first.
+  // The conclusions on other cases come before the details of the first case.
   const std::string of_one = shell("graze explain some.pairs --lanes 'projected_sat/f32/cpu'").out;
   EXPECT_LE(std::count(of_one.begin(), of_one.end(), '\n'), 40) << of_one;
   const std::size_t second = of_one.find("\nsome.pairs:");

@@ -23,14 +23,14 @@ namespace {
 
 using fuzz::Json;
 
-// Lane ids without their subject, such as "f32/cpu f32/cpu-fma".
+// Returns lane ids without their subject, such as "f32/cpu f32/cpu-fma".
 std::string lanes_within(const Json& lanes, const std::string& subject) {
   std::string names;
   for (const Json& id : lanes) names += (names.empty() ? "" : " ") + id.get<std::string>().substr(subject.size() + 1);
   return names;
 }
 
-// "near_edge_edge 70 %, uniform 30 %", most frequent first.
+// Returns shares such as "near_edge_edge 70 %, uniform 30 %", largest first.
 std::string shares(const Json& counts, std::size_t most) {
   std::vector<std::pair<std::string, std::uint64_t>> rows;
   double sum = 0;
@@ -48,7 +48,7 @@ std::string shares(const Json& counts, std::size_t most) {
   return text + (rows.size() > most ? fmt::format(", {} more", rows.size() - most) : "");
 }
 
-// A kind: its title and sentence, then how often it occurs and its simplest case; with `all`, also where it occurs.
+// Describes a kind: title, sentence, how often it occurs, and its simplest case; with `all`, also where it occurs.
 std::string kind_text(const Json& kind, std::size_t number, bool all, const reports::Screen& screen) {
   const auto line = [&](int indent, const std::string& text) {
     return reports::wrapped(text, screen.columns, indent, indent + 2);
@@ -68,7 +68,7 @@ std::string kind_text(const Json& kind, std::size_t number, bool all, const repo
                               errors.empty() ? "" : ", " + errors, lanes_within(kind["lanes"], subject), file));
   if (!all) return text;
   const std::uint64_t settled = kind["settled"][0], of = kind["settled"][1];
-  if (settled < of) text += line(2, fmt::format("the cause is settled for {} of {} lanes looked at", settled, of));
+  if (settled < of) text += line(2, fmt::format("the cause is settled for {} of {} examined lanes", settled, of));
   text += line(2, "margins: " + shares(kind["margins"], 4));
   if (!kind["strata"].empty()) text += line(2, "strata of the kept pairs: " + shares(kind["strata"], 4));
   return text +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze` with foreign code that hangs, floods its output or leaves processes: it stops when asked to, and leaves
-// nothing behind.
+// Runs `graze` with foreign code that hangs, floods its output or leaves processes: `graze` stops when asked to, and
+// leaves nothing behind.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -82,7 +82,7 @@ TEST_F(ForeignCode, CodeThatCannotBeSeenAndTooFewDescriptorsAreRefused) {
   expect_done("rm -r " + folder);
 }
 
-// The first subject puts another program in place of the one that runs subjects.
+// The first subject replaces the program that runs subjects.
 TEST_F(ForeignCode, CannotReplaceTheProgramThatRunsIt) {
   expect_done("mkdir gz && cp $(command -v graze) $(dirname $(command -v graze))/graze-subject-host gz");
   shell(
@@ -104,7 +104,7 @@ TEST_F(ForeignCode, CannotReplaceTheProgramThatRunsIt) {
   }
 }
 
-// The compiler waits for input from the pipe for ever. A verb that catches no signals itself must stop normally too.
+// The compiler waits forever for input from the pipe. A verb that catches no signals itself must stop normally too.
 TEST_F(ForeignCode, ACompilerEndsWithGraze) {
   expect_done("mkfifo pipe.h && echo '#include \"pipe.h\"' > waits.cpp");
   const std::string verbs[] = {"fuzz --lanes 'w/*' --strata uniform --pairs 10 --out o", "check pair.txt"};
@@ -126,7 +126,7 @@ TEST_F(ForeignCode, ACompilerEndsWithGraze) {
   }
 }
 
-// The program replaces its own file at the first pair. No record mixes verdicts of the old and the new file.
+// The program replaces its own file at the first pair. No record mixes verdicts from the old and the new file.
 TEST_F(ForeignCode, ACampaignWhoseProgramChangesFailsAndGoesOnWithTheOldOne) {
   ASSERT_EQ(shell("printf 'while read l; do [ \"$l\" = describe ] && { echo; continue; }; echo 1; [ -e swap ] || "
                   "continue; rm swap; cp other.sh next.sh; mv next.sh m.sh; done\n' > m.sh && cp m.sh old.sh && "
@@ -145,7 +145,6 @@ TEST_F(ForeignCode, ACampaignWhoseProgramChangesFailsAndGoesOnWithTheOldOne) {
   expect_done("cmp whole/summary.json straight/summary.json");
 }
 
-// The results of minimize count as the campaign's, so they must come from the code that the campaign ran.
 TEST_F(ForeignCode, ACampaignIsNotDoneIfItsCodeOverwritesTheDatabase) {
   std::ofstream(shell.folder / "w.c") << "#include <stdio.h>\n#define DATABASE \"" +
                                              (shell.folder / "c/campaign.sqlite").string() + R"("
@@ -161,6 +160,7 @@ int intersects(const float a[9], const float b[9]) {
   expect_done("graze fuzz --lanes 'moller_1997/f32/cpu' --strata uniform --pairs 100 --out d");
 }
 
+// The results of minimize count as the campaign's, so they must come from the code that the campaign ran.
 TEST_F(ForeignCode, MinimizeRefusesCodeThatTheCampaignDidNotRun) {
   const std::string always = "echo 'int meet(const float a[9], const float b[9]) { return 1; }' > a.c";
   expect_done(always +
@@ -205,7 +205,7 @@ TEST_F(ForeignCode, WhatCannotBeWrittenForACompilerIsSaidWithItsReason) {
       1, {"cache/graze/include/graze/cuda_host.h", "File too large"});
 }
 
-// If a constructor reports no function or garbage, one line names the code.
+// If a constructor sends garbage instead of describing the functions, one line names the code.
 TEST_F(ForeignCode, ASubjectWithoutAFunctionIsNamed) {
   ASSERT_EQ(
       shell(

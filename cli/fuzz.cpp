@@ -56,8 +56,8 @@ std::vector<std::string> details(const fuzz::Progress& progress, const std::vect
           reports::grouped(static_cast<std::uint64_t>(rate)) + " pairs/s", "most in " + sources[best].id};
 }
 
-// The subject's smallest case. Minimises, as `graze minimize` would, the kMostShrunk signatures whose first kept pairs
-// are the simplest. Returns the simplest result and its file; among equal results, the one from the simpler kept pair.
+// Finds the subject's smallest case. Minimises, as `graze minimize` would, the kMostShrunk signatures with the simplest
+// first kept pairs. Returns the simplest result and its file; among equal results, the one from the simpler kept pair.
 std::pair<std::string, std::filesystem::path> smallest_case(const std::filesystem::path& campaign,
                                                             const fuzz::SelectedLanes& under_test, const Json& summary,
                                                             const std::string& subject) {
@@ -87,8 +87,8 @@ std::pair<std::string, std::filesystem::path> smallest_case(const std::filesyste
   return smallest;
 }
 
-// Reports each given subject that is wrong on more pairs than allowed or, if no subject is given, each such algorithm.
-// Prints one line with the simplest minimised case.
+// Prints one line for each given subject that is wrong on more pairs than allowed or, if no subject is given, for each
+// such algorithm. The line names the simplest minimised case.
 // Returns: the exit status.
 int fail_above(const FuzzOptions& options, const fuzz::SelectedLanes& under_test, const Json& summary) {
   std::map<std::string, std::uint64_t> wrong;
@@ -219,7 +219,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
     fmt::print(stderr, "graze: interrupted; finished work is kept, and the same command resumes the campaign\n");
     return kInterrupted;
   }
-  // Foreign code can write into the folder too. So the files are read back before the results are reported.
+  // Foreign code can also write into the folder, so the files are read back before the results are reported.
   const bool foreign = campaign.spec.contains("subjects");
   if (foreign && campaign.shard.whole()) {
     fuzz::checked_summary(options.out);
@@ -238,7 +238,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
   return options.fail_above ? fail_above(options, under_test, outcome.summary) : 0;
 }
 
-// Runs alone or as one of mpirun's processes. Under mpirun, a failing process ends all processes.
+// Runs alone, or as one of mpirun's processes. Under mpirun, a process that fails ends all of them.
 int start(const FuzzOptions& options) {
   if (!options.junit.empty() && !options.shard.whole())
     throw UsageError("--junit is for whole campaigns; a shard has only a part of the pairs");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options of `graze fuzz`, and its steps, which other verbs use too. Defined in fuzz.cpp.
+// The options of `graze fuzz`, and its steps, which other verbs also use. Implemented in fuzz.cpp.
 #pragma once
 
 #include <cstdint>
@@ -29,31 +29,31 @@ struct FuzzOptions : DrawOptions {
   std::string scratch;
 };
 
-// The lanes of --lanes. With --subject, the exact lane runs as well, unless a pattern leaves it out.
-// Throws: as selected_lanes.
+// Returns the lanes that --lanes selects. With --subject, the exact lane runs as well, unless a pattern leaves it out.
+// Throws: what selected_lanes throws.
 fuzz::SelectedLanes lanes_of_campaign(const FuzzOptions& options);
 
-// The campaign of these options. `left_out`: receives the strata that the scene cannot contain.
+// Builds the campaign for these options. `left_out`: receives the strata that the scene cannot contain.
 // Requires: `under_test` outlives the campaign.
-// Throws: as drawn, strata::read_bodies and fuzz::choose_engines.
+// Throws: what drawn(), strata::read_bodies and fuzz::choose_engines throw.
 fuzz::Campaign campaign_of(const FuzzOptions& options, const fuzz::SelectedLanes& under_test,
                            std::vector<strata::LeftOut>& left_out);
 
-// Writes the finished campaign as tests to the file of --junit, if it was given.   Throws: as write_result.
+// Writes the finished campaign as JUnit tests to the --junit file, if there is one.   Throws: what write_result throws.
 void write_junit(const FuzzOptions& options, const fuzz::SelectedLanes& under_test, const fuzz::Json& summary);
 
 // Runs or resumes the campaign, with a live line on a terminal, until it is done or the user interrupts it.
-// Throws: as fuzz::run_campaign.
+// Throws: what fuzz::run_campaign throws.
 fuzz::Outcome run_with_progress(const fuzz::Campaign& campaign);
 
 // Prints the result of a campaign at the end of `fuzz` and `merge`, and writes its picture to `out`.
 void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool json,
                     const std::vector<strata::LeftOut>& left_out = {});
 
-// The same for a shard.
+// Prints the result of a shard.
 void print_shard(const std::string& out, const fuzz::Json& spec, const fuzz::Json& summary, bool json);
 
-// A line for each subject whose hash leaves something out, such as the libraries that it loads; empty for none.
+// Returns a line for each subject whose hash omits something, such as loaded libraries; empty for none.
 std::string not_covered_text(const fuzz::Json& spec);
 
 }  // namespace graze::cli

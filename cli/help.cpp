@@ -85,7 +85,7 @@ class Help : public CLI::FormatterBase {
                         return !is_argument(option) && option->get_group() == group;
                       }));
     }
-    // The example must not be wrapped, so that it can be copied.
+    // The example is not wrapped, so that it can be copied.
     return app->get_footer().empty() ? text : text + '\n' + app->get_footer() + '\n';
   }
 };

@@ -32,11 +32,11 @@ using Plan = std::vector<FusedLine>;
 
 constexpr std::size_t kTargets = std::size(subjects::kHipTargets);
 
-// The products that each compiler fuses in one source and scalar.
+// The products that each compiler fuses in one source, for one scalar.
 struct Compared {
   std::string name;  // "moller_1997/f32"
   Plan amd[kTargets];
-  std::optional<Plan> nvidia;  // nothing if it is not known
+  std::optional<Plan> nvidia;  // nothing if unknown
 };
 
 struct Source {
@@ -82,7 +82,7 @@ std::vector<Source> sources_of(const std::vector<std::string>& texts, const std:
     if (named.kind != "hip" && named.kind != "cuda" && named.kind != "source")
       throw UsageError(fmt::format("--subject {}: expected a source of HIP, CUDA or C++, found {}", wanted.name,
                                    shown(wanted.what)));
-    if (named.kind == "cuda") subjects::open(wanted);  // for the plan of NVRTC
+    if (named.kind == "cuda") subjects::open(wanted);  // to get NVRTC's plan
     sources.push_back({wanted.name, named.file, subjects::function_of(named), flags});
   }
   if (!sources.empty()) return sources;
@@ -92,7 +92,7 @@ std::vector<Source> sources_of(const std::vector<std::string>& texts, const std:
   return sources;
 }
 
-// The operations by line, in the order of the compilers: AMD's targets, then NVIDIA's.
+// The operations on each line, ordered by compiler: AMD's targets, then NVIDIA's.
 using ByLine = std::map<std::pair<std::string, int>, std::vector<const FusedLine*>>;
 
 ByLine by_line(const Compared& of) {

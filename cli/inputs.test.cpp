@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// User input: wrong words, counts, pairs as pasted, missing files, and the commands that graze suggests.
+// User input: wrong words, counts, pasted pairs and missing files. Also the commands that graze suggests.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -59,11 +59,11 @@ TEST_F(Inputs, FoldersAndDevicesInAFilesPlaceAreNamed) {
     EXPECT_FALSE(has(ran.err, {"basic_filebuf"})) << verb;
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
   }
-  // A read error on standard input is not taken for its end.
+  // A read error on standard input is not taken for its end of file.
   expect_error("graze check - --truth-only < /tmp", 1, {"cannot read standard input"});
 }
 
-// A command that is refused leaves the folder as it was.
+// A refused command leaves the folder unchanged.
 TEST_F(Inputs, RefusedCommandsChangeNoFolder) {
   expect_done("graze fuzz --pairs 500 --strata lattice --lanes '*/f32/cpu' --out c && rm c/campaign.sqlite");
   for (const char* verb :
@@ -126,7 +126,7 @@ TEST_F(Inputs, ForeignTextDoesNotReachTheTerminal) {
   std::ofstream(shell.folder / "a:b:c")
       << kTouching << R"( | name="a\x1b[31mb" stratum="\x1b]0;t" seed=1 index=2 signature="\x07/x:")";
   for (const char* verb : {"check", "repro", "explain", "repro --emit obj", "repro --emit python"}) {
-    const Ran ran = shell(std::string("graze ") + verb + " a:b:c");  // the file, because it exists
+    const Ran ran = shell(std::string("graze ") + verb + " a:b:c");  // a file name, because the file exists
     EXPECT_LE(ran.status, 1) << verb << ran.err;
     EXPECT_EQ((ran.out + ran.err).find_first_of("\x1b\x07"), std::string::npos) << verb << ran.out;
   }
@@ -169,12 +169,12 @@ TEST_F(Inputs, WhatFloat32MakesOfDecimalsIsSaid) {
     EXPECT_TRUE(has(ran.out + ran.err, {note})) << command;
     expect_error(command + " --exact-input", 2, {"near.pairs:1", "\"1.00000000001\"", "--exact-input", "12"});
   }
-  // A double in hex that float32 cannot represent makes a pair of doubles.
+  // A hexadecimal number that float32 cannot represent makes the pair a pair of doubles.
   const Ran hex = shell(
       "echo '0 0 1 1 0 1 0 1 1  0 0 0x1.0000000000001p0 1 0 0x1.0000000000001p0 0 1 "
       "0x1.0000000000001p0' | graze check -");
   EXPECT_TRUE(has(hex.out, {"truth: disjoint", "as stored in float32: they share an area"}));
-  // Decimals that doubles cannot distinguish either.
+  // Doubles cannot distinguish these decimals either.
   const Ran finer = shell(
       "echo '0 0 1 1 0 1 0 1 1  0 0 1.00000000000000000001 1 0 1.00000000000000000001 0 1 1.00000000000000000001' | "
       "graze check -");
@@ -230,7 +230,7 @@ TEST_F(Inputs, WhatFloat32MakesOfMeshesIsSaid) {
   expect_done("grep -q 'coordinates=f64' h.pairs && graze check h.pairs --lanes exact/f64/cpu | grep -q intersects");
   expect_done("grep -q 'v 1000000.01 0 0' h.obj && grep -q 0,0,area,pierces h.csv");
   expect_done("graze query --between far.off far.off --pairs b.pairs > out && graze check b.pairs > out");
-  // Numbers below what a double can hold are rounded to 0, and that is reported too.
+  // Numbers too small for a double are rounded to 0, which is reported too.
   std::ofstream(shell.folder / "least.off")
       << "OFF\n6 2 0\n0 0 0\n1 0 0.0\n0 1 -0\n0 0 1e-500\n1 0 1e-500\n0 1 1e-500\n3 0 1 2\n3 3 4 5\n";
   std::ofstream(shell.folder / "least.txt") << "-1 -1 1e-500 2 0 0 0 2 0\n";
@@ -316,7 +316,7 @@ TEST_F(Inputs, PrintedCommandsRunAsTheyStand) {
   ASSERT_NE(at, std::string::npos) << ran.out;
   expect_done(ran.out.substr(at + 14, ran.out.find('\n', at) - at - 14));
   EXPECT_TRUE(ran.out.ends_with("\nNext: graze minimize 'my campaign'\n")) << ran.out;
-  // Each verb ends with the next command.
+  // Each verb's output ends with the next command.
   const Ran minimized = shell("graze minimize 'my campaign'");
   EXPECT_TRUE(minimized.out.ends_with("\nNext: graze report 'my campaign'\n")) << minimized.out << minimized.err;
   EXPECT_TRUE(shell("graze repro exact_contact:1:1").out.ends_with("\nNext: graze minimize exact_contact:1:1\n"));

@@ -40,7 +40,7 @@ TEST_F(InvariantsCommand, LeavesTheSameBytesWhateverTheThreads) {
   EXPECT_GT(json["lanes"][0]["invariants"]["order"]["changed"], 0);
 }
 
-// The effect of doubling is listed separately, beside that of any scaling, in the file and in the table.
+// Besides the effect of scaling as a whole, the file and the table list that of each factor, such as doubling.
 TEST_F(InvariantsCommand, TellsWhatEachScalingChangesAlone) {
   const std::string invariants =
       "graze invariants --lanes 'projected_sat/f32/cpu' --strata near_edge_edge --pairs 500 --out l";
@@ -62,7 +62,7 @@ TEST_F(InvariantsCommand, TellsWhatEachScalingChangesAlone) {
   EXPECT_EQ(shell(invariants + " | grep -cE '" + line + "$'").out, "1\n") << line << '\n' << ran.out;
 }
 
-// In each lane's case of each invariant, the first pair is wrong according to explain and minimize.
+// For each lane and invariant, explain and minimize find the lane wrong on the first pair of its case.
 TEST_F(InvariantsCommand, ItsCasesAreWrongVerdicts) {
   expect_done("graze invariants --lanes 'guigue*/f32/cpu' --strata 'near_*' --pairs 400 --out l");
   for (const char* invariant : {"order", "mirror", "axes"}) {
@@ -75,13 +75,13 @@ TEST_F(InvariantsCommand, ItsCasesAreWrongVerdicts) {
   }
 }
 
-// A subject that depends on the order, one that differs only within its convention, and a scene.
+// A subject whose verdict depends on the order of the triangles, and a published lane in a scene.
 TEST_F(InvariantsCommand, OfOnesOwnCodeAndWithinAScene) {
   std::ofstream(shell.folder / "mine.c") << "int mine(const float a[9], const float b[9]) { return a[0] > b[0]; }\n";
   expect_done("cc -shared -fPIC mine.c -o mine.so");
   expect_done("graze invariants --subject mine=mine.so:mine --lanes 'mine/*' --strata uniform --pairs 200 --out l");
   const auto of = shell.json("l/invariants.json")["lanes"][0]["invariants"];
-  EXPECT_EQ(of["swap"]["changed"], 200);  // one of two random numbers is larger; after the swap it is the other one
+  EXPECT_EQ(of["swap"]["changed"], 200);  // a[0] > b[0] holds in one order only
   EXPECT_EQ(of["scale"]["changed"], 0);
   EXPECT_EQ(of["translate"]["changed"], 0);
   std::ofstream(shell.folder / "hall.toml") << "extent = [[100, 108], [0, 4], [0, 4]]\nedges = [0.5, 1, 2]\n";

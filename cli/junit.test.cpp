@@ -11,7 +11,7 @@ namespace {
 
 class Junit : public CommandTest {
  protected:
-  // {"suite": {"test": failure, or null}}; skipped tests as "skipped: why".
+  // Returns {"suite": {"test": failure, or null}}, with skipped tests as "skipped: why".
   nlohmann::json read(const std::string& file) {
     const Ran ran = shell.done(
         "python3 -c \"import json, sys, xml.etree.ElementTree as x\n"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options --lanes, --subject and --executor, which are the same for all verbs. Selects lanes, opens a user's code,
-// and reports lanes that do not run.
+// The options --lanes, --subject and --executor, which are the same for all verbs. Also selects lanes, opens a user's
+// code, and reports lanes that do not run.
 #include <fmt/format.h>
 
 #include <algorithm>

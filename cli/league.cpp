@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Seconds. The least time limit of a program, because its first pair includes its start.
+// A program's minimum time limit for a pair, in seconds, because its first pair includes its start-up.
 constexpr double kStartOfAProgram = 10;
 
 struct LeagueOptions : DrawOptions {
@@ -45,7 +45,7 @@ std::string trimmed(const std::string& text) {
   return first == text.npos ? "" : text.substr(first, last - first + 1);
 }
 
-// Reads lines NAME=WHAT. Below such a line, indented lines `version: …`, `source: …` or `convention: …` give facts that
+// Reads NAME=WHAT lines. Below such a line, indented lines `version: …`, `source: …` or `convention: …` give facts that
 // the code does not report. `pairs: N` limits the pairs of a slow subject. # begins a comment.
 // Throws: std::runtime_error with file and line.
 std::vector<reports::LeagueSubject> read_subjects(const fs::path& file, fuzz::MostPairs& most) {

@@ -30,7 +30,7 @@ class LeagueCommand : public CommandTest {
 
 constexpr const char* kRun = "graze league --subjects subjects.txt --pairs 1000 --strata lattice,uniform --out found";
 
-// All pairs drawn within a scene fit into it: no box is wider than the extent.
+// All pairs fit into the scene: no box is wider than the scene's extent.
 TEST_F(LeagueCommand, DrawsWithinAScene) {
   std::ofstream(shell.folder / "hall.toml") << "extent = [[100, 108], [0, 4], [0, 4]]\nedges = [0.5, 1, 2]\n";
   expect_done("graze league --subjects subjects.txt --pairs 600 --scene hall.toml --strata uniform --out found");

@@ -37,7 +37,7 @@ void add_verbs(CLI::App& app, int& status) {
 #undef GRAZE_TASK
 }
 
-// Rejects empty texts, which name nothing. Only compiler flags may be empty.
+// Rejects empty option values, which name nothing. Only compiler flags may be empty.
 void refuse_empty_texts(CLI::App& app) {
   const CLI::Validator not_empty(
       [](std::string& text) { return text.empty() ? "expected a name, found ''" : std::string(); }, "");
@@ -85,7 +85,7 @@ std::string option_meant(const CLI::App& app, int argc, char** argv) {
 // Prints one line, even if the quoted names and texts contain control characters.
 int fail(std::string what, int status) {
   for (char& c : what) c = static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? ' ' : c;
-  // If even this cannot be written, only the exit status tells of the failure.
+  // If even this cannot be written, only the exit status shows the failure.
   std::fputs(fmt::format("{} {}\n", graze::reports::red(graze::cli::error_screen(), "graze:"), what).c_str(), stderr);
   return status;
 }
@@ -102,7 +102,7 @@ int main(int argc, char** argv) {
       "--version", [] { return fmt::format("{} (commit {})", GRAZE_VERSION, graze::fuzz::commit_of_build()); },
       "Print the version and the commit");
   app.require_subcommand(1);
-  std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file-size limit then fails a write, like a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond a file-size limit then fails, as on a full disk
   int status = 0;
   add_verbs(app, status);
   app.footer("Run `graze VERB --help` for the options of a verb.");  // verbs that exist already keep their own footers
@@ -111,7 +111,7 @@ int main(int argc, char** argv) {
   try {
     std::cout.exceptions(std::ios_base::badbit);
     expect_verb(app, argc > 1 ? argv[1] : "");
-    // The parser takes "[a,b]" as a list. Here it is the name of a file.
+    // CLI11 would parse "[a,b]" as a list. Here it is a file name.
     std::vector<std::string> words(argv + 1, argv + argc);
     for (std::string& word : words) {
       if (word.starts_with('[') && word.ends_with(']')) word.insert(0, "./");

@@ -73,7 +73,7 @@ void print_counts(const analysis::UlpMap& map) {
   std::vector<reports::Column> columns{{"", reports::Align::left}};
   std::vector<Cell> shown;
   for (const auto& [cell, title] : kColumns) {
-    if (cell > Cell::not_finite && all[static_cast<std::size_t>(cell)] == 0) continue;  // failing foreign code only
+    if (cell > Cell::not_finite && all[static_cast<std::size_t>(cell)] == 0) continue;  // only for failing foreign code
     columns.push_back({title});
     shown.push_back(cell);
   }
@@ -105,7 +105,7 @@ void write_pictures(const analysis::UlpMap& map, const fs::path& out) {
       panels.insert(out / (name + ".png"));
       write_result(out / (name + ".png"), reports::panel_png(panel));
     }
-    // Panels of another case would seem to belong to this one.
+    // Removes panels of another case, which would seem to belong to this one.
     const std::string own = reports::panel_png(map.panels.front());
     for (const fs::directory_entry& file : fs::directory_iterator(out)) {
       if (file.path().extension() == ".png" && !panels.contains(file.path()) && !file.is_symlink() &&

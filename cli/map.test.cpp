@@ -69,11 +69,11 @@ TEST_F(MapCommand, MinimizeStoresTheMapsOfCardsOnceAndForItsPairs) {
     const auto json = nlohmann::json::parse(contents(file.path()));
     EXPECT_EQ(json["panels"][0]["name"], "truth");
     EXPECT_EQ(json["panels"].size(), 6u)
-        << file.path();  // truth, and the f32 lanes of one algorithm that need no device
+        << file.path();  // the truth, and one algorithm's f32 lanes that need no device
   }
   EXPECT_GT(maps, 10u);
   EXPECT_LE(maps, 40u);
-  // Existing maps are kept; missing maps and those of another pair are made again.
+  // Current maps are kept; missing maps and maps of another pair are made again.
   expect_done(
       "cp -r one/cases before; touch -d 2000-01-01 one/cases/*.maps.json; set -- one/cases/*.maps.json; rm $1; cp $2 "
       "$3; "

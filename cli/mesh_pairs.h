@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search of `graze query --self` and `--between`: all pairs of triangles that intersect, within one mesh or between
-// two, with their contact and kind. Boxes give blocks of candidates (strata/mesh_slabs.h). A decider finds the
-// candidates that intersect, and the exact relation tells how they meet. The result does not depend on the decider or
-// the threads.
+// The search behind `graze query --self` and `--between`: finds all pairs of triangles that intersect, within one mesh
+// or between two, with their contact and kind. Boxes give blocks of candidates (strata/mesh_slabs.h). A decider finds
+// the candidates that intersect, and the exact relation tells how they meet. The result does not depend on the decider
+// or the threads.
 #pragma once
 
 #include <array>
@@ -44,15 +44,15 @@ inline constexpr std::size_t kMostListed = 100'000;  // hits in one JSON object
 FoundPair related(std::uint32_t i, std::uint32_t j, const Pair& pair);
 FoundPair related(std::uint32_t i, std::uint32_t j, const DoublePair& pair);
 
-// The text of a CSV file: a header, and a row for each pair.
+// Returns the text of a CSV file: a header, and a row for each pair.
 std::string csv_of(std::span<const FoundPair> pairs);
 
-// One mesh against itself, or two against each other.
+// One mesh against itself, or two meshes against each other.
 struct TwoMeshes {
   strata::MeshPairs a;
   std::optional<strata::MeshPairs> b;
 
-  // Whether a coordinate is beyond float32. Then doubles are decided.
+  // Whether a coordinate is beyond float32; if so, the triangles are decided as doubles.
   bool are_doubles() const { return a.rounding.beyond > 0 || (b && b->rounding.beyond > 0); }
   Pair pair(std::uint32_t i, std::uint32_t j) const;
   DoublePair pair_of_doubles(std::uint32_t i, std::uint32_t j) const;
@@ -77,14 +77,14 @@ struct Decider {
 // Throws: std::runtime_error if there is no device.
 Decider exact_decider(const std::string& executor);
 
-// The pairs to keep: the first `most` in the order of (i, j), all or only those that pierce.
+// Which pairs to keep: the first `most` ordered by (i, j), of all kinds or only those that pierce.
 struct Kept {
   std::size_t most;
   bool only_piercing = false;
 };
 
 struct FoundPairs {
-  std::array<std::uint64_t, kKinds> count{};  // of each kind; apart is 0
+  std::array<std::uint64_t, kKinds> count{};  // by kind; 0 for apart
   std::uint64_t candidates = 0;               // pairs whose boxes overlap
   std::uint64_t declined = 0;                 // triangles that are not finite; they are in no pair
   std::vector<FoundPair> pairs;               // sorted
@@ -94,8 +94,8 @@ struct FoundPairs {
   std::uint64_t all() const;
 };
 
-// The boxes are those of the triangles in float32. Rounding keeps the order of coordinates, so these boxes miss no pair
-// of doubles.   told: called with the number of triangles of `a` that are done, by one thread at a time.
+// Uses the boxes of the triangles in float32. Rounding keeps the order of coordinates, so these boxes miss no pair of
+// doubles.   told: called with the number of triangles of `a` that are done, by one thread at a time.
 // Throws: Stopped, soon after a request to stop (core/stop.h).
 FoundPairs find_pairs(
     const TwoMeshes& meshes, const Decider& decider, const Kept& kept,

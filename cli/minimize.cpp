@@ -52,7 +52,7 @@ struct MinimizeOptions {
   LaneOptions lanes;
 };
 
-// Processor time of this thread, so that other load on the machine does not count.
+// Processor time of this thread, which does not depend on other load on the machine.
 double processor_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -86,7 +86,7 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
   std::cout.flush();
 }
 
-// Adds the header by which graze recognises the file as its own.
+// Adds the first line by which graze recognises its own files.
 std::string with_header(const std::string& text) {
   constexpr std::string_view kMark = "\xef\xbb\xbf";  // UTF-8 byte order mark, allowed only at the start
   const std::string plain = text.starts_with(kMark) ? text.substr(kMark.size()) : text;
@@ -144,9 +144,9 @@ int minimize_case(const MinimizeOptions& options) {
 
 // The result for one signature of a campaign.
 struct Done {
-  bool minimised = false;   // now or earlier; otherwise no selected lane is wrong on it
+  bool minimised = false;   // now or earlier; if false, no selected lane is wrong on it
   int magnitudes = 0;       // of the first result
-  double milliseconds = 0;  // for each case; 0 if it was done earlier
+  double milliseconds = 0;  // per case; 0 if it was done earlier
   double seconds = 0;       // for the file; 0 if it was done earlier
   double processor = 0;     // seconds of one core for the file's cases
 };
@@ -198,7 +198,7 @@ int minimize_directory(MinimizeOptions options) {
   if (options.lanes.resubject)
     throw UsageError("--resubject is only for cases; a campaign's results must come from the code that it ran");
   const bool whole = options.shard.whole();
-  // Reads the summary before the lock is taken, because reading the database of a killed run takes the lock itself.
+  // Reads the summary before taking the lock, because reading a killed run's database takes the lock itself.
   const std::string text = fuzz::read_whole(directory / "summary.json");
   const Json summary = fuzz::checked_summary(directory);
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
@@ -221,7 +221,7 @@ int minimize_directory(MinimizeOptions options) {
     if (i % options.shard.of == options.shard.number - 1) rows.push_back(summary["signatures"][i]);
   }
   expect_writable(directory);
-  fuzz::read_timings(directory);  // before the work, because its end adds to them
+  fuzz::read_timings(directory);  // a damaged file must fail before the work, whose end adds to it
   fuzz::expect_file(directory / "failures.json");
   if (whole) fuzz::expect_own(directory / "failures.json", Json{{"summary", ""}, {"cases", ""}}.dump(1));
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();

@@ -31,7 +31,7 @@ TEST_F(Minimize, ACaseIsPrintedAndWrittenWithItsOriginal) {
   std::size_t as_recorded = 0;
   for (std::size_t at = 0; (at = repro.out.find("(as recorded)", at)) != std::string::npos; ++at) ++as_recorded;
   EXPECT_EQ(as_recorded, 2u) << repro.out;
-  // If the result is the input, its cases are minimised again from the start, and come out the same.
+  // If the result is used as input, its cases are minimised again from the start, with the same result.
   expect_done("graze minimize small.pairs --lanes 'guigue_*/f32/cpu' --out again.pairs && cmp small.pairs again.pairs");
 }
 
@@ -112,7 +112,7 @@ TEST_F(Minimize, LanesAreThoseOfTheCampaignOrThoseAskedFor) {
   expect_error("graze minimize host --lanes 'moller_*/cuda-nofma'", 2, {"the campaign did not run it"});
 }
 
-// Each file of cases states its signature; a file that another program wrote or moved there is rejected.
+// Each case file states its signature; a file that another program wrote or moved there is rejected.
 TEST_F(Minimize, CasesThatAreNotTheCampaignsAreRefusedAndCanBeBroughtBack) {
   expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c > /dev/null && cp -r c whole");
   const auto rows = shell.json("c/summary.json")["signatures"];
@@ -141,7 +141,7 @@ TEST_F(Minimize, CasesThatAreNotTheCampaignsAreRefusedAndCanBeBroughtBack) {
   }
 }
 
-// The forged pair has the right truth, but other lanes are wrong on it, so only the lanes reveal the forgery.
+// The forged pair has the right truth, but other lanes are wrong on it: only the lanes reveal the forgery.
 TEST_F(Minimize, CasesOnWhichOtherLanesAreWrongAreRefused) {
   expect_done(std::string(kFuzz) + "--out c > /dev/null");
   const auto rows = shell.json("c/summary.json")["signatures"];

@@ -14,7 +14,7 @@ namespace graze::cli {
 
 namespace {
 
-// Parses "1000000", "1_000_000", "1e6", "2.5e6" or "10M".   Returns: nothing if it is not a whole number, or too large.
+// Parses "1000000", "1_000_000", "1e6", "2.5e6" or "10M".   Returns: nothing if the number is not whole, or too large.
 std::optional<std::uint64_t> parse_count(std::string_view text) {
   std::string digits;
   int power = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A user's own code: its failures as programs, which fail while the code is wrong and pass once it is fixed; and `graze
-// fuzz --fail-above`.
+// A user's own code. Its failures become programs that fail while the code is wrong and pass once it is fixed. Also
+// tests `graze fuzz --fail-above`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -88,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(cli, Emitted, testing::ValuesIn(kCodes),
 
 class OwnCodeTest : public CommandTest {};
 
-// Your own code comes first in the sentences and in the table; each lane's row has its own verdict.
+// The user's code comes first in the sentences and in the table, and each lane's row has its own verdict.
 TEST_F(OwnCodeTest, ExplainShowsEachLanesOwnVerdict) {
   std::ofstream(shell.folder / "own.c") << "int zero(const float* a, const float* b) { return 0; }\n"
                                            "int none(const float* a, const float* b) { return -1; }\n";
@@ -151,7 +151,7 @@ TEST_F(OwnCodeTest, FailuresAreEmittedToo) {
   }
 }
 
-// A CUDA source: the test asks graze, which replays it if there is no device.
+// For a CUDA source, the emitted test asks graze, which runs the twin if there is no device.
 TEST_F(OwnCodeTest, CudaSourcesAreEmittedToo) {
   const auto write = [&](const char* answer) {
     shell(
@@ -198,8 +198,8 @@ TEST_F(OwnCodeTest, CudaSourcesAreEmittedToo) {
 #endif
 }
 
-// The relevant products are searched for in a separate process, because with only some of them fused this code loops
-// for seconds.
+// The search for the relevant products runs in a separate process, because this code loops for seconds if only some of
+// them are fused.
 TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
   shell(
       "cat > own.cu <<'EOF'\n"
@@ -252,7 +252,7 @@ TEST_F(OwnCodeTest, CudaInDoubleIsExplainedOnDoubles) {
       has(named.out, {"own/f64/cuda-fma differs from cpu by contraction at own.cu:2 (inlined at own.cu:5): with the "
                       "products there rounded it says disjoint, as cpu does."}))
       << named.err;
-  // Differing operands are counted by the line of their comparison.
+  // Differing operands are counted for each line with a comparison.
   expect_done(cached +
               "graze discrepancy own/f64/cuda-nofma own/f64/cuda-fma --coordinates f64 --strata exact_contact --pairs "
               "300 --executor twin --out d" +
@@ -292,7 +292,7 @@ TEST_F(OwnCodeTest, CudaAgainstCpuIsExplained) {
   const Ran device_only = explained("--subject own=./own.cu:one --lanes 'own/*'");
   EXPECT_TRUE(has(device_only.out, {"cuda-fma"})) << device_only.err;
   EXPECT_FALSE(has(device_only.out, {"differs from cpu"}));
-  // Checks the claim: if only the products of that line are rounded, the verdict is that of cpu.
+  // Checks the claim: if only the products on that line are rounded, the verdict is that of cpu.
   shell("sed '2s/.*/  return __fsub_rn(__fmul_rn(t[0], t[1]), __fmul_rn(t[3], t[4]));/' own.cu > rounded.cu");
   const Ran rounded =
       shell(cached + "graze check p --json --executor twin --lanes 'own/*/cuda-fma' --subject own=./rounded.cu:one");
@@ -323,7 +323,7 @@ TEST_F(OwnCodeTest, LanesThatDoNotRunAreNamedEverywhere) {
   for (const char* verb : {"check p --executor twin", "explain p", "invariants --pairs 19 --out l",
                            "plan --executor twin", "corpus verify --executor twin"})
     EXPECT_TRUE(shell(std::string("graze ") + verb + lanes).err.starts_with(ran.err)) << verb;
-  // For lanes that run, nothing is said or recorded.
+  // If all requested lanes run, nothing is reported or recorded.
   const Ran all =
       shell("graze fuzz --pairs 200 --strata uniform --out d --executor twin --lanes 'moller_1997/f32/c*fma'");
   EXPECT_EQ(all.err, "");
@@ -351,7 +351,7 @@ TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
   EXPECT_TRUE(has(repro.out, {"own/f32"})) << repro.err;
   EXPECT_TRUE(has(repro.out, {"!"}));
   expect_done(fuzz + "400");  // moller is wrong too, but was not requested
-  // The file has the smallest of all minimised cases, which need not come from the smallest kept pair.
+  // The file contains the smallest of all minimised cases, which need not come from the smallest kept pair.
   const auto pairs_of = [&](const std::string& command) {
     shell(command + " > some.pairs");
     std::vector<Simplicity> found;
@@ -368,16 +368,16 @@ TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
   EXPECT_LE(minimised.size(), 8u);
   EXPECT_EQ(smallest[0], *std::min_element(minimised.begin(), minimised.end())) << ran.err;
   EXPECT_EQ(shell(fuzz + "0").err, ran.err);
-  // Without a named subject, any lane counts.
+  // If no subject is named, any lane counts.
   const std::string ours = "graze fuzz --pairs 400 --out d --fail-above ";
   expect_error(ours + "0 --lanes 'moller*/f32/cpu'", 1, {"moller_1997", "0", "--fail-above"});
   expect_done("graze fuzz --pairs 400 --out e --lanes 'exact/f32/cpu' --fail-above 0");
-  // A subject none of whose lanes is selected is an error.
+  // It is an error if no lane of a subject is selected.
   expect_error("export XDG_CACHE_HOME=$PWD/cache; graze fuzz --subject own=./own.c --lanes 'exact/f32/cpu' --out f", 2,
                {"own", "--lanes"});
 }
 
-// Runs all verbs on a campaign of code that is wrong, crashes, hangs or is unstable.
+// Runs all verbs on campaigns with code that crashes, hangs or is unstable on some pairs.
 TEST_F(OwnCodeTest, EveryVerbTakesWhatMisbehaves) {
   shell(
       "cat > own.c <<'EOF'\n"
@@ -412,7 +412,7 @@ TEST_F(OwnCodeTest, EveryVerbTakesWhatMisbehaves) {
   }
 }
 
-// Code that fails when it is run once, but not when it is run again.
+// Code that fails at first, but not when it runs again.
 TEST_F(OwnCodeTest, CodeThatChangesItsAnswersKeepsItsReport) {
   std::ofstream(shell.folder / "alt.cpp")
       << "static int n; bool intersects(const float* a, const float* b) { return n++ >> 3 & 1; }\n";

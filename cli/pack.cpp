@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Changes the working directory during its lifetime.
+// Changes the working directory while the object lives.
 class InFolder {
  public:
   explicit InFolder(const fs::path& folder) : before_(fs::current_path()) {
@@ -49,7 +49,7 @@ class InFolder {
   fs::path before_;
 };
 
-// Opens the subjects from the pack's files alone, so that Graze writes no pack that lacks a file.
+// Opens the subjects from only the pack's files, so that Graze writes no pack that lacks a file.
 void expect_subjects_open(const fuzz::Pack& pack, const Json& recorded) {
   if (recorded.empty()) return;
   const Scratch scratch(subjects::cache_folder());
@@ -99,7 +99,7 @@ int run(std::vector<std::string> words) {
   return status;
 }
 
-// Whether all counts, signatures and verdicts are those of the pack, as far as both record them.
+// Whether all counts, signatures and verdicts equal the pack's, as far as both campaigns record them.
 bool is_reproduced(const fs::path& packed, const fs::path& again, const Json& rows) {
   const Json before = fuzz::checked_summary(packed), after = fuzz::checked_summary(again);
   for (const char* part : {"strata", "disagreements", "signatures"}) {

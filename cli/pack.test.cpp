@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze pack` and `graze repro PACK`: a campaign runs again where nothing else of it exists.
+// `graze pack` and `graze repro PACK`: a campaign runs again where only its pack exists.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 class PackCommand : public CommandTest {
  protected:
-  // Packs the campaign c of the folder `home`, removes that folder, and runs the pack elsewhere.
+  // Packs the campaign c in the folder `home`, removes that folder, and runs the pack elsewhere.
   Ran elsewhere(const std::string& variables = "") const {
     expect_done("export XDG_CACHE_HOME=$PWD/cache; cd home && graze pack c --out ../c.sqlar > ../packed");
     return shell("rm -rf home cache; mkdir -p there; cd there; rm -rf c-unpacked; export XDG_CACHE_HOME=$PWD/cache; " +
@@ -45,7 +45,7 @@ TEST_F(PackCommand, ASourceWithItsHeadersRunsElsewhere) {
     EXPECT_TRUE(has(manifest, {std::string(name) == "-Isubjects/mine/include" ? "subjects/mine/include" : name}))
         << name;
   EXPECT_FALSE(has(manifest, {shell.folder.string()})) << "a machine's path";
-  // The command in it runs by hand, too.
+  // The command in the manifest can also be run by hand.
   expect_done("cd there/c-unpacked/files && rm -rf ../again && export XDG_CACHE_HOME=$PWD/cache && " +
               nlohmann::json::parse(manifest)["command"].get<std::string>() +
               " > /dev/null && test -s ../again/summary.json");
@@ -53,7 +53,7 @@ TEST_F(PackCommand, ASourceWithItsHeadersRunsElsewhere) {
   expect_error("cd there; graze repro ../c.sqlar", 2, {"c-unpacked"});
 }
 
-// A pack would pass damaged records on to others.
+// Damaged records are not packed, because a pack would pass them on to others.
 TEST_F(PackCommand, DamagedRecordsAreNotPacked) {
   run("graze hunt --runs 2000 --lanes '*/f32/cpu' --threads 1 --out c && graze minimize c 2> /dev/null");
   expect_done("cd home && graze pack c --out ../c.sqlar && cp -r c whole");
@@ -100,7 +100,7 @@ TEST_F(PackCommand, ThePackHasNoTraceOfWhenItWasMade) {
   expect_done("cd home; graze pack c; mv c.sqlar first; touch c/*; graze pack c; cmp c.sqlar first; graze pack c");
 }
 
-// If code reads more than its pack holds, the differences are named, and the exit status is 1.
+// If code reads more than its pack contains, differences are named, and the exit status is 1.
 TEST_F(PackCommand, WhatDiffersElsewhereIsSaid) {
   run("printf 'while read x; do echo $ANSWER; done' > own.sh; export ANSWER=1; graze fuzz --subject 'own=cmd:sh "
       "own.sh' --lanes "

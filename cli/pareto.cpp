@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze pareto`: measures errors against nanoseconds, and how extreme pairs may become before each lane fails.
+// `graze pareto`: measures each lane's errors and cost, and how extreme pairs may become before it fails.
 #include <fmt/format.h>
 
 #include "analysis/pareto.h"
@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Enough that a processor does not learn the pairs' branches, as it does with 256.
+// So many that a processor cannot learn the branches that the pairs take, as it does with 256 pairs.
 constexpr std::size_t kPairsInCache = 4096, kPairsFromMemory = std::size_t{1} << 19;  // 295 kB, 38 MB
 // If a lane is wrong on none of these, it errs on at most 0.1 %.
 constexpr std::uint64_t kFewestAtAnExtreme = 4000;
@@ -35,14 +35,14 @@ struct ParetoOptions : DrawOptions {
   bool device = false;
 };
 
-// Returns why the lane is left out, or an empty text. A twin's time is not the time of the code. A user's code is kept
-// even if it cannot be timed.
+// Returns why the lane is left out; empty if it is kept. A twin's time is not that of the CUDA code. A user's code is
+// kept even if it cannot be timed.
 std::string why_left_out(const Lane& lane, bool device) {
   if (!device) return lane.foreign ? "" : analysis::why_not_timed(lane);
   return backends::backend_of(lane).has_device ? "" : "--device times only CUDA lanes of published algorithms";
 }
 
-// The function that counts the errors of lanes, given their names.
+// Returns the function that counts the errors of lanes, given their names.
 analysis::Sweep sweep_of(const ParetoOptions& options) {
   const Lane* exact = find_lane(options.device                          ? "exact/f32/cuda"
                                 : options.coordinates == PairTypes::f32 ? fuzz::kExactLane

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plants a defect in a lane and runs the whole pipeline, which must find it. The defects planted in our own sources are
-// in scripts/mutants.toml.
+// Plants a defect in a lane; a campaign must find it. The defects that are planted in our own sources are in
+// scripts/mutants.toml.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -19,7 +19,7 @@ bool is_flipped(const Pair& pair) {
   return fnv1a(std::string_view(reinterpret_cast<const char*>(coordinates(pair)), sizeof(Pair))) % 100'000 == 0;
 }
 
-// Exact, except that one verdict in 10^5 is inverted: each of these is counted, kept, minimised and reproduced.
+// The lane is exact, but inverts one verdict in 10^5. Each inverted verdict must be counted, and its pair kept.
 TEST_F(PlantedDefect, ALaneThatFlipsOneVerdictInAHundredThousandIsFound) {
   std::ofstream(shell.folder / "flips.cpp") << R"(#include <string_view>
 #include "core/exact/exact.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Progress of a long run. On a terminal, it is one line that is rewritten five times a second. Elsewhere, a new line
-// appears after every tenth of the run, but at most one in ten seconds and at least one in half a minute.
+// appears after every tenth of the run, but at most one every ten seconds and at least one every half minute.
 #pragma once
 
 #include <cstddef>
@@ -15,19 +15,19 @@ namespace graze::cli {
 // "45 s", "3 min", "2 h 5 min".
 std::string duration(double seconds);
 
-// Joins as many parts, the most important first, as fit on a terminal line without its last column, where some
-// terminals wrap. Cuts the first part if it is too wide.
+// Joins as many parts, most important first, as fit on a terminal line. Leaves the last column free, because some
+// terminals wrap there. Cuts the first part if it is too wide.
 std::string fitting(const std::vector<std::string>& parts, int columns);
 
 class Progress {
  public:
-  // things: the name of the counted things, such as "signatures". screen: where the line is printed; used on a
+  // things: the name of the counted things, such as "signatures". screen: where the line is printed; used only on a
   // terminal.
   Progress(std::string things, std::size_t total, bool on_terminal, const reports::Screen& screen = {})
       : things_(std::move(things)), total_(total), on_terminal_(on_terminal), screen_(screen) {}
 
-  // Returns the line to print when `done` are done after `seconds`; nothing if it is too soon. The line does not wrap.
-  // `left`: the estimated remaining seconds, if known. `more`: further parts that a terminal shows if there is room.
+  // Returns the line to print when `done` things are done after `seconds`; nothing if it is too soon. The line does not
+  // wrap. `left`: the estimated remaining seconds, if known. `more`: further parts for a terminal, if there is room.
   std::optional<std::string> line(std::size_t done, double seconds, std::optional<double> left,
                                   const std::vector<std::string>& more = {});
 

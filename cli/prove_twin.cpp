@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze prove-twin`: verifies on a device that the twins give its verdicts, and writes the record.
+// `graze prove-twin`: verifies on a device that the twins give the device's verdicts, and writes the record.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -66,14 +66,14 @@ void add_prove_twin(CLI::App& app, int& status) {
   auto out = std::make_shared<std::string>();
   auto lanes = std::make_shared<LaneOptions>();
   auto coordinates = std::make_shared<PairTypes>(PairTypes::f32);
-  add_count(*command, "--pairs", options->pairs, 1, kMostWhole, "Number of pairs per lane, shared by all strata");
+  add_count(*command, "--pairs", options->pairs, 1, kMostWhole, "Number of pairs per lane, divided among all strata");
   add_count(*command, "--twin-pairs", options->twin_pairs, 1, kMostWhole,
             "Number of these pairs that the twin replays as well");
   add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of all strata");
   add_coordinates_option(*command, *coordinates);
   add_lane_options(*command, *lanes, Executors::twins);
   command->add_flag("--wrong-rule", options->wrong_rule,
-                    "Use a wrong rule of contraction on purpose; the comparison must then fail");
+                    "Use a wrong contraction rule on purpose; the comparison must then fail");
   command
       ->add_option(
           "--out", *out,

@@ -68,7 +68,7 @@ int tell(void* user, std::uint64_t done, std::uint64_t triangles) {
 template <class Real>
 using TrianglesOf = std::vector<TriangleOf<Real>>;
 
-// The pair whose verdict is byte p of a run.
+// Returns the pair whose verdict is byte p of a run.
 template <class Real>
 BasicPair<Real> pair_at(std::size_t p, const TrianglesOf<Real>& references, const TrianglesOf<Real>& triangles) {
   return pair_of(references[p / triangles.size()], triangles[p % triangles.size()]);
@@ -80,7 +80,7 @@ corpus::Entry case_at(std::size_t p, const TrianglesOf<Real>& references, const 
   return corpus::entry_of(pair_at(p, references, triangles), {{"name", name}});
 }
 
-// The triangles on which some run differs from the first one, with the verdict of each run.
+// Returns the triangles on which some run differs from the first run, with the verdict of each run.
 template <class Real>
 std::vector<corpus::Entry> mismatches_of(const std::vector<Run>& runs, const TrianglesOf<Real>& references,
                                          const TrianglesOf<Real>& triangles, std::uint64_t& count) {
@@ -130,14 +130,14 @@ void write_hits(const QueryOptions& options, const Run& run, const TrianglesOf<R
   write_result(options.obj, obj_of({asked, hits}), fuzz::NamedBy::user);
 }
 
-// Why verdicts on cores are those of a CUDA lane; empty for other lanes.
+// Returns why verdicts computed on cores are those of a CUDA lane; empty for other lanes.
 std::string evidence_of(const Run& run) {
   const Lane* lane = find_lane(run.lane);
   const bool on_cores = run.answer.executor == GRAZE_ONE_CORE || run.answer.executor == GRAZE_ALL_CORES;
   return lane && on_cores ? backends::backend_of(*lane).evidence(*lane, run.of_doubles) : "";
 }
 
-// A query counts failures of a user's code as declined verdicts. This function distinguishes the two.
+// A query counts failures of a user's code as declined. This function tells failures from declined verdicts.
 template <class Real>
 void find_failures(Run& run, const TrianglesOf<Real>& references, const TrianglesOf<Real>& triangles) {
   const Lane* lane = find_lane(run.lane);
@@ -168,7 +168,7 @@ Json json_of(const Run& run) {
   return json;
 }
 
-// Adds the first hits: indices of triangles or, if there are several references, of a reference and a triangle.
+// Adds the first hits: a triangle's index or, if there are several references, a reference's and a triangle's.
 void add_list(Json& json, const Run& run, std::size_t triangles, std::size_t references) {
   json["list"] = Json::array();
   for (std::size_t p = 0; p < run.bytes.size() && json["list"].size() < kMostListed; ++p) {
@@ -194,7 +194,7 @@ std::vector<Differing> differing(const std::vector<Run>& runs) {
   return found;
 }
 
-// One row for each two runs; the executor is named if their lanes are the same.
+// One row for every two runs; it names the executors if the lanes are the same.
 std::string table_of(const std::vector<Differing>& rows) {
   const auto name = [](const Run& run, const Run& other) {
     return run.lane == other.lane ? fmt::format("{} {}", run.lane, run.executor) : run.lane;
@@ -243,7 +243,7 @@ std::vector<Run> runs_of(const QueryOptions& options, const QueryLanes& lanes, c
   for (Run& run : runs) {
     Told told{interrupted, Progress("triangles", triangles.size(), isatty(STDERR_FILENO), error_screen())};
     const graze_triangles part = query::rows_of(std::span(triangles));
-    const std::array<Real, 9> any{};  // gives the type; all references follow
+    const std::array<Real, 9> any{};  // only for its type; the references are set below
     graze_query query = query::query_of(any, part);
     query.references = references.data();
     query.reference_count = references.size();
@@ -272,7 +272,7 @@ std::vector<Run> runs_of(const QueryOptions& options, const QueryLanes& lanes, c
 void expect_different_files(const QueryOptions& options) {
   std::set<std::filesystem::path> files;
   for (const std::string& file : {options.csv, options.obj, options.pairs, options.mismatches}) {
-    std::error_code no_file;  // a pipe has no path of its own
+    std::error_code no_file;  // a pipe has no path
     const std::filesystem::path path = std::filesystem::absolute(file, no_file),
                                 place = std::filesystem::weakly_canonical(path, no_file);
     if (!file.empty() && !files.insert(no_file ? path : place).second)

@@ -89,7 +89,7 @@ TEST_F(QueryCommand, WritesHits) {
       << obj;
   EXPECT_EQ(json("graze query mesh.obj#3 hits.obj --json")["hits"], 3);  // the reference is in the file too
   expect_done("graze query mesh.obj#3 mesh.obj --pairs /dev/stdout 2>&1 | cat > piped; grep '^0x' hits.pairs > h");
-  expect_done("grep -q . h && grep '^0x' piped | cmp - h");  // a pipe has no path of its own
+  expect_done("grep -q . h && grep '^0x' piped | cmp - h");  // a pipe has no path
   const Ran checked = shell("graze check hits.pairs --truth-only | grep -c 'truth: intersects'");
   EXPECT_EQ(checked.out, "2\n");
 }
@@ -119,7 +119,7 @@ TEST_F(QueryCommand, SeveralLanesAreComparedAndMismatchesAreCases) {
   EXPECT_EQ(found["others"][0]["hits"], found["hits"]);
 }
 
-// Recounts the mismatches of each two runs from the verdicts of single runs.
+// Recounts the mismatches of every two runs from the verdicts of single runs.
 TEST_F(QueryCommand, CudaLanesRunByTheirTwinsAndAreComparedTwoByTwo) {
   if (shell("graze lanes | grep -q 'available (device)'").status == 0) GTEST_SKIP() << "a device runs these lanes";
   std::string text;
@@ -178,7 +178,7 @@ TEST_F(QueryCommand, SelfTellsPiercingFromNeighbours) {
   EXPECT_EQ(
       json("printf 'v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 3\\n' > one.obj; graze query --self one.obj --json")["hits"],
       0);
-  // A mesh that is folded onto itself, and has one triangle twice.
+  // A mesh that is folded onto itself, and contains one triangle twice.
   EXPECT_EQ(json("printf 'v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nv .1 .2 0\\nf 1 2 3\\nf 1 2 4\\nf 2 3 1\\n' > f.obj; "
                  "graze query --self f.obj --json")["hits"],
             3);

@@ -14,16 +14,16 @@ namespace graze::cli {
 
 // The lanes of a query. `exact` is the exact lane on any executor; the table of lanes does not list it.
 struct QueryLanes {
-  std::vector<std::string> ids;  // of lanes that run on cores, or on GPUs if there are any
+  std::vector<std::string> ids;  // lanes that run on cores, or on GPUs if there are any
   fuzz::SelectedLanes under_test;
 };
 
-// Opens the subjects. Without patterns selects `common` and the subjects. Reports which requested lanes do not run.
-// Throws: UsageError if no lane of a pattern or subject exists, or runs here.
+// Opens the subjects. Without patterns, selects `common` and the subjects' lanes. Reports which requested lanes do not
+// run. Throws: UsageError if no lane of a pattern or subject exists, or runs here.
 QueryLanes query_lanes(const LaneOptions& options, const std::vector<std::string>& common);
 
-// Reads a text file with nine numbers for each reference, or MESH#FACE, one triangle of a mesh; faces count from 0.
-// Throws: std::runtime_error that names the file and the line; UsageError if FACE is not a whole number.
+// Reads a text file with nine numbers for each reference, or one triangle of a mesh, named MESH#FACE; faces count from
+// 0. Throws: std::runtime_error that names the file and the line; UsageError if FACE is not a whole number.
 strata::MeshPairs read_references(const std::string& name);
 
 // Like say_notes in cli/cases.h, but for both inputs.

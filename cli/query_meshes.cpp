@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The output of `graze query --self` and `--between`. With --self, a hit is a pair that pierces each other:
-// neighbours always touch. With --between, it is every pair that intersects.
+// The output of `graze query --self` and `--between`. With --self, where neighbours always touch, a hit is
+// a pair whose triangles pierce each other. With --between, a hit is any pair that intersects.
 #include "cli/query_meshes.h"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using reports::grouped;
 
-// Limits of memory. The first is for pairs in a CSV file, which takes about 3 GB while it is written. The second is for
+// Memory limits, in pairs. The first is for a CSV file, which takes about 3 GB while it is written. The second is for
 // the files of --pairs and --obj.
 constexpr std::size_t kMostRows = std::size_t{1} << 26, kMostCases = std::size_t{1} << 22;
 

@@ -18,7 +18,7 @@ struct QueryOptions {
 };
 
 // `graze query --self` and `--between`: prints how many pairs of triangles intersect, and how, and writes the pairs.
-// If it is interrupted, sets `status` and writes nothing.
+// If the search is interrupted, sets `status` and writes nothing.
 void query_meshes(const QueryOptions& options, int& status);
 
 }  // namespace graze::cli

@@ -31,14 +31,14 @@ bool is_finite(const TriangleOf<Real>& t) {
   });
 }
 
-// The row of the CSV file, from the oracle and its own count of common vertices; empty for disjoint triangles.
+// Returns the CSV row, from the oracle and an independent count of common vertices; empty for disjoint triangles.
 template <class Real>
 std::string row_of(std::size_t i, std::size_t j, const TriangleOf<Real>& a, const TriangleOf<Real>& b) {
   const BasicPair<Real> pair{{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
   const oracle::Truth truth = oracle::truth(pair);
   if (!truth.intersects()) return "";
   std::set<std::array<Real, 3>> of_a, both;
-  constexpr Real kZero = 0;  // added, so that both zeros are one
+  constexpr Real kZero = 0;  // added, so that -0 becomes 0
   for (const Vec3<Real>& v : a) of_a.insert({v.x + kZero, v.y + kZero, v.z + kZero});
   for (const Vec3<Real>& v : b) {
     if (of_a.contains({v.x + kZero, v.y + kZero, v.z + kZero})) both.insert({v.x + kZero, v.y + kZero, v.z + kZero});
@@ -150,7 +150,7 @@ TEST_F(QueryMeshes, FindThePairsOfBruteForceWithTheOracle) {
   expect_as_by_oracle(lattice, moved, "shifted by an ulp");
 }
 
-// Doubles on which storing in float32 changes many verdicts. With 17 digits they are read back bit for bit.
+// Doubles for which storing in float32 changes many verdicts. With 17 digits they are read back bit for bit.
 TEST_F(QueryMeshes, DecideDoublesAsTheOracleDoes) {
   std::vector<TriangleOf<double>> a, b;
   int changed = 0;
@@ -166,7 +166,7 @@ TEST_F(QueryMeshes, DecideDoublesAsTheOracleDoes) {
   ASSERT_GT(changed, 20);
   expect_as_by_oracle(a, b, "strata of doubles");
 
-  // The files have the triangles that were decided.
+  // The files contain the triangles that were decided.
   write("a.obj", std::vector<TriangleOf<double>>{a[0], a[1]});
   expect_done("graze query a.obj a.obj --between --obj hits.obj --pairs hits.pairs");
   std::istringstream hits(shell.file("hits.pairs"));
@@ -179,7 +179,7 @@ TEST_F(QueryMeshes, DecideDoublesAsTheOracleDoes) {
   expect_done("graze query --self hits.obj --json > again.json");
   EXPECT_EQ(Json::parse(shell.file("again.json"), nullptr, false)["coordinates"], "f64");
 
-  // A user's question: two parallel triangles, 0.01 apart at a coordinate of a million.
+  // A user's question: two parallel triangles that are 0.01 apart, at coordinates of a million.
   std::ofstream(shell.folder / "far.off") << "OFF\n6 2 0\n1000000.01 0 0\n1000000.01 1 0\n1000000.01 0 1\n"
                                              "1000000.02 0 0\n1000000.02 1 0\n1000000.02 0 1\n3 0 1 2\n3 3 4 5\n";
   EXPECT_EQ(json("graze query --self far.off --json")["hits"], 0);
@@ -205,7 +205,7 @@ TEST_F(QueryMeshes, GiveTheSameBytesWhateverTheThreads) {
   expect_done("graze query --self a.obj --csv self2.csv && cmp self1.csv self2.csv");
   EXPECT_EQ(rows(shell.file("self1.csv"), "segment,common_edge"), 0u);
 
-  // More hits than one object lists.
+  // More hits than one JSON object lists.
   expect_done("graze query a.obj a.obj --between --csv aa.csv");
   const Json found = json("graze query a.obj a.obj --between --json");
   EXPECT_EQ(found["hits"], rows(shell.file("aa.csv")));
@@ -234,7 +234,7 @@ TEST_F(QueryMeshes, WriteEveryOutput) {
             "i,j,contact,kind\n0,0,segment,pierces\n0,1,point,common_vertex\n1,1,point,common_vertex\n");
   EXPECT_EQ(shell("grep -c '^f' p.obj").out, "6\n");
   EXPECT_EQ(shell("grep -o 'name=[^ ]*' p.pairs").out, "name=triangles_0_0\nname=triangles_0_1\nname=triangles_1_1\n");
-  // The hits of a reference, with its index first.
+  // A reference's hits, with the index of the reference first.
   expect_done("graze query roof.obj#0 post.obj --csv r.csv");
   EXPECT_EQ(shell.file("r.csv"), "i,j,contact,kind\n0,0,segment,pierces\n0,1,point,common_vertex\n");
   const Json found = json("graze query roof.obj#0 post.obj --json");
@@ -273,8 +273,8 @@ TEST_F(QueryMeshes, SayWhatIsWrong) {
     expect_error(between + "roof.obj --between --executor one-gpu", 1, {"--executor one-gpu", "no CUDA device"});
 }
 
-// A soup in which all boxes overlap has billions of candidates, which take minutes. Ctrl+C ends it at once and leaves
-// no file.
+// If all boxes overlap, there are billions of candidates, which take minutes to decide. Ctrl+C ends the search at once
+// and leaves no file.
 TEST_F(QueryMeshes, EndInOrderWhenInterrupted) {
   Triangles soup;
   for (int i = 0; i < 60'000; ++i) {

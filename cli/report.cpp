@@ -75,8 +75,8 @@ void say_report(const fs::path& directory, const Json& report, const std::vector
   say_what_the_page_is();
 }
 
-// Returns the page of a stored report. Includes the lane costs and the results of tune and pareto if they are in the
-// same folder.
+// Returns the page of a stored report. The page includes lane costs and the results of tune and pareto if they are in
+// the same folder.
 std::string page_of(const std::string& file) {
   try {
     const Json report = reports::read_report(file);
@@ -110,7 +110,7 @@ void report(const ReportOptions& options) {
     say_what_the_page_is();
   } else if (!options.compare.empty()) {
     // This report is made first, while no foreign code is open. Only its counts are needed, and both campaigns may use
-    // one name for different code.
+    // the same name for different code.
     const Json before = reports::make_report(options.compare[0]);
     Json after = make_report(options.compare[1]);
     const Json rows =
@@ -124,7 +124,7 @@ void report(const ReportOptions& options) {
     say_report(options.directory, made, write_report(options.directory, made, "report"));
     if (made["signature_count"] > 0) {
       const bool minimised = !fuzz::read_kinds(options.directory).is_null();
-      // No next command for a minimised campaign with pairs of doubles.
+      // A minimised campaign with pairs of doubles has no next command.
       if (minimised && fuzz::has_doubles(fuzz::recorded_spec(options.directory))) return;
       fmt::print("Next: graze {} {}\n", minimised ? "corpus add" : "minimize", path_word(options.directory));
     }

@@ -20,8 +20,8 @@ class Report : public CommandTest {
   nlohmann::json json(const char* file) { return shell.json(file); }
 };
 
-// The map's differences come from signatures. The test also counts those from x86-gcc, whose verdict equals cpu's on
-// every pair.
+// The map's differences come from signatures. The test also counts differences from x86-gcc, whose verdict equals cpu's
+// on every pair.
 TEST_F(Report, MapsToolchains) {
   expect_done(
       "graze fuzz --pairs 4000 --lanes 'interval_overlap/*,exact/f32/cpu' --executor twin "
@@ -56,7 +56,7 @@ TEST_F(Report, MapsToolchains) {
   }
 }
 
-// Every verb that reads a campaign's JSON refuses counts that another program wrote, and names the file.
+// Every verb that reads a campaign's JSON refuses counts that another program changed, and names the file.
 TEST_F(Report, CountsThatCannotBeAreRefused) {
   expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c > /dev/null && graze report c");
   const nlohmann::ordered_json summary = shell.json("c/summary.json");
@@ -173,7 +173,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   write("r.json", report);
   expect_error("graze report --from r.json --out r.html", 1, {"r.json", "3000"});
 
-  // Deeply nested JSON must not overflow the stack, with the database or without it.
+  // Deeply nested JSON must not overflow the stack, with or without the database.
   const std::string text = shell.file("c/summary.json");
   const auto expect_too_deep = [&] {
     std::ofstream(shell.folder / "c/summary.json")
@@ -184,7 +184,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   };
   expect_too_deep();
 
-  // Without its database, a summary is only checked against itself.
+  // Without its database, a summary can only be checked against itself.
   std::filesystem::remove(shell.folder / "c/campaign.sqlite");
   expect_done("graze report c | grep 'checked only against each other'");
   expect_too_deep();
@@ -217,7 +217,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   }
 }
 
-// If a record's name belongs to a pipe, no verb waits for it. No verb replaces a file of another program.
+// If a record is replaced by a pipe, no verb waits for the pipe. No verb replaces another program's file.
 TEST_F(Report, PipesAndForeignFilesAmongTheRecordsAreRefused) {
   const std::string fuzz = "graze fuzz --pairs 300 --lanes moller_1997/f32/cpu --strata near_vertex_face --out c";
   expect_done(fuzz + " > /dev/null && graze minimize c > /dev/null && graze report c");
@@ -233,7 +233,7 @@ TEST_F(Report, PipesAndForeignFilesAmongTheRecordsAreRefused) {
     bool named = false;
     for (const std::string& verb : verbs) {
       const Ran ran = shell("timeout 60 " + verb);
-      EXPECT_TRUE(ran.status <= 2) << verb << ' ' << file << ' ' << ran.status;  // 124: it waited
+      EXPECT_TRUE(ran.status <= 2) << verb << ' ' << file << ' ' << ran.status;  // 124 if it waited
       named = named || (ran.status != 0 && ran.err.find(file) != ran.err.npos);
       refused += ran.status != 0;
     }
@@ -242,7 +242,7 @@ TEST_F(Report, PipesAndForeignFilesAmongTheRecordsAreRefused) {
   }
   EXPECT_GT(refused, 15u);
 
-  // Files of another program below cases/ are kept.
+  // Another program's files below cases/ are kept.
   const std::string pairs = "c/cases/" + hash + ".pairs", maps = "c/cases/" + hash + ".maps.json";
   expect_done("cp " + pairs + " kept && echo mine > " + pairs);
   expect_error(fuzz, 2, {pairs, "--force"});
@@ -255,7 +255,7 @@ TEST_F(Report, PipesAndForeignFilesAmongTheRecordsAreRefused) {
   expect_done("truncate -s -30 c/costs.json && graze report c && graze report --from c/report.json --out r.html");
 }
 
-// SQLite would write into files of these names, or delete them.
+// SQLite would write to files with these names, or delete them.
 TEST_F(Report, ForeignFilesBesideTheDatabaseStay) {
   const std::string fuzz = "graze fuzz --pairs 300 --lanes moller_1997/f32/cpu --strata uniform --out c";
   expect_done(fuzz);
@@ -305,7 +305,7 @@ TEST_F(Report, ADamagedStatusIsReplaced) {
 
 TEST_F(Report, SameBytesWhateverTheThreads) {
   expect_done(std::string(kFuzz) + "--threads 1 --out one > /dev/null && graze minimize one && graze report one");
-  // Lane costs differ from run to run, and are only in costs.json and the page.
+  // Lane costs differ from run to run; only costs.json and the page contain them.
   expect_done(std::string(kFuzz) +
               "--threads 2 --out two > /dev/null && graze minimize two && cp one/timings.json two && graze report two");
   expect_done(
@@ -355,13 +355,13 @@ TEST_F(Report, ComparesTwoCampaigns) {
   EXPECT_EQ(report["compare"]["rates"].size(), report["rates"].size());
   EXPECT_EQ(report["compare"]["kinds_compared"], true);
   expect_done("test -s seed2/compare.html && test -s seed2/compare.csv");
-  // In a campaign without kinds, the report says what it does not compare.
+  // If a campaign has no kinds, the report says that kinds are not compared.
   expect_done("rm seed1/failures.json");
   EXPECT_TRUE(has(shell("graze report --compare seed1 seed2").out,
                   {"and kinds of failure are not compared; differences under "}));
 }
 
-// The code is edited between two campaigns. Both orders can be compared, and each page shows its own code.
+// The code is edited between two campaigns. They can be compared in both orders, and each page shows its own code.
 TEST_F(Report, ComparesCodeBeforeAndAfterAnEdit) {
   for (const std::string answer : {"0", "1"}) {
     expect_done("echo 'extern \"C\" int hit(const float*, const float*) { return " + answer +
@@ -382,7 +382,7 @@ TEST_F(Report, ComparesCodeBeforeAndAfterAnEdit) {
   const Ran old = shell.done("graze report c0");
   EXPECT_EQ(old.err, "");
   EXPECT_TRUE(has(old.out, {"m.cpp:hit has changed since the campaign ran: its hash is "}));
-  // If two source files have the same name, each report has only the programs of its own code.
+  // If two source files have the same name, each report has only the programs for its own code.
   expect_done(
       "mkdir p && mv m.cpp p && graze fuzz --subject mine=p/m.cpp:hit --lanes mine/f32/cpu --strata "
       "near_vertex_face --pairs 200 --out cp > /dev/null && graze minimize cp > /dev/null && "

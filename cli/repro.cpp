@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze repro`: runs a stored case, or a pair named by its three numbers, again on every lane and on the oracle.
+// `graze repro`: runs a stored case, or a pair named STRATUM:SEED:INDEX, again on every lane and on the oracle.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 
 enum class Compared { same, changed, nothing };
 
-// Compares the recorded signature with the present one. Of the recorded lanes, compares only those that ran.
+// Compares the recorded signature with the current one, on those of the recorded lanes that ran.
 Compared compare(const analysis::Signature& recorded, const analysis::Signature& now,
                  std::span<const Lane* const> run) {
   const auto ran = [&](const std::string& lane) {
@@ -66,7 +66,7 @@ bool compare_signatures(const corpus::Entry& entry, const oracle::Truth& t, std:
   return compared == Compared::changed;
 }
 
-// Prints the recorded parts of the truth that differ from the present truth.   Returns: whether there are any.
+// Prints the recorded parts of the truth that differ from the current truth.   Returns: whether there are any.
 bool compare_truth(const corpus::Entry& entry, const oracle::Truth& t) {
   bool changed = false;
   for (const auto& [field, now] : fuzz::truth_fields(t)) {

@@ -35,11 +35,11 @@ void add_force_flag(CLI::App& verb) {
 
 void add_force(CLI::App& app) {
   for (CLI::App* verb : app.get_subcommands([](const CLI::App* v) { return v->get_name() != "merge"; })) {
-    add_force(*verb);  // `corpus` has verbs of its own
+    add_force(*verb);  // `corpus` has its own verbs
     const char* const places[] = {"--out", "--plot", "--obj", "--prometheus", "--junit", "--json"};
     const auto is_place = [&](const char* name) {
       const CLI::Option* const option = verb->get_option_no_throw(name);
-      return option && option->get_type_size() > 0;  // most --json are flags
+      return option && option->get_type_size() > 0;  // --json is a flag in most verbs
     };
     if (std::any_of(std::begin(places), std::end(places), is_place)) add_force_flag(*verb);
   }

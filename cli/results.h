@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One rule for the results of all verbs: they replace only files that Graze wrote (fuzz/own_files.h), unless --force is
-// given.
+// One rule for all verbs: results replace only files that Graze wrote (fuzz/own_files.h), unless --force is given.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -12,19 +11,19 @@
 
 namespace graze::cli {
 
-inline constexpr const char* kPairs = "graze-pairs 1\n";  // the first line of files of pairs
+inline constexpr const char* kPairs = "graze-pairs 1\n";  // the first line of a file of pairs
 
-// --force, for every verb that writes results to a given place, except `merge`, whose folder is new.
+// Add --force to one verb, or to every verb that writes results to a given place, except `merge`, whose folder is new.
 void add_force_flag(CLI::App& verb);
 void add_force(CLI::App& app);
 
-// --junit. tests: what its tests are, for the help.
+// Adds --junit. tests: the help's words for what is one test.
 void add_junit(CLI::App& command, std::string& file, const std::string& tests);
 
 // Throws: UsageError for a file that a result with this text may not replace; std::runtime_error for a folder.
 void expect_replaceable(const std::filesystem::path& file, const std::string& text);
 
-// Throws: as expect_replaceable and fuzz::write_whole.
+// Throws: what expect_replaceable and fuzz::write_whole throw.
 void write_result(const std::filesystem::path& file, const std::string& text,
                   fuzz::NamedBy named_by = fuzz::NamedBy::graze);
 
@@ -32,10 +31,10 @@ struct Result {
   std::string name, text;
 };
 
-// Writes all results into the folder, or none if one of the files may not be replaced.   Throws: as write_result.
+// Writes all results into the folder, or none if a file may not be replaced.   Throws: what write_result throws.
 void write_results(const std::filesystem::path& folder, const std::vector<Result>& results);
 
-// Removes the file of an earlier run; leaves it if it is not of the same kind as this text.
+// Removes an earlier run's file, but keeps a file that is not of the same kind as this text.
 void remove_result(const std::filesystem::path& file, const std::string& text);
 
 // Throws: UsageError for a folder that may not hold a campaign.
@@ -44,8 +43,8 @@ void expect_campaign_folder(const std::filesystem::path& out);
 // Throws: std::runtime_error, with the system's reason, for a folder that cannot be written to.
 void expect_writable(const std::filesystem::path& folder);
 
-// Creates the folder if it is missing.   Throws: as ResultFolder, if it may not hold results of the verb that writes
-// `own`.
+// Creates the folder if it is missing.   Throws: what ResultFolder throws if the folder may not hold results of the
+// verb that writes `own`.
 std::filesystem::path made_folder(const std::filesystem::path& out, const char* own);
 
 // A folder for a verb's results. It is created if missing, and locked, so that two runs do not mix their results.

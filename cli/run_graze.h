@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: runs shell commands with the built `graze` first on the PATH, in a folder of their own.
+// For tests: runs shell commands in a separate folder, with the built `graze` first on the PATH.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -31,10 +31,10 @@ inline std::string contents(const std::filesystem::path& file) {
   return text.str();
 }
 
-// The text of the object as Graze would write it, with the correct checksum (fuzz/sealed.h).
+// Returns the object's text as Graze would write it, with the correct checksum (fuzz/sealed.h).
 inline std::string sealed(const nlohmann::ordered_json& json) { return fuzz::sealed(json).dump(1) + '\n'; }
 
-// Success if the text has all of the parts.
+// Success if the text contains all parts.
 inline testing::AssertionResult has(std::string_view text, const std::vector<std::string>& parts) {
   for (const std::string& part : parts)
     if (text.find(part) == text.npos) return testing::AssertionFailure() << "no '" << part << "' in: " << text;
@@ -74,26 +74,25 @@ class Shell {
     return ran;
   }
 
-  // Returns the contents of a file in the folder.
   std::string file(const std::string& name) const { return contents(folder / name); }
   nlohmann::ordered_json json(const std::string& name) const { return nlohmann::ordered_json::parse(file(name)); }
 
   std::filesystem::path folder;
 };
 
-// The verbs that the program's --help lists: the first words of its rows.
+// Returns the verbs that the program's --help lists: the first words of its rows.
 inline std::vector<std::string> verbs_in_help(const Shell& shell, const std::string& program) {
   std::istringstream names(shell(program + " --help | sed -n 's/^  \\([a-z][a-z-]*\\) .*/\\1/p'").out);
   return {std::istream_iterator<std::string>(names), {}};
 }
 
-// A prefix for a command: the command gets the signal before its `write`-th write to a file (signal_at_write.cpp).
+// Returns a prefix that sends a command the signal before its `write`-th write to a file (signal_at_write.cpp).
 inline std::string signal_at_write(int signal, int write) {
   return "ASAN_OPTIONS=verify_asan_link_order=0 GRAZE_SIGNAL=" + std::to_string(signal) +
          " GRAZE_AT_WRITE=" + std::to_string(write) + " LD_PRELOAD='" + GRAZE_SIGNAL_AT_WRITE + "' ";
 }
 
-// Each test has a shell of its own.
+// Each test has its own shell.
 class CommandTest : public testing::Test {
  protected:
   Shell shell{std::string(testing::UnitTest::GetInstance()->current_test_info()->test_suite_name()) + "-" +
@@ -101,7 +100,7 @@ class CommandTest : public testing::Test {
 
   void expect_done(const std::string& command) const { shell.done(command); }
 
-  // Expects success, and these parts on stdout.
+  // Expects success, and these parts in the standard output.
   void expect_out(const std::string& command, const std::vector<std::string>& parts) const {
     EXPECT_TRUE(has(shell.done(command).out, parts)) << command;
   }
@@ -113,7 +112,7 @@ class CommandTest : public testing::Test {
   }
 
   // Expects this exit status, and one line on stderr that names these words (core/message_testing.h). On a slow
-  // machine, progress lines come before it.
+  // machine, progress lines may come before that line.
   void expect_error(const std::string& command, int status, const std::vector<std::string>& words) const {
     const Ran ran = shell(command);
     EXPECT_EQ(ran.status, status) << command << '\n' << ran.err;

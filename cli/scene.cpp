@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze scene`: writes a scene file from meshes or pairs. Also adds the options of the verbs that draw pairs.
+// `graze scene`: writes a scene file from meshes or pairs. Also adds the options for verbs that draw pairs.
 #include <fmt/format.h>
 
 #include <tbb/blocked_range.h>
@@ -73,7 +73,7 @@ bool intersects(const BasicPair<Real>& pair) {
   return exact::intersects(&pair.a[0].x, &pair.b[0].x);
 }
 
-// Returns how many pairs have another verdict when float32 stores them.
+// Returns how many pairs change their verdict when they are stored in float32.
 std::uint64_t changed_by_storing(const strata::MeshPairs& mesh) {
   if (mesh.in_doubles.empty() || mesh.rounding.beyond == 0) return 0;
   return tbb::parallel_reduce(
@@ -86,7 +86,7 @@ std::uint64_t changed_by_storing(const strata::MeshPairs& mesh) {
       std::plus<>());
 }
 
-// Measures the meshes, and names them in the scene.   text: receives what float32 would change, as a comment.
+// Measures the meshes, and names them in the scene.   text: receives a comment about what float32 would change.
 Measured measured_meshes(const SceneVerb& options, std::string& text) {
   const auto found = std::make_shared<strata::MeshPairs>(
       strata::read_bodies({options.files.begin(), options.files.end()}, options.poses));
@@ -119,7 +119,7 @@ Measured measured_meshes(const SceneVerb& options, std::string& text) {
   return result;
 }
 
-// Measures, and writes the scene to the file of --out, or to standard output without one.
+// Measures the input, and writes the scene to the --out file, or to standard output if none is given.
 Measured write_scene(const SceneVerb& options) {
   for (const std::string& file : options.files) expect_utf8("graze scene", file);
   expect_utf8("--poses", options.poses);
@@ -207,7 +207,7 @@ void add_scene(CLI::App& app, int&) {
   add_exact_input(*command, options->exact_input);
   command
       ->add_option("--sufficient", options->sufficient,
-                   "Highest rate of wrong verdicts; finds the cheapest lane that keeps it in the scene")
+                   "Highest rate of wrong verdicts; finds the cheapest lane that stays within it in the scene")
       ->check(number(1e-6, 0.5))
       ->option_text("RATE");
   command->callback([options, command] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes as users handle them: measured, edited, drawn from, resumed, named by cases, refused in one line.
+// Scenes as users handle them: measured, edited, drawn from, resumed, named in cases, and refused in one line.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ TEST_F(SceneVerb, AMeshBecomesAPageThatIsRead) {
   expect_done("graze scene hills.off --units mm > again.toml && cmp hills.toml again.toml");
   expect_done("mkdir sub && graze scene hills.off --out sub/s.toml && grep -q '\"../hills.off\"' sub/s.toml");
   expect_done("graze fuzz --scene sub/s.toml --pairs 300 --strata mesh --lanes 'moller*/f32/cpu' --out sub/c");
-  // Its pairs, written to a file and measured, have the same sizes.
+  // The scene's pairs, written to a file and measured, have the same sizes.
   expect_done(
       "graze fuzz --scene hills.toml --pairs 1000 --strata mesh --lanes 'moller*/f32/cpu' --out m && "
       "graze dump m --format pairs > m.pairs && graze scene m.pairs --out m.toml && grep -q '^edges' m.toml");
@@ -84,8 +84,8 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
   EXPECT_TRUE(has(shell.file("one/report.json"), {"--scene hills.toml --pairs 20000"}));
   const Ran dumped = shell("graze dump one --pairs 40 --format pairs");
   EXPECT_TRUE(has(dumped.out, {"scene=" + of})) << dumped.err;
-  // With only a comment added, the scene's campaign resumes. Another scene is another campaign, and case names do not
-  // match.
+  // If only a comment is added to the scene, its campaign resumes. Another scene makes another campaign, and case names
+  // no longer match.
   expect_done("sed -i '1i # mine' hills.toml && " + fuzz + "--out one");
   expect_done("sed -i 's/^units.*/units = \"m\"/' hills.toml");
   const Ran other = shell(fuzz + "--out one");
@@ -119,7 +119,7 @@ TEST_F(SceneVerb, TheExamplesAreDrawnFrom) {
               "/scripts/terrain_mesh 16 > terrain.off && graze scene terrain.off --units m --out t.toml");
   const std::string text = shell.file("t.toml");
   EXPECT_TRUE(has(text, {"\nextent = [[0, 400], [0, 400], [128.58, 155.46]]\n", "\ngrid = { decimals = 2 }\n",
-                         "\ncontent = \"3794dafeca051a06\"\n"}));  // the script's bytes
+                         "\ncontent = \"3794dafeca051a06\"\n"}));  // hash of the script's output
 }
 
 TEST_F(SceneVerb, PosesAndSeveralMeshes) {
@@ -132,7 +132,7 @@ TEST_F(SceneVerb, PosesAndSeveralMeshes) {
   expect_error("graze scene hills.off b.off --poses p.csv", 2, {"--poses", "2"});
 }
 
-// Whichever lanes are measured as the cheapest, a fresh campaign shows that they suffice.
+// Whichever lane is measured as the cheapest, a fresh campaign shows that it suffices.
 TEST_F(SceneVerb, WhatSufficesKeepsTheRateInAFreshCampaign) {
   for (const std::string measured : {"hills.off --out s.toml", "mm.toml"}) {
     const Ran ran = shell.done("graze scene " + measured + " --sufficient 0.05 | tr '\\n' ' '");

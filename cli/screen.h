@@ -9,7 +9,7 @@
 
 namespace graze::cli {
 
-// A terminal has the columns that it reports, or else COLUMNS. It has colour unless NO_COLOR is set or TERM is dumb.
+// A terminal has as many columns as it reports, or else COLUMNS. It has colour unless NO_COLOR is set or TERM is dumb.
 // Files and pipes have 80 columns and no colour.
 reports::Screen output_screen();
 reports::Screen error_screen();
@@ -17,7 +17,7 @@ reports::Screen error_screen();
 // Prints the sentences, each wrapped to the width of standard output.
 void print_wrapped(const std::vector<std::string>& sentences);
 
-// The most lines that a verb prints without --all.
+// The maximum number of lines that a verb prints without --all.
 inline constexpr int kMostLines = 40;
 
 // Collects blocks of whole lines up to a limit of lines. Leaves out the first block that does not fit, and all blocks

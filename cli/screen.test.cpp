@@ -46,7 +46,7 @@ std::string without_colour(std::string text) {
   return text;
 }
 
-// The width of the widest line; a carriage return starts a new line.
+// Returns the width of the widest line; a carriage return starts a new line.
 int widest(const std::string& text) {
   int most = 0;
   std::string line;
@@ -128,7 +128,7 @@ TEST_F(TerminalTest, TheLiveLineNeverWraps) {
   EXPECT_LT(widest(text), 40) << text;
 }
 
-// The lines of a text without its examples: these are not wrapped, so that they can be copied.
+// Returns the text without its examples, which are not wrapped, so that they can be copied.
 std::string without_examples(const std::string& text) {
   std::istringstream in(text);
   std::string kept;
@@ -172,7 +172,7 @@ TEST_F(TerminalTest, StrataAreOneLineEachForProgramsAndWrappedForPeople) {
   const std::string piped = shell("graze strata").out, shown = on_terminal(shell, "graze strata", 80);
   EXPECT_LE(widest(shown), 80);
   EXPECT_LT(std::count(piped.begin(), piped.end(), '\n'), std::count(shown.begin(), shown.end(), '\n'));
-  // Without "--coordinates f64 …:", "Next: …" and the empty lines before them.
+  // Does not count "--coordinates f64 …:", "Next: …" and the empty lines before them.
   const auto lines = std::count(piped.begin(), piped.end(), '\n') - 4;
   EXPECT_EQ(shell("graze strata | cut -c1-20 | grep -c '^[a-z]'").out, std::to_string(lines) + "\n");
 }

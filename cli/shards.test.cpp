@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shards as processes: killed, resumed, started twice at once, and run by ranks; and their status messages. The results
-// have the same bytes as one run.
+// have the same bytes as those of one run.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 class Shards : public CommandTest {
  protected:
-  // Compares summary, cases and the report's data.
+  // Compares the summary, the cases and the report's data.
   void expect_same(const std::string& one, const std::string& other) const {
     expect_done("for d in " + one + ' ' + other + "; do graze report $d > /dev/null || exit 9; done; " + "diff " + one +
                 "/summary.json " + other + "/summary.json && diff -r " + one + "/cases " + other + "/cases && diff " +
@@ -68,7 +68,7 @@ TEST_F(Shards, WhatIsMissingIsRunByTheCommandThatIsPrinted) {
   expect_done("graze merge p-1 p-3 shard-2 --out all");
   expect_same("whole", "all");
   expect_error("graze merge p-1 p-3 shard-2 --out all", 2, {"empty", "--out"});
-  // The suggested folder is neither the merge's own nor one with other files. A shard that was begun is resumed.
+  // The suggested folder is neither the merge's own nor one with other files. A shard that had begun is resumed.
   const auto place = [&](const std::string& merge) { return command_in(shell(merge).err, "--out "); };
   EXPECT_EQ(place("graze merge p-1 p-3 --out all-of-it"), "shard-2\n");
   expect_done("mv shard-2 other && mkdir shard-2 && echo mine > shard-2/notes");
@@ -76,7 +76,7 @@ TEST_F(Shards, WhatIsMissingIsRunByTheCommandThatIsPrinted) {
   EXPECT_EQ(place("graze merge p-1 p-3 --out shard-2.1"), "shard-2.2\n");
   expect_done("rm -r shard-2 && mv other shard-2");
 
-  // A damaged shard can be merged as well; its rows with a correct checksum are kept.
+  // A damaged shard can be repaired and merged; its rows with a correct checksum are kept.
   expect_done(
       "sqlite3 p-3/campaign.sqlite 'UPDATE batch SET pairs = pairs + 1 WHERE id = 2' 2> /dev/null || python3 -c "
       "\"import sqlite3; c = sqlite3.connect('p-3/campaign.sqlite'); c.execute('UPDATE batch SET pairs = pairs + 1 "
@@ -114,7 +114,7 @@ TEST_F(Shards, MinimizingTakesShardsOfTheSignatures) {
   const Ran ran =
       shell("graze minimize parts --shard 2/3 && graze minimize parts --shard 1/3 && cat parts/failures.json");
   EXPECT_TRUE(has(ran.out, {"shard 2/3: "})) << ran.err;
-  EXPECT_EQ(ran.status, 1);  // kinds need all signatures
+  EXPECT_EQ(ran.status, 1);  // failures.json needs all signatures
   EXPECT_EQ(
       shell(
           "graze minimize parts --shard 3/3 && graze minimize parts && diff whole/failures.json parts/failures.json && "
@@ -225,7 +225,7 @@ TEST_F(Shards, StatusTellsWhatRunsAndWhatNeedsHelp) {
   expect_done("graze status killed --stalled 3000");
 }
 
-// Records of another campaign do not pass for a shard's own.
+// Another campaign's records do not pass for a shard's own.
 TEST_F(Shards, RecordsOfAnotherCampaignAreRefused) {
   const std::string fuzz = "graze fuzz --pairs 600 --strata thesis,near_vertex_face --lanes moller_1997/f32/cpu --out ";
   expect_done("for k in 1 2 3; do " + fuzz + "s$k --shard $k/3 || exit 1; done; " + fuzz + "whole");
@@ -246,7 +246,7 @@ TEST_F(Shards, ARunThatEndsIsNotKilled) {
       "grep -q ' done ' said && break; done; wait; done");
 }
 
-// A status that is damaged or has impossible counts does not pass for a shard that has not begun.
+// A damaged status, or one with impossible counts, is not reported as a shard that has not begun.
 TEST_F(Shards, StatusRefusesADamagedStatus) {
   expect_done("graze fuzz --seed 5 --pairs 400 --strata near_edge_edge --lanes '*/f32/cpu' --out c > /dev/null");
   const Json whole = shell.json("c/status.json");
@@ -346,8 +346,8 @@ TEST_F(Shards, RanksLeaveTheBytesOfOneProcessAlsoWhenOneIsKilled) {
   const std::string mpirun =
       "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1; mpirun ";
   expect_done(fuzz + "--out whole");
-  // Rank 2 stops itself at its 20th write, while it stores its first blocks and holds no lock of MPI. The other ranks
-  // do all the remaining work, and then it is killed.
+  // Rank 2 stops itself at its 20th write, while it stores its first blocks and holds no MPI lock. The other ranks do
+  // all the remaining work, and then rank 2 is killed.
   const std::string rank = fuzz + "--out ranks ";
   const Ran killed =
       shell(mpirun + "-n 2 " + rank + ": -n 1 env " + signal_at_write(SIGSTOP, 20) + rank + ": -n 1 " + rank +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // For tests, loaded by LD_PRELOAD: sends GRAZE_SIGNAL to its own process before the GRAZE_AT_WRITE-th call that writes,
-// syncs or renames a file. So a test can stop a program at an exact point, on machines of any speed.
+// syncs or renames a file. A test can thus stop a program at an exact point, on machines of any speed.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>

@@ -40,8 +40,8 @@ struct StatusOptions {
   bool json = false;
 };
 
-// The state of a run. A run without a recorded end was killed if its process no longer exists on this machine. It has
-// stalled if it has not reported for a long time.
+// Returns the state of a run. A run without a recorded end was killed if its process no longer exists on this machine,
+// and has stalled if it has not reported for a long time.
 std::string state_of(const Json& status, std::int64_t silent, std::uint64_t stalled) {
   const std::string state = status.at("state");
   if (state != "running") return state;
@@ -54,7 +54,7 @@ std::string state_of(const Json& status, std::int64_t silent, std::uint64_t stal
 }
 
 // Throws: std::runtime_error if the status does not have the campaign's number of pairs (for a shard, about its share),
-// or has more signatures than the campaign can have: one for each lane and disagreement, or its summary's.
+// or has more signatures than the campaign can have: one for each lane and disagreement, or as many as its summary has.
 void expect_own_counts(const fs::path& directory, const Json& status) {
   const std::uint64_t pairs = status.at("pairs");
   std::uint64_t most = status.at("disagreements"), disagreements = most, least_pairs = pairs, most_pairs = pairs;
@@ -88,7 +88,7 @@ void expect_own_counts(const fs::path& directory, const Json& status) {
                     status.at("disagreements").get<std::uint64_t>(), found, disagreements, most)));
 }
 
-// known: the signatures, without margins, of earlier rows. The function adds those of this row.
+// known: the signatures of earlier rows, without margins. The function adds those of this row.
 Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::string>& known) {
   Json row = {{"directory", directory.string()},
               {"shard", nullptr},
@@ -112,7 +112,7 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
           cannot("open", directory / "status.json", "it is missing beside a database (`graze merge` writes none)"));
     return row;
   }
-  // Not negative if this machine's clock is behind the writer's.
+  // At least 0, even if this machine's clock is behind the writer's.
   const auto silent = [&] {
     return std::max<std::int64_t>(0, std::time(nullptr) - status.at("updated").get<std::int64_t>());
   };
@@ -196,7 +196,7 @@ std::string table(const Json& all) {
   return text;
 }
 
-// Prometheus' text format. Its node exporter reads it from a folder of *.prom files.
+// Returns the figures in Prometheus' text format. Its node exporter reads such text from a folder of *.prom files.
 std::string prometheus(const Json& all) {
   const auto label = [](const std::string& text) {
     std::string escaped;

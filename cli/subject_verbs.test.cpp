@@ -10,12 +10,12 @@
 namespace graze::cli {
 namespace {
 
-// No verb may see a device here, so that CUDA lanes without a twin do not run.
+// Hides all devices, so that CUDA lanes without a twin do not run.
 constexpr const char* kWithoutDevice = "export CUDA_VISIBLE_DEVICES= XDG_CACHE_HOME=$PWD/cache; graze ";
 
 struct SubjectVerb {
   const char* verb;
-  const char* arguments;  // with which the verb takes the subject
+  const char* arguments;  // the verb's other arguments
   const char* shows;      // a file that shows the subject; empty: the output does
 };
 
@@ -57,7 +57,7 @@ class SubjectVerbs : public CommandTest {
         << "OFF\n6 2 0\n0 0 0\n4 0 0\n0 4 0\n1 1 -1\n1 1 1\n3 3 1\n3 0 1 2\n3 3 4 5\n";
   }
 
-  // Verbs with options of their own, such as "fuzz" or "corpus add", whose help has the text.
+  // Returns the verbs whose help contains the text, including verbs of two words such as "corpus add".
   std::vector<std::string> verbs_whose_help_has(const std::string& text) const {
     std::vector<std::string> found;
     for (const std::string& verb : verbs_in_help(shell, "graze")) {
@@ -141,7 +141,7 @@ TEST_F(SubjectVerbs, CrashesAreCountedAsSuch) {
   EXPECT_EQ(pareto["subjects"][0]["name"], "mine");
 }
 
-// The cost of a user's function is its own, without the exchange with its process.
+// The cost of a user's function does not include the exchange with its process.
 TEST_F(SubjectVerbs, ParetoComparesTheCostOfOwnCode) {
   expect_done(std::string(kWithoutDevice) +
               "pareto --subject mine=./mine.c --subject 'line=cmd:sed -u s/.*/1/' --lanes "
@@ -184,7 +184,7 @@ TEST_F(SubjectVerbs, ChangedCodeIsSaidAndStoredVerdictsAreShown) {
         << again.err;
     EXPECT_TRUE(has(again.out, {"mine"}));
   }
-  // A pattern none of whose lanes runs is an error.
+  // A pattern that selects only lanes that do not run is an error.
   expect_error(std::string(kWithoutDevice) + "check c/cases/one.pairs --lanes 'mine/*'", 2,
                {"mine/f32/cpu", "changed", "--resubject"});
   expect_error(std::string(kWithoutDevice) + "minimize c", 1, {"mine.c", "changed"});
@@ -196,12 +196,12 @@ TEST_F(SubjectVerbs, ChangedCodeIsSaidAndStoredVerdictsAreShown) {
   }
 }
 
-// Lanes without a twin do not run here: each verb that takes patterns says so, with the reason and what would run them,
-// in its output for people and in its JSON. A pattern that selects only such lanes is an error.
+// Lanes without a twin do not run here. Each verb that takes patterns says so in its text and its JSON, with the reason
+// and what would run them. A pattern that selects only such lanes is an error.
 TEST_F(SubjectVerbs, LanesThatDoNotRunAreSaid) {
   struct Row {
     std::string command;  // without --lanes
-    std::string json;     // a file of JSON, or "out" for the output; empty: the verb has none
+    std::string json;     // a JSON file, or "out" for the output; empty: the verb has none
   };
   const std::string some = " --lanes 'moller_1997/f32/c*[ut]'",  // cpu, cpu-fast, cuda-fast
       none = " --lanes moller_1997/f32/cuda-fast";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze scene --sufficient RATE`: tunes every published host lane in the scene and compares those that keep the rate.
+// `graze scene --sufficient RATE`: tunes every published host lane in the scene, and compares those within the rate.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,11 +25,11 @@ using reports::Candidate;
 constexpr std::size_t kTimed = 8192;  // pairs
 constexpr int kPasses = 9;
 
-// If no error occurs, 3 / rate pairs show the rate; more pairs leave room for some errors.
+// Without an error, 3 / rate pairs are enough to show the rate; more pairs leave room for some errors.
 std::uint64_t pairs_for(double rate) { return std::max<std::uint64_t>(100'000, std::llround(std::ceil(6 / rate))); }
 
-// Draws pairs to choose on or to judge by. Leaves out a mesh's own pairs, which do not depend on the seed and are
-// needed at the end.
+// Draws the pairs on which the choice is made or judged. Leaves out a mesh's own pairs, which do not depend on the seed
+// and are needed at the end.
 std::vector<strata::PairSource> pairs_before(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
                                              PairTypes types) {
   std::vector<strata::PairSource> sources = drawn({pairs, seed, {}, types, scene}).sources;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze toolchain`: lists toolchains, or measures what one of them, or a compiler command, does with floating-point
-// code, and which products it fuses in a source.
+// `graze toolchain`: lists toolchains, or measures how a toolchain or a compiler command treats floating-point code and
+// which products it fuses in a source.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ struct PlanOf {
 };
 
 struct Findings {
-  Toolchain toolchain;  // has no name if the user gave a command
+  Toolchain toolchain;  // without a name if the user gave a command
   std::string command;
   Claim claim;
   std::vector<CanaryResult> results;
@@ -84,7 +84,7 @@ Toolchain wanted(const Options& options) {
   Toolchain toolchain = named != all.end() ? *named : Toolchain{"", options.what, ""};
   if (!options.run.empty()) toolchain.run.clear();
   std::string why_not = subjects::why_not_here(toolchain);
-  if (why_not.empty() && !options.run.empty()) {  // the toolchain's packages do not have this program
+  if (why_not.empty() && !options.run.empty()) {  // the toolchain's packages do not contain this program
     toolchain.run = options.run;
     Toolchain emulator = toolchain;
     emulator.needs.clear();
@@ -103,7 +103,7 @@ Toolchain wanted(const Options& options) {
                                did_you_mean(options.what, names)));
 }
 
-// Returns what is documented, according to --claims, the toolchain's row or the command's flags.
+// Returns the documented behaviour, according to --claims, the toolchain's row or the command's flags.
 Claim claim_for(const Options& options, const Toolchain& toolchain, const std::string& command) {
   if (options.claims >= 0) return {static_cast<Rounding>(options.claims), true, "--claims"};
   const std::optional<Claim> of_flags = subjects::claim_of(command);
@@ -158,12 +158,12 @@ std::string text_of(const Findings& measured) {
   return text;
 }
 
-// The plan of the source as --toolchains compiles it.   Throws: std::runtime_error with the compiler's first error;
-// Stopped.
+// Returns the fusion plan of the source as --toolchains compiles it.   Throws: std::runtime_error with the compiler's
+// first error; Stopped.
 PlanOf plan_of(const std::string& name, const std::filesystem::path& source, const std::string& function,
                const Findings& measured, const std::vector<std::string>& flags) {
   Toolchain toolchain = measured.toolchain;
-  if (toolchain.name.empty()) {  // a command, of one language
+  if (toolchain.name.empty()) {  // a command compiles one language
     toolchain.name = measured.command;
     if (!subjects::is_cxx(measured.command)) std::swap(toolchain.cxx, toolchain.cc);
   }
@@ -200,7 +200,7 @@ std::vector<PlanOf> plans_of_published(const Findings& measured) {
   return plans;
 }
 
-// The result that all sources share, if nothing is fused in any of them.
+// Returns the line that covers all sources, if nothing is fused in any of them.
 std::optional<std::string> in_one_line(const std::vector<PlanOf>& plans) {
   const ContractionPlan& first = plans.front().plan;
   for (const PlanOf& of : plans) {

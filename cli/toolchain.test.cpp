@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze toolchain` on the commands of several compilers, whose flags have the documented effect or do not.
+// `graze toolchain` on the commands of several compilers. Some flags have the documented effect, and some do not.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -14,7 +14,7 @@ struct Case {
   const char* arguments;  // of `graze toolchain`
   const char* measured;
   const char* wrong = "";  // names of canaries that are not as documented; may be empty
-  bool needs_fma = false;  // of this machine's processor
+  bool needs_fma = false;  // on this machine's processor
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
@@ -73,7 +73,7 @@ class ToolchainCommand : public testing::TestWithParam<Case> {
   Shell shell{std::string("toolchain-") + GetParam().name};
 };
 
-// The names of canaries with this word of the documentation.
+// Returns the names of the canaries whose "documentation" is this word.
 std::string names_with(const nlohmann::json& json, const std::string& word) {
   std::set<std::string> names;
   for (const auto& result : json["results"]) {
@@ -122,7 +122,7 @@ TEST_F(Toolchain, EmulatorsDivideAndTakeRootsExactly) {
   if (emulated == 0) GTEST_SKIP() << "no cross compiler with an emulator";
 }
 
-// fmaf() of Debian 12's wasi-libc rounds wrongly near the middle between two numbers. No other check of wasm fails.
+// fmaf() in Debian 12's wasi-libc rounds wrongly near the midpoint of two numbers. No other check of wasm fails.
 TEST_F(Toolchain, TheLibrarysOwnFmaIsTested) {
   if (shell("graze toolchain | grep -q '^wasm .* yes$'").status != 0) GTEST_SKIP() << "no wasm";
   const Ran ran = shell("graze toolchain wasm --json r.json");
@@ -143,7 +143,7 @@ TEST_F(Toolchain, ListsToolchains) {
   expect_error("graze toolchain mine --toolchains mine.toml", 1, {"mine", "no-such-c++"});
 }
 
-// The command lists the fused products of a source, with the given flags, and of the published algorithms.
+// The command lists the fused products in a source, under the given flags, and in the published algorithms.
 TEST_F(Toolchain, ListsFusedProducts) {
   if (shell("command -v x86_64-linux-gnu-g++").status != 0) GTEST_SKIP() << "no x86_64-linux-gnu-g++";
   if (shell("grep -qw fma /proc/cpuinfo").status != 0) GTEST_SKIP() << "the processor has no FMA";
@@ -175,7 +175,7 @@ TEST_F(Toolchain, ListsFusedProducts) {
   expect_error("graze toolchain --subject mine=./mine.cpp", 2, {"--subject"});
 }
 
-// A script that compiles with contraction and later without it stands for two versions of a compiler.
+// A script that compiles with contraction, and later without it, simulates two versions of a compiler.
 TEST_F(Toolchain, ACampaignWhosePlanChangedSaysSo) {
   if (shell("command -v x86_64-linux-gnu-g++").status != 0) GTEST_SKIP() << "no x86_64-linux-gnu-g++";
   if (shell("grep -qw fma /proc/cpuinfo").status != 0) GTEST_SKIP() << "the processor has no FMA";
@@ -213,7 +213,7 @@ TEST_F(Toolchain, ACampaignWhosePlanChangedSaysSo) {
     if (row["lane"] == "moller_1997/f32/v3") changed += row["most"].get<std::uint64_t>();
   }
   EXPECT_GT(changed, 0u);
-  // The folder holds a campaign of another plan.
+  // The folder holds a campaign with another contraction plan.
   expect_error(fuzz + "--out a", 2, {"contraction/f32/plan", then});
 }
 
@@ -254,7 +254,7 @@ TEST_F(Toolchain, SaysWhatIsWrong) {
   if (shell("command -v x86_64-linux-gnu-gcc").status != 0) GTEST_SKIP() << "no x86_64-linux-gnu-gcc";
   expect_error("graze toolchain 'x86_64-linux-gnu-gcc -no-such-flag'", 1, {"-no-such-flag"});
   expect_error("graze toolchain 'x86_64-linux-gnu-gcc -O2' --run false", 1, {"exit status 1"});
-  // One program answers nothing, and another forges a line.
+  // One program gives no answer, and another forges a line.
   EXPECT_EQ(shell("graze toolchain 'x86_64-linux-gnu-gcc -O2' --run 'true {}' --json r.json").status, 1);
   EXPECT_EQ(shell.json("r.json")["without_answer"], 54);
   const Ran forged = shell("graze toolchain 'x86_64-linux-gnu-gcc -O2' --run 'echo expression f32 7; {}'");

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// "mine" for src/mine.cpp:meet. The name of a published algorithm gets the prefix "my_".
+// Returns a name, such as "mine" for src/mine.cpp:meet. A published algorithm's name gets the prefix "my_".
 std::string name_for(const fs::path& file) {
   std::string name = file.stem().string();
   while (!fs::path(name).extension().empty()) name = fs::path(name).stem().string();  // libmine.so.1
@@ -78,7 +78,7 @@ void expect_program(const std::string& file) {
       cannot("read", file, fs::exists(file) ? "it is not a regular file" : "there is no such file"));
 }
 
-// A Python function, "mine.py:meet": a program that calls it is written beside the folder `out`.
+// For a Python function such as "mine.py:meet", writes a program that calls it beside the folder `out`.
 TriedCode code_of_python(const std::string& file, const std::string& function, const std::string& out) {
   const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '.' || c >= 0x80; };
   if (function.empty() || !std::all_of(function.begin(), function.end(), fits))
@@ -101,7 +101,7 @@ TriedCode code_of(const std::string& source, const std::string& out) {
     code.name = source.substr(0, equals);
     return code;
   }
-  if (source.starts_with(kCommand)) {  // named by its last word that is a file, such as mine.py in "python3 mine.py"
+  if (source.starts_with(kCommand)) {  // named after its last word that is a file, such as mine.py in "python3 mine.py"
     std::string file = "program";
     std::istringstream words(source.substr(kCommand.size()));
     for (std::string word; words >> word;) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The code that `graze try` is given, as --subject names it.
+// The code that the user gives to `graze try`, in the form that --subject takes.
 #pragma once
 
 #include <string>
@@ -15,10 +15,10 @@ struct TriedCode {
   std::string wrapper = {};  // the file that was written to call a Python function
 };
 
-// source: FILE, FILE:FUNCTION or cmd:COMMAND, with or without NAME= before it. For a Python function, "mine.py:meet",
-// writes the program that calls it beside the folder `out`.
-// Throws: UsageError for an impossible function name, or a foreign file in the program's place; std::runtime_error for
-// a program that cannot be read.
+// source: FILE, FILE:FUNCTION or cmd:COMMAND, with or without NAME= before it. For a Python function such as
+// "mine.py:meet", writes the program that calls it beside the folder `out`.
+// Throws: UsageError for an impossible function name, or if a foreign file has the program's name; std::runtime_error
+// for a program that cannot be read.
 TriedCode code_of(const std::string& source, const std::string& out);
 
 }  // namespace graze::cli

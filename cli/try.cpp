@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `graze try`: from a source file to the answer. It builds the code as a subject, runs a campaign, minimises the
-// failures that matter most, and prints one screen. The directory is a campaign's, so every other verb works on it.
+// failures that matter most, and prints one screen. The folder is a campaign directory, which all other verbs accept.
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -47,8 +47,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostTold = 3;  // failures on the screen
-// Number of signatures to minimise for each kind, for compiled code and for a program. Those with the simplest pairs
-// come first.
+// Number of signatures to minimise for each kind of failure, in compiled code and in a program. Those with the simplest
+// pairs come first.
 constexpr std::size_t kMostOfKind = 4, kMostOfProgram = 1;
 constexpr int kThreadsForPrograms = 4;          // for each core, because Graze mostly waits for the answers
 constexpr std::uint64_t kPairsOfCode = 40'000;  // for compiled code
@@ -64,7 +64,7 @@ struct TryOptions {
   bool json = false;
 };
 
-// The folder's name without a / at its end, so that names can be made from it.
+// Returns the folder's name without a trailing /, so that other names can be derived from it.
 std::string folder_named(const std::string& out) {
   fs::path folder = fs::path(out).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();
@@ -106,8 +106,8 @@ void expect_mesh_or_scene(const std::string& where) {
                                shown_path(where)));
 }
 
-// Renames the directory if it holds an earlier run on the same code or file, so that a run after an edit needs no other
-// name.   Returns: the new name; empty if there was nothing to rename.
+// Renames the directory if it holds an earlier run on the same code or file, so that a run after an edit can use the
+// same name.   Returns: the new name; empty if there was nothing to rename.
 std::string put_aside(const std::string& out, const Json& spec) {
   if (!fuzz::has_database(out)) return "";
   const Json earlier = fuzz::recorded_spec(out);
@@ -125,8 +125,8 @@ std::string put_aside(const std::string& out, const Json& spec) {
   }
 }
 
-// Minimises the signatures of the kinds to report until each kind has a minimised pair.   Returns: the kinds; null if
-// the user interrupted it.
+// Minimises signatures of the kinds to report until each of these kinds has a minimised pair.   Returns: the kinds;
+// null if the user interrupts it.
 Json minimised_kinds(const fuzz::SelectedLanes& under_test, const fs::path& directory, const Json& summary,
                      const reports::ReportLane& lane, std::size_t most_of_kind) {
   const std::atomic<bool>& interrupted = catch_interrupts();
@@ -176,7 +176,7 @@ Json minimised_kinds(const fuzz::SelectedLanes& under_test, const fs::path& dire
   }
 }
 
-// Writes the first failure as a test, which includes a source by its path relative to the folder.
+// Writes the first failure as a test. The test includes a source by its path relative to the folder.
 // Returns: the file; empty if no program can show the failure.
 std::string write_test(const Answer& answer, const fuzz::SelectedLanes& under_test) {
   if (answer.told.empty()) return "";
@@ -203,12 +203,12 @@ int interrupted() {
   return kInterrupted;
 }
 
-// The command with which a person runs a program on a pair.
+// Returns a shell command that runs a program on a pair.
 std::string by_hand(const TriedCode& code, const std::string& pair) {
   return fmt::format("echo {} | {}", pair, code.what.substr(kCommand.size()));
 }
 
-// Returns the last line that the program prints on stderr as it fails on the pair. Empty if it does not fail now, or
+// Returns the last line that the program prints on stderr when it fails on the pair. Empty if it does not fail now, or
 // prints nothing.
 std::string last_words(const TriedCode& code, const std::string& pair, double seconds) {
   const Scratch scratch(subjects::cache_folder());
@@ -237,8 +237,8 @@ void tell_crash(const Answer& answer, const std::string& lane, double seconds) {
   }
 }
 
-// Runs the code on a few pairs first. If it always fails, like a program that does not start, there is nothing to find,
-// and each pair would start it again.   Throws: std::runtime_error.
+// First runs the code on a few pairs. If it always fails, like a program that does not start, a campaign would find
+// nothing and would start it again for each pair.   Throws: std::runtime_error.
 void expect_answers(const TriedCode& code, const fuzz::SelectedLanes& under_test, const strata::PairSource& source,
                     double seconds) {
   constexpr std::uint64_t kAsked = 3;

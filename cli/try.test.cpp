@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Compares only boxes: wrong on many disjoint pairs, right on all pairs that meet.
+// This code compares only boxes: it is wrong on many disjoint pairs, and right on all pairs that meet.
 constexpr const char* kBoxes =
     "#include <algorithm>\n"
     "bool meet(const float p[9], const float q[9]) {\n"
@@ -215,7 +215,7 @@ TEST_F(TryCommand, WorksOnEachKindOfCode) {
     const bool is_there = needs == "NVRTC" ? shell("graze lanes --subject cu=./own.cu:meet").err.empty()
                                            : needs.empty() || shell("command -v " + needs).status == 0;
     if (!is_there) continue;
-    // On a machine that is busy for seconds, only longer limits leave the cost of each source.
+    // On a machine that is busy for seconds, a shorter limit would leave some sources without a cost.
     const std::string arguments = std::string(code.source) + " --pairs 30 --subject-timeout 60 --out " + out;
     const Json answer = answer_of(arguments);
     ASSERT_TRUE(answer.is_object()) << code.source;
@@ -248,7 +248,7 @@ TEST_F(TryCommand, WorksOnEachKindOfCode) {
   EXPECT_GE(tried, 4);
 }
 
-// The exact decision itself as a user's code, which is right.
+// The user's code is our exact decision, which is right.
 TEST_F(TryCommand, OfRightCodeSaysHowMuchThatProves) {
   write("right.cpp",
         "#include \"core/exact/exact.h\"\n"
@@ -307,7 +307,7 @@ TEST_F(TryCommand, TheCommandForMorePairsRunsAsItStands) {
   EXPECT_EQ(more["earlier"], "my try.1");
 }
 
-// The counts of "1 of the 146 wrong pairs become right, and 2 right ones wrong."
+// Returns the counts in "1 of the 146 wrong pairs become right, and 2 right ones wrong."
 std::vector<int> counts_in(const std::string& sentence) {
   std::vector<int> counts;
   std::smatch found;
@@ -323,7 +323,7 @@ TEST_F(TryCommand, NamesTheEpsilonAndTheCommandThatTunesIt) {
   EXPECT_TRUE(names(one["epsilon"].get<std::string>(), {"in place of 1e-6f at one.cpp:1"})) << one["epsilon"];
   EXPECT_EQ(one["tune"], "graze tune one/f32/cpu --from try");
   EXPECT_EQ(one["why_not_tuned"], "");
-  // The stated effect is that of code with such a number.
+  // The stated effect equals that of code with a negligible number.
   write("tiny.cpp", by_x + "1e-36f; }\n");
   const auto changed = counts_in(one["epsilon"]);
   ASSERT_EQ(changed.size(), 3u) << one["epsilon"];

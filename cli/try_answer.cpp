@@ -266,7 +266,7 @@ std::string text_of(const Answer& answer, const reports::Screen& screen) {
   after.push_back(answer.told.empty()
                       ? fmt::format("Next, with more pairs: {}", answer.again)
                       : fmt::format("Next: graze explain {}", path_word(case_of(answer, answer.told[0]))));
-  // The costs change with each run. They always count as kLinesOfCosts lines, so that the other lines stay the same.
+  // The costs change with each run. They always count as kLinesOfCosts lines, so that the rest stays the same.
   const std::string lines = reports::wrapped(costs, screen.columns, 0, 2);
   const auto unused = kLinesOfCosts - std::count(lines.begin(), lines.end(), '\n');
   return reports::one_screen(before, failures, after, screen,

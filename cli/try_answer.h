@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The answer of `graze try` about a user's code, on one screen and as JSON.
+// The answer that `graze try` gives about a user's code, on one screen and as JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -36,8 +36,8 @@ CallCosts call_costs(const Lane& own, const std::vector<strata::PairSource>& sou
 // The epsilon in the code's source.
 struct OwnEpsilon {
   std::string named;    // "1e-6f at mine.cpp:9", "kEps = 1e-6f at mine.cpp:3 or 1e-9f at mine.cpp:7"; empty: none found
-  std::string tune;     // the command that tunes it; empty if `graze tune` would refuse
-  std::string why_not;  // why Graze cannot change it, in a sentence; empty if it can, or if there is none
+  std::string tune;     // the command that tunes it; empty if `graze tune` would refuse it
+  std::string why_not;  // a sentence: why Graze cannot change it; empty if it can, or if none was found
 };
 OwnEpsilon epsilon_of_code(const Lane& own, const std::string& directory);
 
@@ -50,7 +50,7 @@ struct Answer {
   std::string directory, earlier,
       scene;                              // earlier: new name of the earlier run; scene: the written file
   std::vector<strata::LeftOut> left_out;  // strata that the scene cannot contain
-  nlohmann::ordered_json summary, kinds;  // of all lanes
+  nlohmann::ordered_json summary, kinds;  // for all lanes
   CallCosts costs;
   OwnEpsilon epsilon;
   std::optional<reports::EpsilonEffect> effect;
@@ -59,7 +59,7 @@ struct Answer {
   std::string again;                         // the command for ten times as many pairs
 };
 
-// The file of the kind's simplest pair.
+// The file that contains the kind's simplest pair.
 std::string case_of(const Answer& answer, const nlohmann::ordered_json& kind);
 
 nlohmann::ordered_json to_json(const Answer& answer, const fuzz::SelectedLanes& under_test);

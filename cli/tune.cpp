@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze tune`: finds the best epsilon policy for a lane on given pairs, and problems with epsilons that error counts
-// hide.
+// `graze tune`: finds the best epsilon policy for a lane on given pairs, and finds problems with epsilons that error
+// counts hide.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A mesh's own pairs do not depend on the seed, so they serve only to choose, or only to verify the choice.
+// A mesh's own pairs do not depend on the seed, so they can serve to choose or to verify the choice, but not both.
 std::vector<strata::PairSource> without_meshes(std::vector<strata::PairSource> sources, const char* use) {
   std::erase_if(sources, [](const strata::PairSource& source) { return fuzz::is_of_mesh(source.id); });
   if (sources.empty())
@@ -55,7 +55,7 @@ TunePairs pairs_from(const TuneOptions& options) {
   fuzz::Json spec = campaign.summary["spec"];
   spec["seed"] = campaign.seed + 1;
   std::vector<strata::PairSource> others = without_meshes(fuzz::recorded_sources(spec), "verify the choice");
-  if (options.pairs > 0) {  // in the campaign's shares
+  if (options.pairs > 0) {  // divided among the sources as in the campaign
     double before = 0, all = 0, rounded = 0;
     for (const strata::PairSource& source : others) all += static_cast<double>(source.pairs);
     for (strata::PairSource& source : others) {
@@ -179,7 +179,7 @@ std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
 
 namespace {
 
-// The unit of the scene's coordinates; empty without a scene that names one.
+// Returns the unit of the scene's coordinates; empty without a scene that names one.
 std::string units_of(const TuneOptions& options, const fuzz::Json& campaign) {
   std::string units;
   if (!options.scene.empty()) units = fuzz::open_scene(options.scene).scene.units;
@@ -206,7 +206,7 @@ int tune(const TuneOptions& options) {
   const bool on_device = backends::backend_of(*lane).has_device && cuda::open_device(why_not);
   if (const std::string why = backends::why_not_on_host(*lane); !on_device && !why.empty())
     throw UsageError(cannot("run", lane->id, why));
-  std::optional<subjects::TunableSource> source;  // of own code
+  std::optional<subjects::TunableSource> source;  // of the user's code
   std::optional<analysis::UnderEpsilon> under;
   analysis::TuneSpec spec;
   if (lane->foreign) {

@@ -20,8 +20,8 @@ namespace graze::cli {
 struct TuneOptions : DrawOptions {
   TuneOptions() : DrawOptions{0} {}  // 0: a million, or as many as the campaign `from` has
   std::vector<std::string> lanes;
-  LaneOptions own_code;  // its subjects
-  std::string epsilon;   // for own code: the name of the constant; empty: the obvious one
+  LaneOptions own_code;  // for --subject
+  std::string epsilon;   // name of the constant in the user's code; empty: the obvious one
   std::string from, out;
   int threads = 0;
   int forbid = 2;
@@ -32,23 +32,23 @@ struct TuneOptions : DrawOptions {
 // `graze tune LANE LANE --agree`.   Requires: two lanes.
 int agree(const TuneOptions& options);
 
-// The pairs on which the choice is made (a tenth of the number, or the campaign's), and the pairs that verify it (drawn
-// with the next seed).
+// The pairs on which the choice is made (a tenth of --pairs, or the campaign's pairs), and the pairs that verify the
+// choice (drawn with the next seed).
 struct TunePairs {
-  fuzz::Json campaign;  // summary of the campaign of `sources`; null: none
+  fuzz::Json campaign;  // summary of the campaign with these `sources`; null: none
   std::vector<strata::PairSource> sources, others;
-  std::string left_out;  // left_out_text of the scene
+  std::string left_out;  // the scene's left_out_text
 
   bool in_doubles() const;  // whether some pairs are pairs of doubles
 };
 
-// Throws: as drawn and pairs_of_campaign; UsageError if no pairs are left to choose on, or to verify.
+// Throws: what drawn() and pairs_of_campaign throw; UsageError if no pairs are left to choose on, or to verify.
 TunePairs tune_pairs(const TuneOptions& options);
 
 // Throws: UsageError if some pairs are doubles and the lane takes only float32.
 void expect_takes(const Lane& lane, const TunePairs& pairs);
 
-// The lane that is never wrong on these pairs, on this lane's backend if possible.
+// Returns the exact lane for these pairs, on the given lane's backend if possible.
 const Lane& exact_on(const TunePairs& pairs, const Lane& lane);
 
 AnyPair pair_at(const std::vector<strata::PairSource>& sources, const analysis::PairPlace& place);
@@ -61,17 +61,17 @@ std::string file_of_pair(const AnyPair& pair, const std::string& lanes);
 // Requires: a lane is wrong on the pair.
 std::string smallest(const Lane& first, const Lane& second, const AnyPair& pair);
 
-// Writes the results and lists them. Removes each optional result (given with the first line of its kind) that an
-// earlier run wrote and this one did not.
+// Writes the results and prints their names. Removes each optional result (given with the first line of its kind) that
+// an earlier run wrote but this one does not.
 void write_listed(const std::filesystem::path& out, const std::vector<Result>& results,
                   std::initializer_list<Result> optional);
 
-// The line with the next command, which checks the last result if that is a file of pairs. For a lane of a user's code
-// it has the --subject that the lane needs.
+// Returns the "Next" line. Its command checks the last result if that is a file of pairs, and has the --subject that a
+// lane of a user's code needs.
 std::string next_command(const std::filesystem::path& out, const Result& last, const std::string& lanes);
 
-// The cost of a pair for each lane: host lanes on one core, CUDA lanes on the device. A twin's time is not the time of
-// the code, so without a device, and for programs, a sentence says that the cost was not measured.
+// Returns sentences with each lane's cost per pair: host lanes on one core, CUDA lanes on the device. Says if a cost
+// was not measured: for programs, and for CUDA lanes without a device (a twin's time is not theirs).
 std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
                                         const std::vector<strata::PairSource>& sources);
 
@@ -80,9 +80,9 @@ std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
 void expect_errors_of(const std::string& directory, const fuzz::Json& campaign, const analysis::TuneSpec& spec,
                       const std::string& lane);
 
-// The text of changes.csv, for --from. Of the pairs that the tolerance was chosen on, it has a row for each on which
-// the lane is wrong without a tolerance ("wrong"), and for each that the best tolerance of a curve fixes or breaks.
-// own_code: the decider under a policy if the lane is a user's code; else null.
+// Returns the text of changes.csv, for --from. It covers the pairs on which the tolerance was chosen, with a row for
+// each pair on which the lane is wrong without a tolerance ("wrong"), and for each pair that the best tolerance of a
+// curve fixes or breaks. own_code: the decider under a policy if the lane is a user's code; else null.
 inline constexpr const char* kChangesHeader = "stratum,seed,index,truth,tolerance,change\n";
 std::string changes_csv(const Lane& lane, const analysis::DecideUnder& own_code, const analysis::TuneSpec& spec,
                         const analysis::Tuned& tuned, std::uint64_t seed, int threads);

@@ -35,7 +35,7 @@ TEST_F(Policies, AreLanesOnEveryVerb) {
   EXPECT_EQ(summary["strata"]["extreme_scale"]["lanes"]["moller_1997/f32/cpu/bound"]["false_positive"], 0);
   expect_done("graze minimize c && graze failures c > kinds && graze report c && graze dump c > /dev/null");
   EXPECT_TRUE(has(shell.file("kinds"), {"moller_1997: policy"}));
-  // A case of a lane under a policy, emitted as a program.
+  // Emits a case of a lane under a policy as a program.
   const Ran emitted = shell(
       "graze repro small.pairs --lanes moller_1997/f32/cpu/paper --emit cpp > case.cpp && g++ -std=c++20 -O2 "
       "-ffp-contract=off case.cpp -o case && ./case");
@@ -70,7 +70,7 @@ TEST_F(TuneCommand, AFreshCampaignConfirmsWhatItRecommends) {
   EXPECT_LE(negatives / 200'000, json["bound"].get<double>());
   // The bytes are the same for any number of threads.
   expect_done(tune + "--threads 1 --out u > /dev/null && diff -r t u");
-  // The smallest cases that the policy fixes and breaks are as described.
+  // The policy fixes or breaks the smallest cases as their file names say.
   for (const auto& [file, zero_wrong] : {std::pair{"fixed", true}, {"broken", false}}) {
     const Ran check = shell(std::string("graze check t/") + file +
                             ".pairs --lanes 'moller_1997/f32/cpu,moller_1997/f32/cpu/" + policy + "' | grep moller");
@@ -118,7 +118,7 @@ TEST_F(TuneCommand, ChoosesOnTheDisagreementsOfACampaign) {
     }
   }
   EXPECT_GE(tolerances, 4);
-  // One pair of each kind, drawn again by its number.
+  // One pair of each kind is drawn again by its number.
   const std::string chosen = tuned["chosen"];
   for (const auto& [key, zero_wrong, chosen_wrong] :
        {std::tuple{chosen + ",fixes", true, false}, {chosen + ",breaks", false, true}}) {
@@ -131,7 +131,7 @@ TEST_F(TuneCommand, ChoosesOnTheDisagreementsOfACampaign) {
     EXPECT_EQ(again.out.substr(0, second).find(" !") != std::string::npos, zero_wrong) << place << '\n' << again.out;
     EXPECT_EQ(again.out.find(" !", second) != std::string::npos, chosen_wrong) << place << '\n' << again.out;
   }
-  // Any number of threads gives the same bytes; changes.csv is removed when another run does not write it.
+  // Any number of threads gives the same bytes. A later run that does not write changes.csv removes it.
   expect_done(tune + "--max-other 0.5 --pairs 6k --threads 1 --out u > /dev/null && diff -r t u");
   expect_done("graze tune moller_1997/f32/cpu --strata near_vertex_face --pairs 1k --out t > /dev/null");
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "t/changes.csv"));
@@ -139,7 +139,7 @@ TEST_F(TuneCommand, ChoosesOnTheDisagreementsOfACampaign) {
   expect_error(tune + "--scene x.toml", 2, {"--scene", "--from"});
 }
 
-// A campaign with different code: its counts are possible, but its pairs give others.
+// A campaign of different code: its counts are plausible, but its pairs now give other counts.
 TEST_F(TuneCommand, ACampaignWhosePairsShowOtherErrorsIsRefused) {
   expect_done("graze fuzz --strata near_edge_edge --pairs 2k --lanes moller_1997/f32/cpu --out c > /dev/null");
   auto summary = shell.json("c/summary.json");
@@ -181,7 +181,7 @@ TEST_F(TuneCommand, NextIsACommandThatRuns) {
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "t/fixed.pairs"));
 }
 
-// The header, compiled by itself, decides like the lane on the smallest cases.
+// The header, compiled by itself, decides like the lane on fresh pairs.
 TEST_F(TuneCommand, TheHeaderDecidesAsTheLane) {
   expect_done(
       "graze tune moller_1997/f32/cpu --strata near_vertex_face --pairs 5k --forbid false-negative --max-rate 1e-2 "
@@ -287,7 +287,7 @@ TEST_F(AgreeCommand, SaysWhatNeedsNoPolicyAndWhatIsNotSettled) {
   const std::string tune = "graze tune moller_1997/f32/cpu moller_1997/f32/cuda-nofma --agree --strata 'near_*' ";
   const Ran settled = shell(tune + "--pairs 4k --max-rate 1e-3 --out t");
   EXPECT_EQ(settled.out.find("No policy is needed: "), 0u) << settled.out << settled.err;
-  EXPECT_FALSE(has(settled.out, {"Without a tolerance: "}));  // there is nothing to mend
+  EXPECT_FALSE(has(settled.out, {"Without a tolerance: "}));  // there is nothing to fix
   EXPECT_EQ(shell.json("t/agree.json")["chosen"], "zero");
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "t/differ.pairs"));
   const Ran open = shell(tune + "--pairs 4k --max-rate 1e-4 --out t");

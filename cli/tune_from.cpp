@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze tune --from`: makes the choice on the disagreements of a campaign.
+// `graze tune --from`: makes the choice on a campaign's disagreements.
 #include <fmt/format.h>
 
 #include "backends/backends.h"

@@ -25,7 +25,7 @@ class TuneOwnCode : public CommandTest {
   }
 };
 
-// The value that tune names is written into the source; a campaign on the same fresh pairs then counts the same errors.
+// The test writes tune's value into the source; a campaign on the same fresh pairs then counts the same errors.
 TEST_F(TuneOwnCode, ACampaignOfTheChangedSourceConfirmsTheValue) {
   write("0.25f");
   const std::string options =
@@ -41,11 +41,11 @@ TEST_F(TuneOwnCode, ACampaignOfTheChangedSourceConfirmsTheValue) {
   EXPECT_EQ(json["epsilon"]["written"], "0.25f");
   EXPECT_EQ(json["epsilon"]["lines"], std::vector<int>{3});
   EXPECT_EQ(json["subjects"][0]["name"], "mine");
-  // The command under "Next" runs as it is.
+  // The command after "Next:" runs unchanged.
   const std::size_t next = ran.out.find("Next: ");
   ASSERT_NE(next, std::string::npos);
   expect_done("export XDG_CACHE_HOME=$PWD/cache; " + ran.out.substr(next + 6));
-  // The result does not depend on threads, and cached builds give the same bytes.
+  // The result does not depend on the number of threads, and cached builds give the same bytes.
   const Ran again = tune(options + "--threads 1 --out u");
   ASSERT_EQ(again.status, 0) << again.err;
   expect_done("cmp t/tune.json u/tune.json");
@@ -73,7 +73,7 @@ TEST_F(TuneOwnCode, SaysThatNoValueHelps) {
   EXPECT_EQ(shell.json("t/tune.json")["result"], "not satisfiable");
 }
 
-// In a scene the sentence has its unit; the campaign's folder knows the subject, and its report reads the result.
+// In a scene, the sentence has the scene's unit. The campaign knows the subject, and its report includes the result.
 TEST_F(TuneOwnCode, UsesTheScenesUnitsAndACampaignsSubjects) {
   write("0.25f");
   std::ofstream(shell.folder / "part.toml")
@@ -88,7 +88,7 @@ TEST_F(TuneOwnCode, UsesTheScenesUnitsAndACampaignsSubjects) {
   EXPECT_EQ(shell.file("c/changes.csv").find("stratum,seed,index"), 0u);
   expect_done("graze report c");
   EXPECT_TRUE(has(shell.file("c/report.html"), {"kEps"}));
-  // After the source has changed, the campaign's counts are not those of the code.
+  // After the source has changed, the campaign's counts no longer belong to the code.
   write("0.125f");
   expect_error("export XDG_CACHE_HOME=$PWD/cache; graze tune mine/f32/cpu --from c --out d", 1,
                {"mine.cpp", "changed"});

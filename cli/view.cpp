@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze view`: writes a page that decides every verdict again as a triangle is dragged.
+// `graze view`: writes a page that computes every verdict again while a triangle is dragged.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
@@ -30,7 +30,7 @@ using reports::Viewed;
 constexpr std::size_t kMostCandidates = 100'000;  // pairs of a mesh that are searched for wrong verdicts
 constexpr std::size_t kMostOfAMesh = 500;         // pairs of a mesh that are shown
 
-// The lanes of the user's code: from --subject, and from the campaign that is shown.   Throws: as selected_lanes.
+// Returns the user's own lanes, from --subject and from the shown campaign.   Throws: what selected_lanes throws.
 fuzz::SelectedLanes lanes_of_own_code(LaneOptions options, const std::string& what) {
   options.executor = fuzz::Executor::twin;
   fuzz::SelectedLanes own = selected_lanes(options, what);
@@ -38,7 +38,7 @@ fuzz::SelectedLanes lanes_of_own_code(LaneOptions options, const std::string& wh
   return own;
 }
 
-// The campaign's verdicts for lanes that cannot run now.
+// Returns the campaign's stored verdicts for lanes that cannot run now.
 std::vector<reports::SaidOfPair> stored(const fuzz::SelectedLanes& own, const corpus::Entry& entry) {
   std::vector<reports::SaidOfPair> said;
   if (own.left_out.empty()) return said;
@@ -85,14 +85,14 @@ void add_folder(const fs::path& folder, const fuzz::SelectedLanes& own, Viewed& 
   for (const fs::path& file : files) add_cases(file.string(), own, viewed, campaign ? 1 : reports::kMostViewedPairs);
 }
 
-// The exact verdict on a pair, declined unless it is finite.
+// Returns the exact verdict on a pair; declined unless the pair is finite.
 Verdict exact_verdict(const AnyPair& pair) {
   const Lane* lane = find_lane(pair.floats ? "exact/f32/cpu" : "exact/f64/cpu");
   return visit(pair, [&](const auto& own) { return decide_one(lane->decide, own); });
 }
 
-// Adds the triangles, and the pairs whose boxes overlap, starting with those on which some lane is wrong. If the mesh
-// has more digits than float32 holds, they are pairs of doubles.
+// Adds the triangles, and the pairs whose boxes overlap, starting with those on which some lane is wrong. If some
+// coordinates have more digits than float32 holds, the pairs are of doubles.
 void add_mesh(const fs::path& file, bool exact_input, Viewed& viewed) {
   expect_utf8("the mesh", file.string());
   const strata::MeshPairs mesh = strata::read_bodies({file});
@@ -182,7 +182,7 @@ Viewed viewed_of(const std::string& what, const std::string& mesh, bool exact_in
   return viewed;
 }
 
-// Opens the page with the desktop's program, if there is a desktop; ignores failures.
+// Opens the page in the desktop's default program, if there is a desktop; ignores failures.
 void open_page(const std::string& page) {
   if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return;
   std::string file = page, opener = "xdg-open";

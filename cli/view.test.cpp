@@ -72,7 +72,7 @@ TEST_F(ViewCommand, FilesFoldersAndMeshes) {
   EXPECT_EQ(data("small.html")["pairs"][0]["name"], "minimised from mesh:1:597");
 }
 
-// Shows a query with all triangles at once, from the arguments of `graze query` or from the hits that it wrote.
+// Shows a query with all triangles at once, from the arguments of `graze query` or from the hits that it writes.
 TEST_F(ViewCommand, QueriesAndTheirResults) {
   std::ofstream(shell.folder / "tent.obj")
       << "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 3 1 -1\nv 3 1 1\nv 4 2 1\nf 1 3 4\nf 1 2 3\nf 5 6 7\n";
@@ -97,11 +97,11 @@ TEST_F(ViewCommand, QueriesAndTheirResults) {
   EXPECT_EQ(data("view.html")["opens"], "pair");
 }
 
-// Each pair keeps its type; if one is of doubles, the page shows all as doubles.
+// Each pair keeps its type; if one is a pair of doubles, the page shows all as doubles.
 TEST_F(ViewCommand, PairsOfDoublesAsTheyAre) {
   const std::string apart =
       "1000000.01 0 0 1000000.01 1 0 1000000.01 0 1  1000000.02 0 0 1000000.02 1 0 1000000.02 0 1";
-  const std::string bits = "412e848005";  // of 1000000.01 and of 1000000.02
+  const std::string bits = "412e848005";  // the first bits of 1000000.01 and of 1000000.02
   const auto shows_doubles = [&](const std::string& command, std::size_t pairs) {
     expect_done("graze view " + command + " --out d.html");
     const nlohmann::json held = data("d.html");
@@ -125,7 +125,7 @@ TEST_F(ViewCommand, PairsOfDoublesAsTheyAre) {
   EXPECT_EQ(mesh["triangles"][0].get<std::string>().substr(0, 10), bits);
   EXPECT_EQ(mesh["triangles"][0].get<std::string>().size(), 144u);
   const nlohmann::json query = shows_doubles("far.off#0 far.off", 1);
-  EXPECT_EQ(query["ids"], (std::vector<int>{0, 1}));  // one hit, itself
+  EXPECT_EQ(query["ids"], (std::vector<int>{0, 1}));  // its only hit is itself
   const Ran said = shell("graze view far.off");
   EXPECT_TRUE(has(said.err, {"far.off: decided in doubles"}));
   for (const char* what : {"far.off", "far.off#0 far.off"})
@@ -133,7 +133,7 @@ TEST_F(ViewCommand, PairsOfDoublesAsTheyAre) {
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "e.html"));
 }
 
-// Own code in double gets the doubles, own code in float what float32 stores of them.
+// The user's code in double gets the doubles; code in float gets what float32 stores of them.
 TEST_F(ViewCommand, OwnCodeIsAskedAboutDoubles) {
   std::ofstream(shell.folder / "mine.c") << "int meet(const double* a, const double* b) { return a[0] == b[0]; }\n"
                                             "int meet_f(const float* a, const float* b) { return a[0] == b[0]; }\n";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every entry in every corpus file is a separate test, which compares its fields truth and contact with the oracle. For
-// a pair of doubles the test also compares truth_in_float32 and contact_in_float32.
+// Every entry in every corpus file is a separate test, which compares its fields `truth` and `contact` with the oracle.
+// For a pair of doubles the test also compares `truth_in_float32` and `contact_in_float32`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace graze::corpus {
 namespace {
 
 struct Case {
-  std::string name;            // relative to the root of the sources
+  std::string name;            // FOLDER_NAME, the test's name
   std::filesystem::path file;  // relative to the root of the sources
   Entry entry;
 };
@@ -68,7 +68,7 @@ std::string value(const Entry& entry, std::string_view key) {
 
 TEST(Corpus, EveryFileReads) { EXPECT_EQ(corpus().errors, ""); }
 
-// An empty corpus fails here, and once more because GoogleTest fails a parameterised test without parameters.
+// An empty corpus fails here, and also because GoogleTest fails a parameterised test that has no parameters.
 TEST(Corpus, HasEntriesOfEveryKind) {
   std::set<std::string> contacts;
   for (const Case& c : corpus().cases) contacts.insert(value(c.entry, "contact"));

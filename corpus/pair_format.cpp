@@ -22,7 +22,7 @@ constexpr std::string_view kFormat = "graze-pairs";
 constexpr std::string_view kVersion = "1";
 constexpr const char* kCoordinatesField = "coordinates";
 constexpr const char *kOfFloats = "f32", *kOfDoubles = "f64";
-constexpr std::size_t kLongestLine = 65536;  // so that an endless line is an error instead of filling the memory
+constexpr std::size_t kLongestLine = 65536;  // an endless line is an error, because it would fill the memory
 
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 bool is_printable(char c) { return c >= ' ' && c <= '~'; }
@@ -61,7 +61,7 @@ struct Line {
     return taken;
   }
 
-  // Takes the text up to the next character that ends it.
+  // Takes the text before the first character for which `ends` is true.
   template <class Ends>
   std::string_view take_until(const Ends& ends) {
     return take(static_cast<std::size_t>(std::find_if(rest.begin(), rest.end(), ends) - rest.begin()));
@@ -116,7 +116,7 @@ struct Draft {
   std::optional<std::size_t> only_double;  // the first number that needs a double
 };
 
-// Whether the exponent has over five digits. The oracle reads numbers exactly, so such numbers would fill the memory.
+// Whether the exponent has more than five digits. The oracle reads numbers exactly, so these would fill the memory.
 bool has_long_exponent(std::string_view number) {
   const std::size_t at = number.find_first_of(is_hex(number) ? "pP" : "eE");
   if (at == number.npos) return false;
@@ -153,7 +153,7 @@ void take_numbers(Line& line, Draft& draft) {
   }
 }
 
-// Takes the rest of a value in quotes; the opening quote is already taken.
+// Takes the rest of a quoted value, after its opening quote.
 std::string take_quoted(Line& line, const std::string& key) {
   std::string value;
   while (!line.rest.empty()) {
@@ -302,7 +302,7 @@ Entry PairReader::read_obj_fragment(std::string text) {
     throw FormatError(begins + ": expected two triangles, or six vertices without faces; found " +
                       std::to_string(soup.triangles.size()) + " triangles and " + std::to_string(soup.vertices.size()) +
                       " vertices");
-  std::vector<std::array<std::string, 3>> written;  // coordinates as typed, in the order of the vertices
+  std::vector<std::array<std::string, 3>> written;  // coordinates as typed, in vertex order
   std::istringstream lines(bytes);
   for (std::string line, keyword; std::getline(lines, line);) {
     std::istringstream words(line);
@@ -339,7 +339,7 @@ std::optional<Entry> PairReader::next() {
     take_numbers(line, draft);
     if (first) draft.entry.line = line_;
     const bool fields = !line.at_end() && line.rest[0] == '|';
-    if (draft.count == 0 && !fields) continue;  // only brackets or the name of an array
+    if (draft.count == 0 && !fields) continue;  // the line has only brackets or an array's name
     if (draft.count < kCoordinates && !fields && !versioned_ && (draft.open || draft.count % 3 == 0)) continue;
     if (draft.count != kCoordinates) expect_18(draft.count == 0 ? line.where : draft.where);
     draft.entry.lines = line_ - draft.entry.line + 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs in the case format and in every form that people paste. A pair that was read, written and read again must keep
-// its bits.
+// Reads pairs in the case format and in every form that people paste. A pair that is read, written and read again must
+// keep its bits.
 #include <cstring>
 #include <sstream>
 

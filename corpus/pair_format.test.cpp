@@ -189,7 +189,7 @@ TEST(PairFormat, GarbageIsEscapedAndCutShort) {
   expect_named("\n" + std::string(1 << 20, '0'), {"in.pairs:2", "65536"});
 }
 
-// Without a version line the reader accepts what people paste.
+// Without a version line, the reader accepts pasted text.
 TEST(PairFormat, TakesWhatPeoplePaste) {
   const Entry expected = read("0 0 0 4 0 0 0 4.5 0 1 1 0 1 2 4 2 1 4\n").at(0);
   const char* const kPasted[] = {
@@ -255,7 +255,7 @@ TEST(PairFormat, APairOfDoublesReadsBack) {
   EXPECT_EQ(coordinates(again.pair)[0], 0.1f);
   EXPECT_EQ(write(again), text);
   const Entry on_float32 = read_any(write(entry_of(in_doubles(Pair{}), {}))).value();
-  EXPECT_TRUE(on_float32.doubles);  // because the file says so, although float32 holds its numbers
+  EXPECT_TRUE(on_float32.doubles);  // the file states f64, although float32 holds its numbers
 }
 
 TEST(PairFormat, TheTypeIsTheNarrowestThatHoldsTheNumbersUnlessTheFileSaysIt) {

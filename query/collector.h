@@ -65,7 +65,7 @@ class Collector final : public cuda::QueryWork {
 
   mutable std::mutex mutex_;
   std::condition_variable in_order_;
-  std::map<std::uint64_t, Chunk> ahead_;  // by first triangle: chunks that are done before an earlier chunk
+  std::map<std::uint64_t, Chunk> ahead_;  // by first triangle: chunks that finished before an earlier one
   Found found_;
   bool stopped_ = false;
   std::uint64_t listed_ = 0;

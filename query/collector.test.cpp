@@ -72,7 +72,7 @@ TEST(Collector, DevicesTakeTheirOwnParts) {
   EXPECT_FALSE(collector.next(-1, 64, range));
 }
 
-// A worker that waits for a range that never comes is told to stop.
+// A worker that waits for a range that never arrives must stop.
 TEST(Collector, ListsDoNotWaitForThoseWhoFailed) {
   std::uint64_t list[2];
   Collector collector({192}, {-1}, 1, false, {nullptr, nullptr, list, 2}, {});

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Works on blocks of 64 triangles. A block is transposed into columns of floats, and each reference's slabs test four
-// triangles at a time. Undecided pairs are gathered until there are enough to decide side by side. Lanes other than
-// exact get all pairs. Triangles of doubles are rounded only for the slabs, relative to the reference's first vertex: a
-// difference of doubles has a small relative error wherever the triangles are.
+// Processes blocks of 64 triangles. A block is transposed into columns of floats, and each reference's slabs test four
+// triangles at a time. Undecided pairs are collected and decided in batches. Lanes other than exact decide every pair.
+// Triangles of doubles are rounded only for the slab test, relative to the reference's first vertex: a difference of
+// doubles has a small relative error wherever the triangles are.
 #include "query/cpu.h"
 
 #include <tbb/parallel_for.h>
@@ -58,8 +58,8 @@ bool is_finite(const Real* triangle) {
   return std::all_of(triangle, triangle + 9, [](Real x) { return std::isfinite(x); });
 }
 
-// Up to 64 triangles, as rows and as columns. Rows point into the array if it has rows. Columns of doubles are valid
-// once look_from has filled them.
+// Up to 64 triangles, as rows and as columns. Rows point into the array if its layout is rows. Columns of doubles are
+// valid once look_from has filled them.
 template <class Real>
 struct Block {
   alignas(16) float columns[9][kBlock];
@@ -85,7 +85,7 @@ struct Block {
     }
   }
 
-  // Differences beyond float32 become infinite.
+  // Sets the columns to differences from the origin; those beyond float32 become infinite.
   void look_from(const double* origin) {
     for (std::size_t k = 0; k < 9; ++k) {
       for (std::size_t i = 0; i < kBlock; ++i) columns[k][i] = static_cast<float>(rows[i][k] - origin[k % 3]);
@@ -190,7 +190,7 @@ class Worker {
   // A reference's coordinates.
   const Real* at(std::size_t r) const { return static_cast<const Real*>(question_.references) + 9 * r; }
 
-  // Adds the pairs that the slabs leave open. Each pair's bit is set when the pair is decided.
+  // Queues the pairs that the slabs leave undecided. decide_open later sets the bits of those that intersect.
   void gather(std::size_t r, std::uint64_t open, std::uint64_t& hits) {
     for (std::uint64_t left = open; left != 0; left &= left - 1) {
       Real* pair = coordinates(pairs_[open_.size()]);
@@ -210,7 +210,7 @@ class Worker {
     open_.clear();
   }
 
-  // Decides the wanted triangles with another lane.
+  // Decides the wanted triangles with a lane other than exact.
   void decide(std::size_t r, std::uint64_t wanted, std::uint64_t& hits, std::uint64_t& declined) {
     for (std::size_t i = 0; i < kBlock; ++i) {
       std::copy_n(at(r), 9, coordinates(pairs_[i]));

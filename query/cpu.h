@@ -7,9 +7,9 @@
 
 namespace graze::query {
 
-// Runs on the question's threads until no range is left. This thread takes the first ranges alone, because starting
-// threads takes longer than finding a hit among the first triangles.
-// Requires: a host lane; for doubles the exact lane.
+// Runs on the question's threads until no range is left. The calling thread takes the first ranges alone, because
+// starting threads takes longer than finding a hit among the first triangles.
+// Requires: a host lane; for doubles, the exact lane.
 // Throws: std::bad_alloc, and every exception of the progress callback.
 void run_on_cpu(const Question& question, cuda::QueryWork& work);
 

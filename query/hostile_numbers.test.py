@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Passes numbers that no real array has through the C ABI. Each must give GRAZE_BAD_ARGUMENT, and none may crash.
+"""Calls the C ABI with numbers that no real array has. Each call must return GRAZE_BAD_ARGUMENT, and none may crash.
   hostile_numbers.test.py libgraze_query.so FOLDER_OF_EXAMPLE.PY
 """
 import array
@@ -25,7 +25,7 @@ faces = array.array("I", range(3 * COUNT))
 
 
 def ask(part=(), **changes):
-    """Returns: the status and the hits of a query with these changes. Unchanged, all ten triangles meet the reference."""
+    """Returns: status and hits of a query with these changes. Without changes, all ten triangles meet the reference."""
     fields = dict(
         count=COUNT,
         device=-1,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library: every layout, output and executor on the cores gives the same answer. Wrong arguments, lack of memory
-// and cancellation give an error status.
+// Tests the library. On the cores, every layout, output and executor gives the same answer. Wrong arguments, lack of
+// memory and cancellation give an error status.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -16,7 +16,7 @@
 
 namespace {
 
-// The allocation that makes it 0 fails, and so do all later ones. At -1 none fails.
+// If this is n > 0, the n-th allocation from now and all later ones fail. If it is -1, none fails.
 std::atomic<long> allocations_left = -1;
 
 bool allocation_fails() {
@@ -124,7 +124,7 @@ TEST(Query, LayoutsTellTheSame) {
   EXPECT_EQ(beside.bytes[9], 2);
   EXPECT_EQ(beside.answer.declined, 1u);
 
-  // The array in several parts, one of which is empty.
+  // The same array in several parts, one of which is empty.
   std::vector<graze_triangles> parts(3, part_of(triangles));
   parts[0].count = 64 * 100;
   parts[1].count = 0;
@@ -135,7 +135,7 @@ TEST(Query, LayoutsTellTheSame) {
   EXPECT_EQ(all_of(query, kCount, 0).bytes, rows.bytes);
 }
 
-// Doubles in every layout give the results of the same numbers as floats.
+// In every layout, doubles give the same results as the same numbers in float.
 TEST(Query, DoublesInEveryLayoutTellTheSame) {
   const std::vector<Triangle> floats = thesis_triangles(kCount);
   const std::vector<std::uint8_t> bytes = all_of(query_of(kThesisReference, part_of(floats)), kCount, 0).bytes;
@@ -322,8 +322,7 @@ TEST(Query, StridesThatNoArrayHasAreRefusedInEveryLayout) {
            {std::size_t{1}, size - 1, size + 1, SIZE_MAX, SIZE_MAX - 35, SIZE_MAX - 3, SIZE_MAX / 2 + 1}) {
         for (const std::uint64_t count : {1, 2, 10}) EXPECT_EQ(status(count, stride), GRAZE_BAD_ARGUMENT) << stride;
       }
-      // The size in bytes overflows to zero, to a small or to a large number, or the array ends beyond the address
-      // space.
+      // The size in bytes overflows to zero or to a small or large number, or the array ends beyond the address space.
       for (const std::size_t stride :
            {std::size_t{1} << 62, std::size_t{1} << 60, (SIZE_MAX / 9 + 1) / 4 * 4, SIZE_MAX / 2 / 9 / 4 * 4 + 4})
         EXPECT_EQ(status(10, stride), GRAZE_BAD_ARGUMENT) << stride;

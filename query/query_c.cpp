@@ -35,7 +35,7 @@ void set(graze_answer& answer, graze_status status, const char* message) {
 
 }  // namespace
 
-// The type that query_c.h only declares.
+// Defines the type that query_c.h declares.
 struct graze_context {
  public:
   // Always fills in the answer. Its status tells whether the query failed.

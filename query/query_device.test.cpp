@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Devices give the same answers as the cores: every layout, streamed and resident, every output, some lanes, all
-// strata. Part of graze_device_test; skipped without a device.
+// Devices give the same answers as the cores, for every layout (streamed and resident), every output, some lanes and
+// all strata. Part of graze_device_test; skipped without a device.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -71,7 +71,7 @@ class QueryDevice : public testing::Test {
     return memory;
   }
 
-  // Queries the triangles in each layout, streamed and resident. A face has an index out of range.
+  // Queries the triangles in each layout, streamed and resident. One face has an index out of range.
   template <class Real>
   void expect_every_layout(const std::vector<std::array<Real, 9>>& triangles, const std::array<Real, 9>& reference) {
     EveryLayout<Real> layouts(triangles);
@@ -136,7 +136,7 @@ TEST_F(QueryDevice, StreamedAndResidentAreTheCores) {
       EXPECT_EQ(counted.declined, cores.answer.declined);
       EXPECT_EQ(counted.first, cores.answer.first);
     }
-    // Outputs on the device, on the caller's stream; 2 is CUDA's handle of the per-thread default stream.
+    // Outputs on the device, on the caller's stream; 2 is CUDA's handle for the per-thread default stream.
     auto bytes = cuda::device_memory(0, count * 3 + 1), bits = cuda::device_memory(0, (count + 7) / 8 * 3 + 1);
     query.outputs_on_device = 1;
     query.stream = reinterpret_cast<void*>(2);
@@ -284,7 +284,7 @@ TEST_F(QueryDevice, AnyFindsTheFirst) {
   }
 }
 
-// Queries the same triangles in host memory, and in parts in the memory of every device.
+// Queries the same triangles in host memory, and as parts in the memory of every device.
 TEST_F(QueryDevice, PartsOnAllDevices) {
   const std::vector<Triangle> triangles = broken(thesis_triangles(500'032));
   const graze_triangles part = part_of(triangles);

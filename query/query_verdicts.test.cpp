@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every exact verdict equals those of both decisions of the oracle. Every other verdict equals that of its lane.
+// Every exact verdict equals the verdicts of both oracle decisions. Every other verdict equals that of its lane.
 #include <gtest/gtest.h>
 
 #include "core/exact/prepared_triangle.h"
@@ -20,7 +20,7 @@ std::vector<std::uint8_t> bytes_of(graze_query query, std::size_t count) {
   return bytes;
 }
 
-// The first triangles of eight pairs are the references, and their second triangles the array.
+// Eight pairs: their first triangles are the references, their second triangles the array.
 template <class Real>
 struct Eight {
   static constexpr std::size_t kTogether = 8;
@@ -74,7 +74,7 @@ TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
   EXPECT_GT(filtered, 300'000u);
 }
 
-// On doubles, exact verdicts are the oracle's too. Rounded slabs must lose no hit and reject most disjoint triangles.
+// On doubles, exact verdicts equal the oracle's too. Rounded slabs must lose no hit and reject most disjoint triangles.
 TEST(QueryVerdicts, OfDoublesAreTheOraclesOverAllStrata) {
   constexpr std::size_t kTogether = Eight<double>::kTogether, kPairsOfDoubles = 1'200;
   std::size_t looked_past = 0, hits = 0, apart = 0;
@@ -157,8 +157,8 @@ TEST(QueryVerdicts, AreTheOraclesOnTheThesissTriangles) {
     unsure +=
         !parted && exact::detail::filter_in_floats(prepared, triangles[i].data()) == exact::detail::Finding::unsure;
   }
-  EXPECT_GT(beyond, triangles.size() * 4 / 5);  // otherwise the slabs are not worth their time
-  EXPECT_LT(unsure, triangles.size() / 50);     // otherwise the filter is not worth its time
+  EXPECT_GT(beyond, triangles.size() * 4 / 5);  // otherwise the slabs are not worth their cost
+  EXPECT_LT(unsure, triangles.size() / 50);     // otherwise the filter is not worth its cost
 }
 
 TEST(QueryVerdicts, AreThoseOfTheLane) {
@@ -214,8 +214,8 @@ TEST(QueryVerdicts, HoldAtTheEndsOfTheFloats) {
   EXPECT_EQ(bytes[2], 2);
 }
 
-// The slabs are the thinnest ones: perpendicular to the normal and to the longest edge, which may be any of the three.
-// A thicker slab would lose time, but no hits.
+// The slabs are the thinnest ones: along the normal, and along the direction perpendicular to it and to the longest
+// edge, which may be any of the three. A thicker slab would cost time, but lose no hits.
 TEST(PreparedTriangle, SlabsAreSquareToTheNormalAndTheLongestEdge) {
   const Vec3<double> corners[3] = {{1, 2, 3}, {9, -6, 5}, {4, 1, 2.5}};
   const Vec3<double> longest = corners[1] - corners[0];
@@ -241,7 +241,7 @@ TEST(PreparedTriangle, SlabsAreSquareToTheNormalAndTheLongestEdge) {
       EXPECT_NEAR(half, other, 1e-6);
     }
   }
-  // A segment or a point has no normal, so its slabs are along the axes.
+  // A segment or a point has no normal, so its slabs are aligned with the axes.
   const Triangle segment = {1, 1, 1, 2, 2, 2, 3, 3, 3}, point = {5, 6, 7, 5, 6, 7, 5, 6, 7};
   for (const Triangle& t : {segment, point}) {
     const exact::PreparedTriangle r = exact::prepare(t.data());

@@ -94,7 +94,7 @@ cuda::TriangleArray array_of(const graze_triangles& part, std::size_t real, cons
   return array;
 }
 
-// A user's CUDA code runs in a process of its own, on a device or not; to a query it is a lane of the host.
+// A user's CUDA code runs in its own process, with or without a device, so a query treats it as a host lane.
 bool is_of_device(const Lane& lane) { return lane.is_cuda() && !lane.foreign; }
 
 // Returns the exact host lane for `exact`, whether the host or a device will run it.
@@ -179,7 +179,7 @@ void choose_executor(const graze_query& query, bool any_lane, Question& question
   }
   for (const int place : question.places) {
     expect(place >= 0 && place < count, "parts: expected every part on one of the devices 0 to " +
-                                            std::to_string(count - 1) + ", or all in the memory of the host, found " +
+                                            std::to_string(count - 1) + ", or all in host memory, found " +
                                             std::to_string(place));
     if (std::find(question.devices.begin(), question.devices.end(), place) == question.devices.end())
       question.devices.push_back(place);

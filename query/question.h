@@ -17,7 +17,7 @@ struct QueryError : std::runtime_error {
   graze_status status;
 };
 
-// A device's question, and what the cores and the collector need as well.
+// What a device needs to know, plus what the cores and the collector need.
 struct Question : cuda::DeviceQuestion {
   std::vector<std::uint64_t> counts;  // the number of triangles in each part
   graze_executor executor = GRAZE_ONE_CORE;
@@ -25,8 +25,8 @@ struct Question : cuda::DeviceQuestion {
   std::vector<int> devices;  // used if devices do the work
 };
 
-// Returns the function that runs a lane on cores: the lane's own code. CUDA lanes have none, because the library has no
-// twins. A program with twins sets another function before its first query.
+// Returns the function that runs a lane on cores. By default it is the lane's own code; CUDA lanes have none, because
+// the library contains no twins. A program that has twins replaces this hook before its first query.
 extern DecideBlock (*on_cores)(const Lane& lane);
 
 // Throws: QueryError if an argument is invalid or a required device is missing.

@@ -38,7 +38,7 @@ inline std::vector<Triangle> thesis_triangles(std::size_t count, std::uint64_t s
   return triangles;
 }
 
-// Triangles in every layout, with coordinates of the given type.
+// The same triangles in every layout, with coordinates of the given type.
 template <class Real>
 struct EveryLayout {
   struct Wide {

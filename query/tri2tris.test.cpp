@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A 2012 caller: its special cases, its random triangles and its four flags, through both old functions.
+// Calls both 2012 functions as a program of that time did: special cases, random triangles and the four flags.
 #include <detect-tri2tris-intersection.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ triangle_t special_cases[] = {
 };
 constexpr int kCases = sizeof special_cases / sizeof special_cases[0];
 
-// The caller's random triangles, drawn as in the thesis's listing.
+// Random triangles, drawn as in the thesis's listing.
 std::vector<triangle_t> random_triangles(int count) {
   std::srand(2012);
   std::vector<triangle_t> triangles(static_cast<std::size_t>(count));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Separating axes with an absolute epsilon, whose value a test writes or defines. Tests compare and tune it.
+// A separating-axes test with an absolute epsilon, whose value a test writes or defines. Tests compare and tune it.
 static const float kEps = EPSILON;
 #include <algorithm>
 struct Vec {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle test that looks for edges piercing the other triangle; right on small integers. causes.test.cpp plants
-// bugs in it. It includes nothing, so that it compiles fast.
+// A triangle test that looks for edges piercing the other triangle; it is right on small integers. causes.test.cpp
+// plants bugs in it. It includes nothing, so that it compiles fast.
 static float least(float p, float q) { return p < q ? p : q; }
 static float most(float p, float q) { return p > q ? p : q; }
 static float size(float p) { return p < 0 ? -p : p; }
@@ -14,7 +14,7 @@ static V cross(V p, V q) { return {p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z,
 static float det(V o, V p, V q, V r) { return dot(cross(p - o, q - o), r - o); }
 static bool one_side(float p, float q) { return (p > 0 && q > 0) || (p < 0 && q < 0); }
 
-// Whether the edge p q, not in the plane of t, meets t.
+// Whether the edge p q, which does not lie in the plane of t, meets t.
 static bool pierces(V p, V q, const V* t) {
   const float dp = det(t[0], t[1], t[2], p), dq = det(t[0], t[1], t[2], q);
   if (one_side(dp, dq) || (dp == 0 && dq == 0)) return false;
@@ -30,7 +30,7 @@ static Flat flat(V p, int drop) { return drop == 2 ? Flat{p.x, p.y} : drop == 1 
 static float turn(Flat o, Flat p, Flat q) { return (p.x - o.x) * (q.y - o.y) - (p.y - o.y) * (q.x - o.x); }
 static float largest(V n) { return most(most(size(n.x), size(n.y)), size(n.z)); }
 
-// Whether the segments p q and u v of one line have a point in common.
+// Whether the segments p q and u v, which lie on one line, have a point in common.
 static bool overlap(Flat p, Flat q, Flat u, Flat v) {
   return most(least(p.x, q.x), least(u.x, v.x)) <= least(most(p.x, q.x), most(u.x, v.x)) &&
          most(least(p.y, q.y), least(u.y, v.y)) <= least(most(p.y, q.y), most(u.y, v.y));

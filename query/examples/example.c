@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0
-   Which of three triangles meet a reference: one crosses it, one touches it in a point, one is an ulp away. */
+   Which of three triangles meet a reference: one crosses it, one touches it at a point, one is an ulp away. */
 #include <graze/query_c.h>
 #include <stdio.h>
 
@@ -11,7 +11,7 @@ int main(void) {
 
   graze_triangles part = {0};
   part.count = 3;
-  part.device = -1; /* in the memory of the host */
+  part.device = -1; /* in host memory */
   part.rows = triangles[0];
 
   graze_query query = {0};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0
-   A console program for the library of the thesis of 2012: the headers and the calls are those of its listing. Decides
-   the special cases, then random triangles, on the GPU and on the CPU. console_of_2012 [TRIANGLES]
+   A console program for the library of the 2012 thesis, with the headers and calls of the thesis's listing. It decides
+   the special cases, then random triangles, on the GPU and on the CPU. Usage: console_of_2012 [TRIANGLES]
    Exits with 1 if a special case does not intersect, or if GPU and CPU differ. */
 #include <stdint.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0
-   Triangles for console.c, with the names of the thesis of 2012. */
+   Triangles for console.c, with the names from the 2012 thesis. */
 #ifndef TEST_TOOLS_H
 #define TEST_TOOLS_H
 
@@ -9,7 +9,7 @@ extern triangle_t* tri_array;
 extern uint8_t* tri_result_array;
 extern triangle_t ref;
 
-/* Returns: 0 at the first call, then the clock ticks since the call before. */
+/* Starts a stopwatch and returns 0. The next call stops it and returns the clock ticks in between. */
 int chrono(void);
 
 /* Sets ref, and fills tri_array with random triangles; for size 0, with the special cases.

@@ -5,10 +5,9 @@
 
 #include "geometric-types.h"
 
-/* Copies a triangle. */
 static inline void triangle_from_triangle(triangle_t from, triangle_t* to) { *to = from; }
 
-/* Returns: the vector from m to n, which *mn also receives. */
+/* Sets *mn to the vector from m to n, and returns it. */
 static inline vector_t vector_from_points(coord_t m, coord_t n, vector_t* mn) {
   mn->x = n.x - m.x;
   mn->y = n.y - m.y;

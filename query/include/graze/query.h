@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests reference triangles against an array of triangles, for C++20. Adds owners, spans and vectors to
+// Tests reference triangles against an array of triangles, for C++20. Adds owning types, spans and vectors to
 // <graze/query_c.h>, which describes the fields.
 #pragma once
 
@@ -20,7 +20,7 @@ namespace graze::query {
 using Triangle = std::array<float, 9>;  // x y z of each vertex
 using DoubleTriangle = std::array<double, 9>;
 
-// An array of a type whose first nine floats, or doubles for a query of doubles, are a triangle's coordinates.
+// Describes an array whose elements begin with a triangle's nine coordinates, of the query's type.
 template <class T>
 graze_triangles rows_of(std::span<const T> triangles) {
   static_assert(sizeof(T) >= sizeof(Triangle) && alignof(T) % alignof(float) == 0);
@@ -58,7 +58,7 @@ graze_triangles mesh_of(const Vertices& vertices, std::span<const std::array<std
   return part;
 }
 
-// The answer of a call. `if (answer)` tests whether the call succeeded.
+// The answer to a call. `if (answer)` tests whether the call succeeded.
 struct Answer : graze_answer {
   explicit operator bool() const { return status == GRAZE_OK; }
   std::string_view what() const { return message; }

@@ -9,7 +9,7 @@
 
 namespace graze {
 
-// Holds the coordinates as doubles, without rounding. A pair of float32 also keeps its floats, for the lanes.
+// Holds the coordinates as doubles, without rounding. A float32 pair also keeps its floats, for the lanes.
 struct AnyPair {
   DoublePair doubles;
   std::optional<Pair> floats;
@@ -17,7 +17,7 @@ struct AnyPair {
   AnyPair(const Pair& pair) : doubles(in_doubles(pair)), floats(pair) {}
   AnyPair(const DoublePair& pair) : doubles(pair) {}
 
-  // The pair in float32. A pair of doubles is rounded as a program with float32 coordinates would store it.
+  // The pair in float32. A pair of doubles is rounded, as in a program that stores float32 coordinates.
   Pair in_float32() const { return floats ? *floats : stored_in_float32(doubles); }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages for failures with a reason from the system: "cannot write out/summary.json: No space left on device".
+// Error messages that end with the system's reason: "cannot write out/summary.json: No space left on device".
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ inline std::string cannot(std::string_view act, const std::filesystem::path& on,
   return "cannot " + std::string(act) + ' ' + on.string() + ": " + why;
 }
 
-// error: a value of errno.
+// error: an errno value.
 inline std::string cannot(std::string_view act, const std::filesystem::path& on, int error) {
   return cannot(act, on, std::generic_category().message(error));
 }

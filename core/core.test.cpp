@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests all host lanes on hand-made examples and invariants, and the algorithms with other scalars and policies.
+// Tests all host lanes on hand-made examples and invariants. Also tests the algorithms with other scalars and policies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ struct Example {
 
 constexpr Verdict kYes = Verdict::intersects, kNo = Verdict::disjoint;
 
-// Proper triangles with small integers. Every algorithm must be right in any arithmetic (but see projection_overlaps).
+// Proper triangles with small integers. Every algorithm must be right in any arithmetic (see also projection_overlaps).
 const Example kExamples[] = {
     {"apart, all of b above a", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 0, 1}, {4, 0, 2}, {0, 4, 3}}}, kNo},
     {"apart, all of a beside b's plane", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{5, 0, -1}, {6, 0, 1}, {6, 4, 1}}}, kNo},
@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(Lanes, EveryHostLane, testing::ValuesIn(host_lanes()), 
   return id;
 });
 
-// As in the callers, both conversions are in one function; see stored_in_float32.
+// As in its callers, one function converts in both directions; see stored_in_float32.
 TEST(Pair, StoringInFloat32RoundsEveryNumber) {
   for (int n = 1; n < 100; ++n) {
     DoublePair pair;
@@ -183,7 +183,7 @@ TEST(Algorithms, IncludeNoOtherAlgorithm) {
   }
 }
 
-// Figure 3.4 of the thesis: both plane tests pass and the projections overlap, but the triangles are disjoint.
+// Figure 3.4 of the thesis: no plane test rejects the pair and the projections overlap, but the pair is disjoint.
 TEST(ProjectedSat, HasTheFalsePositiveOfTheThesis) {
   const Pair pair{{{0, 0, 0}, {8, 0, 0}, {0, 8, 0}}, {{1, 1, 4}, {6, 6, 4}, {6, 6, -1}}};
   EXPECT_EQ((decide_widened<ProjectedSat, double>(pair)), kYes);
@@ -191,7 +191,7 @@ TEST(ProjectedSat, HasTheFalsePositiveOfTheThesis) {
   EXPECT_EQ((decide_widened<Moller1997, double>(pair)), kNo);
 }
 
-// If any one coordinate is NaN, Moller's test says intersects, because no comparison rejects the pair.
+// If any one coordinate is NaN, Moller's test returns `intersects`, because no comparison rejects the pair.
 TEST(Moller1997, SaysIntersectsOfNaN) {
   for (int c = 0; c < kCoordinates; ++c) {
     Pair pair = kExamples[0].pair;
@@ -249,7 +249,7 @@ void expect_policy_decides(std::initializer_list<Site> sites) {
     EXPECT_GT(counts[static_cast<int>(site)], 0) << Algorithm::kInfo.id << ", site " << static_cast<int>(site);
 }
 
-// Counting a word of pairs at once gives the same as counting the verdicts one by one, for every combination of bits.
+// A whole word of pairs gives the same counts as its verdicts one by one, for every combination of bits.
 TEST(JudgedBits, AreTheCountsOfVerdicts) {
   for (const bool foreign : {false, true}) {
     std::uint32_t bits[4] = {};  // intersects, declined, truth, judged; bit i of word b is bit b of i

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts of verdicts that differ from the truth, by kind. All code that counts errors uses this meaning of wrong.
+// Counts of verdicts that differ from the truth, by kind. All code that counts errors uses this definition of "wrong".
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct Counts {
   std::uint64_t false_negative = 0;
   std::uint64_t declined = 0;
   std::uint64_t crashed = 0, timed_out = 0, unstable = 0;  // only for foreign code
-  std::uint64_t by_convention = 0;                         // differ from the truth, as the lane's convention allows
+  std::uint64_t by_convention = 0;                         // not the truth, but allowed by the lane's convention
 
   constexpr std::uint64_t failed() const { return crashed + timed_out + unstable; }
   constexpr std::uint64_t wrong() const { return false_positive + false_negative + failed(); }

@@ -22,8 +22,8 @@ constexpr std::string_view name(Site site) {
   return kNames[static_cast<int>(site)];
 }
 
-// A question to a policy: the site, and the question's number in the algorithm. A question always comes from the same
-// source line and asks about the same quantities; see core/discrepancy/questions.h.
+// A question to a policy: the site, and the question's number in the algorithm. Each number stands for one source line
+// and the same quantities in every run; see core/discrepancy/questions.h.
 struct At {
   Site site;
   int question;
@@ -39,7 +39,7 @@ GRAZE_HD void see([[maybe_unused]] const Policy& policy, [[maybe_unused]] int qu
   if constexpr (requires { policy.seen(question, x); }) x = policy.seen(question, x);
 }
 
-// Tells the policy a choice, such as an axis, on which later quantities depend. Only recording policies use it.
+// Tells the policy about a choice, such as an axis, that later quantities depend on. Only recording policies use it.
 // Requires: 0 <= value < 15, which < 15.
 template <class Policy, class Choice>
 GRAZE_HD Choice chosen(const Policy& policy, int which, Choice value) {
@@ -64,7 +64,7 @@ struct ExactZero {
     return x;
   }
 
-  // True if the policy is certain that l < r. (Not l - r < 0: a subtraction would invite contraction.)
+  // True if the policy is certain that l < r. (Do not compute l - r < 0: a compiler might contract it.)
   template <class Real>
   GRAZE_HD bool less(Site, const Real& l, const Real& r) const {
     return l < r;

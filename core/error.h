@@ -11,7 +11,7 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The message for a feature that scripts/campaign leaves out.
+// The message for a feature that builds by scripts/campaign leave out.
 inline std::string not_in_a_campaigns_build(const std::string& what) {
   return what + ": not in this build, which scripts/campaign made; scripts/setup builds everything";
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 64-bit hash FNV-1a (Fowler, Noll and Vo), used to name texts. It gives no protection against forged texts.
+// The 64-bit hash FNV-1a (Fowler, Noll and Vo), used to identify texts. It does not detect deliberate changes.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ constexpr std::uint64_t fnv1a(std::string_view bytes, std::uint64_t hash = 0xcbf
   return hash;
 }
 
-// Whether the text has the form of a hash in names and records: 16 hexadecimal digits.
+// Whether the text looks like a hash in names and records: 16 hexadecimal digits.
 constexpr bool is_hash(std::string_view text) {
   return text.size() == 16 && text.find_first_not_of("0123456789abcdef") == text.npos;
 }

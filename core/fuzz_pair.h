@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes a pair from the bytes of a fuzz input.
+// Makes a pair from a fuzz input's bytes.
 #pragma once
 
 #include <algorithm>

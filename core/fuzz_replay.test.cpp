@@ -25,7 +25,7 @@ TEST(FuzzTargets, GetThroughTheirStoredCorpora) {
     for (const fs::path& file : files) {
       std::ifstream in(file, std::ios::binary);
       const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-      target.one(bytes);  // aborts if a condition that must hold does not
+      target.one(bytes);  // aborts if a must_hold condition fails
       for (const std::size_t length : {bytes.size() / 2, bytes.size() - std::min<std::size_t>(bytes.size(), 1)})
         target.one(std::string_view(bytes).substr(0, length));
     }

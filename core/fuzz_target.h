@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fuzz targets: functions that must handle any bytes. Each is in a file x.fuzz.cpp beside the code that it tests.
-// fuzz/targets runs them under libFuzzer; core/fuzz_replay.test.cpp runs them on the stored corpora only.
+// Fuzz targets: functions that must handle any bytes. Each one is in a file x.fuzz.cpp next to the code that it tests.
+// fuzz/targets runs them under libFuzzer; core/fuzz_replay.test.cpp runs them only on the stored corpora.
 #pragma once
 
 #include <cstdint>
@@ -25,19 +25,19 @@ struct RegisterFuzzTarget {
   RegisterFuzzTarget(const char* name, void (*one)(std::string_view)) { fuzz_targets().push_back({name, one}); }
 };
 
-// Ends the process unless the condition holds.
+// Aborts the process unless the condition holds.
 inline void must_hold(bool holds, const char* what) {
   if (holds) return;
   std::fprintf(stderr, "expected that %s\n", what);
   std::abort();
 }
 
-// Tells libFuzzer to keep the input, because it reached a feature that the coverage of branches does not show.
-// libFuzzer finds these counters by the section's name.
+// Tells libFuzzer to keep the input, because it reached a feature that branch coverage does not show. libFuzzer finds
+// these counters by the section's name.
 __attribute__((used, section("__libfuzzer_extra_counters"))) inline std::uint8_t fuzz_counters[4096];
 inline void reached(std::size_t feature) { fuzz_counters[feature % sizeof fuzz_counters] = 1; }
 
-// Error messages of readers must be one line and not empty.
+// A reader's error message must be one line and not empty.
 inline void must_be_one_line(std::string_view error) {
   must_hold(!error.empty() && error.find('\n') == error.npos, "an error is one line");
 }

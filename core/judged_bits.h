@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lane's verdicts on a word of pairs, judged against the truth: the one place where bits become errors, on host and
-// device.
+// Compares a lane's verdicts on a word of pairs with the truth. All code, on host and device, derives errors from
+// verdict bits here.
 #pragma once
 
 #include "core/exact/host_device.h"
 
 namespace graze {
 
-// Bit i belongs to pair i of the word. Each pair has a bit in at most one of the words.
+// Bit i belongs to pair i of the word. For each pair, at most one of these words has the bit set.
 template <class Word>
 struct JudgedBits {
   Word false_positive, false_negative;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair: two triangles, 18 coordinates of one type, float32 (72 bytes) or double (144 bytes). Its stored bits are the
+// A pair: two triangles with 18 coordinates, all float32 (72 bytes) or all double (144 bytes). The stored bits are the
 // input; nothing rounds them again.
 #pragma once
 
@@ -23,11 +23,11 @@ static_assert(sizeof(Pair) == 72 && sizeof(DoublePair) == 144);
 
 inline constexpr int kCoordinates = 18;
 
-// The unsigned integer type that is as wide as the number type.
+// The unsigned integer type with the width of Real.
 template <class Real>
 using BitsOf = std::conditional_t<sizeof(Real) == sizeof(float), std::uint32_t, std::uint64_t>;
 
-// The coordinate types of the pairs that a reader takes or a source draws.
+// The coordinate types that a reader accepts or a source draws.
 enum class PairTypes { f32, f64, both };
 
 // The 18 coordinates of a pair as one array: ax0 ay0 az0 ax1 … bz2.
@@ -44,15 +44,15 @@ template <class Real>
 bool is_finite(const BasicPair<Real>& pair) {
   using Bits = BitsOf<Real>;
   constexpr Bits kExponent = std::is_same_v<Real, float> ? Bits{0x7f800000u} : static_cast<Bits>(0x7ff0000000000000u);
-  unsigned others = 0;  // no branch for each coordinate, so that this becomes vector instructions
+  unsigned others = 0;  // no branch per coordinate, so compilers can vectorise this
   for (int i = 0; i < kCoordinates; ++i)
     others |= unsigned{(std::bit_cast<Bits>(coordinates(pair)[i]) & kExponent) == kExponent};
   return others == 0;
 }
 
-// The pair as a program with float32 coordinates stores it: each coordinate is rounded to nearest, or to infinity
-// beyond the largest float32. Never inlined: if GCC 12 sees a pair become floats and then doubles again in one
-// function, its vectorizer (-O3) leaves the last two numbers unrounded.
+// The pair with float32 coordinates: each is rounded to nearest, or to infinity beyond the largest float32. Never
+// inlined: if one function converts a pair to floats and back to doubles, GCC 12's vectorizer (-O3) leaves the last two
+// numbers unrounded.
 [[gnu::noinline]] inline Pair stored_in_float32(const DoublePair& pair) {
   Pair result;
   for (int i = 0; i < kCoordinates; ++i) coordinates(result)[i] = static_cast<float>(coordinates(pair)[i]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads files without ever waiting, neither for the writer of a pipe nor for a file without data yet, such as
-// /proc/kmsg. By the time a file is opened, its name may refer to anything.
+// Reads files without blocking: not for a pipe's writer, nor for a file that has no data yet, such as /proc/kmsg.
+// Callers cannot rule these out, because a name may refer to another file by the time it is opened.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace graze {
 
-// The file's bytes; or nothing, with the reason in `why`, if it cannot be read, is not a regular file, or has more than
-// `most` bytes.   Throws: Stopped, when a stop is requested.
+// The file's bytes. Returns nothing, with the reason in `why`, if the file cannot be read, is not a regular file, or
+// has more than `most` bytes.   Throws: Stopped, when a stop is requested.
 std::optional<std::string> plain_file(const std::filesystem::path& file, std::string& why,
                                       std::size_t most = std::size_t{1} << 30);
 

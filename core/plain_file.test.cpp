@@ -40,7 +40,7 @@ TEST_F(PlainFile, HasItsBytes) {
   EXPECT_EQ(beginning_of(folder_, 18), "");
 }
 
-// plain_file waits for none of these files.
+// plain_file must not block on any of these files.
 TEST_F(PlainFile, SaysWhyItCannotBeRead) {
   EXPECT_EQ(why_not(folder_ / "missing"), "No such file or directory");
   EXPECT_EQ(why_not(folder_), "Is a directory");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The request to stop, by Ctrl-C or SIGTERM. Code that may wait a long time checks it at least ten times a second.
+// The request to stop, by Ctrl-C or SIGTERM. Code that may wait a long time checks for it ten times a second or more.
 #pragma once
 
 #include <atomic>
@@ -10,13 +10,13 @@ namespace graze {
 inline std::atomic<bool> stop_requested{false};
 
 // Thrown by code that cannot finish soon after a request to stop. The verb then ends as if the request had come between
-// two steps. It is not a std::exception, so no handler of an expected failure catches it.
+// two steps. Not a std::exception, so handlers of expected failures do not catch it.
 struct Stopped {};
 
 extern "C" inline void request_stop(int) { stop_requested = true; }
 
-// During its lifetime, Ctrl-C and SIGTERM only set the flag and do not end the process. It is for verbs that wait and
-// do not handle the signals themselves. An ignored signal remains ignored.
+// While an object of this class exists, Ctrl-C and SIGTERM only set the flag and do not end the process. For verbs that
+// wait and do not handle the signals themselves. An ignored signal remains ignored.
 class StopSignals {
  public:
   StopSignals() {

@@ -56,14 +56,14 @@ std::optional<Real> parse_real(std::string_view text) {
                                             hex ? std::chars_format::hex : std::chars_format::general);
   if (end != text.data() + text.size() || error == std::errc::invalid_argument) return std::nullopt;
   if (error == std::errc::result_out_of_range) {
-    // from_chars does not tell underflow from overflow, but strtof and strtod do: they round, or return infinity.
+    // from_chars does not distinguish underflow from overflow; strtof and strtod do: they round, or return infinity.
     magnitude = rounded_by_library(magnitude_text, Real());
     if (std::isinf(magnitude)) return std::nullopt;
   }
   return negative ? -magnitude : magnitude;
 }
 
-// A number without its sign: 0.DIGITS * 10^exponent, or 0.DIGITS * 16^exponent with any binary exponent left out.
+// A number without its sign: 0.DIGITS * 10^exponent, or 0.DIGITS * 16^exponent (without any binary exponent).
 struct Digits {
   std::string digits;  // neither begins nor ends with a zero
   long exponent = 0;
@@ -119,7 +119,7 @@ std::optional<std::uint64_t> parse_whole(std::string_view text) {
 std::string rounded_up(double value, int digits) {
   const double nearest = std::strtod(general(value, digits).c_str(), nullptr);
   if (nearest >= value) return general(nearest, digits);
-  // Takes the next decimal, which is one more in the last digit.
+  // Takes the next decimal: adds 1 to the last digit.
   char text[32];
   std::snprintf(text, sizeof text, "%.*e", digits - 1, value);
   const int last = std::atoi(std::strchr(text, 'e') + 1) - (digits - 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers from text: decimals round once, ties to even, and text that is not entirely a number is rejected.
+// Tests that decimals are rounded once, ties to even, and that text that is not entirely a number is rejected.
 #include "core/text.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(ParseFloat32, RoundsDecimalsOnce) {
   EXPECT_EQ(parse_float32("0.1"), 0x1.99999ap-4f);
   EXPECT_EQ(parse_float32("+1"), 1.0f);
   EXPECT_EQ(parse_float32(".5e1"), 5.0f);
-  // Ties: 2^24 + 1 and 2^24 + 3 lie halfway, and go to the even neighbour.
+  // Ties: 2^24 + 1 and 2^24 + 3 are halfway between floats, and are rounded to the even one.
   EXPECT_EQ(parse_float32("16777217"), 16777216.0f);
   EXPECT_EQ(parse_float32("16777219"), 16777220.0f);
   // Just beyond a tie, by less than a double can represent: two roundings would give 2^24.

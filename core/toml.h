@@ -9,16 +9,16 @@
 
 #include "core/text.h"
 
-// toml++ returns parse errors as values here, and needs no linking.
+// With these settings, toml++ returns parse errors as values and is header-only.
 #define TOML_HEADER_ONLY 1
 #define TOML_EXCEPTIONS 0
 #define TOML_ENABLE_WINDOWS_COMPAT 0
-#define TOML_ASSERT(expr) static_cast<void>(0)  // "[[[" violates an assertion of toml++, which then rejects the text
+#define TOML_ASSERT(expr) static_cast<void>(0)  // "[[[" fails an assertion in toml++, which then rejects the text
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wshadow"
-// toml++ 3.3 declares a place unreachable, but characters such as U+00E9 outside quotes do reach it, because they are
-// neither spaces nor letters.
+// toml++ 3.3 marks a branch as unreachable. Characters such as U+00E9 outside quotes reach it, because they are neither
+// spaces nor letters.
 #include <toml++/impl/preprocessor.h>
 #pragma push_macro("TOML_UNREACHABLE")
 #undef TOML_UNREACHABLE
@@ -30,7 +30,7 @@
 
 namespace graze {
 
-// A value as an error message shows it.
+// The value's text in an error message.
 inline std::string found_text(const toml::node& node) {
   if (const auto text = node.value_exact<std::string>()) return shown(*text);
   if (const auto number = node.value_exact<std::int64_t>()) return std::to_string(*number);

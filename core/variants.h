@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The variants in C++, from the table core/variants.inc.
+// The variants as C++ types, from the table core/variants.inc.
 #pragma once
 
 #include <cstdint>
@@ -50,8 +50,8 @@ constexpr std::optional<Variant> variant_of_name(std::string_view id) {
   return std::nullopt;
 }
 
-// The variant on the same kind of processor in which every operation rounds as written; for a toolchain's program, the
-// host's variant.
+// The variant for the same kind of processor that rounds every operation as written. For a toolchain's program, it is
+// the host's variant.
 constexpr Variant rounded_variant(Variant variant) {
   const RunsOn where = info_of(variant).runs_on == RunsOn::device ? RunsOn::device : RunsOn::host;
   for (const VariantInfo& row : kVariants) {

@@ -11,9 +11,9 @@
 #define GRAZE_IN_PLACE [[gnu::always_inline]]
 #endif
 
-// The namespace of everything that computes in floating point. A template compiled under two sets of
-// floating-point flags is one symbol to the linker, which keeps whichever comes first: lanes built with and
-// without contraction would silently become the same code. So each variant names itself on the command line.
+// The namespace of all code that computes in floating point. A template compiled under two sets of floating-point flags
+// is one symbol to the linker, which keeps whichever comes first: lanes built with and without contraction would
+// silently become the same code. So each variant sets GRAZE_FP on the command line.
 #ifndef GRAZE_FP
 #define GRAZE_FP strict
 #endif
@@ -58,7 +58,7 @@ GRAZE_HD Real magnitude(const Real& x) {
   return x < Real(0) ? -x : x;
 }
 
-// Index of the component of v that is largest in magnitude; the earliest of equals.
+// Index of the component of v that is largest in magnitude; the first one if several are equal.
 template <class Real>
 GRAZE_HD int dominant_axis(const Vec3<Real>& v) {
   const Real x = magnitude(v.x), y = magnitude(v.y), z = magnitude(v.z);

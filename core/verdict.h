@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names of verdicts and contacts in every output, and which verdicts are failures of foreign code.
+// Names of verdicts and contacts for all output, and which verdicts mean that foreign code failed.
 #pragma once
 
 #include <cstdint>

@@ -5,8 +5,7 @@
 
 namespace graze {
 
-// The limit of pair counts, seeds and indices: 2^53, up to which every JSON reader represents all whole numbers
-// exactly.
+// The limit of pair counts, seeds and indices: 2^53. Every JSON reader represents all whole numbers up to it exactly.
 inline constexpr std::uint64_t kMostWhole = std::uint64_t{1} << 53;
 
 }  // namespace graze

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Replaces the device code in builds without nvcc. These builds have no device, and run CUDA lanes on their twins.
+// Replaces the device code in builds without nvcc. These builds use no device; they run CUDA lanes on their twins.
 #include "cuda/lanes/device.h"
 
 #include <stdexcept>
@@ -68,7 +68,7 @@ DeviceSpeeds measure_speeds(int, std::size_t) {
 }
 
 KernelNeeds needs_of_exact_query(int) {
-  throw DeviceFailure("cannot ask a device for its kernels: built without CUDA", false);
+  throw DeviceFailure("cannot read a kernel's resources from a device: built without CUDA", false);
 }
 
 }  // namespace graze::cuda

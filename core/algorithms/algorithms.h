@@ -29,7 +29,7 @@ GRAZE_HD Verdict decide_widened(const Pair& pair, const Decide& decide) {
   return decide(a, b);
 }
 
-// The decision of one algorithm in one scalar type.
+// One algorithm's decision in one scalar type.
 template <class Algorithm, class Real>
 GRAZE_HD Verdict decide_widened(const Pair& pair) {
   return decide_widened<Real>(pair, [](const auto& a, const auto& b) { return Algorithm::decide(a, b); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // P. Guigue and O. Devillers, Fast and Robust Triangle-Triangle Overlap Test Using Orientation Predicates,
-// Journal of Graphics Tools 8(1), 2003. In the paper's symbols p1 q1 r1 are a, p2 q2 r2 are b.
+// Journal of Graphics Tools 8(1), 2003. The paper's p1 q1 r1 are a, and its p2 q2 r2 are b.
 #pragma once
 
 #include "core/algorithms/algorithm.h"
@@ -13,7 +13,7 @@ namespace guigue_devillers_2003 {
 // The vertex order that puts the lone vertex first: alone on its side of the other triangle's plane, or alone in that
 // plane. flip: whether to turn the other triangle over, so that the first vertex has the largest signed distance.
 struct Canonical {
-  int first;  // 0, 1, 2; -1 when all three vertices lie in the plane
+  int first;  // 0, 1 or 2; -1 if all three vertices lie in the plane
   bool flip;
 };
 
@@ -120,7 +120,7 @@ struct GuigueDevillers2003 {
     for (int i = 0; i < 3; ++i) db[i] = policy.snap(At(Site::plane_distance, i), dot(b[i] - a[2], n1));
     if (db[0] * db[1] > zero && db[0] * db[2] > zero) return Verdict::disjoint;
 
-    // Turning b over exchanges its last two vertices and therefore their distances. The same holds for a.
+    // Turning b over swaps its last two vertices and therefore their distances. The same holds for a.
     const Canonical ca = canonical(da);
     choose(policy, 0, 2 * ca.first + 2 + ca.flip);
     if (ca.first < 0) return verdict_of(coplanar_intersect(n1, a, b, policy));
@@ -141,8 +141,8 @@ struct GuigueDevillers2003 {
     return verdict_of(!(policy.snap(At(Site::orientation, 7), dot(r2 - p1, cross(p2 - p1, r1 - p1))) > zero));
   }
 
-  // The coplanar determinants are numbered in the order of the functions above: the turns of both triangles, the place
-  // of a's first vertex, then the determinants of the edge region and of the vertex region.
+  // Coplanar determinants are numbered in the order of the functions above: the orientations of both triangles, the
+  // place of a's first vertex, then the edge region and the vertex region.
   template <class Questions>
   static void list(Questions& questions) {
     questions.plane_distances();

@@ -36,7 +36,7 @@ GRAZE_HD Line<Real> common_line(const Plane<Real>& p, const Plane<Real>& q, cons
 }
 
 // The vertex that the interval formula needs last. It is the vertex that is alone on its side, or a vertex on the line.
-// Exception: if the other two are on opposite sides, the vertex on the line must not be last.
+// But if the other two are on opposite sides, the vertex on the line must not be last.
 // Reference: Maffina 2012, section 3.2.3 and figure 3.5.
 template <class Real>
 GRAZE_HD int vertex_to_put_last(const Real (&distance)[3]) {

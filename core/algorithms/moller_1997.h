@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // T. Moller, A Fast Triangle-Triangle Intersection Test, Journal of Graphics Tools 2(2), 1997: the division-free
-// variant. In the paper's symbols V is a, U is b; du are b's distances to a's plane, dv are a's distances to b's.
+// variant. The paper's V is a, its U is b; du are b's distances to a's plane, dv are a's distances to b's.
 #pragma once
 
 #include "core/algorithms/algorithm.h"
@@ -10,7 +10,7 @@ namespace graze {
 inline namespace GRAZE_FP {
 namespace moller_1997 {
 
-// Whether segments pq and rs share a point. Parallel segments never do; edges that cross them are found instead.
+// Whether segments pq and rs share a point. Parallel segments never do; other edges show that intersection.
 template <class Real, class Policy>
 GRAZE_HD bool segments_cross(Vec2<Real> p, Vec2<Real> q, Vec2<Real> r, Vec2<Real> s, const Policy& policy,
                              int question) {
@@ -61,7 +61,7 @@ GRAZE_HD bool coplanar_intersect(const Vec3<Real>& normal, const Vec3<Real> (&a)
   return strictly_inside(u[0], v, policy, 35) || strictly_inside(v[0], u, policy, 38);
 }
 
-// A triangle's section of the common line, scaled: it ends at `at + p / x0` and at `at + q / x1`.
+// The part of the common line in a triangle, scaled: it ends at `at + p / x0` and `at + q / x1`.
 template <class Real>
 struct Section {
   Real at, p, q, x0, x1;
@@ -75,7 +75,7 @@ GRAZE_HD Section<Real> section_from(const Real (&t)[3], const Real (&d)[3], int 
   return {t[alone], (t[i] - t[alone]) * d[alone], (t[j] - t[alone]) * d[alone], d[alone] - d[i], d[alone] - d[j]};
 }
 
-// Index of the vertex alone on its side of the other plane; -1 when all three lie in it.
+// Index of the vertex that is alone on its side of the other plane; -1 if all three lie in that plane.
 template <class Real>
 GRAZE_HD int alone_vertex(const Real (&d)[3]) {
   const Real zero(0);
@@ -119,7 +119,7 @@ struct Moller1997 {
     choose(policy, 2, alone_b + 1);
     if (alone_a < 0 || alone_b < 0) return verdict_of(coplanar_intersect(n1, a, b, policy));
 
-    // Scales both sections by the product of all four x0 and x1, which avoids division.
+    // Scales both sections by the product of all four x0 and x1 to avoid divisions.
     const Section<Real> s = section_from(ta, dv, alone_a), t = section_from(tb, du, alone_b);
     const Real xx = s.x0 * s.x1, yy = t.x0 * t.x1, xxyy = xx * yy;
     const Real s_at = s.at * xxyy, t_at = t.at * xxyy;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plane of a triangle, and the sides on which points lie.
+// A triangle's plane, and on which side of it points lie.
 #pragma once
 
 #include <cmath>
@@ -37,7 +37,7 @@ GRAZE_HD bool strictly_one_side(const Real (&distance)[3]) {
          (distance[0] < zero && distance[1] < zero && distance[2] < zero);
 }
 
-// Signed distances of the vertices v to the plane, times |normal|, each snapped by the policy. Asks three questions.
+// The vertices' signed distances to the plane, times |normal|, each snapped by the policy. Asks three questions.
 template <class Real, class Policy>
 GRAZE_HD void plane_distances(const Plane<Real>& plane, const Vec3<Real> (&v)[3], const Policy& policy, int question,
                               Real (&distance)[3]) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Projects two triangles onto a plane and tests separating axes in 2D. Both algorithms of the thesis use it.
+// Projects two triangles onto a plane and tests separating axes in 2D. The thesis's two algorithms use it.
 #pragma once
 
 #include "core/algorithms/plane.h"
@@ -9,7 +9,7 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// Projects both triangles onto the plane and separates them along the six in-plane edge normals. Asks 12 questions.
+// Projects both triangles onto the plane and tests the six in-plane edge normals. Asks 12 questions.
 // Reference: Maffina 2012, sections 3.1.2 and 3.1.3 (the listing is lost; the text describes it).
 template <class Real, class Policy>
 GRAZE_HD bool projections_intersect(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Plane<Real>& plane,

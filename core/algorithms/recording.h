@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A policy that compares exactly. It stores every value that it compares, and every choice.
+// A policy that compares exactly, and records every value that it compares and every choice.
 #pragma once
 
 #include <cstdint>
@@ -61,7 +61,7 @@ struct Recording {
   }
 };
 
-// Runs the algorithm on the triangles and keeps its values.
+// Runs the algorithm on the triangles and records its values.
 template <class Algorithm, class Real>
 GRAZE_HD RecordedPath record(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Recorded<Real>& to) {
   RecordedPath path;

@@ -55,7 +55,7 @@ struct SeparatingAxes {
     }
   }
 
-  // A verdict of disjoint depends only on the comparisons along the axis that separates.
+  // The verdict `disjoint` depends only on the comparisons along the axis that separates.
   static constexpr bool kDisjointByOneAxis = true;
 };
 

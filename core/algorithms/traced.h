@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Numbers and a policy that record an algorithm's comparisons and the values that it passes to the policy, each with
-// its source line. They can also force the outcomes of comparisons and so lead the algorithm down a given path.
+// its source line. They can also force the outcomes of comparisons, so that the algorithm takes a given path.
 #pragma once
 
 #include <cmath>
@@ -39,12 +39,12 @@ constexpr bool holds(Comparison comparison, std::partial_ordering order) {
 template <class Number>
 struct Seen {
   std::source_location where;
-  std::optional<Site> site;  // where the policy was asked; none if the algorithm itself compares
+  std::optional<Site> site;  // the site passed to the policy; none if the algorithm itself compares
   bool compared;
   Comparison comparison;
   Number left, right;
-  int left_result, right_result;  // indices of the run's results, from 0; -1: a coordinate or a constant
-  bool held;                      // the outcome that the values give
+  int left_result, right_result;  // indices of the run's results, from 0; -1 for a coordinate or a constant
+  bool held;                      // the outcome according to the values
   bool taken;                     // the outcome that the algorithm got: `held`, unless a path forced it
 };
 
@@ -66,7 +66,7 @@ Path path_of(const Trace<Number>& run) {
   return path;
 }
 
-// A run in progress. Floats are stored as doubles, so that runs of all lanes have one type.
+// A run in progress. Floats are stored as doubles, so the runs of all lanes have the same type.
 template <class Number>
 struct Recorder {
   using Kept = std::conditional_t<std::is_same_v<Number, float>, double, Number>;
@@ -104,8 +104,8 @@ struct Recorder {
 };
 
 // `none`: every operation rounds. Otherwise a sum or difference fuses a product with the addition. If both terms are
-// products, `left` fuses the left one, as g++ does if it contracts at all. `nvcc` fuses the one with fewer uses, on a
-// tie the left one, like cuda/twin/generator/contraction.cpp. It fuses neither if both scale by a quotient: nvcc moves
+// products, `left` fuses the left one, as g++ does if it contracts at all. `nvcc` fuses the one with fewer uses, or the
+// left one on a tie, like cuda/twin/generator/contraction.cpp. It fuses neither if both scale by a quotient: nvcc moves
 // that addition to another block (only in interval_overlap's common_line). The rules can fail: compare with the lane.
 enum class Contraction { none, left, nvcc };
 
@@ -125,7 +125,7 @@ struct Traced {
   requires(std::is_arithmetic_v<Other> && !std::is_same_v<Other, Number>) explicit Traced(Other v)
       : value(static_cast<Number>(v)), quotient(std::is_integral_v<Other>) {}
 
-  // An operand of a comparison, and its place in the source.
+  // A comparison's operand, and its place in the source.
   struct Operand {
     const Traced& number;
     std::source_location where;
@@ -203,7 +203,7 @@ struct Traced {
   }
 };
 
-// A policy that records and compares exactly, like ExactZero.
+// A policy that compares exactly, like ExactZero, and records.
 struct TracingPolicy {
   template <class Number, Contraction contraction>
   Traced<Number, contraction> snap(Site site, const Traced<Number, contraction>& n,
@@ -225,7 +225,7 @@ struct TracingPolicy {
   }
 };
 
-// Runs the algorithm (an index into Algorithms) on the pair, rounded to these numbers, and forces it along the path.
+// Runs the algorithm (an index into Algorithms) on the pair, rounded to these numbers, and forces it to take the path.
 template <class Number, Contraction contraction = Contraction::none, class Coordinate>
 Trace<typename Recorder<Number>::Kept> run_traced(int algorithm, const BasicPair<Coordinate>& pair,
                                                   const Path& lead = {}) {
@@ -247,7 +247,7 @@ Trace<typename Recorder<Number>::Kept> run_traced(int algorithm, const BasicPair
   };
   Recorder<Number> recorder;
   run(recorder, std::make_index_sequence<kAlgorithmCount>());
-  if constexpr (contraction != Contraction::none) {  // how often a product is used is known only after a whole run
+  if constexpr (contraction != Contraction::none) {  // only a whole run shows how often each product is used
     Recorder<Number> again;
     again.known_uses = std::move(recorder.uses);
     run(again, std::make_index_sequence<kAlgorithmCount>());

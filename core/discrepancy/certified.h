@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of twice a double's precision with a certified bound on their error, on host and device alike. The rounding
-// error of a sum is computed, not estimated, so the bound of an exact result is zero.
+// Numbers with twice a double's precision and a certified error bound, on host and device alike. A sum's rounding error
+// is computed, not estimated, so an exact result has a bound of zero.
 // References: T. J. Dekker, A floating-point technique for extending the available precision, Numerische Mathematik 18
 // (1971): errors of sums and products.
 // Requires: compiled without contraction, so that host and device give the same bits.
@@ -14,7 +14,7 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// The true value lies in [hi + lo - bound, hi + lo + bound]. If the bound is infinite or NaN, nothing is known.
+// The true value lies in [hi + lo - bound, hi + lo + bound]. An infinite or NaN bound says nothing about the value.
 struct Certified {
   double hi = 0, lo = 0, bound = 0;
 

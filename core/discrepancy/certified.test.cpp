@@ -40,7 +40,7 @@ class RandomNumbers {
   std::mt19937_64 random_{2012};
 };
 
-// Computes a random tree of operations, whose leaves are doubles, in both kinds of numbers.
+// Evaluates a random expression tree, whose leaves are doubles, in both kinds of numbers.
 Both tree(RandomNumbers& random, int depth, int exponents) {
   if (depth == 0) {
     const double x = random(exponents);

@@ -12,8 +12,8 @@
 
 namespace graze {
 
-// The counts of a value. A value is compared if both lanes recorded it and if it means the same for both lanes.
-// Distances and normals always do. Other values do if both lanes made the same choices.
+// The counts of a value. A value is compared if both lanes recorded it and it has the same meaning in both. Distances
+// and normals always have the same meaning; other values do if both lanes made the same choices.
 namespace value_counts {
 inline constexpr int kOctaves = 64, kErrors = 40;
 enum : int {
@@ -33,7 +33,7 @@ enum : int {
 };
 
 // Buckets of a value's error, in ulps of the exact value (an ulp is at least the least subnormal number). 0: no error.
-// 1: up to half an ulp. 2 + k: above 2^(k-1) and up to 2^k ulps; the last k has no upper end. Two more buckets follow.
+// 1: up to half an ulp. 2 + k: above 2^(k-1) and up to 2^k ulps; the last k has no limit. Two more buckets follow.
 inline constexpr int kErrorNotFinite = kErrors - 2, kErrorUnknown = kErrors - 1;
 }  // namespace value_counts
 
@@ -48,14 +48,14 @@ enum : int {
   outcome,  // the comparison's result differs; for a question about one value, the sign differs
   verdict,  // the verdicts differ, and this is the first question with a different outcome
   band,     // kBands: the sign differs, and the larger of both magnitudes is between 2^(k + kLowestBand) and twice that
-            // many error bounds; the first band has no lower end. No magnitude exceeds two bounds, because the values
+            // many error bounds; the first band has no lower limit. No magnitude exceeds two bounds, because the values
             // have different signs and each is within one bound of the exact value
   band_unknown = band + kBands,  // the error bound is infinite or NaN
   kFields
 };
 }  // namespace question_counts
 
-// Counts of pairs by the site of a question. The last site stands for comparisons without an epsilon.
+// Counts of pairs by the site of a question. The last index is for comparisons without an epsilon.
 namespace site_counts {
 enum : int { asked, differs, sign, kFields };
 }
@@ -72,8 +72,8 @@ enum : int {
 };
 }
 
-// The layout of an algorithm's counts: pairs, pairs by site, pairs by their place on the stratum's axis, and the counts
-// of each question.
+// The layout of an algorithm's counts: pairs, pairs by site, pairs by place on the stratum's axis, and counts by
+// question.
 inline constexpr int kPlacesAt = pair_counts::kFields + (kSiteCount + 1) * site_counts::kFields;
 inline constexpr int kValuesAt = kPlacesAt + kBucketCount * pair_counts::kFields;
 GRAZE_HD constexpr int site_at(int site) { return pair_counts::kFields + site * site_counts::kFields; }
@@ -87,14 +87,14 @@ GRAZE_HD constexpr int value_at(int question, int which) {
 GRAZE_HD constexpr int counts_of(int questions) { return question_at(questions); }
 
 // The largest magnitude at which a question's sign differs: in multiples of the error bound, and as a length in
-// coordinate units. It is stored as the bits of a nonnegative double, because these bits are ordered like integers.
+// coordinate units. It is stored as the bits of a nonnegative double, which are ordered like integers.
 namespace band_maxima {
 enum : int { in_bounds, length, kFields };
 }
 
 inline namespace GRAZE_FP {
 
-// Maps a number's bits to an integer that keeps the order of values. Neighbours differ by 1, and both zeros give 0.
+// Maps a number's bits to an integer, in the order of the values. Neighbours differ by 1, and both zeros give 0.
 GRAZE_HD inline std::int64_t ordered_bits(float x) {
   std::int32_t bits;
   memcpy(&bits, &x, sizeof bits);
@@ -139,7 +139,7 @@ GRAZE_HD inline int log2_of(const DoubleDouble& x) {
   return (lo < 0 && hi == scalbn(1.0, k) ? k - 1 : k) - (is_subnormal ? 54 : 0);
 }
 
-// log2 of the ulp of numbers of this size.
+// log2 of the ulp at this size.
 template <class Real>
 GRAZE_HD int log2_ulp_of(const DoubleDouble& size) {
   constexpr int kDigits = sizeof(Real) == sizeof(float) ? 24 : 53,
@@ -168,7 +168,7 @@ GRAZE_HD SizeRange error_range(Real value, const Certified& exact) {
   return size_range(Certified(static_cast<double>(value)) - exact);
 }
 
-// The bucket of an error of this size, where an ulp is 2^ulp.
+// The bucket of an error of this size. One ulp is 2^ulp.
 GRAZE_HD inline int error_bucket(const DoubleDouble& size, int ulp) {
   if (!(size.hi > 0)) return 0;
   const int k = log2_of(size), up = k - ulp + (size.hi != scalbn(1.0, k) || size.lo != 0);  // ceil(log2)
@@ -176,7 +176,7 @@ GRAZE_HD inline int error_bucket(const DoubleDouble& size, int ulp) {
   return bucket < value_counts::kErrorNotFinite ? bucket : value_counts::kErrorNotFinite - 1;
 }
 
-// The bucket of the error, if its whole range lies within one bucket for every ulp that the exact value may have.
+// The bucket of the error, if its whole range is in one bucket for every ulp that the exact value may have.
 template <class Real>
 GRAZE_HD int error_bucket(Real value, const Certified& exact) {
   using namespace value_counts;
@@ -196,7 +196,7 @@ GRAZE_HD std::uint64_t apart(Real x, Real y) {
                         : static_cast<std::uint64_t>(second) - static_cast<std::uint64_t>(first);
 }
 
-// Whether the runs made any choice differently. A run that ended earlier made fewer choices.
+// Whether the runs made different choices. A run that ended earlier made fewer choices.
 GRAZE_HD inline bool chose_otherwise(std::uint64_t first, std::uint64_t second) {
   for (int c = 0; c < kMostChoices; ++c) {
     const std::uint64_t x = first >> 4 * c & 15, y = second >> 4 * c & 15;
@@ -205,14 +205,14 @@ GRAZE_HD inline bool chose_otherwise(std::uint64_t first, std::uint64_t second) 
   return false;
 }
 
-// Whether both runs were asked the question about the same quantities. Distances and normals do not depend on choices.
+// Whether both runs asked this question about the same quantities. Distances and normals do not depend on choices.
 GRAZE_HD inline bool have_both(const RecordedPath& first, const RecordedPath& second, int question, int site) {
   if (((first.asked & second.asked) >> question & 1) == 0) return false;
   return site == static_cast<int>(Site::plane_distance) || site == static_cast<int>(Site::parallel) ||
          !chose_otherwise(first.path, second.path);
 }
 
-// The data of a lane's run that are needed to count one pair.
+// The parts of a lane's run that the counts of one pair need.
 template <class Real>
 struct Run {
   Recorded<const Real> values;
@@ -255,7 +255,7 @@ class PairComparison {
              size, left.rounding + right.rounding);
   }
 
-  // Counts the pair: among all pairs if `at` is 0, otherwise among the pairs at place `at`. Call it after all
+  // Counts the pair among all pairs if `at` is 0, otherwise among the pairs at place `at`. Call this after all
   // questions.
   GRAZE_HD void count_pair(int at) {
     using namespace pair_counts;
@@ -375,7 +375,7 @@ class PairComparison {
   std::uint32_t sites_ = 0;  // bit site * kFields + field
 };
 
-// A hash of everything that a run recorded. All NaNs count as one value, because processors differ in their payloads.
+// A hash of everything that a run recorded. All NaNs count as one value, because their payloads differ by processor.
 template <class Real>
 GRAZE_HD std::uint64_t run_hash(const Real* values, std::uint64_t stride, const RecordedPath& path,
                                 std::uint64_t two_values) {
@@ -394,7 +394,7 @@ GRAZE_HD std::uint64_t run_hash(const Real* values, std::uint64_t stride, const 
   return hash;
 }
 
-// The pair's extent along the axis on which it is largest.
+// The largest of the pair's extents along the axes.
 template <class Real>
 GRAZE_HD double extent_of(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3]) {
   double largest = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs an algorithm on certified numbers along the path of a lane's recorded run: every comparison and every choice has
-// the lane's result. Each value is therefore what the lane would have computed without rounding. Each value also
-// carries a bound on the error that rounding can cause in it.
+// the lane's result. Each value is therefore the one that the lane would have computed without rounding. It also
+// carries a bound on the error that rounding can cause.
 // Reference: N. J. Higham, Accuracy and Stability of Numerical Algorithms, second edition (2002), section 3.3: running
 // error analysis, extended here by second-order terms, underflow and overflow.
 #pragma once
@@ -12,15 +12,15 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// The data of a whole run. If the order of some numbers is uncertain, `doubt` bounds the error of their minimum or
-// maximum. `doubt` is added to the bound of every later value.
+// Data of a whole run. If the order of some numbers is uncertain, `doubt` bounds the error of their minimum or maximum,
+// and is added to the bound of every later value.
 struct LedRun {
   double doubt = 0;
 };
 
 // A value without rounding, and a bound on its distance from the computed value. The bound assumes that each operation
 // rounds to nearest, and holds whichever products are fused. `rounding` is infinite if the computed value may overflow
-// or has no bound, or if the exact value is not settled.
+// or has no bound, or if the exact value is not known.
 struct Unrounded {
   Certified exact;
   double rounding = 0;
@@ -70,7 +70,7 @@ struct Led {
     result.lane = -x.lane;
     return result;
   }
-  // If the lane compares two values, as in d0 * d1 > 0, their product is the lane's: no contraction changes it.
+  // If the lane compared both factors, as in d0 * d1 > 0, it also knows their product: contraction cannot change it.
   GRAZE_HD GRAZE_CALLED friend Led operator*(const Led& l, const Led& r) {
     const double moved = size_of(l.exact) * r.rounding + size_of(r.exact) * l.rounding + l.rounding * r.rounding;
     Led result(l.exact * r.exact, l, r, moved, l.is_zero() || r.is_zero() ? 0 : kLost);
@@ -107,8 +107,8 @@ struct Led {
   GRAZE_HD bool is_zero() const { return exact.is_exactly_zero() && rounding == 0; }
 
   // Values that the lane did not record, such as the least of several distances, are compared exactly. If their order
-  // is in doubt, the wrong choice is off by at most their distance. The lane may have chosen the other value, so both
-  // get the larger rounding: a least or greatest value has at most the largest rounding of all.
+  // is in doubt, the wrong choice is off by at most the distance between them. The lane may have chosen the other
+  // value, so both get the larger rounding, which also bounds that of a minimum or maximum.
   template <class Comparison>
   GRAZE_HD GRAZE_CALLED static bool compare(const Led& l, const Led& r, const Comparison& comparison) {
     if (l.was_seen && r.was_seen) return comparison(l.lane, r.lane);

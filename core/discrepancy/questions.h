@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The questions that each algorithm asks its policy. They have numbers and stable names. Each algorithm lists its
-// questions in the order of their numbers, in `list` at the end of its struct.
+// The questions that each algorithm asks its policy, with numbers and stable names. Each algorithm's `list`, at the end
+// of its struct, lists them in the order of their numbers.
 #pragma once
 
 #include <cstdint>

@@ -8,7 +8,7 @@
 
 namespace graze::exact::detail {
 
-// The findings of the axes examined so far.
+// Findings from the axes examined so far.
 struct AxisEvidence {
   bool separated = false;
   bool touching = false;            // the origin lies on a face of D that is not all of D
@@ -16,7 +16,7 @@ struct AxisEvidence {
   bool coplanar = true;             // the hull of all six points has no volume
   unsigned face_a = 7, face_b = 7;  // the vertices that may belong to the common set
 
-  // Examines an axis, given the projections of the vertices on it.
+  // Examines an axis, given the vertices' projections on it.
   template <class T>
   GRAZE_HD void look(const T (&a)[3], const T (&b)[3]) {
     const T least_a = least(a), most_a = most(a), least_b = least(b), most_b = most(b);
@@ -49,7 +49,7 @@ GRAZE_HD void look_along(const Triangles<Numbers>& t, const Vec<typename Numbers
   seen.look(a, b);
 }
 
-// Examines the axes perpendicular to each edge, in the projection on a coordinate plane.
+// Projects the triangles on a coordinate plane, and examines the axes perpendicular to each edge there.
 template <class Numbers>
 GRAZE_HD void look_in_plane(const Triangles<Numbers>& t, typename Numbers::D VecOf<Numbers>::*x,
                             typename Numbers::D VecOf<Numbers>::*y, AxisEvidence& seen) {

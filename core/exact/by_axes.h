@@ -40,7 +40,7 @@ GRAZE_HD void directions(const Vec<D> (&v)[3], unsigned mask, Vec<D>& first, Vec
 }
 
 // If a and b intersect, the origin lies inside one face F of D. F is the difference of a face A of a and a face B of b,
-// whose interiors meet. The common set is that of A and B and has dimension dim A + dim B - dim F.
+// whose interiors meet. The common set of a and b is that of A and B; its dimension is dim A + dim B - dim F.
 template <class Numbers>
 GRAZE_HD Relation by_axes(const Triangles<Numbers>& t) {
   const AxisEvidence seen = look<Numbers>(t);

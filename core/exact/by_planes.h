@@ -50,7 +50,7 @@ GRAZE_HD Finding by_line(const VecOf<Numbers> (&p)[3], const Sides& of_p, const 
   return left && right ? Finding::disjoint : Finding::intersects;
 }
 
-// Returns unsure for coplanar pairs in numbers that round, and for pairs without a plane.
+// Returns unsure if neither triangle has a plane, and for coplanar pairs if the numbers round.
 template <class Numbers>
 GRAZE_HD Finding by_planes(const Triangles<Numbers>& t, const Numbers& numbers = {}) {
   const NormalOf<Numbers> normal_a = normal<Numbers>(t.a);

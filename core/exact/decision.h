@@ -11,7 +11,7 @@
 
 namespace graze::exact::detail {
 
-// An axis along which triangles in a plane project without collapsing: it is not perpendicular to the plane's normal.
+// An axis not perpendicular to the normal of a plane: projected along it, triangles in the plane do not collapse.
 template <class M>
 GRAZE_HD unsigned axis_to_drop(const Vec<M>& n) {
   return !(n.z == M(0)) ? 2 : !(n.x == M(0)) ? 0 : 1;
@@ -33,8 +33,8 @@ GRAZE_HD Flat<D> flatten(const Vec<D>& v, unsigned axis) {
   return {component(v, axis == 2 ? 0 : axis + 1), component(v, axis == 0 ? 2 : axis - 1)};
 }
 
-// Whether some edge of p has all of q strictly on its outer side. `left` tells which way p turns. The edges of a
-// segment run both ways, so either value will do.
+// Whether some edge of p has all of q strictly on its outer side. `left` tells which way p turns. A segment's edges run
+// both ways, so either value works.
 template <class Numbers, class D>
 GRAZE_HD bool edge_parts(const Flat<D> (&p)[3], bool left, const Flat<D> (&q)[3]) {
   bool parts = false;
@@ -52,7 +52,7 @@ GRAZE_HD bool edge_parts(const Flat<D> (&p)[3], bool left, const Flat<D> (&q)[3]
 }
 
 // Requires: all vertices lie in a plane with normal n; two segments are not parallel. of_a and of_b are the normals of
-// a and b; for a segment they may be anything.
+// a and b; for a segment, they are arbitrary.
 template <class Numbers>
 GRAZE_HD bool meet_in_plane(const Triangles<Numbers>& t, const NormalOf<Numbers>& n, const NormalOf<Numbers>& of_a,
                             const NormalOf<Numbers>& of_b) {
@@ -91,7 +91,7 @@ GRAZE_HD bool segments_meet(const Triangles<Numbers>& t) {
   return true;
 }
 
-// Requires: the numbers hold the pair's grid, whose exponent is given.
+// Requires: the numbers hold the pair's grid, which has this exponent.
 template <class Numbers, class Real>
 GRAZE_HD bool decide(const Real* a, const Real* b, int exponent) {
   const Triangles<Numbers> t = triangles<Numbers>(a, b, exponent);
@@ -102,8 +102,8 @@ GRAZE_HD bool decide(const Real* a, const Real* b, int exponent) {
   return meet_in_plane(t, is_zero(n) ? m : n, n, m);
 }
 
-// The decision by planes for pairs that no machine number holds. Each determinant is first computed in `Near` numbers
-// with a bound of its own. If its sign remains unknown, mostly because it is zero, it is computed in exact numbers.
+// The decision by planes for pairs that do not fit in machine numbers. Each determinant is first computed in `Near`
+// numbers, with its own bound. If its sign remains unknown, usually because it is zero, exact numbers compute it.
 // Returns: unsure if all vertices of one triangle lie in the plane of the other.
 template <class Near, class Numbers, class Real>
 GRAZE_HD Finding by_planes_one_by_one(const Real* a, const Real* b, int exponent, Stage& stage) {
@@ -146,7 +146,7 @@ GRAZE_HD Finding by_planes_one_by_one(const Real* a, const Real* b, int exponent
   return Finding::intersects;
 }
 
-// Decides a pair about which the filter is unsure.
+// Decides a pair that the filter could not decide.
 template <class Real>
 GRAZE_HD bool decide_unsure(const Real* a, const Real* b, Stage& stage) {
   using Machine = typename KindsFor<Real>::Machine;
@@ -188,7 +188,7 @@ GRAZE_HD bool relate_quickly(const Real* a, const Real* b, Relation& r) {
   return relation_of(found, a, b, r);
 }
 
-// Like relate_quickly but without shared vertices. Each determinant has its own bound, so fewer pairs are in doubt.
+// Like relate_quickly, but without shared vertices. Each determinant has its own bound, so fewer pairs are in doubt.
 // Requires: floats, or doubles on a moderate grid.
 template <class Real>
 GRAZE_HD bool relate_by_bounds(const Real* a, const Real* b, Relation& r) {

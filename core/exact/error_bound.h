@@ -18,9 +18,9 @@ namespace graze::exact::detail {
 // Error bound relative to the sum of the products' magnitudes: (7 + 56 e) e < 8 e.
 inline constexpr double kDeterminantError = 8 * 0x1p-53;
 
-// The bounds of a pair of doubles hold up to this extent, where nothing overflows. If a product of two differences
-// underflows, it is off by at most 2^-1075. A determinant is then off by less than 6 * 2^-1075 * (2^300 + 1) < 2^-771
-// more, and a minor by less than 2^-1073. Underflow in the computation of the bounds costs less than that.
+// Bounds for pairs of doubles hold up to this extent, because nothing overflows there. If a product of two differences
+// underflows, it is off by at most 2^-1075. This adds less than 6 * 2^-1075 * (2^300 + 1) < 2^-771 to a determinant's
+// error, and less than 2^-1073 to a minor's. Underflow in the computation of the bounds adds less than that.
 inline constexpr double kMostExtent = 0x1p300, kDeterminantUnderflow = 0x1p-700, kMinorUnderflow = 0x1p-1000;
 
 // Whether nothing over- or underflows in determinants of coordinates on this grid: differences are zero or lie between
@@ -39,7 +39,7 @@ struct Bounded {
   GRAZE_HD friend Bounded operator-(const Bounded& l, const Bounded& r) { return {l.value - r.value, l.size + r.size}; }
 };
 
-// The extent of the pair along each axis, rounded once.
+// The pair's extent along each axis, rounded once.
 template <class Real>
 GRAZE_HD Vec<double> extent_of(const Real* a, const Real* b) {
   double extent[3];
@@ -57,7 +57,7 @@ GRAZE_HD Vec<double> extent_of(const Real* a, const Real* b) {
 }
 
 // Error bound for every determinant of the pair, whose coordinates are of type Real. A determinant is a sum of six
-// products of a difference in x, one in y and one in z. No difference is larger than the pair's extent in that axis.
+// products of a difference in x, one in y and one in z. No difference is larger than the pair's extent along that axis.
 // Returns: infinity where no bound holds.
 template <class Real>
 GRAZE_HD double determinant_error(const Vec<double>& extent) {
@@ -67,8 +67,8 @@ GRAZE_HD double determinant_error(const Vec<double>& extent) {
   return holds ? error + kDeterminantUnderflow : __builtin_inf();
 }
 
-// Whether both triangles are certainly proper: some component of each normal exceeds its error bound. Doubles whose
-// differences overflow may give infinities and NaN, which prove nothing.
+// Whether both triangles are certainly proper: some component of each normal exceeds its error bound. If differences of
+// doubles overflow, the results may be infinite or NaN, which proves nothing.
 template <class Real>
 GRAZE_HD bool both_proper(const Real* a, const Real* b) {
   const Vec<double> extent = extent_of(a, b);

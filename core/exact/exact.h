@@ -4,10 +4,10 @@
 // including subnormals and 1e308. It needs only the C++ standard library and a compiler with 128-bit integers (GCC,
 // Clang, nvcc).
 //
-// Method: two decisions, written as templates over a kind of numbers. The numbers are exact, or they report when they
-// are not.
+// Method: two decisions, written as templates over a kind of numbers. Numbers that are not always exact report when
+// they are not.
 //   by_planes.h  Guigue and Devillers 2003: the sides of the vertices, then two orientations, for pairs in general
-//                position. filter.h is the same in doubles with one error bound, written for speed.
+//                position. filter.h is a fast version in doubles with one error bound.
 //   by_axes.h    separating axes of the Minkowski difference (theorem: Gottschalk, Lin and Manocha 1996), for proper,
 //                coplanar and degenerate pairs alike.
 //   numbers.h    doubles with an error bound (Shewchuk 1997), doubles where nothing rounds, and integers of 128 bits

@@ -180,7 +180,7 @@ TEST(Exact, DecidesOnEveryGrid) {
   expect_decided_on_grid(2097, 0x1p-1074, 0x1p1022);
 }
 
-// The largest determinants of each kind of numbers for doubles, compared with those of a wider kind.
+// For each kind of numbers for doubles, compares the largest determinants with those of a wider kind.
 TEST(Exact, KindsForDoublesHoldWhatTheyPromise) {
   using namespace detail;
   std::mt19937_64 random(17);
@@ -196,7 +196,7 @@ TEST(Exact, KindsForDoublesHoldWhatTheyPromise) {
         if (random() % 2) x = near >= 0x1p52 ? near : most - 1;
         if (random() % 2) x = -x;
       }
-      if (i % 4 == 0) std::copy_n(c, 3, c + 9);  // determinants of zero
+      if (i % 4 == 0) std::copy_n(c, 3, c + 9);  // makes determinants zero
       c[17] = 1;
       const Grid grid = grid_of(c, c + 9);
       ASSERT_TRUE(Numbers::holds(grid)) << grid.bits;
@@ -235,7 +235,7 @@ TEST(Exact, KindsOfNumbersAgree) {
     ASSERT_EQ(by_axes(triangles<WideNumbers>(a, b)), r) << i;
     ASSERT_EQ(decide<DoubleNumbers>(a, b, 0), r.intersects()) << i;
     ASSERT_EQ(decide<WideNumbers>(a, b, 0), r.intersects()) << i;
-    // by_planes finds `crosses` exactly when no vertex lies in the other's plane and the pair does more than touch.
+    // by_planes finds `crosses` exactly if no vertex is in the other's plane and the triangles do more than touch.
     const Triangles<DoubleNumbers> t = triangles<DoubleNumbers>(a, b);
     const Finding found = by_planes(t);
     const bool apart_from_planes = (sides(t.a, normal<DoubleNumbers>(t.a), t.b, DoubleNumbers()).in |
@@ -248,8 +248,8 @@ TEST(Exact, KindsOfNumbersAgree) {
   for (const int count : contacts) EXPECT_GT(count, 0);
 }
 
-// Grids up to the widest that residues hold. Coordinates have 24 bits, some moved by up to 10 bits. Triangles lie in
-// each other's planes or nearly so, so determinants are zero, small beside their products, or of 108 bits.
+// Grids up to the widest that residues hold. Coordinates have 24 bits; some are shifted by up to 10 bits. Triangles lie
+// exactly or nearly in each other's planes, so determinants are zero, much smaller than their products, or of 108 bits.
 TEST(Exact, ResiduesDecideAsIntegersOf128Bits) {
   std::mt19937_64 random(9);
   long by_contact[4] = {}, widest = 0, pairs = 0;
@@ -280,7 +280,7 @@ TEST(Exact, ResiduesDecideAsIntegersOf128Bits) {
   for (const long count : by_contact) EXPECT_GT(count, 100);
 }
 
-// Tests segments and points in space, in one plane and on one line, also with triangles whose plane contains them.
+// Tests segments and points in space, in one plane and on one line, and against triangles whose plane contains them.
 TEST(Exact, SegmentsAndPointsMeetAsTheAxesSay) {
   std::mt19937_64 random(11);
   const auto small = [&](int most) { return static_cast<int>(random() % static_cast<unsigned>(2 * most + 1)) - most; };
@@ -330,13 +330,13 @@ TEST(Exact, SegmentsOfAnySizeMeetTrianglesAsTheAxesSay) {
   for (int i = 0; i < 20'000; ++i) {
     float c[18];
     for (float& x : c) x = coordinate();
-    if (i % 3 == 0) {  // puts them in one coordinate plane, so that they meet more often
+    if (i % 3 == 0) {  // puts them in one coordinate plane, where they meet more often
       for (int k = i % 2; k < 18; k += 3) c[k] = 0;
     }
     if (i % 2 == 0) std::copy_n(c + 3 * (i / 2 % 2), 3, c + 6);  // a is a segment
     if (i % 5 == 0) std::copy_n(c + 9, 3, c + 15);               // b is a segment
     for (int k = 0; i % 7 == 0 && k < 3; ++k)
-      c[9 + k] = 2 * c[k];  // and begins on the line through a's first vertex and the origin
+      c[9 + k] = 2 * c[k];  // b begins on the line through a's first vertex and the origin
     if (random() & 1) std::swap_ranges(c, c + 9, c + 9);
     Stage stage;
     const Relation r = detail::by_axes(detail::triangles<detail::WideNumbers>(c, c + 9));
@@ -349,7 +349,7 @@ TEST(Exact, SegmentsOfAnySizeMeetTrianglesAsTheAxesSay) {
   EXPECT_GT(by_contact[1], 100);
 }
 
-// Compares products of 35-bit differences: equal, as close as possible, and visibly different in doubles.
+// Compares products of 35-bit differences: equal ones, ones as close as possible, and ones that differ in doubles.
 TEST(Exact, ResiduesKnowTheSignsOfMinors) {
   using detail::Whole;
   std::mt19937_64 random(12);
@@ -376,7 +376,7 @@ TEST(Exact, ResiduesKnowTheirSigns) {
   const double most = 0x1p35 - 1;
   for (const double edge : {1.0, 3.0, 0x1p25 - 1, 0x1p25, most}) {
     for (const double other : {1.0, 0x1p26 + 1, most}) {
-      // x y z - u v w in every order of size, compared with 128-bit integers.
+      // Compares x y z - u v w with 128-bit integers, with factors in every order of size.
       const double of[6] = {edge, other, most, most, edge, other};
       for (int less = -2; less <= 2; ++less) {
         const auto product = [](double x, double y, double z) { return Residue(Whole{x}) * Whole{y} * Whole{z}; };
@@ -392,7 +392,7 @@ TEST(Exact, ResiduesKnowTheirSigns) {
   }
 }
 
-// Tests the bounds that error_bound.h derives, because no pair of the other tests comes near them.
+// Tests the bounds that error_bound.h derives. No pair in the other tests comes near them.
 TEST(ErrorBound, IsShewchuksAndNoMoreThanAFewPercentAbove) {
   const double e = 0x1p-53, stage_a = (7 + 56 * e) * e;
   EXPECT_GE(detail::kDeterminantError, stage_a);

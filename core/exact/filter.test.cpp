@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The filter has a version with SSE2 and one without. Both must return the same true finding for every pair.
+// The filter has a version with SSE2 and one without. Both must return the same correct finding for every pair.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ Coordinates uniform_pair(Random& random) {
   return draw(random, [&] { return uniform(random); });
 }
 
-// Integers from -2 to 2: coplanar, touching and degenerate pairs, vertices in the other's plane.
+// Integers from -2 to 2: many pairs are coplanar, touching or degenerate, or have a vertex in the other's plane.
 Coordinates lattice_pair(Random& random) {
   return draw(random, [&] { return static_cast<float>(static_cast<int>(random() % 5) - 2); });
 }
@@ -88,7 +88,7 @@ TEST(Filter, FindsNothingThatIsNotSo) {
   }
 }
 
-// Takes the same pairs as doubles, and scales them to the limits of the bounds.
+// Tests the same pairs as doubles, scaled to the limits of the bounds.
 TEST(Filter, OfDoublesFindsNothingThatIsNotSo) {
   for (const Kind& kind : kKinds) {
     for (const int exponent : {0, -900, -300, 150, 299, 320, 890}) {
@@ -131,7 +131,7 @@ TEST(Filter, IsTheSameWithAndWithoutSse2) {
       ASSERT_EQ(sse2::filter(c.a, c.b), found) << kind.name << ' ' << i;
       ++count[static_cast<int>(found)];
     }
-    // A shared vertex is always in doubt, and pairs in general position never are.
+    // The filter is always unsure about a shared vertex, and never about pairs in general position.
     const bool shared = kind.draw == shared_vertex_pair,
                general = kind.draw == uniform_pair || kind.draw == extreme_pair;
     EXPECT_EQ(count[static_cast<int>(Finding::crosses)] == 0, shared) << kind.name;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The filter for every compiler and for devices; see core/exact/filter.h. The computation is the same with a and b
-// exchanged, so both are done at once.
+// The filter for every compiler and for devices; see core/exact/filter.h. The tests of a against b and of b against a
+// are the same computation, so they are done at once.
 #pragma once
 
 #include "core/exact/error_bound.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The filter with SSE2; see core/exact/filter.h. The computation is the same with a and b exchanged, so both are done
-// at once.
+// The filter with SSE2; see core/exact/filter.h. The tests of a against b and of b against a are the same computation,
+// so they are done at once.
 #pragma once
 
 #include <emmintrin.h>
@@ -54,7 +54,7 @@ inline Two both(const Widened& l, const Widened& r, int i) {
   return i % 2 == 0 ? _mm_unpacklo_pd(l.two[i / 2], r.two[i / 2]) : _mm_unpackhi_pd(l.two[i / 2], r.two[i / 2]);
 }
 
-// Two vertices as one vector, each of whose coordinates has two parts.
+// Two vertices as one vector; each of its coordinates has two parts.
 inline Vec<Two> both(const double* l, const double* r) { return {Two{l[0], r[0]}, Two{l[1], r[1]}, Two{l[2], r[2]}}; }
 
 // Computes determinant_error<Real>(extent_of(a, b)) in both parts. v: the vertices of both triangles.
@@ -74,8 +74,8 @@ Two determinant_error(const Vec<Two> (&v)[3]) {
                    _mm_andnot_pd(holds, _mm_set1_pd(__builtin_inf())));
 }
 
-// lone_vertices as a table, for pairs with no vertex in the other's plane. Index: bit 2 i is set if vertex i of a is
-// below b, bit 2 i + 1 if vertex i of b is below a. Values: the indices of the vertices' first coordinates.
+// lone_vertices as a table, for pairs without a vertex in the other triangle's plane. Index: bit 2 i is set if vertex i
+// of a is below b, bit 2 i + 1 if vertex i of b is below a. Values: the indices of the vertices' first coordinates.
 struct Turns {
   std::uint8_t a[64][4] = {}, b[64][4] = {};
 
@@ -93,8 +93,8 @@ struct Turns {
 };
 inline constexpr Turns kTurns;
 
-// This function branches only where most pairs of one kind take the same branch: a mispredicted branch costs as much as
-// everything after it.
+// This function branches only where most pairs of one kind take the same branch, because a mispredicted branch costs as
+// much as all the code after it.
 template <class Real>
 Finding filter(const Real* a, const Real* b) {
   const Widened wide_a(a), wide_b(b);

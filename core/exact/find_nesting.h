@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds which triangle lies inside the other, by signs of determinants in one kind of numbers.
+// Finds which triangle lies inside the other, from the signs of determinants in one kind of numbers.
 #pragma once
 
 #include "core/exact/decision.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grid of a pair: its coordinates are integers of a certain number of bits, times one power of two.
+// A pair's grid: its coordinates are integers of a certain number of bits, times a common power of two.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which triangle lies inside the other: all of it if they are coplanar, otherwise its part in the other's plane. Code
-// that looks only for crossing edges misses coplanar nesting. find_nesting.h computes the nesting.
+// that only looks for crossing edges misses coplanar nesting. find_nesting.h computes the nesting.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace graze {
 // the part of a in b's plane lies in b, and the part of b in a's plane does not lie in a. same: coplanar and equal.
 enum class Nesting : std::uint8_t { none, a_in_b, b_in_a, same };
 
-// Relation and nesting in nine bits.   Requires: a known contact.
+// Packs relation and nesting into nine bits.   Requires: a known contact.
 GRAZE_HD constexpr std::uint16_t packed(const Relation& r, Nesting nesting) {
   return static_cast<std::uint16_t>(packed(r) | static_cast<int>(nesting) << 7);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kinds of numbers for decisions, each exact or able to report that it is not, and the choice of the smallest exact
-// kind that holds a pair. If coordinates on the pair's grid have B bits, differences have B + 1, and a determinant is
-// less than 6 times the product of three differences. The list gives the bits of coordinates:
+// The kinds of numbers for decisions, and the choice of the smallest exact kind that holds a pair. Kinds that are not
+// always exact report when they are not. If coordinates on the pair's grid have B bits, differences have B + 1, and a
+// determinant is less than 6 times the product of three differences. The list gives the number of bits in coordinates:
 //   bounded    doubles with an error bound; see core/exact/error_bound.h
 //   doubles    up to 15 bits: less than 6 * 2^(3 * 16) < 2^53, so nothing rounds; floats likewise up to 6 bits:
 //              6 * 2^(3 * 7) < 2^24
@@ -67,7 +67,7 @@ using IntNumbers = ExactNumbers<std::int64_t, Int128, Int128, kIntBits, Stage::i
 using LongNumbers = ExactNumbers<Wide<2>, Wide<3>, Wide<5>, kLongBits, Stage::wide>;
 using WideNumbers = ExactNumbers<Wide<5>, Wide<9>, Wide<14>, kFloatBits, Stage::wide>;
 
-// These kinds are for pairs of doubles.
+// Kinds for pairs of doubles.
 struct ModerateDoubleNumbers : DoubleNumbers {
   GRAZE_HD static bool holds(const Grid& grid) { return grid.bits <= kDoubleBits && is_moderate(grid); }
 };
@@ -87,7 +87,7 @@ using ResidueNumbers = ExactNumbers<Whole, Residue, Residue, kResidueBits, Stage
 // Kinds of numbers, the smallest first.
 template <class Kind, class... Larger>
 struct NumberKinds {
-  // The number of kinds that are too small for the grid, which is the index of the first kind that holds it.
+  // The index of the first kind that holds the grid: the number of kinds that are too small for it.
   GRAZE_HD static int place(const Grid& grid) { return (int{!Kind::holds(grid)} + ... + int{!Larger::holds(grid)}); }
 
   GRAZE_HD static bool hold(const Grid& grid) { return (Kind::holds(grid) || ... || Larger::holds(grid)); }
@@ -105,7 +105,7 @@ struct NumberKinds {
 using MultiwordNumbers = NumberKinds<LongNumbers, WideNumbers>;
 
 // The kinds of numbers for a coordinate type. Machine: so cheap that all determinants are computed exactly. Multiword:
-// each determinant is first bounded.
+// a bound is tried first for each determinant.
 template <class Real>
 struct KindsFor {
   using Machine = NumberKinds<DoubleNumbers, NarrowNumbers, IntNumbers>;

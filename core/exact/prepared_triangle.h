@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // One triangle (the reference) prepared for tests against many: its box, and two slabs that contain it, each between
-// two parallel planes. A triangle beyond a slab is disjoint; this certifies most disjoint triangles in floats. The
-// other triangles go to a filter, also in floats, and then to the filter of core/exact/filter.h.
+// two parallel planes. A triangle beyond a slab is disjoint. This test, in floats, certifies most disjoint triangles.
+// The other triangles go to a filter in floats, and then to the filter of core/exact/filter.h.
 //
 // The slabs are the thinnest ones: perpendicular to the triangle's normal and, within its plane, to its longest edge.
-// Their directions may be rounded in any way, because the reference's extent is computed along the direction as stored.
-// Let |d| <= 1/4 be the sum of the magnitudes of the direction d, and m the triangle's largest magnitude. A height
-// d . v - middle is off by less than 4.001 2^-23 (|d| m + |middle|) in any rounding mode, and by 2^-146 if something
+// Their directions may be rounded in any way, because the reference's extent is computed along the stored direction.
+// Let |d| <= 1/4 be the sum of the magnitudes of the direction d, and m the triangle's largest magnitude. A height d .
+// v - middle is off by less than 4.001 2^-23 (|d| m + |middle|) in any rounding mode, and by 2^-146 if something
 // underflows; nothing overflows.
 #pragma once
 
@@ -91,8 +91,8 @@ inline Slab slab_along(const Vec<double>& direction, const float* v, bool rounde
 }  // namespace detail
 
 // If the reference is not finite, no slab certifies anything and the filter in floats is unsure.
-// rounded: the coordinates of the reference, and of the triangles that is_beyond takes, were rounded to float32. The
-// slabs then certify the triangles before rounding, and the filter in floats does not apply.
+// rounded: the coordinates were rounded to float32, both those of the reference and those of the triangles that
+// is_beyond takes. The slabs then certify the triangles before rounding, and the filter in floats does not apply.
 inline PreparedTriangle prepare(const float* v, bool rounded = false) {
   using Direction = detail::Vec<double>;
   PreparedTriangle r;
@@ -139,7 +139,7 @@ GRAZE_HD inline float size_of(const float* t) {
   return sum;
 }
 
-// Returns: true if the triangle is certainly beyond one of the slabs, and so disjoint; false if it is not finite.
+// Returns: true if the triangle is certainly beyond one of the slabs and therefore disjoint; false if it is not finite.
 // Exact: in any rounding mode, with or without contraction.
 GRAZE_HD inline bool is_beyond(const PreparedTriangle& r, const float* t) {
   using detail::bits_of, detail::lesser, detail::magnitude;
@@ -172,7 +172,7 @@ struct FloatNumbers {
 };
 
 // The filter in floats. As in core/exact/error_bound.h, with e = 2^-24, a determinant is off by less than 8 e times the
-// sum of its six products, none larger than the product of the extents. Extents must lie within 2^-24 and 2^40. Then
+// sum of its six products, none larger than the product of the extents. Extents must lie between 2^-24 and 2^40. Then
 // nothing overflows, and underflow adds less than 6 * 2^40 * 2^-150, a small part of the least bound, 48 * 2^-96.
 // Returns: disjoint, crosses or unsure; unsure also for other extents and for coordinates that are not finite.
 GRAZE_HD inline Finding filter_in_floats(const PreparedTriangle& r, const float* t) {

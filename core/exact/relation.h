@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exact relation of a pair: the one record of truth that the exact decision, oracle, engines and reports use.
+// A pair's exact relation: the record of truth that the exact decision, oracle, engines and reports share.
 #pragma once
 
 #include <compare>
@@ -31,7 +31,7 @@ struct Hulls {
 struct Relation {
   Verdict verdict = Verdict::disjoint;
   Contact contact = Contact::none;
-  int margin_sign = 1;  // 1: disjoint; -1: they intersect and no tiny translation separates them; else 0
+  int margin_sign = 1;  // 1: disjoint; -1: they intersect and no arbitrarily small translation separates them; else 0
   Hulls hulls;
 
   GRAZE_HD constexpr bool intersects() const { return verdict == Verdict::intersects; }
@@ -45,7 +45,7 @@ GRAZE_HD constexpr std::uint8_t packed(const Relation& r) {
                                    static_cast<int>(r.contact) << 5);
 }
 
-// The inverse of packed; the margin's sign must be supplied.
+// The inverse of `packed`. The margin's sign must be given, because it is not packed.
 constexpr Relation unpacked_relation(std::uint8_t bits, int margin_sign) {
   const auto contact = static_cast<Contact>(bits >> 5 & 3);
   return {contact == Contact::none ? Verdict::disjoint : Verdict::intersects,

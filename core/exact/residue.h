@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Integers of up to 108 bits as a double and a remainder modulo 2^64. The double gives the sign unless it is small;
-// then the remainder is the whole integer. As exact as 128-bit integers, at half the cost if doubles are fast.
+// then the remainder is the whole integer. This is as exact as 128-bit integers, at half the cost if doubles are fast.
 //
-// Coordinates have 34 bits and differences 35. A minor is less than 2^71 and its double is off by less than 2^20. A
+// Coordinates have 34 bits, differences 35. A minor is less than 2^71 and its double is off by less than 2^20. A
 // determinant is less than 2^108 and its double is off by less than 2^59; the difference of two is off by less than
 // 2^60, in any rounding mode, with or without contraction. If a double is at most 2^61, its integer is below 2^62.
 #pragma once

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles that share a vertex, as neighbours in a mesh do. They always intersect; no rounding can put that in doubt.
+// Triangles that share a vertex, as neighbours in a mesh do. They always intersect, whatever is rounded.
 #pragma once
 
 #include "core/exact/error_bound.h"

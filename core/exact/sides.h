@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// On which sides of the other triangle's plane the vertices lie, and which vertex is alone on its side.
+// Finds on which side of the other triangle's plane each vertex lies, and which vertex is alone on its side.
 #pragma once
 
 #include "core/exact/host_device.h"
 
 namespace graze::exact::detail {
 
-// The result of testing the sides and two orientations. crosses: the triangles intersect, in general position.
+// The result of testing the sides and two orientations. crosses: the triangles intersect and are in general position.
 // coplanar: all vertices lie in the plane of a proper triangle. unsure: none of these is certain.
 enum class Finding { disjoint, intersects, crosses, coplanar, unsure };
 
-// A triangle's vertices above, below and in a plane: bit i is vertex i. If no mask has a vertex, its side is unknown.
+// A triangle's vertices above, below and in a plane: bit i is vertex i. A vertex in no mask has an unknown side.
 struct Sides {
   unsigned above = 0, below = 0, in = 0;
 
   GRAZE_HD bool one_side() const { return above == 7 || below == 7; }
   GRAZE_HD bool known() const { return (above | below | in) == 7; }
 
-  // The vertex that is alone on its side; the others are on the other side or in the plane. Tables of bits replace
+  // The vertex that is alone on its side; the others are on the other side or in the plane. Bit tables replace
   // branches, which would be mispredicted.
   // Requires: known; not one_side; not all in the plane.   Returns: its index; `over` is 1 if its side is below.
   GRAZE_HD constexpr unsigned alone(unsigned& over) const {
-    if (in == 0) {  // the tables have two bits, or one, for each of the eight values of `above`
+    if (in == 0) {  // tables with two bits, or one, for each of the eight values of `above`
       over = 0x68u >> above & 1;
       return 0x690u >> 2 * above & 3;
     }

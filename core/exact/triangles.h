@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair in one kind of numbers.
+// A pair's triangles in one kind of numbers.
 #pragma once
 
 #include <type_traits>
@@ -46,7 +46,7 @@ GRAZE_HD inline void convert(float x, double, Wide<5>& out) {
   if (bits >> 31) out = -out;
 }
 
-// Puts a double on the grid of this exponent. A double may be unable to hold the scale, so the bits are shifted.
+// Puts a double on the grid of this exponent. The scale may not fit in a double, so the bits are shifted.
 // Requires: x is a multiple of 2^exponent.
 GRAZE_HD inline void convert(double x, int, double& out) { out = x; }
 GRAZE_HD inline void convert(double x, int exponent, std::int64_t& out) {
@@ -73,7 +73,7 @@ GRAZE_HD void convert(double x, int exponent, Wide<N>& out) {
   if (x < 0) out = -out;
 }
 
-// The value that puts coordinates on the grid of an exponent: a factor for floats, the exponent for doubles.
+// The second argument of `convert`, which puts coordinates on a grid: a factor for floats, an exponent for doubles.
 template <class Real>
 using PlaceOf = std::conditional_t<sizeof(Real) == sizeof(float), double, int>;
 

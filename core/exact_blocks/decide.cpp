@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// This file is compiled for each instruction set with Google Highway, which chooses the best one at run time.
-// Instruction sets may round differently, because some of them contract. Decisions beyond the error bound do not depend
-// on rounding; all other decisions are exact.
+// This file is compiled for each instruction set with Google Highway, which chooses the best one at run time. Some
+// instruction sets contract, so they may round differently. Decisions beyond the error bound do not depend on rounding;
+// all other decisions are exact.
 #ifdef __wasm__
 #include "core/exact_blocks/one_by_one.h"
 
@@ -40,7 +40,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #include "core/exact_blocks/doubles-inl.h"
 
-constexpr std::size_t kChunk = 512;  // undecided pairs are gathered from at most this many pairs
+constexpr std::size_t kChunk = 512;  // the most pairs among which undecided pairs are gathered
 template <class Real>
 constexpr std::size_t kChunkOf = kChunk * sizeof(float) / sizeof(Real);  // a chunk has 36 KB
 constexpr unsigned kAll = (1u << kAtOnce) - 1;
@@ -55,8 +55,8 @@ struct Waiting {
     for (; which != 0; which &= which - 1) pair[count++] = pairs[std::countr_zero(which)];
   }
 
-  // Calls step(numbers, which) with kAtOnce pairs at a time. The last pair fills up the last group; `which` leaves out
-  // these copies.
+  // Calls step(numbers, which) with kAtOnce pairs at a time. Copies of the last pair fill the last group; `which`
+  // excludes them.
   template <class Step>
   void take(const Step& step) {
     for (std::size_t i = 0; i < kAtOnce && count > 0; ++i) pair[count + i] = pair[count - 1];
@@ -179,7 +179,7 @@ HWY_EXPORT(decide_doubles);
 HWY_EXPORT(target);
 
 void decide(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-  if (count == 1) return one_by_one(pairs, count, intersects, declined);  // vectors pay only for several pairs
+  if (count == 1) return one_by_one(pairs, count, intersects, declined);  // vectors pay off only for several pairs
   HWY_DYNAMIC_DISPATCH(decide_floats)(pairs, count, intersects, declined);
 }
 

@@ -44,7 +44,7 @@ std::vector<Real> drawn(std::size_t pairs, auto coordinate) {
 }
 
 // Near contacts of a vertex and a face, of two edges, and of coplanar triangles. Gaps and depths get smaller and
-// smaller, so that each pair needs its own grid, and all sizes of grids occur.
+// smaller, so pairs need grids of all sizes.
 template <class Real>
 std::vector<Real> near_contacts() {
   std::vector<Real> all;
@@ -73,7 +73,7 @@ TEST(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
   const auto whole = [&](int bits) {
     return static_cast<float>(static_cast<std::int64_t>(random() >> (63 - bits)) - (std::int64_t{1} << bits));
   };
-  const auto vertices_again = [&](auto all) {  // makes vertices of b equal to vertices of a
+  const auto vertices_again = [&](auto all) {  // makes some vertices of b equal to vertices of a
     for (std::size_t pair = 0; pair < all.size(); pair += 18) {
       for (std::size_t v = 9; v < 18; v += 3) {
         if (random() % 3 == 0) std::copy_n(&all[pair + random() % 3 * 3], 3, &all[pair + v]);

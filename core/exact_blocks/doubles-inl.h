@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// More code for decide.cpp, included after vectors-inl.h: numbers for pairs on large grids, and coordinates of pairs of
-// doubles.
+// More code for decide.cpp, included after vectors-inl.h: numbers for pairs on large grids, and the coordinates of
+// double pairs.
 
 // Unevaluated sums of two doubles (Dekker 1971). Differences of doubles are exact. With u = 2^-53, a product of two
-// such numbers is off by at most 5 u^2 of itself, a sum or difference by at most 3 u^2 of the summands' magnitudes
-// (Joldes, Muller and Popescu 2017). A determinant is therefore off by at most (2 * 5 + 3 * 3) u^2 of its products'
-// magnitudes plus terms of u^3, which 32 u^2 bounds. `hi` has the number's sign and a relative error of u, so twice
-// that bound holds for `hi`. With float32 coordinates nothing underflows; with doubles, the loss is within
+// such numbers has a relative error of at most 5 u^2, and a sum or difference is off by at most 3 u^2 times the
+// summands' magnitudes (Joldes, Muller and Popescu 2017). A determinant is therefore off by at most (2 * 5 + 3 * 3) u^2
+// plus terms of u^3, less than 32 u^2, of its products' magnitudes. `hi` has the number's sign and a relative error of
+// u, so twice that bound holds for `hi`. With float32 coordinates nothing underflows; with doubles, the loss is within
 // kDeterminantUnderflow (core/exact/error_bound.h).   Requires: fused multiply-adds, no contraction by the compiler.
 struct DoubleDouble {
   static constexpr double kError = 6 * 64 * 0x1p-106;
@@ -76,7 +76,7 @@ struct CoordinatesOf<double> {
 #endif
   }
 
-  // Four numbers of each of four pairs, starting at number c.
+  // Loads four coordinates of each of four pairs, starting at coordinate c.
   static HWY_INLINE void of_four(const double* const* pairs, std::size_t c, Four (&columns)[4]) {
     constexpr FourTag four;
     const Four r0 = hn::LoadU(four, pairs[0] + c), r1 = hn::LoadU(four, pairs[1] + c),

@@ -66,7 +66,7 @@ struct DoubleAndInteger {
   V v;
   VI i;
   static HWY_INLINE DoubleAndInteger of_integer(V x) { return {x, hn::ConvertTo(di, x)}; }
-  // A double that has the number's sign.
+  // A double with the number's sign.
   HWY_INLINE V sign() const { return hn::IfThenElse(hn::Gt(hn::Abs(v), hn::Set(d, 0x1p60)), v, hn::ConvertTo(d, i)); }
   friend HWY_INLINE DoubleAndInteger operator-(DoubleAndInteger l, DoubleAndInteger r) {
     return {hn::Sub(l.v, r.v), hn::Sub(l.i, r.i)};
@@ -147,7 +147,7 @@ struct Turned {
   Three<Double> first, second, third;
 };
 
-// below: which vertices are below the other triangle's plane; neither all nor none of them.
+// below: which vertices are below the other triangle's plane; not all of them, and at least one.
 HWY_INLINE Turned turned(const Three<Double> (&v)[3], const M (&below)[3], M other_is_below) {
   const M apart_01 = hn::Xor(below[0], below[1]), apart_02 = hn::Xor(below[0], below[2]);
   const M is_1 = hn::AndNot(apart_02, apart_01), is_2 = hn::AndNot(apart_01, apart_02);
@@ -250,11 +250,11 @@ struct OnGrid {
 
   template <class Real>
   HWY_INLINE OnGrid(const CoordinatesOf<Real>& pairs, int bits_of_grid) {
-    // The largest coordinate sets the scale, or this number if all coordinates are smaller.
+    // The scale depends on the largest coordinate, or on this number if all coordinates are smaller.
     auto largest = hn::Set(pairs.tag, sizeof(Real) == sizeof(float) ? Real(0x1p-126) : Real(0x1p-900));
     for (const auto& c : pairs.x) largest = hn::Max(largest, hn::Abs(c));
-    // Values stay below 2^bits_of_grid. It is enough that the largest value is at least half of that. If its exponent
-    // is e, the scale is 2^(bits_of_grid - 1 - e).
+    // Scaled values stay below 2^bits_of_grid. It suffices that the largest value is at least half of that. If its
+    // exponent is e, the scale is 2^(bits_of_grid - 1 - e).
     const VI exponent = hn::And(hn::BitCast(di, widened(largest)), hn::Set(di, std::int64_t{0x7ff} << 52));
     const V scale = hn::BitCast(d, hn::Sub(hn::Set(di, std::int64_t{2 * 1023 + bits_of_grid - 1} << 52), exponent));
     M whole = hn::Eq(scale, scale);
@@ -270,7 +270,7 @@ struct OnGrid {
   }
 };
 
-// The least and the greatest of doubles that have the numbers' signs.
+// The least and the greatest of the numbers, as doubles with the same signs.
 struct Ends {
   V low = hn::Set(d, 0x1p1000), high = hn::Set(d, -0x1p1000);
 
@@ -280,7 +280,7 @@ struct Ends {
   }
 };
 
-// Whether an axis separates the triangles, which it does if all differences along it have the same sign.
+// Whether some axis separates the triangles. An axis does if all differences along it have the same sign.
 struct Axes {
   M separated;
   V least, most;  // the least and the greatest difference along all axes
@@ -334,7 +334,7 @@ struct FromFirst {
   }
 };
 
-// Bit i is set if an axis separates pair i. The axes are those of look and look_flat in core/exact/axes.h.
+// Bit i is set if an axis separates pair i. It uses the axes of look and look_flat in core/exact/axes.h.
 template <class T>
 HWY_INLINE unsigned separated(const OnGrid& pair) {
   const FromFirst<T> seen(pair);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs on which a convention accepts either answer (Outside, in lanes.h).
+// Tells on which pairs a convention accepts either answer (Outside, in lanes.h).
 #pragma once
 
 #include "core/exact/relation.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decides two triangles with an algorithm under a policy other than zero, on host and device alike.
+// Decides a pair with an algorithm under a policy other than zero, on host and device alike.
 #pragma once
 
 #include "core/lanes/tolerances.h"
@@ -20,14 +20,14 @@ GRAZE_HD Verdict decide_within(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3
   return Algorithm::decide(p, q, tolerances);
 }
 
-// Whether the triangle certainly has an area. Published algorithms promise nothing for other triangles.
+// Whether the triangle certainly has a nonzero area. Published algorithms promise nothing for other triangles.
 template <class Real>
 GRAZE_HD bool certainly_proper(const Vec3<WithErrorBound<Real>> (&v)[3]) {
   const Vec3<WithErrorBound<Real>> normal = cross(v[1] - v[0], v[2] - v[0]);
   return normal.x.is_nonzero() || normal.y.is_nonzero() || normal.z.is_nonzero();
 }
 
-// The exact verdict, or declined. One axis that certainly separates is enough, even if everything else is in doubt.
+// The exact verdict, or declined. For `disjoint`, one axis that certainly separates is enough, despite other doubts.
 // Exact: for algorithms that are right without rounding.
 template <class Algorithm, class Real>
 GRAZE_HD Verdict decide_bounded(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3]) {

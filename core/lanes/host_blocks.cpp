@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The block functions of the host lanes, compiled once per variant, each in its own namespace GRAZE_FP and with its own
+// The host lanes' block functions, compiled once per variant, in the variant's namespace GRAZE_FP and with its
 // contraction flags. Define nothing else here, or the linker would mix the variants.
 #include "core/lanes/host_blocks.h"
 #include "core/algorithms/algorithms.h"

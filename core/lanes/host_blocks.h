@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables of the host lanes' block functions: [algorithm][scalar], for each host variant in its own namespace.
+// Tables [algorithm][scalar] of the host lanes' block functions, for each host variant in its own namespace.
 #pragma once
 
 #include <array>

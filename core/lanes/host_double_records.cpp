@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recording runs of the host lanes in double on pairs of doubles, compiled once per variant. They have a file of their
-// own because contraction depends on what else the compiler sees: in the same file, lanes on pairs of float32 could
+// Recording runs of the host lanes in double on pairs of doubles, compiled once per variant. They are in a separate
+// file because contraction depends on what else the compiler sees: in the same file, lanes on float32 pairs could
 // compute other values. Define nothing else here.
 #include "core/algorithms/recording.h"
 #include "core/lanes/host_blocks.h"

@@ -11,8 +11,8 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// Decides like rung `at`, and finds the next rung for which some comparison of this decision has a different outcome.
-// On all rungs before that one, all comparisons and therefore the verdict are the same.
+// Decides like rung `at`, and finds the next rung on which some comparison of this decision has a different outcome. On
+// all rungs before that one, all outcomes and therefore the verdict are the same.
 template <class Real>
 class Climb {
  public:
@@ -72,7 +72,7 @@ void decide_ladder(std::span<const Epsilons> epsilons, const PairOf* pairs, std:
     for (std::size_t at = 0; at < rungs.size();) {
       const Climb<Real> climb(rungs, at);
       const Verdict verdict = Algorithm::decide(p, q, climb);
-      // Marks where a rung's bit differs from that of the rung before; the last loop turns these marks into bits.
+      // Marks the rungs whose bit differs from the previous rung's; the last loop turns these marks into bits.
       std::uint64_t& yes = intersects[at * words + i / 64];
       std::uint64_t& no_answer = declined[at * words + i / 64];
       if ((verdict == Verdict::intersects) != (before == Verdict::intersects)) yes |= bit;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decides with one lane under many tolerances, for sweeps. A pair is decided again only if some comparison changes.
+// Decides with one lane under many tolerances, for sweeps. A pair is decided again only if some outcome changes.
 #pragma once
 
 #include <cstddef>
@@ -10,9 +10,9 @@
 
 namespace graze {
 
-// Decides the pairs under each tolerance (rung) as the lane under that rung would. Each rung has a row of
-// (count + 63) / 64 words, in the order of the rungs; pair i is bit i % 64 of word i / 64 of a row.
-// Requires: no tolerance is less than in the rung before; all rungs have relative tolerances, or none has.
+// Decides the pairs under each tolerance (rung), with the same verdicts as the lane under that tolerance. Each rung has
+// a row of (count + 63) / 64 words, in the order of the rungs; pair i is bit i % 64 of word i / 64 of a row.
+// Requires: tolerances do not decrease from rung to rung; all rungs have relative tolerances, or none has.
 template <class Real>
 using DecideLadder = void (*)(std::span<const Epsilons> rungs, const BasicPair<Real>* pairs, std::size_t count,
                               std::uint64_t* intersects, std::uint64_t* declined);

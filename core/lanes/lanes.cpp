@@ -71,7 +71,7 @@ const Tables& tables_of(Variant variant) {
   return kTables[static_cast<int>(variant)];
 }
 
-// The block functions of a lane's algorithm and scalar.
+// The entry for a lane's algorithm and scalar type.
 template <class Table>
 const auto& of_lane(const Table& table, const Lane& lane) {
   return table.at(static_cast<std::size_t>(lane.algorithm)).at(static_cast<std::size_t>(lane.scalar));

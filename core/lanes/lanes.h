@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lane table: one row for each way to decide a pair. A name is `subject/scalar/variant`, plus `/policy` unless the
-// policy is zero. A row describes the lane and its abilities; its position in the table has no meaning.
+// policy is zero. A row describes the lane and what it can do; the order of the rows has no meaning.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ namespace graze {
 enum class Scalar : std::uint8_t { f32, f64 };
 std::string_view name(Scalar scalar);
 
-// The parts of a lane's name. This build may not know them: lanes of other builds or machines have names too.
+// The parts of a lane's name. The lane need not exist here: the name may come from another build or machine.
 struct LaneName {
   std::string subject, scalar, variant, policy;  // an empty policy is zero
 
@@ -33,10 +33,10 @@ struct LaneName {
 // "moller_1997/f32/cpu"; the inverse of parse_lane_name.
 std::string id_of(const LaneName& name);
 
-// Returns: nothing unless there are three nonempty parts, or four. The fourth may contain slashes.
+// Returns: nothing unless there are three or four nonempty parts. The fourth may contain slashes.
 std::optional<LaneName> parse_lane_name(std::string_view id);
 
-// Code that is not ours (subjects/). It may fail on a pair: then both bits of the pair are set.
+// Code that is not ours (subjects/). If it fails on a pair, both bits of the pair are set.
 class ForeignCode {
  public:
   virtual ~ForeignCode() = default;
@@ -61,7 +61,7 @@ using DecideWithin = void (*)(const Epsilons& epsilons, const AnyPair* pairs, st
 template <class AnyPair>
 struct DecideFunctions {
   DecideFunction<AnyPair> function = nullptr;
-  DecideFunction<AnyPair> otherwise = nullptr;  // decides the pairs that `function` declines
+  DecideFunction<AnyPair> otherwise = nullptr;  // decides pairs that `function` declines
   DecideWithin<AnyPair> within = nullptr;       // used instead of `function`
 
   void decide(const Epsilons& epsilons, const AnyPair* pairs, std::size_t count, std::uint64_t* intersects,
@@ -69,7 +69,7 @@ struct DecideFunctions {
   bool operator==(const DecideFunctions&) const = default;
 };
 
-// The verdict that two bits encode for a lane of ours.
+// The verdict that two bits encode for one of our lanes.
 constexpr Verdict verdict_of_bits(bool intersects, bool declined) {
   return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
 }
@@ -116,7 +116,6 @@ class DecideBlock {
   ForeignCode* foreign_ = nullptr;
 };
 
-// The block's verdict on one pair.
 template <class Real>
 Verdict decide_one(const DecideBlock& block, const BasicPair<Real>& pair) {
   std::uint64_t intersects = 0, declined = 0;
@@ -137,14 +136,14 @@ struct Lane {
   // Published algorithms: the index in Algorithms, which selects the code that is compiled for the algorithm.
   // Other subjects: -1.
   int algorithm;
-  DecideBlock decide;  // decides on this processor; null for lanes of a device, see cuda/lanes/device.h
-  bool exact;          // right on every finite pair of its scalar, declines other pairs; see core/exact/exact.h
+  DecideBlock decide;  // decides on this processor; null for device lanes, see cuda/lanes/device.h
+  bool exact;          // right on every finite pair of its scalar type, declines other pairs; see core/exact/exact.h
   bool explainable;    // runs on numbers that record every step; see core/algorithms/traced.h
   // Foreign code only:
   bool foreign = false;
   unsigned outside = 0;  // the kinds of pairs that its convention excludes: a sum of Outside
   std::string evidence;  // what runs a CUDA lane: "device", "twin, not yet verified"; or why nothing runs the lane
-  std::string toolchain = {};  // for Variant::toolchain: the toolchain's name, the variant in the lane's name
+  std::string toolchain = {};  // for Variant::toolchain: the toolchain's name, which is the variant in the lane's name
 
   std::string_view variant_name() const { return toolchain.empty() ? name(variant) : toolchain; }
   bool is_cuda() const { return info_of(variant).runs_on == RunsOn::device; }
@@ -155,7 +154,7 @@ struct Lane {
 // published algorithms, and lanes of foreign code come last.
 std::span<const Lane> lanes();
 
-// Adds the lanes of a foreign subject permanently.   Requires: no other thread uses lanes meanwhile.
+// Adds a foreign subject's lanes for the rest of the process.   Requires: no other thread uses lanes meanwhile.
 // Throws: std::runtime_error if there are too many lanes.
 void add_lanes(std::vector<Lane> foreign);
 
@@ -171,7 +170,7 @@ void add_policy_lanes(std::string_view pattern);
 // The lanes of published algorithms, without a policy.
 std::span<const Lane> published_lanes();
 
-// The lane of that name; null if there is none.
+// The lane with that name; null if there is none.
 const Lane* find_lane(std::string_view id);
 
 // The lane with the same subject, scalar and policy in another variant; null if there is none.

@@ -21,14 +21,14 @@ namespace {
   throw UsageError("expected a policy (" + forms + "), found " + shown(text) + why);
 }
 
-// The epsilons of published code.
+// The epsilons in published code.
 struct Shipped {
   std::string_view algorithm;
   Site site;
   double epsilon;
 };
 constexpr Shipped kShipped[] = {
-    // T. Moller's code beside the paper (opttritri.txt and tritri_isectline.txt): #define EPSILON 0.000001, and
+    // T. Moller's published code (opttritri.txt and tritri_isectline.txt): #define EPSILON 0.000001, and
     // if(FABS(du0)<EPSILON) du0=0.0; for each plane distance, which is not normalised.
     {"moller_1997", Site::plane_distance, 1e-6},
 };
@@ -46,7 +46,7 @@ std::string site_names() {
   return names;
 }
 
-// Sets the site's number from "abs:E" or "rel:K"; without a site, the numbers of all sites.
+// Sets the site's tolerance from "abs:E" or "rel:K"; without a site, sets those of all sites.
 void set(std::string_view whole, std::string_view text, std::optional<Site> site, Epsilons& epsilons) {
   const bool relative = text.starts_with("rel:");
   if (!relative && !text.starts_with("abs:")) refuse(whole);

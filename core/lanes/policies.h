@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A policy is the last part of a lane's name: it tells what a published algorithm does near zero. The numbers of a
-// policy are read at run time, so a sweep compiles nothing.
+// A policy, the last part of a lane's name, determines how a published algorithm compares with zero. A policy's numbers
+// are read at run time, so sweeps need no compiler.
 //   abs:E        values smaller than E count as zero, in the unit of the quantity compared (mostly lengths cubed)
 //   rel:K        like abs:E, with E = K times machine epsilon times the quantity's size (core/lanes/with_magnitude.h)
 //   SITE=abs:E,SITE=rel:K   tolerances at these sites only; the other sites compare with zero
@@ -18,7 +18,7 @@
 
 namespace graze {
 
-// The policies that are one word. All other policies are tolerances ("rel:8").
+// Policies with a name. All other policies are tolerances ("rel:8").
 inline constexpr std::string_view kNamedPolicies[] = {"paper", "bound", "filtered"};
 
 struct Policy {

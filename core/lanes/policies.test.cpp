@@ -35,12 +35,12 @@ Pair scaled(Pair pair, float scale) {
   return pair;
 }
 
-// Two parallel triangles, half their size apart, scaled.
+// Two parallel triangles of size `scale`, half their size apart.
 Pair apart(float scale) {
   return scaled({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0.5f}, {1, 0, 0.5f}, {0, 1, 0.5f}}}, scale);
 }
 
-// b stands upright above a. Its lowest vertex is 2^-k times their size above a's interior.
+// b stands upright above a. Its lowest vertex is above a's interior, at a height of 2^-k times their size.
 Pair above(int k, float scale) {
   const float gap = std::ldexp(1.0f, -k);
   return scaled({{{0, 0, 0}, {3, 0, 1}, {0, 3, 1}}, {{0.75f, 0.75f, 0.5f + gap}, {1, 2, 4}, {2, 1, 4}}}, scale);
@@ -121,14 +121,14 @@ TEST(Policies, OfOneWordMayFollowAStarForSeveralParts) {
   }
 }
 
-// A site's tolerance is the sum of an absolute and a relative tolerance, so both are kept.
+// A site's tolerance is the sum of its absolute and its relative tolerance, so both are kept.
 TEST(Policies, OfOneSiteMayBeAbsoluteAndRelative) {
   const Epsilons& both = lane("moller_1997/f32/cpu/plane_distance=abs:3,plane_distance=rel:5").under->epsilons;
   EXPECT_EQ(both.absolute[static_cast<int>(Site::plane_distance)], 3);
   EXPECT_EQ(both.relative[static_cast<int>(Site::plane_distance)], 5);
 }
 
-// Pairs of doubles near contact: b's first vertex lies in a's plane up to the last bits.
+// Pairs of doubles near contact: b's first vertex is off a's plane only in the last bits.
 std::vector<DoublePair> near_contacts() {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> number(-1, 1);
@@ -159,14 +159,14 @@ TEST(LanesInDouble, DecideDoublesAsTheirAlgorithmDoes) {
   }(static_cast<const Algorithms*>(nullptr));
 }
 
-// Both functions of a lane agree on doubles that float32 holds, under every kind of policy.
+// A lane's functions for floats and for doubles agree on doubles that float32 holds, under every kind of policy.
 TEST(LanesInDouble, AgreeWithThemselvesOnFloat32) {
   std::size_t lanes_seen = 0;
   for (const char* policy : {"", "abs:1e-9", "rel:8", "bound", "filtered"}) {
     if (*policy) add_policy_lanes("*/f64/cpu*/" + std::string(policy));
   }
   for (const Lane& lane : lanes()) {
-    // With fast math, the code of a function depends on what is compiled beside it.
+    // With fast math, a function's code depends on what else is compiled with it.
     if (lane.scalar != Scalar::f64 || !lane.decide || info_of(lane.variant).arithmetic == Arithmetic::fast) continue;
     if (!runs_on_this_cpu(lane)) continue;
     ASSERT_TRUE(lane.decide.decides_doubles()) << lane.id;

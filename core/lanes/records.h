@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The records of lanes on a block of pairs: every value that one of their comparisons sees.
+// Records of lanes on a block of pairs: every value that one of their comparisons sees.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace graze {
 
-// The value (question, which) of pair i is at values[(2 question + which) * stride + i], in the lane's scalar. Values
-// of questions that were not asked stay unchanged.
+// The value (question, which) of pair i is at values[(2 question + which) * stride + i], in the lane's scalar type.
+// Values of questions that were not asked stay unchanged.
 struct Records {
   void* values;
   std::uint64_t stride;  // at least the number of pairs

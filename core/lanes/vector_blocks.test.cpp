@@ -23,7 +23,7 @@ class VectorBlocks : public testing::TestWithParam<Scalar> {
                                      : decide_widened<SeparatingAxes, double>(pair);
   }
 
-  // Checks every pair, and that bits and words after the last pair are as promised.
+  // Checks every pair, and the bits and words after the last pair.
   static void expect_as_each_alone(const std::vector<Pair>& pairs) {
     const std::size_t words = (pairs.size() + 63) / 64;
     std::vector<std::uint64_t> yes(words + 1, ~0ull), declined(words + 1, ~0ull);

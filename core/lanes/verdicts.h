@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lane's verdicts on a block of pairs: as bits, which allow counting many at once, or as a list.
+// A lane's verdicts on a block of pairs: as bits, so that many can be counted at once, or as a list.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ struct VerdictBits {
   std::vector<std::uint64_t> intersects, declined;
 };
 
-// Decides the pairs. Does not call the block function if there are no pairs.
+// Does not call the block function if there are no pairs.
 void decide(const DecideBlock& block, std::span<const Pair> pairs, VerdictBits& to);
 void decide(const DecideBlock& block, std::span<const DoublePair> pairs, VerdictBits& to);
 
@@ -40,7 +40,7 @@ struct LaneVerdicts {
 std::vector<Verdict> verdicts_of(const DecideBlock& block, std::span<const Pair> pairs);
 std::vector<Verdict> verdicts_of(const DecideBlock& block, std::span<const DoublePair> pairs);
 
-// The verdict of that name; nothing if there is none.
+// The verdict with that name; nothing if there is none.
 std::optional<Verdict> verdict_named(std::string_view word);
 
 }  // namespace graze

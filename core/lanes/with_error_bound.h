@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Numbers that certify comparisons, for the policy `bound`: a value, computed as usual, and a bound on its forward
-// error. A comparison that the bounds do not settle raises a doubt. If no doubt is raised, every comparison came out as
-// in exact arithmetic, and so did the algorithm's verdict.
+// error. A comparison that the bounds do not settle raises a doubt. If no doubt is raised, every comparison has the
+// same outcome as in exact arithmetic, and the algorithm's verdict is the same too.
 // Derivation: running error analysis, N. J. Higham, Accuracy and Stability of Numerical Algorithms, second edition
 // (2002), section 3.3. With u the unit roundoff and t half the least subnormal, fl(x op y) = (x op y)(1 + d) + e, where
 // |d| <= u, and |e| <= t for products and quotients, 0 for sums. Let X, Y be the exact quantities that x, y stand for,
@@ -123,8 +123,8 @@ struct WithErrorBound {
     return result;
   }
 
-  // Whether the exact quantities have the same order as their values. Equal values have it if both are exact. Other
-  // values have it if they differ by more than their bounds and the rounding here.
+  // Whether the exact quantities have the same order as their values. For equal values, both must be exact. Other
+  // values must differ by more than their bounds and the rounding here.
   GRAZE_IN_PLACE GRAZE_HD static bool is_settled(const WithErrorBound& x, const WithErrorBound& y) {
     const Real gap = magnitude(x.value - y.value), errors = (x.error + y.error) * kSlack;
     return (gap * (Real(1) - 4 * kUnit) > errors + kTiny && gap <= kLargest) ||
@@ -139,7 +139,7 @@ struct WithErrorBound {
   static constexpr Real kLargest = kIsFloat ? Real(0x1.fffffep127) : Real(0x1.fffffffffffffp1023);
 };
 
-// Any component that is certainly nonzero serves as an axis. Only a chosen component that may be zero raises a doubt.
+// Any component that is certainly nonzero will do. A doubt is raised only if the chosen component may be zero.
 template <class Real>
 GRAZE_HD int dominant_axis(const Vec3<WithErrorBound<Real>>& v) {
   const int axis = dominant_axis(Vec3<Real>{v.x.value, v.y.value, v.z.value});
@@ -148,8 +148,8 @@ GRAZE_HD int dominant_axis(const Vec3<WithErrorBound<Real>>& v) {
   return axis;
 }
 
-// The exact least and greatest of three quantities lie within the largest bound of the least and the greatest value.
-// It does not matter which of the three quantities it is.
+// The least and the greatest of three exact quantities are within the largest of the three bounds of the least and the
+// greatest value, whichever quantities they are.
 template <class Real>
 GRAZE_HD Range<WithErrorBound<Real>> project(const Vec3<WithErrorBound<Real>>& direction,
                                              const Vec3<WithErrorBound<Real>> (&v)[3]) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that record the size of the quantities they were computed from: a value, computed as usual, and its size. The
-// size times half the machine epsilon bounds the value's rounding error to first order: running error analysis, N. J.
-// Higham, Accuracy and Stability of Numerical Algorithms, second edition (2002), section 3.3. The size has the value's
-// unit, so a tolerance relative to the size does not change with the scene's scale.
+// A value, computed as usual, together with the size of the quantities that it was computed from. The size times half
+// the machine epsilon bounds the value's rounding error to first order: running error analysis, N. J. Higham, Accuracy
+// and Stability of Numerical Algorithms, second edition (2002), section 3.3. The size has the value's unit, so a
+// tolerance relative to the size does not change with the scene's scale.
 #pragma once
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Axes: quantities that a few strata vary besides the margin, namely the coordinates' scale or their distance from the
-// origin. Pairs are counted by their place on the axis, a small integer, just as margins are counted by bucket.
+// origin. Pairs are counted by their place on the axis, a small integer, just as they are counted by margin bucket.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ inline std::string_view name(Axis axis) {
   return axis == Axis::none ? "none" : axis == Axis::offset ? "offset" : "scale";
 }
 
-// log2 of the width of a place on a scale axis. On the axis of float32, the place at -152 is 2^-152 to 2^-148.
+// log2 of the width of a place on a scale axis. On the float32 axis, the place at -152 covers 2^-152 to 2^-148.
 GRAZE_HD constexpr int width_of_place(Axis axis) { return axis == Axis::scale ? 4 : axis == Axis::wide_scale ? 32 : 1; }
 
 // log2 of the lower end of place `extreme`.

@@ -12,7 +12,7 @@
 namespace graze {
 
 // 0: the margin is zero. ±(k - kBucketLowest + 1): 2^k <= |margin| / ulp < 2^(k+1), positive when disjoint.
-// The first and last exponents are open-ended. A bucket is at least -kBucketMost and at most kBucketMost.
+// The first and the last exponent have no outer limit. A bucket is at least -kBucketMost and at most kBucketMost.
 using Bucket = std::int8_t;
 
 inline constexpr int kBucketLowest = -32;
@@ -35,7 +35,7 @@ inline std::string name_of_bucket(Bucket bucket) {
   return (bucket < 0 ? "-2^" : "+2^") + std::to_string(k);
 }
 
-// floor(log2(x)) for a positive normal x; for zero, less than for any such x.
+// floor(log2(x)) for a positive normal x; for zero, a smaller value than for any such x.
 GRAZE_HD inline int floor_log2(double x) {
   std::uint64_t bits;
   memcpy(&bits, &x, sizeof bits);

@@ -6,7 +6,7 @@
 
 #include "core/vec3.h"
 
-// Unrolls loops over arrays, so that a device keeps them in registers, which cannot be indexed.
+// Unrolls loops over arrays. A device can then keep the arrays in registers, which cannot be indexed.
 #ifdef __CUDA_ARCH__
 #define GRAZE_UNROLL _Pragma("unroll")
 #else
@@ -38,7 +38,7 @@ GRAZE_HD inline float reciprocal_root(float x) {
 #endif
 }
 
-// Chooses u or v. Like turn, it neither branches nor indexes, because on a device that would move registers to memory.
+// Selects u or v. Like `turn`, it neither branches nor indexes; on a device, indexing would move registers to memory.
 template <class Real>
 GRAZE_HD void choose(bool first, const Corners<Real>& u, const Corners<Real>& v, Corners<Real>& chosen) {
   for (int k = 0; k < 3; ++k) chosen[k] = {first ? u[k].x : v[k].x, first ? u[k].y : v[k].y, first ? u[k].z : v[k].z};

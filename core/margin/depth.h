@@ -24,7 +24,7 @@ GRAZE_HD Vec3<Real> axis_weight(const MarginFrame<Real>& f, int axis, const Vec3
 
 // Bounds on min(max n.a - min n.b, max n.b - min n.a) along a separating axis. n is off by up to 5 kRoundoff weight,
 // and |n| <= weight (1 + 5 kRoundoff). A projection is off by at most (5 for n, 1 for the difference, 3 roundings)
-// kRoundoff sum(weight * |difference|). Two roundings on the way to the overlap make that 11; 12 leaves slack.
+// kRoundoff sum(weight * |difference|). With two more roundings in the overlap, the total is 11; 12 leaves slack.
 template <class Real>
 GRAZE_HD Interval<Real> overlap(const MarginFrame<Real>& f, int axis, const Vec3<Real>& n, const Vec3<Real>& weight) {
   Vec3<Real> seen[3];
@@ -34,7 +34,7 @@ GRAZE_HD Interval<Real> overlap(const MarginFrame<Real>& f, int axis, const Vec3
     along[k] = dot(n, seen[k]);
     error[k] = Real(12 * kRoundoff<Real>) * dot(weight, magnitudes(seen[k]));
   }
-  // The feature itself projects to zero. seen[0] belongs to its triangle if own is 1, else to the other.
+  // The feature itself projects to zero. seen[0] belongs to the feature's triangle if `own` is 1, else to the other.
   Interval<Real> least = {along[1] - error[1], along[1] + error[1]}, most = least;
   Interval<Real> own_least = {0, 0}, own_most = {0, 0};
   include(least, most, along[2], error[2]);
@@ -53,7 +53,7 @@ GRAZE_HD MarginBounds depth_bounds(const MarginFrame<Real>& f) {
     const double weight_length = sqrt(as_double(dot(weight, weight)));
     lowest[axis] = INFINITY;
     if (weight_length == 0) continue;  // parallel edges, or a flat triangle's normal: not an axis
-    // The 12 are 5 for n, 3 roundings, and slack. The factors 1 ± 8 kHalfUlp cover the roots, which are only doubles.
+    // 12 is 5 for n, 3 roundings, and slack. The factors 1 ± 8 kHalfUlp cover the roots, which are only doubles.
     const double length = sqrt(as_double(dot(n, n))), length_error = 12 * kRoundoff<Real> * weight_length;
     const Interval<Real> o = overlap(f, axis, n, weight);
     lowest[axis] = greater(0.0, as_double(o.lo) / (length + length_error) * (1 - 8 * kHalfUlp));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbered directions along which two triangles' margin is measured, and bounds on a margin that name a direction.
+// The numbered directions along which margins are measured, and bounds on a margin with their direction.
 #pragma once
 
 #include <cstdint>

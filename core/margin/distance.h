@@ -13,8 +13,8 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// Lower bound on the distance: the separation along any direction is at most the distance. Direction d is taken exactly
-// as computed, and all points are relative to a vertex of its feature. Each vertex then has an error of (1 for the
+// Lower bound on the distance: the separation along any direction is at most the distance. The computed direction d
+// counts as exact, and all points are relative to a vertex of its feature. Each vertex then has an error of (1 for the
 // difference, 3 roundings) kRoundoff sum(|n| * |difference|); 6 leaves slack.
 template <class Real>
 GRAZE_HD double separation(const MarginFrame<Real>& f, int d) {
@@ -56,7 +56,7 @@ GRAZE_HD void connect_to_edge(Connection<Real>& best, const Vec3<Real>& at, cons
   if (along > 0 && along < length2) shorten(best, at, edge * (-along / length2), {0, 0, 0}, towards);
 }
 
-// Connects point `at` (relative to the face's vertex 0) to its projection, if that lies in the face of edges u and v.
+// Connects point `at` (relative to the face's vertex 0) to its projection, if that lies in the face with edges u and v.
 template <class Real>
 GRAZE_HD void connect_to_face(Connection<Real>& best, const Vec3<Real>& at, const Vec3<Real>& u, const Vec3<Real>& v,
                               const Vec3<Real>& n, const Real& n2, int towards) {
@@ -104,7 +104,7 @@ GRAZE_HD MarginBounds distance_bounds(const MarginFrame<Real>& f) {
   const double terms = as_double(best.terms);
   const double hi = sqrt(as_double(best.squared)) * (1 + 8 * kHalfUlp) + 8 * kRoundoff<Real> * terms;
   MarginBounds bounds = {separation(f, best.direction), hi, best.direction, 0};
-  // If two kinds of connection tie, rounding may have named the wrong direction.
+  // If two kinds of connection tie, rounding may have selected the wrong direction.
   for (int d = 0; d < kDirections && floor_log2(bounds.lo) != floor_log2(hi) && bounds.lo < 0.999 * hi; ++d) {
     const double lo = separation(f, d);
     if (lo > bounds.lo) bounds = {lo, hi, d, 0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of twice a double's precision: the sum of two doubles that do not overlap.
+// Numbers with twice a double's precision: the sum of two doubles that do not overlap.
 // Reference: Joldes, Muller and Popescu 2017, "Tight and rigorous error bounds for basic building blocks of double-word
 // arithmetic": algorithms 6, 12, 9 and 17, with relative errors 3 u^2 + 13 u^3, 5 u^2, 2 u^2 and 15 u^2 + 56 u^3, where
 // u = 2^-53, as long as nothing over- or underflows.
@@ -22,7 +22,7 @@ struct DoubleDouble {
 
 namespace double_double {
 
-// A product that no compiler fuses with a sum.
+// A product that no compiler can fuse with a sum.
 GRAZE_HD inline double product(double x, double y) {
 #ifdef __CUDA_ARCH__
   return __dmul_rn(x, y);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair in doubles, or in numbers of twice their precision, and the arithmetic that computes certified bounds on its
-// margin.
+// A pair in doubles or in double-double numbers, and the arithmetic for certified bounds on its margin.
 #pragma once
 
 #include <cmath>
@@ -56,7 +55,7 @@ GRAZE_HD Real greater(const Real& x, const Real& y) {
 GRAZE_HD inline Vec3<double> widen(const Vec3<float>& v) { return {double(v.x), double(v.y), double(v.z)}; }
 
 // Whether the difference of any two coordinates is exact in double. Coordinates are multiples of 2^(low - 150) below
-// 2^(high - 126), so differences are integers of high - low + 25 bits. A double holds 53.
+// 2^(high - 126), so differences are integers of high - low + 25 bits, and a double holds 53 bits.
 GRAZE_HD inline bool differences_are_exact(const Pair& pair) {
   std::uint32_t low = 255, high = 0;
   const float* c = &pair.a[0].x;

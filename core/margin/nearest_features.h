@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A guess of the nearest features of two triangles, in single or double precision; nothing here is certified.
+// Guesses the nearest features of two triangles, in single or double precision. Nothing here is certified.
 #pragma once
 
 #include <cmath>
@@ -35,7 +35,7 @@ struct Nearest {
   }
 };
 
-// A guess of the nearest features, subject to rounding and to the error of a reciprocal.
+// The features that seem nearest, subject to rounding and to the error of a reciprocal.
 template <class Real>
 GRAZE_HD Nearest<Real> seem_nearest(const Corners<Real>& a, const Corners<Real>& b) {
   Corners<Real> edge_a, edge_b;

@@ -90,7 +90,7 @@ GRAZE_HD void for_each_axis(const Corners<Real>& a, const Corners<Real>& b, cons
   visit(kNormalB, overlap_along(b, a, false));
 }
 
-// lo <= depth <= hi. Single precision rules axes out; the rest are computed in double. If too many remain, lo is 0.
+// lo <= depth <= hi. Single precision rules out axes; the others are computed in double. If too many remain, lo is 0.
 GRAZE_HD inline void depth_in_single(const Corners<float>& a, const Corners<float>& b, const Vec3<float>& extent,
                                      float& lo, float& hi) {
   const AxisErrors<float> errors(extent * 1.0001f, 0x1p-24);

@@ -13,8 +13,8 @@ namespace graze {
 // The pair times a power of two, which scales its margin by the same factor. Nothing is rounded.
 struct ScaledPair {
   DoublePair pair;
-  int ulp;    // log2 of the original pair's ulp, scaled too
-  bool fits;  // if not, the pair is unchanged
+  int ulp;    // log2 of the original pair's ulp after scaling
+  bool fits;  // if false, the pair is unchanged
 
   GRAZE_HD explicit ScaledPair(const DoublePair& unscaled)
       : pair(unscaled), ulp(log2_ulp(pair)), fits(on_grid_of_floats(pair)) {

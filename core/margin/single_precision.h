@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two first attempts at a pair's margin bucket. They are certified like core/margin/margin.h and much cheaper, but
-// undecided more often. They are written for GPUs, where double precision, roots and quotients are slow. Disjoint
+// leave more pairs undecided. They are written for GPUs, where double precision, roots and quotients are slow. Disjoint
 // triangles: the nearest features are guessed, and only the guess is certified. Intersecting triangles: single
 // precision finds the axes that may have the least overlap, and only these are computed in double.
 #pragma once
@@ -27,8 +27,8 @@ GRAZE_HD inline Vec extent_of(const Pair& pair) {
   return {extent.x, extent.y, extent.z};
 }
 
-// Whether the range of float suffices for determinants, for products of six differences, and for the errors of
-// determinants, so that underflow is negligible beside those errors.
+// Whether float's range suffices for determinants, for products of six differences, and for the errors of determinants;
+// underflow is then negligible compared with those errors.
 GRAZE_HD inline bool fits_single(const Vec& extent) {
   const double largest = greater(extent.x, greater(extent.y, extent.z));
   const auto sensible = [](double r) { return r == 0 || r >= 0x1p-30; };
@@ -54,7 +54,7 @@ GRAZE_HD inline bool bucket_by_single(const Pair& pair, Verdict verdict, Bucket&
   if (verdict == Verdict::disjoint) {
     const Nearest<float> nearest = seem_nearest(pair.a, pair.b);
     const auto largest = static_cast<float>(greater(extent.x, greater(extent.y, extent.z)));
-    if (nearest.next < 0x1p-44f * largest * largest) return false;  // rounding may have chosen the features
+    if (nearest.next < 0x1p-44f * largest * largest) return false;  // the choice may be due to rounding
     bounds = distance_bounds(pair.a, pair.b, nearest.features);
   } else {
     float lo, hi;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bounds on margins in vectors of doubles, one pair in each vector lane, with the errors that core/margin/distance.h
-// and depth.h derive. Included once for each instruction set, after core/exact_blocks/vectors-inl.h and in its
-// namespace, so there is no include guard.
+// and depth.h derive. Included once for each instruction set, after core/exact_blocks/vectors-inl.h and in the same
+// namespace, so it has no include guard.
 
 using Vector = Three<V>;
 
@@ -64,7 +64,7 @@ struct Frame {
       least = hn::Min(least, hn::IfThenElse(hn::Eq(size, hn::Zero(df)), hn::Set(df, 0x1p127f), size));
     }
     largest = hn::PromoteTo(d, most);
-    // Multiples of least * 2^-23 or 2^-149, below 2 * largest: 27 + 1 + 24 bits at most. A double holds 53.
+    // Multiples of least * 2^-23 or 2^-149, below 2 * largest: 27 + 1 + 24 bits at most; a double holds 53 bits.
     exact = hn::Le(largest, hn::Mul(number(0x1p27), hn::Max(hn::PromoteTo(d, least), number(0x1p-126))));
   }
 };
@@ -73,7 +73,7 @@ struct Bounds {
   V lo, hi;
 };
 
-// A guess of the nearest two features so far.
+// The two features that seem nearest so far.
 struct Guess {
   V squared, kind, i, j;
 
@@ -141,8 +141,8 @@ HWY_INLINE Vector selected(V index, const Of& of) {
   return chosen(hn::Eq(index, number(0)), of(0), chosen(hn::Eq(index, number(1)), of(1), of(2)));
 }
 
-// Bounds for disjoint triangles. The connection of the features that seem nearest is at least the distance. The
-// separation along their common perpendicular is at most the distance.
+// Bounds for disjoint triangles. The distance is at most the length of the connection between the features that seem
+// nearest, and at least the separation along their common perpendicular.
 HWY_INLINE Bounds distance_bounds(const Frame& f) {
   const Guess guess = nearest_features(f);
   const auto is = [&](double kind) HWY_ATTR { return hn::Eq(guess.kind, number(kind)); };
@@ -239,7 +239,7 @@ HWY_INLINE Bounds squared_depth_bounds(const Frame& f) {
                  w[i][(j + 2) % 3]);
     }
   }
-  // The 32 are 2 * 5 for n, 3 for its square, 5 for the later operations, and slack.
+  // 32 is 2 * 5 for n, 3 for its square, 5 for the later operations, and slack.
   return {hn::Mul(depth.lo, number(1 - 32 * kHalf)), hn::Mul(depth.hi, number(1 + 32 * kHalf))};
 }
 

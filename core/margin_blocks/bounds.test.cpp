@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bounds on margins must be exactly as wide as their comments derive, in scalar code and for every instruction set.
-// No random pair would show a bound that counts one rounding too few or too many.
+// Random pairs would not reveal a bound that counts one rounding too few or too many.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ namespace detail = exact::detail;
 #include "core/exact_blocks/vectors-inl.h"
 #include "core/margin_blocks/bounds-inl.h"
 
-// Bounds of a distance or of a squared depth, and whether all differences of coordinates are exact.
+// Bounds on a distance or on a squared depth, and whether all differences of coordinates are exact.
 HWY_ATTR bool in_vectors(const Pair& pair, Verdict verdict, MarginBounds& found, bool& exact) {
   const float* where[kAtOnce];
   for (const float*& at : where) at = &pair.a[0].x;
@@ -68,7 +68,7 @@ void on_every_target(const Pair& pair, Verdict verdict, const Check& check) {
 
 constexpr Verdict kApart = Verdict::disjoint, kMeet = Verdict::intersects;
 
-// A pair of margin 1, and the sum of its terms' magnitudes as distance.h and depth.h define it.
+// A pair with margin 1, and the sum of its terms' magnitudes as distance.h and depth.h define it.
 struct Unit {
   const char* what;
   Verdict verdict;
@@ -127,8 +127,8 @@ TEST(MarginBounds, OfADepthAreSeenFromTheFirstVertexOfAFace) {
   }
 }
 
-// The cross product of an edge of a with any edge of b is along z. Its depth of 1 equals that of b's face, and is
-// computed as 4 - 3.
+// The cross product of an edge of a with any edge of b points along z. The depth along it, 1, equals that of b's face,
+// and is computed as 4 - 3.
 TEST(MarginBounds, OfADepthCountTheErrorOfTheThirdVertex) {
   const Pair pair{{{-8, 0, -3}, {8, 0, -3}, {0, 0, 1}}, {{-8, -8, 0}, {8, -8, 0}, {0, 8, 0}}};
   const MarginBounds bounds = margin_bounds(pair, kMeet);
@@ -150,7 +150,7 @@ TEST(MarginBounds, InVectorsKnowWhichDifferencesAreExact) {
   expect_exact(0x1.000002p-99f, 0x1p-149f, false);
 }
 
-// A coplanar, disjoint pair would count as touching if it got the other pair's verdict.
+// The disjoint pair is coplanar; with the other pair's verdict it would count as touching.
 TEST(MarginBounds, InVectorsLeaveOtherPairsAlone) {
   const Pair pairs[] = {{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{5, 0, 0}, {9, 0, 0}, {5, 4, 0}}}, kUnits[6].pair};
   const std::uint64_t intersects = 2;

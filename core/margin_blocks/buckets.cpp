@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// This file uses Google Highway like core/exact_blocks/decide.cpp. A bucket that the bounds decide does not depend on
-// how the bounds were rounded.
+// This file uses Google Highway like core/exact_blocks/decide.cpp. Rounding of the bounds does not affect the buckets
+// that they decide.
 #include "core/margin_blocks/buckets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -47,8 +47,8 @@ HWY_INLINE Coordinates coordinates_at(const float* pairs, const Numbers& numbers
   return Coordinates(where);
 }
 
-// Writes the buckets that the bounds decide. squares: whether these are bounds on the squared margins.   Returns: which
-// buckets it wrote.
+// Writes the buckets that the bounds decide. squares: whether these are bounds on the squared margins.   Returns: a
+// mask of the buckets that it wrote.
 HWY_INLINE unsigned settle(const Bounds& bounds, bool squares, V largest, std::int64_t sign, const Numbers& numbers,
                            unsigned which, Bucket* buckets) {
   const auto log2 = [&](V x) HWY_ATTR { return squares ? hn::ShiftRight<1>(floor_log2_of(x)) : floor_log2_of(x); };

@@ -18,7 +18,7 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  // The end of the pipe to read from. It reaches end of file when the child closes its own end.
+  // The pipe's read end. It reaches end of file when the child closes its end.
   int pipe() const { return pipe_; }
   void kill() const;
   // Waits for the child to end.   Returns: whether it exited with 0.
@@ -29,7 +29,7 @@ class Child {
   pid_t process_ = -1;
 };
 
-// For use in a child: writes all bytes, or exits with 1.
+// Called in the child: writes all bytes, or exits with 1.
 void write_all(int pipe, const void* data, std::size_t size);
 
 }  // namespace graze

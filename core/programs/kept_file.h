@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that are built once and kept. A kept file's last line is a checksum of its name and content. The loader of
-// shared objects ignores that line.
+// Files that are built once and kept. A kept file's last line is a checksum of its name and content, which the loader
+// of shared objects ignores.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ void move_over(const std::filesystem::path& made, const std::filesystem::path& k
 // Appends the checksum to `made`, then renames it to `kept`. No reader sees a partial file.   Throws: as move_over.
 void keep_file(const std::filesystem::path& made, const std::filesystem::path& kept);
 
-// Returns: the content as it was kept; nothing if the file is missing or was changed.
+// Returns: the kept content; nothing if the file is missing or was changed.
 std::optional<std::string> kept_content(const std::filesystem::path& kept);
 
 }  // namespace graze

@@ -9,8 +9,8 @@
 
 namespace graze {
 
-// The system's report on a process. state: 'R' running, 'D' waiting for a device, 'S' sleeping, 'T' or 't'
-// stopped, 'Z' ended; 0 if there is no such process.
+// A process's state and parent, from the operating system. state: 'R' running, 'D' waiting for a device, 'S' sleeping,
+// 'T' or 't' stopped, 'Z' ended; 0 if there is no such process.
 struct ProcessStatus {
   char state = '\0';
   pid_t parent = 0;

@@ -78,7 +78,7 @@ int run_program(const Program& program, const fs::path& scratch, std::string& ou
   for (const std::string& word : program.words) text += (text.empty() ? "" : " ") + word;
   int status = -1;
   if (supervisor.receive(&status, sizeof status) != sizeof status) {
-    // Ctrl+C goes to every process of the terminal. We may see the supervisor end before our own signal arrives.
+    // Ctrl+C goes to every process of the terminal. The supervisor may end before our own signal arrives.
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     if (stop_requested) throw Stopped();
     throw std::runtime_error(shown(text) + ": its supervisor ended before it did");

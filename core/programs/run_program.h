@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs programs that build something for graze, such as a compiler. No program outlives graze, however graze ends: a
-// supervisor runs each program and all its children, in a process namespace of their own if the system allows one.
+// Runs programs that build something for graze, such as a compiler. No program outlives graze, even if graze is killed:
+// a supervisor runs each program and all its children, in a separate process namespace if the system allows it.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace graze {
 
-// A new folder for unfinished files, which the destructor removes. The constructor removes folders of killed owners:
-// those that nobody locks, or, on a file system without locks, those older than a day.
+// A new folder for unfinished files, which the destructor removes. The constructor also removes folders whose owners
+// were killed: those without a lock, or, on a file system without locks, those older than a day.
 class Scratch {
  public:
   explicit Scratch(const std::filesystem::path& within);
@@ -25,21 +25,21 @@ class Scratch {
   int lock_ = -1;
 };
 
-// The program's file on the PATH, as a shell finds it; empty if there is none. An empty entry in the PATH is the
-// current folder.
+// The program's file, found on the PATH as a shell does; empty if there is none. An empty PATH entry is the current
+// folder.
 std::filesystem::path on_path(const std::string& program);
 
 struct Program {
   std::vector<std::string> words;  // run without a shell
   double seconds = 1800;           // time limit
-  bool namespaces = true;          // whether to use a process namespace if the system allows one
+  bool namespaces = true;          // whether to use a process namespace if the system allows it
   std::uint64_t mib = 8192;        // memory limit of all its processes together
 };
 
 // Runs the program with `scratch` for its temporary files. If graze is killed, the supervisor removes `scratch`.
 // Returns: the exit status, or 128 plus the signal, as a shell does; 127 if there is no such program.
 // output: the text that it wrote to both streams.   Throws: Stopped; std::runtime_error if it takes too long or too
-// much memory. Each file that it writes may be up to 1 GiB large.
+// much memory. It may write files of up to 1 GiB each.
 int run_program(const Program& program, const std::filesystem::path& scratch, std::string& output);
 
 // Runs the command in a shell, like run_program.   Returns: its output; its exit status in `status`.

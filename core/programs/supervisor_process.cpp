@@ -23,12 +23,12 @@ extern char** environ;
 namespace graze {
 namespace {
 
-constexpr int kLookEvery = 50;  // ms between two checks for a request to stop
-// Counts checks, not time: if the machine is so busy that the supervisor waits, this process waits as well.
+constexpr int kLookEvery = 50;  // ms between checks for a request to stop
+// Counts checks, not time: if the machine is so busy that the supervisor has to wait, this process waits as well.
 constexpr int kMostSilentLooks = 10'000 / kLookEvery;
 
 constexpr int kAboveShared = 64;            // above the descriptors that a supervisor gets
-constexpr rlim_t kFewestDescriptors = 128;  // of a process that runs foreign code
+constexpr rlim_t kFewestDescriptors = 128;  // that a process with foreign code needs
 
 int open_program(const char* name) {
   const int file = open(beside_this(name).c_str(), O_PATH | O_CLOEXEC),
@@ -60,7 +60,7 @@ SupervisorProcess::SupervisorProcess(const std::string& program, const std::vect
   socket_ = sockets[0];
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  // Moves the descriptors above those that the supervisor gets, so that no dup2 overwrites a descriptor.
+  // Moves the descriptors above those that the supervisor gets, so that no dup2 overwrites one of them.
   std::vector<int> from{output, sockets[1]};
   from.insert(from.end(), shared.begin(), shared.end());
   for (int& fd : from) fd = fd < 0 ? -1 : fcntl(fd, F_DUPFD_CLOEXEC, 16);
@@ -143,7 +143,7 @@ ssize_t SupervisorProcess::receive(void* to, std::size_t size) {
       ++looks;
     }
     if (stop_requested) throw Stopped();
-    stopped_ = is_stopped(process_);  // a subject without a namespace of its own can stop it
+    stopped_ = is_stopped(process_);  // a subject without a separate namespace can stop it
     if (stopped_) return -1;
   }
   silent_ = true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Graze's side of graze-subject-host, the supervisor of programs that graze did not write. The supervisor's file is
-// in the folder of the running program; subjects/README.md describes the supervisor.
+// Graze's side of graze-subject-host, the supervisor of programs that graze did not write (see subjects/README.md). Its
+// file is in the folder of the running program.
 #pragma once
 
 #include <sys/types.h>
@@ -15,24 +15,25 @@ namespace graze {
 // While graze waits, the supervisor sends this one-byte message at least once a second.
 inline constexpr char kAlive = 1;
 
-// A supervisor of a build tool reports this instead of an exit status.
+// A build tool's supervisor reports this instead of an exit status.
 inline constexpr int kTookTooMuchMemory = -2;
 
-// The file of a program in the folder of the running program.
+// The path of a program that is in the same folder as the running program.
 std::filesystem::path beside_this(const std::string& program);
 
-// The descriptors of the programs that a SupervisorProcess starts; -1 for a missing program. They are opened before any
-// foreign code runs, so that such code cannot replace the programs.
+// Descriptors of the programs that a SupervisorProcess starts; -1 for a missing program. They are opened before any
+// foreign code runs, so that it cannot replace the programs.
 const std::array<int, 2>& program_files();
 
 class SupervisorProcess {
  public:
-  // program: the supervisor's file name, in the folder of the running program. The supervisor gets an end of a socket
-  // as descriptor 3, and `shared` from 4 on. output: where it writes; -1 for /dev/null.   Throws: std::system_error.
+  // program: the supervisor's file name, in the folder of the running program. The supervisor gets one end of a socket
+  // as descriptor 3, and `shared` from 4 on. output: the descriptor it writes to; -1 for /dev/null.
+  // Throws: std::system_error.
   SupervisorProcess(const std::string& program, const std::vector<std::string>& arguments,
                     const std::vector<int>& shared, int output);
-  // Closes our end of the socket; the supervisor then ends everything that it started. Kills a supervisor that is
-  // silent for 10 s. After a request to stop, waits only 1 s and then lets the supervisor end on its own.
+  // Closes our end of the socket; the supervisor then ends everything that it started. Kills the supervisor if it is
+  // silent for 10 s. After a request to stop, waits only 1 s and then leaves the supervisor to end by itself.
   ~SupervisorProcess();
   SupervisorProcess(const SupervisorProcess&) = delete;
   SupervisorProcess& operator=(const SupervisorProcess&) = delete;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums and products are computed in double and rounded to the coordinate type once. If the result is not exact, the
+// Sums and products are computed in double and rounded once, to the coordinate type. If the result is not exact, the
 // move leads to a nearby pair.
 #include "core/simplify/moves.h"
 
@@ -18,7 +18,7 @@ namespace {
 template <class Real>
 using Pairs = std::vector<BasicPair<Real>>;
 
-// Bits of the finest lattice that coordinates are rounded to.
+// The number of bits in the finest lattice that coordinates are rounded to.
 template <class Real>
 constexpr int kLatticeBits = std::is_same_v<Real, float> ? 24 : 51;
 
@@ -36,7 +36,7 @@ void append(Pairs<Real>& moved, const BasicPair<Real>& pair) {
   if (is_finite(pair)) moved.push_back(pair);
 }
 
-// Appends the pair whose coordinate i is make(i), rounded, unless a coordinate overflows.
+// Appends the pair with coordinate i = make(i), rounded, unless a coordinate overflows.
 template <class Real, class Make>
 void append_each(Pairs<Real>& moved, Make make) {
   BasicPair<Real> result;
@@ -44,8 +44,7 @@ void append_each(Pairs<Real>& moved, Make make) {
   append(moved, result);
 }
 
-// 2^exponent, exactly; 0 or infinite beyond the exponents of double. Avoids a call to std::ldexp, which took half the
-// time of a move.
+// 2^exponent, exactly; 0 or infinite beyond double's exponents. Avoids std::ldexp, which took half the time of a move.
 double power_of_two(int exponent) {
   if (exponent < -1022 || exponent > 1023) return std::ldexp(1.0, exponent);
   return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
@@ -88,7 +87,7 @@ Point point(const BasicPair<Real>& pair, int i) {
   return {double{v.x}, double{v.y}, double{v.z}};
 }
 
-// Appends the pair in the frame of `origin` with axes u, v and w: unrounded, and rounded to each lattice.
+// Appends the pair in the frame with this origin and axes u, v and w: unrounded, and rounded to each lattice.
 template <class Real>
 void in_frame(const BasicPair<Real>& pair, const Point& origin, const Point& u, const Point& v, const Point& w,
               Pairs<Real>& moved) {
@@ -166,8 +165,8 @@ void replace_two(const BasicPair<Real>& pair, int first, Pairs<Real>& moved) {
   }
 }
 
-// Subtracts a multiple of one axis from another. The factor makes a vertex's coordinate 0, or is the whole number
-// nearest to such a factor.
+// Subtracts a multiple of one axis from another. The factor is one that makes some vertex's coordinate 0, or the whole
+// number nearest to it.
 template <class Real>
 void shear(const BasicPair<Real>& pair, int axis, int other, Pairs<Real>& moved) {
   for (int v = 0; v < 6; ++v) {
@@ -240,7 +239,7 @@ void replace_value(const BasicPair<Real>& pair, int at, Pairs<Real>& moved) {
   const Real* c = coordinates(pair);
   const Real value = c[at];
   const auto same = [value](Real x) { return std::fabs(x) == std::fabs(value); };
-  if (std::any_of(c, c + at, same)) return;  // done at its first occurrence
+  if (std::any_of(c, c + at, same)) return;  // already done for its first occurrence
   for (const Real with : replacements(pair, value)) {
     BasicPair<Real> result = pair;
     for (int i = at; i < kCoordinates; ++i) {

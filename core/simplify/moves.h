@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The single moves of the minimiser: the candidates that one step may make from a pair. The result of a move
-// may be any pair; the minimiser keeps only results that are simpler and fail in the same way.
+// The minimiser's single moves: the candidates for one step from a pair. A move may lead to any pair; the minimiser
+// keeps only results that are simpler and fail in the same way.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace graze {
 
-// The moves come in kinds. Each entry has a number of kinds and their moves, in order:
+// The moves come in kinds. Each entry below gives a number of kinds and what they do, in order:
 //   7   a vertex moved to the origin (none, then each); all coordinates rounded to a lattice of 1 to 24 bits (51 for
 //       doubles) or not at all; then scaled to whole numbers, or to a size of about one, or not
 //   6   a vertex replaced by another, by one of the 27 points with coordinates in {-1, 0, 1}, or by p + q - r of

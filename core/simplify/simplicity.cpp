@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The minimiser spends most of its time here, because it compares every result of a move with the current pair.
+// The minimiser spends most of its time here, because it compares the result of every move with the current pair.
 #include "core/simplify/simplicity.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace graze {
 namespace {
 
-// Bits of each count. There are at most 18 coordinates of 53 bits, with exponents up to 1074 from 0, and 6 vertices.
+// Bits of each count. A pair has at most 18 coordinates of 53 bits, with exponents at most 1074 from 0, and 6 vertices.
 constexpr int kWidths[] = {5, 5, 5, 10, 15, 3, 2, 5};
 
 constexpr int bits_below(int criterion) {
@@ -25,7 +25,7 @@ BitsOf<Real> rank(Real value) {
   return std::rotl(std::bit_cast<BitsOf<Real>>(value), 1);
 }
 
-// The number of distinct vertices; -0 and 0 are the same.
+// The number of distinct vertices; -0 equals 0.
 template <class Real>
 unsigned different_vertices(const BasicPair<Real>& pair) {
   const Vec3<Real>* v = pair.a;  // the six vertices, one after the other

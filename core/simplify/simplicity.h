@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A total order of pairs: simpler pairs are easier to read. The minimiser only moves to simpler pairs, so it must end.
+// A total order of pairs: simpler pairs are easier to read. The minimiser only moves to simpler pairs, so it ends.
 #pragma once
 
 #include <array>
@@ -26,11 +26,11 @@ struct Simplicity {
   auto operator<=>(const Simplicity&) const = default;
 };
 
-// Pairs of floats and of doubles share one order.   Requires: finite coordinates.
+// Pairs of floats and pairs of doubles share one order.   Requires: finite coordinates.
 template <class Real>
 Simplicity simplicity(const BasicPair<Real>& pair);
 
-// Returns simplicity(pair).counts if that is at most `most`. Otherwise returns, faster, some number above `most`.
+// Returns simplicity(pair).counts if that is at most `most`; otherwise some number above `most`, which is faster.
 // Requires: finite coordinates.
 template <class Real>
 std::uint64_t simplicity_counts(const BasicPair<Real>& pair, std::uint64_t most = ~std::uint64_t{0});
@@ -38,7 +38,7 @@ std::uint64_t simplicity_counts(const BasicPair<Real>& pair, std::uint64_t most 
 // The count of a criterion, 1 to 8.
 int count_of(const Simplicity& simplicity, int criterion);
 
-// Whether l comes before r in the order of their coordinates alone, criterion 9.
+// Whether l comes before r by criterion 9 alone, the order of their coordinates.
 template <class Real>
 bool simpler_coordinates(const BasicPair<Real>& l, const BasicPair<Real>& r);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The atomic operations of the engine, for device and host.
+// The engine's atomic operations, for device and host.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace graze::cuda {
 
-// Reads a published value. This thread then also sees everything that the publishing thread wrote before.
+// Reads a published value. This thread then also sees everything that the publishing thread wrote earlier.
 GRAZE_HD inline std::uint64_t load_published(const std::uint64_t* at) {
 #ifdef __CUDA_ARCH__
   std::uint64_t value;
@@ -19,7 +19,7 @@ GRAZE_HD inline std::uint64_t load_published(const std::uint64_t* at) {
 #endif
 }
 
-// Writes a value. Threads that read the value with load_published also see what this thread wrote before.
+// Writes a value. Threads that read the value with load_published also see what this thread wrote earlier.
 GRAZE_HD inline void publish(std::uint64_t* at, std::uint64_t value) {
 #ifdef __CUDA_ARCH__
   asm volatile("st.release.gpu.u64 [%0], %1;" : : "l"(at), "l"(value) : "memory");

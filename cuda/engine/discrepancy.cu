@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// This file is compiled without contraction, because only then the counts are equal to those of the host.
+// This file is compiled without contraction; otherwise its counts would differ from the host's.
 #include "cuda/engine/discrepancy.h"
 
 #include <tbb/blocked_range.h>
@@ -46,7 +46,7 @@ struct DeviceRecords {
   const void* values;
   std::uint64_t stride;
   const RecordedPath* paths;
-  const std::uint32_t *intersects, *declined;  // the verdicts of the lane itself
+  const std::uint32_t *intersects, *declined;  // the lane's own verdicts
 };
 
 template <int algorithm, class Real, class Pairs>
@@ -86,7 +86,7 @@ void launch_compare(Pairs pairs, const DeviceRecords& first, const DeviceRecords
       <<<(pairs.count + 127) / 128, 128>>>(pairs, first, second, degrees, axis, counts, maxima, unlike);
 }
 
-// Only lanes in double decide pairs of doubles, so the entries for float and pairs of doubles are never called.
+// Only lanes in double decide pairs of doubles, so the float entries for pairs of doubles are never called.
 template <class Pairs, int... algorithm>
 constexpr DeviceKernels<LaunchCompare<Pairs>> launchers(std::integer_sequence<int, algorithm...>) {
   return {std::array<LaunchCompare<Pairs>, 2>{launch_compare<algorithm, typename Pairs::Real, Pairs>,
@@ -104,7 +104,7 @@ __global__ void hash_runs(const Word* values, std::uint64_t stride, const Record
 // The CUDA lane whose kernels compute this lane's values: the lane itself, or cuda-nofma for a host lane.
 const Lane& on_device(const Lane& lane) { return lane.is_cuda() ? lane : *counterpart(lane, Variant::cuda_nofma); }
 
-// The questions that compare two values, as a set of bits: one bit for each question.
+// The questions that compare two values: one bit for each question.
 std::uint64_t two_values_of(int algorithm) {
   std::uint64_t bits = 0;
   const std::vector<Question>& questions = questions_of(algorithm);
@@ -112,7 +112,7 @@ std::uint64_t two_values_of(int algorithm) {
   return bits;
 }
 
-// A lane's records of a block of pairs on the device.
+// A lane's records for a block of pairs, on the device.
 class DeviceRun {
  public:
   explicit DeviceRun(const Lane& lane) : lane_(on_device(lane)) {
@@ -152,7 +152,7 @@ void for_each_block(const strata::PairSource& source, const WithBlock& with_bloc
   }
 }
 
-// Implements count_discrepancies for a source of pairs in this layout.
+// Implements count_discrepancies for pairs in this layout.
 template <class Pairs>
 void count_on_device(const Lane& first, const Lane& second, const strata::PairSource& source,
                      const DiscrepancySums& to) {

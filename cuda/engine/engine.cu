@@ -85,7 +85,7 @@ class CudaEngine final : public DeviceEngine {
     return result;
   }
 
-  // A block without memory of its own pairs. Sets the counters, which all blocks of a run share, to zero.
+  // A block without memory for its pairs. Sets the counters, which all blocks of a run share, to zero.
   template <class Block>
   Block begin(Axis axis) {
     const std::vector<LaneGroup>& groups = groups_[kOfDoubles<Block>];
@@ -164,7 +164,7 @@ class CudaEngine final : public DeviceEngine {
   }
 
   // Starts drawing the pairs and deciding them, both exactly and with the lanes. The pairs are finite, so the exact
-  // decision declines none. `wrong` receives these unused bits; a later step overwrites them.
+  // decision declines none; its unused `declined` bits go to `wrong`, which a later step overwrites.
   void decide(const EngineBlock& block, Buffers& buffers, const strata::PairSource& source) {
     drawing_.draw(source, block.first, block.pairs.count, buffers.coordinates.at_least(0), buffers.stream);
     buffers.exact.decide(block.pairs, buffers.truth.at_least(0), block.wrong, nullptr, buffers.stream);
@@ -199,7 +199,7 @@ class CudaEngine final : public DeviceEngine {
     check(cudaEventRecord(buffers.done, stream));
   }
 
-  // An upper bound on the number of pairs left to the host so far. The function does not wait for blocks in progress.
+  // An upper bound on the number of pairs left to the host so far. Does not wait for blocks in progress.
   std::uint32_t may_be_left(std::uint32_t block_pairs) const {
     std::uint32_t most = 0;
     for (const std::unique_ptr<Buffers>& buffers : buffers_) {
@@ -226,7 +226,7 @@ class CudaEngine final : public DeviceEngine {
 
   int ordinal_;
   std::vector<const Lane*> lanes_;
-  std::vector<LaneGroup> groups_[2];  // for pairs of float32, and for doubles
+  std::vector<LaneGroup> groups_[2];  // for float32 pairs, and for doubles
   Drawing drawing_;
   std::unique_ptr<Buffers> buffers_[kBlocksAtOnce];
   DeviceArray<LaneGroup> groups_on_device_[2];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The host's interface to the engine on a device. The device draws pairs of a stratum, with or without a scene, or
 // takes pairs from the host. The lanes and the exact decision decide the pairs, and the engine measures and counts
-// them. It returns only counts and chosen cases. This header includes no CUDA header, and compiles without nvcc.
+// them. It returns only counts and chosen cases. This header includes no CUDA headers and compiles without nvcc.
 #pragma once
 
 #include <cstdint>
@@ -24,14 +24,14 @@ struct LaneGroup {
   std::uint32_t first, count;
 };
 
-// The groups of these lanes. On pairs of float32, exact lanes never fail, so they are in no group. On doubles, an exact
-// lane of float32 fails if storing the pair as float32 changes its verdict.   Requires: lanes in the order of lanes().
+// The groups of these lanes. On float32 pairs, exact lanes never fail, so they are in no group. On doubles, an exact
+// float32 lane fails if storing the pair as float32 changes its verdict.   Requires: lanes in the order of lanes().
 std::vector<LaneGroup> lane_groups(std::span<const Lane* const> lanes, bool of_doubles = false);
 
-// The number of counters of each lane in an EngineResult.
+// The number of counters that each lane has in an EngineResult.
 constexpr std::uint32_t counters_of_lane(bool of_doubles) { return of_doubles ? 4 : 3; }
 
-// One signature of a subject's failures, and the pairs with this signature.
+// A signature of a subject's failures, and the pairs that have it.
 struct EngineSignature {
   Relation relation;
   Nesting nesting = Nesting::none;
@@ -39,15 +39,15 @@ struct EngineSignature {
   LaneGroup lanes{};
   std::vector<Verdict> verdicts;  // one for each lane of the group
   std::uint64_t count = 0;
-  std::vector<std::uint64_t> cases;  // the smallest indices of such pairs, sorted, at most kEngineCases
+  std::vector<std::uint64_t> cases;  // the smallest indices of these pairs, sorted, at most kEngineCases
 };
 
-// The result of a run. If the device cannot decide a pair's bucket, `undecided` lists the pair, and no count has it.
+// The result of a run. If the device cannot decide a pair's bucket, `undecided` lists the pair; counts exclude it.
 struct EngineResult {
   std::uint64_t done = 0;  // pairs judged; fewer than requested if `undecided` might have overflowed
-  // Counters, each an array that is indexed by bucket + kBucketMost: pairs, intersecting pairs, then for each lane its
-  // false positives, false negatives and declined pairs. On doubles, each lane also has its wrong verdicts with the
-  // cause `stored` (analysis/tally.h).
+  // Arrays of counters, each indexed by bucket + kBucketMost: pairs, intersecting pairs, then each lane's false
+  // positives, false negatives and declined pairs. On doubles, each lane also has its wrong verdicts with the cause
+  // `stored` (analysis/tally.h).
   std::vector<std::uint64_t> counts;
   std::vector<std::uint64_t> extreme_counts;  // counters by place_on_axis + kBucketMost; empty without an axis
   std::vector<EngineSignature> signatures;

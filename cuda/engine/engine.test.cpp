@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the engine's steps on the host and compares the result with a direct computation: the oracle's bucket of each
-// pair, and sums over the pairs.
+// Runs the engine's steps on the host and compares the result with a direct computation from the oracle's bucket of
+// each pair.
 #include "cuda/engine/engine.h"
 #include "core/counts.h"
 
@@ -29,7 +29,7 @@ Verdict truth_of(const Pair& pair) {
   return exact::intersects(coordinates(pair), coordinates(pair) + 9) ? Verdict::intersects : Verdict::disjoint;
 }
 
-// The verdict of a lane that declines or is wrong on one pair in 40 on average. Each lane does so on other pairs.
+// The verdict of a lane that declines or is wrong on one pair in 40 on average. The pairs differ from lane to lane.
 Verdict wrong_at_times(const Pair& pair, std::uint64_t lane) {
   std::uint64_t hash = lane;
   for (int k = 0; k < kCoordinates; ++k)
@@ -169,7 +169,7 @@ TEST_F(EngineTest, GroupsAreRunsOfOneAlgorithmWithoutTheExactLanes) {
   EXPECT_EQ(key_words({}), 1u);
 }
 
-// On doubles, an exact lane of float32 fails if storing the pair as float32 changes its verdict.
+// On doubles, an exact float32 lane fails if storing the pair as float32 changes its verdict.
 TEST_F(EngineTest, GroupsOnDoublesHoldTheExactLanes) {
   const std::vector<LaneGroup> groups = lane_groups(lanes_, true);
   ASSERT_EQ(groups.size(), 4u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The data of a block of pairs that the engine's steps share, in device or host memory, and the keys of signatures.
+// A block of pairs with the data that the engine's steps share, in device or host memory; also the signatures' keys.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace graze::cuda {
 
-inline constexpr std::int8_t kUndecided = 127;  // marks a bucket or an extreme that is not known
+inline constexpr std::int8_t kUndecided = 127;  // marks an unknown bucket or extreme
 
 // A lane's verdicts: bit i % 32 of word i / 32 belongs to pair i.
 struct LaneWords {
@@ -26,7 +26,7 @@ struct LaneTable {
   std::uint32_t group_count;
 };
 
-// Indices of the pairs that are left to the host. `indices` has room for `size`; `count` includes those that do not
+// Indices of the pairs left to the host. `indices` has room for `size` of them; `count` also counts those that do not
 // fit.
 struct IndexList {
   std::uint64_t* indices;
@@ -67,7 +67,7 @@ struct EngineBlock {
   const std::uint32_t* truth;
   std::uint32_t* wrong;  // pairs on which some lane is wrong
   std::int8_t* buckets;
-  std::uint16_t* relations;  // with nestings; in the end, known for every pair on which some lane is wrong
+  std::uint16_t* relations;  // with nestings; at the end, known for each pair on which some lane is wrong
   LaneTable lanes;
   PairList lists[kEngineLists];
   SignatureTable signatures;
@@ -79,12 +79,12 @@ struct EngineBlock {
   std::uint64_t* disagreements;
 };
 
-// A block of pairs of doubles. `pairs` has these pairs rounded to float32; all other members concern the doubles.
+// A block of pairs of doubles. `pairs` has these pairs rounded to float32; all other members are about the doubles.
 struct DoubleEngineBlock : EngineBlock {
   static constexpr std::uint32_t kCountersOfLane = counters_of_lane(true);
 
   DeviceDoubles doubles;
-  LaneWords stored;        // the exact verdicts of the stored pairs; declined: beyond the range of float32
+  LaneWords stored;        // exact verdicts of the stored pairs; declined: beyond float32's range
   std::uint32_t* changed;  // pairs that float32 cannot store, or whose verdict changes when float32 stores them
   const std::uint32_t* const* changed_for_lane;  // `changed` for lanes in float32, null for lanes in double
 };
@@ -98,7 +98,7 @@ GRAZE_HD constexpr std::size_t engine_counters(std::size_t lanes) {
 
 GRAZE_HD inline bool bit(const std::uint32_t* words, std::uint32_t i) { return words[i / 32] >> (i % 32) & 1; }
 
-// The result of comparing a lane's verdict with the truth: two bits of a key.
+// A lane's verdict compared with the truth, as two bits of a key.
 enum class Mark : std::uint8_t { right, false_positive, false_negative, declined };
 inline constexpr std::uint32_t kMarksOfWord = 32;
 
@@ -108,7 +108,7 @@ GRAZE_HD inline Mark mark_of(const LaneWords& lane, std::uint32_t i, bool truth)
   return says == truth ? Mark::right : says ? Mark::false_positive : Mark::false_negative;
 }
 
-// Whether a mark in this word of a key is a wrong verdict. `declined` is not wrong.
+// Whether any mark in this word of a key stands for a wrong verdict. `declined` is not wrong.
 GRAZE_HD constexpr bool any_wrong(std::uint64_t marks) { return ((marks ^ marks >> 1) & 0x5555555555555555u) != 0; }
 static_assert(static_cast<int>(Mark::right) == 0 && static_cast<int>(Mark::declined) == 3);
 
@@ -122,7 +122,7 @@ constexpr Verdict verdict_of(Mark mark, Verdict truth) {
 // The number of words for the marks of a group with this many lanes.
 constexpr std::uint32_t mark_words(std::uint32_t lanes) { return (lanes + kMarksOfWord - 1) / kMarksOfWord; }
 
-// The first word of a signature's key, which has everything except the marks. group: the index of the lanes' group.
+// The first word of a signature's key: everything except the marks. group: the index of the lanes' group.
 GRAZE_HD constexpr std::uint64_t packed(std::uint32_t group, std::uint16_t relation, Bucket bucket) {
   return static_cast<std::uint64_t>(bucket + kBucketMost) | std::uint64_t{relation} << 8 | std::uint64_t{group} << 32;
 }
@@ -141,7 +141,7 @@ constexpr SignatureHead unpacked(std::uint64_t word) {
           unpacked_nesting(relation), bucket};
 }
 
-// The marks for pair i of up to 32 lanes of the group, from the group's lane 32 * word on.
+// The marks of pair i for up to 32 lanes of the group, starting with the group's lane 32 * word.
 GRAZE_HD inline std::uint64_t marks(const EngineBlock& block, const LaneGroup& group, std::uint32_t word,
                                     std::uint32_t i, bool truth) {
   const std::uint32_t from = word * kMarksOfWord;
@@ -151,8 +151,8 @@ GRAZE_HD inline std::uint64_t marks(const EngineBlock& block, const LaneGroup& g
   return result;
 }
 
-// The key of pair i's signature for one group of lanes. The marks after the first word are computed again at each use,
-// so that the number of registers does not depend on the number of lanes.
+// The key of pair i's signature for one group of lanes. Marks after the first word are recomputed at each use, so that
+// the number of registers does not depend on the number of lanes.
 struct SignatureKey {
   const EngineBlock& block;
   LaneGroup group;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps of cuda/engine/engine_steps.h as kernels with one thread for each pair. The tally has one warp for each
-// word.
+// The steps of cuda/engine/engine_steps.h as kernels with one thread per pair. The tally has one warp per word.
 #include "cuda/engine/engine_kernels.cuh"
 
 #include "cuda/engine/engine_steps.h"
@@ -29,7 +28,7 @@ __global__ void __launch_bounds__(kThreads, Step::kThreadBlocks) for_pairs(Block
   take<Step>(block, blockIdx.x * kThreads + threadIdx.x);
 }
 
-// The threads of a block take its disjoint pairs first, then the others, so that few warps diverge.
+// A block's first threads take its disjoint pairs, the other threads the intersecting ones, so few warps diverge.
 template <class Step, class Block>
 __global__ void __launch_bounds__(kThreads, Step::kThreadBlocks) for_pairs_by_verdict(Block block) {
   __shared__ std::uint16_t order[kThreads];
@@ -56,8 +55,8 @@ __global__ void __launch_bounds__(kThreads, Step::kThreadBlocks) for_listed(Bloc
   }
 }
 
-// Counts one pair for each thread in the mask; all these threads call this function. One thread counts all pairs of a
-// key.
+// Counts one pair for each thread in the mask; all these threads must call it. One thread counts all pairs with the
+// same key.
 __device__ void add_together(const SignatureTable& table, const SignatureKey& key, std::uint64_t index, unsigned mask) {
   const unsigned like = __match_any_sync(mask, hash_of(key, table.key_words));
   const int first = __ffs(static_cast<int>(like)) - 1;
@@ -87,7 +86,7 @@ __global__ void __launch_bounds__(kThreads) add_signatures(EngineBlock block, En
     const unsigned threads = __ballot_sync(0xffffffffu, has_some);
     if (threads == 0) continue;
     const std::uint32_t some = __shfl_sync(0xffffffffu, i, __ffs(static_cast<int>(threads)) - 1);
-    if (!has_some) i = some;  // the key of a pair with signatures is read, but not added
+    if (!has_some) i = some;  // reads the key of some pair with signatures, but does not add it
     for (std::uint32_t g = 0; g < block.lanes.group_count; ++g) {
       const SignatureKey key(block, g, i);
       const bool adds = has_some && key.any_wrong();
@@ -104,8 +103,8 @@ template <class Block>
 constexpr std::uint32_t kLanesAtOnce =
     (kSharedBytes / sizeof(std::uint32_t) / kBucketCount - kCountersOfPairs) / Block::kCountersOfLane;
 
-// Counts pairs by bucket or by extreme. One warp counts a word; for each bucket, its first thread counts all pairs of
-// that bucket. Thread blocks with the same y count the same lanes, as many as shared memory has counters for.
+// Counts pairs by bucket or by extreme. One warp counts a word; for each bucket, the first of its threads counts all
+// the bucket's pairs. Thread blocks with the same y count the same lanes, as many as shared memory has counters for.
 template <class Block>
 __global__ void __launch_bounds__(kThreads) tally(Block block, bool by_extreme) {
   extern __shared__ std::uint32_t counts[];

@@ -8,9 +8,9 @@
 
 namespace graze::cuda {
 
-// Starts all steps on the block.   Requires: truth and the lanes' words are written, and the lists are empty.
+// Starts all steps on the block.   Requires: truth and the lanes' words have been written, and the lists are empty.
 void launch_engine(const EngineBlock& block, cudaStream_t stream);
-// Requires: the words of `stored` are written too.
+// Requires: the words of `stored` have also been written.
 void launch_engine(const DoubleEngineBlock& block, cudaStream_t stream);
 
 }  // namespace graze::cuda

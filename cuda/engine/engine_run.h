@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of an engine run that are the same on device and host: its limits, the loop over blocks, and the result
-// from the accumulated totals.
+// The parts of an engine run that device and host share: limits, the loop over blocks, and the result from the totals.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +17,7 @@ struct EngineLimits {
   std::uint32_t undecided = 1u << 26;    // most pairs left to the host
 };
 
-// The number of words in a key with room for the marks of the largest of these groups.
+// The number of words in a key that has room for the marks of the largest of these groups.
 std::uint32_t key_words(std::span<const LaneGroup> groups);
 
 // Calls judge(b, first, count) for blocks b = 0, 1, … of pairs [first, first + count). After each block it calls
@@ -31,8 +30,8 @@ std::uint64_t run_blocks(const EngineLimits& limits, std::uint64_t first, std::u
 
 // The totals over all blocks of a run, in host memory.
 struct EngineTotals {
-  std::uint32_t left = 0, full = 0;      // pairs left to the host; whether a signature found no free row
-  std::vector<std::uint64_t> undecided;  // the indices of pairs left to the host, as many as fit
+  std::uint32_t left = 0, full = 0;      // pairs left to the host; whether some signature found no free row
+  std::vector<std::uint64_t> undecided;  // indices of pairs left to the host, as many as fit
   std::vector<std::uint64_t> rows;       // rows of the SignatureTable
   std::vector<std::uint64_t> counts;     // counts by bucket, counts by extreme, then the disagreements
 };

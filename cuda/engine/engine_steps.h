@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine's steps on a block of pairs: the same code on a device, where each step is a kernel, and on the host.
-// The cheapest sufficient bounds decide the bucket of each pair's margin. Each step lists the pairs that it leaves
+// The engine's steps on a block of pairs. The same code runs on a device, where each step is a kernel, and on the host.
+// Each pair's margin bucket is decided by the cheapest bounds that suffice. Each step lists the pairs that it leaves
 // open, so that a warp does not wait for one hard pair in 32. The relation is computed only if a lane is wrong or the
 // margin may be zero. The last steps count the pairs.
 #pragma once
@@ -21,7 +21,7 @@
 namespace graze::cuda {
 inline namespace GRAZE_FP {
 
-// kThreadBlocks: the number of thread blocks that a multiprocessor should run at once; it limits the step's registers.
+// kThreadBlocks: how many thread blocks a multiprocessor should run at once; this limits the step's registers.
 
 struct MarkWrong {
   GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t word) const {
@@ -84,8 +84,8 @@ GRAZE_HD Bucket bucket_within(const Coordinate* c, const MarginBounds& bounds, V
   return are_apart_by(c, c + 9, bounds.direction, upper) ? make_bucket(1, upper - ulp) : kUndecided;
 }
 
-// The bucket from bounds along all axes and between all features, computed in numbers of this type; kUndecided if they
-// do not decide it.   Requires: a nonzero margin.
+// The bucket from bounds along all axes and between all features, computed in type Real; kUndecided if they do not
+// decide it.   Requires: a nonzero margin.
 template <class Real>
 GRAZE_HD Bucket bucket_by_bounds(const float* c, Verdict verdict) {
   const Pair pair = pair_of(c);
@@ -115,7 +115,7 @@ GRAZE_HD bool nest_quickly(const EngineBlock& block, std::uint32_t i, const Real
   return !bit(block.wrong, i) || exact::detail::nesting_quickly(c, c + 9, r, nesting);
 }
 
-// Stores the relation. If the bucket of an intersecting pair is open, sets it for a margin of zero, or lists the pair.
+// Stores the relation. If an intersecting pair's bucket is open, sets it if the margin is zero, else lists the pair.
 GRAZE_HD inline void settle(const EngineBlock& block, std::uint32_t i, const Relation& r, Nesting nesting) {
   block.relations[i] = packed(r, nesting);
   if (block.buckets[i] != kUndecided || !r.intersects()) return;
@@ -128,7 +128,7 @@ using RelatingNumbers =
     exact::detail::NumberKinds<exact::detail::DoubleNumbers, exact::detail::ResidueNumbers, exact::detail::IntNumbers,
                                exact::detail::LongNumbers, exact::detail::WideNumbers>;
 
-// The list of the smallest kind of these numbers that represents the pair.
+// The list for the smallest kind of these numbers that can represent the pair.
 GRAZE_HD inline int list_by_numbers(const float* c) {
   return kByDoubles + RelatingNumbers::place(exact::detail::grid_of(c, c + 9));
 }
@@ -198,9 +198,9 @@ struct PlaceExtreme {
   }
 };
 
-// The steps for blocks of doubles. Single precision measures wide margins on the pair rounded to float32. Bounds in
-// double-double numbers measure other margins. If neither decides the bucket, the pair is left to the host. The same
-// applies if the relation needs more bits than the numbers `RelatingDoubles` have.
+// The steps for blocks of doubles. Single precision measures wide margins on the pair rounded to float32; double-double
+// bounds measure other margins. If neither decides the bucket, or if the relation needs more bits than RelatingDoubles
+// has, the pair is left to the host.
 using RelatingDoubles = exact::detail::LongNumbers;
 
 struct FindChanged {
@@ -248,7 +248,7 @@ struct MeasureDoubles {
       bucket = bucket_within(&scaled.pair.a[0].x, bounds, verdict, scaled.ulp);
       if (bucket == kUndecided) return leave_to_host(block, i);
     } else if (!bucket_from_bounds(bounds, verdict, scaled.ulp, bucket)) {
-      bucket = kUndecided;  // possibly, the margin is zero
+      bucket = kUndecided;  // the margin may be zero
     }
     block.buckets[i] = bucket;
     if (bucket == kUndecided || bit(block.wrong, i)) block.lists[kRelated].add(i);
@@ -298,7 +298,7 @@ struct PlaceExtremeOfDoubles {
 };
 
 // Calls add(counter, pairs) for each counter of the pairs and of lanes [from, to). `pairs` has a bit for each pair of
-// the word that counts. same: the pairs to count, all in one bucket. The counters have the order of EngineResult and
+// the word that counts. same: the pairs to count, all in the same bucket. Counters are in the order of EngineResult and
 // start with lane `from`.
 template <class Block, class Add>
 GRAZE_HD void count_word(const Block& block, std::uint32_t word, std::uint32_t same, std::uint32_t from,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An engine that runs the steps of cuda/engine/engine_steps.h on one thread of the CPU, in the same order. Tests use it
-// to check the engine's logic without a device.
+// An engine that runs the steps of cuda/engine/engine_steps.h in the same order on one CPU thread. Tests use it to
+// check the engine's logic without a device.
 #pragma once
 
 #include <memory>

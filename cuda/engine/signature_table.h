@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hash table of signatures with open addressing, used by many threads at once, on host and device. All keys of a
-// table have the same number of 64-bit words. The first word of a row is its state: free, being written by the thread
-// that claimed it, or published. So no thread reads an incomplete key. A thread that finds a row being written waits.
-// On a device, this wait needs independent thread scheduling (sm_70 and later).
+// A hash table of signatures with open addressing that many threads use at once, on host and device. All keys of a
+// table have the same number of 64-bit words. A row's first word is its state: free, being written by the thread that
+// claimed it, or published. A thread that finds a row being written waits, so no thread reads an incomplete key. On a
+// device, this wait needs independent thread scheduling (sm_70 and later).
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct SignatureTable {
 inline constexpr std::uint64_t kFree = 0, kBeingWritten = 1, kPublished = 3, kStateBits = 3;
 inline constexpr std::uint64_t kNoCase = ~std::uint64_t{0};
 
-// The hash of a key of `words` words, of which word k is key.word(k). The two lowest bits of the hash are zero.
+// The hash of a key that has `words` words; key.word(k) is word k. The two lowest bits of the hash are zero.
 template <class Key>
 GRAZE_HD std::uint64_t hash_of(const Key& key, std::uint32_t words) {
   std::uint64_t hash = 0;
@@ -74,14 +74,13 @@ GRAZE_HD std::uint64_t* find_row(const SignatureTable& table, const Key& key) {
 GRAZE_HD inline void keep(const SignatureTable& table, std::uint64_t* row, std::uint64_t index) {
   std::uint64_t* cases = table.cases(row);
   if (index >= load_relaxed(&cases[kEngineCases - 1])) return;
-  // The larger index moves to the next place. So these places receive the smallest indices, in ascending order.
+  // The larger index moves to the next place, so the places receive the smallest indices in ascending order.
   for (int k = 0; k < kEngineCases; ++k) {
     const std::uint64_t old = lower_to(&cases[k], index);
     index = old > index ? old : index;
   }
 }
 
-// Counts a pair with this key.
 template <class Key>
 GRAZE_HD void add_pair(const SignatureTable& table, const Key& key, std::uint64_t index) {
   std::uint64_t* row = find_row(table, key);

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::uint32_t kWords = 5;
 
-// A key whose number determines all its words, so that the test detects an incomplete key. A read of word 2 lets other
-// threads run.
+// A key whose number determines all its words, so the test detects incomplete keys. Reading word 2 lets other threads
+// run.
 struct TestKey {
   std::uint64_t number;
   std::uint64_t word(std::uint32_t k) const {
@@ -39,7 +39,7 @@ class SignatureTableTest : public testing::Test {
   std::uint32_t full_ = 0;
 };
 
-// All threads add the same key at the same time, so that they find rows that are being written.
+// All threads add the same key at the same time, so they find rows that are being written.
 TEST_F(SignatureTableTest, ManyThreadsNeverStoreHalfAKeyNorOneTwice) {
   constexpr std::uint64_t kThreadCount = 4, kKeys = 200, kPairs = 300;
   const SignatureTable t = table(1024);

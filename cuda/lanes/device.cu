@@ -37,7 +37,7 @@ struct KernelTables {
   const VariantKernels* kernels = nullptr;
   const WithinKernels* within = nullptr;
   const RecordKernels* record = nullptr;
-  const BoundKernels* bound = nullptr;  // null for fast math, which has no error bound
+  const BoundKernels* bound = nullptr;  // null for fast math, which has no valid error bound
 };
 
 const KernelTables& tables_of(Variant variant) {
@@ -74,7 +74,7 @@ Launch of_lane(const DeviceKernels<Launch>& table, const Lane& lane) {
   return table[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)];
 }
 
-// The coordinates of a block of pairs in the layout of the kernels, on the host and on the device.
+// A block's coordinates in the kernels' layout, on the host and on the device.
 template <class Real>
 struct Columns {
   std::vector<Real> staging;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host's interface to the device lanes. This header includes no CUDA header, and compiles without nvcc.
+// The host's interface to the device lanes. This header includes no CUDA headers and compiles without nvcc.
 #pragma once
 
 #include <cstddef>

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kLaunches = 4;  // launches timed together, because each launch costs a few microseconds
 
-// The first kernel that `work` submits to the stream; no kernel runs.   Requires: `work` allocates nothing.
+// The first kernel that `work` submits to the stream. Nothing is run.   Requires: `work` allocates nothing.
 template <class Work>
 const void* first_kernel(cudaStream_t stream, const Work& work) {
   cudaGraph_t graph;
@@ -36,7 +36,7 @@ const void* first_kernel(cudaStream_t stream, const Work& work) {
   return kernel;
 }
 
-// Pairs in the layout of the kernels, in device memory and in pinned memory, from which copies have the link's speed.
+// Pairs in the kernels' layout, in device memory and in pinned memory, from which copies run at the link's speed.
 template <class Real, class Pairs>
 class Columns {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Owners of memory, streams and events, and the check of every CUDA call. Device code only.
+// Owner types for memory, streams and events, and the check of every CUDA call. Device code only.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -84,7 +84,7 @@ class Event {
   cudaEvent_t event_ = nullptr;
 };
 
-// The milliseconds from the start to the end of the work that `work` submits to the stream.
+// Milliseconds from the start to the end of the work that `work` submits to the stream.
 template <class Work>
 double timed(cudaStream_t stream, const Work& work) {
   const Event start, stop;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The layouts of a block of pairs in device memory. A block is the first parameter of the kernels and of their twins.
+// How blocks of pairs are laid out in device memory. A block is the first parameter of the kernels and of their twins.
 #pragma once
 
 #include <cstdint>
 
 namespace graze::cuda {
 
-// A block of `count` pairs of float32: 18 arrays of `stride` floats, ax0[] ay0[] … bz2[].
+// A block of `count` float32 pairs: 18 arrays of `stride` floats, ax0[] ay0[] … bz2[].
 struct DevicePairs {
   using Real = float;
   const float* coordinates;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exact decision of pairs of doubles: the filter with one thread for each pair, then four steps for the pairs that
-// it leaves open.
+// The exact decision of pairs of doubles: the filter with one thread per pair, then four steps for the pairs that it
+// leaves open.
 #include "cuda/lanes/exact_steps.cuh"
 
 namespace graze::cuda {
@@ -8,8 +8,8 @@ namespace {
 
 using namespace exact::detail;
 
-// Decides with an error bound for each determinant. If the bound leaves a determinant's sign open, multiword integers
-// compute the determinant.
+// Decides with an error bound for each determinant. If the bound leaves a determinant's sign open, computes it in
+// multiword integers.
 template <class Kinds>
 __global__ void __launch_bounds__(kThreads) decide_each_closely(ArrayPairs pairs, PairList from, PairList left,
                                                                 std::uint32_t* intersects, unsigned long long* stages) {

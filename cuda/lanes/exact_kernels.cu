@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exact decision of pairs of float32. The filter runs first, with one thread for each pair; it needs few registers.
-// The steps of exact_steps.cuh then decide the pairs that the filter leaves open.
+// The exact decision of float32 pairs. The filter runs first, with one thread per pair; it needs few registers. The
+// steps of exact_steps.cuh then decide the pairs that the filter leaves open.
 #include "cuda/lanes/exact_kernels.cuh"
 
 #include "cuda/lanes/exact_steps.cuh"

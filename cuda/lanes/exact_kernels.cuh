@@ -42,21 +42,21 @@ inline constexpr int kDoubleLists = 4;
 void launch_double_steps(const ArrayPairs& pairs, const PairList* lists, std::uint32_t* intersects,
                          unsigned long long* stages, cudaStream_t stream);
 
-// The filter fills two lists of pairs. The others are for pairs that a step leaves to the next step.
+// The filter fills two lists of pairs. The other lists are for pairs that one step leaves to the next.
 inline constexpr int kExactLists = 6;
 
-// The exact decision of blocks of pairs, with the memory for the lists between its steps.
+// The exact decision of blocks of pairs, with memory for the lists between its steps.
 class DeviceExact {
  public:
-  // Starts kernels that write bit i % 32 of word i / 32 of `intersects` and `declined` for pair i. They write the words
-  // of whole thread blocks. Unless `stages` is null, they add to stages[s] the number of pairs that stage s decided.
+  // Starts kernels that write bit i % 32 of word i / 32 of `intersects` and `declined` for pair i. They write words for
+  // whole thread blocks. Unless `stages` is null, they add to stages[s] the number of pairs that stage s decided.
   void decide(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, unsigned long long* stages,
               cudaStream_t stream);
   // Does the same for pairs of doubles.
   void decide(DeviceDoubles pairs, std::uint32_t* intersects, std::uint32_t* declined, unsigned long long* stages,
               cudaStream_t stream);
-  // Decides only the pairs whose bit in `declined` is set, which a filter left open. Pairs with a coordinate that is
-  // not finite remain declined.
+  // Decides only the pairs whose bit in `declined` is set, because a filter left them open. Pairs with a coordinate
+  // that is not finite remain declined.
   void decide_declined(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream);
   void decide_declined(DeviceDoubles pairs, std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream);
 

@@ -27,7 +27,7 @@ __device__ void count(unsigned long long* stages, Stage stage, std::uint32_t pai
   if (stages && pairs) atomicAdd(&stages[static_cast<int>(stage)], static_cast<unsigned long long>(pairs));
 }
 
-// Adds the counts of all threads of a warp. All threads of the warp call this function.
+// Adds the counts of all threads of a warp. All threads of the warp must call this function.
 __device__ void count_of_warp(unsigned long long* stages, Stage stage, std::uint32_t pairs) {
   for (int far = 16; far > 0; far /= 2) pairs += __shfl_xor_sync(0xffffffffu, pairs, far);
   if (threadIdx.x % 32 == 0) count(stages, stage, pairs);
@@ -35,12 +35,12 @@ __device__ void count_of_warp(unsigned long long* stages, Stage stage, std::uint
 
 __device__ void set_bit(std::uint32_t* words, std::uint32_t i) { atomicOr(&words[i / 32], 1u << i % 32); }
 
-// Whether floats represent the pair's numbers exactly. Gives the same result as SingleNumbers::holds on the pair's
-// grid, in fewer instructions.
+// Whether floats represent the pair's numbers exactly. Returns the same as SingleNumbers::holds on the pair's grid,
+// with fewer instructions.
 __device__ bool floats_hold(const float* c) {
   float most = 0;
   for (int i = 0; i < kCoordinates; ++i) most = fmaxf(most, fabsf(c[i]));
-  // All coordinates * 2^-exponent are less than 2^kSingleBits.
+  // All coordinates times 2^-exponent are less than 2^kSingleBits.
   const int exponent = static_cast<int>(exact::detail::bits_of(most) >> 23) - 126 - exact::detail::kSingleBits;
   if (exponent < -30 || exponent > 30) return false;
   const float scale = __uint_as_float(static_cast<unsigned>(127 - exponent) << 23);
@@ -143,8 +143,8 @@ __global__ void __launch_bounds__(kThreads, 3)
   });
 }
 
-// Decides with the smallest number type of Kinds that holds a pair's grid. kThreadBlocks is the number of thread blocks
-// that a multiprocessor should run at once; it limits the registers.
+// Decides with the smallest number type of Kinds that holds a pair's grid. kThreadBlocks: how many thread blocks a
+// multiprocessor should run at once; this limits the registers.
 template <class Kinds, int kThreadBlocks, class Pairs>
 __global__ void __launch_bounds__(kThreads, kThreadBlocks)
     decide_by(Pairs pairs, PairList from, PairList left, std::uint32_t* intersects, unsigned long long* stages) {
@@ -158,7 +158,7 @@ __global__ void __launch_bounds__(kThreads, kThreadBlocks)
   });
 }
 
-// Decides in 128-bit integers if they represent the pair's numbers, else with one error bound for each determinant.
+// Decides in 128-bit integers if they represent the pair's numbers, otherwise with an error bound for each determinant.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads, 2)
     decide_on_int128(Pairs pairs, PairList from, PairList left, std::uint32_t* intersects, unsigned long long* stages) {
@@ -191,7 +191,7 @@ __global__ void __launch_bounds__(kThreads, 2)
   });
 }
 
-// Decides with double-double bounds. If they leave a determinant's sign open, wide integers compute the determinant.
+// Decides with double-double bounds. If they leave a determinant's sign open, computes it in wide integers.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads) decide_one_by_one(Pairs pairs, PairList from, PairList left,
                                                               std::uint32_t* intersects, unsigned long long* stages) {
@@ -207,7 +207,7 @@ __global__ void __launch_bounds__(kThreads) decide_one_by_one(Pairs pairs, PairL
 constexpr int kBlocksForLeft = 1024;
 
 // Decides pairs whose grid is too large for the small number types. left[0] lists the pairs to decide. left[1] to
-// left[3] must be empty: each is for the pairs that a step leaves to the next step.
+// left[3] must be empty: each is for the pairs that one step leaves to the next.
 template <class Pairs>
 void launch_large_steps(const Pairs& pairs, const PairList* left, std::uint32_t* intersects, unsigned long long* stages,
                         cudaStream_t stream) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Kernels that draw pairs, one kernel for each stratum and coordinate type. A single kernel would need the registers
-// and the stack of the most expensive stratum. The kernels are compiled with -fmad=false, because the pairs have the
-// same bits as on the host only without contraction.
+// and the stack of the most expensive stratum. The kernels are compiled with -fmad=false: with contraction, the pairs
+// would not have the same bits as on the host.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -43,7 +43,7 @@ __global__ void generate_pairs_in(const __grid_constant__ strata::Scene scene, R
                 [&](std::uint64_t index) { return strata::generate_one<stratum, DrawsOf<Real>>(seed, scene, index); });
 }
 
-// A kernel that draws pairs of a stratum. In an array of such kernels, the index is the stratum's number in kStrata.
+// A kernel that draws pairs of a stratum. Arrays of these kernels are indexed by the stratum's number in kStrata.
 template <class Real>
 using Generate = void (*)(Real*, std::uint32_t, std::uint64_t, std::uint64_t);
 template <class Real, std::size_t... kStratum>

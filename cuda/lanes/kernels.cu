@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The device lanes, and the same algorithms with a trace of their intermediate values. This file is compiled once for
 // each device variant, with its flags and in its own namespace GRAZE_FP. Define nothing else here, or the linker would
-// mix the variants. The twins are generated from the PTX of this file: see cuda/twin/twin.h.
+// mix the variants. The twins are generated from this file's PTX: see cuda/twin/twin.h.
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/trace.h"
 #include "cuda/lanes/vote.cuh"

@@ -19,7 +19,7 @@ namespace graze::cuda {
 inline constexpr int kThreads = 256;
 
 // Starts a kernel that writes bit i % 32 of word i / 32 of `intersects` and `declined` for pair i. The kernel writes
-// the words of whole thread blocks.
+// words for whole thread blocks.
 using LaunchDecide = void (*)(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined,
                               cudaStream_t stream);
 // Starts a kernel that writes each pair's trace hash; see cuda/lanes/trace.h.

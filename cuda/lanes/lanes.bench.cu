@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures the pairs per second of each CUDA lane, by stratum, on pairs in device memory. Lanes in double also decide
-// pairs of doubles. Two benchmarks show the limits of the memory: a copy, and a kernel that only reads the pairs (72 or
-// 144 bytes each) and writes one bit for each. Before it is measured, the exact lane must give the host's verdicts on a
+// pairs of doubles. Two benchmarks show the memory's limits: a copy, and a kernel that only reads the pairs (72 or 144
+// bytes each) and writes one bit for each. Before the exact lane is measured, it must give the host's verdicts on a
 // sample. Without a device, the program prints a line and succeeds.
 #include <benchmark/benchmark.h>
 #include <tbb/parallel_for.h>
@@ -132,11 +132,11 @@ void decide(Resident<Real>& resident, unsigned long long (&stages)[exact::kStage
   check(cudaMemcpy(stages, counts, sizeof stages, cudaMemcpyDeviceToHost));
 }
 
-// Compares device and host on rounds [first, end) of every stratum; a round has kPairs pairs. Prints a line for each
+// Compares device and host in rounds [first, end) of every stratum; a round has kPairs pairs. Prints a line for each
 // stratum, with hashes of the verdicts.   Returns: whether all verdicts are equal.
 template <class Real>
 bool device_is_host(std::uint64_t first, std::uint64_t end) {
-  if (first >= end) throw std::invalid_argument("the rounds are empty: expected FIRST below END");
+  if (first >= end) throw std::invalid_argument("there are no rounds to compare: FIRST must be less than END");
   const Lane& host = *find_lane(std::is_same_v<Real, float> ? "exact/f32/cpu" : "exact/f64/cpu");
   const auto hashed = [](const Bits& bits, std::uint64_t hash) {
     return fnv1a({reinterpret_cast<const char*>(bits.data()), bits.size() * sizeof bits[0]}, hash);
@@ -158,7 +158,7 @@ bool device_is_host(std::uint64_t first, std::uint64_t end) {
                         [&](std::size_t p) { parts[p] = by_host(host, columns, kPairs, p * kPart, kPart); });
       Bits of_host;
       for (const Bits& part : parts) of_host.insert(of_host.end(), part.begin(), part.end());
-      Bits of_device(kPairs / 64);  // no pair may be declined, so declined pairs count as differences
+      Bits of_device(kPairs / 64);  // no pair may be declined, so each declined pair is a difference
       check(cudaMemcpy(of_device.data(), resident.declined_bits(), kPairs / 8, cudaMemcpyDeviceToHost));
       for (const std::uint64_t declined : of_device) differ += static_cast<std::uint64_t>(std::popcount(declined));
       of_device = by_device(resident, kPairs);
@@ -194,7 +194,7 @@ void measure_lane(benchmark::State& state, Resident<Real>& resident, const strat
   });
 }
 
-// Measures the total time of a sweep over 64 tolerances, which includes the time to draw and judge the pairs.
+// Measures a sweep over 64 tolerances, including the time to draw and judge the pairs.
 void measure_sweep(benchmark::State& state, const Lane& lane, const std::string& form) {
   strata::PairSource source = strata::stratum_sources(1, 1u << 28, {"near_edge_edge"}).front();
   std::vector<Lane> under;
@@ -218,7 +218,7 @@ void add(const std::string& name, Function function) {
   benchmark::RegisterBenchmark(name.c_str(), function)->UseManualTime()->Unit(benchmark::kMicrosecond);
 }
 
-// Registers the benchmarks on pairs of one type. suffix: the end of their names.
+// Registers the benchmarks on pairs of one type, whose names end with `suffix`.
 template <class Real>
 void add_of(Resident<Real>& resident, const std::string& suffix) {
   const std::span<const strata::StratumInfo> all = strata_of(Real());

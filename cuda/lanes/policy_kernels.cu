@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The device lanes with tolerances: policies abs, rel and paper. This file is compiled once for each device variant,
 // with its flags and in its own namespace GRAZE_FP. Define nothing else here, or the linker would mix the variants. The
-// twins are generated from the PTX of this file.
+// twins are generated from this file's PTX.
 #include "core/lanes/decide_under.h"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/vote.cuh"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The device lanes that also record every value that their comparisons see. This file is compiled once for each device
+// The device lanes with recording of every value that their comparisons see. This file is compiled once for each device
 // variant, with its flags and in its own namespace GRAZE_FP. Define nothing else here, or the linker would mix the
-// variants. The twins are generated from the PTX of this file.
+// variants. The twins are generated from this file's PTX.
 #include "core/algorithms/recording.h"
 #include "core/lanes/lanes.h"
 #include "cuda/lanes/kernels.cuh"

@@ -69,7 +69,7 @@ void Drawing::draw(const strata::PairSource& source, std::uint64_t first, std::u
     launch_generate(to, count, source.seed, source.stratum, first, stream);
   } else {
     draw_on_cores(source.pair, first, count, brought_);
-    // The source is not pinned, so cudaMemcpyAsync has read it when it returns.
+    // The source memory is not pinned, so cudaMemcpyAsync returns only after reading it.
     check(cudaMemcpyAsync(to, brought_.data(), brought_.size() * sizeof(float), cudaMemcpyHostToDevice, stream));
   }
   check(cudaGetLastError());

@@ -24,19 +24,19 @@ struct Differences {
 // Draws pairs [first, first + count) of the stratum.
 void launch_generate(float* coordinates, std::uint32_t count, std::uint64_t seed, int stratum, std::uint64_t first,
                      cudaStream_t stream);
-// Draws pairs of a source of doubles, in its scene if it has one.   Requires: source.stratum is not -1.
+// Draws pairs from a source of doubles, in its scene if it has one.   Requires: source.stratum is not -1.
 void launch_generate(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, double* coordinates,
                      cudaStream_t stream);
 
-// Writes the pairs of a source to device memory. The device draws them if it has a kernel for the source. Otherwise all
-// CPU cores draw them, and the pairs are copied.
+// Writes a source's pairs to device memory. The device draws them if it has a kernel for the source. Otherwise all CPU
+// cores draw them, and the pairs are copied.
 class Drawing {
  public:
   // Writes pairs [first, first + count) as 18 arrays of `count` coordinates, in the stream's order.
   void draw(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, float* coordinates,
             cudaStream_t stream);
 
-  // Does the same for a source of doubles. `stored`, if not null, receives the pairs rounded to float32.
+  // The same for a source of doubles. `stored`, if not null, receives the pairs rounded to float32.
   void draw(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, double* coordinates,
             cudaStream_t stream, float* stored = nullptr);
 
@@ -45,7 +45,7 @@ class Drawing {
   std::vector<double> brought_doubles_;
 };
 
-// Counts the differences between the first `count` bits of a and b. Bit i % 32 of word i / 32 has the index first + i.
+// Counts the differences between the first `count` bits of a and b. Bit i % 32 of word i / 32 is for index first + i.
 void launch_compare_bits(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t count, std::uint64_t first,
                          Differences* differences, cudaStream_t stream);
 void launch_compare_hashes(const std::uint64_t* a, const std::uint64_t* b, std::uint32_t count, std::uint64_t first,

@@ -11,7 +11,7 @@
 namespace graze::cuda {
 inline namespace GRAZE_FP {
 
-// The order of the values matters. All NaNs count as one value, because processors differ in their signs and payloads.
+// The order of the values matters. All NaNs count as one value: their signs and payloads differ by processor.
 struct TracePolicy {
   std::uint64_t* hash;
 

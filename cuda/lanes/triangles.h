@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // An array of triangles in its owner's layout: rows of nine coordinates with a stride, nine columns, or an indexed
-// mesh. The array is in host memory or in device memory. The type does not say whether the coordinates are floats or
-// doubles; the caller of load must know it.
+// mesh. The array is in host memory or in device memory. The type does not tell whether the coordinates are floats or
+// doubles; the caller of `load` must know.
 #pragma once
 
 #include <cstddef>
@@ -49,7 +49,7 @@ struct TriangleArray {
     }
   }
 
-  // Whether the triangles are rows without gaps. size: the bytes of a coordinate.
+  // Whether the triangles are rows without gaps. size: bytes per coordinate.
   bool packed(std::size_t size) const { return layout == Layout::rows && stride == 9 * size; }
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Queries on a device. Chunks take turns in two or three slots, each with its own stream. So the host's work on one
-// chunk (packing triangles, taking results) overlaps with the copies of another chunk and the kernels of a third.
-// Kernels read triangles in device memory in place. Triangles in host memory are copied through pinned memory.
+// Queries on a device. Chunks take turns in two or three slots, each with its own stream, so the host's work on one
+// chunk (packing triangles, taking results) overlaps with the copies of another and the kernels of a third. Triangles
+// in device memory are read in place; triangles in host memory are copied through pinned memory.
 #include "cuda/query/device_query.h"
 
 #include <cuda_runtime.h>
@@ -43,7 +43,7 @@ struct Slot {
   std::optional<QueryRange> range;  // the range in progress, if any
 };
 
-// Writes the triangles, as rows without gaps, to pinned memory, from which a device copies fast.
+// Writes the triangles as rows without gaps to pinned memory, from which devices copy fast.
 template <class Real>
 void pack(const TriangleArray& array, std::uint64_t first, std::uint64_t count, Real* to) {
   constexpr std::uint64_t kPart = 1 << 14, kEach = 9 * sizeof(Real);
@@ -80,7 +80,7 @@ class Run {
     most_ = std::max<std::uint64_t>(1 << 12, most_ / references_.size() / 64 * 64);
     std::size_t free = 0, all = 0;
     check(cudaMemGetInfo(&free, &all));
-    // The bytes per triangle in all slots: lists, verdicts, and the triangles unless they are in device memory already.
+    // Bytes per triangle in all slots: lists, verdicts, and the triangles unless they are already in device memory.
     // Chunks use at most half of the free memory.
     const std::size_t bytes =
         (resident_ ? 32 : 3 * (24 + 9 * real_)) + references_.size() + (question.lane.exact ? 0 : 3 * 76);
@@ -91,7 +91,7 @@ class Run {
     chunk_ = std::min(most_, question.any ? kFirstOfAny : at_leisure ? kFirstResident : kFirstOfAll);
   }
 
-  // When a run ends, even by an exception, none of its work may be in progress, because the caller frees the memory.
+  // When a run ends, even by an exception, none of its work may still be running, because the caller frees the memory.
   ~Run() {
     bool busy = false;
     for (int k = 0; k < kSlots; ++k) busy = std::exchange(slots_[k].range, std::nullopt) || busy;
@@ -114,7 +114,7 @@ class Run {
   static constexpr int kSlots = 3;
 
  private:
-  // Our streams do not wait for the default stream, on which the caller may just have copied triangles. A cudaMemcpy
+  // Our streams do not wait for the default stream, on which the caller may just have copied triangles: a cudaMemcpy
   // from pageable memory returns before the data has arrived.
   void wait_for_default_stream() {
     check(cudaEventRecord(slots_[0].start, cudaStreamLegacy));
@@ -124,7 +124,7 @@ class Run {
   // On the caller's stream, chunks run one after another, so slots can share the kernels' outputs. On our streams, the
   // last steps of a chunk, which do little work, overlap with the first steps of the next chunk.
   void start(Slot& slot, Slot& shared, const QueryRange& range) {
-    failed_ = true;  // until all work of the chunk is started
+    failed_ = true;  // until all of the chunk's work has started
     const auto count = static_cast<std::uint32_t>(range.count);
     const cudaStream_t stream =
         resident_ && question_.stream ? static_cast<cudaStream_t>(question_.stream) : cudaStream_t{shared.stream};
@@ -196,7 +196,7 @@ class Run {
 
   const double* doubles(std::size_t r) const { return static_cast<const double*>(question_.references) + 9 * r; }
 
-  // Writes the caller's outputs in device memory.
+  // Writes the outputs that the caller wants in device memory.
   void put(const QueryRange& range, std::size_t r, const std::uint32_t* hits, const std::uint32_t* declined,
            cudaStream_t stream) {
     const auto count = static_cast<std::uint32_t>(range.count);
@@ -216,7 +216,7 @@ class Run {
     const double seconds = milliseconds / 1000.0;
     record_.longest = std::max(record_.longest, seconds);
     ++record_.chunks;
-    // The next chunk may be larger if it would take less than half of the time limit for a launch.
+    // The next chunk may be larger, as long as it takes less than half of the time limit for a launch.
     const double fitting = static_cast<double>(range.count) * question_.launch_seconds / 2 / std::max(seconds, 1e-9);
     const std::uint64_t wanted = std::min(most_, std::max(chunk_, range.count * kGrowth));
     chunk_ = fitting < static_cast<double>(wanted) ? static_cast<std::uint64_t>(fitting) : wanted;
@@ -241,7 +241,7 @@ class Run {
   LaunchRecord record_;
 };
 
-// Makes a device current, and restores the caller's device at the end.
+// Makes a device current; the destructor restores the caller's device.
 class Current {
  public:
   explicit Current(int device) {
@@ -251,7 +251,7 @@ class Current {
   Current(const Current&) = delete;
   Current& operator=(const Current&) = delete;
   ~Current() {
-    cudaGetLastError();  // clears a failure of this run; otherwise the next check would report it
+    cudaGetLastError();  // clears this run's error; otherwise the next check would report it
     cudaSetDevice(before_);
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares references with an array of triangles on a device. This header includes no CUDA header, and compiles without
+// Compares references with an array of triangles on a device. This header includes no CUDA headers and compiles without
 // nvcc.
 #pragma once
 
@@ -22,8 +22,8 @@ struct QueryRange {
   std::uint64_t first_in_part = 0;
 };
 
-// The counts of one reference over a range. `first` is the index of its first hit; the range's first triangle has index
-// 0. In a search for any hit, the first reference's `declined` counts only triangles before the first hit of all
+// One reference's counts over a range. `first` is the index of its first hit; the range's first triangle has index 0.
+// In a search for any hit, the first reference's `declined` counts only triangles before the first hit of all
 // references.
 struct QueryCounts {
   std::uint64_t hits = 0, declined = 0, first = ~std::uint64_t{0};
@@ -34,13 +34,13 @@ class QueryWork {
  public:
   virtual ~QueryWork() = default;
   // Takes the next range of at most `most` triangles, from the parts in the memory of `device` (-1: the host).
-  // Returns: false if no range is left, or if the search needs no more.
+  // Returns: false if no range is left or needed.
   virtual bool next(int device, std::uint64_t most, QueryRange& range) = 0;
-  // Takes the verdicts on a range. Each reference has a row of `words` words; bit i % 64 of word i / 64 is triangle
-  // i's.
+  // Receives the verdicts on a range. Each reference has a row of `words` words; bit i % 64 of word i / 64 belongs to
+  // triangle i.
   virtual void take(const QueryRange& range, const std::uint64_t* hits, const std::uint64_t* declined,
                     std::size_t words) = 0;
-  // Takes the counts of each reference, if wants_bits() is false.
+  // Receives the counts of each reference, if wants_bits() is false.
   virtual void take(const QueryRange& range, std::span<const QueryCounts> counts) = 0;
   virtual bool wants_bits() const = 0;
   // Called after a worker failed. No more ranges are handed out, and nobody waits for missing results.
@@ -52,25 +52,25 @@ struct DeviceQuestion {
   const void* references = nullptr;  // nine coordinates for each reference
   std::uint64_t reference_count = 0;
   std::vector<TriangleArray> parts;
-  std::vector<int> places;                          // for each part: the device that has it in its memory; -1: the host
+  std::vector<int> places;                          // for each part: the device whose memory it is in; -1: the host
   Lane lane;                                        // on a device, a CUDA lane; for doubles, the exact lane
   bool any = false;                                 // stops at the first hit
-  unsigned char *bytes = nullptr, *bits = nullptr;  // results in device memory, a row for each reference; or null
+  unsigned char *bytes = nullptr, *bits = nullptr;  // results in device memory, one row per reference; or null
   std::uint64_t triangles = 0;
-  void* stream = nullptr;  // a cudaStream_t on the device of the only part; null: streams of our own
+  void* stream = nullptr;  // a cudaStream_t on the device of the only part; null: our own streams
   double launch_seconds = 0.5;
 };
 
 struct LaunchRecord {
   std::uint64_t chunks = 0;
-  double longest = 0;  // seconds of the kernels of the slowest chunk
+  double longest = 0;  // seconds that the kernels of the slowest chunk took
 };
 
-// A device, with the memory for its queries. Not thread-safe.
+// A device with memory for its queries. Not thread-safe.
 class QueryDevice {
  public:
   virtual ~QueryDevice() = default;
-  // Works until no range is left. It takes the parts in the device's memory if there are any, else those in host
+  // Works until no range is left: on the parts in the device's memory if there are any, otherwise on those in host
   // memory. Throws: DeviceFailure.
   virtual LaunchRecord run(const DeviceQuestion& question, QueryWork& work) = 0;
   int number = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps of a query after the slabs: pairs on small grids, the filter in doubles, the exact decision, and counts.
-// Other kernels here write pairs for other lanes.
+// A query's steps after the slabs: pairs on small grids, the filter in doubles, the exact decision, and counts. Also
+// kernels that write the pairs for other lanes.
 #include "cuda/query/query_kernels.cuh"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace graze::cuda {
 namespace {
 
-// The pairs of the reference and each triangle, in the form that the steps of the exact decision read.
+// The reference paired with each triangle, in the form that the steps of the exact decision read.
 struct QueryPairs {
   using Real = float;
   exact::PreparedTriangle reference;
@@ -22,7 +22,7 @@ __device__ void load(const QueryPairs& pairs, std::uint32_t i, float* c) {
   pairs.chunk.array.load(pairs.chunk.first + i, c + 9);
 }
 
-// Decides the listed triangles whose grid is small, which is often so if triangles touch. Declines triangles with a
+// Decides the listed triangles whose grid is small, as it often is if triangles touch. Declines triangles with a
 // coordinate that is not finite.
 __global__ void __launch_bounds__(kThreads, 2)
     decide_on_grid(const __grid_constant__ QueryPairs pairs, PairList from, PairList left, std::uint32_t* hits,
@@ -61,7 +61,7 @@ __global__ void __launch_bounds__(kThreads, 3)
 }
 
 // Tests triangles of doubles, relative to the reference's first vertex, against the reference's slabs. Lists the
-// triangles that are beyond no slab.
+// triangles that no slab excludes.
 __global__ void __launch_bounds__(kThreads)
     decide_doubles_by_slabs(const __grid_constant__ exact::PreparedTriangle seen,
                             const __grid_constant__ ArrayPairs pairs, std::uint32_t count, PairList left,
@@ -160,7 +160,7 @@ __global__ void __launch_bounds__(kThreads)
 
 std::uint32_t blocks_for(std::uint32_t things) { return (things + kThreads - 1) / kThreads; }
 
-// Each list uses the memory of the list two before it, which is no longer needed.
+// Each list reuses the memory of the list two places before it, which is no longer needed.
 struct QueryLists {
   PairList left[kQueryLists];
 

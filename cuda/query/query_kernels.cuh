@@ -40,8 +40,8 @@ void launch_exact_query(const exact::PreparedTriangle& seen, const double* refer
                         std::uint32_t* lists, std::uint32_t* counts, std::uint32_t* hits, std::uint32_t* declined,
                         cudaStream_t stream);
 
-// Writes the pairs of the reference and each triangle of the chunk, as 18 columns of row_words(count) * 32 floats. Also
-// marks the triangles with a coordinate that is not finite.
+// Pairs the reference with each triangle of the chunk, and writes the pairs as 18 columns of row_words(count) * 32
+// floats. Also marks the triangles with a coordinate that is not finite.
 void launch_pair_up(const exact::PreparedTriangle& reference, const QueryChunk& chunk, float* columns,
                     std::uint32_t* not_finite, cudaStream_t stream);
 
@@ -49,7 +49,7 @@ void launch_pair_up(const exact::PreparedTriangle& reference, const QueryChunk& 
 void launch_decline(std::uint32_t words, const std::uint32_t* not_finite, std::uint32_t* hits, std::uint32_t* declined,
                     cudaStream_t stream);
 
-// Counts the bits of the first (count + 31) / 32 words and adds the counts to `counts`, which the caller initialises.
+// Counts the bits of the first (count + 31) / 32 words and adds the results to `counts`, which the caller initialises.
 void launch_count(std::uint32_t count, const std::uint32_t* hits, const std::uint32_t* declined, QueryCounts* counts,
                   cudaStream_t stream);
 

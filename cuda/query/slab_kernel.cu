@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each warp takes tiles of triangles and prefetches them into shared memory with asynchronous copies. Memory bandwidth
-// limits the kernel. The reference's slabs decide most triangles. The other triangles are queued until there are 32 of
-// them or their tile will be overwritten; then the filter in floats decides them together. The filter leaves about one
-// triangle in a hundred open, and the kernel lists these triangles.
+// Memory bandwidth limits this kernel, so each warp prefetches tiles of triangles into shared memory with asynchronous
+// copies. The reference's slabs decide most triangles. The others are queued until there are 32 of them or their tile
+// is about to be overwritten; then the filter in floats decides them together. It leaves about one triangle in a
+// hundred open, which the kernel lists.
 #include <cuda_pipeline_primitives.h>
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace {
 
 using exact::detail::Finding;
 
-constexpr std::uint32_t kEach = 4, kTile = 32 * kEach, kTileFloats = 9 * kTile;  // kEach: triangles for each thread
-// Shared memory has room for kStages tiles: prefetched tiles, the current tile, and a tile that may have queued
+constexpr std::uint32_t kEach = 4, kTile = 32 * kEach, kTileFloats = 9 * kTile;  // kEach: triangles per thread
+// Shared memory has room for kStages tiles: prefetched tiles, the current tile, and a tile that may still have queued
 // triangles.
 constexpr std::uint32_t kAhead = 2, kKept = 1, kStages = kAhead + 1 + kKept, kQueue = 256, kUnsure = 64;
 constexpr std::uint32_t kWarps = 6, kBlocks = 2;  // kBlocks: thread blocks that fit into a multiprocessor
@@ -30,7 +30,7 @@ struct WarpMemory {
   std::uint16_t queue[kQueue];  // stage * kTile + index in the tile; first in, first out
 };
 
-// Starts to fetch a tile. Triangles beyond the end of the chunk become zeros.
+// Starts fetching a tile. Triangles beyond the end of the chunk become zeros.
 __device__ void fetch(const QueryChunk& chunk, bool by_vectors, std::uint32_t tile, float* to) {
   const std::uint32_t lane = threadIdx.x % 32;
   const std::uint64_t at = std::uint64_t{tile} * kTile;
@@ -52,7 +52,7 @@ __device__ std::uint32_t lanes_before(std::uint32_t lanes) {
   return static_cast<std::uint32_t>(__popc(lanes & ((1u << threadIdx.x % 32) - 1)));
 }
 
-// Queues the triangles of a tile that the slabs leave open.   Returns: the queue's new end.
+// Queues those triangles of a tile that the slabs leave open.   Returns: the queue's new end.
 __device__ std::uint32_t queue_open(const exact::PreparedTriangle& reference, WarpMemory& warp, std::uint32_t stage,
                                     std::uint32_t end) {
   // Each thread reads nine vectors of 4 * kEach bytes. Nine is odd, so no two threads read from one bank at once.

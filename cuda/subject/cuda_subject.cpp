@@ -48,7 +48,7 @@ twin::Module module_of(const CudaBuild& build, const fs::path& source) {
   return twin::reduced(module, kSubjectKernel);
 }
 
-// Whether ptxas gives the same code for the PTX and for the explicit PTX. A file of one digit keeps the result.
+// Whether ptxas generates the same code for the PTX and for the explicit PTX. A one-digit file keeps the result.
 bool same_machine_code(const CudaBuild& build, const twin::Module& module, const fs::path& ptxas,
                        const fs::path& cache) {
   std::ostringstream written;
@@ -103,7 +103,7 @@ std::vector<CudaBuild> build_cuda_subject(const fs::path& source, const std::str
       scalar_of(text, source, function, [&](const std::string& whole) { return compile(Variant::cuda_nofma, whole); });
   const std::string whole = wrapped(text, source, function, scalar);
   std::vector<CudaBuild> builds;
-  twin::Lines by_hand;  // lines of the source that have an fma even without contraction
+  twin::Lines by_hand;  // source lines that have an fma even without contraction
   for (const Variant variant : {Variant::cuda_nofma, Variant::cuda_fma, Variant::cuda_fast, Variant::cuda_ftz}) {
     if (only && variant != *only && variant != Variant::cuda_nofma) continue;
     CudaBuild& build = builds.emplace_back();

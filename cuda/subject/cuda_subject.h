@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A user's CUDA source as a subject. It has a function `__device__ bool f(const float a[9], const float b[9])`, which
-// may also return int or take double. NVRTC compiles the source in every device variant. If possible, a twin replays
-// each build.
+// A user's CUDA source as a subject. It must have a function `__device__ bool f(const float a[9], const float b[9])`,
+// which may also return int or take double. NVRTC compiles the source in every device variant. If possible, a twin
+// replays each build.
 #pragma once
 
 #include <filesystem>
@@ -14,9 +14,8 @@
 
 namespace graze::cuda {
 
-// The name of the kernel that is appended to the source. Its parameters are (const T* coordinates, unsigned stride,
-// unsigned count, signed char* answers). `coordinates` has 18 arrays. An answer is -1 for declined, 0 for disjoint or 1
-// for intersects.
+// The kernel that is appended to the source. Its parameters are (const T* coordinates, unsigned stride, unsigned count,
+// signed char* answers). `coordinates` has 18 arrays. An answer is -1 for declined, 0 for disjoint, 1 for intersects.
 inline constexpr char kSubjectKernel[] = "graze_subject_kernel";
 
 struct CudaBuild {
@@ -24,7 +23,7 @@ struct CudaBuild {
   Scalar scalar;
   std::string ptx;                      // NVRTC's output for compute_75
   std::string toolkit;                  // "13.0.88"
-  std::string hash;                     // hash of the instructions and contractions; a proof is valid for this hash
+  std::string hash;                     // hash of instructions and contractions, for which a proof is valid
   std::filesystem::path twin;           // a shared library, see cuda/twin/twin_library.h; empty without a twin
   std::string why_no_twin;              // one line; empty if there is a twin
   bool machine_code_identical = false;  // ptxas assembles this PTX and the PTX with every contraction written out,
@@ -35,9 +34,9 @@ struct CudaBuild {
 std::string evidence(const CudaBuild& build);
 
 // Builds the source in the variants cuda-nofma, cuda-fma, cuda-fast and cuda-ftz, in this order, or only in the variant
-// `only`. `flags` are passed to NVRTC unchanged. The folder `cache` keeps twins and results of ptxas by hash;
-// incomplete files in it are never used. Throws: UsageError, one line with the user's file and line, when the source
-// cannot be read, does not compile, or has no such function; std::runtime_error without NVRTC.
+// `only`. `flags` are passed to NVRTC unchanged. The folder `cache` keeps twins and ptxas results by hash; incomplete
+// files in it are never used. Throws: UsageError, one line with the user's file and line, when the source cannot be
+// read, does not compile, or has no such function. Also throws std::runtime_error without NVRTC.
 std::vector<CudaBuild> build_cuda_subject(const std::filesystem::path& source, const std::string& function,
                                           const std::vector<std::string>& flags, const std::filesystem::path& cache,
                                           std::optional<Variant> only = std::nullopt);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests the builds of users' CUDA files, the error messages, and the cache of reproducible builds.
+// Tests builds of users' CUDA files, their error messages, and the cache of reproducible builds.
 #include "cuda/subject/cuda_subject.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ class CudaSubject : public testing::Test {
                                const std::vector<std::string>& flags = {}) const {
     return build_cuda_subject(file(text), function, flags, scratch_.path() / "cache");
   }
-  // The error message about the source text, without the folder's path.
+  // The error message about the source text, without its folder's path.
   std::string complaint(const std::string& text, const std::string& function = "intersects") const {
     try {
       build(text, function);
@@ -184,7 +184,7 @@ TEST_F(CudaSubject, HasTwinsOfWhatPeopleWrite) {
           "u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x); }\n__global__ void other(float* x) { x[0] = __sinf(x[1]); }\n"
           "int main() { return 0; }"),
       "");
-  // The toolkit computes these math functions in full precision, with tables and loops.
+  // The toolkit implements these math functions in full precision, with tables and loops.
   EXPECT_EQ(why("return cosf(a[0]) < b[0] && atan2f(a[1], b[1]) < 1 && sinf(a[2]) < hypotf(b[2], 1);"), "");
   EXPECT_EQ(why("return nextafterf(a[3], 1) < lroundf(b[3]) && fdimf(a[0], b[0]) < scalbnf(b[1], 3);"), "");
   // Other math functions consist of approximate operations.
@@ -241,7 +241,7 @@ TEST_F(CudaSubject, KeepsWhatItBuilds) {
   fs::resize_file(first[1].twin, fs::file_size(first[1].twin) - 100);
   EXPECT_EQ(build(kSimple)[1].twin, first[1].twin);
   EXPECT_EQ(content(elsewhere[1].twin), content(first[1].twin));
-  // Comments do not change the hash of a proof.
+  // Comments do not change a proof's hash.
   EXPECT_EQ(build(std::string("// a comment\n") + kSimple)[1].hash, first[1].hash);
 }
 

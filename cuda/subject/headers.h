@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stand-ins for standard headers that device code often includes and NVRTC lacks. Their device functions are built into
-// NVRTC or defined here.
+// Replacements for standard headers that device code often includes and that NVRTC lacks. The device functions are
+// built into NVRTC or defined here.
 #pragma once
 
 namespace graze::cuda {
 
-// NVRTC declares the functions of <cmath> outside a namespace.
+// NVRTC declares the functions of <cmath> in the global namespace.
 inline constexpr char kCmath[] = R"(#pragma once
 #ifndef INFINITY
 #define INFINITY __int_as_float(0x7f800000)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Machine code of PTX, from a toolkit's ptxas. It shows, without a device, whether two PTX texts are the same program.
+// PTX's machine code from a toolkit's ptxas, which shows without a device whether two PTX texts are the same program.
 #pragma once
 
 #include <filesystem>
@@ -9,12 +9,12 @@
 
 namespace graze::cuda {
 
-// Reads the machine code of each kernel from a cubin (an ELF file): the sections .text.KERNEL, by kernel name.
+// Reads each kernel's machine code, by kernel name, from a cubin (an ELF file): the sections .text.KERNEL.
 // Throws: std::runtime_error if the file is missing or truncated.
 std::map<std::string, std::string> read_cubin(const std::filesystem::path& file);
 
-// The first ptxas in CUDA_HOME, CUDA_PATH, the toolkit of `library` (NVRTC), the PATH or /usr/local/cuda. Empty if
-// there is no ptxas.
+// The first ptxas in CUDA_HOME, CUDA_PATH, the toolkit of `library` (NVRTC), the PATH or /usr/local/cuda; empty if
+// there is none.
 std::filesystem::path find_ptxas(const std::filesystem::path& library);
 
 // Assembles the PTX for sm_90 in the folder `scratch`.   Returns: machine code by kernel name.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Replaces cuda_subject.cpp and the files that it needs in builds of scripts/campaign. Every build links graze_campaign
-// with this file. If a function of cuda_subject.h were missing here, the linker would add cuda_subject.cpp, and then
+// Replaces cuda_subject.cpp and the files that it needs in builds by scripts/campaign. Every build links graze_campaign
+// with this file. If a function of cuda_subject.h were missing here, the linker would add cuda_subject.cpp and then
 // report all other functions as defined twice.
 #include "core/error.h"
 #include "cuda/subject/cuda_subject.h"

@@ -34,7 +34,7 @@ std::vector<fs::path> places() {
   return all;
 }
 
-// Runs the work in a child process, because NVRTC may compile forever, crash, or catch signals.
+// Runs the work in a child process, because NVRTC may never finish, crash, or catch signals.
 // Returns: the work's result.   Throws: CompileError or std::runtime_error, if the work does; Stopped, within 0.1 s of
 // the request.
 std::string in_child(const std::function<std::string()>& work) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// NVRTC, the CUDA Toolkit's compiler as a library, loaded at first use. This file compiles without nvcc and CUDA
-// headers. Programs that do not compile CUDA run without NVRTC.
+// Loads NVRTC, the CUDA Toolkit's compiler as a library, at first use. This file compiles without nvcc and CUDA
+// headers, and programs that do not compile CUDA run without NVRTC.
 #pragma once
 
 #include <stdexcept>
@@ -9,15 +9,15 @@
 
 namespace graze::cuda {
 
-// The compiler refused a source; what() is the whole log of the compiler.
+// The compiler refused a source; what() is its whole log.
 struct CompileError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 class Nvrtc {
  public:
-  // The first NVRTC found on the library path, below CUDA_HOME, CUDA_PATH and /usr/local/cuda*, or beside this program.
-  // Throws: std::runtime_error if NVRTC is not found, with one line that says what to install.
+  // The first NVRTC on the library path, below CUDA_HOME, CUDA_PATH and /usr/local/cuda*, or in this program's folder.
+  // Throws: std::runtime_error if NVRTC is not found; its one line tells what to install.
   static const Nvrtc& get();
 
   // Compiles the source to PTX in a separate process. `name` is the source's name in messages and line tables.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of twenty predicates in different styles (cuda/subject/styles). Each predicate has a twin with the verdicts of
-// the same source compiled by the host's compiler, or graze refuses it with the reason. Skipped without NVRTC.
+// Tests of twenty predicates in different styles (cuda/subject/styles). Each predicate has a twin with the same
+// verdicts as its source under the host's compiler, or graze refuses it and tells why. Skipped without NVRTC.
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 const fs::path kStyles = fs::path(GRAZE_SOURCE_DIR) / "cuda/subject/styles";
 
-// For each style, the part of the message that says why it has no twin; empty for a style with a twin.
+// For each style, a part of the message that explains why it has no twin; empty for a style with a twin.
 const std::map<std::string, std::string> kStyleTwins = {
     {"approximate", "cannot be replayed: rsqrt.approx.f32"},
     {"bit_tricks", ""},
@@ -82,7 +82,7 @@ std::vector<Pair> pairs_of_all_strata(std::uint64_t each) {
   return pairs;
 }
 
-// The answers of the style compiled by the host's compiler, which rounds every operation. cuda/subject/styles/host.h
+// The style's answers when compiled by the host's compiler, which rounds every operation. cuda/subject/styles/host.h
 // replaces CUDA's functions.
 std::vector<std::int8_t> on_host(const std::string& style, Scalar scalar, const std::vector<Pair>& pairs) {
   const Scratch scratch(cache());
@@ -143,7 +143,7 @@ void expect_twin_equals_host(const std::string& style) {
   std::map<int, int> answers;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     ++answers[found[i]];
-    // min_max copies the sign of a difference. If that is NaN, it is negative on x86, but not on a GPU or in a twin.
+    // min_max copies the sign of a difference. A NaN difference is negative on x86, but not on a GPU or in a twin.
     const Vec3<float>&p = pairs[i].a[0], &q = pairs[i].b[0];
     if (style == "min_max" && std::isnan(p.y * q.y - p.z * q.z)) continue;
     if (found[i] != expected[i] && wrong++ < 3)

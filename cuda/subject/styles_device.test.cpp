@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares device and twin of every style and variant, on GRAZE_PAIRS pairs of all strata (default: one million). The
-// builds are in the folder `styles` beside this program; `cmake --build … --target graze_device_styles` makes them.
+// Compares device and twin for every style and variant, on GRAZE_PAIRS pairs from all strata (default: one million).
+// `cmake --build … --target graze_device_styles` makes the builds, in the folder `styles` next to this program.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -59,7 +59,7 @@ TEST_F(StylesOnADevice, EqualTheirTwinsOnDoubles) {
   }
 }
 
-TEST_F(StylesOnADevice, AWrongTwinShows) {  // the wrong twin is that of another variant
+TEST_F(StylesOnADevice, AWrongTwinShows) {  // the wrong twin is another variant's
   const auto of = [&](const std::string& name) {
     for (const StyleBuild& style : styles_) {
       if (style.name == name) return style.build;

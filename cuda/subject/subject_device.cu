@@ -19,7 +19,7 @@ namespace {
 
 constexpr unsigned kBlock = 1u << 22;  // pairs in one block: 302 MB of float coordinates
 constexpr unsigned kThreadsOfBlock = 256;
-constexpr std::size_t kStackBytes = 16384;  // stack of each thread, for recursion
+constexpr std::size_t kStackBytes = 16384;  // stack per thread, for recursion
 
 __global__ void widen(const float* from, double* to, std::size_t count) {
   const std::size_t i = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
@@ -96,7 +96,7 @@ class Subject final : public SubjectOnDevice {
   DeviceArray<signed char> answers_;
 };
 
-// Copies the pairs of a block from the device, which the kernels have decided.
+// Copies the pairs of a block, which the kernels have decided, from the device.
 template <class Real>
 void fetch(const Real* on_device, std::vector<BasicPair<Real>>& pairs) {
   std::vector<Real> columns(pairs.size() * kCoordinates);

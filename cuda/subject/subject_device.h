@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs builds of a user's CUDA source on a device, and proves that their twins give the same answers.
+// Runs builds of a user's CUDA source on a device, and checks that their twins give the same answers.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,9 @@ class SubjectOnDevice {
 
   // Writes an answer for each pair: -1 for declined, 0 for disjoint, 1 for intersects.
   // Throws: std::runtime_error on any CUDA error. After an error in the user's code, this process can no longer use the
-  // device.
+  // device at all.
   virtual void decide(std::span<const Pair> pairs, std::int8_t* answers) = 0;
-  // Requires: a function of doubles.
+  // Requires: a function that takes doubles.
   virtual void decide(std::span<const DoublePair> pairs, std::int8_t* answers) = 0;
 };
 
@@ -31,7 +31,7 @@ class SubjectOnDevice {
 std::unique_ptr<SubjectOnDevice> open_on_device(const CudaBuild& build);
 
 // Measures each build's kernel on `count` pairs of the stratum `uniform` in device memory, in nanoseconds per pair.
-// Each pass measures all builds, one after another. Only `scalar` and `ptx` of a build are read. Throws: as
+// Each pass measures all builds, one after another. It reads only a build's `scalar` and `ptx`. Throws: as
 // open_on_device; std::runtime_error if the device does not answer.
 struct SubjectCosts {
   std::string device;                            // "NVIDIA H100 80GB HBM3"
@@ -39,8 +39,8 @@ struct SubjectCosts {
 };
 SubjectCosts time_subjects(std::span<const CudaBuild> builds, std::uint32_t count, int passes);
 
-// Compares each build with its twin, if it has one, on `options.twin_pairs` pairs over all strata. Only functions of
-// doubles can take pairs of doubles. The record has no trace hashes, and its twin decided all counted pairs.
+// Compares each build with its twin, if it has one, on `options.twin_pairs` pairs over all strata. Pairs of doubles
+// require functions that take doubles. The record has no trace hashes, and the twin decides all counted pairs.
 // Throws: as open_on_device.
 struct NamedBuild {
   std::string lane;  // "mine/f32/cuda-fma"

@@ -36,7 +36,7 @@ std::string compiler() {
   return named && *named ? named : "c++";
 }
 
-// The first line that the compiler prints about its version.
+// The first line of the compiler's version text.
 std::string version_of(const std::string& program, const fs::path& cache) {
   const Scratch scratch(cache);
   std::string said;

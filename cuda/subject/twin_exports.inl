@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The last part of the source of a twin's shared library. Before it come subjects/include/graze/subject.h and
+// The last part of the source of a twin's shared library, after subjects/include/graze/subject.h and
 // cuda/twin/twin_ops*.h. It has the kernels that the generator writes, and the exported functions; see
 // cuda/twin/twin_library.h. The kernel is graze_subject_kernel, which wrapper.cpp appends to the user's source.
 #include <cstddef>
@@ -51,7 +51,7 @@ struct Watched : SomeFused {
 
 constexpr int kNoAnswer = 2;  // means that the kernel ended before it wrote an answer
 
-// Decides one pair as a block of one pair. With stride 1, the pair's coordinates are the 18 arrays.
+// Decides one pair as a block of one pair. With stride 1, the pair's coordinates serve as the 18 arrays.
 template <class Fuse>
 int decide(const Real* pair, const Fuse& fuse) {
   const u32 one = 1;

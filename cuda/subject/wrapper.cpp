@@ -75,7 +75,7 @@ Scalar scalar_of(const std::string& text, const fs::path& source, const std::str
   } catch (const CompileError& error) {
     throw UsageError(first_error(error.what()));
   }
-  try {  // the error message about an undefined template has the function's type
+  try {  // the error message about an undefined template names the function's type
     compile(with_lines(text, source) + fmt::format("\ntemplate <class T> struct graze_found;\n"
                                                    "graze_found<decltype(&{})> graze_type;\n",
                                                    function));

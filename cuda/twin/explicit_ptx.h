@@ -8,8 +8,8 @@
 
 namespace graze::cuda {
 
-// The text for the variant. wrong_rule: with wrong contractions.   Throws: std::invalid_argument for a variant without
-// a twin.
+// The variant's text. wrong_rule: with wrong contractions.   Throws: std::invalid_argument for a variant without a
+// twin.
 std::string explicit_ptx(Variant variant, bool wrong_rule);
 
 }  // namespace graze::cuda

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twins of users' CUDA code, which cuda/subject builds as libraries, and the functions common to these twins and
-// our own twins.
+// The twins of users' CUDA code, which cuda/subject builds as libraries, and functions for both these twins and ours.
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -12,7 +11,7 @@
 namespace graze::cuda {
 namespace {
 
-// The twin of a user's CUDA code. foreign_twins() has these twins by lane id.
+// The twin of a user's CUDA code. foreign_twins() maps lane ids to these twins.
 struct ForeignTwin {
   std::unique_ptr<TwinLibrary> library;
   double most_seconds = 0;

@@ -54,7 +54,7 @@ struct LaneRun {
   DeviceArray<std::uint64_t> hashes[2];
 };
 
-// The parts that depend on the coordinate type of the pairs.
+// Code that depends on the pairs' coordinate type.
 struct OfFloats {
   using Real = float;
   using Block = DevicePairs;
@@ -187,7 +187,7 @@ class Prover {
     }
   }
 
-  // Copies the first pairs of the block from the device, which the kernels have decided.
+  // Copies the block's first pairs, which the kernels have decided, from the device.
   void fetch_pairs(std::uint32_t n, std::uint32_t sample) {
     std::vector<Real> column(sample);
     pairs_.resize(sample);

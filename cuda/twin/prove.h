@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Proves the twins on a device, over all strata, for every CUDA lane. The proof compares verdicts and trace hashes of
-// the default build with those of the explicit PTX. In the explicit PTX, every contraction is written out; the driver
-// assembles it. A sample of the pairs is also compared with the twin, which is generated from the explicit PTX.
+// the default build with those of the explicit PTX. The driver assembles the explicit PTX, in which every contraction
+// is written out. A sample of the pairs also goes to the twin, which is generated from the explicit PTX.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +14,15 @@ namespace graze::cuda {
 
 struct ProofOptions {
   std::uint64_t pairs = 10'000'000'000;    // pairs for each lane, over all strata
-  std::uint64_t twin_pairs = 100'000'000;  // the number of these pairs that the twin decides too
+  std::uint64_t twin_pairs = 100'000'000;  // how many of these pairs the twin also decides
   std::uint64_t seed = 1;
-  bool of_doubles = false;              // true: pairs of doubles and lanes in double; false: pairs of float32
+  bool of_doubles = false;              // true: pairs of doubles and lanes in double; false: float32 pairs
   std::vector<std::string> lanes = {};  // shell patterns of names; empty: all CUDA lanes
-  bool wrong_rule = false;  // the explicit PTX contracts the right product first, and differences must appear
+  bool wrong_rule = false;  // the explicit PTX contracts the right product first, so differences must appear
   std::function<void(const std::string& line)> progress = nullptr;  // called after each stratum
 };
 
-// The numbers of pairs compared, and of differences in verdicts and in trace hashes.
+// The numbers of compared pairs, and of differences in verdicts and in trace hashes.
 struct StratumProof {
   std::string stratum;
   std::uint64_t pairs = 0, verdict_differences = 0, trace_differences = 0;  // default build against explicit PTX
@@ -54,7 +54,7 @@ struct ProofRecord {
 // Throws: std::runtime_error without a device, or on any CUDA error.
 ProofRecord prove_twin(const ProofOptions& options);
 
-// The record in the format of cuda/proofs.
+// The record, in the format of the files in cuda/proofs.
 nlohmann::ordered_json to_json(const ProofRecord& record);
 
 }  // namespace graze::cuda

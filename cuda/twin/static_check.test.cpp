@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checks the contraction rule against ptxas, without a GPU. The tests compare each kernel's machine code in the default
-// build with that of the PTX in which every contraction is written out. The counts of fused and unfused operations must
-// be equal; most kernels are the same, instruction for instruction. Skipped in builds without nvcc.
+// build with that of the explicit PTX, in which every contraction is written out. The counts of fused and unfused
+// operations must be equal; most kernels are identical, instruction for instruction. Skipped in builds without nvcc.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -64,15 +64,15 @@ TEST_P(StaticCheck, ExplicitPtxHasTheOperationsOfTheDefaultBuild) {
   if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";
   const Code built = read_cubin(generated(std::string(GetParam()) + ".cubin")),
              written = read_cubin(generated(std::string(GetParam()) + ".ptxas.cubin"));
-  ASSERT_EQ(built.size(), 6u * kAlgorithmCount);  // to decide and to trace: in float, in double, and pairs of doubles
+  ASSERT_EQ(built.size(), 6u * kAlgorithmCount);  // deciding and tracing: in float, in double, and on pairs of doubles
   ASSERT_EQ(written.size(), built.size());
   for (const auto& [kernel, code] : built) {
     EXPECT_FALSE(operations(code).empty()) << kernel;
     EXPECT_EQ(operations(code), operations(written.at(kernel))) << kernel;
   }
   RecordProperty("same_code", same_code(built, written));
-  // With nvcc 13.0.88, 25 of the 30 contracted kernels are the same. The other kernels differ in the order of
-  // instructions and in registers.
+  // With nvcc 13.0.88, 25 of the 30 contracted kernels are identical. The others differ in registers and in the order
+  // of instructions.
   EXPECT_GE(same_code(built, written), std::string(GetParam()) == "cuda_nofma" ? 30 : 23);
 }
 
@@ -83,7 +83,7 @@ TEST(StaticCheck, CatchesTheRightProductFirst) {
   if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";
   const Code built = read_cubin(generated("cuda_fma.cubin")),
              wrong = read_cubin(generated("cuda_fma.right_first.cubin"));
-  // Every kernel has an a*b - c*d, so no kernel has the same code. The counts are equal, because one product is fused.
+  // Every kernel has some a*b - c*d, so no kernel has the same code. The counts are equal: each fuses one product.
   EXPECT_EQ(same_code(built, wrong), 0);
 }
 
@@ -99,7 +99,7 @@ TEST(StaticCheck, SeesContraction) {
   EXPECT_EQ(same_code(contracted, not_contracted), 0);
 }
 
-// Counts of fused operations and of products. Counts of additions show nothing, because ptxas may repeat additions.
+// Counts of fused operations and of products. Counts of additions show nothing, because ptxas may repeat them.
 std::map<std::string, int> fused_and_products(const std::string& code) {
   std::map<std::string, int> counts = operations(code);
   counts.erase("FADD");
@@ -109,8 +109,8 @@ std::map<std::string, int> fused_and_products(const std::string& code) {
 
 class KernelsUnderTolerances : public testing::TestWithParam<const char*> {};
 
-// If ptxas contracts a kernel differently from the rule, a twin of the kernel would be wrong, so the lane must not have
-// a twin. scripts/update_generated reads the messages of this test, and writes twin/contracted_otherwise.inc.
+// If ptxas contracts a kernel differently from the rule, its twin would be wrong, so the lane must not have a twin.
+// scripts/update_generated reads the messages of this test, and writes twin/contracted_otherwise.inc.
 TEST_P(KernelsUnderTolerances, HaveTwinsJustWhereMachineCodeHasTheirContractions) {
   if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";
   const std::string variant = GetParam();
@@ -147,8 +147,8 @@ TEST_P(KernelsUnderTolerances, HaveTwinsJustWhereMachineCodeHasTheirContractions
 INSTANTIATE_TEST_SUITE_P(Variants, KernelsUnderTolerances, testing::Values("cuda_fma", "cuda_nofma"),
                          [](const auto& row) { return std::string(row.param); });
 
-// A random program without branches, dead code or equal products. It has sums and products of inputs, of sums, and of
-// products that other sums share. The program stores every sum and product that no other instruction reads.
+// A random program without branches, dead code or equal products. The operands of its sums and products are inputs,
+// sums, and products that other sums share. The program stores every sum and product that no other instruction reads.
 std::string random_program(std::mt19937& random, const std::string& name, const std::string& type) {
   const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
   const std::string bytes = type == "f32" ? "4" : "8";
@@ -193,8 +193,8 @@ std::string random_program(std::mt19937& random, const std::string& name, const 
 
 constexpr int kPrograms = 500;
 
-// Tests on random programs. share_of_same_code: the share of programs for which the explicit PTX gives the same machine
-// code, instruction for instruction.
+// Tests on random programs. share_of_same_code: the share of programs whose explicit PTX gives the same machine code,
+// instruction for instruction.
 class RandomPrograms : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures the speed of the twins and of the `cpu` lanes, on uniform and on near-touching pairs. Before it is measured,
-// a twin without contraction must give the verdicts of the cpu lane.
+// Measures the speed of the twins and of the `cpu` lanes, on uniform and on near-touching pairs. Before a twin without
+// contraction is measured, it must give the same verdicts as the cpu lane.
 #include <benchmark/benchmark.h>
 
 #include "core/lanes/verdicts.h"

@@ -20,7 +20,7 @@ constexpr ProofRow kProofs[] = {
 #include "cuda/generated/twin_proofs.inc"
     {}};
 
-// A variant's tables: for processors with and without FMA instructions, for policies, and for records. Null: no twin.
+// A variant's tables: for processors with and without FMA instructions, for policies, and for recording. Null: no twin.
 struct TwinTables {
   const TwinTable *table = nullptr, *portable = nullptr, *policies = nullptr, *records = nullptr;
 };
@@ -114,7 +114,7 @@ DecideBlock block_on_host(const Lane& lane) {
 
 namespace {
 
-// The row of the twin that records. Without such a twin, the row has no functions.
+// The row of the recording twin. Without such a twin, the row has no functions.
 const TwinRow& record_row(const Lane& lane) {
   static const TwinRow kNone;
   const TwinTable* table = kTables[static_cast<int>(lane.variant)].records;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// On pairs with arbitrary bits, the twin of each CUDA lane without contraction gives the verdict of the host's lane.
+// On pairs of arbitrary bits, each twin without contraction must give the same verdict as the host lane.
 #include "cuda/twin/twin.h"
 
 #include "core/fuzz_pair.h"

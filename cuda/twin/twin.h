@@ -16,8 +16,8 @@ namespace graze::cuda {
 // The twin of a published CUDA lane; null if the lane has no twin.
 DecideBlock::Function twin_block(const Lane& lane);
 
-// The function that gives the lane's verdicts on the host: the lane's own, or the twin of a CUDA lane. For the exact
-// CUDA lane it is the exact CPU lane, which is built from the same source. Null if there is no such function.
+// The function that gives the lane's verdicts on the host: the lane's own function, or a CUDA lane's twin. For the
+// exact CUDA lane it is the exact CPU lane, which is built from the same source. Null if there is none.
 DecideBlock block_on_host(const Lane& lane);
 
 // A function that writes each pair's trace hash (see cuda/lanes/trace.h). The hash includes the verdict.
@@ -27,11 +27,11 @@ using TraceBlock = TraceFunction<Pair>;
 TraceBlock twin_trace(const Lane& lane);
 TraceFunction<DoublePair> twin_trace_of_doubles(const Lane& lane);
 
-// The function that records the twin's values; null without a twin, and in builds of scripts/campaign.
+// The function that records the twin's values; null without a twin, and in builds by scripts/campaign.
 RecordBlock twin_record(const Lane& lane);
 RecordFunction<DoublePair> twin_record_of_doubles(const Lane& lane);  // for a lane in double
 
-// Whether this build has twins of lanes with tolerances. Builds of scripts/campaign do not.
+// Whether this build has twins of lanes under tolerances. Builds by scripts/campaign do not.
 bool has_policy_twins();
 
 // The result of `graze prove-twin` for a lane; see LaneProof in prove.h.
@@ -45,7 +45,7 @@ struct TwinProof {
 std::string evidence(const TwinProof& proof);
 
 // The evidence() for exactly this lane's kernel, from the records in cuda/proofs; "twin" without a record. of_doubles:
-// the kernel that decides pairs of doubles, if the lane has one.
+// for the kernel that decides pairs of doubles, if the lane has one.
 std::string twin_evidence(const Lane& lane, bool of_doubles = false);
 
 struct SourceLine {
@@ -59,7 +59,7 @@ struct SourceLine {
 // An operation that a kernel rounds once although its source rounds twice.
 struct ContractionSite {
   SourceLine at;    // line of the operation
-  SourceLine from;  // line into which the function is inlined; PTX does not have further levels
+  SourceLine from;  // line into which the function is inlined; PTX has no further levels
   bool by_ptxas;    // true: contracted by ptxas; false: by nvcc's front end
   int ptx_line;     // line of the addition in the PTX
 };
@@ -72,7 +72,7 @@ struct ComparisonSite {
 
 // The contraction sites of a lane's twin, in program order. Empty if the lane has no twin or no contractions.
 std::span<const ContractionSite> contraction_sites(const Lane& lane);
-// The contraction sites of the kernel that decides pairs of this pair's type.
+// The contraction sites of the kernel that decides pairs of this type.
 std::span<const ContractionSite> contraction_sites(const Lane& lane, const AnyPair& pair);
 
 // Loads the twin of a foreign CUDA lane: a library that cuda/subject has built. A verdict may take `most_seconds`
@@ -80,10 +80,10 @@ std::span<const ContractionSite> contraction_sites(const Lane& lane, const AnyPa
 void add_foreign_twin(const Lane& lane, const std::string& twin, double most_seconds);
 double most_seconds(const Lane& lane);  // limit for one verdict.   Requires: a foreign lane with sites
 
-// The verdict of a lane if only some contraction sites are fused: those whose bit is set. The other sites round twice.
-// Bit i % 64 of word i / 64 belongs to site i. Without bits, the verdict is that of cuda-nofma; with all bits, that of
-// the lane. Foreign code runs in this process and may crash or not return. Requires: contraction sites; (sites + 63) /
-// 64 words; a pair of doubles only for a lane in double or a foreign lane.
+// A lane's verdict if only those contraction sites are fused whose bit is set. The other sites round twice. Bit i % 64
+// of word i / 64 belongs to site i. With no bit set, the verdict is that of cuda-nofma; with all bits set, it is the
+// lane's. Foreign code runs in this process and may crash or not return. Requires: a lane with contraction sites;
+// (sites + 63) / 64 words; a pair of doubles only for a lane in double or a foreign lane.
 Verdict decide_fusing(const Lane& lane, const AnyPair& pair, std::span<const std::uint64_t> fused);
 
 // The comparisons of numbers in a foreign CUDA lane with contraction sites, in program order. `min`, `max` and bit
@@ -95,13 +95,13 @@ struct Comparison {
   int ptx_line, outcome;
 };
 
-// Does the same as decide_fusing for a foreign lane with sites. `made` receives the first comparisons that the lane
-// makes, as many as fit, and `count` their number.
+// Like decide_fusing, for a foreign lane with sites. `made` receives the first comparisons that the lane makes, as many
+// as fit, and `count` receives their number.
 Verdict decide_comparing(const Lane& lane, const AnyPair& pair, std::span<const std::uint64_t> fused,
                          std::span<Comparison> made, std::size_t& count);
 
-// The contraction sites of the twin that records. record_fusing records its values if only the sites whose bit is set
-// are fused; see decide_fusing.
+// The contraction sites of the recording twin. record_fusing records its values with only those sites fused whose bit
+// is set; see decide_fusing.
 std::span<const ContractionSite> record_sites(const Lane& lane);
 std::span<const ContractionSite> record_sites_of_doubles(const Lane& lane);
 void record_fusing(const Lane& lane, std::span<const Pair> pairs, const Records& to,

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 3;
 
-// Pairs of every stratum: random, near-touching, coplanar, degenerate, and of extreme scale.
+// Pairs from every stratum: random, near-touching, coplanar, degenerate, and of extreme scale.
 const std::vector<Pair>& sample() {
   static const std::vector<Pair> pairs = [] {
     std::vector<Pair> all;
@@ -47,7 +47,7 @@ class Twin : public testing::TestWithParam<const Lane*> {
   DecideBlock twin(Variant variant) const { return twin_block(sibling(variant)); }
 };
 
-// The parameters of the tests: one lane for each algorithm and scalar.
+// The tests' parameters: one lane for each algorithm and scalar.
 std::vector<const Lane*> cuda_fma_lanes() {
   std::vector<const Lane*> rows;
   for (const Lane& lane : lanes()) {
@@ -70,7 +70,7 @@ TEST_P(Twin, EveryCudaLaneHasOne) {
   EXPECT_STRNE(twin_row(sibling(Variant::cuda_fma)).hash, twin_row(sibling(Variant::cuda_nofma)).hash);
 }
 
-// The evidence has the record's numbers of pairs: those that GPU and twin decided, and those of two builds on the GPU.
+// The evidence has the record's pair counts: those decided by GPU and twin, and those decided by two builds on the GPU.
 TEST_P(Twin, EvidenceSaysWhatTheRecordSays) {
   const auto record =
       nlohmann::json::parse(std::ifstream(GRAZE_SOURCE_DIR "/cuda/proofs/nvidia_h100_nvcc_13.0.88.json"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twins' block functions with the generated kernels (GRAZE_TWIN_KERNELS). This file is compiled once for each
+// The twins' block functions, which run the generated kernels (GRAZE_TWIN_KERNELS). This file is compiled once for each
 // variant in its own namespace GRAZE_FP, without contraction by the host's compiler. Define nothing else here, or the
 // linker would mix the variants.
 #include <string_view>
@@ -27,7 +27,7 @@ namespace ptx {
 
 const unsigned char* bytes(const void* object) { return static_cast<const unsigned char*>(object); }
 
-// A kernel's parameters have the device's layout: addresses have 64 bits, even on a processor with shorter addresses.
+// A kernel's parameters have the device's layout: addresses have 64 bits, even on processors with shorter addresses.
 u64 address(const void* object) { return reinterpret_cast<std::uintptr_t>(object); }
 struct Block {
   u64 coordinates;
@@ -37,7 +37,7 @@ struct Block {
 };
 static_assert(sizeof(Block) == 16 && ((sizeof(DevicePairs) == 16 && sizeof(DeviceDoubles) == 16) || sizeof(void*) < 8));
 
-// Decides one pair as a block of one pair. With stride 1, the pair's coordinates are the 18 arrays. `more` are the
+// Decides one pair as a block of one pair. With stride 1, the pair's coordinates serve as the 18 arrays. `more` are the
 // kernel's parameters between the block and the output words.
 template <class Kernel, class Real, class Fuse, class... More>
 Verdict decide_one(const BasicPair<Real>& pair, const Fuse& fuse, const More&... more) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A twin of a user's kernel, loaded into this process. It has answers, contraction sites and comparisons.
+// A twin of a user's kernel, loaded into this process: its answers, contraction sites and comparisons.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 namespace graze::cuda {
 
 // The destructor unloads the library. The library's functions may run in several threads at once. An endless loop or an
-// invalid memory access in the user's code affects this process.
+// invalid memory access in the user's code hangs or crashes this process.
 class TwinLibrary {
  public:
   // Throws: std::runtime_error if the file is not a twin for this scalar.
@@ -25,7 +25,7 @@ class TwinLibrary {
   ~TwinLibrary();
 
   // Writes an answer for each pair: -1 for declined, 0 for disjoint, 1 for intersects. Uses several threads for many
-  // pairs. If the kernel ends without an answer for a pair, the pair's answer is not written.
+  // pairs. If the kernel ends without an answer for a pair, that answer is left unchanged.
   void decide(std::span<const Pair> pairs, std::int8_t* answers) const;
   // Requires: a twin in double.
   void decide(std::span<const DoublePair> pairs, std::int8_t* answers) const;
@@ -33,9 +33,9 @@ class TwinLibrary {
   std::span<const ContractionSite> sites() const { return sites_; }
   std::span<const ComparisonSite> comparisons() const { return comparisons_; }
 
-  // The answer if only the sites whose bit is set are fused. Bit i % 64 of word i / 64 belongs to site i. `made`
-  // receives the first comparisons that the kernel makes, as many as fit, and `count` their number. A twin in float
-  // decides a pair of doubles rounded to float32. Throws: std::invalid_argument for too few bits.
+  // The answer if only those sites are fused whose bit is set. Bit i % 64 of word i / 64 belongs to site i. `made`
+  // receives the first comparisons that the kernel makes, as many as fit, and `count` receives their number. A twin in
+  // float decides a pair of doubles after rounding it to float32. Throws: std::invalid_argument for too few bits.
   int decide_fusing(const AnyPair& pair, std::span<const std::uint64_t> fused, std::span<Comparison> made = {},
                     std::size_t* count = nullptr) const;
 

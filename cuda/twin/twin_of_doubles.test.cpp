@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of the twins of the kernels that decide pairs of doubles.
+// Tests the twins of kernels that decide pairs of doubles.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -17,7 +17,7 @@
 namespace graze::cuda {
 namespace {
 
-// Pairs of every stratum of doubles.
+// Pairs from every stratum of doubles.
 const std::vector<DoublePair>& double_sample() {
   static const std::vector<DoublePair> pairs = [] {
     std::vector<DoublePair> all;
@@ -141,7 +141,7 @@ TEST_P(TwinOfDoubles, HasItsOwnKernelsAndSites) {
   }
 }
 
-// A lane's records of a block of pairs.
+// A lane's records for a block of pairs.
 struct BlockRun {
   std::vector<double> values;
   std::vector<RecordedPath> paths;
@@ -164,7 +164,7 @@ struct BlockRun {
   }
 };
 
-// Splits the sample into blocks, and calls with_block(the block's pairs, the index of its first pair) for each block.
+// Splits the sample into blocks. For each block, calls with_block(the block's pairs, the index of its first pair).
 template <class WithBlock>
 void for_each_block(const WithBlock& with_block) {
   const std::span<const DoublePair> pairs = double_sample();
@@ -232,7 +232,7 @@ TEST_P(TwinOfDoubles, RecordsOfFloatsAreThoseOfTheTwinOfFloats) {
   EXPECT_EQ(recorded(lane(), doubles, twin_record_of_doubles(lane())).differences(of_floats), 0u);
 }
 
-// The evidence comes from the record of the kernels for doubles, not for float32.
+// The evidence comes from the record for double kernels, not from the one for float32.
 TEST_P(TwinOfDoubles, EvidenceSaysWhatTheRecordSays) {
   const auto record =
       nlohmann::json::parse(std::ifstream(GRAZE_SOURCE_DIR "/cuda/proofs/nvidia_h200_nvcc_13.0.88_f64.json"));

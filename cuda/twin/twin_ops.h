@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// PTX operations on the CPU, one function for each operation. Generated twins call these functions. Numbers are IEEE
-// 754 binary32 and binary64, rounded to nearest even. The sign and the payload of a NaN are not replayed. Requires:
-// compilation with -ffp-contract=off, and a separate namespace GRAZE_FP for each instruction set. Reference: NVIDIA,
-// PTX ISA 9.0, chapter 9.7.
+// PTX operations on the CPU, one function per operation, which generated twins call. Numbers are IEEE 754 binary32 and
+// binary64, rounded to nearest even. The sign and the payload of a NaN are not replayed. Requires: compilation with
+// -ffp-contract=off, and a separate namespace GRAZE_FP for each instruction set. Reference: NVIDIA, PTX ISA 9.0,
+// chapter 9.7.
 #pragma once
 
 #include <bit>
@@ -33,7 +33,7 @@ template <class T>
 using Bits = std::conditional_t<sizeof(T) == 1, u8,
                                 std::conditional_t<sizeof(T) == 2, u16, std::conditional_t<sizeof(T) == 4, u32, u64>>>;
 
-// The bits of a register. Float32 operations return one NaN on a device and another on x86, which matters if the bits
+// The bits of a register. Float32 operations return different NaNs on a device and on x86, which matters if the bits
 // are read. Float64 operations return the same NaN on both.
 constexpr u32 bits_of(f32 x) {
   const u32 bits = std::bit_cast<u32>(x);
@@ -41,7 +41,7 @@ constexpr u32 bits_of(f32 x) {
 }
 constexpr u64 bits_of(f64 x) { return std::bit_cast<u64>(x); }
 
-// The register's bits as another type of the same size. An integer of another size is extended or truncated.
+// The register's bits as another type of the same size. Integers of a different size are extended or truncated.
 template <class T, class From>
 constexpr T as(From x) {
   if constexpr (std::is_integral_v<T> && std::is_integral_v<From>) {
@@ -147,9 +147,9 @@ T div(T a, T b) {
   return a / b;
 }
 
-// .ftz decides about the result rounded to 24 bits with unlimited exponent range, as measured on an H100. IEEE
-// arithmetic rounds results below the least normal number to fewer bits, so it would round the largest flushed results
-// up to that number. Sums and differences of this size are exact, so only products and quotients are affected.
+// .ftz depends on the result rounded to 24 bits with unlimited exponent range, as measured on an H100. IEEE arithmetic
+// rounds results below the least normal number to fewer bits, so it would round the largest flushed results up to that
+// number. Sums and differences of this size are exact, so only products and quotients are affected.
 constexpr f64 kFlushBelow = 0x1p-126 - 0x1p-151;
 
 inline f32 mul_ftz(f32 a, f32 b) {
@@ -165,7 +165,7 @@ inline f32 fma_ftz(f32 a, f32 b, f32 c) {
   return flushes ? static_cast<f32>(copysign(sum, 0.0)) : fma(flushed(a), flushed(b), flushed(c));
 }
 
-// Double precision cannot round a quotient of floats to the limit, because their relative distance is at least 2^-49.
+// Double precision cannot round a quotient of floats to the limit, because the two differ relatively by at least 2^-49.
 inline f32 div_ftz(f32 a, f32 b) {
   const f64 quotient = f64{flushed(a)} / f64{flushed(b)};
   return abs(quotient) < kFlushBelow ? static_cast<f32>(copysign(quotient, 0.0)) : flushed(a) / flushed(b);

@@ -35,8 +35,8 @@ Real flush(Real x) {
   return std::fpclassify(x) == FP_SUBNORMAL ? std::copysign(Real(0), x) : x;
 }
 
-// A .ftz result: rounded once to 24 bits with unlimited exponent, then flushed. Only sums far from the limit have more
-// bits than long double.
+// A .ftz result: rounded once to 24 bits with unlimited exponent, then flushed. Only sums far from the limit need more
+// bits than long double has.
 f32 flushed_result(long double exact, f32 rounded) {
   return std::fabs(exact) < 0x1p-126L - 0x1p-151L ? std::copysign(0.0f, static_cast<f32>(exact)) : rounded;
 }
@@ -56,8 +56,8 @@ Real greatest(Real a, Real b) {
   return a == 0 && b == 0 ? (std::signbit(a) ? b : a) : std::fmax(a, b);
 }
 
-// The integer of the type nearest to an integral value. By the PTX ISA (cvt), NaN becomes 0; if either type has 64
-// bits, it becomes the integer with only the top bit.
+// The integer of this type nearest to an integral value. According to the PTX ISA (cvt), NaN becomes 0, or the integer
+// with only the top bit set if either type has 64 bits.
 template <class To, class Real>
 To nearest_integer(Real x, To of_nan) {
   if (std::isnan(x)) return of_nan;
@@ -250,7 +250,7 @@ TEST(TwinOps, FlushedProductKeepsItsSign) {
   EXPECT_EQ(flushed(0x1p-126f), 0x1p-126f);
 }
 
-// The exact result differs from the limit by 2^-197, and double precision rounds it to the limit.
+// The exact result differs from the limit by only 2^-197, so double precision rounds it to the limit.
 TEST(TwinOps, FmaFlushesByWhatRoundingToDoubleLeavesOut) {
   const f32 limit = 0x1p-126f, up = (1 + 0x1p-23f) * 0x1p-75f,
             down = (1 - 0x1p-23f) * 0x1p-76f;                       // product: 2^-151 - 2^-197

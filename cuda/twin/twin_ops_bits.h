@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// More PTX operations on the CPU: bits, bit fields and bytes of integers.
+// More PTX operations on the CPU, on integers' bits, bit fields and bytes.
 #pragma once
 
 #include "cuda/twin/twin_ops_logic.h"
@@ -32,15 +32,15 @@ u32 bfind(T x) {
   return bits == 0 ? ~u32{0} : static_cast<u32>(8 * sizeof(T)) - 1 - clz(bits);
 }
 
-// .shiftamt: the left shift that moves this bit to the top.
+// .shiftamt: the left shift that moves this bit to the top position.
 template <class T>
 u32 bfind_shift(T x) {
   const u32 place = bfind(x);
   return place == ~u32{0} ? place : static_cast<u32>(8 * sizeof(T)) - 1 - place;
 }
 
-// The position or size of a bit field. For 32-bit values, only the low byte counts. For 64-bit values, all 32 bits
-// count, as measured on a device.
+// A bit field's position or size. For 32-bit values, only the low byte counts. For 64-bit values, all 32 bits count, as
+// measured on a device.
 template <class T>
 u64 field(u32 number) {
   return sizeof(T) == 4 ? number & 0xff : number;
@@ -73,7 +73,7 @@ T bfi(T a, T b, u32 from, u32 size) {
   return b;
 }
 
-// Selects four of the eight bytes of (b, a). Four bits select each byte; the highest of them replicates its sign bit.
+// Selects four of the eight bytes of (b, a). Four bits select each byte; the highest requests copies of its sign bit.
 inline u32 prmt(u32 a, u32 b, u32 choice) {
   const u64 all = u64{b} << 32 | a;
   u32 result = 0;
@@ -94,7 +94,7 @@ inline u32 clamp(u32 by) { return by < 32 ? by : 32; }
 inline u32 shf_l(u32 a, u32 b, u32 by) { return static_cast<u32>((u64{b} << 32 | a) << by >> 32); }
 inline u32 shf_r(u32 a, u32 b, u32 by) { return static_cast<u32>((u64{b} << 32 | a) >> by); }
 
-// Each bit of the result is a bit of the table. The three operands' bits at this place are its index.
+// Each bit of the result is a bit of the table, indexed by the three operands' bits at that position.
 inline u32 lop3(u32 a, u32 b, u32 c, u32 table) {
   u32 result = 0;
   for (u32 k = 0; k < 8; ++k) {

@@ -44,14 +44,14 @@ T divided(T a, T b, bool rest) {
   return static_cast<T>(rest ? x % y : x / y);
 }
 
-// The bits of a field's position or size that count. The PTX ISA does not say that all bits count for 64-bit numbers,
-// but on an H200 they do.
+// The bits of a field's position or size that count. For 64-bit numbers all bits count on an H200, though the PTX ISA
+// does not state this.
 template <class T>
 s64 counted(u32 number) {
   return sizeof(T) == 4 ? number & 255 : number;
 }
 
-// The bit field, computed bit by bit as the text of the PTX ISA says.
+// The bit field, computed bit by bit according to the PTX ISA.
 template <class T>
 T field(T x, u32 at, u32 count) {
   const s64 most = 8 * sizeof(T) - 1, p = counted<T>(at), n = counted<T>(count);

@@ -38,7 +38,7 @@ T mul_hi(T a, T b) {
   }
 }
 
-// PTX does not define division by zero. Devices return all ones as the quotient, and the dividend as the remainder.
+// PTX does not define division by zero. Devices return a quotient of all ones, and the dividend as the remainder.
 template <class T>
 T quotient(T a, T b) {
   if (b == 0) return static_cast<T>(-1);
@@ -59,7 +59,7 @@ T sad(T a, T b) {
   return a < b ? sub(b, a) : sub(a, b);
 }
 
-// Shifts by the width or more give zero, or copies of the sign.
+// Shifts by at least the type's width give zero, or copies of the sign.
 template <class T>
 T shl(T x, u32 by) {
   return by < 8 * sizeof(T) ? static_cast<T>(static_cast<u64>(x) << by) : T{0};
@@ -159,7 +159,7 @@ bool test_subnormal(T x) {
 
 // ---- conversions ----
 
-// Round a number to an integral number: to nearest even, toward zero, down, up. A zero keeps its sign.
+// These round to an integral number: to nearest even, toward zero, down, up. A zero keeps its sign.
 template <class T>
 T rni(T x) {
   return std::nearbyint(x);
@@ -178,7 +178,7 @@ T rpi(T x) {
 }
 
 // Converts an integral floating-point number to the nearest integer of the type. NaN becomes 0, or the integer with
-// only the top bit if either type has 64 bits.
+// only the top bit set if either type has 64 bits.
 template <class To, class From>
 To to_integer(From x) {
   if (is_nan(x))

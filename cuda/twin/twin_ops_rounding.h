@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// More PTX operations on the CPU, which round toward zero, down and up. f32 operations round the exact result: a double
+// More PTX operations on the CPU, which round toward zero, down and up. f32 operations round the exact result, a double
 // and the sign of its remainder. f64 operations set the processor's rounding mode.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace ptx {
 
 enum class Rounding { rz, rm, rp };
 
-// An exact number: a nearby double, and the sign of the remainder (below half of the double's last place).
+// An exact number: a nearby double, and the sign of the remainder, which is below half of the double's last place.
 struct Exact {
   f64 near;
   int rest;
@@ -30,8 +30,8 @@ inline f32 next_to(f32 x, bool up) {
   return std::nextafter(x, up ? std::numeric_limits<f32>::infinity() : -std::numeric_limits<f32>::infinity());
 }
 
-// With Flush, a result below the least normal number becomes zero. The result rounded to 24 bits decides, as in
-// twin_ops.h.
+// With Flush, a result below the least normal number becomes zero. As in twin_ops.h, this depends on the result rounded
+// to 24 bits.
 template <Rounding R, bool Flush>
 f32 narrowed(Exact x) {
   if (is_nan(x.near) || abs(x.near) == std::numeric_limits<f64>::infinity()) return static_cast<f32>(x.near);
@@ -49,7 +49,7 @@ f32 narrowed(Exact x) {
   return result;
 }
 
-// Runs an f64 operation in a rounding mode. The result is volatile, because compilers assume the default mode.
+// Runs an f64 operation in a rounding mode. The result is volatile, because compilers assume the default rounding mode.
 template <Rounding R, class Operation>
 auto in_mode(Operation operation) {
   std::fesetround(R == Rounding::rz ? FE_TOWARDZERO : R == Rounding::rm ? FE_DOWNWARD : FE_UPWARD);

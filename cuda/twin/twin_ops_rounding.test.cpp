@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests reciprocals, and operations that round toward zero, down and up (generator/semantics_rounding.ptx). The results
-// are compared with results in quadruple precision and the signs of their errors.
+// Tests reciprocals, and operations that round toward zero, down and up (generator/semantics_rounding.ptx). Expected
+// results come from quadruple precision and the signs of its errors.
 #include "cuda/twin/twin_ops_rounding.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ __extension__ typedef __float128 Quad;
 bool finite(Quad x) { return x - x == 0; }
 int sign_of_quad(Quad x) { return (x > 0) - (x < 0); }
 
-// A result rounded to nearest, and the side of it on which the exact result lies.
+// A result rounded to nearest, and on which side of it the exact result lies.
 template <class Real>
 struct Nearest {
   Real value;
@@ -64,7 +64,7 @@ Real directed(const std::string& mode, Nearest<Real> x) {
   return x.value;
 }
 
-// If rounding is down, an exact sum of zero is negative unless both operands are positive.
+// When rounding down, an exact sum of zero is -0 unless both operands are positive.
 template <class Real>
 Real directed_sum(const std::string& mode, Quad a, Quad b, Real nearest) {
   if (nearest == 0 && a + b == 0) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twins' functions: a table [algorithm][scalar] for each variant with a twin, in its own namespace. Contracted
+// The twins' functions: a table [algorithm][scalar] for each variant with a twin, each in its own namespace. Contracted
 // kernels are compiled twice, for processors with and without FMA instructions. Both compilations give the same
 // verdicts at different speeds.
 #pragma once
@@ -18,7 +18,7 @@ struct TwinFunctions {
   DecideWithin<AnyPair> absolute = nullptr, relative = nullptr;  // only absolute tolerances; relative tolerances too
   TraceFunction<AnyPair> trace = nullptr;
   Verdict (*decide_fusing)(const AnyPair& pair, const std::uint64_t* fused) = nullptr;
-  // The functions of the kernel that records. This kernel has a separate table, with its own `sites`.
+  // The functions of the recording kernel, which is in a separate table, with its own `sites`.
   RecordFunction<AnyPair> record = nullptr;
   void (*record_fusing)(const AnyPair* pairs, std::size_t count, const Records& to,
                         const std::uint64_t* fused) = nullptr;
@@ -39,7 +39,7 @@ struct TwinTable {
 };
 
 // twin_NAME for the variants with a twin; twin_NAME_portable for those with contraction. On all processors:
-// policy_twin_NAME for lanes with tolerances, record_twin_NAME for those that record. Other names are never defined.
+// policy_twin_NAME for lanes under tolerances, record_twin_NAME for recording lanes. Other names are never defined.
 #define GRAZE_DECLARE(name)          \
   namespace name {                   \
   extern const TwinTable kTwinTable; \

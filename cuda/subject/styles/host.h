@@ -46,7 +46,7 @@ inline unsigned __byte_perm(unsigned a, unsigned b, unsigned choice) {
 inline unsigned __usad(unsigned a, unsigned b, unsigned c) { return (a < b ? b - a : a - b) + c; }
 inline unsigned __umulhi(unsigned a, unsigned b) { return (unsigned)((unsigned long long)a * b >> 32); }
 
-// Runs an operation after a change of the processor's rounding mode.
+// Runs an operation in another rounding mode of the processor.
 template <class F>
 auto in_rounding_mode(int mode, F f) {
   std::fesetround(mode);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A predicate with loops that the compiler does not unroll, over local arrays with indices known only at run time.
+// A predicate with loops that the compiler does not unroll, over local arrays whose indices are known only at run time.
 __device__ bool intersects(const float a[9], const float b[9]) {
   float edges[18];
 #pragma unroll 1

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rule by which nvcc contracts. The front end (cicc) turns a*b + c into fma.rn. It writes a*b - c*d and x - a*b as
-// mul and sub without a rounding suffix, which ptxas at -O1 and above may contract. The rule of ptxas, for m = a*b:
+// How nvcc contracts. The front end (cicc) turns a*b + c into fma.rn. It writes a*b - c*d and x - a*b as mul and sub
+// without a rounding suffix, which ptxas at -O1 and above may contract. The rule of ptxas, for m = a*b:
 //
 //   PTX, all in one block                 machine code                  row
 //   m - x, x - m, m + x, x + m            fma                           single product
@@ -19,16 +19,16 @@
 //   .ftz on one but not the other         add, mul                      not fused
 //   .sat on the addition                  fma.sat                       fused
 //
-// The order in which ptxas contracts the additions matters only if additions share products. It first contracts
-// additions with a product that has one use, then the other additions in program order. If both operands are products,
-// it fuses the product with fewer uses, or the left product if their uses are equal.
+// The order in which ptxas contracts additions matters only if they share products. ptxas first contracts the additions
+// with a product that has only one use, then the other additions in program order. If both operands are products, it
+// fuses the product with fewer uses, or the left product if their uses are equal.
 //
 // Evidence, with ptxas 13.0.88:
-// - The machine code of each row for sm_90, in f32 and f64, was disassembled and read.
-// - Random straight-line programs give the same machine code, instruction for instruction, after this pass has written
-//   their contractions out. So do most of the project's kernels. All kernels have the same counts of fused and unfused
+// - Each row's machine code for sm_90, in f32 and f64, was disassembled and read.
+// - After this pass has written out their contractions, random straight-line programs and most of the project's kernels
+//   give the same machine code, instruction for instruction. All kernels have the same counts of fused and unfused
 //   operations (static_check.test.cpp).
-// - The twins have the verdicts and the intermediate bits of an H100 and an H200 (cuda/proofs).
+// - The twins give the same verdicts and intermediate bits as an H100 and an H200 (cuda/proofs).
 #include "cuda/twin/generator/contraction.h"
 
 #include <algorithm>
@@ -155,7 +155,7 @@ class BlockPass {
     }
   }
 
-  // The number of uses if the product may be fused into this addition; otherwise nullopt.
+  // The product's number of uses if it may be fused into this addition; otherwise nullopt.
   std::optional<std::size_t> uses(const std::optional<std::size_t>& product, bool single) const {
     if (!product) return {};
     const Product& p = products_.at(*product);
@@ -224,7 +224,7 @@ class Rewriter {
         }
       }
     }
-    if (product.operands[0] == names[0] || product.operands[0] == names[1]) {  // as in m = m * b, which overwrites m
+    if (product.operands[0] == names[0] || product.operands[0] == names[1]) {  // as in m = m * b
       for (std::size_t f = 0; f < 2; ++f) {
         if (names[f] == product.operands[0]) {
           copies_[fusion.product].push_back({fresh(product.op.back()), names[f]});
@@ -277,7 +277,7 @@ class Rewriter {
     Instruction i = kernel_.body[place];
     if (is_float(i) && (i.op[0] == "mul" || i.op[0] == "add" || i.op[0] == "sub") && !is_rounded(i))
       i.op.insert(i.op.begin() + 1, "rn");
-    if (i.has("approx") || i.has("full"))  // ptxas expands the instruction, and contracts the expansion
+    if (i.has("approx") || i.has("full"))  // ptxas expands the instruction and contracts the expansion
       throw PtxError(module_.path + ":" + std::to_string(i.line) + ": cannot be replayed: " + text(i));
     if (is_float(i) && i.op[0] == "mad")
       throw PtxError(module_.path + ":" + std::to_string(i.line) + ": mad leaves the rounding open: " + text(i));

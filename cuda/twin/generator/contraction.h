@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The contraction pass writes out every contraction that ptxas would make. The rewritten kernel has no floating-point
-// operation that ptxas may contract. The rule of ptxas was measured; see the table in contraction.cpp.
+// operation that ptxas may contract. The rule that ptxas follows was measured; see the table in contraction.cpp.
 #pragma once
 
 #include <vector>
@@ -12,10 +12,10 @@ namespace graze::cuda::twin {
 enum class Rule {
   ptxas,        // the contractions of ptxas at -O1 and above
   none,         // no contraction except the front end's fma.rn
-  right_first,  // wrong on purpose: fuses the right one of two products. Tests show that the checks detect it.
+  right_first,  // deliberately wrong: fuses the right one of two products. Tests show that the checks detect it.
 };
 
-// An operation that is rounded once although the source has two operations.
+// A place where the code rounds once although the source has two operations.
 struct Site {
   bool by_ptxas = false;  // false: the front end wrote fma.rn
   int line = 0;           // line of the addition or fma in the PTX file

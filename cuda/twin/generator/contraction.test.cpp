@@ -11,7 +11,7 @@
 namespace graze::cuda::twin {
 namespace {
 
-// A module of one kernel with these instructions. In the text, T stands for the type.
+// A module with one kernel, which has these instructions. In the text, T stands for the type.
 Module module_of(std::string body, const std::string& type) {
   for (auto at = body.find(".T"); at != std::string::npos; at = body.find(".T")) body.replace(at, 2, "." + type);
   std::istringstream in(
@@ -21,7 +21,7 @@ Module module_of(std::string body, const std::string& type) {
   return read_ptx(in, "test.ptx");
 }
 
-// The instructions after the pass, one on each line, without `ret`.
+// The instructions after the pass, one per line, without `ret`.
 std::string contracted(const std::string& body, const std::string& type, Rule rule = Rule::ptxas) {
   const Module module = module_of(body, type);
   std::string result;
@@ -81,7 +81,7 @@ TEST_P(Contraction, ProductOfOneUseBeforeOthers) {
                        GetParam()),
             "mul.rn.T %f1, %a1, %a2\nmul.rn.T %f2, %a3, %a4\nmul.rn.T %f3, %a5, %a6\nfma.rn.T %f4, %a3, %a4, "
             "%f1\nfma.rn.T %f5, %a5, %a6, %f1\n");
-  // In program order m1 - x is first, but the pass first fuses m2, whose addend is m1.
+  // In program order m1 - x comes first, but the pass first fuses m2, whose addend is m1.
   EXPECT_EQ(
       fused("mul.T %f1, %a1, %a2;\nmul.T %f2, %a3, %a4;\nsub.T %f4, %f1, %a7;\nsub.T %f5, %f1, %f2;\n", GetParam()), 1);
 }

@@ -30,7 +30,7 @@ std::string rounded_operation(const Operands& o, const std::string& arguments) {
   return ftz && one_of(op, {"add", "sub"}) ? fmt::format("flushed({})", result) : result;
 }
 
-// Writes mul or mad of integers, with the low half, the high half or the whole product.
+// Writes an integer mul or mad, with the low half, the high half or the whole product.
 std::string product(const Operands& o) {
   const Instruction& i = o.instruction();
   const std::string& type = o.type();
@@ -47,7 +47,7 @@ std::string product(const Operands& o) {
   return o.assign(result_type, result);
 }
 
-// Writes an operation on bits.   Returns: an empty text for other operations.
+// Writes an operation on bits; returns an empty text for other operations.
 std::string bit_statement(const Operands& o) {
   const Instruction& i = o.instruction();
   const std::string &op = i.op[0], &type = o.type();

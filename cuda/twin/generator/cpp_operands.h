@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The operands of one PTX instruction as C++ expressions, for the writers of statements.
+// One PTX instruction's operands as C++ expressions, for the functions that write statements.
 #pragma once
 
 #include <initializer_list>
@@ -13,7 +13,7 @@ namespace graze::cuda::twin {
 // "%f32" becomes "f32_", because f32 is a type. "$L__BB0_3" becomes "L__BB0_3".
 std::string identifier(std::string name);
 
-// The C++ type of a PTX type; types of untyped bits (b32) become unsigned (u32). Empty if C++ has no such type.
+// The C++ type of a PTX type; types of untyped bits (b32) become unsigned (u32). Empty if there is none.
 std::string cpp_type(const std::string& type);
 
 bool one_of(const std::string& word, std::initializer_list<const char*> words);
@@ -34,14 +34,14 @@ class Operands {
   std::size_t count() const { return instruction_.operands.size(); }
   const std::string& operand(std::size_t o) const;
 
-  // An operand, given by index or text, as a value of the type.   Requires: not a memory operand.
+  // An operand, given by index or text, as a value of this type.   Requires: not a memory operand.
   std::string value(std::size_t o, const std::string& type) const { return value(operand(o), type); }
   std::string value(const std::string& name, const std::string& type) const;
 
   // The C++ name of a register.
   std::string reg(const std::string& name) const;
 
-  // "d = expression;" for an expression of the type. A wider register receives the value, extended as this type.
+  // "d = expression;" for an expression of this type. A wider register receives the value, extended by its type.
   std::string assign(const std::string& destination, const std::string& type, const std::string& expression) const;
   std::string assign(const std::string& type, const std::string& expression) const {
     return assign(operand(0), type, expression);

@@ -8,7 +8,7 @@
 
 namespace graze::cuda::twin {
 
-// The instruction as a statement of the function `run`; see cpp_writer.h.   Requires: no label.
+// The instruction as a statement of the function `run`; see cpp_writer.h.   Requires: not a label.
 // Throws: PtxError for an instruction that is unknown or cannot be replayed.
 std::string cpp_statement(const Module& module, const Kernel& kernel, const Instruction& instruction);
 

@@ -29,7 +29,7 @@ void declare(std::ostream& out, const Module& module, const Kernel& kernel, cons
   out << fmt::format("    [[maybe_unused]] {} {};\n", spelled, fmt::join(names, ", "));
 }
 
-// A directive in a body as C++: scopes, and the memory for a call's arguments.
+// A directive in a body as C++: a scope, or the memory for a call's arguments.
 std::string cpp_directive(const std::string& directive) {
   if (directive == "{" || directive == "}") return directive;
   const auto memory = parameter(directive.substr(0, directive.size() - 1));
@@ -80,7 +80,7 @@ std::string spelled(const Module& module, const Place& place) {
   return fmt::format("{{\"{}\", {}}}", file == module.files.end() ? "" : file->second, place.line);
 }
 
-// The parts of a kernel's name. The kernel is NAME<integer, float or double>, or no template.
+// The parts of a kernel's name. The kernel is NAME<integer, float or double>, or not a template.
 struct KernelName {
   std::string name;
   int integer = -1;

@@ -28,7 +28,7 @@ bool leaves(const Instruction& i) {
 }
 bool jumps(const Instruction& i) { return i.is_operation() && (i.op[0] == "bra" || i.op[0] == "brx"); }
 
-// The target labels of a jump: its label, or the labels of its list.
+// A jump's target labels: its label, or the labels in its list.
 std::vector<std::string> targets(const Kernel& kernel, const Instruction& i) {
   if (i.op[0] == "bra") return {i.operands.at(0)};
   const auto list = kernel.branch_targets.find(i.operands.at(1));

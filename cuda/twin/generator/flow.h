@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The basic blocks of a kernel, and the registers that are alive at their ends, for the contraction pass.
+// A kernel's basic blocks and the registers that are alive at their ends, for the contraction pass.
 #pragma once
 
 #include <set>
@@ -10,8 +10,7 @@
 
 namespace graze::cuda::twin {
 
-// The registers that an instruction reads, and those that it writes. An instruction reads the registers of a memory
-// operand.
+// The registers that an instruction reads, and those that it writes. The registers in a memory operand are read.
 std::vector<std::string> registers_read(const Instruction& instruction);
 std::vector<std::string> registers_written(const Instruction& instruction);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests the reader and the writers: their output, and the PTX that they refuse. twin_ops.test.cpp tests the values.
+// Tests the output of the reader and the writers, and the PTX that they refuse. twin_ops.test.cpp tests the values.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -125,7 +125,7 @@ TEST(TwinGenerator, HashKnowsInstructionsButNoLines) {
   EXPECT_EQ(hash(body), hash(".loc 1 2 3\n" + body));
   EXPECT_NE(hash(body), hash(body + "mov.f32 %f1, %f2;"));
   EXPECT_NE(hash(body), hash(body, Rule::right_first));
-  // Names of labels contain the kernel's number in its module.
+  // Label names contain the kernel's number in its module.
   EXPECT_EQ(hash("bra $L__BB0_7;\n$L__BB0_7:\n"), hash("bra $L__BB12_7;\n$L__BB12_7:\n"));
   EXPECT_NE(hash("bra $L__BB0_7;\n$L__BB0_7:\n"), hash("bra $L__BB0_8;\n$L__BB0_8:\n"));
 }

@@ -22,13 +22,13 @@ constexpr char kUsage[] =
     "usage: graze_twin_generator --text OUT FILE …   the files as C++ string literals, without their own includes\n"
     "usage: graze_twin_generator --proofs OUT [RECORD …]\n";
 
-// Writes the text as a list of raw string literals, because compilers limit the length of a literal.
+// Writes the text as a list of raw string literals, because compilers limit a literal's length.
 void write_literal(std::ostream& out, const std::string& text) {
   constexpr std::size_t kPiece = 8000;
   for (std::size_t at = 0; at < text.size(); at += kPiece) out << "R\"ptx(" << text.substr(at, kPiece) << ")ptx\",\n";
 }
 
-// The text of a file without its includes of project headers. The text of these headers comes first.
+// A file's text without its includes of project headers, whose text comes earlier.
 std::string without_own_includes(const std::string& path) {
   std::ifstream in(path);
   if (!in) throw PtxError(path + ":0: cannot be read");

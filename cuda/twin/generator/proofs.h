@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts proof records (cuda/proofs/*.json, written by `graze prove-twin`) to rows of a C++ table for twin_evidence.
+// Converts proof records (cuda/proofs/*.json, by `graze prove-twin`) to rows of a C++ table for twin_evidence.
 #pragma once
 
 #include <iosfwd>

@@ -74,7 +74,7 @@ class Reader {
     throw PtxError(module_.path + ":" + std::to_string(line_) + ": " + why + (text_.empty() ? "" : ": " + text_));
   }
 
-  // Reads the next line without its comment. Two comments have information that is nowhere else in the PTX: nvcc's
+  // Reads the next line without its comment. Two comments hold information that is nowhere else in the PTX: nvcc's
   // version, and our "// from".
   bool next_line() {
     static const std::regex kVersion(R"(// Cuda compilation tools, release [0-9.]+, V([0-9.]+))"),
@@ -175,7 +175,7 @@ class Reader {
       } else if (std::regex_match(value, kNumber)) {
         bits = value[0] == '-' ? 0 - std::stoull(value.substr(1)) : std::stoull(value);
       } else {
-        fail("expected a table of numbers");  // a table may have addresses of tables or functions
+        fail("expected a table of numbers");  // the table may hold addresses of tables or functions
       }
       for (std::size_t b = 0; b < size; ++b) table.bytes.push_back(static_cast<std::uint8_t>(bits >> (8 * b)));
     }
@@ -193,7 +193,7 @@ class Reader {
     if (text_ == "{") {
       in_body_ = true;
       kernel_->declared_before = declared_.contains(kernel_->name);
-    } else if (text_ == ";") {  // a declaration: the function is defined later or in another file
+    } else if (text_ == ";") {  // only a declaration: the function is defined later or in another file
       declared_.insert(kernel_->name);
       module_.kernels.pop_back();
       kernel_ = nullptr;
@@ -282,7 +282,7 @@ class Reader {
     }
   }
 
-  // Makes a scope's register a register of the kernel with a unique name.
+  // Turns a register of a scope into a register of the kernel, with a unique name.
   void declare_in_scope(const std::smatch& match) {
     if (match[3].matched) fail("expected a single register, found a range of registers");
     if (match[2] == "temp_param_reg") return;  // nvcc declares this register for each call, and never uses it
@@ -293,7 +293,7 @@ class Reader {
     scopes_.back()[match[2]] = name;
   }
 
-  // The operand with the new names of scopes' registers.
+  // The operand, with the new names of registers that scopes declare.
   std::string resolved(const std::string& operand) const {
     if (std::all_of(scopes_.begin(), scopes_.end(), [](const auto& scope) { return scope.empty(); })) return operand;
     static const std::regex kName(R"([%\w$]+)");

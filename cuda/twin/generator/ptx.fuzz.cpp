@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads arbitrary bytes as PTX: the result is a one-line error or a module.
+// Reads arbitrary bytes as PTX; the result must be a module or a one-line error.
 #include <sstream>
 
 #include "core/fuzz_target.h"

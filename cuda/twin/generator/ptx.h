@@ -27,8 +27,8 @@ struct Place {
   friend bool operator==(const Place&, const Place&) = default;
 };
 
-// The origin of an instruction: its source line, and the line into which this line was inlined (file 0: not inlined).
-// PTX does not identify further levels of inlining reliably.
+// An instruction's origin: its source line, and the line into which it was inlined (file 0: not inlined). PTX does not
+// reliably identify further levels of inlining.
 struct Source {
   Place at;
   Place from;
@@ -46,7 +46,7 @@ struct Instruction {
   std::vector<std::string> operands = {};  // destination first; "[%rd1+4]" and "{%r1,%r2}" are one operand each
   int line = 0;                            // line in the PTX file
   Source source = {};
-  bool by_hand = false;  // an fma written in the source, so not a contraction
+  bool by_hand = false;  // an fma that the source contains, so not a contraction
   int site = -1;         // the index in Contracted::sites if the instruction is a contraction
 
   bool is_label() const { return !label.empty(); }
@@ -54,7 +54,7 @@ struct Instruction {
   bool has(std::string_view modifier) const;
 };
 
-// An instruction in the syntax of PTX, without the semicolon.
+// The instruction in PTX syntax, without the semicolon.
 std::string text(const Instruction& instruction);
 
 struct Parameter {
@@ -63,12 +63,12 @@ struct Parameter {
   int bytes = 0;
 };
 
-// Parses a declaration such as ".param .b32 NAME".   Returns: nullopt for another text.
+// Parses a declaration such as ".param .b32 NAME".   Returns: nullopt for any other text.
 std::optional<Parameter> parameter(const std::string& declaration);
 
 // A table in constant or global memory.
 struct Table {
-  std::string declaration;  // the text of the file, without the semicolon
+  std::string declaration;  // as in the file, without the semicolon
   std::string name;
   int align = 0;
   std::vector<std::uint8_t> bytes;
@@ -92,7 +92,7 @@ struct Kernel {
   std::vector<Instruction> body;
 };
 
-// The type of a register of the kernel ("f32", "pred"); empty if the kernel has no register of that name.
+// The type of a register of the kernel ("f32", "pred"); empty if the kernel has no register with that name.
 std::string register_type(const Kernel& kernel, std::string_view name);
 
 struct Module {
@@ -105,8 +105,7 @@ struct Module {
   std::vector<Kernel> kernels;  // kernels and functions
 };
 
-// Reads PTX. `path` is the name of the stream in messages. The reader accepts unknown instructions; the writers reject
-// them.
+// Reads PTX. Messages name the stream `path`. The reader accepts unknown instructions; the writers reject them.
 // Throws: PtxError for syntax that the reader does not support.
 Module read_ptx(std::istream& in, const std::string& path);
 

@@ -47,7 +47,7 @@ void write_declarations(std::ostream& out, const Kernel& kernel) {
   }
 }
 
-// The path within the repository. Of a system header, only the file name, because its folder differs between machines.
+// The path within the repository; for a system header only the file name, because its folder differs between machines.
 std::string relative(std::string path, const std::string& root) {
   if (!path.starts_with(root + "/")) return path.substr(path.rfind('/') + 1);
   path.erase(0, root.size() + 1);
@@ -55,7 +55,7 @@ std::string relative(std::string path, const std::string& root) {
   return path;
 }
 
-// Whether the instruction is or may become a contraction. Only such instructions need source lines.
+// Whether the instruction is or may become a contraction. Only these instructions need source lines.
 bool may_contract(const Instruction& i) {
   return i.is_operation() && i.op.back()[0] == 'f' &&
          (i.op[0] == "fma" || ((i.op[0] == "add" || i.op[0] == "sub") && !i.has("rn")));

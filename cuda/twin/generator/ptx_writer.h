@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes a module as PTX: in the form stored in the repository, or with every contraction written out.
+// Writes a module as PTX, in the form stored in the repository or with every contraction written out.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace graze::cuda::twin {
 
-// Writes the module in a form that is the same on every machine. Paths are relative to `root`. nvcc's comments and the
-// mangled names of inlined functions are left out. Operations that may be contracted keep their source lines.
+// Writes the module in a form that is the same on every machine: paths are relative to `root`, and nvcc's comments and
+// the mangled names of inlined functions are left out. Operations that may be contracted keep their source lines.
 void write_stored(std::ostream& out, const Module& module, const std::string& root);
 
 // Writes the module after the contraction pass, so that ptxas cannot contract further.

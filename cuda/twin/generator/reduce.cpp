@@ -11,7 +11,7 @@
 namespace graze::cuda::twin {
 namespace {
 
-// The name of the function in a call; empty for other instructions.
+// The name of the called function; empty if the instruction is not a call.
 std::string called(const Instruction& i) {
   if (!i.is_operation() || i.op[0] != "call") return "";
   for (const std::string& operand : i.operands) {

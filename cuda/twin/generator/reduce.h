@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reduces a user's module to one kernel, and distinguishes the kernel's contractions from an fma in the source.
+// Reduces a user's module to one kernel, and distinguishes contractions from fma operations in the source.
 #pragma once
 
 #include <set>
@@ -10,8 +10,8 @@
 
 namespace graze::cuda::twin {
 
-// A module of the kernel, the functions that it calls directly or indirectly, and all tables.
-// Throws: PtxError if there is no such kernel, or if it has more than one write to global memory, that of its answer.
+// A module with the kernel, the functions that it calls directly or indirectly, and all tables.
+// Throws: PtxError if there is no such kernel, or if it has any write to global memory besides that of its answer.
 Module reduced(const Module& module, const std::string& kernel);
 
 using Lines = std::set<std::pair<std::string, int>>;  // pairs of file and line
@@ -19,7 +19,7 @@ using Lines = std::set<std::pair<std::string, int>>;  // pairs of file and line
 // Lines with an fma. In a module compiled without contraction, these are the lines with an fma in the source.
 Lines lines_with_fma(const Module& module);
 
-// Marks each fma on these lines as an fma of the source, so that it is not a contraction.
+// Marks each fma on these lines as written in the source, so that it does not count as a contraction.
 void mark_by_hand(Module& module, const Lines& lines);
 
 // The hash of the kernel, its functions and its tables. Without functions and tables, it is kernel_hash.

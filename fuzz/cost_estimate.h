@@ -16,12 +16,12 @@ class CostEstimate {
     for (const std::uint64_t units : left) kinds_.push_back({units});
   }
 
-  // Records that `units` of a kind are done and how long they took. For work that was already done, use skip.
+  // Records that `units` of a kind are done and how long they took. For work that was done earlier, use skip.
   void add(std::size_t kind, std::uint64_t units, double seconds);
   void skip(std::size_t kind, std::uint64_t units) { kinds_[kind].left -= units; }
 
   // An unmeasured kind is assumed to have the mean unit cost of the measured kinds.
-  // Returns: the remaining seconds for one such worker as `add` measured; nothing before the first measurement.
+  // Returns: the remaining seconds for one worker like the measured one; nothing before the first measurement.
   std::optional<double> seconds_left() const;
 
   bool measured(std::size_t kind) const { return kinds_[kind].done > 0; }

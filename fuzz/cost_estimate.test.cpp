@@ -8,7 +8,7 @@
 namespace graze::fuzz {
 namespace {
 
-// Artificial costs in seconds per pair, as different as those of uniform and mixed_scale; the highest comes last.
+// Artificial costs in seconds per pair, as far apart as the costs of uniform and mixed_scale. The highest comes last.
 const std::vector<double> kCosts{1e-5, 2e-5, 1e-5, 4e-5, 9e-5, 1e-3};
 constexpr std::uint64_t kPairs = 40'000, kFew = 512;
 

@@ -56,7 +56,6 @@ bool write_all(int handle, const std::string& text) {
   return true;
 }
 
-// Copies all remaining bytes.
 bool copy_all(int from, int to) {
   std::string bytes;
   while (true) {
@@ -97,8 +96,8 @@ void write_into(const fs::path& file, bool pipe, bool standard_output, const std
   if (own.number < 0 || !write_all(own.number, text)) fail("write", file, errno);
 }
 
-// Creates a new file for this writer alone. Other writers wait until this one has renamed it. A file that a killed
-// writer left is removed and never written to, because it may be a hard link to another user's file.
+// Creates a new file that only this writer uses. Other writers wait until this one has renamed it. A file left by a
+// killed writer is removed and never written to, because it may be a hard link to another user's file.
 // Returns: its descriptor; negative on failure, with the reason in errno.
 int made_alone(const std::string& file) {
   while (true) {
@@ -111,7 +110,7 @@ int made_alone(const std::string& file) {
     }, named{};
     if (number < 0 || fstat(number, &opened) != 0 || !S_ISREG(opened.st_mode)) return number;
     while (flock(number, LOCK_EX) != 0 && errno == EINTR) {
-    }  // a file system may have no locks
+    }  // some file systems have no locks
     const bool there = lstat(file.c_str(), &named) == 0 && same_file(opened, named);
     if (made && there) return number;
     const int error = there && unlink(file.c_str()) != 0 ? errno : 0;
@@ -139,7 +138,7 @@ void replace(const fs::path& file, const fs::path& asked, const Fill& fill) {
   fail("write", asked, error);
 }
 
-// Throws: std::runtime_error unless the mode is that of a file.   act: such as "read".
+// Throws: std::runtime_error unless the mode is a regular file's.   act: the verb of the message, such as "read".
 void expect_mode_of_file(const char* act, const fs::path& file, mode_t mode) {
   if (S_ISDIR(mode)) fail(act, file, EISDIR);
   if (!S_ISREG(mode)) throw std::runtime_error(cannot(act, file, "it is a pipe or a device; remove it"));
@@ -214,7 +213,7 @@ FolderLock::FolderLock(const fs::path& folder, WhenTaken when_taken)
   const int how = when_taken == WhenTaken::wait     ? LOCK_EX
                   : when_taken == WhenTaken::refuse ? LOCK_EX | LOCK_NB
                                                     : LOCK_SH | LOCK_NB;
-  // A process that was killed a moment ago may have a child that has not ended yet.
+  // A process that was just killed may have a child that has not ended yet.
   int error = 0;
   for (int attempt = 0; attempt == 0 || (attempt < kLockAttempts && !stop_requested); ++attempt) {
     if (flock(handle_, how) == 0) return;

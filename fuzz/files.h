@@ -18,22 +18,22 @@ inline constexpr const char* kPart = ".graze.part";
 void expect_file(const std::filesystem::path& file);
 
 // The file's bytes; empty if there is no file.   Throws: std::runtime_error if it cannot be read, or is a pipe or
-// device that gives more than 64 MiB.
+// device that yields more than 64 MiB.
 std::string read_whole(const std::filesystem::path& file, NamedBy named_by = NamedBy::graze);
 
 // Writes the file, following symbolic links, or writes to a device or a pipe that the user named. Leaves no partial
-// file if it fails. If two processes write the same file at once, each writes a whole file, and the later file remains.
-// Throws: std::runtime_error if it is a folder, or if there is no space.
+// file if it fails. If two processes write the same file at once, each writes a whole file, and the one that is renamed
+// last remains. Throws: std::runtime_error if `file` is a folder, or if there is no space.
 void write_whole(const std::filesystem::path& file, const std::string& text, NamedBy named_by = NamedBy::graze);
 
-// Copies the file. The copy is whole or missing, even after a crash of the machine.   Throws: what write_whole throws.
+// Copies the file. The copy is whole or missing, even after the machine crashes.   Throws: the errors of write_whole.
 void copy_whole(const std::filesystem::path& from, const std::filesystem::path& to);
 
 // Follows symbolic links to the file or folder that they point to, even if it does not exist yet.
 std::filesystem::path behind_links(std::filesystem::path file);
 
-// Holds the folder's lock as long as the object lives. No other process, and no other part of this one, can take the
-// lock. A shared lock excludes only exclusive locks.
+// Holds the folder's lock as long as the object lives. No other process, and no other part of this process, can take
+// the lock. A shared lock excludes only exclusive locks.
 class FolderLock {
  public:
   enum class WhenTaken { wait, refuse, share };  // share: takes a shared lock; fails if an exclusive one is held

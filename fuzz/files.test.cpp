@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Links, devices, pipes and folders are not replaced by files when they are written to.
+// Writing to a link, device, pipe or folder does not replace it with a file.
 #include "fuzz/files.h"
 #include "core/error.h"
 #include "core/message_testing.h"
@@ -38,7 +38,6 @@ class Files : public testing::Test {
 
   void TearDown() override { may_replace_foreign = false; }
 
-  // The error of write_whole; empty if there is none.
   static std::string refusal(const fs::path& file) {
     return error_of([&] { write_whole(file, "text"); });
   }
@@ -80,7 +79,7 @@ TEST_F(Files, PipesStayPipes) {
   EXPECT_EQ(count(), 1u);
 }
 
-// A pipe under a name that Graze chose is refused without waiting for it.
+// A pipe with a name that Graze chose is refused at once, without waiting for its other end.
 TEST_F(Files, RecordsThatAreNoFilesAreRefused) {
   const fs::path pipe = folder_ / "summary.json";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
@@ -103,7 +102,7 @@ TEST_F(Files, APartThatIsAHardLinkIsReplaced) {
   EXPECT_EQ(fs::hard_link_count(folder_ / "theirs"), 1u);
   EXPECT_EQ(read_whole(folder_ / "a"), "new");
   EXPECT_EQ(count(), 2u);
-  // A killed writer may have left a longer file. Nothing of it may remain.
+  // A killed writer may have left a longer file. None of its text may remain.
   write_whole(folder_ / "a.graze.part", std::string(100'000, 'x'));
   write_whole(folder_ / "a", "newer");
   EXPECT_EQ(read_whole(folder_ / "a"), "newer");
@@ -151,7 +150,7 @@ TEST_F(Files, AChangeOfASealedFileIsNoticed) {
     for (const std::string& changed : {other, text.substr(0, at)}) {
       std::ofstream(file) << changed;
       try {
-        if (read_sealed(file, "remove it") == json) continue;  // a changed space, or a change after the object
+        if (read_sealed(file, "remove it") == json) continue;  // white space, or text after the object, changed
         ADD_FAILURE() << changed;
       } catch (const std::runtime_error& error) {
         ++refused;
@@ -270,7 +269,7 @@ TEST_F(Files, GrazeKnowsItsOwn) {
   EXPECT_TRUE(replaces("lane,group\n1,2\n", "lane,group\n"));
   EXPECT_FALSE(replaces("a,b\n1,2\n", "lane,group\n"));
   EXPECT_TRUE(replaces(R"({"pairs": 1, "seed": 2})", R"({"pairs": 3, "seed": 4, "invariants": []})"));
-  EXPECT_TRUE(replaces(R"({"pairs": 1, "see)", R"({"pairs": 3, "seed": 4, "invariants": []})"));  // damaged, our own
+  EXPECT_TRUE(replaces(R"({"pairs": 1, "see)", R"({"pairs": 3, "seed": 4, "invariants": []})"));  // ours, but damaged
   for (const char* other : {R"({"seed": 1, "pairs": 2})", R"({"pairs": 1})", "[1]", "{", "{}", R"({"seed": 1, "pa)"})
     EXPECT_FALSE(replaces(other, R"({"pairs": 3, "seed": 4, "invariants": []})")) << other;
   EXPECT_TRUE(replaces("<!doctype html>\n<title>Graze: viewer</title>",

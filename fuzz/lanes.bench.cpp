@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures the time per pair of every host lane on every stratum of float32, and of lanes in double on every stratum of
-// doubles. Also measures CGAL's do_intersect on ready-made triangles, and the oracle's two decisions. GRAZE_MESH=FILE
-// adds a mesh's candidate pairs as a stratum. Exact lanes must first agree with the oracle everywhere.
+// Measures every host lane's time per pair on float32 strata, and double-precision lanes' time on strata of doubles.
+// Also measures CGAL's do_intersect on triangles constructed beforehand, and the oracle's two decisions.
+// GRAZE_MESH=FILE adds a mesh's candidate pairs as a stratum. An exact lane is timed only if it agrees with the oracle.
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
@@ -38,7 +38,7 @@ template <class Real>
 struct PairsToTime {
   std::string id;
   Block<Real> all;
-  Block<Real> proper;  // pairs without degenerate triangles, as CGAL's do_intersect requires
+  Block<Real> proper;  // no degenerate triangles, because CGAL's do_intersect rejects them
 };
 
 // Writes one bit for each pair, as lanes do.

@@ -24,9 +24,9 @@ std::vector<std::string> first_keys(const nlohmann::ordered_json& object) {
   return keys;
 }
 
-// The mark that all files of this text's kind share. It is a JSON object up to the end of its first key, or the start
-// of a page's title or of a picture's palette. For other files it is the first line up to `>`, because the rest differs
-// between pictures.
+// The text that marks files of the same kind as `text`. For a JSON object it is the text up to the end of the first
+// key; for a page, the start of the title; for a PNG, the start of the palette. For other files it is the first line up
+// to `>`, because the rest of the line differs between pictures.
 std::string mark_of(const std::string& text) {
   constexpr std::string_view kTitle = "<title>Graze: ", kPalette = "PLTE";
   constexpr std::size_t kColours = 24;  // bytes: the first eight colours, which all ulp maps share
@@ -46,7 +46,7 @@ bool same_kind_of_object(const std::string& there, const std::string& text) {
   return theirs.is_object() && ours.is_object() && first_keys(theirs) == first_keys(ours);
 }
 
-// Whether the entry was left over from an interrupted write, or is a folder that holds only such entries.
+// Whether the entry is left over from an interrupted write, or is a folder that holds only such entries.
 bool is_nothing(const fs::path& entry) {
   if (is_left_over(entry)) return true;
   return fs::is_directory(fs::symlink_status(entry)) &&

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recognises Graze's own files and folders. Results are written only where there is nothing, or over Graze's own
-// results.
+// Recognises Graze's own files and folders. Graze writes results only to new files or folders, or over its own results.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +9,8 @@
 namespace graze::fuzz {
 
 // Whether a result with this text may replace the file; symbolic links are followed. The file must be missing, empty, a
-// device, a pipe, or written by Graze. Graze recognises its files by their beginning: the first line or tag, the first
-// two keys of a JSON object, the start of a page's title, or the start of an ulp map's palette.
+// device, a pipe, or written by Graze. Graze recognises its files by how they begin: by the first line or tag, a JSON
+// object's first two keys, the start of a page's title, or the start of an ulp map's palette.
 // Throws: std::runtime_error if the file cannot be read.
 bool may_replace(const std::filesystem::path& file, const std::string& text);
 
@@ -23,7 +22,7 @@ inline constexpr const char* kForeign =
 inline bool may_replace_foreign = false;
 
 // Throws: UsageError if Graze did not write the file. It must begin like this text if it has the name of a campaign's
-// file, is in cases/, or is behind a link. A file that is damaged further on may be replaced.
+// file, is in cases/, or is behind a link. A file that is damaged only after its beginning may be replaced.
 void expect_own(const std::filesystem::path& file, const std::string& text);
 
 // Whether the file is left over from an interrupted write: its name ends in kPart.

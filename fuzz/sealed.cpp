@@ -69,7 +69,7 @@ Json read_sealed(const std::filesystem::path& file, const std::string& remedy, N
     return corpus::FormatError(
         cannot("use", file, fmt::format("it has been changed or damaged since graze wrote it: {}; {}", found, remedy)));
   };
-  if (!json.is_object()) throw refused("it is not a JSON object, or it has a key twice");
+  if (!json.is_object()) throw refused("it is not a JSON object, or it repeats a key");
   if (!json.contains(kChecksum)) throw refused("its checksum is missing");
   const Json checksum = std::move(json[kChecksum]);
   json.erase(kChecksum);

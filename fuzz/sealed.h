@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON results that Graze reads again. The last key holds a checksum of all others, which detects damage. It does not
-// prevent deliberate changes, so readers also check that the counts are possible.
+// JSON results that Graze reads again. The last key holds a checksum of all others, which detects damage. A checksum
+// does not prevent deliberate changes, so readers also check that the counts are possible.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,8 @@
 
 namespace graze::fuzz {
 
-// Parses the text as JSON. Returns a discarded value if it is not JSON, is nested more than 64 levels deep, or has a
-// key twice in one object. Copying, comparing and writing deeper JSON could exhaust the stack.
+// Parses the text as JSON. Returns a discarded value if it is not JSON, is nested more than 64 levels deep, or repeats
+// a key within one object. Copying, comparing and writing deeper JSON could exhaust the stack.
 nlohmann::ordered_json parse_shallow(const std::string& text);
 
 // The object with its "checksum" as the last key: FNV-1a of its text without spaces, 16 hex digits.

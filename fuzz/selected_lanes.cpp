@@ -22,13 +22,13 @@ std::string why_unavailable(const Lane& lane, const cuda::Device* device, const 
   return device && backend.has_device ? "" : backend.why_not_on_host(lane, why_no_device);
 }
 
-// Decides the lane on the host; null if only the device runs it.
+// The lane's function on the host; null if only the device runs the lane.
 DecideBlock host_block(const SelectedLanes& under_test, const Lane& lane) {
   const Backend& backend = backend_of(lane);
   return backend.has_device && under_test.device && !under_test.twins_too ? nullptr : backend.on_host(lane);
 }
 
-// Sorts the lanes, and their functions, by place(lane). Lanes with the same place keep their order.
+// Sorts the lanes and their functions by place(lane). Lanes with the same place keep their order.
 template <class Place>
 void sort_lanes(SelectedLanes& under_test, const Place& place) {
   std::vector<std::size_t> order(under_test.lanes.size());
@@ -45,7 +45,7 @@ void sort_lanes(SelectedLanes& under_test, const Place& place) {
   under_test.on_host = std::move(sorted.on_host);
 }
 
-// The table has lanes under a policy at its end. This moves each next to the other lanes of its subject.
+// Lanes with a policy are at the end of the table. This moves each one next to the other lanes of its subject.
 void sort_by_subject(SelectedLanes& under_test) {
   std::map<const AlgorithmInfo*, std::size_t> places;
   for (const Lane* lane : under_test.lanes) places.emplace(lane->info, places.size());
@@ -54,7 +54,7 @@ void sort_by_subject(SelectedLanes& under_test) {
 
 bool wants_lanes(const std::string& pattern) { return !pattern.starts_with(kLeaveOut); }
 
-// Names what would run a lane, from the reason why it does not run.
+// Names the hardware that would run the lane, given the reason why it does not run here.
 std::string_view remedy(std::string_view why) {
   return why.find("no twin") != why.npos  ? "; a CUDA device runs it"
          : why.ends_with(" instructions") ? "; a processor with them runs it"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles as CGAL's triangles, for `graze bench`, which compares the exact decision with CGAL.
+// Triangles in CGAL's types, for `graze bench`, which compares the exact decision with CGAL.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@ class CgalTriangles {
   explicit CgalTriangles(std::span<const Triangle> triangles);  // the array must outlive this object
   ~CgalTriangles();
 
-  // Calls CGAL::do_intersect on two Triangle_3 of the kernel with exact predicates. CGAL does not allow degenerate
-  // triangles; if one of the two is degenerate, cgal_verdict decides.   Requires: finite coordinates.   Exact: always.
+  // Calls CGAL::do_intersect on two Triangle_3 of the kernel with exact predicates. CGAL requires proper triangles, so
+  // cgal_verdict decides if one is degenerate.   Requires: finite coordinates.   Exact: always.
   bool intersect(std::size_t i, const CgalTriangles& others, std::size_t j) const;
 
  private:
@@ -32,10 +32,10 @@ class CgalTriangles {
 // CGAL's tree of bounding boxes over an array of triangles, for queries.
 class AabbTree {
  public:
-  // Builds the tree without triangles that have no area, which CGAL's trees reject.   Requires: finite coordinates.
+  // Omits triangles without area, because CGAL's trees reject them.   Requires: finite coordinates.
   explicit AabbTree(std::span<const std::array<float, 9>> triangles);
   ~AabbTree();
-  // How many of the tree's triangles intersect the reference, exactly.   Requires: the reference is not degenerate.
+  // The exact number of the tree's triangles that intersect the reference.   Requires: the reference is not degenerate.
   std::uint64_t count(const std::array<float, 9>& reference) const;
 
  private:

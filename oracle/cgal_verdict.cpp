@@ -20,9 +20,9 @@ namespace {
 // orientation, coplanar orientation, collinear, and, for two segments, line points p + v.)
 using SmallKernel = CGAL::Simple_cartesian<boost::int128_type>;
 
-// Filtered double arithmetic, for pairs with more bits whose coordinates are multiples of 2^-300 and below 2^300, as
-// all float32 are. A product of three differences is then zero or lies between 2^-900 and 2^903. So nothing overflows
-// or underflows, and the filters' error bounds hold.
+// Filtered double arithmetic, for pairs with more bits whose coordinates are multiples of 2^-300 and below 2^300. That
+// includes all float32 pairs. A product of three differences is then zero or lies between 2^-900 and 2^903. So nothing
+// overflows or underflows, and the filters' error bounds hold.
 using WideKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 constexpr int kWideExponents = 300;

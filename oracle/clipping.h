@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clips one hull, a polygon, by the half-spaces whose intersection is the other hull: Sutherland and Hodgman 1974. The
-// numbers are rationals in common_set.cpp, and rounded numbers of 113 bits in wasm/drawing.cpp.
+// Clips one hull, a polygon, by the half-spaces whose intersection is the other hull. common_set.cpp uses it with
+// rationals, and wasm/drawing.cpp with floating-point numbers of 113 bits.   Reference: Sutherland and Hodgman 1974.
 #pragma once
 
 #include <algorithm>
@@ -64,11 +64,11 @@ std::vector<HalfSpace<Real>> half_spaces(const Polygon<Real>& hull) {
   return all;
 }
 
-// The polygon's part in the half-space. height: returns dot(normal, x - at) for a half-space and a point x.
+// The part of the polygon in the half-space.   height: computes dot(normal, x - at) for a half-space and a point x.
 template <class Real, class Height>
 Polygon<Real> clipped(const Polygon<Real>& polygon, const HalfSpace<Real>& half, const Height& height) {
   Polygon<Real> kept;
-  // A segment is traversed in both directions, which finds the same crossing twice.
+  // A segment is traversed in both directions, so its crossing is found twice.
   const auto keep = [&](const Vec3<Real>& p) {
     if (std::find(kept.begin(), kept.end(), p) == kept.end()) kept.push_back(p);
   };

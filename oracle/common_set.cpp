@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clips the hulls (clipping.h) on rationals: the coordinates' integers on the pair's grid.
+// Clips the hulls (clipping.h) with rational arithmetic, starting from the pair's integer coordinates on its grid.
 #include "oracle/common_set.h"
 
 #include <algorithm>
@@ -53,7 +53,7 @@ std::vector<Vec3<double>> planes_line(const AnyPair& pair) {
   const mpq_class da = dot(na, hulls.a[0]), db = dot(nb, hulls.b[0]);
   const Point at = (cross(nb, along) * da + cross(along, na) * db) * mpq_class(1 / dot(along, along));
 
-  // The line consists of the points at + t * along. It is in the box for t from low to high.
+  // The line consists of the points at + t * along. Within the box, t runs from low to high.
   mpq_class low, high;
   bool bounded = false;
   for (int axis = 0; axis < 3; ++axis) {

@@ -49,7 +49,7 @@ TEST(CommonSet, OfCoplanarTrianglesIsAPolygonInOrder) {
   const Pair pair{{{0, 0, 5}, {3, 0, 5}, {0, 3, 5}}, {{2, 2, 5}, {-1, 2, 5}, {2, -1, 5}}};
   const Points star = common_set(pair);
   ASSERT_EQ(star.size(), 6u);
-  for (std::size_t i = 0; i < 6; ++i) {  // a convex turn at each corner, always the same way
+  for (std::size_t i = 0; i < 6; ++i) {  // every corner turns in the same direction
     const auto &p = star[i], &q = star[(i + 1) % 6], &r = star[(i + 2) % 6];
     EXPECT_GT((q.x - p.x) * (r.y - q.y) - (q.y - p.y) * (r.x - q.x), 0);
   }

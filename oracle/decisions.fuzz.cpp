@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// On pairs of floats or doubles with arbitrary bits, the exact decision must agree with those of GMP and CGAL. The
-// certified bounds of the margin must contain the exact margin, rounded once by MPFR.
+// On pairs of floats or doubles with arbitrary bits, the exact decision must agree with GMP's and CGAL's decisions. The
+// certified bounds must contain the exact margin, rounded once by MPFR.
 #include <cmath>
 
 #include "core/exact/exact.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The oracle on pairs of doubles: the two decisions agree, and truths and margins are right at a double's limits.
+// Tests the oracle on pairs of doubles: the two decisions agree, and truths and margins are right at double's limits.
 #include <gtest/gtest.h>
 
 #include <cfloat>
@@ -57,7 +57,7 @@ TEST(DoubleTruth, IgnoresOrderAxesAndSigns) {
   }
 }
 
-// Scales pairs across the limits of each kernel: small integers, filtered doubles and rationals.
+// Scales pairs past the limits of each kernel: small integers, filtered doubles and rationals.
 TEST(DoubleTruth, ScalesByPowersOfTwo) {
   for (const Kind kind : {Kind::near, Kind::coplanar, Kind::touching, Kind::degenerate}) {
     Source source(kind, kSeed + 2);
@@ -87,7 +87,7 @@ TEST(DoubleTruth, DeclinesWhatIsNotFinite) {
   }
 }
 
-// A margin that no double holds is rounded once, if need be to a subnormal, but never to zero or infinity.
+// A margin that is not a double is rounded once, possibly to a subnormal, but never to zero or infinity.
 TEST(DoubleTruth, MarginsAreRoundedOnceAtTheLimits) {
   constexpr double kLeast = 0x1p-1074;
   const auto point_above = [](double height) {  // the plane z = 4 x, and a point above its triangle

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact squares of distances and depths; see exact_margin.h.
+// Computes exact squares of distances and depths; see exact_margin.h.
 #include "oracle/exact_margin.h"
 
 #include <mpfr.h>
@@ -25,7 +25,7 @@ void vertex_and_vertex(SquaredMargin& least, const Vector& p, const Vector& q) {
   keep_least(least, dot(between, between), 1);
 }
 
-// Applies if the foot of the perpendicular lies on the edge.
+// The distance of a vertex from an edge. It counts only if the foot of the perpendicular lies on the edge.
 void vertex_and_edge(SquaredMargin& least, const Vector& p, const Vector& start, const Vector& edge) {
   const Vector at = p - start;
   const Int along = dot(at, edge), length2 = dot(edge, edge);
@@ -34,7 +34,7 @@ void vertex_and_edge(SquaredMargin& least, const Vector& p, const Vector& start,
   keep_least(least, dot(moment, moment), length2);
 }
 
-// Applies if the foot of the perpendicular lies in the face.
+// The distance of a vertex from a face. It counts only if the foot of the perpendicular lies in the face.
 void vertex_and_face(SquaredMargin& least, const Vector& p, const Vector (&face)[3]) {
   const Vector n = cross(Vector(face[1] - face[0]), Vector(face[2] - face[0]));
   if (is_zero(n)) return;
@@ -46,7 +46,7 @@ void vertex_and_face(SquaredMargin& least, const Vector& p, const Vector (&face)
   keep_least(least, Int(height * height), dot(n, n));
 }
 
-// Applies if the lines' common perpendicular meets both edges. w is the start of v relative to the start of u.
+// The distance of two edges. It counts only if their common perpendicular meets both. w: v's start minus u's start.
 void edge_and_edge(SquaredMargin& least, const Vector& w, const Vector& u, const Vector& v) {
   const Vector n = cross(u, v);
   if (is_zero(n)) return;
@@ -118,8 +118,8 @@ int floor_log2(const SquaredMargin& margin) {
 
 double rounded(const SquaredMargin& margin) {
   if (margin.numerator == 0) return 0;
-  // root = floor(sqrt(numerator / denominator) * 2^shift) has at least 64 bits. The root is doubled, and its lowest
-  // bit is set if anything was cut off. It then rounds to 53 bits exactly like the unrounded root.
+  // root = floor(sqrt(numerator / denominator) * 2^shift) has at least 64 bits. The root is doubled, and its lowest bit
+  // is set if it was truncated. It then rounds to 53 bits exactly like the untruncated root.
   const int shift = 64 - (floor_log2(margin) - margin.exponent);
   Int numerator = margin.numerator, denominator = margin.denominator;
   if (shift > 0) numerator <<= static_cast<unsigned>(2 * shift);
@@ -129,7 +129,7 @@ double rounded(const SquaredMargin& margin) {
   const bool cut = root * root != quotient || quotient * denominator != numerator;
   root = 2 * root + (cut ? 1 : 0);
   mpfr_t value;
-  mpfr_init2(value, 80);  // holds all bits of the root; mpfr_get_d below rounds it, once even if it is subnormal
+  mpfr_init2(value, 80);  // holds all bits of the root; mpfr_get_d below rounds only once, even to a subnormal
   mpfr_set_z_2exp(value, root.get_mpz_t(), margin.exponent - shift - 1, MPFR_RNDN);
   const double result = mpfr_get_d(value, MPFR_RNDN);
   mpfr_clear(value);

@@ -19,24 +19,24 @@ struct SquaredMargin {
   int exponent;
 };
 
-// The distance of two disjoint closed hulls: the least over all pairs of their vertices, edges and faces.
+// The distance of two disjoint closed hulls: the least distance over all pairs of their vertices, edges and faces.
 // Exact: always.
 SquaredMargin exact_distance(const LargePair& pair, int exponent);
 
-// The least overlap of two intersecting hulls along those of the given axes that are not zero; zero if all are.
+// The least overlap of two intersecting hulls along the given axes, ignoring zero axes; zero if all axes are zero.
 // axes: bit i selects separating axis i of core/margin/directions.h.   Exact: always.
 inline constexpr std::uint32_t kAllAxes = (1u << kSeparatingAxes) - 1;
 SquaredMargin exact_depth(const LargePair& pair, int exponent, std::uint32_t axes);
 
-// The separation of the hulls along direction d of core/margin/directions.h, a lower bound of their distance; zero if
+// The separation of the hulls along direction d of core/margin/directions.h, a lower bound on their distance; zero if
 // they are not separated.   Exact: always.
 SquaredMargin exact_separation(const LargePair& pair, int exponent, int d);
 
 // floor(log2(|margin|)).   Requires: margin is not zero.   Exact: always.
 int floor_log2(const SquaredMargin& margin);
 
-// |margin|, rounded once to the nearest positive finite double, or 0 if it is 0. Nonzero margins of float32 lie in
-// [2^-705, 2^130].
+// |margin|, rounded once to the nearest positive finite double, or 0 if the margin is 0. Nonzero margins of float32 lie
+// in [2^-705, 2^130].
 double rounded(const SquaredMargin& margin);
 
 // The truth of a pair with this distance or depth. log2_ulp: log2 of the ulp of the pair's largest coordinate.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The independent decision: counts the extreme points of the common set, using signs of determinants of GMP integers.
+// The independent decision: counts the common set's extreme points, using signs of determinants of GMP integers.
 //
 // A point x of A ∩ B lies in the relative interior of exactly one face (vertex, edge, triangle) of A and one of B.
 // It is extreme in A ∩ B if and only if those two faces have no direction in common. So the extreme points are:
 //   vertices of A in B, and vertices of B in A that are not vertices of A,
 //   points where an open edge crosses an open edge that is not parallel to it,
 //   points where an open edge pierces an open triangle that it is not parallel to.
-// The common set is their convex hull. If there are 0, 1, 2 or more, it is empty, a point, a segment or an area.
+// The common set is their convex hull: empty for 0 points, a point for 1, a segment for 2, and an area for more.
 #include <bit>
 
 #include "oracle/gmp_simplex.h"
@@ -28,7 +28,7 @@ struct Workspace {
   Number along_u[3], along_v[3], heights[3], height, side, term;
 };
 
-// normal = (p[1] - p[0]) x (p[2] - p[0]); the triangle is flat when it is zero.
+// normal = (p[1] - p[0]) x (p[2] - p[0]); the triangle is flat if the normal is zero.
 template <class Number>
 Simplex<Number> simplex_of(Workspace<Number>& work, const Point<Number> (&p)[3], Point<Number>& normal) {
   subtract(work.u, p[1], p[0]);
@@ -39,10 +39,10 @@ Simplex<Number> simplex_of(Workspace<Number>& work, const Point<Number> (&p)[3],
 
 Contact contact_of(int extreme_points) { return static_cast<Contact>(extreme_points < 3 ? extreme_points : 3); }
 
-// Decides two triangles whose planes differ, from the signs of 15 determinants: one for each four of their six
+// Decides two triangles whose planes differ, from the signs of 15 determinants: one for each choice of four of the six
 // vertices. Each determinant is a sum of dot products with three moments.
-// Requires: neither is flat; ra[i] = a[i] - b[0], u = b[1] - b[0], v = b[2] - b[0], nb = u x v, na is A's normal,
-// heights[i] = ra[i] . nb, sa[i] is the sign of heights[i], and the signs are not all zero.
+// Requires: neither triangle is flat; ra[i] = a[i] - b[0], u = b[1] - b[0], v = b[2] - b[0], nb = u x v, na is A's
+// normal, heights[i] = ra[i] . nb, sa[i] is the sign of heights[i], and the signs are not all zero.
 template <class Number>
 Contact noncoplanar(Workspace<Number>& work, const int (&sa)[3]) {
   // The moments add up to A's normal.
@@ -77,7 +77,7 @@ Contact noncoplanar(Workspace<Number>& work, const int (&sa)[3]) {
     side[i][1] = work.side.sign();
   }
 
-  // One bit for each extreme point, so that a point found from both triangles counts once.
+  // One bit for each extreme point, so that a point that is found from both triangles counts once.
   unsigned found = 0;
   const auto vertex_a = [](int i) { return 1u << i; };
   const auto vertex_b = [](int j) { return 1u << (3 + j); };
@@ -114,8 +114,8 @@ Contact noncoplanar(Workspace<Number>& work, const int (&sa)[3]) {
   return contact_of(std::popcount(found));
 }
 
-// A segment whose line meets the plane of triangle b in one point. Either that point is in b, or there is no contact.
-// Requires: the segment's ends are not both in the plane, nor strictly on one side of it.
+// Decides a segment whose line meets the plane of triangle b in one point. There is contact only if that point is in b.
+// Requires: the segment's ends are not both in the plane, and not both strictly on one side of it.
 template <class Number>
 Contact pierced(Workspace<Number>& work, const Simplex<Number>& segment, const Simplex<Number>& b) {
   subtract(work.w, *segment.vertex[1], *segment.vertex[0]);
@@ -130,8 +130,8 @@ Contact pierced(Workspace<Number>& work, const Simplex<Number>& segment, const S
   return locate(side).place == Place::outside ? Contact::none : Contact::point;
 }
 
-// Two simplices in one plane or on one line, projected by dropping the coordinate `dropped`. The projection keeps all
-// points of the plane or line distinct.
+// Two simplices in one plane or on one line, projected by dropping the coordinate `dropped`. Distinct points of the
+// plane or line stay distinct.
 template <class Number>
 struct Planar {
   Workspace<Number>& work;
@@ -167,7 +167,7 @@ struct Planar {
   static bool inside(const Point<Number>& p, int j, const Simplex<Number>& s, const Sides& sides) {
     if (s.count == 1) return compare(p, *s.vertex[0]) == 0;
     if (s.count == 3) return locate({sides.of[0][j], sides.of[1][j], sides.of[2][j]}).place != Place::outside;
-    // On the line and between the ends in every coordinate, hence also in lexicographic order.
+    // p is in s if it is on the line and between the ends, which their lexicographic order decides.
     return sides.of[0][j] == 0 && compare(p, *s.vertex[0]) * compare(p, *s.vertex[1]) <= 0;
   }
 
@@ -202,7 +202,7 @@ int droppable_of_line(const Point<Number>& direction) {
   return direction.c[0].sign() ? 2 : 0;
 }
 
-// b is a triangle with normal nb, and a is flat.
+// Requires: b is a triangle with normal nb; a is flat.
 template <class Number>
 Contact flat_with_triangle(Workspace<Number>& work, const Simplex<Number>& a, const Simplex<Number>& b) {
   int sa[2] = {0, 0};
@@ -216,7 +216,7 @@ Contact flat_with_triangle(Workspace<Number>& work, const Simplex<Number>& a, co
   return pierced(work, a, b);
 }
 
-// Points and segments only. Their union spans a line, a plane, or (two skew segments) space.
+// Decides two points or segments. Together they span a line, a plane, or, if they are skew segments, space.
 template <class Number>
 Contact flat_with_flat(Workspace<Number>& work, const Simplex<Number>& a, const Simplex<Number>& b) {
   if (a.count < b.count) return flat_with_flat(work, b, a);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors of GMP integers whose memory is reused, and the simplices that gmp_contact.cpp compares. The integers can be
-// of any size (Register) or have two limbs (TwoLimbs).
+// Vectors of GMP integers whose memory is reused, and simplices, for gmp_contact.cpp. The integers can have any size
+// (Register) or exactly two limbs (TwoLimbs).
 #pragma once
 
 #include <gmp.h>
@@ -10,7 +10,7 @@
 
 namespace graze::gmp {
 
-// A GMP integer that lives as long as its thread, so that nothing is allocated once it has grown.
+// A GMP integer that lives as long as its thread, so that it allocates memory only when it grows.
 struct Register {
   mpz_t value;
   Register() { mpz_init2(value, 1024); }
@@ -28,7 +28,7 @@ inline void sub_mul(Register& out, const Register& p, const Register& q) { mpz_s
 inline int compare(const Register& p, const Register& q) { return mpz_cmp(p.value, q.value); }
 inline void exchange(Register& p, Register& q) { mpz_swap(p.value, q.value); }
 
-// A number modulo 2^128, read as one in [-2^127, 2^127). It uses GMP's limb functions, which do not branch on signs.
+// An integer modulo 2^128, in [-2^127, 2^127). It uses GMP's limb functions, which do not branch on signs.
 struct TwoLimbs {
   mp_limb_t limb[2];
   int sign() const { return limb[1] >> 63 ? -1 : (limb[0] | limb[1]) != 0; }
@@ -122,7 +122,7 @@ Simplex<Number> flat_simplex(const Point<Number> (&p)[3]) {
   return {{&p[low], &p[high], nullptr}, 2};
 }
 
-// The place of a point in a triangle's plane, given its sides relative to the triangle's three edges.
+// Where a point in a triangle's plane lies, given its sides relative to the triangle's three edges.
 enum class Place { outside, face, edge, vertex };
 struct Location {
   Place place;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The dimensions of a pair's hulls and whether they are coplanar, by exact ranks of integer vectors.
+// Computes the dimensions of a pair's hulls, and whether they are coplanar, from exact ranks of integer vectors.
 #include "oracle/integer_pair.h"
 #include "oracle/truth.h"
 

@@ -23,7 +23,7 @@ Parts split(double value) {
   return {fraction | hidden, static_cast<int>(std::max<std::uint64_t>(biased, 1)) - 1075, (bits >> 63) != 0};
 }
 
-// mantissa * 2^shift, without losing a bit.   Requires: it fits.
+// mantissa * 2^shift.   Requires: the shift loses no bits, and the result fits.
 std::int64_t shifted(const Parts& parts, int shift) {
   const auto whole = static_cast<std::int64_t>(parts.mantissa);
   const std::int64_t size = shift >= 0 ? whole << shift : whole >> -shift;
@@ -48,7 +48,7 @@ SmallPair small_integers(const DoublePair& pair, const Grid& grid) {
   std::int64_t* out = &result.a[0].x;
   for (int i = 0; i < kCoordinates; ++i) {
     const Parts parts = split(coordinates(pair)[i]);
-    // A zero may have any exponent; the shifts of all others stay below kSmallBits.
+    // A zero may have any exponent, so it is not shifted. All other shifts are below kSmallBits.
     out[i] = parts.mantissa == 0 ? 0 : shifted(parts, parts.exponent - grid.exponent);
   }
   return result;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair as integers: every coordinate is an integer times one power of two that all 18 share. That factor does not
-// affect the signs of determinants. Lengths are multiplied by it at the end. A pair of float32 is taken as doubles.
+// A pair as integers: each coordinate is an integer times a power of two that all 18 coordinates share. This factor
+// does not affect the signs of determinants; lengths are multiplied by it at the end. Float32 pairs are widened.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace graze::oracle {
 
-// Coordinates of at most this many bits keep every degree-3 predicate inside a signed 128-bit integer:
+// If coordinates have at most this many bits, every degree-3 predicate fits in a signed 128-bit integer:
 //   a difference                  < 2 * 2^40           = 2^41
 //   a 2x2 minor                   < 2 * 2^41 * 2^41    = 2^83
 //   a 3x3 determinant             < 3 * 2^83 * 2^41    < 2^126
@@ -31,11 +31,11 @@ Grid grid_of(const DoublePair& pair);
 inline Grid grid_of(const Pair& pair) { return grid_of(in_doubles(pair)); }
 
 using SmallPair = BasicPair<std::int64_t>;
-using WidePair = BasicPair<__int128>;  // of at most kSmallBits bits, so that products of three differences fit
+using WidePair = BasicPair<__int128>;  // at most kSmallBits bits, so that products of three differences fit
 using LargePair = BasicPair<mpz_class>;
 
 // The pair's coordinates divided by 2^grid.exponent.
-// Requires: grid is the pair's, and is_small().   Exact: always.
+// Requires: grid is grid_of(pair), and is_small().   Exact: always.
 SmallPair small_integers(const DoublePair& pair, const Grid& grid);
 inline SmallPair small_integers(const Pair& pair, const Grid& grid) { return small_integers(in_doubles(pair), grid); }
 
@@ -45,8 +45,8 @@ inline WidePair widened(const SmallPair& small) {
   return wide;
 }
 
-// Like small_integers, for one coordinate of any size. Stores the result in an initialised GMP integer.
-// Requires: grid is that of the coordinate's pair.   Exact: always.
+// Like small_integers, but for one coordinate of any size. Stores the result in an initialised GMP integer.
+// Requires: grid is the grid of the coordinate's pair.   Exact: always.
 void set_integer(mpz_t out, double coordinate, const Grid& grid);
 
 // The pair's coordinates divided by 2^grid.exponent.
@@ -58,7 +58,7 @@ bool is_zero(const Vec3<Number>& v) {
   return v.x == 0 && v.y == 0 && v.z == 0;
 }
 
-// The two decisions of truth.h, and the hulls, for a pair of integers of any size.   Exact: always.
+// The two decisions of truth.h, and the hulls, for a pair with integer coordinates of any size.   Exact: always.
 Verdict cgal_verdict(const LargePair& pair);
 Contact gmp_contact(const LargePair& pair);
 Hulls hulls(const LargePair& pair);

@@ -31,7 +31,7 @@ SquaredMargin exact_margin(const BasicPair<Real>& pair, Verdict verdict) {
                                       : exact_depth(large, grid.exponent, kAllAxes);
 }
 
-// Returns whether the bounds allow one bucket only, and checks that it is the expected one.
+// Checks that the bounds allow the expected bucket.   Returns: whether they allow only one bucket.
 template <class Real>
 bool expect_bounds(const Pair& pair, Verdict verdict, double exact, Bucket expected) {
   const MarginBounds bounds = margin_bounds<Real>(pair, verdict);
@@ -73,7 +73,7 @@ TEST(MarginBucket, IsTheExactMarginsBucket) {
   }
 }
 
-// Pairs of doubles near 1, of the whole range, and with subnormal or huge coordinates.
+// Tests pairs of doubles near 1, over the whole range, and with subnormal or huge coordinates.
 TEST(MarginBucket, OfDoublesIsTheExactMarginsBucket) {
   for (const Kind kind : oracle_test::kKinds) {
     oracle_test::BasicPairSource<double> source(kind, kSeed + 7);
@@ -89,8 +89,8 @@ TEST(MarginBucket, OfDoublesIsTheExactMarginsBucket) {
   }
 }
 
-// Compares each operation with rationals. The largest errors come near the bounds that the authors prove. Half of the
-// sums cancel.
+// Compares each operation with rationals. The largest errors come close to the authors' proven bounds. Half of the sums
+// cancel.
 TEST(DoubleDouble, OperationsKeepTheirErrorBounds) {
   std::mt19937_64 random(7);
   const auto value = [&](int spread) {
@@ -143,9 +143,9 @@ TEST(MarginBounds, AreTightOnPairsInGeneralPosition) {
 
 using Long = Vec3<long double>;
 
-// Computes the distance another way: from the origin to the Minkowski difference, which is the convex hull of the nine
-// points b[j] - a[i]. A simplex of one, two or three of these points attains it. Tries all 129 simplices in long
-// double.
+// Computes the distance in another way: as the origin's distance from the Minkowski difference, which is the convex
+// hull of the nine points b[j] - a[i]. Its point nearest to the origin lies on a simplex of one, two or three of these
+// points. Tries all 129 simplices in long double.
 long double distance_of_difference(const Pair& pair) {
   std::vector<Long> points;
   for (const auto& a : pair.a) {
@@ -230,10 +230,10 @@ TEST(ExactDepth, IsTheShortestPartingPush) {
   }
 }
 
-// On small integers the directions of the bounds are exact and equal those computed with integers.
+// On small integers, the directions that the bounds use are exact, so they equal the directions computed with integers.
 TEST(ExactSeparation, IsAlongTheDirectionsOfTheBounds) {
   PairSource source(Kind::lattice3, kSeed + 4);
-  int reached = 0;  // how often a separation is the distance
+  int reached = 0;  // how often a separation equals the distance
   for (int n = 0; n < 3000; ++n) {
     const Pair pair = source.next();
     const Grid grid = grid_of(pair);
@@ -273,7 +273,7 @@ TEST(BucketFromBounds, IsTheOneThatBoundsLeave) {
   EXPECT_EQ(bucket(1, 1, no), make_bucket(1, 3));
   EXPECT_EQ(bucket(0.999, 1, no), 99);
   EXPECT_EQ(bucket(0, 1, no), 99);
-  // For a disjoint pair, a distance below all buckets is in the least bucket, however wide its bounds.
+  // A disjoint pair whose distance is below all buckets is in the lowest bucket, however wide its bounds.
   EXPECT_EQ(bucket(0, 0x1p-60, no), make_bucket(1, kBucketLowest));
 }
 
@@ -362,7 +362,7 @@ TEST(GuessedDistance, BoundsHoldTheExactDistance) {
   EXPECT_GT(finite, 5000);
 }
 
-// The errors that quick_depth.h derives. No test on pairs comes near them.
+// Compares the errors with the values derived in quick_depth.h. No test on pairs comes near these values.
 TEST(QuickDepth, ErrorsAreThoseDerivedAndNoMoreThanAPercentAbove) {
   const double u = 0x1p-24, overlap = 98 * u * (3 * 5 * 7), length = 8 * u * (5 * 7 + 7 * 3 + 3 * 5);
   const first_attempt::AxisErrors<float> errors({3, 5, 7}, u);
@@ -372,8 +372,8 @@ TEST(QuickDepth, ErrorsAreThoseDerivedAndNoMoreThanAPercentAbove) {
   EXPECT_LE(errors.length, 1.01 * length);
 }
 
-// All points are relative to a vertex of the feature that gives the axis. A contact at that feature gives an
-// overlap of exactly zero.
+// All points are relative to a vertex of the feature that defines the axis. If the hulls touch at that feature, the
+// overlap is exactly zero.
 TEST(QuickDepth, OverlapsByNothingWhereItTouchesTheAxis) {
   std::mt19937 random(9);
   std::uniform_real_distribution<float> any(-1, 1);
@@ -403,7 +403,7 @@ TEST(TieProof, ShiftsByAnyNumberOfBits) {
     ASSERT_TRUE(tie_proof::shifted_up(x, bits) == expected) << bits;
 }
 
-// Two parallel triangles at a distance of 1, with coordinates of 1 and of 40 or 61 bits, and in much smaller units.
+// Two parallel triangles one unit apart. The unit varies; the largest coordinate is 1, or at a limit (40 or 61 bits).
 TEST(TieProof, RefusesWhatIsTooLarge) {
   const auto is_proven = []<class Real>(Real largest, int exponent) {
     const Real a[9] = {0, 0, 0, largest, 0, 0, 0, 1, 0}, b[9] = {0, 0, 1, 1, 0, 1, 0, 1, 1};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The margin's bucket. Certified bounds nearly always decide it: in double, or for pairs of doubles in double-double
-// numbers. Exact integers decide the other buckets.
+// Finds the margin's bucket. Certified bounds nearly always decide it: in double, or in double-double for pairs of
+// doubles. Exact integers decide the rest.
 #include <cmath>
 
 #include "core/margin/margin.h"
@@ -12,7 +12,7 @@
 namespace graze::oracle {
 namespace {
 
-// Whether the intersecting hulls only touch: along one of the given axes that is not zero, they have no overlap.
+// Whether the intersecting hulls only touch: along one of the given nonzero axes, they have no overlap.
 // Exact: always. An axis n has degree two, and an overlap n . (p - q) of two vertices has degree three (kSmallBits).
 bool touches(const SmallPair& small, std::uint32_t axes) {
   const auto& [a, b] = widened(small);
@@ -24,7 +24,7 @@ bool touches(const SmallPair& small, std::uint32_t axes) {
   return false;
 }
 
-// Bounds of the margin in units in which the pair's ulp is 2^ulp.
+// Bounds on the margin, in units in which the pair's ulp is 2^ulp.
 struct Bounds {
   MarginBounds margin;
   int ulp;
@@ -50,8 +50,8 @@ Bucket bucket_of(const BasicPair<Real>& pair, Verdict verdict) {
     const SquaredMargin depth = exact_depth(large_integers(pair, grid), grid.exponent, bounds.margin.axes);
     return depth.numerator == 0 ? Bucket{0} : make_bucket(-1, floor_log2(depth) - ulp);
   }
-  // Usually the bounds straddle a power of two because the distance is that power. The rounded lower bound lies just
-  // below it; the exact lower bound does not.
+  // If the bounds straddle a power of two, the distance is usually that power. The rounded lower bound lies just below
+  // it; the exact lower bound does not.
   const LargePair large = large_integers(pair, grid);
   const SquaredMargin lower = exact_separation(large, grid.exponent, bounds.margin.direction);
   if (lower.numerator != 0) {

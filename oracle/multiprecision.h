@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// MPFR numbers for the algorithms: with a mantissa of any size, with or without the limits of a format's exponents, and
-// with an error bound. Boost's wrapper has decimal precisions only.
+// MPFR numbers for the algorithms: with a mantissa of any size, with or without a format's exponent limits, and with an
+// error bound. Boost's wrapper is not used, because it has only decimal precisions.
 #pragma once
 
 #include <mpfr.h>
@@ -12,8 +12,8 @@
 
 namespace graze::oracle {
 
-// A number of `precision` mantissa bits, rounded to nearest even after each operation. mpfr_set_emin and mpfr_set_emax
-// limit its exponents. If `subnormals` is set, underflow is gradual.
+// A number with `precision` mantissa bits, rounded to nearest even after each operation. mpfr_set_emin and
+// mpfr_set_emax limit its exponent. If `subnormals` is set, underflow is gradual.
 class Multi {
  public:
   static inline thread_local mpfr_prec_t precision = 53;
@@ -44,7 +44,7 @@ class Multi {
 
   mpfr_srcptr get() const { return m_; }
   mpfr_ptr get() { return m_; }
-  bool exact() const { return exact_; }  // whether the operation that computed it did not round
+  bool exact() const { return exact_; }  // whether the operation that computed it was exact
 
   friend Multi operator+(const Multi& l, const Multi& r) { return made(mpfr_add, l, r); }
   friend Multi operator-(const Multi& l, const Multi& r) { return made(mpfr_sub, l, r); }
@@ -94,7 +94,7 @@ class Multi {
     exact_ = ternary == 0;
     if (tiny && !exact_ && first_event == 0) first_event = -1;
   }
-  // Whether the result is below the least normal number. A zero result counts if it was rounded to zero.
+  // Whether the result is below the least normal number. A zero counts only if it was rounded to zero.
   bool ternary_is_tiny(int ternary) const {
     return mpfr_zero_p(m_) ? ternary != 0 : mpfr_get_exp(m_) < mpfr_get_emin() + mpfr_get_prec(m_) - 1;
   }
@@ -103,10 +103,10 @@ class Multi {
   bool exact_ = true;
 };
 
-// A number within 2^radius of `mid`, or equal to mid for kExact. Numbers that cannot be told apart count as equal.
+// A number within 2^radius of `mid`, or `mid` itself for kExact. Numbers that the radii cannot separate count as equal.
 struct Ball {
   static constexpr long kExact = LONG_MIN / 4, kUnknown = LONG_MAX / 4;
-  static inline thread_local long untold = 0;  // how many comparisons took two numbers as equal without proof
+  static inline thread_local long untold = 0;  // comparisons that treated two numbers as equal without proof
 
   Multi mid;
   long radius = kExact;
@@ -116,16 +116,16 @@ struct Ball {
   explicit Ball(Number x) : mid(x) {}
   Ball(Multi m, long r) : mid(std::move(m)), radius(r) {}
 
-  // 2^(exponent - 1) <= |mid| < 2^exponent. Zero and numbers that are not finite give kExact, as if they had no size.
+  // 2^(exponent - 1) <= |mid| < 2^exponent. For zero and for numbers that are not finite, returns kExact.
   static long exponent(const Multi& m) { return mpfr_regular_p(m.get()) ? mpfr_get_exp(m.get()) : kExact; }
-  // An upper bound of log2(2^r + 2^s).
+  // An upper bound on log2(2^r + 2^s).
   static long either(long r, long s) {
     return r == kExact ? s : s == kExact ? r : std::min(std::max(r, s) + 1, kUnknown);
   }
   static long scaled(long r, long by) {
     return r == kExact || by == kExact ? kExact : r >= kUnknown ? kUnknown : r + by;
   }
-  // Adds the rounding of mid to the radius. With exponent limits, zero and infinity are results of the limited
+  // Adds mid's rounding error to the radius. With exponent limits, zero and infinity are regular results of the limited
   // arithmetic, so they count as exact.
   static Ball rounded(Multi mid, long radius) {
     const bool no_rounding = mid.exact() || !mpfr_regular_p(mid.get());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time per pair of each decision of the oracle, by kind of pair.
+// Measures the time per pair of each of the oracle's decisions, by kind of pair.
 #include <string>
 #include <vector>
 

@@ -12,7 +12,7 @@ namespace {
 
 int mantissa_bits(Scalar scalar) { return scalar == Scalar::f32 ? 24 : 53; }
 
-// Sets MPFR's exponent range while it lives. 0.5 * 2^emin is the least positive number, and all numbers are below
+// Sets MPFR's exponent range during its lifetime. 0.5 * 2^emin is the least positive number, and all numbers are below
 // 2^emax.
 struct ExponentRange {
   mpfr_exp_t emin = mpfr_get_emin(), emax = mpfr_get_emax();
@@ -58,7 +58,7 @@ Path outcomes_of(const Trace<Ball>& run) {
   return outcomes;
 }
 
-// A run of the algorithm along a given path, with as many bits as it needs. Multi::precision keeps that number of bits.
+// A run of the algorithm along a given path, with as many bits as it needs. Multi::precision stays at that number.
 struct SettledRun {
   Trace<Ball> run;
   Exactly exactly;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the algorithms in other arithmetic than a lane's, with MPFR: with more bits, without limits of the exponent, or
-// exactly. An algorithm is given by its index in Algorithms (core/algorithms/algorithms.h). A pair of float32 is
-// passed as the same numbers in double.
+// Runs the algorithms with MPFR in arithmetic that no lane has: with more bits, without exponent limits, or exactly. An
+// algorithm is given by its index in Algorithms (core/algorithms/algorithms.h). A float32 pair is passed as the same
+// numbers in double.
 #pragma once
 
 #include <string>
@@ -14,8 +14,8 @@
 
 namespace graze::oracle {
 
-// Which exponent limits of a scalar to apply. Beyond the upper limit numbers become infinite; below the lower limit
-// they become subnormal, then zero.
+// Which exponent limits of a scalar to apply. Numbers above the upper limit become infinite; numbers below the lower
+// limit become subnormal or zero.
 struct Limits {
   bool upper = false;
   bool lower = false;
@@ -31,31 +31,31 @@ struct Limited {
 // Requires: the scalar holds the coordinates.
 Limited decide_limited(int algorithm, Scalar scalar, const DoublePair& pair, Limits limits);
 
-// Like decide_limited, but traced, contracted by the rule, and led along the given path. A value beyond the
-// range of double becomes infinite, and one below it zero or subnormal.
+// Like decide_limited, but records a trace, contracts by the rule, and follows the path `lead`. In the trace, a value
+// above the range of double becomes infinite, and a value below it becomes subnormal or zero.
 Trace<double> run_limited(int algorithm, Scalar scalar, const DoublePair& pair, Limits limits, Contraction rule,
                           const Path& lead = {});
 
 // Runs the algorithm with a mantissa of `bits` bits and no exponent limits.
 Verdict decide_with_bits(int algorithm, const DoublePair& pair, int bits);
 
-// The least number of bits, not below `least`, such that it and every greater number up to kMostBits give this verdict.
-// 0 if kMostBits bits do not give it.
+// The least number of bits, at least `least`, for which it and all greater numbers up to kMostBits give this verdict. 0
+// if kMostBits bits do not give it.
 inline constexpr int kMostBits = 512;
 int bits_needed(int algorithm, const DoublePair& pair, Verdict verdict, int least);
 
-// The algorithm in exact arithmetic, with error bounds: two numbers count as equal if their bounds cannot tell them
-// apart.
+// The algorithm's result in exact arithmetic, computed with error bounds. Two numbers count as equal if their bounds
+// cannot distinguish them.
 struct Exactly {
   Verdict verdict;
   int bits;      // bits of the mantissas
   bool certain;  // the bounds decided every comparison
-  bool settled;  // certain, or a run with a quarter of the bits left as many comparisons open, with the same outcomes
+  bool settled;  // certain, or a quarter of the bits left the same number of comparisons open, with the same outcomes
 };
 Exactly decide_exactly(int algorithm, const DoublePair& pair);
 
-// Runs the algorithm in exact arithmetic, but with these exponent limits of the scalar.
-// Requires: bits as found by decide_exactly.
+// Runs the algorithm in exact arithmetic, but with these of the scalar's exponent limits.
+// Requires: `bits` is the number that decide_exactly returned.
 Verdict decide_exactly_but(int algorithm, Scalar scalar, const DoublePair& pair, int bits, Limits limits);
 
 // A lane's number and its exact value.
@@ -72,9 +72,8 @@ struct ExactStep {
   bool held;          // the outcome with the exact numbers
 };
 
-// The exact values of a lane's run, step by step, along the path that the lane took. Uses as many bits as that path
-// needs.
-// Requires: `run` is a run of that algorithm in that scalar.
+// The exact values for a lane's run, step by step, along the lane's path. Uses as many bits as that path needs.
+// Requires: `run` is a run of this algorithm in this scalar.
 std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const DoublePair& pair, const Trace<double>& run);
 
 // Like exact_steps, but returns only the outcomes of the comparisons on the path.

@@ -14,7 +14,7 @@ namespace {
 
 using namespace oracle_test;
 
-// Error bounds add up. If one of two numbers is exact, the error of the other must not be lost.
+// Error bounds add up. If one of two numbers is exact, the other's error must not be lost.
 TEST(Ball, ARadiusHoldsBothErrors) {
   constexpr long kExact = Ball::kExact, kUnknown = Ball::kUnknown;
   EXPECT_EQ(Ball::either(kExact, kExact), kExact);
@@ -29,8 +29,8 @@ TEST(Ball, ARadiusHoldsBothErrors) {
   EXPECT_EQ(Ball::scaled(-7, 3), -4);
 }
 
-// With exponent limits, a result that underflows is zero, one that overflows is infinite, and both count as exact. So
-// no later sum of radii overflows its signed integer.
+// With exponent limits, a result that underflows is zero, and one that overflows is infinite. Both count as exact, so
+// that later sums of radii do not overflow their signed integer.
 TEST(Ball, ZeroAndInfinityOfALimitedRangeAreExact) {
   const mpfr_exp_t emin = mpfr_get_emin(), emax = mpfr_get_emax();
   mpfr_set_emin(-148);
@@ -45,7 +45,7 @@ TEST(Ball, ZeroAndInfinityOfALimitedRangeAreExact) {
 }
 
 TEST(Multi, KnowsWhetherItWasRoundedWhereverItIsMovedTo) {
-  EXPECT_TRUE(Multi(0.1).exact());  // no operation computed it
+  EXPECT_TRUE(Multi(0.1).exact());  // it was not computed by an operation
   EXPECT_TRUE((Multi(1) / Multi(4)).exact());
   const Multi third = Multi(1) / Multi(3);
   EXPECT_FALSE(third.exact());
@@ -57,8 +57,8 @@ TEST(Multi, KnowsWhetherItWasRoundedWhereverItIsMovedTo) {
   EXPECT_FALSE(assigned.exact());
 }
 
-// A result underflows if it is rounded and below the least normal number, 2^-126. At that number and above, nothing
-// underflows.
+// A result underflows if it is rounded and below the least normal number, 2^-126. Results of at least 2^-126 do not
+// underflow.
 TEST(Multi, UnderflowsBelowTheLeastNormalNumber) {
   const mpfr_exp_t emin = mpfr_get_emin();
   Multi::precision = 24;
@@ -101,7 +101,7 @@ TEST(Precise, WithBothLimitsIsTheCpuLane) {
   EXPECT_GT(underflows, 100);
 }
 
-// Compares with GMP's rationals, which need no error bounds, on the three algorithms that neither divide nor take
+// Compares with GMP's rationals, which need no error bounds. Uses the three algorithms that neither divide nor take
 // roots.
 TEST(Precise, ExactlyIsWhatRationalsSay) {
   using Rational = boost::multiprecision::number<boost::multiprecision::gmp_rational, boost::multiprecision::et_off>;
@@ -122,8 +122,8 @@ TEST(Precise, ExactlyIsWhatRationalsSay) {
   }
 }
 
-// interval_overlap is right in exact arithmetic unless a triangle is degenerate. Its roots and quotients never make an
-// exact contact exact, with any number of bits. So this test shows how open comparisons are settled.
+// interval_overlap is right in exact arithmetic unless a triangle is degenerate. Because of its roots and quotients, no
+// number of bits makes an exact contact come out exact. So this test shows how open comparisons are settled.
 TEST(Precise, ExactlySettlesRootsAndQuotients) {
   int untold = 0;
   for (const Kind kind : {Kind::uniform, Kind::near, Kind::touching, Kind::coplanar}) {
@@ -157,7 +157,7 @@ TEST(Precise, BitsNeededIsTheLeastFromWhichAllAreRight) {
   EXPECT_GT(more, 0);
 }
 
-// A distance of 2^-180, which float32 rounds to 0: the error is the whole distance, 2^23 ulps.
+// float32 rounds a distance of 2^-180 to 0, so the error is the whole distance, 2^23 ulps.
 TEST(Precise, ErrorsAreInUlpsOfTheExactNumberWithoutLimits) {
   const Pair pair{{{0, 0, 0}, {0x1p-60f, 0, 0}, {0, 0x1p-60f, 0}}, {{0, 0, 0x1p-60f}, {1, 0, 1}, {0, 1, 2}}};
   const Trace<double> run = run_traced<float>(2, pair);

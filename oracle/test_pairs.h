@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs for the oracle's tests and benchmarks, from seeded generators and written by hand.
+// Pairs for the oracle's tests and benchmarks, drawn by seeded generators or written by hand.
 #pragma once
 
 #include <bit>
@@ -91,14 +91,13 @@ class BasicPairSource {
 };
 using PairSource = BasicPairSource<float>;
 
-// A pair from 18 numbers.
 inline Pair pair_of(const float (&c)[kCoordinates]) {
   Pair pair;
   for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = c[i];
   return pair;
 }
 
-// The same pair in another of its 72 orders, of the two triangles and of each triangle's vertices.
+// The same pair in another of its 72 orders: of the two triangles, and of each triangle's vertices.
 template <class Real>
 BasicPair<Real> reordered(const BasicPair<Real>& pair, int order) {
   static constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
@@ -111,7 +110,7 @@ BasicPair<Real> reordered(const BasicPair<Real>& pair, int order) {
   return result;
 }
 
-// Permutes the axes (6 ways, way % 6) and negates the axes whose bit in way / 6 is set. Nothing is rounded.
+// Permutes the axes in one of 6 ways (way % 6), and negates the axes whose bit in way / 6 is set. Nothing is rounded.
 template <class Real>
 BasicPair<Real> turned(const BasicPair<Real>& pair, int way) {
   static constexpr int kAxes[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Verdict, contact and margin of one pair. The two decisions confirm each other.
+// Computes the verdict, contact and margin of one pair. The two decisions check each other.
 #include "oracle/truth.h"
 
 #include <cstdio>

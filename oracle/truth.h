@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The truth of a pair: exact for every finite pair of float32 or double, subnormals and 1e308 included.
+// The truth of a pair. It is exact for every pair with finite float32 or double coordinates, from subnormals to 1e308.
 #pragma once
 
 #include <compare>
@@ -14,17 +14,17 @@ namespace graze::oracle {
 
 struct Truth : Relation {
   double margin = 0;       // signed gap in the pair's units, correctly rounded; NaN when declined
-  double margin_ulps = 0;  // the same in ulps of the largest coordinate, in its own type
+  double margin_ulps = 0;  // the same in ulps of the largest coordinate, in the pair's type
 };
 
-// The oracle's two decisions differ, which is a defect of the oracle itself.
+// Thrown if the oracle's two decisions differ, which is a defect in the oracle itself.
 struct OracleMismatch : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 // Relation and margin. The verdict is CGAL's, confirmed by the decision on GMP integers.
-// Exact: always; the margin is a rational's square root, rounded once by MPFR. The margin of a pair of doubles may be
-// beyond the range of double; it is then the least or the largest positive double.
+// Exact: always; the margin is a rational's square root, rounded once by MPFR. If the margin of a pair of doubles is
+// beyond the range of double, the least or the largest positive double is returned.
 // Throws: OracleMismatch.   Returns: declined, unknown and NaN if a coordinate is not finite.
 Truth truth(const Pair& pair);
 Truth truth(const DoublePair& pair);
@@ -49,14 +49,14 @@ inline Verdict cgal_verdict(const Pair& pair) { return cgal_verdict(in_doubles(p
 Contact gmp_contact(const DoublePair& pair);
 inline Contact gmp_contact(const Pair& pair) { return gmp_contact(in_doubles(pair)); }
 
-// The hulls, by exact ranks of integer vectors.   Requires: finite coordinates.   Exact: always.
+// The hulls, from exact ranks of integer vectors.   Requires: finite coordinates.   Exact: always.
 Hulls hulls(const DoublePair& pair);
 inline Hulls hulls(const Pair& pair) { return hulls(in_doubles(pair)); }
 
 // The bucket of the exact margin. A certified double-precision estimate nearly always decides it; otherwise GMP does.
 // Requires: finite coordinates; verdict is the pair's true verdict.   Exact: always.
 Bucket margin_bucket(const Pair& pair, Verdict verdict);
-// Likewise for doubles, in ulps of the largest coordinate as a double.
+// The same for doubles, in double-precision ulps of the largest coordinate.
 Bucket margin_bucket(const DoublePair& pair, Verdict verdict);
 
 }  // namespace graze::oracle

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Truths that a person can check: every contact, degeneracy and kind of margin, and the limits of float32.
+// Tests truths that can be checked by hand: every contact, degeneracy and kind of margin, and the limits of float32.
 #include <cfloat>
 #include <cmath>
 #include <limits>
@@ -131,7 +131,7 @@ TEST(Shape, NamesDimensionsAndCommonPlane) {
     int dimension_a, dimension_b;
     bool coplanar;
   };
-  // The first prefix that matches decides.
+  // The first matching prefix decides.
   const Group kGroups[] = {
       {"coplanar", 2, 2, true},       {"same_triangle", 2, 2, true},  {"segment_in", 2, 1, true},
       {"segment_across", 2, 1, true}, {"segment_along", 2, 1, true},  {"segment_touches", 2, 1, true},

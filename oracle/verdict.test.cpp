@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares CGAL's verdict and the GMP contact with each other, in all orders, and with CGAL's exact intersection.
+// Compares CGAL's verdict and GMP's contact with each other, in all orders, and with CGAL's exact intersection.
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/intersections.h>
 #include <gtest/gtest.h>
@@ -46,8 +46,8 @@ TEST(Verdict, BothDecisionsIgnoreOrderAxesAndSigns) {
   }
 }
 
-// A hull too wide for 40 bits is decided on doubles or on long integers. Scaling each axis by a power of two makes the
-// same hulls wide or small. This map is affine, so the verdict must not change.
+// A pair that needs more than 40 bits is decided with doubles or large integers. Scaling each axis by a power of two
+// makes the same pair need more or fewer bits. This map is affine, so the verdict must not change.
 TEST(Verdict, SmallAndWideKernelsAgree) {
   for (const Kind kind : {Kind::lattice1, Kind::lattice3, Kind::degenerate, Kind::flat, Kind::near, Kind::coplanar}) {
     PairSource source(kind, kSeed + 2);
@@ -66,7 +66,7 @@ TEST(Verdict, SmallAndWideKernelsAgree) {
 
 using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
 
-// Turns the result of CGAL's intersection into a contact. The result may be a polygon of three or more points.
+// Converts the result of CGAL's intersection to a contact. The result may be a polygon with three or more vertices.
 struct ContactOf {
   using result_type = Contact;
   Contact operator()(const Exact::Point_3&) const { return Contact::point; }
@@ -100,7 +100,7 @@ TEST(Contact, AgreesWithCgalsConstructedIntersection) {
       } else if (a.is_degenerate() && b.is_degenerate()) {
         continue;
       } else {
-        // One triangle is flat: intersect the other one with its longest edge, which contains its other edges.
+        // One triangle is flat: intersect the other with the flat one's longest edge, which contains its other edges.
         const Exact::Triangle_3 &flat = a.is_degenerate() ? a : b, &full = a.is_degenerate() ? b : a;
         Exact::Segment_3 longest(flat[0], flat[1]);
         for (int i = 1; i < 3; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers as GMP rationals. Multiplied by their common denominator, all 18 become integers, and the oracle decides
-// these integers as usual. The margin is divided by the denominator at the end.
+// Reads numbers as GMP rationals and multiplies all 18 by their common denominator. The oracle decides the resulting
+// integers as usual. The margin is divided by the denominator at the end.
 #include "oracle/written.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The truth of pairs as written: where float32 changes the pair, and where it does not.
+// Tests the truth of pairs as written, both where float32 changes the pair and where it does not.
 #include "oracle/written.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ Pair stored(const std::vector<std::string>& numbers) {
 }
 
 TEST(TruthAsWritten, SeesWhatFloat32RoundsAway) {
-  // Two faces in z = 1, or nearly so.
+  // Two faces in the plane z = 1, or nearly in it.
   const auto numbers = words_of("0 0 1 1 0 1 0 1 1  0 0 1.00000000001 1 0 1.00000000001 0 1 1.00000000001");
   const Pair pair = stored(numbers);
   EXPECT_EQ(truth(pair).contact, Contact::area);
@@ -54,7 +54,7 @@ TEST(TruthAsWritten, IsNothingWhereEveryNumberIsStored) {
   EXPECT_THROW(oracle::rounded(words_of("1e-999999 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0"), Pair{}), std::runtime_error);
 }
 
-// A motion that float32 cannot represent, applied to both triangles, keeps their truth; so does a scaling.
+// A motion of both triangles that float32 cannot represent does not change their truth, nor does a scaling.
 TEST(TruthAsWritten, IsTheStoredTruthUnderExactMotions) {
   std::mt19937 random(12);
   int contacts[4] = {};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs built around a point of contact. A feature (vertex, edge or face) of each triangle passes through the point.
-// The rest of A lies on one side, and the rest of B on the other. Rounding turns a contact in real numbers into a near
-// contact; contacts in integers stay exact.
+// Builds pairs around a point of contact. A feature (vertex, edge or face) of each triangle contains the point. The
+// rest of A lies on one side, and the rest of B on the other. With real coordinates, rounding turns the contact into a
+// near contact; with integer coordinates, it stays exact.
 #pragma once
 
 #include "strata/draws.h"
@@ -13,7 +13,7 @@ inline namespace GRAZE_FP {
 // place + 2 * weight * step <= 2^bits, where bits is wide_bits() of the draws.
 template <class D>
 struct Grain {
-  typename D::Integer place;  // integers: the contact lies within ±place; reals: place is 0, and it lies within ±1/2
+  typename D::Integer place;  // integers: the contact lies within ±place; reals: 0, and the contact lies within ±1/2
   typename D::Integer step;   // steps (the vectors that weights multiply) lie within ±step; reals: ±1
   int weight;                 // weights are 1 … weight; reals: (0, 1]
 };
@@ -50,16 +50,16 @@ GRAZE_INLINE double draw_weight(auto& draws, const auto& grain) {
   return grain.place > 0 ? 1.0 + draws.below(static_cast<std::uint32_t>(grain.weight)) : draws.positive();
 }
 
-// How flat a triangle is. A sliver's height is a small fraction of its length. A sliver's third vertex lies near
-// an end of the longest edge (needle) or anywhere along that edge (cap).
+// How flat a triangle is. A sliver's height is a small fraction of its length. Its third vertex lies near an end of the
+// longest edge (needle) or anywhere along that edge (cap).
 struct Shape {
   double height = 1;
   bool sliver = false;
   bool needle = false;
 };
 
-// The third vertex, relative to p, on the given side. A sliver's third vertex lies close to the edge, which runs from
-// e * low to e * high.
+// The third vertex, relative to p, on the given side. For a sliver it lies close to the edge, which runs from e * low
+// to e * high.
 GRAZE_INLINE Vec draw_third(auto& draws, const auto& grain, const Shape& shape, const Vec& side, const Vec& e,
                             double low, double high) {
   const Vec arm = toward(side, draw_arm(draws, grain));
@@ -68,7 +68,7 @@ GRAZE_INLINE Vec draw_third(auto& draws, const auto& grain, const Shape& shape, 
   return e * foot + arm * shape.height;
 }
 
-// A triangle with its vertex [0] at p.
+// A triangle whose vertex [0] is p.
 GRAZE_INLINE void put_vertex(auto& draws, const auto& grain, const Shape& shape, const Vec& p, const Vec& side,
                              Vec (&triangle)[3]) {
   const Vec arm = toward(side, draw_arm(draws, grain));
@@ -118,8 +118,8 @@ GRAZE_INLINE Contact draw_contact(auto& draws, Touch touch, const auto& grain, c
     const double ratio = shape_a.needle ? -1 : draws.positive();
     v = u * ratio + v * shape_a.height;
   }
-  // u is along A's edge and v along B's edge, or both span A's face. If a vertex touches an edge, any direction
-  // perpendicular to the edge may separate the triangles. If two vertices touch, any direction may.
+  // u is along A's edge and v along B's edge, or both span A's face. If a vertex touches an edge, the separating
+  // direction may be any that is perpendicular to the edge. If two vertices touch, it may be any direction.
   const Vec away = normalised(touch == Touch::vertex_vertex ? v : cross(u, v));
   const Vec back = away * -1.0;
   if (touch == Touch::vertex_face) {
@@ -140,7 +140,7 @@ GRAZE_INLINE Contact draw_contact(auto& draws, Touch touch, const auto& grain, c
 }
 
 // Moves B away from the contact or into A. Half of the pushes are gaps of ±2^-1 … ±2^-40 of the triangles' size
-// (doubles: 2^-100), applied before rounding. The other half move one coordinate of b[0] by 0 … ±8 ulps after rounding.
+// (doubles: ±2^-100), applied before rounding. The others move one coordinate of b[0] by 0 … ±8 ulps after rounding.
 struct Push {
   double gap;
   int axis;
@@ -173,7 +173,7 @@ GRAZE_INLINE auto near_contact(auto& draws, Touch touch, const Shape& shape_a = 
 
 GRAZE_INLINE Touch draw_touch(auto& draws) { return static_cast<Touch>(draws.below(4)); }
 
-// Half of the pairs touch exactly. In the other half, one coordinate of b[0] is one unit larger or one unit smaller.
+// Half of the pairs touch exactly. In the other half, one coordinate of b[0] is one unit too large or too small.
 GRAZE_INLINE auto exact_contact(auto& draws) {
   const Touch touch = static_cast<Touch>(draws.below(3));  // the stratum shared_vertex draws equal vertices
   const auto grain = wide_grain(draws);

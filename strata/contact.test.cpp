@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of near, exact, coplanar and parallel contacts. Properties that hold exactly are tested in 128-bit integers,
-// other properties by the share of pairs that have them.
+// Tests of near, exact, coplanar and parallel contacts. Exact properties are tested in 128-bit integers, and other
+// properties by the share of pairs that have them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,8 +22,8 @@ TEST(NearContacts, HaveBothVerdicts) {
   }
 }
 
-// The smallest distance from a vertex of `t` to the plane of the other triangle. Positive if `t` lies on one side of
-// that plane, otherwise negative.
+// The smallest distance of a vertex of `t` from the other triangle's plane: positive if `t` lies on one side of that
+// plane, otherwise negative.
 long double closest_vertex(const Triangle<long double>& plane, const Triangle<long double>& t) {
   const Vec3<long double> n = normal(plane);
   const long double size = std::sqrt(dot(n, n));

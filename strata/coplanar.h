@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coplanar and parallel pairs: two triangles on a square grid, and a chart that maps the grid into space. An
-// integer chart rounds nothing, so the pair is exactly coplanar. With a real chart, the pair is coplanar before
-// rounding.
+// Coplanar and parallel pairs: two triangles on a square grid, and a chart that maps the grid into space. With an
+// integer chart nothing is rounded, so the pair is exactly coplanar. With a real chart, the pair is coplanar only
+// before rounding.
 #pragma once
 
 #include "strata/draws.h"
@@ -22,16 +22,16 @@ GRAZE_HD inline GridPoint draw_point(auto& draws, int reach) { return {draws.int
 
 GRAZE_HD inline GridPoint along(GridPoint p, GridPoint d, int times) { return {p.i + d.i * times, p.j + d.j * times}; }
 
-// The one of p + w and p - w that lies to the left of d (side 1) or to the right of d (side -1). If w is parallel to d:
-// p plus d, turned by 90 degrees to that side.
+// p + w or p - w, whichever lies to the left of d (side 1) or to the right of d (side -1). If w is parallel to d: p
+// plus d turned by 90 degrees to that side.
 GRAZE_HD inline GridPoint beside(GridPoint p, GridPoint d, int side, GridPoint w) {
   const std::int64_t turn = static_cast<std::int64_t>(d.i) * w.j - static_cast<std::int64_t>(d.j) * w.i;
   if (turn == 0) return along(p, {-d.j, d.i}, side);
   return along(p, w, turn * side < 0 ? -1 : 1);
 }
 
-// Two triangles on the grid, within ±(reach + 1). In half of the pairs the triangles are independent. In the other half
-// a vertex of B is on an edge of A or one grid step from that edge.
+// Two triangles on the grid, within ±(reach + 1). In half of the pairs the triangles are independent. In the other
+// half, a vertex of B is on an edge of A or one grid step away from it.
 // Requires: reach >= 8.
 GRAZE_HD inline GridPair draw_grid_pair(auto& draws, int reach) {
   GridPair pair;
@@ -92,8 +92,8 @@ GRAZE_HD inline auto coplanar_lattice(auto& draws) {
   return shuffled(draws, rounded(draws, draft));
 }
 
-// An integer chart and a grid pair on it, within ±(2^place + 2^(bits - 1)). A product of a
-// grid point and the chart has bits - 2 bits, split at random between the two.
+// A grid pair mapped by an integer chart, within ±(2^place + 2^(bits - 1)). A product of a grid point and the chart has
+// bits - 2 bits, split at random between the two factors.
 template <class D>
 GRAZE_HD Draft draw_wide_coplanar(D& draws, int bits, int place) {
   using Integer = typename D::Integer;
@@ -109,7 +109,7 @@ GRAZE_HD inline auto coplanar_wide(auto& draws) {
   return shuffled(draws, rounded(draws, draft));
 }
 
-inline constexpr int kRealReach = 1 << 20;  // the grid of a real chart, fine enough to be almost continuous
+inline constexpr int kRealReach = 1 << 20;  // a real chart's grid, fine enough to be almost continuous
 
 GRAZE_HD inline Draft draw_real_coplanar(auto& draws, const Chart& chart) {
   return laid(chart, draw_grid_pair(draws, kRealReach));
@@ -125,7 +125,6 @@ GRAZE_HD inline auto coplanar_rounded(auto& draws) {
   return shuffled(draws, rounded(draws, draft));
 }
 
-// B's plane is A's plane, translated.
 template <class D>
 GRAZE_HD auto parallel(D& draws) {
   switch (draws.below(3)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strata that exist only in doubles. They draw numbers like those of maps, drawings and constructions, and pairs
+// The strata that exist only in doubles. They draw numbers like those in maps, drawings and constructions, and pairs
 // that float32 cannot store. strata/double_strata.inc lists them.
 #pragma once
 
@@ -20,7 +20,7 @@ GRAZE_INLINE void move_all(Draft& draft, const Vec& by) {
   move(draft.b, by);
 }
 
-// Like exact_contact, but in integers of `bits` bits. Half of the contacts are exact; in the other half, a coordinate
+// Like exact_contact, but with integers of `bits` bits. Half of the contacts are exact; in the other half, a coordinate
 // of b[0] is one unit off.
 // Requires: 7 <= bits.
 GRAZE_HD inline Draft draw_integer_contact(DoubleDraws& draws, int bits) {
@@ -40,7 +40,6 @@ GRAZE_HD inline DoublePair lattice_15(DoubleDraws& draws) {
   return shuffled(draws, rounded(draws, draw_integer_contact(draws, bits)));
 }
 
-// 1, 10, …, 10^exponent.
 GRAZE_INLINE double power_of_ten(int exponent) {
   double power = 1;
   for (int i = 0; i < exponent; ++i) power *= 10;
@@ -59,8 +58,8 @@ GRAZE_HD inline DoublePair large_offset(DoubleDraws& draws) {
   return finished(draws, contact.draft, push);
 }
 
-// A contact or a coplanar pair in float32 numbers, rotated by the matrix of an integer quaternion, then moved. Each
-// entry of the matrix is rounded once.
+// A contact or a coplanar pair in float32, rotated by an integer quaternion's matrix and then moved. Each entry of the
+// matrix is rounded once.
 GRAZE_HD inline DoublePair float_born(DoubleDraws& draws) {
   Draws of_floats = draws;
   const std::uint32_t kind = of_floats.below(3);
@@ -91,7 +90,7 @@ GRAZE_HD inline DoublePair float_born(DoubleDraws& draws) {
 GRAZE_HD inline DoublePair decimal_born(DoubleDraws& draws) {
   const int bits = draws.between(12, 30);
   Draft draft = draw_integer_contact(draws, bits);
-  const double unit = power_of_ten(draws.between(3, 6));  // one division rounds to the double nearest to the decimal
+  const double unit = power_of_ten(draws.between(3, 6));  // a single division gives the double nearest to the decimal
   for (int i = 0; i < 3; ++i) {
     draft.a[i] = {draft.a[i].x / unit, draft.a[i].y / unit, draft.a[i].z / unit};
     draft.b[i] = {draft.b[i].x / unit, draft.b[i].y / unit, draft.b[i].z / unit};
@@ -100,7 +99,7 @@ GRAZE_HD inline DoublePair decimal_born(DoubleDraws& draws) {
 }
 
 // B's first vertex is a point on an edge or the face of A, or the point where a line crosses A's plane. In half of the
-// pairs a vertex of A is the same point, computed in another way, like two constructions that meet in a model.
+// pairs, a vertex of A is the same point, computed in another way, as where two constructions meet in a model.
 GRAZE_HD inline DoublePair construction_born(DoubleDraws& draws) {
   Draft draft;
   for (Vec& v : draft.a) v = draws.reals();
@@ -138,8 +137,8 @@ GRAZE_HD inline DoublePair construction_born(DoubleDraws& draws) {
   return shuffled(draws, rounded(draws, draft));
 }
 
-// A near contact whose gap is about the spacing of float32 numbers at its place. Draws up to 32 contacts and takes the
-// first one whose verdict changes in float32, or else the last one. Nearly always, the verdict of one of them changes.
+// A near contact whose gap is about as large as float32's spacing there. Draws up to 32 contacts and takes the first
+// whose verdict changes in float32, or else the last. Nearly always, one of the verdicts changes.
 GRAZE_HD inline DoublePair stored(DoubleDraws& draws) {
   DoublePair pair{};
 #ifndef __CUDA_ARCH__

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strata of doubles: their bits, and the property that each promises. These tests use the exact decision, which
-// analysis/truth_over_double_strata.test.cpp compares with the oracle.
+// Tests the strata of doubles: their bits, and each stratum's promised property. These tests use the exact decision,
+// which analysis/truth_over_double_strata.test.cpp compares with the oracle.
 #include "strata/doubles.h"
 
 #include <gtest/gtest.h>
@@ -147,7 +147,7 @@ TEST(DoubleStrata, NeighboursStoreTheSameVertices) {
   for (const DoublePair& pair : drawn(Stratum::shared_edge)) ASSERT_GE(shared_vertices(pair), 2);
 }
 
-// A push by ulps of a double is far smaller than a push by ulps of float32.
+// A push by double-precision ulps is far smaller than a push by float32 ulps.
 TEST(DoubleStrata, NearContactsDifferFromTheContactByUlpsOfADouble) {
   for (const Stratum stratum : {Stratum::near_vertex_face, Stratum::near_edge_edge, Stratum::near_vertex_edge}) {
     const std::vector<DoublePair> pairs = drawn(stratum);
@@ -186,7 +186,7 @@ TEST(LargeOffset, IsFarAndFine) {
   EXPECT_GT(share(pairs, changes_in_float32), 0.3);
 }
 
-// After rotation and offset, contacts remain contacts only up to rounding, and edges keep their lengths.
+// After the rotation and the move, contacts remain contacts up to rounding, and edges keep their lengths.
 TEST(FloatBorn, IsMovedRigidly) {
   const std::vector<DoublePair> pairs = drawn(Stratum::float_born);
   for (std::uint64_t i = 0; i < 1'000; ++i) {

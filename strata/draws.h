@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The random words of one pair, and the numbers and vectors that strata make of them. A draft is a pair before its
+// The random words of one pair, and the numbers and vectors that strata make from them. A draft is a pair before its
 // coordinates are rounded, once, to their type. The bits are the same on every machine, because the code calls no
-// library function that may round.
+// library function that rounds.
 #pragma once
 
 #include <Random123/philox.h>
@@ -11,7 +11,7 @@
 
 #include "core/pair.h"
 
-// Inlined on a device: the state of a pair's draws stays in registers, and the compiler knows the number of draws.
+// Inlining on a device keeps the state of a pair's draws in registers, and lets the compiler know the number of draws.
 #ifdef __CUDACC__
 #define GRAZE_INLINE __host__ __device__ __forceinline__
 #else
@@ -24,8 +24,8 @@ inline namespace GRAZE_FP {
 using Vec = Vec3<double>;
 
 // The random words of one pair, in order: Philox4x32-10 with the seed as its key. The counter is the index (two words),
-// the stratum and the block number. The order of draws is part of a stratum's definition. C++ defines no order of
-// evaluation within an expression, except in braces: use one draw per expression, or braces.
+// the stratum and the block number. The order of draws is part of a stratum's definition. C++ does not define the order
+// of evaluation within an expression, except in braces. So use one draw per expression, or braces.
 struct Draws {
   philox4x32_key_t key;
   philox4x32_ctr_t counter;
@@ -81,8 +81,8 @@ struct Draws {
             static_cast<double>(integer(reach))};
   }
 
-  // Constants of the coordinates' type. Exponents of powers of two: the smallest gap, the largest offset, the flattest
-  // sliver, the largest ratio of axes, and the range of scales. kBits is the number of significant bits.
+  // Constants for the coordinate type. kBits is the number of significant bits. The others are exponents of two: of the
+  // smallest gap, the largest offset, the flattest sliver, the largest ratio of axes, and the range of scales.
   using Real = float;
   using Integer = int;
   static constexpr int kBits = 24, kGap = 40, kOffset = 22, kSliver = 22, kRatio = 20, kLeastScale = -149,
@@ -130,7 +130,7 @@ struct DoubleDraws : Draws {
   GRAZE_INLINE int wide_bits() { return between(16, kBits); }
 };
 
-// 2^exponent, for exponents of normal doubles.
+// 2^exponent.   Requires: the result is a normal double.
 GRAZE_INLINE double power_of_two(int exponent) {
   const std::uint64_t bits = static_cast<std::uint64_t>(exponent + 1023) << 52;
   double power;
@@ -173,7 +173,6 @@ GRAZE_INLINE Vec normalised(const Vec& v) {
 // v or -v, whichever points to the same side as `direction`.
 GRAZE_INLINE Vec toward(const Vec& direction, const Vec& v) { return v * (dot(direction, v) < 0 ? -1.0 : 1.0); }
 
-// A pair before rounding.
 struct Draft {
   Vec a[3];
   Vec b[3];
@@ -205,7 +204,7 @@ GRAZE_INLINE DoublePair rounded(const DoubleDraws&, const Draft& draft) {
   return {{draft.a[0], draft.a[1], draft.a[2]}, {draft.b[0], draft.b[1], draft.b[2]}};
 }
 
-// The pair in a random one of its 72 vertex orders, so that a stratum's contacts do not all have one order.
+// The pair in a random one of its 72 vertex orders, so that a stratum's contacts do not all have the same order.
 template <class Real>
 GRAZE_INLINE BasicPair<Real> shuffled(Draws& draws, const BasicPair<Real>& pair) {
   const std::uint32_t order = draws.below(72);

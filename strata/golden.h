@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Golden hashes: one of each stratum's first 10,000 pairs at seed 1, for tests on host and device. If a hash changes, a
-// stored (seed, stratum, index) gives a different pair.
+// Golden hashes of each stratum's first 10,000 pairs at seed 1, for tests on host and device. If a hash changes, stored
+// (seed, stratum, index) triples give different pairs.
 #pragma once
 
 #include <cstdint>

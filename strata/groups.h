@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Groups of strata whose results are reported together. A lane's results on general pairs say nothing about its results
+// Groups of strata. Results are reported by group, because a lane's results on general pairs do not predict its results
 // on coplanar pairs.
 #pragma once
 
@@ -29,7 +29,7 @@ inline constexpr GroupInfo kGroups[] = {
     {Group::mesh, "mesh", "pairs of a mesh's triangles whose boxes overlap"},
 };
 
-// The group of a campaign's source with this name: a stratum, or one of a mesh's sources. Nothing if this build does
+// The group of the campaign source with this name, which is a stratum or belongs to a mesh. Nothing if this build does
 // not know the name.
 constexpr std::optional<Group> group_of_name(std::string_view id) {
   const std::string_view stratum = stratum_in_doubles(id).value_or(id);

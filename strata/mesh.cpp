@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs from real input: reads files to float32 triangles and pairs triangles whose closed boxes overlap.
+// Pairs from real input: reads float32 triangles from files, and pairs those whose closed boxes overlap.
 #include "strata/mesh.h"
 
 #include <CGAL/box_intersection_d.h>
@@ -25,7 +25,7 @@ namespace {
 
 using Triangle = std::array<Vec3<float>, 3>;
 
-// A limit for the candidate pairs. Without it, a mesh whose triangles all overlap would fill the memory.
+// A limit on candidate pairs. Without it, a mesh whose triangles all overlap would fill the memory.
 constexpr std::size_t kMostCandidates = std::size_t{1} << 28;  // 2 GiB of indices
 
 std::string read_bytes(const std::filesystem::path& file) {
@@ -81,8 +81,8 @@ void add_rounding(MeshPairs& pairs, const Rounding& rounding, const std::filesys
   for (std::string& note : doubles_note(file.string(), rounding)) pairs.notes_of_doubles.push_back(std::move(note));
 }
 
-// How many fans fold over themselves: some triangle's normal points against the sum of the fan's normals. The face of
-// such a fan is not convex. The test rounds to double, so it may miss a fold that is narrower than this rounding.
+// How many fans fold over: a triangle's normal points against the sum of the fan's normals. Such a fan's face is not
+// convex. The test rounds to double, so it may miss a fold that is narrower than the rounding error.
 std::size_t folded_fans(const Soup& soup) {
   const auto normal = [&](const std::array<std::uint32_t, 3>& triangle) {
     const Vec3<double>& corner = soup.in_doubles[triangle[0]];
@@ -111,7 +111,7 @@ void add_mesh(MeshPairs& pairs, const std::filesystem::path& file, Coordinates c
   for (const auto& [i, j, k] : soup.triangles)
     pairs.triangles.push_back({soup.vertices[i], soup.vertices[j], soup.vertices[k]});
   if (soup.rounding.rounded > 0 || !pairs.in_doubles.empty()) {
-    for (std::size_t t = pairs.in_doubles.size(); t < before; ++t)  // float32 holds the coordinates of earlier files
+    for (std::size_t t = pairs.in_doubles.size(); t < before; ++t)  // earlier files' coordinates are all float32
       pairs.in_doubles.push_back(in_doubles(pairs.triangles[t]));
     for (const auto& [i, j, k] : soup.triangles)
       pairs.in_doubles.push_back({soup.in_doubles[i], soup.in_doubles[j], soup.in_doubles[k]});
@@ -133,7 +133,7 @@ void add_mesh(MeshPairs& pairs, const std::filesystem::path& file, Coordinates c
 
 using Pose = std::array<double, 12>;
 
-constexpr std::size_t kMostTriangles = std::size_t{1} << 26;  // limit for all poses together; they take 2.25 GiB
+constexpr std::size_t kMostTriangles = std::size_t{1} << 26;  // limit over all poses: 2.25 GiB
 
 // Reads the poses, and hashes the file's bytes.
 std::vector<Pose> read_poses(const std::filesystem::path& file, std::uint64_t& hash) {
@@ -168,7 +168,7 @@ Vec3<float> moved(const Pose& m, const Vec3<float>& v, Rounding& rounding) {
   return {to[0], to[1], to[2]};
 }
 
-// Replaces the mesh by one body for each pose.   Returns: for each body, the index after its last triangle.
+// Replaces the mesh with one body for each pose.   Returns: for each body, the index after its last triangle.
 std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path& file,
                                    const std::vector<Pose>& poses) {
   const std::vector<Triangle> mesh = std::move(pairs.triangles);
@@ -177,7 +177,7 @@ std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path
                                     std::to_string(poses.size()) + " poses of " + std::to_string(mesh.size()) +
                                         " triangles are more than 2^26 triangles"));
   pairs.triangles.clear();
-  pairs.in_doubles.clear();  // poses move the triangles that float32 stores
+  pairs.in_doubles.clear();  // poses move the triangles as stored in float32
   std::vector<std::size_t> ends;
   Rounding rounding;
   for (const Pose& pose : poses) {
@@ -196,7 +196,7 @@ std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path
   return ends;
 }
 
-// Finds the candidate pairs: within one body, or between several.
+// Finds the candidate pairs: within the body if there is one, otherwise between bodies.
 void pair_up(MeshPairs& result, const std::vector<std::size_t>& ends, const std::filesystem::path& file) {
   const auto add = [&](const Box& p, const Box& q) {
     if (result.candidates.size() == kMostCandidates) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs from real input: triangles of one mesh, or of two, whose closed bounding boxes overlap. The boxes are
-// intersected by CGAL's hybrid of streaming and segment trees (Zomorodian and Edelsbrunner 2002).
+// Pairs from real input: triangles of one mesh, or of several, whose closed bounding boxes overlap. CGAL finds these
+// boxes with its hybrid of streaming and segment trees (Zomorodian and Edelsbrunner 2002).
 #pragma once
 
 #include <array>
@@ -19,14 +19,15 @@
 namespace graze::strata {
 
 struct MeshPairs {
-  std::vector<std::array<Vec3<float>, 3>> triangles;  // first of the first file, then of the second
+  std::vector<std::array<Vec3<float>, 3>> triangles;  // of the first file, then of the second
   // The same triangles in doubles. Empty if float32 rounded no coordinate.
   std::vector<std::array<Vec3<double>, 3>> in_doubles;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> candidates;  // indices into triangles, sorted, first < second
   std::uint64_t content_hash = 0;  // FNV-1a of the bytes of the first file, then of the second
-  // One line for each file with unused content, such as normals, and one for each file that float32 rounded.
+  // One line for each file with unused content, such as normals, and one for each file that rounding to float32
+  // changes.
   std::vector<std::string> notes;
-  std::vector<std::string> notes_of_doubles;  // the same for callers that use the doubles
+  std::vector<std::string> notes_of_doubles;  // the same, for callers that use the doubles
   Rounding rounding;                          // how float32 rounded the coordinates of all files
 
   std::size_t size() const { return candidates.size(); }
@@ -35,7 +36,7 @@ struct MeshPairs {
   Pair pair(std::size_t index) const;
   DoublePair double_pair(std::size_t index) const;
 
-  // All triangles as doubles, which hold every float32 exactly.
+  // All triangles as doubles; a double holds every float32 exactly.
   std::vector<std::array<Vec3<double>, 3>> triangles_in_doubles() const;
 };
 
@@ -50,16 +51,17 @@ bool is_mesh(const std::filesystem::path& file);
 // "OFF, OBJ, STL or PLY"
 std::string mesh_formats();
 
-// The candidate pairs of bodies: one body against itself, or several against each other. `poses` is a CSV
-// file with twelve numbers per row: the three rows of a pose's matrix (R | t). Each pose of a single mesh is a body.
+// The candidate pairs of bodies: one body against itself, or several against each other. Each file is a body. With
+// `poses`, each pose of a single mesh is a body instead. `poses` is a CSV file with twelve numbers per row: the three
+// rows of a pose's matrix (R | t).
 // A face with more than three vertices is cut into a fan from its first vertex. Each coordinate is rounded once to
 // float32; coordinates that change are counted. Triangles that become degenerate are kept. The boxes enclose the
 // rounded triangles, so no touching pair is missed. The extension determines the format.
-// Requires: at least one file; exactly one if there are poses.
+// Requires: at least one file, and exactly one if there are poses.
 // Throws: std::runtime_error with one line: the file, its line or byte, and what was expected and found.
 MeshPairs read_bodies(const std::vector<std::filesystem::path>& files, const std::filesystem::path& poses = {});
 
-// Reads the triangles of a mesh, without pairs.
+// Reads only a mesh's triangles, and finds no pairs.
 MeshPairs read_triangles(const std::filesystem::path& file, Coordinates coordinates = Coordinates::finite);
 
 }  // namespace graze::strata

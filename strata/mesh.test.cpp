@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes as input: every format gives the same triangles, candidates equal those of a brute-force search, and errors
-// give the reason.
+// Tests meshes as input: every format gives the same triangles, the candidates are those of a brute-force search, and
+// errors give the reason.
 #include "strata/mesh.h"
 
 #include <gtest/gtest.h>
@@ -116,7 +116,7 @@ TEST_F(MeshFile, EveryFormatReadsTheSameTriangles) {
   EXPECT_EQ(read_bodies({write("binary.stl", binary_stl_of(expected))}).triangles, expected);
 }
 
-// Campaigns refuse a vertex that is not finite, and queries read it: in OFF, OBJ and STL files.
+// In OFF, OBJ and STL files, campaigns refuse a vertex that is not finite, but queries read it.
 TEST_F(MeshFile, VerticesThatAreNotFiniteAreReadOnRequest) {
   const float nan = std::nanf(""), infinity = HUGE_VALF;
   const Triangle bad{{{0, nan, 0}, {1, 0, -infinity}, {0, 1, 0}}}, good{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
@@ -141,7 +141,7 @@ TEST_F(MeshFile, AMeshAgainstItselfPairsEachTwoOnce) {
   EXPECT_EQ((Triangle{pair.b[0], pair.b[1], pair.b[2]}), pairs.triangles[3]);
 }
 
-// If one file has doubles, the other file's short decimals are kept as doubles too.
+// If one file needs doubles, the other file's short decimals are kept as doubles too.
 TEST_F(MeshFile, HasTheDoublesOfDecimals) {
   const auto file = write("m.obj", "v 0.1 0 0\nv 1 0 0\nv 0 1 0\nv 0.1 0.7 0\nf 1 2 3\nf 1 2 4\n");
   const MeshPairs one = read_bodies({file});
@@ -153,7 +153,7 @@ TEST_F(MeshFile, HasTheDoublesOfDecimals) {
   EXPECT_EQ(read_bodies({file, far}).double_pair(0).b[0].x, 0.1000000001);
 }
 
-// Decimals that a program prints for a float32 do not count as beyond float32; decimals with more digits do.
+// Decimals that a program prints for a float32 are not counted as beyond float32; decimals with more digits are.
 TEST_F(MeshFile, KeepsDoublesBeyondFloat32) {
   const auto read = [&](const std::string& x) {
     const auto file = write("m.obj", "v " + x + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -282,7 +282,7 @@ TEST_F(MeshFile, SaysWhatItDoesNotUse) {
             (std::vector<std::string>{file.string() + ": 2 triangles; not used: 2 lines, 1 normals"}));
 }
 
-// A fan from the first vertex covers a concave face only if that vertex sees all others.
+// A fan from the first vertex covers a concave face exactly only if all other vertices are visible from it.
 TEST_F(MeshFile, SaysWhereAFanFoldsOver) {
   const std::string quad = "OFF\n4 1 0\n0 4 0\n0 0 0\n4 0 0\n1 1 0\n4 ";
   const auto folded = write("folded.off", quad + "0 1 2 3\n");
@@ -316,7 +316,7 @@ TEST_F(MeshFile, SaysWhatFloat32Rounds) {
   EXPECT_EQ(read_bodies({file}, write("whole.csv", "1 0 0 1000000 0 1 0 0 0 0 1 0\n")).rounding.rounded, 0u);
 }
 
-// No coordinate is farther from the file's decimal or binary double than the note says.
+// No coordinate moves farther from the file's decimal or binary double than the note states.
 TEST_F(MeshFile, BoundsHowFarFloat32Moves) {
   std::mt19937_64 random(3);
   for (int round = 0; round < 200; ++round) {
@@ -325,7 +325,7 @@ TEST_F(MeshFile, BoundsHowFarFloat32Moves) {
         "property double z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n";
     std::string text = "OFF\n3 2 0\n";
     double numbers[9];
-    std::uint64_t moved = 0, moved_in_text = 0;  // 17 digits identify a double, but seldom equal it
+    std::uint64_t moved = 0, moved_in_text = 0;  // a decimal of 17 digits identifies a double, but rarely equals it
     double most = 0;
     for (double& x : numbers) {
       x = std::ldexp(static_cast<double>(static_cast<std::int64_t>(random())), static_cast<int>(random() % 100) - 113);

@@ -14,10 +14,10 @@ namespace graze::strata {
 namespace {
 
 // With fewer boxes than this, CGAL sweeps instead of dividing further. On a terrain of a million triangles, this limit
-// takes less than half the time of CGAL's default of 10.
+// takes less than half the time that CGAL's default limit of 10 takes.
 constexpr std::ptrdiff_t kSwept = 1000;
 
-// How many other boxes CGAL gets per call. With long boxes a call takes quadratic time and cannot be stopped.
+// How many other boxes CGAL gets per call. With long boxes, a call takes quadratic time and cannot be interrupted.
 constexpr std::size_t kTogether = std::size_t{1} << 15;
 
 bool is_finite(const std::array<Vec3<float>, 3>& t) {
@@ -92,7 +92,7 @@ void BoxSlabs::pairs(std::size_t slab, const std::function<void(std::uint32_t, s
   float high = own.front().max_coord(axis);
   for (const Box& box : own) high = std::max(high, box.max_coord(axis));
   if (boxes_->self) {
-    // Boxes of later slabs do not begin below this slab, so only its high end limits the search.
+    // Later slabs' boxes do not begin below this slab, so only the slab's high end limits the search.
     for (auto box = end; box != boxes_->a.end() && box->min_coord(axis) <= high; ++box) others.push_back(*box);
   } else {
     const float low = own.front().min_coord(axis);

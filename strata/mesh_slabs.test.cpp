@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slabs of any size give exactly the pairs of a brute-force search, each once.
+// Tests that slabs of any size give exactly the pairs of a brute-force search, each once.
 #include "strata/mesh_slabs.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle within a larger one, or just outside it. Both lie on a chart whose grid consists of the larger triangle's
-// barycentric coordinates. With integers, containment and contact are therefore exact at every ratio of sizes. A
-// smaller triangle with vertices on both sides of the chart pierces the face of the larger one.
+// A triangle within a larger one, or just outside it. Both lie on a chart whose grid gives the larger triangle's
+// barycentric coordinates. So with integers, containment and contact are exact at every ratio of sizes. If the smaller
+// triangle has vertices on both sides of the chart, it pierces the larger one's face.
 #pragma once
 
 #include "strata/coplanar.h"
@@ -9,8 +9,8 @@
 namespace graze::strata {
 inline namespace GRAZE_FP {
 
-// A triangle within (0, 0), (size, 0), (0, size). If `turned`, within that triangle after half a turn, where i + j
-// reaches 2 * size. Each vertex is within a quarter of the size of its own corner, so the three are never collinear.
+// A triangle within the triangle (0, 0), (size, 0), (0, size), or, if `turned`, within that triangle after half a turn,
+// where i + j reaches 2 * size. Each vertex is within size / 4 of its own corner, so the three are never collinear.
 GRAZE_HD inline void put_inner(auto& draws, int size, bool turned, GridPoint (&inner)[3]) {
   const int inset = draws.coin() ? size / 4 : size >> draws.between(2, 20);
   for (int m = 0; m < 3; ++m) {
@@ -22,9 +22,9 @@ GRAZE_HD inline void put_inner(auto& draws, int size, bool turned, GridPoint (&i
   if (draws.below(4) == 0 && !turned) inner[0].i = inner[2].i = 0;
 }
 
-// A is (0, 0), (reach, 0), (0, reach), where reach is 2^bits. B has about the given size. In three pairs out of four B
-// lies within A, otherwise beyond A's edge i = 0. In at least a third of the pairs, B has a vertex or an edge on that
-// edge.
+// A is (0, 0), (reach, 0), (0, reach), where reach is 2^bits. B has about the given size. In three pairs out of four, B
+// lies within A; in the others it lies beyond A's edge i = 0. In at least a third of the pairs, B has a vertex or an
+// edge on that edge.
 // Requires: 1 <= size <= reach.   Returns: points with |i| + |j| <= 2 * reach.
 GRAZE_HD inline GridPair draw_nested_grid_pair(auto& draws, int bits, int size) {
   const int reach = 1 << bits;
@@ -47,8 +47,8 @@ GRAZE_HD inline GridPair draw_nested_grid_pair(auto& draws, int bits, int size) 
 }
 
 // Half of the pairs are exact, in integers that are small or have up to 24 bits (doubles: 53). The other half have
-// real coordinates before rounding. B's size is 2^0 … 2^-20 of A's size. In three pairs out of four B lies in A's
-// plane; in the fourth, B has vertices on both sides of that plane.
+// real coordinates before rounding. B's size is 2^0 … 2^-20 of A's size. In three pairs out of four, B lies in A's
+// plane; in the others, B has vertices on both sides of that plane.
 template <class D>
 GRAZE_HD auto nested(D& draws) {
   using Integer = typename D::Integer;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of nested triangles: containment and piercing on the grid in exact integers, other properties by the share of
-// pairs.
+// Tests of nested triangles: containment and piercing on the grid in exact integers, and other properties by the share
+// of pairs that have them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ int contained(const Triangle<Int>& inner, const Triangle<Int>& outer) {
   return std::min({side_of(inner[0], outer), side_of(inner[1], outer), side_of(inner[2], outer)});
 }
 
-// Whether the inner triangle meets the outer one but none of its edges.   Requires: their planes cross.
+// Whether the inner triangle meets the outer one, but none of the outer one's edges.   Requires: their planes cross.
 bool pierces(const Triangle<Int>& inner, const Triangle<Int>& outer) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (!disjoint(Triangle<Int>{outer[i], outer[(i + 1) % 3], outer[i]}, inner)) return false;
@@ -56,7 +56,7 @@ TEST(Nested, OnTheGridTrianglesAreContainedExactlyOrJustOutside) {
     strictly += depth > 0;
     touches += depth == 0;
     if (depth >= 0) continue;
-    // No pair overlaps only in part: a triangle that is not contained lies outside.
+    // Triangles never overlap only in part: a triangle that is not contained lies outside.
     ASSERT_TRUE(r.verdict == Verdict::disjoint || r.contact != graze::Contact::area);
     (r.verdict == Verdict::disjoint ? apart : touched_outside) += 1;
   }

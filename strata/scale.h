@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contacts at scales that strain the type of the coordinates: far from the origin, near overflow and underflow, and
-// with very different scales in one pair. Each function transforms a contact first, and then rounds it once.
+// Contacts at scales that strain the coordinate type: far from the origin, near overflow and underflow, and with very
+// different scales in one pair. Each function transforms a contact, and then rounds it once.
 #pragma once
 
 #include "strata/contact.h"
@@ -21,7 +21,7 @@ GRAZE_HD inline auto far_from_origin(auto& draws) {
   return finished(draws, contact.draft, push);
 }
 
-// Half of the pairs are near contacts. The other half are exact, unless they round into the subnormals.
+// Half of the pairs are near contacts. The other half are exact contacts, unless rounding makes coordinates subnormal.
 GRAZE_HD inline auto extreme_scale(auto& draws) {
   const bool exact = draws.coin();
   const auto grain = exact ? wide_grain(draws) : real_grain(draws);
@@ -30,7 +30,7 @@ GRAZE_HD inline auto extreme_scale(auto& draws) {
   if (exact) push.gap = 0;
   move(contact.draft.b, contact.away * push.gap);
   // Contacts reach 3 (reals) or 2^24 (integers; doubles: 2^53), so the largest coordinate stays below 2^128 (doubles:
-  // 2^1024). Scales in two steps, because a double holds no power of two below 2^-1074; the first step is exact.
+  // 2^1024). Scaling takes two steps, because no double is a power of two below 2^-1074. The first step is exact.
   const int exponent = draws.between(draws.kLeastScale, draws.kMostScale) - (exact ? draws.kBits - 1 : 0);
   for (const int part : {exponent / 2, exponent - exponent / 2}) {
     const double size = power_of_two(part);
@@ -44,7 +44,7 @@ GRAZE_HD inline auto mixed_scale(auto& draws) {
   Contact contact = draw_contact(draws, draw_touch(draws), real_grain(draws));
   Push push = draw_push(draws);
   Draft& draft = contact.draft;
-  if (draws.coin()) {  // each axis has its own scale, which preserves the contact
+  if (draws.coin()) {  // scale each axis differently, which preserves the contact
     const Vec size{power_of_two(draws.integer(draws.kRatio)), power_of_two(draws.integer(draws.kRatio)),
                    power_of_two(draws.integer(draws.kRatio))};
     move(draft.b, contact.away * push.gap);
@@ -52,7 +52,7 @@ GRAZE_HD inline auto mixed_scale(auto& draws) {
     scale(draft.b, size);
     return finished(draws, draft, push);
   }
-  // One triangle and the gap shrink towards the contact.
+  // Shrinks one triangle, and the gap, towards the contact.
   const double size = power_of_two(-draws.between(1, draws.kGap));
   const bool shrink_a = draws.coin();
   const Vec to_origin = contact.p * -1.0;

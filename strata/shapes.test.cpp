@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of slivers, degenerate triangles and mesh neighbours, and of the strata of unusual scales.
+// Tests slivers, degenerate triangles, mesh neighbours, and the strata with unusual scales.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,6 @@
 namespace graze::strata::testing {
 namespace {
 
-// Length divided by height.
 double aspect(const Vec3<float> (&v)[3]) {
   const Triangle<double> t = converted<double>(v);
   const double longest = std::max({length(edge(t, 0)), length(edge(t, 1)), length(edge(t, 2))});
@@ -77,7 +76,7 @@ TEST(Shared, DihedralAnglesAreAnythingFromFlatToFolded) {
 TEST(FarFromOrigin, OffsetsAreLogUniform) {
   std::array<int, 12> decades{};
   for (const Pair& pair : draw(Stratum::far_from_origin)) {
-    const double size = std::max({extent(pair.a), extent(pair.b), 0.5});  // rounding may have collapsed the triangles
+    const double size = std::max({extent(pair.a), extent(pair.b), 0.5});  // 0.5: rounding may collapse both triangles
     ++decades[static_cast<std::size_t>(std::clamp(std::log10(largest(pair) / size), 0.0, 11.0))];
   }
   for (std::size_t d = 2; d <= 5; ++d) EXPECT_GT(decades[d], 1500) << "offsets of about 1e" << d;

@@ -20,15 +20,15 @@ enum class Stratum : std::uint8_t {
 #undef GRAZE_STRATUM
 };
 
-// The group in which reports count a stratum's results; see strata/groups.h.
+// Reports count a stratum's results in its group; see strata/groups.h.
 enum class Group : std::uint8_t { general, coplanar, degenerate, extreme, mesh };
 
-// The kind of a scene's pair: the first of the following that matches. degenerate: a triangle has no area. shared_edge:
-// two stored vertices are the same. shared_vertex: one stored vertex is the same. coplanar: all six points lie in one
-// plane. general: any other pair.
+// The kind of a pair in a scene: the first of the following that applies. degenerate: a triangle has no area.
+// shared_edge: the triangles have two vertices in common, bit for bit. shared_vertex: they have one. coplanar: all six
+// points lie in one plane. general: any other pair.
 enum class Kind : std::uint8_t { general, shared_vertex, shared_edge, coplanar, degenerate };
 
-// A row of strata/strata.inc, which explains the columns, or of strata/double_strata.inc.
+// A row of strata/strata.inc or strata/double_strata.inc. The former explains the columns.
 struct StratumInfo {
   Stratum stratum;
   std::string_view id;
@@ -38,7 +38,7 @@ struct StratumInfo {
   Kind kind;
 };
 
-// The strata of pairs of float32.
+// The strata of float32 pairs.
 inline constexpr StratumInfo kStrata[] = {
 #define GRAZE_BY_TYPE(float32, doubles) float32
 #define GRAZE_STRATUM(name, group, kind, axis, draw, what) \
@@ -49,7 +49,6 @@ inline constexpr StratumInfo kStrata[] = {
 };
 inline constexpr int kStrataCount = sizeof kStrata / sizeof kStrata[0];
 
-// The strata of pairs of doubles.
 inline constexpr StratumInfo kDoubleStrata[] = {
 #define GRAZE_BY_TYPE(float32, doubles) doubles
 #define GRAZE_STRATUM(name, group, kind, axis, draw, what) \
@@ -66,17 +65,17 @@ inline std::span<const StratumInfo> strata_of(bool in_doubles) {
   return in_doubles ? std::span<const StratumInfo>(kDoubleStrata) : std::span<const StratumInfo>(kStrata);
 }
 
-// Whether device code can draw the stratum. `stored` uses the exact decision, which device compilers take minutes to
-// compile.
+// Whether device code can draw the stratum. `stored` uses the exact decision, and device compilers need minutes to
+// compile that.
 constexpr bool is_drawn_on_devices(Stratum stratum) { return stratum != Stratum::stored; }
 
 inline namespace GRAZE_FP {
 
-// The pair with this index. It is finite in every stratum.
-// Requires: a stratum of kStrata; compiled without contraction, on host and device alike.
+// The pair with this index. All its coordinates are finite.
+// Requires: a stratum of kStrata; compiled without contraction, on both host and device.
 GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, std::uint64_t index);
 
-// Like generate, but in doubles, with the bits, gaps and scales of doubles, for the strata of kDoubleStrata.
+// Like generate, but for the strata of kDoubleStrata: in doubles, with the bits, gaps and scales of doubles.
 GRAZE_HD inline DoublePair generate_doubles(std::uint64_t seed, Stratum stratum, std::uint64_t index);
 
 }  // namespace GRAZE_FP

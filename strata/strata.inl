@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strata that are plain draws of numbers, and the switch that selects a stratum. The others are in contact.h,
-// coplanar.h, doubles.h, nested.h, shapes.h and scale.h.
+// The strata that draw coordinates without a construction, and the switch that selects a stratum. The other strata are
+// in contact.h, coplanar.h, doubles.h, nested.h, shapes.h and scale.h.
 #include "strata/contact.h"
 #include "strata/coplanar.h"
 #include "strata/doubles.h"
@@ -24,7 +24,7 @@ GRAZE_HD BasicPair<typename D::Real> uniform(D& draws) {
 }
 
 // The thesis's listing: `(rand()%80 - 40)/10.0f` for each axis, and `x + rand()%5` for each coordinate. The listing
-// computes in float; this function computes in the type of the coordinates.
+// computes in float; this function computes in the coordinate type.
 template <class D>
 GRAZE_HD auto thesis_against(D& draws, BasicPair<typename D::Real> pair) {
   using Real = typename D::Real;

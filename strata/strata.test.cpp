@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of the strata's bits: golden hashes, purity, finiteness, and the strata that are plain draws of numbers.
-// The geometric promises of the other strata are tested in contact.test.cpp and shapes.test.cpp.
+// Tests golden hashes, purity and finiteness of all strata, and the strata that draw coordinates without a
+// construction. contact.test.cpp and shapes.test.cpp test the geometric guarantees of the other strata.
 #include "strata/strata.h"
 
 #include <gtest/gtest.h>
@@ -23,9 +23,9 @@ TEST(Strata, RowsAreInTheOrderOfTheEnumeration) {
   for (int s = 0; s < kStrataCount; ++s) EXPECT_EQ(static_cast<int>(kStrata[s].stratum), s) << kStrata[s].id;
 }
 
-// Checks the description of the group `general`: usual shapes, but some pairs are coplanar or degenerate.
+// Checks the description of the group `general`: most pairs have usual shapes, and some are coplanar or degenerate.
 TEST(Groups, GeneralHasSomeCoplanarAndSomeDegeneratePairs) {
-  constexpr std::uint64_t kPairs = 3000;  // pairs of each stratum
+  constexpr std::uint64_t kPairs = 3000;  // per stratum
   std::uint64_t pairs = 0, coplanar = 0, degenerate = 0;
   for (const StratumInfo& row : kStrata) {
     if (row.group != Group::general) continue;
@@ -142,7 +142,7 @@ TEST(Lattice, TakesThreeValues) {
   EXPECT_EQ(values, (std::set<float>{-1, 0, 1}));
 }
 
-// Whether the thesis's listing can produce these three coordinates of one axis.
+// Whether the thesis's listing can produce these three coordinates on one axis.
 bool is_of_the_listing(float x, float y, float z) {
   for (int k = 0; k < 80; ++k) {
     const float base = static_cast<float>(k - 40) / 10.0f;

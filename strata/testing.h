@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// For the tests of the strata's geometry: triangles over any scalar, exact in 128-bit integers, and the share of pairs
-// that have a property.
+// Helpers for tests of the strata's geometry: triangles over any scalar, exact if it is a 128-bit integer, and the
+// share of pairs that have a property.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ bool separated_along(const Vec3<Real>& axis, const Triangle<Real>& a, const Tria
   return a_high < b_low || b_high < a_low;
 }
 
-// Whether a separating axis exists. The triangles may be coplanar, but not degenerate.
+// Whether a separating axis exists.   Requires: neither triangle is degenerate; they may be coplanar.
 template <class Real>
 bool disjoint(const Triangle<Real>& a, const Triangle<Real>& b) {
   const Vec3<Real> n = normal(a), m = normal(b);
@@ -71,7 +71,7 @@ inline bool is_coplanar(const Triangle<Int>& a, const Triangle<Int>& b) {
          dot(n, edge(b, 1)) == 0;
 }
 
-// The sign of the least signed area that p spans with an edge of t: positive inside, 0 on an edge or a vertex.
+// The sign of the least signed area that p spans with an edge of t: positive inside t, 0 on an edge or a vertex.
 // Requires: p lies in the plane of t.
 inline int side_of(const Vec3<Int>& p, const Triangle<Int>& t) {
   const Vec3<Int> n = normal(t);
@@ -92,7 +92,6 @@ double largest(const BasicPair<Real>& pair) {
   return largest;
 }
 
-// How many vertices of A are also vertices of B.
 template <class Real>
 int shared_vertices(const BasicPair<Real>& pair) {
   int shared = 0;

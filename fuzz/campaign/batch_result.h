@@ -13,7 +13,7 @@
 
 namespace graze::fuzz {
 
-// The number of cases that each signature keeps: the cases with the smallest keys, in whatever order they are found.
+// The number of cases kept for each signature: those with the smallest keys, in whatever order cases are found.
 inline constexpr std::size_t kKeptCases = 4;
 
 // Identifies a pair: its source in the campaign, and its index in that source.
@@ -36,10 +36,10 @@ struct SignatureCount {
 
 // A digest of each lane's verdicts on some pairs. Two runs on the same pairs with equal digests have the same verdicts.
 // A digest is a sum of hashes, one for each pair whose verdict is not the truth, so parts can be added in any order.
-// Different verdicts have equal sums with a probability of 2^-64.
+// Different verdicts have equal sums with probability 2^-64.
 struct VerdictDigests {
   std::vector<std::uint64_t> of_lane;
-  std::uint64_t pairs = 0;  // pairs that the digests cover, without those that a device's engine judged
+  std::uint64_t pairs = 0;  // pairs that the digests cover; excludes pairs judged by a GPU engine
 
   void add(std::size_t lane, std::uint64_t index, Verdict verdict);
   void add(const VerdictDigests& other);
@@ -53,7 +53,7 @@ struct PairCounts {
   void add(const PairCounts& other);
 
   analysis::Tally tally;
-  analysis::Tally extremes;  // by place_on_axis; empty without an axis
+  analysis::Tally extremes;  // by place on the stratum's axis; empty without an axis
   VerdictDigests digests;
   std::uint64_t disagreements = 0;  // pairs on which some lane is wrong
   std::uint64_t cgal = 0;           // pairs decided by CGAL
@@ -61,7 +61,7 @@ struct PairCounts {
   std::uint64_t exact = 0;          // pairs decided by the exact lane, here or on a device
 };
 
-// The counts of some pairs, with their signatures.   Key: of a signature.
+// The counts of some pairs, with their signatures.   Key: the type of a signature's key.
 template <class Key>
 struct CountsBy : PairCounts {
   using PairCounts::PairCounts;

@@ -27,14 +27,14 @@ namespace graze::fuzz {
 namespace {
 
 constexpr std::uint64_t kBatchPairs = 65536;  // pairs per transaction of the CPU engine
-// Batch limit for pairs that the cores draw for a device, and for doubles, because a device leaves many pairs of
-// doubles to the cores.
+// Batch limit for pairs that the cores draw for a device. It also applies to doubles, because a device leaves many
+// pairs of doubles to the cores.
 constexpr std::uint64_t kOfCores = std::uint64_t{1} << 25;
 
-// Chooses the next batch. It comes from the source with the fewest pairs done, so that an interrupted campaign has seen
-// all sources. A large source of unknown cost first gets a small batch, so that the remaining time is known early. If a
-// source already has pairs, its small batch waits until this process has done a whole batch. Otherwise a campaign that
-// is interrupted again and again would never end.
+// Chooses the next batch. It comes from the source with the fewest pairs done, so that an interrupted campaign has
+// covered all sources. A large source of unknown cost first gets a small batch, to estimate the remaining time early.
+// If earlier runs already judged some of its pairs, the small batch waits until this process has done a whole batch.
+// Otherwise a campaign that is interrupted again and again would never end.
 std::optional<PairRange> next_batch(const Campaign& campaign, const Store& store,
                                     const std::vector<std::uint64_t>& done, const CostEstimate& costs,
                                     std::uint64_t done_here, int threads) {
@@ -171,7 +171,7 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
     std::optional<BatchResult> judged_batch;
     try {
       judged_batch = judged(*batch);
-    } catch (const Stopped&) {  // foreign code was interrupted; a later run repeats the batch
+    } catch (const Stopped&) {  // foreign code was interrupted; the next run repeats the batch
       break;
     }
     const BatchResult& result = *judged_batch;
@@ -216,7 +216,7 @@ Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
     status.end(outcome.complete ? "done" : "stopped");
     if (outcome.complete) seal(campaign.directory);
     return outcome;
-  } catch (const MovedStore&) {  // the folder's status may be another run's
+  } catch (const MovedStore&) {  // the folder's status file may belong to another run
     throw;
   } catch (const std::exception& error) {
     status.end("failed", error.what());

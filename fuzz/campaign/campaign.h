@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The campaign: runs every pair of every source through all lanes and the oracle. It writes tallies, signatures and
-// kept cases to a directory. The results depend only on the spec and the build, not on threads, batches or
-// interruptions.
+// Runs a campaign: every pair of every source through all lanes and the oracle. Writes tallies, signatures and kept
+// cases to a directory. The results depend only on the spec and the build, not on threads, batches or interruptions.
 #pragma once
 
 #include <atomic>
@@ -26,7 +25,7 @@ struct Campaign {
   const SelectedLanes* under_test = nullptr;  // the lanes and their executors
   int threads = 0;                            // 0: one for each core
   std::vector<std::unique_ptr<cuda::DeviceEngine>>
-      engines;        // the devices' engines, which share the work; empty: the CPU engine
+      engines;        // one for each device; they share the work; empty: the CPU engine
   DecideBlock exact;  // decides the truth for the CPU engine, confirmed by the oracle; null: the oracle decides
   std::uint64_t engine_batch = std::uint64_t{1} << 32;  // pairs per engine and transaction: about a second on a device
   std::filesystem::path directory;
@@ -43,7 +42,7 @@ struct Progress {
   std::uint64_t done_here = 0;                      // pairs done by this process
   double seconds = 0;                               // of this process
   std::optional<double> seconds_left;               // estimated from the cost of each source's pairs; see CostEstimate
-  std::uint64_t disagreements = 0, signatures = 0;  // so far; disagreements of this process only
+  std::uint64_t disagreements = 0, signatures = 0;  // so far; disagreements only by this process
   std::uint64_t all_disagreements = 0;
   std::vector<std::uint64_t> disagreements_of_source;
 };
@@ -60,19 +59,18 @@ Json build_info(const SelectedLanes& under_test);
 // The processor's name and the architecture, for timings.
 std::string machine_name();
 
-// The engine that judges the pairs. automatic: the devices if all lanes run only on devices, otherwise the CPU.
+// The engine that judges the pairs. automatic: gpu if all lanes run only on devices, otherwise cpu.
 enum class EngineChoice { automatic, cpu, gpu };
 
 // Returns the engines that run the campaign; an empty list means the CPU engine.
 // Throws: UsageError if the GPU engine is requested but cannot run the campaign; std::runtime_error without a device.
 std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& campaign, EngineChoice choice);
 
-// The identity of the campaign's store.
 StoreSpec store_spec(const Campaign& campaign);
 
 struct Outcome {
   bool complete;  // whether all of this run's work is done
-  Json summary;   // a shard's is {"shard", "complete", "pairs", "disagreements", "signatures"}
+  Json summary;   // for a shard: {"shard", "complete", "pairs", "disagreements", "signatures"}
   Json oracle;    // {"cgal", "gmp", "exact", "apart"}: pairs that each exact decision judged; depends on the engine
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what campaigns guarantee: the same bytes for any number of threads and interruptions, and no lost results.
+// Tests the guarantees of campaigns: the same bytes for any number of threads and interruptions, and no lost results.
 #include "fuzz/campaign/campaign.h"
 
 #include <gtest/gtest.h>
@@ -42,8 +42,8 @@ TEST_F(CampaignTest, SameBytesForOneThreadAndMany) {
   EXPECT_EQ(lasting_files(root_ / "one"), lasting_files(root_ / "many"));
 }
 
-// A lane's code changes between two campaigns on the same pairs. Exactly the strata on which a verdict changed are
-// reported as changed. The bounds are right for any number of threads and any judge.
+// A lane's code changes between two campaigns on the same pairs. Only the strata on which a verdict changed are
+// reported as changed. The bounds hold for any number of threads and any judge.
 TEST_F(CampaignTest, ChangedVerdictsShowInDigests) {
   const SelectedLanes one = select_lanes({"moller_1997/f32/cpu", "exact/f32/cpu"}),
                       other = select_lanes({"guigue_devillers_2003/f32/cpu"});
@@ -82,7 +82,7 @@ TEST_F(CampaignTest, ChangedVerdictsShowInDigests) {
 
 TEST_F(CampaignTest, SameBytesWhenInterruptedAfterEveryBatch) {
   run(campaign("whole", 2));
-  EXPECT_EQ(run_in_parts(campaign("parts", 2)), 3 * 3);  // a few pairs, a batch and the rest of each source
+  EXPECT_EQ(run_in_parts(campaign("parts", 2)), 3 * 3);  // for each source: a few pairs, a batch, and the rest
   EXPECT_EQ(lasting_files(root_ / "parts"), lasting_files(root_ / "whole"));
 }
 
@@ -109,7 +109,7 @@ TEST_F(CampaignTest, CountsEveryPairAndStoresCasesThatAreDisagreements) {
   }
   const std::uint64_t disagreements = summary["disagreements"];
   EXPECT_GE(failures, disagreements);  // one signature for each failing algorithm
-  std::uint64_t sampled = 0;           // every lane is right, but the pair is in GMP's sample
+  std::uint64_t sampled = 0;           // pairs in GMP's sample on which every lane is right
   for (const strata::PairSource& source : campaign("counts", 2).sources) {
     for (std::uint64_t index = 0; index < source.pairs; index += 1024) {
       const Pair pair = source.pair(index);
@@ -154,8 +154,7 @@ TEST_F(CampaignTest, CountsExtremesWhereAStratumVariesThem) {
   }
 }
 
-// In each margin bucket, the number of verdicts that differ from the cpu lane's is the number found by deciding each
-// pair again.
+// Deciding each pair again finds, in each margin bucket, the same number of verdicts that differ from the cpu lane's.
 TEST_F(CampaignTest, CountsDifferencesFromCpuByMargin) {
   Campaign c = campaign("differ", 2);
   c.sources = strata::stratum_sources(c.seed, 4000, {"near_edge_edge", "thesis"});
@@ -184,7 +183,7 @@ TEST_F(CampaignTest, CountsDifferencesFromCpuByMargin) {
   EXPECT_GT(differ, 500u);
 }
 
-// Without the database, counts by margin that do not add up are rejected.
+// Without a database, a summary whose counts by margin do not add up is rejected.
 TEST_F(CampaignTest, RefusesDifferencesFromCpuThatDoNotAddUp) {
   Campaign c = campaign("alone", 2, 3000);
   const Json summary = run(c);

@@ -19,10 +19,10 @@ struct NamedScene {
   std::string name() const { return strata::scene_name(file, scene); }  // arm.toml#0123456789abcdef
 };
 
-// Throws: what strata::read_scene throws.
+// Throws: the errors of strata::read_scene.
 NamedScene open_scene(const std::string& file);
 
-// Like strata::scene_sources; looks for meshes beside the scene's file.
+// Like strata::scene_sources, but looks for meshes beside the scene's file.
 strata::SceneSources sources_of(const NamedScene& scene, std::uint64_t seed, std::uint64_t pairs,
                                 const std::vector<std::string>& globs, std::optional<PairTypes> types = std::nullopt);
 
@@ -33,7 +33,7 @@ strata::SceneSources recorded_sources_of(const NamedScene& scene, std::uint64_t 
 // Returns a campaign's record under "scene": {"file", "name", "pairs" requested, "text", "left_out": {stratum: why}}.
 nlohmann::ordered_json scene_spec(const NamedScene& scene, std::uint64_t pairs, const strata::SceneSources& drawn);
 
-// Reads what scene_spec recorded.   Throws: std::runtime_error; nlohmann's exceptions for JSON of another shape.
+// The inverse of scene_spec.   Throws: std::runtime_error; nlohmann's exceptions if keys or types are wrong.
 NamedScene recorded_scene(const nlohmann::ordered_json& recorded);
 
 // The parts of ID@SCENE:SEED:INDEX. SCENE is a scene's file, with or without #HASH, or a campaign's directory.

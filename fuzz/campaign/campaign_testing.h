@@ -26,7 +26,7 @@ inline std::map<std::string, std::string> lasting_files(const std::filesystem::p
   return files;
 }
 
-// Strata in several kinds of scenes, and pairs that no device can draw.
+// Strata in several kinds of scene, and pairs that no device can draw.
 inline std::vector<strata::PairSource> sources_in_scenes(std::uint64_t seed, std::uint64_t pairs) {
   std::vector<strata::PairSource> sources;
   for (const char* text :
@@ -72,7 +72,7 @@ class CampaignFiles : public testing::Test {
     return campaign_in(root_ / name, under_test, std::move(sources), seed);
   }
 
-  // Runs this many batches of the campaign.   Returns: its summary.
+  // Runs at most this many batches of the campaign.   Returns: its summary.
   Json run(const Campaign& c, std::uint64_t stop_after_batches = ~0ull) const {
     std::atomic<bool> stop{false};
     std::uint64_t batches = 0;
@@ -86,7 +86,6 @@ class CampaignFiles : public testing::Test {
     return parts;
   }
 
-  // Compares lasting_files of two campaigns byte by byte.
   void expect_same_bytes(const std::string& one, const std::string& other) const {
     const auto files = lasting_files(root_ / one), others = lasting_files(root_ / other);
     EXPECT_EQ(files.size(), others.size()) << one << " and " << other << " keep different cases";
@@ -100,8 +99,8 @@ class CampaignFiles : public testing::Test {
   std::filesystem::path root_;
 };
 
-// Makes `copies` adjacent copies of each lane under test, so that there are more lanes than a subject has. The copies
-// have policy names without effect.
+// Makes `copies` adjacent copies of each lane under test, so that there are more lanes than a subject has. The policy
+// names of the copies have no effect.
 class ManyLanes {
  public:
   ManyLanes(const SelectedLanes& of, int copies) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds verdicts that changed between two campaigns on the same pairs, from their databases and without their code.
+// Finds verdicts that changed between two campaigns on the same pairs, using only their databases, not their code.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace graze::fuzz {
 
 // A lane's changed verdicts on a stratum. Both campaigns have the lane and the stratum.
 struct ChangedVerdicts {
-  enum class Known { same, changed, unknown };  // known from the digests, or else from the counts
+  enum class Known { same, changed, unknown };  // from the digests if possible, otherwise from the counts
 
   std::string lane, stratum;
   std::uint64_t pairs = 0;
@@ -19,7 +19,7 @@ struct ChangedVerdicts {
   std::uint64_t least = 0, most = 0;  // bounds on the number of pairs whose verdict changed
 };
 
-// Requires: databases of complete campaigns on the same pairs.   Throws: what counts_of_database throws.
+// Requires: databases of complete campaigns on the same pairs.   Throws: the errors of counts_of_database.
 std::vector<ChangedVerdicts> changed_verdicts(const std::filesystem::path& before, const std::filesystem::path& after);
 
 }  // namespace graze::fuzz

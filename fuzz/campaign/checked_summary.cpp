@@ -70,12 +70,12 @@ void expect_split(const std::string& where, const Json& rows, const Json& stratu
   }
 }
 
-// Checks that pairs that intersect have no positive margin, and that wrong verdicts match the sign of the margin.
+// Checks that no intersecting pair has a positive margin, and that wrong verdicts match the sign of the margin.
 void expect_sides(const Json& stratum) {
   const Json& margins = stratum.at("margins");
   std::size_t known = 0;
   std::uint64_t pairs = 0;
-  std::map<std::string, std::uint64_t> wrong[2];  // of pairs that are disjoint, and of those that intersect
+  std::map<std::string, std::uint64_t> wrong[2];  // [0] on disjoint pairs, [1] on intersecting pairs
   for (int b = -kBucketMost; b <= kBucketMost; ++b) {
     const auto row = margins.find(name_of_bucket(static_cast<Bucket>(b)));
     if (row == margins.end()) continue;
@@ -173,7 +173,7 @@ void expect_possible_signatures(const Json& summary, std::uint64_t pairs) {
          fmt::format("{} to {} disagreements", most, std::min(all, pairs)), disagreements);
 }
 
-// Checks a summary that has no database: counts must be within their limits, and sums must agree.
+// Checks a summary without a database: counts must be within their limits, and sums must agree.
 void expect_possible_summary(const Json& summary) {
   if (const std::uint64_t seed = count(summary.at("spec"), "seed"); seed > kMostWhole)
     throw Impossible(fmt::format("expected a seed up to 2^53, found {}", seed));
@@ -207,7 +207,7 @@ void expect_possible_summary(const Json& summary) {
   expect_possible_signatures(summary, pairs);
 }
 
-// The summary that follows from the sums over the store's rows.
+// The summary computed from the sums over the store's rows.
 Json summary_of_database(const fs::path& directory) {
   const auto [store, of_source, pairs] = counts_of_database(directory);
   StoredCounts all(static_cast<int>(store.lanes.size()));
@@ -221,8 +221,8 @@ DatabaseCounts counts_of_database(const fs::path& directory) {
   DatabaseCounts found{recorded_store(directory), {}};
   StoreSpec& store = found.store;
   for (const std::string id : store.spec.at("strata")) {
-    // The number of a mesh's pairs is known only from the mesh. So this checks only that no source has more pairs than
-    // the campaign.
+    // Only the mesh itself tells how many pairs it has. So this checks only that no source has more pairs than the
+    // campaign.
     strata::PairSource source{id, store.spec.at("pairs"), nullptr};
     if (!store.spec.contains("scene")) source.axis = strata::axis_of(id);
     store.sources.push_back(std::move(source));

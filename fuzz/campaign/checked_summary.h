@@ -10,25 +10,24 @@ namespace graze::fuzz {
 
 // Returns the summary.json in a campaign's directory. It must agree with the database; without a database, its counts
 // must be possible.
-// Throws: std::runtime_error, in one line, if it is missing, contradicts the database or is impossible; FormatError for
-// JSON of another shape; and what recorded_store throws.
+// Throws: std::runtime_error, in one line, if it is missing, contradicts the database or is impossible; FormatError if
+// its keys or types are wrong; and the errors of recorded_store.
 Json checked_summary(const std::filesystem::path& directory);
 
 // Returns: the campaign's recorded "spec", from its database, or from its summary if there is no database; null if
-// there is neither.   Throws: what recorded_store throws.
+// there is neither.   Throws: the errors of recorded_store.
 Json recorded_spec(const std::filesystem::path& directory);
 
-// The sums of what a campaign's database records.
+// The sums over the rows of a campaign's database.
 struct DatabaseCounts {
   StoreSpec store;
   std::vector<StoredCounts> of_source;  // in the order of spec.strata
   std::uint64_t pairs = 0;              // pairs judged
 };
 
-// Throws: what recorded_store throws.
+// Throws: the errors of recorded_store.
 DatabaseCounts counts_of_database(const std::filesystem::path& directory);
 
-// Whether the campaign's database is in the directory.
 bool has_database(const std::filesystem::path& directory);
 
 }  // namespace graze::fuzz

@@ -10,10 +10,10 @@ namespace graze::fuzz {
 
 class Confirmation {
  public:
-  // Requires: campaign outlives this.
+  // Requires: `campaign` outlives this object.
   explicit Confirmation(const Campaign& campaign) : campaign_(campaign) {}
 
-  // Lets the oracle judge those cases of `result` that would be kept and that it has not judged yet.
+  // Lets the oracle judge the cases of `result` that would be kept and that the oracle has not judged yet.
   // Throws: OracleMismatch if the oracle contradicts the result on a case.
   void confirm(int source, BatchResult& result);
 

@@ -21,12 +21,12 @@ namespace graze::fuzz {
 namespace {
 
 constexpr std::size_t kBlockPairs = 1024;   // pairs per task, or fewer if there are few pairs; a multiple of 64
-constexpr std::uint64_t kGmpSample = 1024;  // GMP confirms one pair in 1024, besides every disagreement
+constexpr std::uint64_t kGmpSample = 1024;  // GMP confirms every disagreement, and one pair in 1024
 constexpr std::uint64_t kSample = 1000;     // when the exact lane judges, CGAL and GMP decide one pair in 1000
 
 constexpr std::size_t kSidePatterns = 729;
 
-// A number in [0, kSidePatterns): on which side of each triangle's plane the other triangle's vertices seem to lie.
+// Encodes on which side of each triangle's plane the other's vertices seem to lie, as a number below kSidePatterns.
 std::size_t side_pattern(const Pair& pair) {
   const Vec3<float> normal_a = cross(pair.a[1] - pair.a[0], pair.a[2] - pair.a[0]);
   const Vec3<float> normal_b = cross(pair.b[1] - pair.b[0], pair.b[2] - pair.b[0]);
@@ -37,9 +37,9 @@ std::size_t side_pattern(const Pair& pair) {
   return pattern;
 }
 
-// Orders the indices by their pairs' side patterns, and keeps the order within a pattern. Lanes take the same branches
-// on neighbours with one pattern, so the processor predicts them. No count and no kept case depends on the order.
-// Returns: the old indices, in the new order.
+// Sorts the indices by their pairs' side patterns, and keeps the order within a pattern. Lanes take the same branches
+// on neighbours with the same pattern, so the processor predicts the branches. Counts and kept cases do not depend on
+// the order. Returns: the old indices, in the new order.
 std::vector<std::uint32_t> bring_together(std::span<const Pair> pairs) {
   std::array<std::uint32_t, kSidePatterns + 1> next{};
   std::vector<std::uint16_t> patterns(pairs.size());
@@ -59,7 +59,7 @@ void reorder(std::span<T> values, const std::vector<std::uint32_t>& order) {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = before[order[i]];
 }
 
-// Pairs to judge, as float32 stores them, and the doubles if the pairs have doubles.
+// The pairs to judge, rounded to float32, and also as doubles if they are pairs of doubles.
 struct PairsToJudge {
   std::span<const Pair> pairs;
   std::span<const DoublePair> doubles = {};
@@ -71,10 +71,10 @@ struct PairsToJudge {
   }
 };
 
-// Judges one block of pairs. Runs host lanes, twins and the truth; takes device lanes' verdicts from their bits.
+// Judges one block of pairs. Runs host lanes and twins, and computes the truth. A device has run its lanes already.
 class BlockJudge {
  public:
-  // exact: decides instead of CGAL and GMP, unless null.
+  // exact: if not null, decides instead of CGAL and GMP.
   BlockJudge(const Campaign& campaign, int source, const DecideBlock& exact,
              const std::vector<VerdictBits>& device_bits)
       : campaign_(campaign),
@@ -167,7 +167,7 @@ class BlockJudge {
     }
   }
 
-  // With the exact lane, finds pairs of doubles whose verdict changes in float32. Pairs beyond its range count too.
+  // With the exact lane, finds pairs of doubles whose verdict changes in float32, or that exceed float32's range.
   void find_changed_by_storing(std::span<const Pair> stored) {
     none_.resize(truth_.size());
     changed_by_storing_.resize(truth_.size());
@@ -176,7 +176,7 @@ class BlockJudge {
       changed_by_storing_[w] = (changed_by_storing_[w] ^ truth_[w]) | none_[w];
   }
 
-  // Finds the buckets of those pairs of doubles whose margin is wide in float32 too; the other buckets remain open.
+  // Finds the margin buckets of pairs of doubles whose margin is also wide in float32; the other buckets remain open.
   void find_wide_margins(std::span<const Pair> stored) {
     std::vector<Pair> unchanged;
     std::vector<std::size_t> places;
@@ -261,11 +261,11 @@ class BlockJudge {
   int source_;
   const DecideBlock& exact_;
   const std::vector<VerdictBits>& device_bits_;
-  analysis::Bits truth_, none_, changed_by_storing_;  // the last is empty for pairs of float32
+  analysis::Bits truth_, none_, changed_by_storing_;  // the last is empty for float32 pairs
   std::vector<Bucket> buckets_;
   std::vector<std::int8_t> extremes_;
   BlockVerdicts decider_;
-  std::span<const LaneVerdicts> views_;  // of each lane on the current block
+  std::span<const LaneVerdicts> views_;  // by lane, on the current block
   std::vector<Verdict> verdicts_;
   SignatureCounts signatures_;
 };

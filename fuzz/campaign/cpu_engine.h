@@ -12,12 +12,12 @@
 namespace graze::fuzz {
 
 // Judges `count` pairs of the source, with the indices index_of(0), index_of(1), …, on the available threads.
-// exact: decides instead of CGAL and GMP, unless null.
+// exact: if not null, decides instead of CGAL and GMP.
 // Throws: OracleMismatch when two exact decisions differ.
 BatchResult judge(const Campaign& campaign, int source, std::size_t count,
                   const std::function<std::uint64_t(std::size_t)>& index_of, const DecideBlock& exact = nullptr);
 
-// Judges one pair at a time with host lanes and twins, and returns what each pair shows.
+// Judges one pair at a time with host lanes and twins, and returns each pair's verdicts and failures.
 class PairJudge {
  public:
   // Requires: the campaign outlives this object and has one source, and none of its lanes runs on a device.
@@ -27,7 +27,7 @@ class PairJudge {
   struct Found {
     Verdict truth;
     Bucket bucket;
-    std::vector<Verdict> verdicts;              // of each lane; the truth for a lane that its convention excuses
+    std::vector<Verdict> verdicts;              // by lane; the truth where a lane's convention excuses it
     std::vector<analysis::Signature> failures;  // one for each subject that is wrong
   };
   // Adds the pair's counts to `total`. All pairs have the source's coordinate type.   Throws: OracleMismatch.
@@ -38,7 +38,7 @@ class PairJudge {
   std::unique_ptr<Parts> parts_;
 };
 
-// A result of zero pairs, with zero counts for each of the campaign's lanes.
+// The result for no pairs: all counts of the campaign's lanes are zero.
 BatchResult no_counts(const Campaign& campaign);
 
 }  // namespace graze::fuzz

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A campaign gives the same bytes whether the exact lane or the oracle judges it. The oracle detects an exact lane that
-// is wrong.
+// A campaign gives the same bytes whether the exact lane or the oracle judges it. The oracle detects a wrong exact
+// lane.
 #include "fuzz/campaign/cpu_engine.h"
 
 #include "fuzz/campaign/campaign_testing.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests on devices: the GPU engine, the CPU engine with lanes on a device, and the CPU engine with their twins must
-// leave the same bytes. This is a separate program, so that it can be copied to a GPU machine. Without a device its
-// tests are skipped; with --require-device, or GRAZE_REQUIRE_DEVICE=1 in the environment, they fail instead.
+// Tests on devices: the GPU engine, the CPU engine with lanes on a device, and the CPU engine with twins must write the
+// same bytes. This is a separate program, so that it can be copied to a GPU machine. Without a device its tests are
+// skipped; with --require-device, or GRAZE_REQUIRE_DEVICE=1 in the environment, they fail instead.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -41,7 +41,7 @@ class DeviceTest : public CampaignFiles {
                     std::uint64_t seed = 3, const std::vector<std::string>& strata = {}) const {
     Campaign c = campaign_of(under_test, strata::stratum_sources(seed, pairs, strata), seed, name);
     c.threads = 0;
-    c.build = build_info(twins_);  // the same for all, so that their summaries can be equal
+    c.build = build_info(twins_);  // the same for all campaigns, so that summaries can be equal
     if (engines > 0) c.engines = cuda::open_engines(under_test.lanes);
     if (c.engines.size() < engines) throw std::runtime_error("expected more devices");
     c.engines.resize(engines);
@@ -88,11 +88,11 @@ TEST_F(DeviceTest, StrataHaveTheBitsOfTheHost) {
     EXPECT_TRUE(bytes(drawn.floats) == bytes(expected.floats)) << source.id << (source.scene ? " in a scene" : "");
     EXPECT_TRUE(bytes(drawn.doubles) == bytes(expected.doubles)) << source.id << (source.scene ? " in a scene" : "");
   }
-  EXPECT_GE(on_device, 27 + 2 * 15);  // all strata but `stored`
+  EXPECT_GE(on_device, 27 + 2 * 15);  // all strata except `stored`
 }
 #endif
 
-// Expects the host's discrepancies on the device too.   Returns: how many verdicts differ.
+// Expects the same discrepancies on the device as on the host.   Returns: how many verdicts differ.
 std::uint64_t verdicts_that_differ(analysis::DiscrepancySpec spec) {
   const analysis::Discrepancies on_host = analysis::discrepancies(spec);
   spec.on_device = true;
@@ -136,7 +136,7 @@ TEST_F(DeviceTest, DiscrepanciesOfDoublesAreThoseOfTheHost) {
   EXPECT_GT(verdicts, 100u);
 }
 
-// A host lane has the same values as cuda-nofma, and count_different_runs finds a lane whose values differ.
+// A host lane computes the same values as cuda-nofma, and count_different_runs finds a lane that computes others.
 TEST_F(DeviceTest, RunsThatDifferAreFound) {
   const strata::PairSource source = strata::stratum_sources(8, 50'000, {"thesis"})[0];
   const auto lane = [](const char* id) -> const Lane& { return *find_lane(id); };
@@ -178,7 +178,7 @@ TEST_F(DeviceTest, DoublesAreDecidedAsByTheTwins) {
   EXPECT_EQ(counts.size(), 6u) << counts;
 }
 
-// Sources of both types take turns on one engine, and runs end in the middle of a stratum.
+// Sources of both coordinate types alternate on one engine, and runs end in the middle of a stratum.
 TEST_F(DeviceTest, TheEngineTakesBothTypesInParts) {
   select_for_doubles(twins_);
   select_for_doubles(on_device_);
@@ -346,13 +346,12 @@ TEST_F(DeviceTest, OddCountsLeaveTheSameBytes) {
 TEST_F(DeviceTest, InterruptionsInTheMiddleOfAStratumChangeNothing) {
   run(campaign(twins_, "twins", 30'011, 0));
   Campaign parts = campaign(on_device_, "parts", 30'011, 1);
-  parts.engine_batch = 701;  // out of the 1429 or 1430 pairs of a stratum
+  parts.engine_batch = 701;  // a stratum has 1429 or 1430 pairs
   EXPECT_EQ(run_in_parts(parts), strata::kStrataCount * 3);
   expect_same_bytes("twins", "parts");
 }
 
-// Tests seven blocks, which are more pairs than memory holds at once, and compares them with runs that end at other
-// pairs.
+// Tests seven blocks, more pairs than memory holds at once, and compares them with runs that end at other pairs.
 TEST_F(DeviceTest, ManyBlocksCountAsManyRuns) {
   constexpr std::uint64_t kPairs = (std::uint64_t{7} << 22) - 12'345;
   for (const char* stratum : {"near_edge_edge", "extreme_scale"}) {

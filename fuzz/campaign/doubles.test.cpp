@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Campaigns on pairs of doubles: lanes in double decide the doubles, and lanes in float decide the pairs that float32
-// stores. Counts must match verdicts decided one by one, and the bytes must not depend on how the campaign ran.
+// Campaigns on pairs of doubles: double-precision lanes decide the doubles, and single-precision lanes decide the pairs
+// rounded to float32. Counts must match verdicts decided singly, and the bytes must not depend on how the campaign ran.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ class CampaignOfDoubles : public CampaignFiles {
   SelectedLanes lanes_ = select_lanes({}, Executor::twin);
 };
 
-// The summary's margins are those that GMP computes, although float32 decides most wide margins.
+// The summary's margins are the same as GMP's, although float32 decides most wide margins.
 TEST_F(CampaignOfDoubles, MarginsAreTheOracles) {
   const Campaign c = campaign("margins", 28 * 200);
   const Json strata = run(c)["strata"];
@@ -104,7 +104,7 @@ TEST_F(CampaignOfDoubles, LanesAreThoseThatTakeThem) {
     });
   };
   EXPECT_TRUE(has(lanes_.lanes, "exact/f64/cpu"));
-  EXPECT_TRUE(has(lanes_.lanes, "moller_1997/f32/cuda-fma"));  // it decides the pairs that float32 stores
+  EXPECT_TRUE(has(lanes_.lanes, "moller_1997/f32/cuda-fma"));  // decides the pairs rounded to float32
   EXPECT_TRUE(has(lanes_.lanes, "moller_1997/f64/cuda-fma"));
   EXPECT_TRUE(has(lanes_.lanes, "exact/f64/cuda"));
   EXPECT_TRUE(lanes_.left_out.empty());
@@ -113,12 +113,12 @@ TEST_F(CampaignOfDoubles, LanesAreThoseThatTakeThem) {
   EXPECT_TRUE(has(tolerant.lanes, "moller_1997/f64/cuda-fma/abs:1e-6"));
   EXPECT_TRUE(has(tolerant.lanes, "moller_1997/f64/cpu/abs:1e-6"));
   for (const char* exact : {"exact/f64/cpu", "exact/f64/cuda"}) {
-    EXPECT_FALSE(has(select_lanes({"exact/*"}, Executor::twin).lanes, exact));  // not selected for pairs of float32
+    EXPECT_FALSE(has(select_lanes({"exact/*"}, Executor::twin).lanes, exact));  // not selected for float32 pairs
     EXPECT_TRUE(has(select_lanes({exact}, Executor::twin).lanes, exact));
   }
 }
 
-// With both coordinate types in one campaign, the float32 strata give the same results as in a campaign of their own.
+// With both coordinate types in one campaign, the float32 strata give the same results as in a separate campaign.
 TEST_F(CampaignOfDoubles, LeavesTheSameBytesHoweverItRan) {
   const std::vector<std::string> strata = {"near_edge_edge", "extreme_scale", "stored", "degenerate"};
   const Json whole = run(campaign("whole", 7003, strata, PairTypes::both));
@@ -160,17 +160,17 @@ TEST_F(CampaignOfDoubles, RecordsAreReadBackAndChecked) {
   EXPECT_TRUE(std::equal(coordinates(one), coordinates(one) + kCoordinates, coordinates(other)));
   const std::vector<std::string> words = command_words(summary["spec"], {}, "o", summary);
   EXPECT_NE(std::find(words.begin(), words.end(), "--coordinates"), words.end());
-  // A case with one changed bit is not the pair that the stratum draws.
+  // After one bit of a case is changed, it is no longer the pair that the stratum draws.
   const std::filesystem::path file = directory / summary["signatures"][0]["case"].get<std::string>();
   std::string text = read_whole(file);
   const std::size_t at = text.find("p", text.find("0x1.")) - 1;
   text[at] = text[at] == '4' ? '5' : '4';
   write_whole(file, text);
   EXPECT_THROW(read_cases(directory, summary["spec"], summary["signatures"][0]), corpus::FormatError);
-  // A summary is rejected if an exact lane has errors that storing does not cause, or if storing causes more errors
-  // than there are.
+  // A summary is rejected if an exact lane has errors that rounding to float32 does not cause, or if more errors are
+  // due to this rounding than there are.
   std::filesystem::remove(directory / kDatabase);
-  EXPECT_EQ(checked_summary(directory), summary);  // even if the campaign has no database
+  EXPECT_EQ(checked_summary(directory), summary);  // even without a database
   for (const char* lane : {"exact/f32/cpu", "exact/f64/cpu"}) {
     Json wrong = summary;
     Json& row = wrong["strata"]["near_vertex_face/f64"];

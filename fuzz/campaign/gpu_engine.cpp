@@ -18,7 +18,7 @@ analysis::Signature signature_of(const cuda::EngineSignature& row, std::span<con
                              row.verdicts);
 }
 
-// Adds counts in the layout of EngineResult.
+// Adds counts, which have the layout of EngineResult, to the tally.
 void add(const std::vector<std::uint64_t>& counts, int lanes, bool of_doubles, analysis::Tally& tally) {
   const int of_lane = static_cast<int>(cuda::counters_of_lane(of_doubles));
   const auto counter = [&](int c, int b) {

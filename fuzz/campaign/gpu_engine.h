@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Judges pairs of float32 or of doubles on the devices. The CPU engine, and with it CGAL and GMP, also judges the kept
+// Judges float32 pairs or pairs of doubles on the devices. The CPU engine, with CGAL and GMP, also judges the kept
 // cases and the few pairs that the devices leave undecided.
 #pragma once
 
@@ -7,8 +7,8 @@
 
 namespace graze::fuzz {
 
-// Judges the pairs, split among the campaign's engines.
-// Requires: the confirmation is the campaign's.
+// Splits the pairs among the campaign's engines, and judges them.
+// Requires: `confirmation` belongs to `campaign`.
 // Throws: OracleMismatch if a kept case contradicts the device's result.
 BatchResult judge_on_devices(const Campaign& campaign, const PairRange& range, Confirmation& confirmation);
 

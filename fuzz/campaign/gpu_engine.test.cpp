@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests the GPU engine without a GPU. Its steps run on this processor, and the campaign must give the same bytes as
-// with the CPU engine. device.test.cpp tests this on devices.
+// with the CPU engine. device.test.cpp makes the same comparison on devices.
 #include "fuzz/campaign/gpu_engine.h"
 
 #include "core/message_testing.h"
@@ -34,12 +34,11 @@ TEST_F(GpuEngineTest, LeavesTheBytesOfTheCpuEngineOverAllStrata) {
     expect_same_bytes(cpu, engine);
     EXPECT_GT(summary["signatures"].size(), 500u);
     const Json timings = Json::parse(read_whole(root_ / engine / "timings.json"));
-    EXPECT_GT(timings["oracle"]["exact"].get<std::uint64_t>(), 14'000u);  // the steps decided nearly all
+    EXPECT_GT(timings["oracle"]["exact"].get<std::uint64_t>(), 14'000u);  // the steps decided most pairs
   }
 }
 
-// A device's engine computes no digests, and equal counts alone do not prove that its verdicts equal those of the CPU
-// engine.
+// The GPU engine computes no digests, and equal counts do not prove that its verdicts are the CPU engine's.
 TEST_F(GpuEngineTest, ItsVerdictsAreNotProvedToBeTheSame) {
   run(campaign(twins_, "cpu", 3'000, 0, 3, {"degenerate"}));
   run(campaign(twins_, "again", 3'000, 0, 3, {"degenerate"}));
@@ -72,9 +71,9 @@ TEST_F(GpuEngineTest, TwoEnginesAndInterruptionsChangeNothing) {
   run(campaign(twins_, "cpu", 3'001, 0, 3, strata));
   cuda::EngineLimits limits;
   limits.block_pairs = 100;
-  limits.undecided = 101;  // so that runs end early
+  limits.undecided = 101;  // makes runs end early
   Campaign parts = campaign(twins_, "parts", 3'001, 2, 3, strata, limits);
-  parts.engine_batch = 77;  // 154 of the 1000 or 1001 pairs of a stratum
+  parts.engine_batch = 77;  // 154 for two engines; a stratum has 1000 or 1001 pairs
   EXPECT_EQ(run_in_parts(parts), 3 * 7);
   expect_same_bytes("cpu", "parts");
 }
@@ -122,7 +121,7 @@ TEST_F(GpuEngineTest, TheOracleFindsAnEngineThatIsWrongOnOneSignature) {
   EXPECT_THROW(run(c), oracle::OracleMismatch);
 }
 
-// Lanes in double decide the doubles, and lanes in float decide the pairs that float32 stores.
+// Double-precision lanes decide the doubles; single-precision lanes decide the pairs rounded to float32.
 class GpuEngineOnDoubles : public GpuEngineTest {
  protected:
   GpuEngineOnDoubles() { select_for_doubles(twins_); }
@@ -152,7 +151,7 @@ TEST_F(GpuEngineOnDoubles, LeavesTheBytesOfTheCpuEngineOverAllStrata) {
   EXPECT_GT(signatures_of_exact, 50u);
   const Json timings = Json::parse(read_whole(root_ / "engine" / "timings.json"));
   EXPECT_GT(timings["oracle"]["exact"].get<std::uint64_t>(),
-            kPairsOfDoubles * 95 / 100);  // the steps decided nearly all
+            kPairsOfDoubles * 95 / 100);  // the steps decided nearly all pairs
 }
 
 TEST_F(GpuEngineOnDoubles, BothTypesTwoEnginesAndInterruptionsChangeNothing) {
@@ -161,10 +160,10 @@ TEST_F(GpuEngineOnDoubles, BothTypesTwoEnginesAndInterruptionsChangeNothing) {
   cuda::EngineLimits limits;
   limits.block_pairs = 30;
   limits.signatures = 1u << 10;
-  limits.undecided = 31;  // so that runs end early
+  limits.undecided = 31;  // makes runs end early
   Campaign parts = of_doubles("parts", 9 * 200, 2, strata, PairTypes::both, limits);
   ASSERT_EQ(parts.sources.size(), 9u);
-  parts.engine_batch = 77;  // 154 of the 200 pairs of a stratum
+  parts.engine_batch = 77;  // 154 for two engines; a stratum has 200 pairs
   EXPECT_EQ(run_in_parts(parts), 9 * 2);
   expect_same_bytes("cpu", "parts");
 }

@@ -11,7 +11,7 @@ TEST_F(CampaignFiles, CostsAreOfHostLanesOnTheCampaignsOwnPairs) {
       select_lanes({"moller_1997/f32/cpu", "moller_1997/f32/cuda-fma", "exact/f32/cpu"}, Executor::twin);
   const Campaign campaign = campaign_of(lanes, strata::stratum_sources(1, 4000, {"uniform", "degenerate"}), 1, "timed");
   const Json costs = measure_costs(campaign)["lanes"];
-  ASSERT_EQ(costs.size(), 2u);  // the twin's time is not the time of the lane
+  ASSERT_EQ(costs.size(), 2u);  // twins are not timed
   for (const auto& [lane, strata] : costs.items()) {
     ASSERT_EQ(strata.size(), 2u) << lane;
     for (const auto& [stratum, cost] : strata.items()) {

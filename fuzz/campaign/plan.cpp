@@ -16,11 +16,11 @@ namespace graze::fuzz {
 namespace {
 
 constexpr std::uint64_t kSample = 2048, kSampleOfDevice = std::uint64_t{1} << 22;
-constexpr std::uint64_t kSampleOfDoubles = std::uint64_t{1} << 18;  // also on a device, as cores judge some
+constexpr std::uint64_t kSampleOfDoubles = std::uint64_t{1} << 18;  // also on a device, because cores judge some
 constexpr double kShardSeconds = 3600;    // an hour suits job schedulers; a killed shard can be resumed
 constexpr double kRowPairs = 16777216;    // pairs per row of the CPU engine; see store.cpp
-constexpr std::uint64_t kFewer = 8;       // a sample's eighth is measured too, to see how the bytes grow
-constexpr double kDatabaseBytes = 65536;  // without rows, but with the small files beside it
+constexpr std::uint64_t kFewer = 8;       // an eighth of a sample is measured too, to find how the bytes grow
+constexpr double kDatabaseBytes = 65536;  // without rows; includes the small files beside it
 
 // Estimates the bytes for `pairs` pairs. The estimate tends to be too high, because new signatures become rarer.
 double bytes_of(const Growing& growing, const Sample& sample, double pairs) {

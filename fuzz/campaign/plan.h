@@ -8,7 +8,7 @@
 
 namespace graze::fuzz {
 
-// The bytes for the sample's pairs, and the exponent of their growth with the number of pairs.
+// A size in bytes for the sample's pairs, and the exponent of its growth with the number of pairs.
 struct Growing {
   double bytes = 0, exponent = 0;
 };
@@ -16,7 +16,7 @@ struct Growing {
 // Measurements of each source on one core or one device.
 struct Sample {
   std::vector<double> seconds_a_pair;  // of each source
-  std::vector<Growing> row, summary;   // a row of the store, and its pairs' part of summary.json, by source
+  std::vector<Growing> row, summary;   // by source: a store row, and its pairs' part of summary.json
   std::uint64_t pairs = 0;             // in all samples
   std::uint64_t pairs_of_row = 1;      // pairs in each source's row
 };

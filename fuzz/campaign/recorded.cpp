@@ -72,7 +72,7 @@ bool is_of_mesh(std::string_view source) { return strata::stratum_in_doubles(sou
 
 namespace {
 
-// The mesh's number of pairs: from the summary if that has it, otherwise from the mesh itself.
+// The mesh's number of pairs, from the summary if it is there, otherwise from the mesh itself.
 std::uint64_t mesh_pairs(const Json& spec, const Json& summary) {
   std::uint64_t found = 0;
   const Json strata = summary.value("strata", Json::object());
@@ -89,7 +89,7 @@ std::uint64_t mesh_pairs(const Json& spec, const Json& summary) {
   }
 }
 
-// The --executor that the recorded executors of the CUDA lanes imply; empty for the default.
+// The --executor implied by the recorded executors of the CUDA lanes; empty for the default.
 std::string executor_of(const Json& spec, const Json& summary) {
   // With --executor twin, Graze does not look for a device, so the reason for leaving out a lane is just "no twin".
   const Json why = spec.value("lanes_left_out", Json::object()).value("why", Json::object());
@@ -110,7 +110,7 @@ std::vector<std::string> command_words(const Json& spec, const Shard& shard, con
                            all_lanes, words = {"graze", hunt ? "hunt" : "fuzz"};
   std::uint64_t pairs = scene ? spec["scene"].at("pairs") : spec.at("pairs");
   const auto add = [&](const std::string& name, const std::string& value) {
-    if (value.starts_with('-')) {  // as a separate word it would be read as an option
+    if (value.starts_with('-')) {  // a separate word would be read as an option
       words.push_back(name + '=' + value);
     } else {
       words.insert(words.end(), {name, value});
@@ -131,7 +131,7 @@ std::vector<std::string> command_words(const Json& spec, const Shard& shard, con
   add("--seed", std::to_string(spec.at("seed").get<std::uint64_t>()));
   for (const strata::PairSource& source : strata::stratum_sources(0, 0, {}, coordinates))
     all_strata.push_back(source.id);
-  if (scene) {  // the user also asked for strata that the scene excludes
+  if (scene) {  // the user also requested strata that the scene excludes
     for (const auto& [id, unused] : spec["scene"].at("left_out").items()) strata.push_back(id);
     if (std::all_of(all_strata.begin(), all_strata.end(),
                     [&](const std::string& id) { return std::find(strata.begin(), strata.end(), id) != strata.end(); }))
@@ -144,7 +144,7 @@ std::vector<std::string> command_words(const Json& spec, const Shard& shard, con
   for (const Json& row : spec.value("subjects", Json::array())) {
     const std::string what = row.at("what");
     if (what != "published") add("--subject", row.at("name").get<std::string>() + '=' + what);
-    if (what.ends_with(".cl") || what.find(".cl:") != what.npos) continue;  // the lanes of such code need no list
+    if (what.ends_with(".cl") || what.find(".cl:") != what.npos) continue;  // OpenCL code: lanes need no toolchain list
     for (const Json& toolchain : row.value("toolchains", Json::array()))
       toolchains.push_back(subjects::toolchain_of_json(toolchain));
   }
@@ -155,7 +155,7 @@ std::vector<std::string> command_words(const Json& spec, const Shard& shard, con
     if (first.at("timeout") != 1) add("--subject-timeout", fmt::format("{}", first["timeout"].get<double>()));
   }
   for (const Lane* lane : select_lanes({}, Executor::twin).lanes) all_lanes.push_back(lane->id);
-  // The user also asked for the lanes that were left out, perhaps by a pattern that matched other lanes.
+  // The user also requested the lanes that were left out, perhaps with a pattern that matched other lanes too.
   if (spec.contains("lanes_left_out")) lanes = spec["lanes_left_out"].at("patterns");
   if (spec.contains("subjects") && with_exact_lane(lanes) != lanes)
     lanes.push_back(kLeaveOut + std::string(kExactLane));

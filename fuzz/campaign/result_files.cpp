@@ -26,7 +26,6 @@
 namespace graze::fuzz {
 namespace {
 
-// The name of the signature's case file.
 std::string case_name(const std::string& key) { return fmt::format("cases/{:016x}.pairs", fnv1a(key)); }
 
 std::string signature_line(const std::string& key, std::uint64_t count) {
@@ -122,7 +121,7 @@ Json summary_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_sourc
                   {"strata", results["strata"]},
                   {"disagreements", results["disagreements"]},
                   {"signatures", rows}};
-  // Pairs on which a device and its twin differ are no subject's failures.
+  // A pair on which a device and its twin differ is not a failure of any subject.
   for (const auto& [lane, found] : executor_mismatches)
     summary["executor_mismatches"].push_back({{"lane", lane}, {"count", found.count}, {"case", case_name(lane)}});
   return summary;
@@ -145,7 +144,7 @@ Json write_summary(const Campaign& campaign, const Store& store, bool complete) 
 
 Json write_own_summary(const Campaign& campaign, Store& store, bool complete, std::uint64_t pairs) {
   if (campaign.shard.whole() && !campaign.take) return write_summary(campaign, store, complete);
-  if (complete) store.compact();  // so that merging thousands of shards stays cheap
+  if (complete) store.compact();  // keeps merging thousands of shards cheap
   return {{"shard", campaign.shard.name()},
           {"complete", complete},
           {"pairs", pairs},
@@ -191,7 +190,8 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
     throw refuse(std::string("it is not a file of pairs: ") + error.what());
   }
   const std::string head = signature_line(key, count);
-  if (text.compare(text.find('\n') + 1, head.size(), head) != 0) throw refuse("its head is not that of this signature");
+  if (text.compare(text.find('\n') + 1, head.size(), head) != 0)
+    throw refuse("its second line is not this signature's");
   std::size_t kept = 0;
   const std::set<std::string> strata = spec.at("strata");
   std::set<std::string> origins;
@@ -204,7 +204,7 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
   for (std::size_t e = 0; e < entries.size(); ++e) {
     const corpus::Entry& entry = entries[e];
     const bool result = corpus::field(entry, "kind") != nullptr;
-    // The minimiser's results come first, in turn a minimised pair and a worst pair.
+    // The minimiser's results come first: minimised and worst pairs alternate.
     const char* const turn = e % 2 == 0 ? "minimised" : "worst";
     const bool in_order = result ? kept == 0 && corpus::text_of(entry, "kind") == turn : kept > 0 || e % 2 == 0;
     if (!in_order)
@@ -223,7 +223,7 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
 
 namespace {
 
-// Whether this can be a run in timings.json: its values must be texts, nonnegative times, counts or booleans.
+// Whether this can be a run in timings.json: its values must be strings, nonnegative times, counts or booleans.
 bool is_run(const Json& run) {
   if (!run.is_object()) return false;
   for (const auto& [name, value] : run.items()) {
@@ -240,7 +240,6 @@ bool is_run(const Json& run) {
   return true;
 }
 
-// All of timings.json.
 Json timings_in(const std::filesystem::path& file) {
   Json timings = read_sealed(file, "remove it; only times are lost");
   if (timings.is_null()) return {{"runs", Json::array()}};

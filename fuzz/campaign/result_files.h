@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The result files of a campaign beside its database: summary.json, cases/, and timings.json.
+// A campaign's result files other than its database: summary.json, cases/ and timings.json.
 #pragma once
 
 #include <utility>
@@ -15,12 +15,12 @@ namespace graze::fuzz {
 // The truth as fields of a case: truth, contact, margin, margin_ulps.
 std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Truth& truth);
 
-// Whether the lane's differences from a cpu lane are counted: the cpu lane of its algorithm and scalar is another lane,
-// and is in `lanes`.
+// Whether the lane's differences from a cpu lane are counted. They are if `lanes` holds the cpu lane of its algorithm
+// and scalar, and the lane is not itself that cpu lane.
 bool is_compared_with_cpu(const std::string& lane, const std::vector<std::string>& lanes);
 
-// Writes summary.json and cases/ from the store. A case file whose cases have not changed keeps the minimiser's
-// results.
+// Writes summary.json and cases/ from the store. If the cases in a file have not changed, the file keeps the
+// minimiser's results.
 // Returns: the summary.
 Json write_summary(const Campaign& campaign, const Store& store, bool complete);
 
@@ -29,26 +29,26 @@ Json summary_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_sourc
                 const std::map<std::string, SignatureCount>& signatures,
                 const std::map<std::string, SignatureCount>& executor_mismatches, bool complete);
 
-// Like write_summary, for a campaign that may be a part of another. The store of a complete part is compacted.
-// pairs: the pairs that are done.
+// Like write_summary, but the campaign may be a part of another. Compacts the store of a complete part.
+// pairs: how many pairs are done.
 // Returns: for a part {"shard", "complete", "pairs", "disagreements", "signatures"}.
 Json write_own_summary(const Campaign& campaign, Store& store, bool complete, std::uint64_t pairs);
 
 // The file of a signature's cases, from its row in the summary.
-// Throws: std::runtime_error if the path is not within cases/, because readers of a summary also write these files.
+// Throws: std::runtime_error if the path is not within cases/, because the file may be written.
 std::filesystem::path case_file(const std::filesystem::path& directory, const Json& row);
 
 // Reads a signature's cases, preceded by the minimiser's results, from the file named in its row of the summary. Checks
 // that the file's name, second line and cases belong to the signature, and that no case is missing. Also checks that
-// all cases have different origins in the campaign's strata, and that the recorded truth of each pair is right. spec:
-// the campaign's. Throws: FormatError, in one line, with the command that writes the file again.
+// all cases have different origins in the campaign's strata, and that the recorded truth of each pair is right.
+// spec: the campaign's.   Throws: FormatError, in one line, with the command that writes the file again.
 std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, const Json& spec, const Json& row);
 
-// Whether the pair is the one that its stratum, seed and index name. Also true if this cannot be known: for scenes,
-// meshes and hunts, and for a case without these fields.
+// Whether the stratum draws this pair from the recorded seed and index. Also true where this cannot be checked: for
+// scenes, meshes and hunts, and for a case without these fields.
 bool is_drawn(const corpus::Entry& entry);
 
-// Whether the file's text is `fresh`, which a campaign would write, with or without the minimiser's results.
+// Whether the file's text is `fresh`, the text that a campaign would write, with or without the minimiser's results.
 bool is_minimised_from(const std::string& text, const std::string& fresh);
 
 // The error for a case file that fails a check.   found: the defect, such as "it is missing or empty".
@@ -61,8 +61,9 @@ bool may_hold_campaign(const std::filesystem::path& folder);
 // Returns the runs in timings.json, each an object; none if there is no file.   Throws: FormatError if it is damaged.
 Json read_timings(const std::filesystem::path& directory);
 
-// Called before a run, so that damaged records cannot stop it at its end: timings.json must be readable, and a damaged
-// status.json is removed. Throws: what read_timings and remove_damaged_status throw.
+// Called before a run, so that damaged records cannot make it fail at its end: timings.json must be readable, and a
+// damaged status.json is removed.
+// Throws: the errors of read_timings and remove_damaged_status.
 void expect_usable_records(const std::filesystem::path& directory);
 
 // Adds a run to timings.json, the only file that depends on when, where and with which engine the campaign ran.

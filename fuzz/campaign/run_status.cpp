@@ -29,7 +29,7 @@ std::int64_t now() {
   return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-// The distinct hashes of the signatures, margins ignored.
+// The distinct hashes of the signatures without their margins.
 std::set<std::string> ways_of(const std::map<std::string, SignatureCount>& signatures) {
   std::set<std::string> ways;
   for (const auto& [key, count] : signatures) {
@@ -39,7 +39,7 @@ std::set<std::string> ways_of(const std::map<std::string, SignatureCount>& signa
   return ways;
 }
 
-// Throws: std::runtime_error that describes the error; Json::exception for JSON of another shape.
+// Throws: std::runtime_error that describes the error; Json::exception if keys or types are wrong.
 void expect_possible_status(const Json& status) {
   const std::string state = status.at("state"), shard = status.at("shard");
   if (state != "running" && state != "done" && state != "stopped" && state != "failed")
@@ -104,7 +104,7 @@ void RunStatus::tell(const Progress& progress, const std::map<std::string, Signa
   status_["pairs"] = progress.total;
   status_["done"] = progress.done;
   status_["rate"] = progress.seconds > 0 ? static_cast<double>(progress.done_here) / progress.seconds : 0;
-  // After the last pair, the run measures costs and writes its results. How long that takes is not estimated.
+  // After the last pair, the run measures costs and writes its results. The estimate does not include that time.
   status_["seconds_left"] =
       progress.seconds_left && progress.done < progress.total ? Json(*progress.seconds_left) : Json();
   status_["disagreements"] = progress.all_disagreements;
@@ -139,7 +139,7 @@ void seal(const fs::path& directory) {
   Json status;
   try {
     status = read_status(directory);
-  } catch (const std::runtime_error&) {  // it was changed after the run wrote it; the run is done anyway
+  } catch (const std::runtime_error&) {  // the status was changed after the run wrote it; the run is done anyway
   }
   if (status.is_null()) return;
   status["hash"] = file_hash(directory / kDatabase);
@@ -158,7 +158,7 @@ void remove_damaged_status(const fs::path& directory) {
     const Json there = parse_shallow(read_whole(file));
     if (there.is_object() && !there.empty() && !there.contains("state"))
       expect_own(file, Json{{"state", ""}, {"pairs", 0}}.dump(1));  // refuses another program's file
-    std::error_code later;                                          // if removal fails, so does the later write
+    std::error_code later;                                          // if this fails, writing the file reports the error
     fs::remove(file, later);
   }
 }

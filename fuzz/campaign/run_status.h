@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// status.json: a run's progress, updated every few seconds for `graze status` and `graze merge`. Graze never reads a
+// status.json: a run's progress, updated every few seconds for `graze status` and `graze merge`. Graze never takes a
 // campaign's counts from this file.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace graze::fuzz {
 
 class RunStatus {
  public:
-  // Writes nothing before the first call of tell, because the directory may belong to another campaign.
+  // Writes nothing until `tell` is called, because the directory may belong to another campaign.
   explicit RunStatus(const Campaign& campaign);
 
   // Records the progress and the signatures so far, at most once every few seconds unless `last`. Write errors are
@@ -29,18 +29,18 @@ class RunStatus {
 
   std::filesystem::path file_;
   Json status_;
-  double written_ = -1;  // seconds, as Progress counts them
+  double written_ = -1;  // Progress's seconds at the last write
 };
 
 // The hash of a file's bytes, as 16 hex digits.   Throws: std::runtime_error.
 std::string file_hash(const std::filesystem::path& file);
 
-// Adds the database's hash to the directory's status, for merge to compare.   Requires: no run uses the database any
-// more.
+// Adds the database's hash to the directory's status; merge compares it.   Requires: no run uses the database any more.
 void seal(const std::filesystem::path& directory);
 
 // Removes a status that is damaged or has impossible counts. In a campaign's folder, a file named status.json belongs
-// to Graze. Throws: std::runtime_error if it is not a file; UsageError if it is a link.
+// to Graze.
+// Throws: std::runtime_error if it is not a regular file; UsageError if it is a link.
 void remove_damaged_status(const std::filesystem::path& directory);
 
 // Returns the directory's status; null if there is none.

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The folder's name can be guessed, so in /tmp another user may have made it first.
+// In /tmp another user could guess the folder's name and create it first.
 // Throws: std::runtime_error if it is a link, or belongs to another user.
 void expect_own_folder(const fs::path& folder) {
   struct stat there {};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps a running shard's store on a local disk, and copies it as one file to its directory, which may be on a network
-// file system. The database is never opened in the directory, so no locks are needed there.
+// Keeps a running shard's store on a local disk, and copies it as one file to the shard's directory, which may be on a
+// network file system. The database is never opened on the network file system, so no locks are needed there.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace graze::fuzz {
 // The folder on the local disk for results whose final place is `directory`.
 std::filesystem::path scratch_of(const std::filesystem::path& disk, const std::filesystem::path& directory);
 
-// Copies an earlier run's results from the directory, unless its scratch still exists.
+// Copies an earlier run's results from the directory, unless that run's scratch still exists.
 // Throws: std::runtime_error, including if another process on this machine runs the same shard.
 void fetch_from_directory(const Campaign& campaign);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts failures by a key of a few bytes, and converts each key to a Signature once, at the end.
+// Counts failures by a compact key, and converts each key to a Signature only at the end.
 #pragma once
 
 #include <map>
@@ -18,7 +18,7 @@ class SignatureCounts {
   // Requires: lanes in table order.
   explicit SignatureCounts(std::vector<const Lane*> lanes) : lanes_(std::move(lanes)) {}
 
-  // Counts the pair once for each subject that has a lane with a wrong verdict.
+  // Counts the pair once for each subject with a wrong lane.
   void add(const Relation& truth, Nesting nesting, Bucket bucket, std::span<const Verdict> verdicts,
            const CaseKey& pair);
 
@@ -26,9 +26,9 @@ class SignatureCounts {
   void move_to(std::map<analysis::Signature, SignatureCount>& signatures);
 
  private:
-  // The signature without the lanes' verdicts. In a key, the verdicts follow it, one byte each.
+  // The first part of a key. The lanes' verdicts follow it, one byte each.
   struct Head {
-    std::uint16_t relation;  // packed with the nesting
+    std::uint16_t relation;  // truth and nesting, packed
     std::uint16_t first;     // index of the subject's first lane
     std::int16_t bucket;
   };

@@ -10,8 +10,8 @@
 namespace graze::fuzz {
 namespace {
 
-// Rows grow up to this many pairs, which keeps the database of a long campaign small. Judging a damaged row's pairs
-// again takes a minute or two. A batch from a device's engine is larger, and has its own row.
+// Rows are merged up to this many pairs, which keeps the database of a long campaign small. Judging a damaged row's
+// pairs again takes a minute or two. A batch from a GPU engine is larger, and has its own row.
 constexpr std::uint64_t kRowPairs = std::uint64_t{1} << 24;
 
 const std::filesystem::path& with_folders(const StoreSpec& spec) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edits a campaign's store at random. The store must open, or be refused with one line that names it. After
-// --discard-damaged it must open. Once the missing batches are added, the results must equal those of the whole store.
+// Edits a campaign's store at random. Opening it must succeed, or fail with one line that names the file. After
+// --discard-damaged it must succeed. With the missing batches added, the results must equal the whole store's.
 #include "fuzz/campaign/store.h"
 
 #include <unistd.h>
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A store of two sources in five rows, in two states: after a normal end, and after a kill that leaves a log beside it.
+// A store of two sources in five rows, in two states: after a normal end, and with the log that a killed run leaves.
 class Whole {
  public:
   Whole() {
@@ -58,7 +58,7 @@ class Whole {
     if (!files.log.empty()) write_whole(log(), files.log);
   }
 
-  // Checks a store that opened: once its missing batches are committed, it must equal the whole store.
+  // Commits the missing batches of a store that opened; then it must equal the whole store.
   void check(Store& store) const {
     std::size_t rows = 0;
     for (std::size_t row = 0; row < std::size(kRows); ++row) {
@@ -72,7 +72,7 @@ class Whole {
   }
 
  private:
-  // No two adjacent ranges of a source merge into one row.
+  // The sizes are chosen so that adjacent ranges do not merge into one row.
   static constexpr PairRange kRows[] = {{0, 0, 16}, {0, 16, 8}, {0, 24, 6}, {1, 0, 20}, {1, 20, 10}};
 
   static Json results(const Store& store) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The campaign's store: one SQLite database with one transaction per batch. If the process is killed at any point,
 // committed batches remain, and the same campaign resumes from there. Totals are not stored; they are sums over rows
-// whose checksums are correct. A changed row is detected, and pairs whose row is lost are judged again.
+// whose checksums are correct. A changed row is detected, and the pairs of a lost row are judged again.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,12 @@ Json results_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_sourc
 class Store {
  public:
   // Opens or creates the store in the spec's directory. No other process can open it while this object lives.
-  // Throws: what StoreFile throws; std::runtime_error if another process uses the store.
+  // Throws: the errors of StoreFile; std::runtime_error if another process uses the store.
   explicit Store(StoreSpec spec);
 
-  // How many pairs of the source are done.
   std::uint64_t done(int source) const;
 
-  // The source's first range of missing pairs, with at most `most` pairs.
+  // The source's first range of missing pairs, cut to at most `most` pairs.
   PairRange missing(int source, std::uint64_t most) const;
 
   // All of the source's missing pairs within the store's shard.
@@ -35,7 +34,7 @@ class Store {
   bool holds(const PairRange& range) const;
 
   // Commits these pairs' counts in one transaction.
-  // Requires: none of them was committed before.
+  // Requires: none of these pairs is committed already.
   void commit(const PairRange& range, const StoredCounts& fresh);
 
   // Commits all missing pairs of the source in one transaction; `rest` is the sum of their counts. Leaves one row for
@@ -51,7 +50,6 @@ class Store {
   // The number of committed pairs that each exact decision judged.
   Json oracle() const;
 
-  // The number of pairs on which some lane is wrong.
   std::uint64_t disagreements() const;
 
   // The results of all committed pairs; see results_of.

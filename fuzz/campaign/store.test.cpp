@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests that a damaged store is never accepted: changes are detected, and batches with correct checksums can be kept.
+// Tests that a damaged store is never accepted, and that batches with correct checksums can be kept.
 #include "fuzz/campaign/store.h"
 
 #include <gtest/gtest.h>
@@ -28,8 +28,7 @@ class StoreTest : public testing::Test {
   StoreTest() {
     std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
     std::replace(name.begin(), name.end(), '/', '-');
-    // The folder is in memory if possible, because a file system on disk takes milliseconds for each of 100,000
-    // databases.
+    // The folder is in memory if possible, because opening each of 100,000 databases on a disk takes milliseconds.
     const fs::path folder = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : fs::temp_directory_path();
     root_ = folder / ("graze-store-" + name + std::to_string(getpid()));
     fs::remove_all(root_);
@@ -183,7 +182,7 @@ TEST(FirstDifference, NamesThePlaceAndBothValues) {
   EXPECT_EQ(first_difference({{"a", 1}}, {{"a", 1}, {"flags", Json::array()}}), "flags is null, not none");
 }
 
-// A user's file, link, pipe or folder may have the name under which a database is set aside or prepared.
+// A user's file, link, pipe or folder may have the name that Graze needs to set a database aside or prepare one.
 TEST_F(StoreTest, DiscardingDamageReplacesAndRemovesNothing) {
   const std::string whole = run(campaign("whole"));
   const Campaign c = in_seven_rows("taken");
@@ -230,7 +229,7 @@ TEST_F(StoreTest, DiscardingDamageReplacesAndRemovesNothing) {
   EXPECT_FALSE(fs::exists(root_ / "nothing"));
 }
 
-// SQLite would read the log that is beside the target of the link.
+// SQLite would read the log beside the link's target.
 TEST_F(StoreTest, ADamagedDatabaseBehindALinkIsMendedThere) {
   const std::string whole = run(campaign("whole"));
   const Campaign c = in_seven_rows("linked");
@@ -246,7 +245,7 @@ TEST_F(StoreTest, ADamagedDatabaseBehindALinkIsMendedThere) {
   EXPECT_TRUE(fs::is_symlink(file(c)));
 }
 
-// If this link were followed, cases would be written to and removed from a user's folder.
+// If Graze followed this link, it would write and remove cases in a user's folder.
 TEST_F(StoreTest, ALinkInPlaceOfTheFolderOfCasesIsRefused) {
   const Campaign c = campaign("cases_elsewhere");
   fs::create_directories(root_ / "theirs_too");
@@ -258,7 +257,7 @@ TEST_F(StoreTest, ALinkInPlaceOfTheFolderOfCasesIsRefused) {
   EXPECT_EQ(std::distance(fs::directory_iterator(root_ / "theirs_too"), {}), 1);
 }
 
-// A read-only reader leaves an index and an empty log behind.
+// Opening the database read-only leaves an index and an empty log behind.
 TEST_F(StoreTest, ReadingRemovesWhatOtherReadersOfTheDatabaseLeft) {
   const Campaign c = campaign("read");
   run(c);
@@ -285,7 +284,7 @@ TEST_F(StoreTest, RemovingAStoreLeavesWhatOthersPutBesideIt) {
   EXPECT_EQ(read_whole(file(c).string() + ".part"), "precious");
 }
 
-// Writing the log back fails as on a full disk. The rows remain in the log.
+// Writing the log back fails, as on a full disk. The rows remain in the log.
 TEST_F(StoreTest, AStoreThatCannotBeFinishedSaysSo) {
   const Campaign c = campaign("full");
   Store store(store_spec(c));
@@ -302,7 +301,7 @@ TEST_F(StoreTest, AStoreThatCannotBeFinishedSaysSo) {
   store.finish();
   const fs::path copy = root_ / "copy";
   fs::create_directory(copy);
-  fs::copy_file(file(c), copy / "campaign.sqlite");  // the file alone is the store
+  fs::copy_file(file(c), copy / "campaign.sqlite");  // one file is the whole store
   std::uint64_t pairs = 0;
   StoreSpec spec = store_spec(c);
   spec.directory = copy;
@@ -310,7 +309,7 @@ TEST_F(StoreTest, AStoreThatCannotBeFinishedSaysSo) {
   EXPECT_EQ(pairs, 400u);
 }
 
-// SQLite would replace pages of an undamaged database with those in another database's log.
+// SQLite would overwrite pages of an undamaged database with pages from another database's log.
 TEST_F(StoreTest, TheLogOfAnotherDatabaseIsRefused) {
   const Campaign c = campaign("whole");
   const std::string whole = run(c);
@@ -330,7 +329,7 @@ TEST_F(StoreTest, TheLogOfAnotherDatabaseIsRefused) {
   EXPECT_EQ(run(c), whole);
 }
 
-// The folder's name can be guessed, so another user may have made it first.
+// Another user could guess the folder's name and create it first.
 TEST_F(StoreTest, AScratchThatIsALinkIsRefused) {
   Campaign c = campaign("shard");
   c.shard = {1, 2};
@@ -375,7 +374,7 @@ TEST_F(StoreTest, OtherBuildsFormatsAndProcessesAreRefused) {
   EXPECT_TRUE(names(refusal(c), {file(c).string(), "format 6", "format 3", "--out"}));
 }
 
-// Crashes and other failures are counted only for foreign lanes, even if these follow our own lanes.
+// Crashes and other failures are counted only for foreign lanes, even if our own lanes precede them.
 TEST_F(StoreTest, ResultsOfForeignLanesSayMore) {
   struct Foreign : ForeignCode {
     void decide(const Pair*, std::size_t, std::uint64_t*, std::uint64_t*) override {}
@@ -394,7 +393,7 @@ TEST_F(StoreTest, ResultsOfForeignLanesSayMore) {
   }
 }
 
-// Equal batches merge into rows as digits carry in a binary number.
+// Rows of equal batches merge in the way that digits carry in a binary counter.
 TEST_F(StoreTest, RowsMergeAndResultsStayTheSame) {
   const Campaign parts = campaign("parts"), whole = campaign("whole");
   Json results;
@@ -420,7 +419,7 @@ TEST_F(StoreTest, RowsMergeAndResultsStayTheSame) {
   }
 }
 
-// These rows have the right checksum, but are impossible.
+// These rows have correct checksums, but impossible contents.
 TEST_F(StoreTest, SumsThatDoNotAgreeAndIndicesOutOfRangeAreFoundOut) {
   const Campaign c = campaign("sums");
   const PairRange range{2, 100, 200};
@@ -463,14 +462,14 @@ TEST_F(StoreTest, SumsThatDoNotAgreeAndIndicesOutOfRangeAreFoundOut) {
   refused("/4", 201);
   refused("/7", "device");
   EXPECT_THROW(from_bytes("\x9b\x7f\xff\xff\xff\xff\xff\xff\xff", range, Axis::scale, 2),
-               Damaged);  // larger than any memory
+               Damaged);  // needs more memory than any machine has
   EXPECT_THROW(from_bytes(bytes.substr(1), range, Axis::scale, 2), Damaged);
   EXPECT_THROW(from_bytes(bytes, {2, 100, 199}, Axis::scale, 2), Damaged);
   EXPECT_THROW(from_bytes(bytes, range, Axis::none, 2), Damaged);
 }
 
-// Flips each bit of a small campaign's database. The results are the same, or opening fails with an error of one line.
-// The test has several parts, each with some of the bits.
+// Flips each bit of a small campaign's database. Either the results are the same, or opening fails with a one-line
+// error. Each part of the test flips some of the bits.
 class EveryBit : public StoreTest, public testing::WithParamInterface<int> {
  protected:
   static constexpr int kParts = 8;

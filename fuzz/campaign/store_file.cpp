@@ -54,7 +54,7 @@ int last_errno(const SQLite::Database& database) {
   return error;
 }
 
-// Calls body() and turns its errors into one line that names the file. database: gives the system's reason, if any.
+// Calls body() and turns its errors into one line that names the file.   database: the source of the system's reason.
 template <class Body>
 auto in_one_line(const fs::path& file, const Body& body, const std::optional<SQLite::Database>& database = {}) {
   constexpr const char* kGoOn =
@@ -74,7 +74,7 @@ auto in_one_line(const fs::path& file, const Body& body, const std::optional<SQL
       throw std::runtime_error(system != 0 ? cannot("read and write", file, system)
                                            : cannot("read and write", file, one_line(error.what())));
     throw DamagedStore(cannot("use", file,
-                              fmt::format("it is not a campaign database of Graze, or it is damaged ({}); {}",
+                              fmt::format("it is not one of Graze's campaign databases, or it is damaged ({}); {}",
                                           one_line(error.what()), kGoOn)));
   }
 }
@@ -125,7 +125,7 @@ void begin(SQLite::Database& database, const std::string& text) {
   transaction.commit();
 }
 
-// The campaign's identity that the database records.   Throws: Damaged.
+// The campaign's identity as the database records it.   Throws: Damaged.
 std::string recorded_text(SQLite::Database& database) {
   SQLite::Statement query(database, "SELECT text, checksum FROM campaign");
   if (!query.executeStep()) throw Damaged("the record of its campaign is missing");
@@ -151,7 +151,7 @@ std::string first_difference(const Json& expected, const Json& found) {
   const auto value = [](const Json& of, const std::string& place) {
     return of.contains(place) ? of[place].dump(-1, ' ', false, Json::error_handler_t::replace) : "none";
   };
-  for (const bool empty : {false, true}) {  // flatten() makes an empty list null; the other side tells more
+  for (const bool empty : {false, true}) {  // flatten() makes an empty list null; the other side shows more
     for (const Json& side : {ours, theirs}) {
       for (const auto& [place, one] : side.items()) {
         if (one.is_null() != empty || (ours.contains(place) && theirs.contains(place) && ours[place] == theirs[place]))
@@ -165,7 +165,7 @@ std::string first_difference(const Json& expected, const Json& found) {
 
 namespace {
 
-// Throws: UsageError if the text, whose checksum is correct, belongs to another campaign.
+// Throws: UsageError if the text belongs to another campaign. Its checksum is correct.
 void compare(const StoreSpec& spec, const std::string& text) {
   if (text == text_of(spec)) return;
   const Json found = parse_shallow(text);
@@ -245,7 +245,7 @@ std::int64_t insert(SQLite::Database& database, std::uint64_t campaign, const Pa
   return database.getLastInsertRowid();
 }
 
-// Whether the database is unchanged since a run ended and sealed it. In that case no log belongs to the database.
+// Whether the database has not changed since a run ended and sealed it. Then no log belongs to it.
 bool is_closed(const fs::path& database) {
   try {
     const Json status = read_status(database.parent_path());
@@ -255,8 +255,9 @@ bool is_closed(const fs::path& database) {
   }
 }
 
-// The files beside the database that SQLite would read but did not write for this database. They are damaged, are
-// links, or belong to other programs or databases. Throws: std::runtime_error for a pipe or a device.
+// The files beside the database that SQLite would read although it did not write them for this database. They are
+// damaged, are links, or belong to other programs or databases.
+// Throws: std::runtime_error for a pipe or a device.
 std::vector<fs::path> unusable_files_of(const fs::path& database) {
   constexpr std::string_view kJournal = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", kLog = "\x37\x7f\x06",
                              kIndex = "\x18\xe2\x2d";
@@ -291,8 +292,8 @@ SQLite::Database opened(const fs::path& file, int how = SQLite::OPEN_READWRITE |
   return {fs::absolute(file).string(), how};  // a relative name may begin like a URI
 }
 
-// Opens a store for reading. If its last run ended normally, it is one file that nobody writes to. A killed run leaves
-// a log beside the file; the next reader merges the log under an exclusive lock.
+// Opens a store for reading. If its last run ended normally, the store is one file that no process writes to. A killed
+// run leaves a log beside the file; the next reader merges the log into the file under an exclusive lock.
 struct OpenedToRead {
   explicit OpenedToRead(const fs::path& directory)
       : lock(fs::exists(directory / (std::string(kDatabase) + "-wal"))
@@ -300,7 +301,7 @@ struct OpenedToRead {
                  : nullptr),
         database(lock ? opened(directory / kDatabase, SQLite::OPEN_READWRITE)
                       : SQLite::Database(as_uri(directory / kDatabase), SQLite::OPEN_READONLY | SQLite::OPEN_URI)) {
-    // An exclusive reader needs no index file, but it would not remove one that another program's reader left.
+    // An exclusive reader needs no index file, but would not remove one left by another program.
     if (lock && !fs::exists(directory / (std::string(kDatabase) + "-shm")))
       database.exec("PRAGMA locking_mode = EXCLUSIVE");
   }
@@ -325,8 +326,8 @@ struct KeptRow {
   std::string bytes;
 };
 
-// Returns the rows whose checksums are correct. Reads from both ends, because a B-tree that is damaged in the middle
-// can be read up to the damage.
+// Returns the rows whose checksums are correct. Reads from both ends, because a damaged B-tree can be read up to the
+// damage from each side.
 std::vector<KeptRow> rows_that_check(SQLite::Database& database, const StoreSpec& spec, std::uint64_t campaign,
                                      std::size_t& seen) {
   std::vector<KeptRow> kept;
@@ -368,8 +369,8 @@ std::string bytes_of_store(const std::string& text, const std::vector<KeptRow>& 
   return file_bytes(database);
 }
 
-// A row's checksum starts from the campaign's. So a row with a correct checksum belongs to this campaign, even if the
-// rest of the database is damaged.
+// A row's checksum includes the campaign's checksum. So a row with a correct checksum belongs to this campaign, even if
+// the rest of the database is damaged.
 Salvage salvage(const StoreSpec& spec) {
   const fs::path file = behind_links(database_file(spec));
   const std::string text = text_of(spec);
@@ -401,7 +402,7 @@ Salvage salvage(const StoreSpec& spec) {
 
 }  // namespace
 
-// Like in_one_line, with the system's reason from the database.
+// Like in_one_line, but takes the system's reason from the database.
 template <class Body>
 auto StoreFile::checked(const Body& body) {
   return in_one_line(file_, body, database_);
@@ -516,7 +517,7 @@ void for_each_row(const StoreSpec& spec, const std::function<void(const PairRang
     coverage.take(row.range);
     return row;
   };
-  // visit is called outside in_one_line, because its exceptions are not the database's.
+  // `visit` is called outside in_one_line, because its exceptions do not come from the database.
   while (const auto row = in_one_line(database_file(spec), next)) visit(row->range, row->counts);
 }
 

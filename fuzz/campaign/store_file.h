@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The campaign's database: the campaign's identity, and one row with a checksum for each stored range of a source's
-// pairs.
+// The campaign's database. It holds the campaign's identity, and one row with a checksum for each stored range of a
+// source's pairs.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 
 inline constexpr const char* kDatabase = "campaign.sqlite";  // in the campaign's directory
 
-// The campaign that a store holds.
+// The campaign to which a store belongs.
 struct StoreSpec {
   std::filesystem::path directory;
   Json spec, build;  // recorded, and compared when the campaign resumes
@@ -37,7 +37,7 @@ struct DamagedStore : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Thrown if another file or none stands where a run opened its database. The folder may then be another run's.
+// Thrown if the database that a run opened was moved, removed or replaced. The folder may then belong to another run.
 struct MovedStore : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -45,8 +45,8 @@ struct MovedStore : std::runtime_error {
 class StoreFile {
  public:
   // Opens or creates the database in the spec's directory.
-  // Throws: UsageError if it holds another campaign. All members, this one included, throw std::runtime_error, in one
-  // line that names the file, for a foreign or damaged database.
+  // Throws: UsageError if it holds another campaign. All members, including this one, throw std::runtime_error, in one
+  // line that names the file, for a database that is damaged or not Graze's.
   explicit StoreFile(const StoreSpec& spec);
 
   // Calls visit for every row, after checking the row's checksum, that its range is within the source, and that it
@@ -58,13 +58,13 @@ class StoreFile {
   // Shrinks the file after rows were removed.
   void shrink();
 
-  // Writes the log back, so that the file alone is the store. Closing does that too, but cannot report a failure.
+  // Writes the log back, so that the store is a single file. Closing does that too, but cannot report a failure.
   void finish();
 
   // Throws: MovedStore.
   void expect_in_place() const;
 
-  // Replaces the rows `replaced` with a new one in one transaction.
+  // Replaces the rows `replaced` with one new row, in one transaction.
   // Returns: the new row's id.   Throws: MovedStore.
   std::int64_t put(const PairRange& range, const StoredCounts& counts, const std::vector<std::int64_t>& replaced);
 
@@ -78,33 +78,32 @@ class StoreFile {
   std::uint64_t campaign_;  // checksum of the campaign's identity
 };
 
-// The bytes of the database's file.
 std::string file_bytes(SQLite::Database& database);
 
 // The first place in which two specs differ, with both values: `seed is 1, not 2`.
 std::string first_difference(const Json& expected, const Json& found);
 
 // Reads the spec of an existing store; its `sources` are empty.
-// Throws: std::runtime_error as StoreFile does; DamagedStore.
+// Throws: DamagedStore; std::runtime_error in the same cases as StoreFile.
 StoreSpec recorded_store(const std::filesystem::path& directory);
 
 // Removes a store and the files that its run wrote beside it. Also removes the folder, unless it holds other files.
 void remove_store(const std::filesystem::path& directory);
 
-// Calls visit for every row of a recorded store. Its `sources` must be filled in. Writes nothing, and needs no lock, if
-// the last run ended normally.   Throws: what recorded_store throws.
+// Calls visit for every row of a recorded store. The spec's `sources` must be filled in. If the last run ended
+// normally, this writes nothing and needs no lock.   Throws: the errors of recorded_store.
 void for_each_row(const StoreSpec& spec, const std::function<void(const PairRange&, const StoredCounts&)>& visit);
 
 // The rows that discard_damaged recovered from a damaged database.
 struct Salvage {
   std::size_t batches = 0;
   std::uint64_t pairs = 0;
-  std::filesystem::path damaged;  // where the old database is now: a name that was free
+  std::filesystem::path damaged;  // the old database's new name
 };
 
-// Keeps only those rows of a damaged database whose checksums are correct. The pairs of the other rows are judged again
+// Keeps only the rows of a damaged database whose checksums are correct. The pairs of the other rows are judged again
 // when the campaign resumes.
-// Returns: nothing if the database is not damaged.   Throws: what StoreFile throws, except for damage.
+// Returns: nothing if the database is not damaged.   Throws: the errors of StoreFile, except for damage.
 std::optional<Salvage> discard_damaged(const StoreSpec& spec);
 
 }  // namespace graze::fuzz

@@ -15,9 +15,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// [[bucket, pairs, intersects, [[lane, false positive, false negative, declined, differs from cpu], …]], …]. The counts
-// crashed, timed out, unstable and by convention follow if one of them is not 0. They also follow if storing doubles in
-// float32 caused errors; the count of these errors is then last.
+// [[bucket, pairs, intersects, [[lane, false positive, false negative, declined, differs from cpu], …]], …]. If any of
+// the counts crashed, timed out, unstable and by convention is not 0, all four follow. If rounding doubles to float32
+// caused errors, the four counts and the count of these errors follow.
 Json to_json(const analysis::Tally& tally) {
   Json rows = Json::array();
   for (int b = -kBucketMost; b <= kBucketMost; ++b) {
@@ -129,7 +129,7 @@ bool is_printable(std::string_view text) {
 Json parsed(const std::string& bytes) {
   try {
     return Json::from_cbor(bytes, true, false);
-  } catch (const Json::exception&) {  // thrown for sizes that exceed memory, even with exceptions turned off
+  } catch (const Json::exception&) {  // thrown for sizes that exceed memory, even if exceptions are off
     return nullptr;
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stored counts for a range of one source's pairs, converted to bytes (CBOR) and back. Reading checks that all sums
-// agree and that every index is in its range.
+// Converts the counts for a range of one source's pairs to bytes (CBOR) and back. Reading checks that all sums agree
+// and that every index is in range.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct PairRange {
   std::uint64_t first = 0, pairs = 0;
 };
 
-// Counts with the signatures' keys. They can be added in any order.
+// Counts with signatures as text keys. Counts can be added in any order.
 struct StoredCounts : CountsBy<std::string> {
   explicit StoredCounts(int lanes);
   StoredCounts(const BatchResult& result);
@@ -32,7 +32,7 @@ struct StoredCounts : CountsBy<std::string> {
 
 std::string to_bytes(const StoredCounts& counts);
 
-// Requires: the range lies within the source and has at least `pairs` pairs. The bytes are the counts of `pairs` pairs.
+// pairs: how many pairs the bytes count.   Requires: the range lies within the source and has at least `pairs` pairs.
 // Throws: Damaged.
 StoredCounts from_bytes(const std::string& bytes, const PairRange& range, std::uint64_t pairs, Axis axis, int lanes);
 inline StoredCounts from_bytes(const std::string& bytes, const PairRange& range, Axis axis, int lanes) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stored counts that contradict each other count as damage. Each count is tested at its limit.
+// Stored counts that contradict each other are rejected as damaged. Each count is tested at its limit.
 #include "fuzz/campaign/stored_counts.h"
 
 #include <gtest/gtest.h>
@@ -102,7 +102,7 @@ TEST(StoredCounts, ThatDoNotAgreeAreDamage) {
            {"/7", 11, "the exact lane's pairs and the batch's pairs are inconsistent"},
            {"/8/0", 10, ""},
            {"/8/0", 11, digests},
-           {"/8/1", Json{1}, digests},  // there is not one digest for each lane
+           {"/8/1", Json{1}, digests},  // fewer digests than lanes
            {"/8/1/1", -1, digests},
            {"/8", 0, digests},
            {"/9", 0, "a batch's parts are inconsistent"},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adds up several stores: one sum for each source, and the set of pairs that the sum covers. The size depends on the
-// sources and their signatures, not on the number of stores.
+// Adds up several stores. Keeps one sum for each source and the set of pairs that it covers, so memory use depends on
+// the sources and their signatures, not on the number of stores.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace graze::fuzz {
 
 class Sums {
  public:
-  // Requires: the sources outlive this.
+  // Requires: the sources outlive this object.
   Sums(const std::vector<strata::PairSource>& sources, int lanes);
 
   // from: identifies the row's origin.
@@ -26,9 +26,8 @@ class Sums {
     std::size_t before, now;
   };
 
-  // The ranges that are missing within `within`, in order.
+  // The ranges within `within` that are missing, in order.
   std::vector<PairRange> gaps(const PairRange& within) const;
-  // The missing ranges of all sources.
   std::vector<PairRange> gaps() const;
 
   const StoredCounts& of_source(int source) const { return of_source_[static_cast<std::size_t>(source)]; }
@@ -48,7 +47,7 @@ class Sums {
   int lanes_;
   std::vector<StoredCounts> of_source_;
   std::vector<std::map<std::uint64_t, Part>>
-      covered_;  // of each source, by first pair; adjacent parts of one origin are merged
+      covered_;  // by source and first pair; adjacent ranges of one origin are merged
 };
 
 }  // namespace graze::fuzz

@@ -86,7 +86,7 @@ void measure_sites(int algorithm, const Pair& stored, const DoublePair& doubles,
   (std::make_index_sequence<kAlgorithmCount>());
 }
 
-// The line at which the outcomes of the algorithm's runs in float32 and float64 first differ; 0 if they do not.
+// The first line at which the runs in float32 and float64 decide a comparison differently; 0 if there is none.
 unsigned line_of_parting(int algorithm, const Pair& stored, const DoublePair& doubles) {
   const Trace<double> narrow = run_traced<float>(algorithm, stored), wide = run_traced<double>(algorithm, doubles);
   const std::size_t both = std::min(narrow.seen.size(), wide.seen.size());

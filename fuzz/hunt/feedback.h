@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Feedback for guided search, in addition to branch coverage. A pair is kept if it shows a feature that no earlier pair
-// showed. The features of a pair are numbers for:
+// Feedback for guided search, in addition to branch coverage. A pair is kept if it has a feature that no earlier pair
+// had. A pair's features are numbers for:
 //   failures     how each subject's lanes are wrong together, with the contact and the shape
 //   closeness    margin bucket and shape
 //   sites        for each value or comparison passed to the policy: log2 of its distance from zero divided by its error
 //                bound (core/lanes/with_error_bound.h), in float32 and in float64
 //   parting      for a wrong algorithm: the line of the first comparison with different outcomes in float32 and float64
 //   contractions for a cuda-fma lane whose verdict differs from the same source without contraction: each contraction
-//                site that, if it alone is not fused, changes the verdict
+//                site that changes the verdict when only this site is not fused
 #pragma once
 
 #include <cstdint>

@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-// The processes of the rounds; the destructor kills those that are still running.
+// The rounds' processes; the destructor kills those that are still running.
 class Processes {
  public:
   ~Processes() {
@@ -39,7 +39,7 @@ class Processes {
   }
   std::size_t size() const { return running_.size(); }
   void add(pid_t pid) { running_.push_back(pid); }
-  // Removes processes that have ended; if there are none, waits for a short time.
+  // Removes processes that have ended; if none has, waits for 2 ms.
   void wait_for_one() {
     if (std::erase_if(running_, [](pid_t pid) { return waitpid(pid, nullptr, WNOHANG) != 0; }) > 0) return;
     const timespec pause{0, 2'000'000};
@@ -50,7 +50,7 @@ class Processes {
   std::vector<pid_t> running_;
 };
 
-// Whether a killed process left the file: a round's unread result, such as "000012.result", or a partial file.
+// Whether a killed process left this file: a round's unread result, such as "000012.result", or a partial file.
 bool is_of_killed_round(const fs::directory_entry& file) {
   const std::string name = file.path().filename().string();
   const std::size_t digits = name.find_first_not_of("0123456789");
@@ -96,7 +96,7 @@ class Hunter {
       status_.end(outcome.complete ? "done" : "stopped");
       if (outcome.complete) seal(hunt_.campaign.directory);
       return outcome;
-    } catch (const MovedStore&) {  // the folder's status may be another run's
+    } catch (const MovedStore&) {  // the folder's status file may belong to another run
       throw;
     } catch (const std::exception& error) {
       status_.end("failed", error.what());
@@ -126,7 +126,7 @@ class Hunter {
       wanted.range = {0, share_.first + r * per_round_, std::min(per_round_, share_.pairs - r * per_round_)};
       wanted.kept = parse_round(read_whole(file_of(wanted.range)), checksum_);
       if (wanted.kept && (wanted.kept->first != wanted.range.first || wanted.kept->pairs != wanted.range.pairs))
-        wanted.kept.reset();  // the file is another round's
+        wanted.kept.reset();  // the file belongs to another round
       wanted.committed = store_->holds(wanted.range);
       rounds.push_back(std::move(wanted));
     }
@@ -138,7 +138,7 @@ class Hunter {
     }
   }
 
-  // Runs the rounds that are not done yet, at most `threads_` at once.   Returns: whether all of them ended.
+  // Runs the rounds that are not done yet, at most `threads_` at once.   Returns: whether all of them are done.
   bool play(const std::vector<Wanted>& rounds) {
     Processes processes;
     for (const Wanted& round : rounds) {
@@ -193,7 +193,7 @@ class Hunter {
     fs::remove(result_file);
   }
 
-  // One pair represents all pairs that are wrong in the same way, at any margin.
+  // Examines one pair for each way to be wrong, whatever the margin.
   void find_kinds_of(const RoundResult& result, KeptRound& kept) const {
     struct New {
       analysis::Signature signature;

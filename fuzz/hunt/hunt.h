@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Guided search: rounds of libFuzzer (round.h) whose findings are stored like a campaign's, with the single source
-// `hunt`, or `hunt/f64` for pairs of doubles. All rounds of a generation start from the same corpus, which the earlier
+// `hunt`, or `hunt/f64` for pairs of doubles. All rounds of a generation start from the corpus that the earlier
 // generations left. So the results do not depend on interruptions or on how many rounds run at once.
 #pragma once
 
@@ -15,7 +15,7 @@ namespace graze::fuzz {
 inline constexpr std::uint64_t kRoundsOfGeneration = 4;
 
 struct Hunt {
-  Campaign campaign;  // run_hunt sets its one source
+  Campaign campaign;  // run_hunt sets its single source
   Drawn drawn;        // the strata or the scene from which pairs are drawn
   std::uint64_t pairs = 0;
   double seconds = 0;  // time limit; 0: none
@@ -30,7 +30,7 @@ struct HuntProgress {
   double seconds_since_kind = 0;  // since the last new kind, or the start
 };
 
-// The spec that a hunt's store records: as from campaign_spec, with the single source `hunt`. Its field "hunt" has the
+// The spec that a hunt's store records: campaign_spec's, with the single source `hunt`. Its field "hunt" lists the
 // strata from which the hunt draws.
 Json hunt_spec(const Hunt& hunt);
 

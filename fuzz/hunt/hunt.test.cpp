@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests guided search. The bytes are the same for any number of threads and interruptions, kept pairs match their
-// records, and mutations do what their names say.
+// records, and each mutation makes the change that it is named after.
 #include "fuzz/hunt/hunt.h"
 
 #include <fmt/format.h>
@@ -118,7 +118,7 @@ TYPED_TEST(Mutations, DoWhatTheyAreNamedAfter) {
             200);
 }
 
-// Checks mutations in a scene around `origin` on a grid of 2^-6.   type: the line of the scene's file with its type.
+// Checks mutations in a scene around `origin` on a grid of 2^-6.   type: the line with the coordinate type.
 template <class Draws>
 void expect_within_the_scene(const std::string& type, double origin) {
   using Real = typename Draws::Real;

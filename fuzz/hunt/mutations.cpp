@@ -40,14 +40,14 @@ void shift(Vec3<Real>* triangle, const Vec& by) {
   for (int i = 0; i < 3; ++i) store(triangle[i], wide(triangle[i]) + by);
 }
 
-// Moves the vertex to `to`, alone or together with its triangle.
+// Moves the vertex to `to`, either by itself or with its whole triangle.
 template <class Real>
 void bring(Vec3<Real>* triangle, std::uint32_t vertex, const Vec& to, bool alone) {
   if (!alone) shift(triangle, to - wide(triangle[vertex]));
   store(triangle[vertex], to);
 }
 
-// A position on a segment, or sometimes beyond its ends; often an end or a simple fraction.
+// A parameter along a segment: often 0, 1 or a simple fraction, and sometimes outside [0, 1].
 template <class Draws>
 double draw_share(Draws& draws) {
   constexpr double kShares[] = {0, 1, 0.5, 0.25, 0.75};
@@ -175,7 +175,7 @@ double edge_length(const Vec3<Real>& u, const Vec3<Real>& v) {
 
 template <class Real>
 bool has_size_of(const strata::Scene& scene, const Vec3<Real> (&t)[3]) {
-  constexpr double kRoom = 1 + 0x1p-20;  // allows for the rounding of coordinates and of this computation
+  constexpr double kRoom = 1 + 0x1p-20;  // allows for rounded coordinates and rounding here
   const double longest = std::max({edge_length(t[0], t[1]), edge_length(t[1], t[2]), edge_length(t[2], t[0])});
   if (longest > scene.edges.at[strata::kQuantiles - 1] * kRoom) return false;
   const Vec normal = cross(wide(t[1]) - wide(t[0]), wide(t[2]) - wide(t[0]));
@@ -277,7 +277,7 @@ template <class Draws>
 DrawnPair<Draws> next_pair(const Drawn& drawn, const DrawnPair<Draws>& pair, const DrawnPair<Draws>* other,
                            Draws& draws, Mutation& mutation) {
   for (int attempt = 0; attempt < 4; ++attempt) {
-    // If libFuzzer offers a second pair, it asks for a crossing.
+    // libFuzzer passes a second pair only for a crossing.
     mutation = other ? Mutation::crossed : static_cast<Mutation>(draws.below(kMutationCount - 1));
     if (mutation == Mutation::fresh) break;
     DrawnPair<Draws> result = mutated(mutation, pair, other ? *other : pair, draws);

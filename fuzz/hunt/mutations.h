@@ -17,7 +17,7 @@ namespace graze::fuzz {
 enum class Mutation : std::uint8_t {
   fresh,        // draws another pair from the strata or the scene
   ulps,         // moves one coordinate, or one vertex, by a few ulps
-  onto_vertex,  // moves a vertex onto a vertex of the other triangle, alone or with its triangle
+  onto_vertex,  // moves a vertex, alone or with its triangle, onto a vertex of the other triangle
   onto_edge,    // moves a vertex, or a point on an edge, onto an edge of the other triangle
   onto_plane,   // moves a vertex onto the other triangle's plane
   coplanar,     // moves a triangle into the other's plane
@@ -35,8 +35,8 @@ inline constexpr std::array<std::string_view, 14> kMutationIds{
     "shared_edge", "scaled", "moved",       "on_grid",   "mirrored",   "reordered", "crossed"};
 inline constexpr int kMutationCount = static_cast<int>(kMutationIds.size());
 
-// The sources from which pairs are drawn, all of one coordinate type. scene: in a scene, its envelope for that type,
-// within which pairs must stay; otherwise null.
+// The sources from which pairs are drawn, all of one coordinate type.   scene: the scene's envelope for that type,
+// within which pairs must stay; null without a scene.
 struct Drawn {
   std::vector<strata::PairSource> sources;
   const strata::Scene* scene = nullptr;
@@ -44,25 +44,24 @@ struct Drawn {
   bool in_doubles() const { return sources.front().in_doubles(); }
 };
 
-// For pairs of float32, Draws is strata::Draws; for pairs of doubles, strata::DoubleDraws.
+// For float32 pairs, Draws is strata::Draws; for pairs of doubles, it is strata::DoubleDraws.
 template <class Draws>
 using DrawnPair = BasicPair<typename Draws::Real>;
 
-// Applies the mutation to the pair; `crossed` takes a triangle from `other`. If numbers overflow, the result is not
-// finite.
+// Applies the mutation to the pair; `crossed` takes a triangle from `other`. The result is not finite if coordinates
+// overflow.
 template <class Draws>
 DrawnPair<Draws> mutated(Mutation mutation, const DrawnPair<Draws>& pair, const DrawnPair<Draws>& other, Draws& draws);
 
-// A pair from one of the sources.
 template <class Draws>
 DrawnPair<Draws> fresh_pair(const Drawn& drawn, Draws& draws);
 
-// Rounds the pair into the scene: to its grid, and into its extent.
+// Rounds the pair to the scene's grid, and moves it into the scene's extent.
 // Returns: false if a triangle is larger than the scene allows, or if it is too thin but not degenerate.
 template <class Real>
 bool fit(const strata::Scene& scene, BasicPair<Real>& pair);
 
-// Applies one mutation, and stores in `mutation` which one. An attempt fails if the result is not finite, does not fit
+// Applies one mutation, and stores its kind in `mutation`. An attempt fails if the result is not finite, does not fit
 // the scene, or equals the pair. After four failed attempts a fresh pair is drawn. `other`: null if no pair is
 // available for crossing.
 template <class Draws>

@@ -32,7 +32,7 @@ static std::uint8_t extra_counters[graze::fuzz::kFeatures];
 namespace graze::fuzz {
 namespace {
 
-constexpr std::uint32_t kMutations = 0x301;  // used in draws instead of a stratum's number
+constexpr std::uint32_t kMutations = 0x301;  // takes the place of a stratum's number in draws
 
 // Ends this process without running exit handlers, because it is a copy of a process that continues.
 [[noreturn]] void leave(int status) { _exit(status); }
@@ -168,7 +168,7 @@ class Round {
   std::vector<Unit> units_;
   std::array<MutationCounts, kMutationCount> mutations_{};
   std::size_t next_unit_ = 0;
-  const Unit* given_ = nullptr;  // the corpus unit that is the next input, if it is one
+  const Unit* given_ = nullptr;  // the next input if it is a corpus unit
   Mutation mutation_ = Mutation::fresh;
   std::uint64_t turn_ = 0;
 };
@@ -195,7 +195,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   return guarded([&] { return current->next(data, size, nullptr, seed); });
 }
 
-// Returns 0 to skip the crossing. So one mutation in fourteen is a crossing, and each other kind is as frequent.
+// Returns 0 to skip the crossing. So one mutation in fourteen is a crossing, like every other kind.
 extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* data, std::size_t size, const std::uint8_t* other,
                                                  std::size_t other_size, std::uint8_t* out, std::size_t,
                                                  unsigned seed) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A round of guided search: libFuzzer, in a separate process, changes pairs of a corpus and keeps those that show
-// something new. The result depends only on the task.
+// A round of guided search: libFuzzer, in a separate process, mutates the pairs of a corpus and keeps pairs with new
+// features. The result depends only on the task.
 #pragma once
 
 #include <sys/types.h>
@@ -23,9 +23,9 @@ struct Unit {
 };
 
 struct MutationCounts {
-  std::uint64_t pairs = 0;          // pairs made with this mutation as the last of up to five in a row
-  std::uint64_t disagreements = 0;  // how many of these pairs are disagreements
-  std::uint64_t units = 0;          // how many of these pairs became units: they were new in their round
+  std::uint64_t pairs = 0;          // pairs whose last mutation was this; a pair gets up to five in a row
+  std::uint64_t disagreements = 0;  // of these pairs
+  std::uint64_t units = 0;          // of these pairs, those kept as units, because they were new in their round
 };
 
 struct FoundPair {
@@ -49,7 +49,6 @@ struct RoundResult {
   std::array<MutationCounts, kMutationCount> mutations{};
 };
 
-// Whether this build has libFuzzer.
 bool has_libfuzzer();
 
 // Starts a round in a new process, which writes its result or error to the file.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rounds as bytes (CBOR with a checksum): the result that a round's process passes on, and the part that a hunt keeps.
+// Rounds as bytes (CBOR with a checksum): the result of a round's process, and the part that a hunt keeps.
 #pragma once
 
 #include <optional>
@@ -10,12 +10,12 @@
 
 namespace graze::fuzz {
 
-// The pair of floats or doubles that has this size; nothing for other sizes.
+// The pair of floats or doubles stored in these bytes, distinguished by size; nothing for other sizes.
 std::optional<AnyPair> pair_from(const void* bytes, std::size_t size);
 
 std::string error_bytes(const std::string& what, bool apart);
 std::string result_bytes(const RoundResult& result);
-bool are_of_result(const std::string& bytes);  // whether result_bytes or error_bytes made them
+bool are_of_result(const std::string& bytes);  // whether result_bytes or error_bytes wrote them
 // Throws: the error that error_bytes encoded; Damaged.
 RoundResult parse_result(const std::string& bytes, const RoundTask& task);
 
@@ -29,7 +29,7 @@ struct NewKind {
 // The part of a round that is kept in a file. Its counts are in the campaign's store.
 struct KeptRound {
   std::uint64_t first = 0, pairs = 0;
-  std::vector<Unit> units;                  // pairs that still showed something new when rounds were combined
+  std::vector<Unit> units;                  // pairs that were still new when rounds were combined
   std::map<std::uint64_t, FoundPair> kept;  // the cases, by pair index
   std::array<MutationCounts, kMutationCount> mutations{};
   std::vector<std::string> coarse;  // signatures without margins that no earlier round had

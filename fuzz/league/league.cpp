@@ -25,9 +25,9 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::size_t kBatchPairs = 1 << 16;  // each lane with failures in a batch costs a fresh process
+constexpr std::size_t kBatchPairs = 1 << 16;  // large: each lane that fails in a batch needs a fresh process
 constexpr std::size_t kBlockPairs = 1024;
-constexpr std::uint64_t kOrderSample = 950;  // pairs decided in all orders, shared evenly by the strata
+constexpr std::uint64_t kOrderSample = 950;  // pairs decided in all orders, split evenly among the strata
 constexpr std::uint64_t kOrderShare = 20;    // but at most one in 20 of a lane's pairs
 
 template <class Real>
@@ -38,12 +38,12 @@ Relation true_of(const BasicPair<Real>& pair) {
   return found;
 }
 
-// A row of the league, with the data needed to count it.
+// A row of the league's table, with the data needed to count it.
 struct Counting {
   LeagueRow row;
   const Lane* fused;  // its cpu-fma counterpart; null for none
   const DecideBlock* decide;
-  std::uint64_t of_source;  // the lane gets the first pairs of each source, at most this many
+  std::uint64_t of_source;  // the lane gets at most this many of each source's first pairs
   Smallest smallest;
 
   // Confirms with GMP the truth of a pair on which the lane is wrong.
@@ -122,7 +122,7 @@ struct Counting {
     return false;
   }
 
-  // Counts pairs on which the verdict changes with the order, and pairs on which it breaks another invariant. Pairs
+  // Counts pairs whose verdict changes with the vertex order, and pairs whose verdict breaks another invariant. Pairs
   // outside the lane's contract are skipped.
   template <class Real>
   void count_orders(std::span<const BasicPair<Real>> pairs, const std::vector<Relation>& truths) {
@@ -198,7 +198,7 @@ League run_league(const SelectedLanes& under_test, std::vector<strata::PairSourc
   League league;
   league.seed = seed;
   bool stopped = false;
-  // Counts these pairs, of which the first has the index `begin` in a source of `of_source` pairs.
+  // Counts these pairs. The first has the index `begin` in a source of `of_source` pairs.
   const auto count = [&](const auto& pairs, std::uint64_t begin, std::uint64_t of_source, std::size_t group) {
     const std::vector<Relation> truths = truths_of(pairs);
     tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t l) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests a league of planted subjects. The test knows every number of the league, because it counts again with only the
-// oracle.
+// Tests a league of planted subjects. The test counts every number of the league again, using only the oracle.
 #include "fuzz/league/league.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Each of these functions has only the defect that its name describes.
+// Each of these functions has one defect, which its name describes.
 constexpr const char* kPlanted = R"(
 #include <cstdlib>
 #include <graze/subject.h>

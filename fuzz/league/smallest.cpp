@@ -18,10 +18,10 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::size_t kMostMovedHere = 150'000;  // there may be hundreds of failures
+constexpr std::size_t kMostMovedHere = 150'000;  // small, because there may be hundreds of failures
 
-// A crash costs a new process, so a lane that dies gets fewer moves. A timeout costs its whole limit, and an unstable
-// verdict may not occur again, so neither is minimised.
+// A crash costs a new process, so a lane that crashes gets fewer moves. A timeout takes the whole time limit, and an
+// unstable verdict may not recur, so neither is minimised.
 std::size_t most_moved(const Candidate& candidate) {
   if (candidate.says == Verdict::timed_out || candidate.says == Verdict::unstable) return 0;
   return candidate.lane_dies ? kLeastMoved + 10'000 : kMostMovedHere;
@@ -57,7 +57,7 @@ LeagueFailure minimised(const Candidate& candidate) {
   return result;
 }
 
-// Whether the lane fails on this pair like on the failure's own pair: same shape and verdict, within its contract.
+// Whether the lane fails on this pair with the same shape and verdict as on the failure's pair, within its contract.
 bool fails_so(const LeagueFailure& failure, const AnyPair& pair) {
   const Verdict verdict = visit(pair, [&](const auto& own) { return decide_one(failure.lane->decide, own); });
   const oracle::Truth truth = oracle::truth(pair);

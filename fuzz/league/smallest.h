@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The league's smallest failures: one minimised pair for each subject, shape and wrong verdict. Each failure is
-// repeated in a process that has seen no other pair.
+// repeated in a fresh process, which has seen no other pair.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@
 
 namespace graze::fuzz {
 
-// The lane's verdicts in a process that has seen no earlier pair.
+// The lane's verdicts on these pairs, decided in a new process.
 template <class Real>
 std::vector<Verdict> verdicts_in_fresh_process(const Lane& lane, const std::vector<BasicPair<Real>>& pairs);
 
@@ -23,10 +23,10 @@ struct Candidate {
   std::string shape;
   Verdict says;  // the wrong verdict
   AnyPair pair;
-  bool lane_dies;  // the lane crashed or did not return on some pair of the league
+  bool lane_dies;  // the lane crashed or did not return on some pair
 };
 
-// Keeps one lane's simplest pair of each shape and wrong verdict. The order in which pairs are added does not matter.
+// Keeps one lane's simplest pair for each shape and wrong verdict. The order in which pairs are added does not matter.
 class Smallest {
  public:
   void add(std::string_view shape, Verdict says, const AnyPair& pair);
@@ -37,9 +37,9 @@ class Smallest {
 };
 
 // Minimises the first candidate of each subject, shape and verdict. If another subject's pair is simpler and this lane
-// fails on it in the same way, that pair is used instead. Candidates are in the order of lanes. Returns: the failures
-// that a fresh process repeats. not_repeated: receives the number of failures that it does not repeat. Throws:
-// OracleMismatch.
+// fails on it in the same way, that pair is used instead.
+// candidates: in the order of the lanes.   not_repeated: receives the number of other failures.
+// Returns: the failures that a fresh process repeats.   Throws: OracleMismatch.
 std::vector<LeagueFailure> smallest_failures(const std::vector<Candidate>& candidates, std::uint64_t& not_repeated);
 
 }  // namespace graze::fuzz

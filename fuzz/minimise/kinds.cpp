@@ -24,7 +24,7 @@
 namespace graze::fuzz {
 namespace {
 
-// A signature's case file: its pairs, and the reasons why lanes are wrong on the pair that users see.
+// A signature's case file: its pairs, and the reasons why lanes are wrong on the pair shown to users.
 struct Case {
   analysis::Signature signature;
   std::string file;
@@ -54,7 +54,7 @@ struct Kind {
   std::string key, subject, cause, line;
   std::string_view shape;
   std::uint64_t pairs = 0, intersecting = 0;  // intersecting: those on which a wrong verdict is a false negative
-  std::array<std::uint64_t, 2> settled{};     // settled reasons, out of all audited ones
+  std::array<std::uint64_t, 2> settled{};     // [0] settled reasons, [1] audited reasons
 
   bool is_rarer(const Case& c) const {  // whether the case's truth is the rarer one among the kind's pairs
     return c.intersects() ? 2 * intersecting < pairs : 2 * intersecting > pairs;
@@ -91,9 +91,8 @@ bool is_of(const Kind& kind, const Case& c, const LaneReason& reason) {
   return kind_key(c.signature.subject, reason, shape_name(c.signature)) == kind.key;
 }
 
-// The index of the case whose pair shows the kind best. It prefers a pair on which no lane is wrong for another reason.
-// Then it prefers, in this order, a pair with the kind's commoner error, with settled reasons, that no earlier kind
-// shows, and that is simplest.
+// The index of the case whose pair shows the kind best. The criteria, in order of priority: no lane is wrong on it for
+// another reason; it has the kind's commoner error; its reasons are settled; no earlier kind shows it; it is simplest.
 std::size_t simplest_of(const Kind& kind, const std::vector<Case>& cases, std::set<std::string>& shown) {
   const auto rank = [&](std::size_t place) {
     const Case& c = cases[place];
@@ -115,7 +114,7 @@ double ulps_of(const corpus::Entry& entry) {
   return text.empty() ? 0 : std::abs(std::strtod(text.c_str(), nullptr));
 }
 
-// The pair that users see, with all lanes' verdicts and the reasons why lanes of the kind are wrong.
+// The pair shown to users, with all lanes' verdicts and the reasons why the kind's lanes are wrong.
 Json simplest_pair(const SelectedLanes& under_test, const Kind& kind, const Case& c) {
   std::vector<const Lane*> apart;
   const std::vector<Verdict> verdicts = decide(under_test, c.shown_pair(), apart);
@@ -160,8 +159,8 @@ Json worst_pair(const SelectedLanes& under_test, const Kind& kind, const std::ve
                    [](const Candidate& l, const Candidate& r) { return l.ulps > r.ulps; });
   candidates.resize(std::min(candidates.size(), kMostLookedAt));
   candidates.push_back({&simplest, &simplest.shown(), ulps_of(simplest.shown())});
-  // The last candidate is the simplest pair, which was found to be of the kind. It is not examined again, because
-  // verdicts that change could contradict this.
+  // The last candidate is the simplest pair, which is known to belong to the kind. It is not examined again, because
+  // code with changing verdicts could give another result.
   const auto worst = std::find_if(candidates.begin(), candidates.end() - 1, [&](const Candidate& candidate) {
     const std::vector<LaneReason> reasons =
         reasons_of(under_test, kind.subject, corpus::pair_of(*candidate.entry), truth_of(*candidate.entry));

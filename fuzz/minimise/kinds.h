@@ -17,28 +17,27 @@
 
 namespace graze::fuzz {
 
-// Why one lane is wrong on a pair.
 struct LaneReason {
   const Lane* lane;
   std::string cause;
   std::string line;  // "core/algorithms/moller_1997.h:117"; empty if no comparison is to blame or known
   bool settled;
-  bool audited;  // the cause could be checked: the computation is known, or experiments on foreign code decided
+  bool audited;  // the cause was checked: the computation is known, or experiments on foreign code decided
 };
 
-// Returns the reasons of those of the subject's lanes under test that are wrong on the pair. If a lane's computation is
-// not known, its reason may come from the lane of the same source that rounds every operation as written. That lane
-// must be wrong in the same way.
+// Returns the reasons of the subject's lanes under test that are wrong on the pair. If a lane's computation is not
+// known, its reason may come from the lane that compiles the same source and rounds every operation as written. That
+// lane must be wrong in the same way.
 std::vector<LaneReason> reasons_of(const SelectedLanes& under_test, std::string_view subject, const AnyPair& pair,
                                    Verdict truth);
 
-// The most kinds that are listed, shown on cards, or mapped. There may be hundreds of kinds, and most have a few pairs.
+// At most this many kinds are listed, shown on cards, or mapped. There may be hundreds, and most have only a few pairs.
 inline constexpr std::size_t kMostShown = 40;
 
-// The truth that a campaign's case records.
+// The truth recorded in a campaign's case.
 Verdict truth_of(const corpus::Entry& entry);
 
-// The pair's 18 hex floats, in the format of a file of pairs.
+// The pair's 18 hex floats, in the format of a pair file.
 std::string pair_text(const AnyPair& pair);
 
 // "degenerate" if a triangle is a segment or a point; "contained" if the triangles are coplanar and one lies in the
@@ -49,36 +48,37 @@ std::string_view shape_name(const analysis::Signature& signature);
 // "moller_1997/rounding/moller_1997.h:117/general"; an empty line becomes "-".
 std::string kind_key(std::string_view subject, const LaneReason& reason, std::string_view shape);
 
-// Finds the kinds. Each is an object with its definition, its places and its pairs:
+// Finds the kinds. Each is an object with its definition, its counts and its pairs:
 // {"key", "subject", "cause", "line", "shape", "pairs", "intersecting", "signatures", "lanes": [id],
 //  "settled": [yes, of], "strata": {id: kept pairs}, "margins": {bucket: pairs}, "places": [in summary["signatures"]],
 //  "simplest": {"case", "pair", "from", "lanes": [id], "verdicts": {id: verdict}, "sentences": [text]},
 //  "worst": {"case", "pair", "from", "margin_ulps"}}
 // `pairs` counts the pairs of its signatures. One pair represents each signature: the minimised pair, or else the first
-// kept pair. `intersecting` counts the pairs that intersect; their wrong verdicts are false negatives. The simplest
-// pair shows the commoner error if possible, and every lane that is wrong on it belongs to the kind if possible. The
-// worst pair has the largest margin among the examined kept pairs of the kind (at most kMostLookedAt). Returns: the
-// kinds, most frequent first, ties by key; nothing once `stop`, which is called from time to time, returns true.
-// Deterministic for any number of threads. Throws: FormatError; std::runtime_error if a device and its twin differ.
+// kept pair. `intersecting` counts the pairs that intersect; wrong verdicts on them are false negatives. If possible,
+// the simplest pair shows the commoner error, and every lane that is wrong on it belongs to the kind. The worst pair
+// has the largest margin among the kind's examined kept pairs (at most kMostLookedAt).
+// Returns: the kinds, most frequent first, ties by key; nothing once `stop`, which is called from time to time, returns
+// true. The result does not depend on the number of threads.
+// Throws: FormatError; std::runtime_error if a device and its twin differ.
 inline constexpr std::size_t kMostLookedAt = 40;
 Json find_kinds(
     const SelectedLanes& under_test, const std::filesystem::path& directory, const Json& summary,
     const std::function<bool()>& stop = [] { return false; });
 
 // Reads the kinds from failures.json; null if the file does not exist, or if the summary or a case has changed since.
-// Everything is compared with the summary and the cases, except for causes, lines, sentences, and the verdicts of other
-// subjects' lanes.
+// All fields are checked against the summary and the cases, except for causes, lines, sentences, and the verdicts of
+// other subjects' lanes.
 // Throws: FormatError, with the command that writes the file again.
 Json read_kinds(const std::filesystem::path& directory);
 // Reads the kinds; if there are none, finds and stores the kinds of the campaign's lanes.
-// Throws: what find_kinds throws; UsageError for lanes that this build does not have.
+// Throws: the errors of find_kinds; UsageError for lanes that this build does not have.
 Json kinds_of(
     const std::filesystem::path& directory, const Json& summary,
     const std::function<bool()>& stop = [] { return false; });
 void write_kinds(const std::filesystem::path& directory, const SelectedLanes& under_test, const Json& kinds);
 
-// The number of the summary's signatures that belong to no kind. Their lanes were not examined, run only on a device,
-// or are foreign code that did not fail again.
+// The number of the summary's signatures that belong to no kind, because their lanes were not examined, run only on a
+// device, or are foreign code that did not fail again.
 std::size_t signatures_without_kind(const Json& summary, const Json& kinds);
 
 }  // namespace graze::fuzz

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A small campaign of all strata, and its kinds.
+// A small campaign on all strata, and its kinds.
 class Kinds : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -70,7 +70,7 @@ TEST_F(Kinds, EverySignatureHasOneAndPairsAddUp) {
   EXPECT_EQ(places.size(), summary_["signatures"].size());
 }
 
-// A kind's key describes its pairs: each named lane is wrong on them, for the key's cause and at the key's line.
+// A kind's key describes its pairs: every lane it names is wrong on them, for the key's cause and at its line.
 TEST_F(Kinds, TheirPairsAreOfTheKind) {
   for (const Json& kind : kinds_) {
     for (const char* which : {"simplest", "worst"}) {
@@ -114,7 +114,7 @@ TEST_F(Kinds, AreTheSameWithOneThreadAndAfterStoring) {
   write_whole(directory_ / "summary.json", text);
 }
 
-// If a field is missing or has another type, the error names the file.
+// If a field is missing or has the wrong type, the error names the file.
 TEST_F(Kinds, StoredOnesAreWhole) {
   for (const auto& [field, value] : kinds_[0].items()) {
     Json damaged = kinds_;
@@ -128,7 +128,7 @@ TEST_F(Kinds, StoredOnesAreWhole) {
   fs::remove(directory_ / "failures.json");
 }
 
-// All fields that follow from the summary and the cases are compared with them.
+// All fields that can be computed from the summary and the cases are compared with them.
 TEST_F(Kinds, StoredOnesAgreeWithTheCampaign) {
   const fs::path file = directory_ / "failures.json";
   write_kinds(directory_, under_test_, kinds_);
@@ -208,7 +208,7 @@ TEST_F(Kinds, StoredOnesAgreeWithTheCampaign) {
   fs::remove(file);
 }
 
-// Kinds found with only some lanes, or with lanes that do not run here, do not hide the other failures.
+// If kinds were found with only some lanes, the failures of the others are still counted.
 TEST_F(Kinds, SignaturesWithoutAKindAreCounted) {
   EXPECT_EQ(signatures_without_kind(summary_, kinds_), 0u);
   EXPECT_EQ(signatures_without_kind(summary_, Json::array()), summary_["signatures"].size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads and writes failures.json. When it is read, it must agree with the summary and the cases beside it.
+// Reads and writes failures.json. Reading checks that it agrees with the summary and the cases beside it.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Thrown if failures.json has an impossible entry, which what() describes.
+// Thrown if failures.json has an impossible entry; what() describes it.
 struct Impossible : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -37,7 +37,7 @@ void expect(bool possible, const std::string& found) {
   if (!possible) throw Impossible(found);
 }
 
-// A signature in the summary, and its case file. The first pair decides to which kinds the signature belongs.
+// A signature in the summary, and its case file. Its first pair determines the signature's kinds.
 struct Case {
   std::string key, file;
   std::uint64_t pairs = 0;
@@ -62,11 +62,11 @@ Case read_case(const fs::path& directory, const Json& row) {
   return c;
 }
 
-// The data with which kinds are compared.
+// The data against which kinds are checked.
 struct Known {
   std::vector<Case> cases;          // by index in the summary
   std::set<std::string> lanes;      // lanes that were examined
-  std::map<std::string, bool> own;  // lanes that have a reason whenever they are wrong; true if it is audited
+  std::map<std::string, bool> own;  // lanes with a reason whenever they are wrong; true if audited
 };
 
 Known known_of(const fs::path& directory, const Json& summary, const Json& lanes) {
@@ -84,7 +84,7 @@ Known known_of(const fs::path& directory, const Json& summary, const Json& lanes
   return known;
 }
 
-// Throws: Json::exception if a row of failures.json lacks a field or a field has another type.
+// Throws: Json::exception if a kind lacks a field, or a field has the wrong type.
 void expect_shape(const Json& kind) {
   using Texts = std::map<std::string, std::string>;
   for (const char* field : {"key", "subject", "cause", "line", "shape"}) kind.at(field).get_ref<const std::string&>();
@@ -108,7 +108,7 @@ void expect_shape(const Json& kind) {
   kind.at("worst").at("margin_ulps").get<double>();
 }
 
-// Checks the counts of the kind's signatures, and the properties that they share.
+// Checks the kind's counts over its signatures, and the properties that the signatures share.
 void expect_places(const Known& known, const Json& kind) {
   using Counts = std::map<std::string, std::uint64_t>;
   const auto places = kind.at("places").get<std::vector<std::uint64_t>>();
@@ -201,8 +201,8 @@ void expect_pairs(const Known& known, const Json& kind) {
          "a worst pair that is not in its case file");
 }
 
-// Checks that each own lane that is wrong on a signature's first pair is in a kind with that signature. Also checks
-// that the kinds have at least as many audited reasons as there are such lanes.
+// Checks that each lane of `own` that is wrong on a signature's first pair is in a kind with that signature. Also
+// checks that the kinds have at least as many audited reasons as there are such lanes.
 void expect_all_covered(const Known& known, const Json& kinds) {
   std::vector<std::set<std::string>> covered(known.cases.size());
   std::map<std::string, std::uint64_t> told, least;  // audited reasons, by subject
@@ -248,10 +248,10 @@ std::string hash_of_summary(const fs::path& directory) {
   return fmt::format("{:016x}", fnv1a(read_whole(directory / "summary.json")));
 }
 
-// The campaign's summary. If the file is not JSON, access to its fields throws Json::exception.
+// The campaign's summary. If the file is not JSON, reading a field of it throws Json::exception.
 Json summary_in(const fs::path& directory) { return parse_shallow(read_whole(directory / "summary.json")); }
 
-// The hash of all signatures' current case files.
+// The hash of the current case files of all signatures.
 std::string hash_of_cases(const fs::path& directory, const Json& summary) {
   std::uint64_t hash = fnv1a("");
   for (const Json& row : summary.at("signatures")) hash = fnv1a(read_whole(case_file(directory, row)), hash);

@@ -19,12 +19,12 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::size_t kBlockPairs = 64;  // one word of verdicts
+constexpr std::size_t kBlockPairs = 64;  // one word of verdict bits
 
 constexpr int kMostLate = 3;  // after this many timeouts a case ends
 
-// Returns those of the pairs (at most 64) that get the failure's verdict from every lane. Wrong lanes decide first,
-// because they leave the fewest pairs to the others. late: increased by the number of timeouts of foreign code.
+// Returns the pairs (of at most 64) on which every lane gives the failure's verdict. Wrong lanes decide first, because
+// they leave the fewest pairs for the others.   late: increased by the number of timeouts of foreign code.
 template <class Real>
 std::vector<BasicPair<Real>> decided_alike(const Failure& failure, std::vector<BasicPair<Real>> pairs,
                                            int* late = nullptr) {
@@ -40,7 +40,7 @@ std::vector<BasicPair<Real>> decided_alike(const Failure& failure, std::vector<B
   return pairs;
 }
 
-// Decides in one thread at a time, as a device requires.
+// Decides in one thread at a time, because a device requires that.
 std::vector<Verdict> decide_in_turn(const SelectedLanes& under_test, const AnyPair& pair) {
   static std::mutex mutex;
   std::vector<const Lane*> apart;
@@ -49,7 +49,7 @@ std::vector<Verdict> decide_in_turn(const SelectedLanes& under_test, const AnyPa
   return decide(under_test, pair, apart);
 }
 
-// Replaces the worst pair so far with this one if its margin is larger. Bounds nearly always decide that.
+// Replaces the worst pair so far with this one if its margin is larger. Bounds on the margins nearly always decide.
 template <class Real>
 void keep_worst(Minimised& result, const BasicPair<Real>& pair, Verdict verdict) {
   if constexpr (std::is_same_v<Real, float>) {
@@ -66,7 +66,7 @@ bool in_range(const Failure& failure, const AnyPair& pair) {
   return !analysis::leaves_exponents(failure.first_wrong(pair), pair);
 }
 
-// A quick check before the cause is computed; false if the pair cannot have the reason.
+// A quick check before the expensive computation of the cause. Returns false if the pair cannot have the reason.
 bool may_have_reason(const Failure& failure, const Reason& reason, const AnyPair& pair) {
   const bool by_range = reason.cause == analysis::Cause::overflow || reason.cause == analysis::Cause::underflow;
   if (!reason.in_range && !by_range) return true;
@@ -79,13 +79,13 @@ bool same_bits(const BasicPair<Real>& l, const BasicPair<Real>& r) {
 }
 
 // Applies the move from `before` to `after` `times` times. If the move scaled all changed coordinates by one power of
-// two, they are scaled by it `times` times; otherwise they are moved `times` times as far.   Returns: nothing if a
-// coordinate is not finite.
+// two, they are scaled `times` times; otherwise they are moved `times` times as far.   Returns: nothing if a coordinate
+// is not finite.
 template <class Real>
 std::optional<BasicPair<Real>> repeated(const BasicPair<Real>& before, const BasicPair<Real>& after,
                                         std::int64_t times) {
   const Real *from = coordinates(before), *to = coordinates(after);
-  std::optional<int> exponent;  // of that power of two; 0 if there is none
+  std::optional<int> exponent;  // of the power of two; 0 if there is none
   for (int i = 0; i < kCoordinates; ++i) {
     if (to[i] == from[i]) continue;
     const int apart = from[i] == 0 || to[i] == 0 ? 0 : std::ilogb(to[i]) - std::ilogb(from[i]);
@@ -93,7 +93,7 @@ std::optional<BasicPair<Real>> repeated(const BasicPair<Real>& before, const Bas
     if (!exponent) exponent = apart;
   }
   const bool scaled = exponent && *exponent != 0;
-  if (scaled && times > (std::is_same_v<Real, float> ? 300 : 2200)) return {};  // no exponent is larger
+  if (scaled && times > (std::is_same_v<Real, float> ? 300 : 2200)) return {};  // larger than any exponent
   BasicPair<Real> result = before;
   for (int i = 0; i < kCoordinates; ++i) {
     if (to[i] == from[i]) continue;
@@ -105,8 +105,7 @@ std::optional<BasicPair<Real>> repeated(const BasicPair<Real>& before, const Bas
   return result;
 }
 
-// The index of the first wrong lane; lanes that their convention excuses do not count. The number of lanes if there is
-// none.
+// The index of the first wrong lane, ignoring lanes excused by their convention; the number of lanes if there is none.
 template <class Real>
 std::size_t wrong_at(const Failure& failure, const BasicPair<Real>& pair) {
   const Relation& truth = failure.truth;
@@ -122,7 +121,7 @@ bool counts(const Failure& failure, const BasicPair<Real>& pair) {
   return wrong_at(failure, pair) < failure.lanes.size();
 }
 
-// The pair, if this is its type.
+// The pair if its coordinates have this type, otherwise null.
 template <class Real>
 const BasicPair<Real>* pair_in(const AnyPair& pair) {
   if constexpr (std::is_same_v<Real, float>)
@@ -137,7 +136,7 @@ struct FoundCause {
 };
 
 FoundCause found_cause(const Lane& lane, const AnyPair& pair, Verdict truth) {
-  const bool stored = !pair.floats && lane.scalar == Scalar::f32;  // the lane decides another pair
+  const bool stored = !pair.floats && lane.scalar == Scalar::f32;  // the lane decides the rounded pair
   if (!lane.foreign || stored) return {analysis::cause_of(lane, pair, truth), false};
   const Verdict verdict = analysis::decide_lane(lane, pair);
   const analysis::Experiment found =
@@ -154,11 +153,11 @@ struct Walk {
   std::size_t most;
   Minimised result;
   std::vector<PairOf> way;  // from the first pair to the current one
-  std::size_t sure = 0;     // the last pair on the way that is known to have the cause
+  std::size_t sure = 0;     // index of the last pair in `way` known to have the cause
   bool ask_all = false;     // whether to check every pair's cause before taking it
-  bool open;                // whether this is foreign code whose cause is not settled on the first pair
+  bool open;                // foreign code whose cause is not settled on the first pair
   int late = 0;             // how many verdicts of foreign code timed out
-  bool prompt = false;      // whether it has decided a block of pairs in time
+  bool prompt = false;      // whether the foreign code has decided a block in time
 
   Walk(const Failure& of, const PairOf& pair, std::span<const Minimised> results, std::size_t limit)
       : Walk(of, pair, results, limit, found_cause(of.first_wrong(pair), pair, of.truth.verdict)) {}
@@ -181,15 +180,15 @@ struct Walk {
     const FoundCause found = found_cause(lane, pair, failure.truth.verdict);
     const analysis::Cause first = result.reason.cause;
     if (found.cause == first) return true;
-    // Only a guess may be replaced with what a simpler pair settles. Other causes come from experiments that made the
-    // verdict right.
+    // Only a guessed cause may be replaced with one that a simpler pair settles. Other causes come from experiments
+    // that made the verdict right.
     const bool guessed = first == analysis::Cause::rounding || first == analysis::Cause::logic;
     const bool is_order = found.cause == analysis::Cause::order_dependent;
     return open && guessed && (found.settled || (is_order && first == analysis::Cause::rounding));
   }
 
-  // Makes the candidate the current pair if it fails in the same way and for the same reason. Requires: it has the
-  // failure's verdicts.
+  // Makes the candidate the current pair if it fails in the same way and for the same reason.
+  // Requires: the candidate has the failure's verdicts.
   bool take(const PairOf& candidate) {
     if (!failure.has_shape_of(candidate) || !counts(failure, candidate)) return false;
     if (!may_have_reason(failure, result.reason, candidate)) return false;
@@ -205,7 +204,7 @@ struct Walk {
     return counts < now || (counts == now && simpler_coordinates(candidate, way.back()));
   }
 
-  // Repeats the last move 2, 4, 8, … times as far while the pair gets simpler, then bisects.
+  // Repeats the last move 2, 4, 8, … times at once while the pair gets simpler, then bisects.
   void repeat() {
     const PairOf before = way[way.size() - 2], once = way.back();
     const auto works = [&](std::int64_t times) {
@@ -270,7 +269,7 @@ struct Walk {
 
   bool ends_with_cause() { return sure == way.size() - 1 || has_cause(way.back()); }
 
-  // Goes back to a pair that has the cause although the next one lacks it.   Requires: the last pair lacks it.
+  // Goes back to a pair that has the cause and whose successor lacks it.   Requires: the last pair lacks the cause.
   void go_back() {
     std::size_t has = sure, lacks = way.size() - 1;
     while (lacks - has > 1) {
@@ -391,7 +390,7 @@ Minimised minimise(const Failure& failure, const AnyPair& pair, std::span<const 
 void confirm(const SelectedLanes& under_test, const Failure& failure, const AnyPair& pair) {
   const Relation by_oracle = oracle::truth(pair);
   if (by_oracle != failure.truth) throw oracle::OracleMismatch("the minimiser's truth and the oracle's differ");
-  if (!can_shrink(failure)) return;  // its pair is the original one, and running it again would prove nothing
+  if (!can_shrink(failure)) return;  // the pair is still the original, so there is nothing to confirm
   const std::vector<Failure> failures = failures_of(under_test, pair);
   if (std::find(failures.begin(), failures.end(), failure) == failures.end())
     throw std::runtime_error("the minimised pair does not fail like the original: this is a bug in Graze");

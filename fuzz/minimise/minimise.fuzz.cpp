@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the minimiser on pairs with any bits, and on pairs from any stratum, on which lanes fail. It must end within its
-// limit. Its result must fail alike, for the stated reason, and be at most as complex.
+// Runs the minimiser on failing pairs, with arbitrary bits or from any stratum. It must end within its limit. Its
+// result must fail in the same way, for the stated reason, and be at most as complex as the pair.
 #include "fuzz/minimise/minimise.h"
 
 #include "core/fuzz_pair.h"

@@ -16,10 +16,10 @@
 namespace graze::fuzz {
 
 // One algorithm's failure on a pair: the truth, the nesting, and the verdict of each lane. Another pair fails alike if
-// all these are the same.
+// all of these are the same for it.
 struct Failure {
-  // It comes from the exact decision in core/exact/exact.h; the oracle confirms the results (see confirm). It has only
-  // the sign of the margin, because keeping the margin's size would force the coordinates to keep many digits.
+  // From the exact decision in core/exact/exact.h; the oracle confirms the results (see confirm). It records only the
+  // margin's sign, because a fixed size would force the coordinates to keep many digits.
   Relation truth;
   Nesting nesting;
   std::vector<const Lane*> lanes;    // the algorithm's lanes among the lanes under test
@@ -31,8 +31,8 @@ struct Failure {
   template <class Real>
   bool has_shape_of(const BasicPair<Real>& pair) const;
 
-  // The first lane that is wrong on the pair; lanes that their convention excuses do not count.   Requires: there is
-  // such a lane.
+  // The first lane that is wrong on the pair, ignoring lanes excused by their convention.   Requires: there is such a
+  // lane.
   const Lane& first_wrong(const AnyPair& pair) const;
 };
 
@@ -42,15 +42,14 @@ std::vector<Failure> failures_of(const SelectedLanes& under_test, const AnyPair&
 
 bool fails_alike(const Failure& failure, const AnyPair& pair);
 
-// The signature of a pair that fails in the same way, with the bucket of its own margin.
+// The signature of a pair that fails alike, with the bucket of that pair's own margin.
 analysis::Signature signature_of(const Failure& failure, const AnyPair& pair);
 
 // Why a failure happens. Its lanes may be wrong for different reasons; only the reason of the first wrong lane in table
-// order counts. A pair fails for the same reason if the cause is the same. If all results of the lane's run are within
-// the exponents' range, those of the minimised pair must be too. Otherwise a rounding error would shrink to numbers of
-// 1e-30. For foreign code the first pair's cause may be a guess (rounding or logic, not settled). Then a simpler pair
-// may settle the cause, or show that the order matters and not rounding, even if that is not settled. The cause that
-// the simpler pair shows replaces the guess.
+// order counts. A pair fails for the same reason if the cause is the same. If no result of the lane's run overflows or
+// underflows, none may on the minimised pair. Otherwise a rounding error would shrink to coordinates around 1e-30. For
+// foreign code the first pair's cause may be a guess (rounding or logic, not settled). Then the cause on a simpler pair
+// replaces the guess if it is settled, or if it is the vertex order and the guess was rounding.
 struct Reason {
   analysis::Cause cause;
   bool in_range;  // no result of the lane's source, run without contraction, leaves the exponents' range
@@ -61,8 +60,8 @@ struct Reason {
 Reason reason_of(const Failure& failure, const AnyPair& pair);
 bool fails_for_reason(const Failure& failure, const Reason& reason, const AnyPair& pair);
 
-// The most pairs that moves may try for a case; at the limit the search ends even if the pair is not minimal. A pair
-// costs at most one verdict of every lane and one exact decision. Finding its cause counts as kMovedPerCause pairs.
+// The number of pairs that moves may try for a case. At this limit the search ends even if the pair is not minimal.
+// Each pair costs at most one verdict per lane and one exact decision. Finding a cause counts as kMovedPerCause pairs.
 inline constexpr std::size_t kMostMoved = 1'500'000;
 inline constexpr std::size_t kMovedPerCause = 500;
 inline constexpr std::size_t kLeastMoved = 40 * kMovedPerCause;  // reserved for finding the cause again, see minimise
@@ -74,20 +73,21 @@ inline constexpr std::size_t kMostMovedCrashing = 100'000;
 bool can_shrink(const Failure& failure);
 
 struct Minimised {
-  AnyPair pair;                  // fails alike and for the same reason
-  bool one_minimal = false;      // no single move makes it simpler and keeps these; false: the limit came first
-  std::size_t single_moves = 0;  // if one_minimal: the number of moves from the pair that were tried in vain
+  AnyPair pair;                  // fails alike, for the same reason
+  bool one_minimal = false;      // no single move makes it simpler and keeps both; false: the limit was reached
+  std::size_t single_moves = 0;  // if one_minimal: how many moves from the pair were tried and failed
   std::size_t moved = 0;         // pairs that moves tried; each search for a cause adds kMovedPerCause
   Reason reason;                 // the pair's reason; its cause is that of the first pair
-  AnyPair worst;                 // the pair with the largest margin in ulps on the way, including the first pair
-  double worst_ulps = 0;         // that margin, of either sign; the worst pair's cause may be different
+  AnyPair worst;                 // the pair with the largest margin in ulps, of the first pair and all visited ones
+  double worst_ulps = 0;         // that margin, of either sign; the worst pair may have another cause
 };
 
 // Repeats rounds over all kinds of moves until a round changes nothing. From each kind it takes the simplest pair that
-// fails alike. A move that helped is repeated 2, 4, 8, … times as far while the pair gets simpler, and then bisected.
-// The cause is expensive, so it is checked at the end. If the cause was lost, a bisection finds the step that lost it.
-// From there on, every pair's cause is checked. known: earlier results for this failure; if the search meets one, it
-// returns that result. most: replaces most_moved.
+// fails alike. A move that helped is repeated 2, 4, 8, … times at once while the pair gets simpler, and then bisected.
+// Finding a cause is expensive, so the cause is checked only at the end. If it was lost, a bisection finds the step
+// that lost it, and from there on every pair's cause is checked.
+// known: earlier results for this failure; if the search reaches one of them, it returns that result.
+// most: the limit, instead of most_moved.
 // Requires: fails_alike(failure, pair), most > kLeastMoved.   Throws: OracleMismatch.
 std::size_t most_moved(const Failure& failure);  // returns kMostMoved or kMostMovedCrashing
 Minimised minimise(const Failure& failure, const AnyPair& pair, std::span<const Minimised> known = {},

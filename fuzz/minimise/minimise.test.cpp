@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what the minimiser promises: a total order, the same failure, no simpler pair one move away, and the same bytes
+// Tests the minimiser's guarantees: a total order, the same failure, no simpler pair one move away, and the same bytes
 // each time.
 #include "fuzz/minimise/minimise.h"
 
@@ -103,7 +103,7 @@ TEST(Simplicity, ComparesInTheStatedOrder) {
   EXPECT_EQ(count_of(simplicity(in_space), 7), 2);
 }
 
-// One of any two pairs is simpler, unless their bits are the same, and the relation is transitive.
+// Of any two pairs with different bits, one is simpler, and the relation is transitive.
 TEST(Simplicity, IsATotalOrder) {
   std::vector<Pair> pairs;
   for (const strata::StratumInfo& row : strata::kStrata) {
@@ -160,7 +160,7 @@ TEST(Moves, AreFiniteWhateverThePair) {
   }
 }
 
-// Pairs of floats and the same pairs in doubles are equally simple, and the moves of doubles reach those of floats.
+// A float32 pair is as simple as the same pair in doubles, and moves in doubles include moves in float32.
 TEST(Simplicity, IsThatOfTheSameNumbersInDoubles) {
   std::size_t reached = 0, of_floats = 0;
   for (const strata::StratumInfo& stratum : strata::kStrata) {
@@ -188,8 +188,8 @@ TEST(Simplicity, IsThatOfTheSameNumbersInDoubles) {
 
 class MinimiseStratum : public testing::TestWithParam<strata::StratumInfo> {};
 
-// The oracle confirms the same failure, and the pair is at least as simple. No move of any kind improves it, and
-// minimising it again changes nothing.
+// The oracle confirms the same failure, and the result is at least as simple as the original. No move of any kind
+// improves it, and minimising it again changes nothing.
 TEST_P(MinimiseStratum, MinimisesToAOneMinimalPairThatFailsAlike) {
   const std::vector<Case> cases = cases_of(GetParam().stratum, 4);
   ASSERT_FALSE(cases.empty());
@@ -230,7 +230,7 @@ TEST_P(MinimiseStratum, MinimisesToAOneMinimalPairThatFailsAlike) {
     EXPECT_EQ(found.reason.cause, before.cause);
     EXPECT_TRUE(found.reason == reason_of(c.failure, found.pair));
     EXPECT_TRUE(fails_for_reason(c.failure, before, found.pair));
-    EXPECT_LE(found.single_moves, simpler);  // equal results of a kind are counted once
+    EXPECT_LE(found.single_moves, simpler);  // equal results of one kind of move are counted once
     EXPECT_EQ(found.single_moves == 0, simpler == 0);
 
     const Minimised again = minimise(c.failure, found.pair);
@@ -252,7 +252,7 @@ const SelectedLanes& under_test_of_doubles() {
   return all;
 }
 
-// Tests the same promises on pairs of doubles of every stratum. The results are pairs of doubles too.
+// Tests the same guarantees on pairs of doubles from every stratum. The results are pairs of doubles too.
 TEST(MinimiseDoubles, MinimisesToAOneMinimalPairThatFailsAlike) {
   std::map<analysis::Cause, int> causes;
   int minimal = 0, all = 0;
@@ -296,7 +296,7 @@ TEST(MinimiseDoubles, MinimisesToAOneMinimalPairThatFailsAlike) {
 }
 
 TEST(Minimise, ShrinksWhatFailsOnlyAtTheEndsOfTheRange) {
-  // Scales a crossing pair to very small and very large sizes, at which products underflow or overflow in float32.
+  // Scales a crossing pair so far down or up that products underflow or overflow in float32.
   for (const float scale : {0x1p-149f, 1e-30f, 1e37f}) {
     Pair pair = pair_of({-1, -1, 0, 3, -1, 0, -1, 3, 0, 0, 0, -1, 0, 0, 1, 1, 1, 2});
     for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] *= scale;
@@ -344,7 +344,7 @@ TEST(Minimise, EndsWithinItsLimit) {
   EXPECT_GT(stopped, 10);
 }
 
-// A known result that the search meets is returned; the search without it gives the same result.
+// If the search reaches a known result, it returns it. Without the known result, the search ends at the same pair.
 TEST(Minimise, EndsWhereAnotherCaseEnded) {
   for (const Case& c : cases_of(strata::Stratum::near_vertex_face, 1)) {
     SCOPED_TRACE(c.name);
@@ -357,7 +357,7 @@ TEST(Minimise, EndsWhereAnotherCaseEnded) {
   }
 }
 
-// Rounding failures near the limits of the exponents (2^-75) must not shrink into overflow or underflow.
+// Rounding failures near the limits of the exponents (2^-75) must not become overflow or underflow as the pair shrinks.
 TEST(Minimise, TheCauseStays) {
   std::set<analysis::Cause> seen;
   int out_of_range = 0;
@@ -379,7 +379,7 @@ TEST(Minimise, TheCauseStays) {
   EXPECT_GT(out_of_range, 0);
 }
 
-// A lane that its convention excuses is not the first wrong lane, even if it comes first.
+// A lane excused by its convention is not the first wrong lane, even if it comes first.
 TEST(Minimise, TheFirstWrongLaneIsNotExcused) {
   const Pair touching = pair_of({0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, 0, 1, 1, 1, 3, 3, 1});
   static const AlgorithmInfo info{"excused", "test", "", "", "", false};

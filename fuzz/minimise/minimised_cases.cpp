@@ -78,7 +78,7 @@ std::vector<corpus::Entry> checked_cases(const SelectedLanes& under_test, const 
 std::vector<MinimisedCase> minimise_cases(const SelectedLanes& under_test, const std::vector<corpus::Entry>& entries,
                                           const std::function<bool()>& stop) {
   std::vector<MinimisedCase> results;
-  std::vector<std::vector<Minimised>> ended;  // the minimised originals of each result
+  std::vector<std::vector<Minimised>> ended;  // for each result, its minimised originals
   for (const corpus::Entry* entry : originals(entries)) {
     if (stop()) return {};
     const AnyPair pair = corpus::pair_of(*entry);
@@ -122,7 +122,7 @@ std::vector<MinimisedCase> minimise_cases(const SelectedLanes& under_test, const
     } catch (const oracle::OracleMismatch&) {
       throw;
     } catch (const std::runtime_error&) {
-      // Foreign code may give a different verdict the second time, merely because of timing. In that case the original
+      // Foreign code may give a different verdict the second time, for example because of timing. Then the original
       // pair becomes the result.
       if (!result.failure.lanes.front()->foreign) throw;
       result.result.pair = result.result.worst = result.original;

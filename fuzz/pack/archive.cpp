@@ -28,7 +28,7 @@ constexpr std::size_t kMostFiles = 100'000, kLongestName = 1000, kLongestPart = 
 constexpr std::string_view kMagic{"SQLite format 3\0", 16};
 constexpr std::size_t kApplicationAt = 68;  // in the file's first 100 bytes; big-endian
 
-// A defect of an archive. The message does not name the archive.
+// Thrown for a defect in an archive. The message does not name the archive.
 struct BadArchive : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -47,7 +47,7 @@ void expect_no_folder(const std::vector<PackedFile>& files) {
 }
 
 void expect_our_table(SQLite::Database& database) {
-  if (database.execAndGet("PRAGMA application_id").getInt64() != kPackId) throw BadArchive("it is not a pack of Graze");
+  if (database.execAndGet("PRAGMA application_id").getInt64() != kPackId) throw BadArchive("it is not a Graze pack");
   SQLite::Statement query(database, "SELECT sql FROM sqlite_schema WHERE sql IS NOT NULL");
   std::size_t tables = 0;
   for (; query.executeStep(); ++tables) {
@@ -138,16 +138,16 @@ std::vector<PackedFile> read_archive(const fs::path& file) {
     for (const int option :
          {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_TRIGGER, SQLITE_DBCONFIG_ENABLE_VIEW})
       sqlite3_db_config(database.getHandle(), option, 0, nullptr);
-    // The archive is read from memory, so that SQLite reads no file beside it.
+    // The archive is read from memory, so that SQLite does not read a log or journal beside it.
     if (sqlite3_deserialize(database.getHandle(), "main", reinterpret_cast<unsigned char*>(bytes.data()), size, size,
                             SQLITE_DESERIALIZE_READONLY) != SQLITE_OK)
-      throw BadArchive("it is not a pack of Graze");
+      throw BadArchive("it is not a Graze pack");
     return files_of(database, bytes.size());
   } catch (const BadArchive& error) {
     throw corpus::FormatError(cannot("use", file, std::string(error.what()) + "; get the pack from its source again"));
   } catch (const SQLite::Exception& error) {
     throw corpus::FormatError(cannot("use", file,
-                                     fmt::format("it is not a pack of Graze, or it is damaged ({}); get it from its "
+                                     fmt::format("it is not a Graze pack, or it is damaged ({}); get it from its "
                                                  "source again",
                                                  printable(error.what()))));
   }

@@ -14,22 +14,22 @@ struct PackedFile {
   std::string bytes;
 };
 
-// Whether an archive may hold a file of this name. The name must be printable and lead to a place in the folder to
-// which the archive is unpacked, whatever that folder holds.
+// Whether an archive may hold a file with this name. The name must be printable and lead to a place inside the folder
+// to which the archive is unpacked, whatever that folder contains.
 bool may_be_packed(std::string_view name);
 
-// The archive of the files; the same files give the same bytes.   Requires: names that may be packed, each once.
+// An archive with these files; its bytes depend only on them.   Requires: distinct names that may be packed.
 std::string archive_of(std::vector<PackedFile> files);
 
-// Whether the file begins like an archive of Graze.
+// Whether the file begins like an archive that Graze wrote.
 bool is_archive(const std::filesystem::path& file);
 
 // The files, sorted by name. An archive is untrusted input: names, kinds and sizes are checked, and links are refused.
-// The files together must not be larger than the archive, so that repeated pages cannot fill the disk.
+// The files together must not be larger than the archive, so that pages shared by files cannot fill the disk.
 // Throws: FormatError that names the file, if it is damaged or hostile.
 std::vector<PackedFile> read_archive(const std::filesystem::path& file);
 
-// Writes the files into a new folder.   Throws: UsageError if something with its name exists; std::runtime_error.
+// Writes the files into a new folder.   Throws: UsageError if the folder's name is taken; std::runtime_error.
 void unpack(const std::vector<PackedFile>& files, const std::filesystem::path& folder);
 
 }  // namespace graze::fuzz

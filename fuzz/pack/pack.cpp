@@ -29,10 +29,10 @@ constexpr int kPackFormat = 1;
 
 std::string hash_text(const std::string& bytes) { return fmt::format("{:016x}", fnv1a(bytes)); }
 
-// The files of the pack so far, each name once.
+// The pack's files so far, each with a different name.
 class Collected {
  public:
-  // Throws: std::runtime_error if another file has the name.
+  // Throws: std::runtime_error if a different file already has the name.
   void add(const std::string& name, std::string bytes, bool is_program = false) {
     const auto [found, is_new] = files_.try_emplace(name, PackedFile{name, is_program, bytes});
     if (!is_new && found->second.bytes != bytes)
@@ -81,7 +81,7 @@ void add_results(const fs::path& directory, const Json& summary, Collected& to) 
   }
 }
 
-// Adds the subjects' files.   Returns: {"name", "what", "flags"} of each.
+// Adds the subjects' files.   Returns: {"name", "what", "flags"} for each subject.
 Json add_subjects(const Json& recorded, Collected& to, Json& not_packed) {
   Json rows = Json::array();
   for (const Json& row : recorded) {
@@ -118,7 +118,7 @@ std::string add_scene(const Json& recorded, Collected& to) {
   const fs::path file = scene.file;
   std::vector<fs::path> inputs(scene.scene.meshes.files.begin(), scene.scene.meshes.files.end());
   if (!scene.scene.meshes.poses.empty()) inputs.emplace_back(scene.scene.meshes.poses);
-  std::ptrdiff_t most_up = 0;  // how many folders above the scene's folder a name leads
+  std::ptrdiff_t most_up = 0;  // how many levels above the scene's folder a name leads
   for (fs::path& input : inputs) {
     input = input.lexically_normal();
     most_up = std::max(most_up, std::count(input.begin(), input.end(), fs::path("..")));

@@ -24,7 +24,7 @@ Pack pack_campaign(const std::filesystem::path& directory);
 Pack read_pack(const std::filesystem::path& file);
 
 // A campaign's spec with the pack's subjects, meshes and scene, under their names within files/.
-// Throws: std::runtime_error if they are not the spec's; nlohmann's exceptions for JSON of another shape.
+// Throws: std::runtime_error if they are not the spec's; nlohmann's exceptions if keys or types are wrong.
 Json spec_of_pack(Json spec, const Json& manifest);
 
 }  // namespace graze::fuzz

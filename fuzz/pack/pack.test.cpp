@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests damaged and hostile archives. Each is refused with an error of one line, and nothing is written outside a new
+// Tests damaged and hostile archives. Each is refused with a one-line error, and nothing is written outside a new
 // folder.
 #include "fuzz/pack/pack.h"
 
@@ -41,7 +41,7 @@ class PackTest : public testing::Test {
     return error;
   }
 
-  // The archive's bytes after these SQL statements ran on it.
+  // The archive's bytes after these SQL statements are run on it.
   std::string edited(const std::string& bytes, const std::string& sql) const {
     const fs::path file = root_ / "edited.sqlar";
     write_whole(file, bytes);
@@ -122,7 +122,7 @@ TEST_F(PackTest, WhatIsNoPlainFileIsRefused) {
   EXPECT_NE(refusal("graze"), "");
 }
 
-// Pages that several rows share would make the files larger than the archive.
+// If several rows shared pages, the files could be larger than the archive.
 TEST_F(PackTest, DamageIsRefusedOrHarmless) {
   std::vector<PackedFile> files = files_;
   for (int i = 0; i < 200; ++i) files.push_back({fmt::format("files/{:03}", i), false, std::string(100, 'y')});
@@ -152,7 +152,7 @@ TEST_F(PackTest, DamageIsRefusedOrHarmless) {
   EXPECT_GT(refused, 300);
 }
 
-// pack.json must list every file with its hash, and may name only what is in the pack.
+// pack.json must list every file with its hash, and may name only files in the pack.
 TEST_F(PackTest, TheListOfFilesIsChecked) {
   const auto packed = [&](const std::function<void(Json&, std::vector<PackedFile>&)>& edit, bool seal = true) {
     std::vector<PackedFile> files = {{"campaign/summary.json", false, "{}"}, {"files/subjects/m/m.c", false, "int x;"}};
@@ -203,7 +203,7 @@ TEST_F(PackTest, TheListOfFilesIsChecked) {
   EXPECT_NE(packed([](Json&, auto&) {}, false), "");
 }
 
-// A pack's subjects, meshes and scenes must be those that the campaign recorded; only their paths differ.
+// A pack's subjects, meshes and scenes must be the campaign's recorded ones; only their paths differ.
 TEST_F(PackTest, APackRunsItsOwnCampaign) {
   const Json spec = {
       {"subjects", {{{"name", "m"}, {"what", "/a/m.c"}, {"flags", {"-I/a"}}, {"environment", {{"CC", "x"}}}}}},

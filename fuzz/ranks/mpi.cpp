@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only file that includes MPI. The counter is a number in the root's memory. Ranks fetch and increase it with
+// The only file that includes MPI. The shared counter is in the root's memory. Ranks fetch and increment it with
 // one-sided operations, so that a slow rank does not delay the others.
 #include <mpi.h>
 
@@ -15,7 +15,7 @@ namespace graze::fuzz {
 namespace {
 
 constexpr int kTag = 1, kTagOfNothing = 2;
-constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;  // MPI counts bytes in an int
+constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;  // because MPI counts bytes in an int
 
 void check(int code, const char* what) {
   if (code != MPI_SUCCESS) {
@@ -45,8 +45,8 @@ class MpiRanks final : public Ranks {
     if (rank == 0) *counter_ = 0;
     MPI_Barrier(MPI_COMM_WORLD);
     check(MPI_Win_lock_all(MPI_MODE_NOCHECK, window_), "MPI_Win_lock_all");
-    // Some networks serve the counter only while the root is inside an MPI call. So a thread of the root polls while
-    // the root computes.
+    // On some networks the counter responds only while the root is inside an MPI call. So a thread of the root polls
+    // MPI while the root computes.
     if (rank == 0 && local_size < size && threads == MPI_THREAD_MULTIPLE) {
       progress_ = std::jthread([](const std::stop_token& stop) {
         for (int found = 0; !stop.stop_requested(); std::this_thread::sleep_for(std::chrono::milliseconds(1)))

@@ -16,7 +16,7 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::uint64_t kMostOnCpu = std::uint64_t{1} << 20;  // pairs per block of the CPU engine: some seconds
+constexpr std::uint64_t kMostOnCpu = std::uint64_t{1} << 20;  // pairs per block of the CPU engine; a few seconds
 
 // The root's plan for all ranks: {"build", "size", "gaps": [[source, first, pairs], …]} or {"error"}.
 Json plan_of(const Campaign& campaign, const Store& store, int ranks) {
@@ -35,7 +35,7 @@ Json plan_of(const Campaign& campaign, const Store& store, int ranks) {
 }  // namespace
 
 std::uint64_t block_pairs(std::uint64_t left, int ranks, std::uint64_t most) {
-  constexpr std::uint64_t kLeast = 1024, kBlocksOfRank = 64;  // so that the last blocks end at nearly the same time
+  constexpr std::uint64_t kLeast = 1024, kBlocksOfRank = 64;  // makes all ranks finish at nearly the same time
   return std::clamp(left / (kBlocksOfRank * static_cast<unsigned>(ranks)), kLeast, most);
 }
 
@@ -56,7 +56,7 @@ PairRange Blocks::at(std::uint64_t number) const {
 
 std::optional<Outcome> run_on_ranks(Campaign& campaign, Ranks& ranks, const std::atomic<bool>& stop) {
   const auto start = std::chrono::steady_clock::now();
-  std::optional<Store> store;  // on the root, where it holds the campaign's lock
+  std::optional<Store> store;  // only on the root; holds the campaign's lock
   Json plan;
   if (ranks.rank == 0) {
     try {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a campaign on the ranks that mpirun started. Each rank takes blocks from the shared counter and writes to its
-// own store, DIR/rank-R. At the end a tree of reductions brings the sums to the root, whose campaign equals that of a
-// single process. If a rank dies, its committed pairs remain: the next run adds them and judges the missing ones.
+// Runs a campaign on the ranks that mpirun started. Each rank takes block numbers from the shared counter and writes to
+// its own store, DIR/rank-R. At the end a tree of reductions brings the sums to the root. The result equals that of a
+// single process. If a rank dies, its committed pairs remain: the next run adds them and judges the missing pairs.
 #pragma once
 
 #include <optional>
@@ -11,12 +11,11 @@
 
 namespace graze::fuzz {
 
-// Runs or resumes the campaign.
-// Returns: on the root, the outcome once everything is done; nothing on the other ranks, or if a rank was stopped.
-// Throws: what run_campaign throws, on the rank that fails, which must then abort.
+// Returns: on the root, the outcome when all work is done; nothing on other ranks, or if any rank was stopped. Throws:
+// the errors of run_campaign, on the rank that fails, which must then abort.
 std::optional<Outcome> run_on_ranks(Campaign& campaign, Ranks& ranks, const std::atomic<bool>& stop);
 
-// The number of pairs per block when `left` pairs are left.
+// The number of pairs per block if `left` pairs remain.
 std::uint64_t block_pairs(std::uint64_t left, int ranks, std::uint64_t most);
 
 // Splits ranges into numbered blocks, in an order that reaches all sources early.

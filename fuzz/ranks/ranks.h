@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The interface to the processes that `mpirun` started together. Only mpi.cpp includes MPI. It is a separate library
-// beside the program, and is loaded only under mpirun, so nothing changes without MPI.
+// beside the program, loaded only under mpirun, so the program also runs without MPI.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace graze::fuzz {
 
 class Ranks {
  public:
-  virtual ~Ranks() = default;  // collective: either all ranks get here or none
+  virtual ~Ranks() = default;  // collective: all ranks must call it
 
   int rank = 0, size = 1;
   int local_rank = 0, local_size = 1;  // among the ranks on this host
@@ -20,11 +20,11 @@ class Ranks {
   // Broadcasts the root's text to all ranks.
   virtual std::string from_root(const std::string& text) = 0;
 
-  // Takes the next number from a counter that all ranks share, without waiting for other ranks.
+  // Takes the next number from the counter that all ranks share, without waiting for other ranks.
   virtual std::uint64_t next() = 0;
 
-  // Sends what a rank and the ranks below it in the tree know to its parent, in log2(size) rounds. In each round a rank
-  // either sends the result of `give` and is done, or passes what it received to `take`.
+  // Combines all ranks' data on the root, along a tree, in log2(size) rounds. In each round a rank either sends the
+  // result of `give` to its parent and is done, or passes the bytes that it received to `take`.
   virtual void reduce(const std::function<std::string()>& give,
                       const std::function<void(const std::string& bytes)>& take) = 0;
 

@@ -35,14 +35,14 @@ std::string seen_by(const Json& build, std::string_view kind, const std::string&
                      fnv1a(identity));
 }
 
-// The signature without its lanes, that is, its pair's properties and its subject.
+// The signature without its lanes: only the pair's properties and the subject remain.
 std::optional<analysis::Signature> without_lanes(const std::string& key) {
   std::optional<analysis::Signature> signature = analysis::parse_signature(key);
   if (signature) signature->wrong_lanes.clear();
   return signature;
 }
 
-// The pair's signatures, one for each subject, whether it is right or wrong.
+// The pair's signatures, one for each subject, including subjects that are right.
 std::vector<analysis::Signature> signatures_of(const AnyPair& pair, const Replay& seen) {
   const analysis::Signature blank = visit(pair, [&](const auto& own) -> analysis::Signature {
     return {seen.truth.contact,
@@ -142,7 +142,7 @@ Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const
       if (s.subject == algorithm) found = analysis::key(s);
     }
   }
-  // A minimised pair has its own margin, and so records its own signature.
+  // A minimised pair has a different margin, so its entry records its own signature.
   const std::string* own = corpus::field(failure.entry, "signature");
   const std::string& recorded = own ? *own : failure.signature;
   if (!without_lanes(found) || without_lanes(found) != without_lanes(recorded)) {

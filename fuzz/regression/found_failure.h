@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Failures to add to the regression corpus, from a campaign's directory or from single cases.
+// Finds failures in a campaign's directory or in single cases, and adds them to the regression corpus.
 #pragma once
 
 #include <filesystem>
@@ -17,25 +17,26 @@ struct FoundFailure {
   corpus::Entry entry;
   std::uint64_t count;    // how many pairs have this signature
   std::string seen;       // the build and the campaign: "commit, compiler, toolkit, device; campaign HASH"
-  std::string file = "";  // the file that holds the entry; empty for the file that the user named
+  std::string file = "";  // the file with the entry; empty for the file that the user named
 };
 
 // Returns the first case of each signature that matches one of the shell patterns, or of all signatures if there are no
-// patterns. The minimised case comes first if there is one. Returns cases only for the `most` most frequent signatures
-// of each subject. Throws: UsageError if the directory holds no finished campaign; FormatError.
+// patterns. The minimised case comes first if there is one. At most `most` signatures of each subject, the most
+// frequent.
+// Throws: UsageError if the directory holds no finished campaign; FormatError.
 std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directory,
                                             const std::vector<std::string>& globs, std::size_t most);
 
-// Returns one failure for each signature of the entries: the one in the field `signature`, or else one for each
-// algorithm that is wrong. If there are minimised entries, only they are used.
+// Returns one failure for each signature of the entries. An entry's signature is its field `signature`; without that
+// field it has one signature for each algorithm that is wrong. If there are minimised entries, only they are used.
 std::vector<FoundFailure> found_in_cases(const std::vector<corpus::Entry>& entries, const Json& build,
                                          std::span<const Lane* const> lanes, const DecideLanes& decide);
 
 enum class Added { as_new, seen_again, known, not_run };
 
-// Replays a failure and adds it as a case. If its signature already has a case, it is counted there instead.
-// A fixed case that fails again becomes failing, with the new pair. The same failure twice in a row counts
-// once, so that an interrupted command can be repeated. If none of the wrong lanes runs here, nothing is added.
+// Replays a failure and adds it as a case. If its signature already has a case, the failure is counted there instead.
+// A fixed case that fails again becomes failing, with the new pair. A failure that is added twice in a row counts once,
+// so that an interrupted command can be repeated. If none of the wrong lanes runs here, nothing is added.
 // Throws: std::runtime_error if the pair does not have the signature.
 Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const Lane* const> lanes,
           const DecideLanes& decide);

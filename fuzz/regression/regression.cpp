@@ -25,7 +25,7 @@ constexpr std::string_view kOwnFields[] = {"name",      "truth", "contact", "sta
 
 constexpr std::string_view kMarks = ".+-?!@%~";
 
-// "moller_1997:-f32/cpu.f64/cpu;projected_sat:.f32/cpu": each subject with its lanes, each lane after its mark.
+// "moller_1997:-f32/cpu.f64/cpu;projected_sat:.f32/cpu": each subject with its lanes, each preceded by its mark.
 std::string text_of(const Marks& marks) {
   std::string text, last;
   for (const auto& [id, mark] : marks) {
@@ -37,7 +37,7 @@ std::string text_of(const Marks& marks) {
   return text;
 }
 
-// Reads a line of the file; each error names the line.
+// Reads the fields of one line of the file; each error names the line.
 struct Line {
   const corpus::Entry& entry;
   std::string where;
@@ -67,7 +67,7 @@ struct Line {
     return *value;
   }
 
-  // Lanes that are not named did not run. Lanes of other builds are kept.
+  // Lanes that the line does not name did not run. Lanes of other builds are kept.
   Marks marks() const {
     Marks marks;
     std::istringstream subjects(text("lanes"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The regression corpus: known failures with their current states, one case for each signature, in one file of pairs.
-// The corpus does not depend on the time. The same failures in the same order give the same bytes.
+// Adding the same failures in the same order gives the same bytes, at any time.
 #pragma once
 
 #include <cstdint>
@@ -25,12 +25,12 @@ namespace graze::fuzz {
 enum class CaseState { failing, fixed, flaky };
 std::string_view name(CaseState state);
 
-// The mark of each lane that ran, by the lane's name: a mark from analysis/signature.h, or '~' if the lane's verdict
-// differed between replays.
+// The mark of each lane that ran, by lane name: a mark from analysis/signature.h, or '~' if the verdict differed
+// between replays.
 using Marks = std::map<std::string, char>;
 
 struct RegressionCase {
-  std::string name;  // a word that no other case has
+  std::string name;  // unique, without spaces
   AnyPair pair;
   std::string truth, contact;
   CaseState state = CaseState::failing;
@@ -40,7 +40,7 @@ struct RegressionCase {
   std::vector<std::pair<std::string, std::string>> other = {};  // other fields of the original entry
 };
 
-// The fields of an entry for which a case has no members.
+// The fields of an entry for which RegressionCase has no members.
 std::vector<std::pair<std::string, std::string>> other_fields(const corpus::Entry& entry);
 
 // Cases by the signature with which they were first seen.
@@ -49,14 +49,14 @@ using RegressionCorpus = std::map<std::string, RegressionCase>;
 // The name of a case: its subject and a hash of its signature.
 std::string case_name(const std::string& signature);
 
-// Throws: FormatError, including if the file is missing, holds a signature twice, or has a name that is not its
-// signature's.
+// Throws: FormatError, also if the file is missing, holds a signature twice, or has a name that does not match its
+// signature.
 RegressionCorpus read_regressions(const std::filesystem::path& file);
 
 // Replaces the file atomically.
 void write_regressions(const std::filesystem::path& file, const RegressionCorpus& corpus);
 
-// Gives each lane's verdict on a pair; `apart` receives the lanes whose executors disagree. See decide in
+// Returns each lane's verdict on a pair; `apart` receives the lanes whose executors disagree. See decide in
 // fuzz/selected_lanes.h.
 using DecideLanes = std::function<std::vector<Verdict>(const AnyPair&, std::vector<const Lane*>& apart)>;
 
@@ -70,7 +70,7 @@ inline constexpr int kReplays = 3;
 // Runs the lanes on the pair kReplays times.
 Replay replay(const AnyPair& pair, std::span<const Lane* const> lanes, const DecideLanes& decide);
 
-// The state of a case with this signature after a replay; `before` if the replay does not show it.
+// The state of a case with this signature after a replay; `before` if the replay does not determine it.
 CaseState state_after(CaseState before, const std::string& signature, const Marks& now);
 
 struct Change {
@@ -84,8 +84,8 @@ struct Verified {
 };
 
 // Replays every case and updates verdicts and states in the corpus.
-// Returns: the differences from the record. For an exact lane without a record, the truth is the record. Other lanes
-// without a record, and lanes that did not run, make no difference.
+// Returns: the differences from the record. An exact lane without a record is compared with the truth. Other lanes
+// without a record, and lanes that did not run, are not compared.
 Verified verify(RegressionCorpus& corpus, std::span<const Lane* const> lanes, const DecideLanes& decide);
 
 }  // namespace graze::fuzz

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests the regression corpus with lanes that are wrong on request: the changes that verify reports, and the states of
+// Tests the regression corpus with lanes that the tests make wrong: the changes that verify reports, and the states of
 // a case.
 #include "fuzz/regression/regression.h"
 
@@ -21,11 +21,11 @@ constexpr Pair kTouching{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {1, 2, 4
 constexpr Pair kShifted{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{2, 1, 0}, {2, 2, 4}, {3, 1, 4}}};
 const std::string kSignature = "point/22/skew/0/moller_1997:-f32/cpu";
 
-// All lanes. The lanes in `wrong` give the verdict disjoint, which is wrong on these pairs. The other lanes are right.
+// All lanes. Those in `wrong` give the verdict disjoint, which is wrong on these pairs; the others are right.
 struct Liars {
   std::vector<const Lane*> lanes;
   std::set<std::string> wrong{"moller_1997/f32/cpu"};
-  std::set<std::string> alternating;  // lanes that are wrong every other time
+  std::set<std::string> alternating;  // lanes that are wrong on every second call
   std::set<std::string> apart;
   int calls = 0;
 
@@ -144,7 +144,7 @@ TEST_F(Regression, EveryLaneIsCompared) {
   EXPECT_EQ(verify(corpus, liars.lanes, liars.decide()).compared, published_lanes().size());
   liars.wrong.insert("separating_axes/f64/cuda-fma");
   EXPECT_EQ(changes(), Texts{"separating_axes/f64/cuda-fma: was intersects (right), is disjoint (wrong)"});
-  EXPECT_EQ(changes(), Texts());  // now the change is recorded
+  EXPECT_EQ(changes(), Texts());  // the change is recorded already
 }
 
 TEST_F(Regression, AFailingCaseIsFixedAndFailsAgain) {
@@ -169,7 +169,7 @@ TEST_F(Regression, AFixedCaseTakesThePairThatFailsAgain) {
   EXPECT_EQ(changes(), Texts());
 }
 
-// A minimised pair has its own margin, but remains the case of the campaign's signature.
+// A minimised pair has a different margin, but is still stored under the campaign's signature.
 TEST_F(Regression, AMinimisedPairIsTheCaseOfItsSignature) {
   std::string other = kSignature;
   other.replace(other.find("/0/"), 3, "/-2^-3/");
@@ -227,7 +227,7 @@ TEST(Failures, OfACaseAreAllItsWrongAlgorithms) {
   EXPECT_NE(found[0].seen, found_in_cases({{kShifted}}, build, liars.lanes, liars.decide())[0].seen);
 }
 
-// If the file has no mark of an exact lane, the truth is its record.
+// If the file has no mark for an exact lane, the lane is compared with the truth.
 TEST_F(Regression, AnExactLaneThatIsWrongIsAChange) {
   for (const Lane& lane : lanes()) {
     if (lane.id == "exact/f32/cpu") liars.lanes.push_back(&lane);

@@ -57,7 +57,7 @@ std::string named(const StoreSpec& store) {
   return store.directory.string() + (store.shard.whole() ? "" : ", shard " + store.shard.name());
 }
 
-// The folder for a missing shard, beside the others. It is new, or that shard was started in it.
+// The folder for a missing shard, beside the other shards. It does not exist yet, or holds that unfinished shard.
 fs::path place_for(const Shard& shard, const StoreSpec& beside, const fs::path& out) {
   const auto fits = [&](const fs::path& place) {
     if (place.lexically_normal() == out.lexically_normal()) return false;
@@ -108,7 +108,7 @@ void expect_no_gaps(const std::vector<StoreSpec>& stores, const Sums& sums, cons
   std::set<std::uint64_t> lacking;
   for (std::uint64_t k = 1; k <= of; ++k) lacking.insert(k);
   for (const StoreSpec& store : stores) lacking.erase(store.shard.number);
-  std::erase_if(lacking, [&](std::uint64_t k) {  // there may be fewer pairs than shards
+  std::erase_if(lacking, [&](std::uint64_t k) {  // shards without pairs are not missing
     return std::all_of(sources.begin(), sources.end(), [&](const strata::PairSource& source) {
       return share_of({k, of}, 0, source.pairs).pairs == 0;
     });
@@ -150,7 +150,7 @@ void expect_new(const fs::path& out, const Json& spec) {
   throw UsageError(cannot("use", out, why + "; choose a new or an empty directory as --out"));
 }
 
-// The folder that `out` names, after following links; the finished campaign is renamed to it.
+// The folder that `out` names, after following links. The merged campaign is renamed to it at the end.
 // Throws: UsageError if that is impossible.
 fs::path place_of(const fs::path& out, const Json& spec) {
   std::error_code error;
@@ -170,7 +170,7 @@ fs::path place_of(const fs::path& out, const Json& spec) {
 
 constexpr std::string_view kCampaignPart = "campaign.graze.part";
 
-// The folder beside the target in which the campaign is built as kCampaignPart. A killed merge may have left it there.
+// The folder beside the target in which the campaign is built as kCampaignPart. A killed merge may have left one.
 fs::path folder_beside(const fs::path& place) {
   std::error_code error;
   fs::path part = place;
@@ -183,7 +183,7 @@ fs::path folder_beside(const fs::path& place) {
   return part;
 }
 
-// Adds the part's runs to those of the same machine.   Throws: what expect_possible_run throws.
+// Adds the part's runs to the other runs on the same machine.   Throws: the errors of expect_possible_run.
 void add_timings(const StoreSpec& part, const Json& runs, std::size_t parts, std::map<std::string, Json>& by_machine) {
   std::map<std::string, std::uint64_t> sources;
   std::uint64_t share = 0;
@@ -203,7 +203,7 @@ void add_timings(const StoreSpec& part, const Json& runs, std::size_t parts, std
   }
 }
 
-// Combines the runs of the parts into one for each machine, with the lane costs that one part measured.
+// Combines the parts' runs into one run for each machine, with the lane costs that one part measured.
 // Throws: std::runtime_error that names the timings file.
 std::map<std::string, Json> timings_of(const std::vector<StoreSpec>& stores) {
   std::map<std::string, Json> by_machine;
@@ -221,7 +221,7 @@ std::map<std::string, Json> timings_of(const std::vector<StoreSpec>& stores) {
   return by_machine;
 }
 
-// Combines the rounds of a hunt's parts into those of the campaign, which takes its cases from them.
+// Combines the rounds of a hunt's parts into the campaign's rounds, from which it takes its cases.
 // held: the number of pairs in each part.
 void join_rounds(const std::vector<StoreSpec>& stores, const std::vector<std::uint64_t>& held, const Sums& sums,
                  Campaign& campaign) {
@@ -262,7 +262,7 @@ Outcome write_results(const Campaign& campaign, Store& store, bool complete) {
   return outcome;
 }
 
-// Writes a complete campaign from the sums of all its pairs.   Requires: no gaps; a directory without a store.
+// Writes a complete campaign from its sums.   Requires: no pairs are missing, and the directory has no store.
 Outcome write_merged(const Campaign& campaign, const Sums& sums) {
   Store store(store_spec(campaign));
   for (std::size_t s = 0; s < campaign.sources.size(); ++s) {
@@ -308,7 +308,7 @@ Outcome merge(const MergeOptions& options) {
     campaign.build = common_build(campaign.build, store.build, store.directory);
     store.sources = campaign.sources;
   }
-  // This build draws the cases' pairs again, so it must be the same.
+  // Merging draws the cases' pairs again, so it must run in the build that ran the campaign.
   if (const Json here = build_info({}); campaign.build.at("commit") != here["commit"])
     throw std::runtime_error(
         cannot("merge", stores.front().directory,
@@ -318,7 +318,7 @@ Outcome merge(const MergeOptions& options) {
   campaign.under_test = &under_test;
   const std::map<std::string, Json> timings = timings_of(stores);
   const fs::path place = place_of(options.out, campaign.spec), beside = folder_beside(place);
-  const FolderLock alone(beside, FolderLock::WhenTaken::refuse);  // to the end, so that no other merge empties it
+  const FolderLock alone(beside, FolderLock::WhenTaken::refuse);  // until the end; no other merge may empty it
   campaign.directory = beside / kCampaignPart;
 
   Sums sums(campaign.sources, static_cast<int>(under_test.lanes.size()));
@@ -326,7 +326,7 @@ Outcome merge(const MergeOptions& options) {
   std::optional<Store> partial;
   std::error_code unimportant;
   try {
-    expect_new(options.out, campaign.spec);  // again, because another merge may just have ended
+    expect_new(options.out, campaign.spec);  // again, because another merge may have just finished
     fs::remove_all(campaign.directory);
     fs::create_directory(campaign.directory);
     if (options.partial) partial.emplace(store_spec(campaign));

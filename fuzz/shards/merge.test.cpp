@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests that merging gives the bytes of one run, for any number, executors and order of the shards.
+// Tests that merging gives the same bytes as one run, for any number, executors and order of the shards.
 #include "fuzz/shards/merge.h"
 
 #include <fmt/format.h>
@@ -33,8 +33,8 @@ class MergeTest : public CampaignFiles {
     return c;
   }
 
-  // Returns the directories of all shards. Every third shard runs with the steps of the device engine; every fifth is
-  // interrupted after every batch.
+  // Runs all shards, every third one with the GPU engine's steps, and interrupts every fifth one after each batch.
+  // Returns: the shards' directories.
   std::vector<fs::path> run_shards(std::uint64_t of) const {
     std::vector<fs::path> parts;
     for (std::uint64_t k = 1; k <= of; ++k) {
@@ -51,7 +51,6 @@ class MergeTest : public CampaignFiles {
     return parts;
   }
 
-  // The error of merge; empty if there is none.
   std::string refusal(const std::vector<fs::path>& parts) const {
     const std::string error = error_of([&] { merge({parts, root_ / "refused", false}); });
     EXPECT_EQ(fs::exists(root_ / "refused"), error.empty());
@@ -96,7 +95,7 @@ TEST_F(MergeTest, MergesOfMergesAreTheSame) {
   merge({{of7[6], root_ / "odd"}, root_ / "more", true});
   merge({{of7[2], root_ / "more", of7[0], of7[4]}, root_ / "all", false});
   expect_same_bytes("whole", "all");
-  // One half comes from a division into two shards, the other from a division into four: 1/2 ends where 3/4 begins.
+  // The first half is shard 1/2; the second half is shards 3/4 and 4/4. Shard 1/2 ends where 3/4 begins.
   std::vector<fs::path> mixed{of2[0]};
   for (const Shard& shard : {Shard{3, 4}, Shard{4, 4}}) {
     const Campaign c = campaign("quarter" + std::to_string(shard.number), shard);
@@ -117,7 +116,7 @@ TEST_F(MergeTest, APartialMergeIsACampaignToGoOnWith) {
   expect_same_bytes("whole", "partial");
 }
 
-// A killed merge may have left the folder beside the target. Other files and folders of that name are kept.
+// The folder beside the target is replaced only if a killed merge left it. Anything else with that name is kept.
 TEST_F(MergeTest, OnlyWhatAKilledMergeLeftIsReplaced) {
   const std::vector<fs::path> parts = run_shards(2);
   const fs::path out = root_ / "all", beside = out.string() + kPart, other = root_ / "other";
@@ -183,7 +182,7 @@ TEST_F(MergeTest, WhatIsWrongGetsOneLineAndLeavesNothing) {
   expect({parts[0], root_ / "stopped", parts[2]}, {(root_ / "stopped").string() + ", shard 2/3", "not done", command,
                                                    "--shard 2/3 --out " + (root_ / "stopped").string()});
 
-  // The hash detects a bit that was lost in copying; the row's checksum detects an edit that the hash does not cover.
+  // The hash detects a bit that changed in copying; the row's checksum detects an edit that the hash does not cover.
   std::string bytes = read_whole(database("of3-2"));
   const std::string good = bytes;
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
@@ -210,8 +209,7 @@ TEST_F(MergeTest, WhatIsWrongGetsOneLineAndLeavesNothing) {
   EXPECT_EQ(refusal(parts), "");
 }
 
-// The command that runs a part of a campaign again requests as many pairs as the user did. The mesh's pairs do not
-// count.
+// The command that runs a part of a campaign again requests as many pairs as the user did, not counting the mesh's.
 TEST_F(MergeTest, CommandsNameTheMeshAndThePairsBesideIt) {
   fs::create_directories(root_);
   const std::string file = (root_ / "mesh.off").string();
@@ -231,7 +229,7 @@ TEST_F(MergeTest, CommandsNameTheMeshAndThePairsBesideIt) {
   EXPECT_EQ(command(R"(["mesh"])", 6, true), "graze fuzz --mesh " + file + " --seed 3" + of_lanes);
 }
 
-// Lanes that were left out were requested too, with patterns that each matched a lane that ran.
+// The user also requested the lanes that were left out. Each of the patterns also matched a lane that ran.
 TEST_F(MergeTest, CommandsAskForTheLanesThatWereLeftOutToo) {
   const SelectedLanes some = select_lanes({"moller_1997/f32/cuda-*", "exact/f32/cpu"}, Executor::twin);
   Json spec = {
@@ -290,7 +288,7 @@ TEST_F(MergeTest, BlocksOfRanksAreTheWholeAndWhatARankLeftIsTakenIn) {
     of_rank.directory = rank_directory(left.directory, rank);
     fs::create_directories(of_rank.directory);
     Store store(of_rank);
-    for (std::uint64_t b = static_cast<std::uint64_t>(rank); b < blocks.count(); b += 4) {  // rank 3 died at once
+    for (std::uint64_t b = static_cast<std::uint64_t>(rank); b < blocks.count(); b += 4) {  // as if rank 3 had died
       const PairRange block = blocks.at(b);
       store.commit(block, judge(left, block.source, block.pairs, [&](std::size_t i) { return block.first + i; }));
       pairs += block.pairs;
@@ -317,7 +315,7 @@ TEST_F(MergeTest, SumsOfRanksTravelAsBytes) {
   EXPECT_EQ(root.bytes(), direct.bytes());
   EXPECT_THROW(root.add(leaf.bytes()), Sums::Overlap);
   EXPECT_THROW(root.add("nonsense"), Damaged);
-  EXPECT_EQ(direct.gaps().size(), 3u + 4u + 4u);  // the first source has only its first pairs
+  EXPECT_EQ(direct.gaps().size(), 3u + 4u + 4u);  // of the first source, only the first pairs are there
 }
 
 }  // namespace

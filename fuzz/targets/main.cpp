@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze_targets TARGET [libFuzzer's arguments]: runs a fuzz target under libFuzzer. Without arguments: lists them.
+// graze_targets TARGET [libFuzzer's arguments]: runs a fuzz target under libFuzzer. Without arguments, lists the
+// targets.
 #include <cstdint>
 #include <cstdio>
 #include <cstring>

@@ -47,7 +47,7 @@ Lines::Lines(const MeshBytes& file, char comment, Continuation continuation)
   if (file.bytes.starts_with("\xef\xbb\xbf")) byte_ = 3;
 }
 
-// Appends the words of the next line.   Returns: whether there is a next line.
+// Appends the next line's words.   Returns: whether there is a next line.
 bool Lines::read_line() {
   if (byte_ == file_.bytes.size()) return false;
   ++line_;
@@ -92,7 +92,7 @@ void Lines::fail_at(std::size_t i, const std::string& expected) const {
 
 namespace {
 
-// Whether `written` is the double nearest to the shortest decimal of `stored`, or to its decimal of nine digits.
+// Whether `written` is the double nearest to the shortest decimal of `stored`, or to `stored` with nine digits.
 bool is_decimal_of(float stored, double written) {
   const auto nearest = [](const char* begin, const char* end) {
     double value = 0;
@@ -111,7 +111,7 @@ Coordinate Lines::coordinate(std::size_t i, Rounding& rounding) const {
   const std::optional<float> value = i < words_.size() ? parse_float32(words_[i]) : std::nullopt;
   if (!value || !file_.may_be(*value)) fail_at(i, "a coordinate that is finite in float32");
   const double written = std::strtod(std::string(words_[i]).c_str(), nullptr);
-  constexpr std::size_t kTold = 15;  // doubles distinguish all decimals of this many digits
+  constexpr std::size_t kTold = 15;  // doubles distinguish all decimals with this many digits
   const bool is_zero = words_[i].find_first_not_of("+-0.") == words_[i].npos;
   const bool is_it = is_zero || (words_[i].size() <= kTold && written != 0) || written != static_cast<double>(*value) ||
                      !std::isfinite(written) || is_exactly(words_[i], written);

@@ -10,7 +10,7 @@
 
 namespace graze::strata {
 
-// Whether a backslash at the end of a line joins the line with the next one.
+// Whether a backslash at the end of a line joins it to the next line.
 enum class Continuation { none, backslash };
 
 class Lines {
@@ -21,7 +21,7 @@ class Lines {
 
   // Moves to the next line that has a word.   Returns: whether there is such a line.
   bool next();
-  // Like next.   Throws: an error that names `expected`, if there is no such line.
+  // Like next.   Throws: an error that names `expected` if there is no such line.
   void expect_next(const std::string& expected);
 
   const std::vector<std::string_view>& words() const { return words_; }
@@ -29,7 +29,7 @@ class Lines {
   std::size_t next_byte() const { return byte_; }  // the first byte after the line
   std::size_t bytes_left() const { return file_.bytes.size() - byte_; }
 
-  // Parses word i.   Throws: an error if the line has no word i, or if the word is not of that kind.
+  // Parses word i.   Throws: an error if the line has no word i, or if the word does not parse.
   Coordinate coordinate(std::size_t i, Rounding& rounding) const;
   std::uint64_t whole(std::size_t i, const std::string& expected) const;
   std::uint32_t vertex(std::size_t i, std::size_t vertices) const;

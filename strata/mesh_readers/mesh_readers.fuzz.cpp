@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For any bytes, the mesh readers must give a one-line error, or finite vertices and valid triangles.
+// For any bytes, the mesh readers must return finite vertices and valid triangles, or give a one-line error.
 #include <cmath>
 #include <stdexcept>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mesh readers are strict: they read exactly what the file says, or give an error that names the place. A damaged
-// file is never read as another mesh.
+// Tests that the mesh readers are strict: they read a file exactly, or give an error that names the place. A damaged
+// file is never read as a different mesh.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -28,7 +28,7 @@ std::string error_of(Reader read, const std::string& bytes) {
 
 struct Misfit {
   std::string bytes;
-  std::vector<std::string> named;  // words of the error: the place, the expectation, the finding
+  std::vector<std::string> named;  // words in the error: the place, what was expected, what was found
 };
 
 void expect_errors(Reader read, const std::vector<Misfit>& misfits) {
@@ -54,7 +54,7 @@ TEST(ReadOff, TakesItsVariantsAndCountsWhatItSkips) {
 }
 
 TEST(ReadOff, RoundsDecimalsOnce) {
-  // Without its last digit, which a double cannot hold, the first number is a tie between two float32 numbers.
+  // A double cannot hold the first number's last digit. Without that digit, it is a tie between two float32 numbers.
   const Soup soup = read_off({"m", "OFF\n3 1 0\n16777217.0000000001 0 0\n0.1 0 0\n-0 1e-46 7.1e-46\n3 0 1 2\n"});
   EXPECT_EQ(soup.vertices[0].x, 16777218.0f);
   EXPECT_EQ(soup.vertices[1].x, 0.1f);

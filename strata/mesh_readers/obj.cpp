@@ -23,7 +23,7 @@ constexpr Skipped kSkipped[] = {{"vt", "texture coordinates"},
                                 {"usemtl", "materials"},
                                 {"mtllib", "material libraries"}};
 
-// The largest vertex index that a face has named so far, and that face's line. The vertex may be defined later.
+// The largest vertex index used by a face so far, and that face's line. The vertex may be defined later.
 struct Largest {
   std::uint64_t vertex = 0;
   std::size_t line = 0;

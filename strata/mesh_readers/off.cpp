@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Geomview's OFF in text form, and its variants with normals (N), colours (C) and texture coordinates (ST).
+// Reads Geomview's OFF in text form, and its variants with normals (N), colours (C) and texture coordinates (ST).
 #include <limits>
 
 #include "core/text.h"
@@ -26,7 +26,7 @@ bool take_keyword(std::string_view word, Header& header) {
   return word == "OFF";
 }
 
-// The counts may follow the keyword on the same line. If the keyword is missing, the counts come first.
+// Reads the keyword, which may be missing, and the counts, which may be on the keyword's line.
 Header take_header(Lines& lines) {
   Header header;
   lines.expect_next("OFF");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY, as text or in binary of either byte order. Reads the coordinates of vertices and the vertices of faces.
+// Reads PLY, as text or as binary in either byte order. Uses only the vertices' coordinates and the faces' vertices.
 #include <bit>
 #include <cstring>
 #include <limits>
@@ -24,7 +24,7 @@ constexpr Type kTypes[] = {{"char", "int8", 1, false, true},    {"uchar", "uint8
 struct Property {
   std::string name;
   const Type* type = nullptr;
-  const Type* count_type = nullptr;  // null if the property is no list
+  const Type* count_type = nullptr;  // null if the property is not a list
 };
 
 bool is_coordinate(const Property& p) { return p.name == "x" || p.name == "y" || p.name == "z"; }
@@ -146,7 +146,7 @@ Header take_header(Lines& lines) {
   return header;
 }
 
-// Reads the numbers of a file's body in order. The count before a list is also such a number.
+// Reads the numbers of a file's body in order, including the count before each list.
 class Body {
  public:
   Body(const MeshBytes& file, Lines& lines, Header::Format format)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The result of the mesh readers; each format has a reader. The readers are strict: text that does not parse completely
-// and numbers that contradict each other are errors that name the place. Content that pairs do not need is counted and
-// skipped. Nothing else is skipped.
+// The mesh readers, one for each format, and their result. The readers are strict: text that does not parse completely,
+// or numbers that contradict each other, cause an error that names the place. Content that pairs do not need is counted
+// and skipped. Nothing else is skipped.
 #pragma once
 
 #include <algorithm>
@@ -18,13 +18,14 @@
 
 namespace graze::strata {
 
-// How many coordinates float32 cannot hold, and by how much rounding moved them. `beyond` counts coordinates that no
-// program would print for a float32, such as 1000000.01. It does not count 0.1, which some float32 is printed as.
+// How many coordinates float32 cannot hold, and how far rounding moved them. `beyond` counts coordinates that no
+// program would print for a float32, such as 1000000.01. It does not count 0.1, which a float32 can be printed as.
 struct Rounding {
   std::uint64_t coordinates = 0, rounded = 0, beyond = 0;
   double most = 0;  // no coordinate moved by more than this
 
-  // written: the double nearest to the number in the file; is_it: the two are equal; slack: their largest distance.
+  // written: the double nearest to the number in the file.   is_it: whether they are equal.   slack: a bound on their
+  // distance.
   void add(double written, float stored, double slack = 0, bool is_it = true) {
     ++coordinates;
     if (!std::isfinite(written) || (is_it && written == static_cast<double>(stored))) return;
@@ -40,7 +41,7 @@ struct Rounding {
   }
 };
 
-// "FILE: float32 rounded 5 of 18 coordinates, by at most 0.00012" (rounded up). Empty if float32 rounded none.
+// "FILE: float32 rounded 5 of 18 coordinates, by at most 0.00012" (rounded up). Empty if float32 holds all coordinates.
 std::vector<std::string> rounding_note(const std::string& file, const Rounding& rounding);
 
 // The same for callers that use the doubles: "FILE: decided in doubles, because 6 of 18 coordinates have more digits
@@ -54,7 +55,7 @@ struct Coordinate {
 };
 
 struct Soup {
-  std::vector<Vec3<float>> vertices;                    // finite, unless MeshBytes::coordinates allows others
+  std::vector<Vec3<float>> vertices;                    // finite, unless MeshBytes::coordinates is `any`
   std::vector<Vec3<double>> in_doubles;                 // the same vertices before rounding to float32
   std::vector<std::array<std::uint32_t, 3>> triangles;  // indices of existing vertices, in file order
   std::map<std::string, std::uint64_t> skipped;         // how many items were skipped, by kind: "normals"
@@ -67,7 +68,7 @@ struct Soup {
   }
 };
 
-// Whether a vertex that is not finite is an error (finite) or is read unchanged (any).
+// Whether a vertex that is not finite causes an error (finite) or is read unchanged (any).
 enum class Coordinates { finite, any };
 
 // The bytes of a file, and its name for error messages.
@@ -88,7 +89,7 @@ struct MeshBytes {
 // Cuts a face into a fan from its first vertex. A face with fewer than three vertices is counted as skipped.
 void add_face(Soup& soup, std::span<const std::uint32_t> face);
 
-// "FILE:LINE", or "FILE" with the position of a byte.
+// "FILE:LINE", or "FILE" with a byte position.
 std::string at_line(const MeshBytes& file, std::size_t line);
 std::string at_byte(const MeshBytes& file, std::size_t byte);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// STL, as text or binary. A file is binary if its size matches the facet count of a binary header, even if the header
-// begins with "solid", as many programs write it.
+// Reads STL, as text or binary. A file is binary if its size matches the facet count of a binary header, even if the
+// header begins with "solid", which many programs write.
 #include <bit>
 #include <cstring>
 
@@ -20,7 +20,6 @@ std::uint64_t count_of_binary(std::string_view bytes) {
   return count;
 }
 
-// Adds the triangle of the last three vertices.
 void add_triangle(Soup& soup) {
   const auto first = static_cast<std::uint32_t>(soup.vertices.size()) - 3;
   soup.triangles.push_back({first, first + 1, first + 2});
@@ -78,7 +77,7 @@ void take_facet(Lines& lines, Soup& soup) {
   add_triangle(soup);
 }
 
-// Reads one solid after another: "solid NAME", facets, "endsolid NAME".
+// Reads all solids of a text file: each is "solid NAME", facets, "endsolid NAME".
 Soup read_text(const MeshBytes& file) {
   Lines lines(file, '\0');
   Soup soup;

@@ -11,8 +11,8 @@
 namespace graze::strata {
 namespace {
 
-// Fills the gaps between the file's quantiles by repeatedly inserting the geometric mean of neighbours. Square roots
-// give the same results on every machine.
+// Fills the gaps between the file's quantiles by repeatedly inserting the geometric mean of two neighbours. It needs
+// only square roots, which are the same on every machine.
 Quantiles spread(const std::vector<double>& values) {
   Quantiles quantiles{};
   if (values.size() == 1) {
@@ -38,8 +38,8 @@ double largest_of(const SceneFile& scene) {
 }
 
 // Limits for a scene's longest edges, in steps of the exact grid: at least kLeastSteps for an exact stratum, and at
-// most kMostLatticeSteps for `lattice`. For mixed_scale and nested, edges must differ by a factor of at least
-// kLeastFactor.
+// most kMostLatticeSteps for `lattice`. For mixed_scale and nested, the edges' lengths must differ by a factor of at
+// least kLeastFactor.
 constexpr double kLeastSteps = 64, kMostLatticeSteps = 64, kLeastFactor = 16;
 
 double longest_in_steps(const SceneFile& scene, const Grid& grid) {
@@ -55,7 +55,7 @@ std::string coordinates_stay_within(const SceneFile& scene) {
   return fmt::format("your coordinates stay within {} … {} {}", low, high, scene.units);
 }
 
-// The number of the grid point nearest to x. It may be off by one if it is 2^51 or more.
+// The number of the grid point nearest to x. The result may be off by one if it is 2^51 or more.
 double number_at(const Grid& grid, double x) {
   const double steps = grid.decimal ? x * grid.scale : x / grid.scale;
   return std::fabs(steps) < 0x1p51 ? in_scene::number_of(grid, x) : std::trunc(steps);
@@ -98,7 +98,7 @@ Scene resolved(const SceneFile& file) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto& [from, to] = file.extent[static_cast<std::size_t>(axis)];
     double low = as_stored(file, from), high = as_stored(file, to);
-    // The first and last grid points that still lie within [low, high] after rounding.
+    // The first and last grid points within [low, high] after rounding to the stored type.
     const auto first_on = [&](const Grid& grid) {
       const double n = number_at(grid, low);
       return as_stored(file, in_scene::point_of(grid, n)) < low ? n + 1 : n;

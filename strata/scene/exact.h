@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exact contacts and exactly coplanar pairs. Their coordinates lie on the scene's grid, or are multiples of an ulp of
-// its largest coordinate. On a decimal grid the pairs are exact in the decimal numbers, before rounding.
+// its largest coordinate. On a decimal grid, the contacts are exact for the decimal numbers, before rounding.
 #pragma once
 
 #include "strata/coplanar.h"
@@ -15,7 +15,7 @@ struct Reach {
   Integer axis[3];
 };
 
-// `most` on each axis, or less if `widths` times that would not fit into the extent.
+// `most` on each axis, or less on axes where `widths` times `most` does not fit into the extent.
 template <class Integer>
 GRAZE_HD Reach<Integer> reach_within(const Scene& scene, Integer most, double widths) {
   Reach<Integer> reach{{most, most, most}};
@@ -42,10 +42,10 @@ GRAZE_HD inline double draw_edge_in_steps(auto& draws, const Scene& scene) {
 GRAZE_INLINE double whole(const Draws&, double x) { return nearest_whole(x); }
 GRAZE_INLINE double whole(const DoubleDraws&, double x) { return static_cast<double>(static_cast<std::int64_t>(x)); }
 
-// Moves integer coordinates to a random place in the extent.
+// Moves a draft with integer coordinates to a random place in the extent.
 template <class D>
 GRAZE_HD BasicPair<typename D::Real> finished_on_grid(D& draws, const Scene& scene, Draft draft) {
-  if constexpr (D::kBits == 53) {  // coordinates then begin at 0, so that no sum below needs a 54th bit
+  if constexpr (D::kBits == 53) {  // makes coordinates begin at 0, so that no sum below needs a 54th bit
     const Vec least{span_of(draft, 0).low, span_of(draft, 1).low, span_of(draft, 2).low};
     move(draft.a, least * -1.0);
     move(draft.b, least * -1.0);
@@ -67,7 +67,7 @@ GRAZE_HD BasicPair<typename D::Real> finished_on_grid(D& draws, const Scene& sce
 }
 
 inline constexpr int kWeight = 8;         // the largest multiple of a step
-inline constexpr double kEdgeSteps = 42;  // an edge is at most this many times the reach of a step: 24 * sqrt(3)
+inline constexpr double kEdgeSteps = 42;  // longest edge divided by the reach of a step: 24 * sqrt(3)
 
 GRAZE_HD inline double draw_weight(auto& draws) { return 1.0 + draws.below(kWeight); }
 
@@ -86,12 +86,12 @@ GRAZE_HD inline void put_exact_vertex(auto& draws, const auto& reach, const Vec&
   triangle[2] = toward(side, draw_whole(draws, reach, kWeight));
 }
 
-// Half of the pairs touch exactly. In the other half, one coordinate of b[0] is one step larger or one step smaller.
+// Half of the pairs touch exactly. In the other half, one coordinate of b[0] is one step too large or too small.
 template <class D>
 GRAZE_HD BasicPair<typename D::Real> exact_contact(D& draws, const Scene& scene) {
   const Touch touch = static_cast<Touch>(draws.below(3));
-  // At most 2^14 steps, so that the products that determine sides are exact. With doubles, edges may have more steps:
-  // their products are rounded, but the rounding hardly ever changes a sign.
+  // At most 2^14 steps, so that the products that determine sides are exact. With doubles, edges may have more steps;
+  // their products are rounded, but that hardly ever changes a sign.
   const double most = clamped(draw_edge_in_steps(draws, scene) / kEdgeSteps, 1, D::kBits == 53 ? 0x1p46 : 0x1p14);
   const auto reach = reach_within(scene, static_cast<typename D::Integer>(most), 4 * kWeight + 2);
   const Vec u = draw_whole(draws, reach);

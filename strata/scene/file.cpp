@@ -20,8 +20,8 @@ namespace {
 
 constexpr std::uintmax_t kMostBytes = 1 << 20;
 constexpr double kMostCoordinate = 0x1p126;
-constexpr double kLeastUlps = 8;         // so that rounding does not turn all triangles into points
-constexpr double kLeastAspect = 1.1547;  // aspect of an equilateral triangle: 2 / sqrt(3), to five digits
+constexpr double kLeastUlps = 8;         // keeps rounding from turning all triangles into points
+constexpr double kLeastAspect = 1.1547;  // an equilateral triangle's: 2 / sqrt(3), to five digits
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }
 
@@ -175,8 +175,7 @@ class Reader {
     const bool decimal = grid.contains("decimals");
     const toml::node& places = grid.begin()->second;
     scene.grid = GridSpec{decimal, decimal ? whole(places, 0, 15) : whole(places, -149, 126)};
-    // The indices of grid points must be exact in double, with room to spare. The extent must contain several grid
-    // points.
+    // Grid points' indices must be exact in double, with room to spare. The extent must contain several grid points.
     const double step = decimal ? std::pow(10.0, -scene.grid->places) : std::ldexp(1.0, scene.grid->places);
     for (const auto& [low, high] : scene.extent) {
       const double steps = std::max(std::fabs(low), std::fabs(high)) / step;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For any bytes, the scene reader must give a one-line error, or a scene whose text gives the same scene again.
+// For any bytes, the scene reader must give a one-line error, or a scene that is unchanged when written and read again.
 #include <stdexcept>
 
 #include "core/fuzz_target.h"

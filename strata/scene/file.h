@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene as a user writes it: TOML of at least two lines. docs/formats.md describes the format.
+// A scene file as a user writes it: at least two lines of TOML. docs/formats.md describes the format.
 #pragma once
 
 #include <array>
@@ -30,12 +30,12 @@ struct GridSpec {
 
 struct SceneMeshes {
   std::vector<std::string> files;  // relative to the folder of the scene's file
-  std::string poses;               // path of a CSV file; may be empty
-  std::uint64_t content = 0;       // FNV-1a of the bytes of all these files
+  std::string poses;               // path of a CSV file; empty for none
+  std::uint64_t content = 0;       // FNV-1a over the bytes of all these files
   friend bool operator==(const SceneMeshes&, const SceneMeshes&) = default;
 };
 
-// The initial values are the defaults for fields that a file may omit. extent and edges have no default.
+// The initial values are the defaults for fields that a file may omit. The fields extent and edges have no default.
 struct SceneFile {
   std::string units = "units";
   bool in_doubles = false;                        // the coordinates are doubles, not float32
@@ -44,7 +44,7 @@ struct SceneFile {
   std::vector<double> aspect{1.2, 2, 10};         // quantiles of the longest edge divided by its height
   std::optional<GridSpec> grid;
   std::array<double, kKinds> mix{0.6, 0.1, 0.1, 0.15, 0.05};  // share of each Kind among pairs whose boxes overlap
-  std::map<Bucket, double> margins;  // shares of these pairs by margin; for information, not used to draw
+  std::map<Bucket, double> margins;  // these pairs' shares by margin; for information, not for drawing
   SceneMeshes meshes;
   friend bool operator==(const SceneFile&, const SceneFile&) = default;
 };
@@ -60,7 +60,7 @@ SceneFile parse_scene(const std::string& name, std::string_view text);
 // Reading this text gives the same scene, and the same scene always gives the same text.
 std::string scene_text(const SceneFile& scene);
 
-// "arm.toml#0123456789abcdef": the file's name and a hash of its content, regardless of comments and order.
+// "arm.toml#0123456789abcdef": the file's name, and a hash of its content without comments and order of fields.
 std::string scene_name(const std::string& file, const SceneFile& scene);
 
 }  // namespace graze::strata

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes as files: a written scene is read back unchanged, a few lines by hand suffice, and every error names its line.
+// Tests scene files: a written scene is read back unchanged, two handwritten lines suffice, and errors name a line.
 #include "strata/scene/file.h"
 
 #include <gtest/gtest.h>
@@ -85,7 +85,7 @@ TEST(SceneFile, SaysWhichTypeItsCoordinatesHave) {
   EXPECT_EQ(resolved(parse_scene("s", utm)).low.x, 500000);
   EXPECT_EQ(parse_scene("s", scene_text(doubles)), doubles);
   EXPECT_NE(scene_name("s", doubles), scene_name("s", parse_scene("s", utm)));
-  // Triangles that float32 would turn into points.
+  // float32 would turn these triangles into points.
   const std::string fine = "extent = [1e6, 2e6]\nedges = [0.125, 0.5]";
   EXPECT_TRUE(names(error_of(fine), {"s.toml:2", "8 ulps"}));
   EXPECT_EQ(error_of("coordinates = \"f64\"\n" + fine), "none");
@@ -148,7 +148,7 @@ TEST(SceneFile, HostileTextsAreOneLine) {
   }
 }
 
-// Fuzzing found that characters beyond ASCII outside quotes made toml++ reach code that it declares unreachable.
+// Fuzzing found that non-ASCII characters outside quotes make toml++ reach code that it declares unreachable.
 TEST(SceneFile, CharactersBeyondAsciiStandInQuotesAndCommentsAlone) {
   const std::string rest = "extent = [[-4, 4], [0, 8], [1, 2]]\nedges = [0.5, 2]\n";
   EXPECT_EQ(parse_scene("s", "\xef\xbb\xbfunits = \"\u00b5m \\\" \u00e9\" # \u00e9\n" + rest).units,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair's place in a scene. A draft around the origin is moved into the extent, then rounded to the grid, then pushed
-// by ulps or grid steps. This order keeps near contacts near in ulps of the scene's coordinates.
+// Places pairs in a scene. A draft around the origin is moved into the extent, then rounded to the grid, then pushed by
+// ulps or grid steps. Because of this order, near contacts stay near in ulps of the scene's coordinates.
 #pragma once
 
 #include "strata/contact.h"
@@ -26,8 +26,8 @@ GRAZE_INLINE Real stored(const Scene& scene, int axis, double x) {
   return static_cast<Real>(scene.on_grid ? point_of(scene.grid, number_of(scene.grid, inside)) : inside);
 }
 
-// The coordinate moved by `steps` grid steps, but kept within the extent. It moves by ulps instead if there is no grid,
-// or if the grid steps do not change it.
+// The coordinate moved by `steps` grid steps, but kept within the extent. If there is no grid, or if the grid steps do
+// not change the coordinate, it is moved by ulps instead.
 template <class Real>
 GRAZE_INLINE Real pushed(const Scene& scene, int axis, Real x, int steps) {
   if (scene.on_grid) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene: the envelope from which pairs are drawn, so that their sizes, places and ulps are those of a user's data.
-// It draws the strata of strata.h under the same rules: pure functions, with the same bits on host and device.
+// A scene: an envelope for pairs, which gives them the sizes, places and ulps of a user's data. The strata of strata.h
+// are drawn within it under the same rules: as pure functions, with the same bits on host and device.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace graze::strata {
 
-// Nondecreasing numbers at the fractions 0, 1/32 … 1; linear interpolation in between.
+// Quantiles at the fractions 0, 1/32 … 1, nondecreasing, with linear interpolation in between.
 inline constexpr int kQuantiles = 33;
 struct Quantiles {
   double at[kQuantiles];
@@ -21,7 +21,7 @@ struct Grid {
   bool decimal = false;
 };
 
-// The numbers of a scene, for pairs of float32 or of doubles. resolved() in strata/scene/envelope.h makes them.
+// A scene's numbers, for pairs of float32 or doubles. resolved() in strata/scene/envelope.h computes them.
 struct Scene {
   Vec3<double> low, high;  // least and greatest coordinate on each axis: representable, and on the grid
   Quantiles edges;         // longest edge of a triangle
@@ -36,7 +36,7 @@ inline namespace GRAZE_FP {
 
 // The pair with this index. It lies within the extent and on the grid. Up to rounding, no edge is longer than the
 // scene's longest edge. A pair that does not fit into the extent along an axis is flattened along that axis.
-// Requires: a scene of float32 that can contain the stratum, see left_out(); compiled without contraction.
+// Requires: a float32 scene that can contain the stratum (see left_out); compiled without contraction.
 GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, const Scene& scene, std::uint64_t index);
 
 // Like generate, but in doubles, in a scene of doubles.

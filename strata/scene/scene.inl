@@ -61,9 +61,10 @@ GRAZE_HD inline auto coplanar(auto& draws, const Scene& scene, const Space& plan
   return finished(draws, scene, draft, {});
 }
 
-// A large triangle and a small one. In half of the pairs they share an inner point of the large triangle. In a quarter
-// of these pairs the small triangle pierces the large one; in the rest it lies in the same plane, usually inside. In
-// the other half it lies in that plane and touches or nearly touches an edge of the large one, from inside or outside.
+// A large triangle and a small one. In half of the pairs, they share an inner point of the large triangle. In a quarter
+// of these pairs, the small triangle pierces the large one; in the rest, it lies in the same plane, usually inside. In
+// the other half of all pairs, the small triangle lies in the same plane and touches or nearly touches an edge of the
+// large one, from inside or outside.
 GRAZE_HD inline auto nested(auto& draws, const Scene& scene) {
   const bool tilted = draws.coin();
   const int normal = draws.between(0, 2);
@@ -86,7 +87,7 @@ GRAZE_HD inline auto nested(auto& draws, const Scene& scene) {
   const double side = draws.sign();
   put_edge(draws, plane, large, u, inward, draft.a);
   put_vertex(draws, plane, small, inward * side, draft.b);
-  const Push push = draw_push(draws);  // only its gap is used; its ulps would leave the plane
+  const Push push = draw_push(draws);  // only its gap is used, because a push by ulps would leave the plane
   move(draft.b, inward * (push.gap * small.length));
   return finished(draws, scene, draft, {});
 }
@@ -116,8 +117,8 @@ GRAZE_HD BasicPair<typename D::Real> parallel(D& draws, const Scene& scene) {
   return shuffled(draws, pair);
 }
 
-// A segment that contains the origin or starts at it. The third vertex is an end of the segment. On a segment along an
-// axis it is any point of the segment, because rounding cannot move a point off such a line.
+// A segment that contains the origin or starts at it. The third vertex is an end of the segment. If the segment is
+// parallel to an axis, the third vertex is any of its points, because rounding cannot move a point off such a line.
 GRAZE_HD inline void put_segment(auto& draws, const Vec& e, bool along_axis, double length, Vec (&triangle)[3]) {
   const double back = draws.coin() ? length * draws.positive() : 0;
   const double third = length * draws.positive();
@@ -127,8 +128,8 @@ GRAZE_HD inline void put_segment(auto& draws, const Vec& e, bool along_axis, dou
   triangle[2] = along_axis ? e * (third - back) : end ? triangle[0] : triangle[1];
 }
 
-// B is a segment or a point, and A is anything. Both contain a common point. In half of the pairs B is then moved by a
-// few grid steps or ulps.
+// B is a segment or a point; A may also be a proper triangle. They have a common point. In half of the pairs, B is then
+// moved by a few grid steps or ulps.
 template <class D>
 GRAZE_HD BasicPair<typename D::Real> degenerate(D& draws, const Scene& scene) {
   const Form a = draw_form(draws, scene);
@@ -177,7 +178,7 @@ GRAZE_HD inline auto shared_vertex(auto& draws, const Scene& scene) {
   return finished(draws, scene, draft, {});
 }
 
-// The neighbour is the first triangle's mirror image, so that its edges have the same lengths.
+// The neighbour is the first triangle's mirror image, so its edges have the same lengths.
 GRAZE_HD inline auto shared_edge(auto& draws, const Scene& scene) {
   const Space plane = draw_plane(draws);
   const double lift = draw_lift(draws);
@@ -251,7 +252,7 @@ GRAZE_HD BasicPair<typename D::Real> draw_stratum(D draws, const Scene& scene) {
     case Stratum::far_from_origin:
     case Stratum::extreme_scale:
     default:
-      break;  // no scene contains these strata
+      break;  // no scene can contain these strata
   }
   return {};
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs drawn in a scene: every pair lies within the extent and on the grid, and has the scene's sizes. Strata keep
-// their promises. Sources get their shares of the mix. Strata that a scene cannot contain are left out with a reason.
+// Tests pairs drawn in scenes. Every pair lies within the extent and on the grid, and has the scene's sizes. Strata
+// keep their guarantees. Sources get their shares of the mix. Strata that do not fit are left out with a reason.
 #include "strata/scene/scene.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ using testing::length;
 using testing::normal;
 using testing::shared_vertices;
 
-// Scenes of several kinds: in millimetres far from the origin, on a grid of thousandths; on a coarse grid; flat; and
+// Several kinds of scene: in millimetres far from the origin, on a grid of thousandths; on a coarse grid; flat; and
 // without a grid.
 const std::pair<const char*, const char*> kScenes[] = {
     {"millimetres",
@@ -88,7 +88,7 @@ TEST(Scene, EveryPairIsWithinTheExtentOnTheGridAndOfTheSizes) {
           ulp, std::ldexp(1.0, log2_ulp(Pair{{{static_cast<float>(low), static_cast<float>(high), 0}, {}, {}}, {}})));
     const double step =
         std::max(ulp, scene.on_grid ? (scene.grid.decimal ? 1 / scene.grid.scale : scene.grid.scale) : 0);
-    const double most = scene.edges.at[kQuantiles - 1] * 1.00001 + 20 * step;  // for rounding, and pushes by 8 steps
+    const double most = scene.edges.at[kQuantiles - 1] * 1.00001 + 20 * step;  // rounding, and pushes by 8 steps
     int drawn = 0;
     for (const StratumInfo& row : kStrata) {
       if (left_out(file, row.stratum)) continue;
@@ -187,10 +187,10 @@ TEST(Scene, SameBytesAsEver) {
     if (left_out(parse_scene(kScenes[0].first, kScenes[0].second), row.stratum)) continue;
     for (std::uint64_t i = 0; i < 1000; ++i) hash = hash_bits(generate(kGoldenSeed, row.stratum, scene, i), hash);
   }
-  EXPECT_EQ(hash, 0xdc88fa2cdcf2a5e5u) << std::hex << hash;  // if it changes, so does every case from a scene
+  EXPECT_EQ(hash, 0xdc88fa2cdcf2a5e5u) << std::hex << hash;  // if this changes, every case from a scene changes too
 }
 
-// The same scenes in doubles, and one whose grid float32 cannot hold: a site survey in millimetres.
+// The same scenes in doubles, and a site survey in millimetres, whose grid float32 cannot hold.
 std::vector<std::pair<std::string, SceneFile>> double_scenes() {
   std::vector<std::pair<std::string, SceneFile>> scenes;
   for (const auto& [name, text] : kScenes)
@@ -372,14 +372,14 @@ TEST(SceneSources, AreThoseOfTheType) {
     EXPECT_TRUE(source.in_doubles() && source.id.ends_with("/f64") && source.stratum >= 0 && source.scene) << source.id;
     EXPECT_EQ(group_of_name(source.id), group_of_name(source.id.substr(0, source.id.size() - 4)));
   }
-  // At 500000 the spacing of float32 numbers is 1/32.
+  // At 500000, float32 numbers are 1/32 apart.
   try {
     scene_sources(fine, "", 1, 100, {}, PairTypes::f32);
     FAIL();
   } catch (const UsageError& error) {
     EXPECT_TRUE(names(error.what(), {"float32", "0.25", "8 ulps", "0.2", "doubles"})) << error.what();
   }
-  // Sources of both types get their pairs, and the shares add up.
+  // Sources of both types get pairs, and the shares add up.
   const SceneSources both = scene_sources(file, "", 1, 10'001, {"near_*", "uniform/f64"}, PairTypes::both);
   ASSERT_EQ(both.sources.size(), 9u);
   std::vector<std::string> ids;
@@ -394,7 +394,7 @@ TEST(SceneSources, AreThoseOfTheType) {
   EXPECT_EQ(both.sources[4].id, "uniform/f64");
   EXPECT_EQ(hash_bits(both.sources[4].double_pair(5)),
             hash_bits(generate_doubles(1, Stratum::uniform, resolved(with_type(file, true)), 5)));
-  // The names alone are enough for a campaign to find the same sources again.
+  // A campaign can find the same sources again from their names.
   const SceneSources again = named_scene_sources(file, "", 1, 10'001, ids);
   ASSERT_EQ(again.sources.size(), ids.size());
   for (std::size_t s = 0; s < ids.size(); ++s) {
@@ -471,7 +471,7 @@ TEST_F(SceneMesh, ItsPairsAreDrawnAsTheyAreByUlpsAndByMotions) {
         const auto& [low, high] = file_.extent[static_cast<std::size_t>(k % 3)];
         ASSERT_TRUE(low <= coordinates(pair)[k] && coordinates(pair)[k] <= high) << i;
       }
-      // Rigid except for rounding: each triangle is congruent to one of the mesh.
+      // Motions are rigid up to rounding, so each triangle is congruent to one of the mesh's triangles.
       ASSERT_TRUE(std::any_of(own.triangles.begin(), own.triangles.end(), [&](const auto& t) {
         double d[2][3];
         for (std::size_t e = 0; e < 3; ++e) {

@@ -27,7 +27,7 @@ constexpr std::string_view kMeshSources[] = {kMesh, kMeshUlps, kMeshMoved};
 struct Meshes {
   Scene scene;
   std::shared_ptr<const MeshPairs> pairs;
-  std::uint64_t stride;  // coprime to the number of pairs: visits all pairs, in scattered order
+  std::uint64_t stride;  // coprime to the number of pairs, to visit all in scattered order
 };
 
 template <class D>
@@ -79,8 +79,8 @@ Vec turned(double w, const Vec& q, const Vec& v) {
   return v + t * w + cross(q, t);
 }
 
-// Rotates the pair at random and moves it to a random place. Leaves out the rotation if the rotated pair does not fit
-// into the extent.
+// Rotates the pair at random and moves it to a random place. Omits the rotation if the rotated pair does not fit into
+// the extent.
 template <class D>
 DrawnPair<D> pair_by_motion(const Meshes& meshes, std::uint64_t seed, std::uint64_t index) {
   D draws(seed, 0x202, index);
@@ -191,7 +191,7 @@ std::string name_of(std::string_view id, bool in_doubles) {
   return std::string(id) + std::string(in_doubles ? kInDoubles : "");
 }
 
-// The types to draw, float32 first: false for float32, true for doubles.
+// The coordinate types to draw, float32 (false) before doubles (true).
 std::vector<bool> types_of(const SceneFile& scene, std::optional<PairTypes> types) {
   if (!types) return {scene.in_doubles};
   if (*types == PairTypes::both) return {false, true};
@@ -223,7 +223,7 @@ void share(std::vector<PairSource>& sources, const std::vector<double>& weights,
   }
 }
 
-// is_wanted(id) selects sources. are_named: the user named sources, so a missing mesh source is reported.
+// is_wanted(id): selects sources.   are_named: whether the user named sources; then a missing mesh source is reported.
 SceneSources sources_of(const SceneFile& file, const std::filesystem::path& folder, std::uint64_t seed,
                         std::uint64_t pairs, const std::vector<bool>& types, bool are_named,
                         const std::function<bool(const std::string&)>& is_wanted) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sources that a campaign draws from a scene, in float32 or doubles. They are the strata that the scene can
-// contain, in the shares of its mix, and the pairs of its meshes. Mesh pairs are drawn unchanged, moved by ulps, and
-// moved as rigid bodies within the extent.
+// A scene's sources for a campaign, in float32 or doubles: the strata that the scene can contain, in the shares of its
+// mix, and the pairs of its meshes. Mesh pairs are drawn unchanged, moved by ulps, and moved rigidly within the extent.
 #pragma once
 
 #include <filesystem>
@@ -23,17 +22,17 @@ struct LeftOut {
 struct SceneSources {
   std::vector<PairSource> sources;
   std::vector<LeftOut> left_out;   // sources that match but cannot be drawn
-  std::vector<std::string> notes;  // about the meshes, see MeshPairs
+  std::vector<std::string> notes;  // about the meshes; see MeshPairs
   Rounding rounding;               // how float32 rounded the meshes' coordinates
 };
 
 // Half of the pairs come from strata: each kind gets its share of the mix, divided evenly among its strata. The other
-// half come from the meshes, if there are any. Only sources whose names match are used (all for an empty list). Sources
-// of doubles match with or without "/f64".
-// types: which types to draw; if it is empty, the scene's own.
+// half come from the meshes, if there are any. Only sources whose names match are used; an empty list matches all.
+// Sources of doubles match with or without "/f64".
+// types: the coordinate types to draw; nothing means the scene's own type.
 // folder: the folder of the scene's file, for its meshes.
 // Throws: UsageError if a pattern matches nothing or no source is left; std::runtime_error for a mesh that cannot be
-// read, is not the one that the scene describes, or lies outside the scene; and what with_type throws.
+// read, is not the one that the scene describes, or lies outside the scene; and the errors of with_type.
 SceneSources scene_sources(const SceneFile& scene, const std::filesystem::path& folder, std::uint64_t seed,
                            std::uint64_t pairs, const std::vector<std::string>& globs,
                            std::optional<PairTypes> types = std::nullopt);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of a scene's sizes, and pairs of triangles that touch at the origin. Unlike in strata/contact.h, a
-// triangle's edge and aspect are drawn first, and the triangle is then rotated into place.
+// Triangles with a scene's sizes, and pairs of triangles that touch at the origin. Unlike in strata/contact.h, a
+// triangle's longest edge and aspect are drawn first, and the triangle is then rotated into place.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace graze::strata::in_scene {
 inline namespace GRAZE_FP {
 
-// The part of the quantiles from which to draw.
+// The range of quantile fractions from which to draw.
 struct Part {
   double from = 0, to = 1;
 };
@@ -50,13 +50,13 @@ struct Form {
 GRAZE_HD inline Form draw_form(auto& draws, const Scene& scene, const Sizes& sizes = {}) {
   const double length = draw_from(draws, scene.edges, sizes.edges);
   const double flat = 1 / draw_from(draws, scene.aspect, sizes.aspect);
-  double most = 1 - flat * flat;  // the foot's distance from either end, divided by the edge, squared
+  double most = 1 - flat * flat;  // squared ratio of the foot's distance from either end to the edge
   most = most > 0.25 ? sqrt(most) : 0.5;
   const double foot = (1 - most) + (2 * most - 1) * draws.positive();
   return {length, length * flat, length * foot};
 }
 
-// The same triangle, placed with another edge first: vertices (0, 0), (length, 0) and (foot, height).
+// The same triangle with another edge first: its vertices are (0, 0), (length, 0) and (foot, height).
 GRAZE_HD inline Form seen_from(const Form& form, std::uint32_t edge) {
   if (edge == 0) return form;
   const double foot = edge == 1 ? form.length - form.foot : form.foot;
@@ -70,7 +70,7 @@ GRAZE_HD inline Vec unit(const Vec& v) {
   return squared > 0x1p-200 ? v * (1 / sqrt(squared)) : unit_axis(0);
 }
 
-// The directions to draw from: all, or if `flat` those in the plane of x and y, two perpendicular unit vectors.
+// The directions from which to draw: all, or if `flat` those in the plane of the perpendicular unit vectors x and y.
 struct Space {
   bool flat = false;
   Vec x{1, 0, 0}, y{0, 1, 0};
@@ -91,7 +91,7 @@ GRAZE_HD inline Vec draw_across(auto& draws, const Space& space, const Vec& f) {
   return unit(dot(w, w) > 0x1p-40 ? w : cross(f, unit_axis((dominant_axis(f) + 1) % 3)));
 }
 
-// draw_plane: a random plane through the origin. axis_plane: the plane that two coordinate axes span.
+// draw_plane returns a random plane through the origin, and axis_plane the plane of two coordinate axes.
 GRAZE_HD inline Space draw_plane(auto& draws) {
   const Vec x = draw_direction(draws, {});
   return {true, x, draw_across(draws, {}, x)};
@@ -100,7 +100,7 @@ GRAZE_HD inline Space axis_plane(int normal) {
   return {true, unit_axis((normal + 1) % 3), unit_axis((normal + 2) % 3)};
 }
 
-// A triangle of this form, moved so that a random corner is at the origin. That corner is vertex [0]. The other corners
+// A triangle of this form, moved so that a random corner is at the origin. That corner is vertex [0], and the others
 // lie on the given side.
 GRAZE_HD inline void put_vertex(auto& draws, const Space& space, const Form& form, const Vec& side,
                                 Vec (&triangle)[3]) {
@@ -125,7 +125,7 @@ GRAZE_HD inline void put_vertex(auto& draws, const Space& space, const Form& for
   triangle[2] = up * form.height + across * right;
 }
 
-// A triangle whose edge [0][1] passes through the origin in the direction of e. e is perpendicular to the side.
+// A triangle whose edge [0][1] passes through the origin in the direction of e.   Requires: e is perpendicular to side.
 GRAZE_HD inline void put_edge(auto& draws, const Space& space, const Form& form, const Vec& e, const Vec& side,
                               Vec (&triangle)[3]) {
   const Form seen = seen_from(form, draws.below(3));
@@ -136,7 +136,7 @@ GRAZE_HD inline void put_edge(auto& draws, const Space& space, const Form& form,
   triangle[2] = e * (seen.foot - back) + up * seen.height;
 }
 
-// A triangle in the plane that contains the origin.
+// A triangle in the given plane, with the origin inside it.
 GRAZE_HD inline void put_face(auto& draws, const Space& plane, const Form& form, Vec (&triangle)[3]) {
   const double w0 = draws.positive();
   const double w1 = draws.positive();
@@ -148,8 +148,8 @@ GRAZE_HD inline void put_face(auto& draws, const Space& plane, const Form& form,
   triangle[2] = plane.x * (form.foot - x) + plane.y * (form.height - y);
 }
 
-// Two triangles that meet only at the origin before rounding. In a plane, the edges that touch lie along each other.
-// Returns: the unit vector in the direction that separates B from A.
+// Two triangles that meet only at the origin before rounding. If the space is flat, edges that touch lie along each
+// other. Returns: the unit vector in the direction that separates B from A.
 GRAZE_HD inline Vec put_contact(auto& draws, Touch touch, const Space& space, const Form& form_a, const Form& form_b,
                                 Draft& draft) {
   const Vec u = draw_direction(draws, space);
